@@ -1,0 +1,165 @@
+//! The interval of α on which a map keeps its order of thresholds.
+//!
+//! Every threshold is a linear function of α, m − (αk + b)/2 with integers m, k, b, as long as no
+//! threshold crosses another or an end of the set region. Comparing two of them is comparing α
+//! with a ratio of integers; the tightest such ratios bound the interval.
+
+use core::ops::RangeInclusive;
+
+use crate::pattern::Alpha;
+
+/// A neighbor shift −(αk + b)/2: the place where a neighbor column enters or leaves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Label {
+    k: i64,
+    b: u8,
+}
+
+/// All shifts that a half-width R knows. Those of e = t coincide with those of e = 0 one step on:
+/// t − (αk + b)/2 = −(α(k − 1) + (b + 1))/2, so k runs from −R − 1 to R.
+pub(super) fn labels(radius: u32) -> impl Iterator<Item = Label> {
+    let r = i64::from(radius);
+    // k = R belongs to e = 0 only and k = −R − 1 to e = t only; both parities b occur for each.
+    (-r - 1..=r).flat_map(|k| [Label { k, b: 0 }, Label { k, b: 1 }])
+}
+
+impl Label {
+    /// The value modulo 1, in units of 2⁻⁶⁴.
+    pub(super) fn index(self, alpha: Alpha) -> u64 {
+        alpha
+            .half()
+            .wrapping_mul(self.k as u64)
+            .wrapping_add(u64::from(self.b) << 63)
+            .wrapping_neg()
+    }
+
+    /// The value modulo 1 as a linear function, valid near `alpha`.
+    fn linear(self, alpha: Alpha) -> Linear {
+        let shift = i128::from(alpha.half()) * i128::from(self.k) + (i128::from(self.b) << 63);
+        let turns = (shift + i128::from(self.index(alpha))) >> 64;
+        Linear {
+            constant: 2 * turns as i64 - i64::from(self.b),
+            slope: self.k,
+        }
+    }
+}
+
+/// (constant − slope·α)/2.
+#[derive(Clone, Copy, Debug)]
+struct Linear {
+    constant: i64,
+    slope: i64,
+}
+
+impl Linear {
+    const ZERO: Self = Self {
+        constant: 0,
+        slope: 0,
+    };
+    const SET_SIDE: Self = Self {
+        constant: -1,
+        slope: -1,
+    };
+    const ONE: Self = Self {
+        constant: 2,
+        slope: 0,
+    };
+}
+
+/// A ratio of integers with a positive denominator.
+#[derive(Clone, Copy, Debug)]
+struct Ratio {
+    n: i64,
+    d: i64,
+}
+
+impl Ratio {
+    fn less_than(self, n: u64, d: u64) -> bool {
+        i128::from(self.n) * i128::from(d) < i128::from(n) * i128::from(self.d)
+    }
+
+    fn greater_than(self, n: u64, d: u64) -> bool {
+        i128::from(self.n) * i128::from(d) > i128::from(n) * i128::from(self.d)
+    }
+
+    fn max(self, other: Self) -> Self {
+        if self.is_less(other) { other } else { self }
+    }
+
+    fn min(self, other: Self) -> Self {
+        if other.is_less(self) { other } else { self }
+    }
+
+    fn is_less(self, other: Self) -> bool {
+        i128::from(self.n) * i128::from(other.d) < i128::from(other.n) * i128::from(self.d)
+    }
+}
+
+/// The open interval of α with one map.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell {
+    low: Ratio,
+    high: Ratio,
+}
+
+impl Cell {
+    pub(super) fn new(alpha: Alpha, radius: u32) -> Self {
+        let mut cell = Self {
+            low: Ratio { n: 1, d: 1 },
+            high: Ratio { n: 2, d: 1 },
+        };
+        let side = alpha.set_side();
+        let mut inside: alloc::vec::Vec<(u64, Linear)> = alloc::vec::Vec::new();
+        for label in labels(radius) {
+            let (index, line) = (label.index(alpha), label.linear(alpha));
+            if index > side {
+                // It stays out of the set region.
+                cell.keep_less(Linear::SET_SIDE, line);
+                cell.keep_less(line, Linear::ONE);
+            } else if index > 0 && index < side {
+                inside.push((index, line));
+            }
+        }
+        inside.sort_unstable_by_key(|&(index, _)| index);
+        let mut last = Linear::ZERO;
+        for (_, line) in inside {
+            cell.keep_less(last, line);
+            last = line;
+        }
+        cell.keep_less(last, Linear::SET_SIDE);
+        cell
+    }
+
+    /// Narrows the interval to where `left` < `right`.
+    fn keep_less(&mut self, left: Linear, right: Linear) {
+        // (right − left)·2 = c − s·α > 0.
+        let (c, s) = (right.constant - left.constant, right.slope - left.slope);
+        if s > 0 {
+            self.high = self.high.min(Ratio { n: c, d: s });
+        } else if s < 0 {
+            self.low = self.low.max(Ratio { n: -c, d: -s });
+        }
+    }
+
+    /// Whether p/q lies inside.
+    pub(super) fn contains(&self, p: u64, q: u64) -> bool {
+        self.low.less_than(p, q) && self.high.greater_than(p, q)
+    }
+
+    /// The denominators q for which (t + q)/q lies inside.
+    pub(super) fn denominators(&self, t: u64) -> impl Iterator<Item = u64> + use<> {
+        let cell = *self;
+        // 1 + t/q < high  ⇔  q > t·d/(n − d), and likewise for low; one more on either side is
+        // cheap and keeps the exact test in one place.
+        let bound = |ratio: Ratio| {
+            let excess = i128::from(ratio.n - ratio.d);
+            (excess > 0).then(|| (i128::from(t) * i128::from(ratio.d) / excess) as u64)
+        };
+        let range: RangeInclusive<u64> = match (bound(cell.high), bound(cell.low)) {
+            (Some(first), Some(last)) => first.max(1)..=last + 1,
+            (Some(first), None) => first.max(1)..=u64::MAX,
+            _ => 1..=0,
+        };
+        range.filter(move |&q| cell.contains(t + q, q))
+    }
+}

@@ -1,0 +1,270 @@
+//! Neighborhood maps: which blocks of index space see the same surroundings.
+//!
+//! A neighbor at offset (i, j) shifts dX by (αi + j)/2. So the neighborhood of half-width R is
+//! fixed, axis by axis, by the thresholds {e − (αk + b)/2 mod 1 : e ∈ {0, t}, |k| ≤ R, b ∈ {0, 1}}
+//! inside (0, t). They cut [0, t) into n(R) intervals; a *block* is a pair of intervals, and the
+//! n² blocks hold n² displacement vectors.
+
+mod cell;
+mod twin;
+
+use alloc::{vec, vec::Vec};
+use core::ops::Range;
+
+use crate::pattern::Alpha;
+
+pub use twin::{Site, Twin};
+
+/// The largest half-width a map is built for. At 1024 a table holds about 1.7 million vectors; the
+/// largest that makes sense today is 200 (255 intervals at the default α).
+pub const MAX_RADIUS: u32 = 1024;
+
+/// A half-width beyond [`MAX_RADIUS`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("map half-width R = {radius} is too large: at most {MAX_RADIUS} is allowed")]
+pub struct RadiusError {
+    /// The half-width asked for.
+    pub radius: u32,
+}
+
+/// The intervals of [0, t) for one α and one half-width R, the same for both axes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Map {
+    alpha: Alpha,
+    radius: u32,
+    /// Where each interval starts, ascending from 0; one more entry, t, closes the last.
+    bounds: Vec<u64>,
+    /// For each bucket of 2^`shift` units the interval of its first unit: a lookup starts there.
+    buckets: Vec<u32>,
+    shift: u32,
+}
+
+impl Map {
+    /// The map of half-width `radius`, in grid units.
+    ///
+    /// # Errors
+    /// [`RadiusError`] if `radius` is greater than [`MAX_RADIUS`].
+    pub fn new(alpha: Alpha, radius: u32) -> Result<Self, RadiusError> {
+        if radius > MAX_RADIUS {
+            return Err(RadiusError { radius });
+        }
+        let side = alpha.set_side();
+        let mut bounds: Vec<u64> = cell::labels(radius)
+            .map(|label| label.index(alpha))
+            .filter(|&index| index < side)
+            .chain([0, side])
+            .collect();
+        bounds.sort_unstable();
+        bounds.dedup();
+        let (buckets, shift) = buckets(&bounds);
+        Ok(Self {
+            alpha,
+            radius,
+            bounds,
+            buckets,
+            shift,
+        })
+    }
+
+    /// The number α.
+    #[must_use]
+    pub const fn alpha(&self) -> Alpha {
+        self.alpha
+    }
+
+    /// The half-width R, in grid units.
+    #[must_use]
+    pub const fn radius(&self) -> u32 {
+        self.radius
+    }
+
+    /// n: the number of intervals per axis.
+    #[must_use]
+    pub fn intervals(&self) -> usize {
+        self.bounds.len() - 1
+    }
+
+    /// The thresholds strictly inside (0, t), ascending, in units of 2⁻⁶⁴: one fewer than
+    /// intervals.
+    #[must_use]
+    pub fn thresholds(&self) -> &[u64] {
+        &self.bounds[1..self.bounds.len() - 1]
+    }
+
+    /// The interval number `i` of index space, or an empty range past the last.
+    #[must_use]
+    pub fn interval(&self, i: usize) -> Range<u64> {
+        match self.bounds.get(i..i + 2) {
+            Some(ends) => ends[0]..ends[1],
+            None => 0..0,
+        }
+    }
+
+    /// The interval that holds an index, or `None` outside the set region [0, t).
+    #[must_use]
+    pub fn interval_of(&self, index: u64) -> Option<usize> {
+        (index < self.alpha.set_side()).then(|| self.locate(index))
+    }
+
+    /// The interval that holds an index below t; the last one for any other index.
+    pub(crate) fn locate(&self, index: u64) -> usize {
+        let bucket = ((index >> self.shift) as usize).min(self.buckets.len() - 1);
+        let mut i = self.buckets[bucket] as usize;
+        while i + 2 < self.bounds.len() && self.bounds[i + 1] <= index {
+            i += 1;
+        }
+        i
+    }
+
+    /// The map of a larger half-width and, for each of its intervals, the interval of this map
+    /// that contains it: maps are hierarchical.
+    ///
+    /// # Errors
+    /// [`RadiusError`] if `radius` is greater than [`MAX_RADIUS`]. A smaller half-width than this
+    /// map's is not a refinement; this map's own is used instead.
+    pub fn refine(&self, radius: u32) -> Result<(Self, Vec<usize>), RadiusError> {
+        let finer = Self::new(self.alpha, radius.max(self.radius))?;
+        let parents = finer.bounds[..finer.intervals()]
+            .iter()
+            .map(|&start| self.locate(start))
+            .collect();
+        Ok((finer, parents))
+    }
+
+    /// The periodic twins of this map, smallest first: fractions α' = p/q whose thresholds have
+    /// the same order, so that a table made on the twin is valid for α. The list does not end.
+    ///
+    /// Proof by construction: the order of the thresholds holds on an open interval of α whose
+    /// ends are ratios of small integers; a fraction inside it is a twin, and no other is.
+    pub fn twins(&self) -> impl Iterator<Item = Twin> + use<> {
+        let cell = cell::Cell::new(self.alpha, self.radius);
+        (1u64..).flat_map(move |t| {
+            cell.denominators(t)
+                .filter_map(move |q| Twin::new(t + q, q))
+        })
+    }
+
+    /// Whether p/q is a periodic twin of this map (see [`twins`](Self::twins)).
+    #[must_use]
+    pub fn has_twin(&self, twin: Twin) -> bool {
+        cell::Cell::new(self.alpha, self.radius).contains(twin.p(), twin.q())
+    }
+}
+
+/// A start for the lookup of every index: about two buckets per interval.
+fn buckets(bounds: &[u64]) -> (Vec<u32>, u32) {
+    let side = bounds[bounds.len() - 1];
+    let wanted = (2 * bounds.len()).next_power_of_two().trailing_zeros();
+    let shift = (64 - side.leading_zeros()).saturating_sub(wanted);
+    let mut buckets = vec![0u32; (side.saturating_sub(1) >> shift) as usize + 1];
+    let mut interval = 0;
+    for (bucket, slot) in buckets.iter_mut().enumerate() {
+        let first = (bucket as u64) << shift;
+        while interval + 2 < bounds.len() && bounds[interval + 1] <= first {
+            interval += 1;
+        }
+        *slot = interval as u32;
+    }
+    (buckets, shift)
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::collections::{BTreeMap, BTreeSet};
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::pattern::{IndexOrigin, Pattern};
+
+    fn map(alpha: &str, radius: u32) -> Map {
+        Map::new(alpha.parse().expect("valid"), radius).expect("small")
+    }
+
+    #[test]
+    fn interval_counts_are_the_known_ones() {
+        for (radius, n) in [(20, 27), (49, 63), (100, 129), (200, 255)] {
+            assert_eq!(map("(5-sqrt(3))/2", radius).intervals(), n, "R = {radius}");
+        }
+        assert_eq!(map("sqrt(3)", 49).intervals(), 73);
+        assert_eq!(map("(1+sqrt(5))/2", 49).intervals(), 61);
+        assert_eq!(map("sqrt(2)", 49).intervals(), 41);
+        assert!(Map::new("3/2".parse().expect("valid"), MAX_RADIUS + 1).is_err());
+    }
+
+    #[test]
+    fn thresholds_are_the_published_ones() {
+        // t/r = √3 as 191861/110771: α = 1 + t/(t + r). Source: the paper's list of 63 intervals.
+        let (t, r) = (191_861u64, 110_771u64);
+        let alpha = Alpha::from_fraction(2 * t + r, t + r).expect("valid");
+        let map = Map::new(alpha, 49).expect("small");
+        assert_eq!(map.intervals(), 63);
+        let scale = t as f64 / alpha.set_side() as f64;
+        let published = [2131.0, 5822.0, 7953.0, 13775.0];
+        for (found, expected) in map.thresholds().iter().zip(published) {
+            assert!((*found as f64 * scale - expected).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn equal_blocks_see_equal_neighborhoods_and_other_blocks_others() {
+        let radius = 9;
+        let map = map("(5-sqrt(3))/2", radius);
+        let pattern = Pattern::with_origin(
+            map.alpha(),
+            IndexOrigin {
+                x: 12345,
+                y: 1 << 60,
+            },
+        );
+        let r = i64::from(radius);
+        let mut seen: BTreeMap<(usize, usize), BTreeSet<(i64, i64)>> = BTreeMap::new();
+        for y in -150..150 {
+            for x in -150..150 {
+                if !pattern.contains(x, y) {
+                    continue;
+                }
+                let (dx, dy) = pattern.index(x, y);
+                let block = (
+                    map.interval_of(dx).expect("inside"),
+                    map.interval_of(dy).expect("inside"),
+                );
+                let around: BTreeSet<_> = (-r..=r)
+                    .flat_map(|j| (-r..=r).map(move |i| (i, j)))
+                    .filter(|&(i, j)| pattern.contains(x + i, y + j))
+                    .collect();
+                assert_eq!(*seen.entry(block).or_insert_with(|| around.clone()), around);
+            }
+        }
+        assert_eq!(
+            seen.len(),
+            map.intervals() * map.intervals(),
+            "every block occurs"
+        );
+        let different: BTreeSet<_> = seen.values().collect();
+        assert_eq!(different.len(), seen.len(), "no two blocks look alike");
+    }
+
+    proptest! {
+        #[test]
+        fn lookup_agrees_with_search(index: u64, radius in 0u32..120) {
+            let map = map("(1+sqrt(5))/2", radius);
+            let brute = (0..map.intervals()).find(|&i| map.interval(i).contains(&index));
+            prop_assert_eq!(map.interval_of(index), brute);
+            let inside = index % map.alpha().set_side();
+            let i = map.interval_of(inside).expect("inside");
+            prop_assert!(map.interval(i).contains(&inside));
+        }
+
+        #[test]
+        fn refinement_splits_intervals(small in 0u32..60, more in 0u32..60) {
+            let coarse = map("sqrt(3)", small);
+            let (fine, parents) = coarse.refine(small + more).expect("small");
+            prop_assert_eq!(parents.len(), fine.intervals());
+            for (i, &parent) in parents.iter().enumerate() {
+                let (inner, outer) = (fine.interval(i), coarse.interval(parent));
+                prop_assert!(outer.start <= inner.start && inner.end <= outer.end);
+            }
+        }
+    }
+}

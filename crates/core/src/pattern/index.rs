@@ -1,0 +1,198 @@
+//! The index torus and membership.
+
+use core::ops::Range;
+
+use super::{Alpha, Axis, AxisSet, Class};
+
+/// The index of the lattice origin: moving it gives another piece of the same unbounded pattern.
+/// In units of 2⁻⁶⁴ of the torus.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct IndexOrigin {
+    /// dX of the lattice point (0, 0).
+    pub x: u64,
+    /// dY of the lattice point (0, 0).
+    pub y: u64,
+}
+
+impl IndexOrigin {
+    /// The component along an axis.
+    #[must_use]
+    pub const fn along(self, axis: Axis) -> u64 {
+        match axis {
+            Axis::X => self.x,
+            Axis::Y => self.y,
+        }
+    }
+}
+
+/// The AA pattern of one α, seen from one origin in index space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Pattern {
+    alpha: Alpha,
+    origin: IndexOrigin,
+}
+
+impl Pattern {
+    /// The pattern whose lattice origin has the index (0, 0).
+    #[must_use]
+    pub const fn new(alpha: Alpha) -> Self {
+        Self {
+            alpha,
+            origin: IndexOrigin { x: 0, y: 0 },
+        }
+    }
+
+    /// The same pattern with the lattice origin at another index.
+    #[must_use]
+    pub const fn with_origin(alpha: Alpha, origin: IndexOrigin) -> Self {
+        Self { alpha, origin }
+    }
+
+    /// The number α.
+    #[must_use]
+    pub const fn alpha(&self) -> Alpha {
+        self.alpha
+    }
+
+    /// The index of a coordinate along an axis, given the parity of the other coordinate:
+    /// {(α·v + parity)/2}.
+    #[must_use]
+    pub const fn axis_index(&self, axis: Axis, v: i64, other_parity: u8) -> u64 {
+        self.alpha
+            .half()
+            .wrapping_mul(v as u64)
+            .wrapping_add(self.origin.along(axis))
+            .wrapping_add((other_parity as u64) << 63)
+    }
+
+    /// The index (dX, dY) of a lattice point, in units of 2⁻⁶⁴ (paper, Eqs. 2 and 3).
+    #[must_use]
+    pub const fn index(&self, x: i64, y: i64) -> (u64, u64) {
+        let class = Class::of(x, y);
+        (
+            self.axis_index(Axis::X, x, class.y),
+            self.axis_index(Axis::Y, y, class.x),
+        )
+    }
+
+    /// Whether a lattice point belongs to the pattern (paper, Eq. 4): dX < t and dY < t.
+    #[must_use]
+    pub const fn contains(&self, x: i64, y: i64) -> bool {
+        let (dx, dy) = self.index(x, y);
+        let side = self.alpha.set_side();
+        dx < side && dy < side
+    }
+
+    /// The columns (`Axis::X`) or rows (`Axis::Y`) of one class: the pattern is the union, over the
+    /// four classes, of columns × rows.
+    #[must_use]
+    pub fn axis_set(&self, axis: Axis, class: Class) -> AxisSet {
+        self.axis_subset(axis, class, 0..self.alpha.set_side())
+    }
+
+    /// The part of [`axis_set`](Self::axis_set) whose index lies in `interval`, a part of [0, t).
+    #[must_use]
+    pub fn axis_subset(&self, axis: Axis, class: Class, interval: Range<u64>) -> AxisSet {
+        let (own, other) = match axis {
+            Axis::X => (class.x, class.y),
+            Axis::Y => (class.y, class.x),
+        };
+        AxisSet::new(self.alpha, self.axis_index(axis, 0, other), own, interval)
+    }
+
+    /// The two axis indices of a coordinate, by parity of the other coordinate, of which at most
+    /// one is inside the set region: `Some((other parity, index))`, or `None`.
+    #[must_use]
+    pub const fn visit(&self, axis: Axis, v: i64) -> Option<(u8, u64)> {
+        let even = self.axis_index(axis, v, 0);
+        let odd = even ^ (1 << 63);
+        let side = self.alpha.set_side();
+        if even < side {
+            Some((0, even))
+        } else if odd < side {
+            Some((1, odd))
+        } else {
+            None
+        }
+    }
+
+    /// How many points of the pattern lie in the half-open lattice box. O(log).
+    #[must_use]
+    pub fn count(&self, x: Range<i64>, y: Range<i64>) -> u128 {
+        Class::ALL
+            .into_iter()
+            .map(|class| {
+                u128::from(self.axis_set(Axis::X, class).count(x.clone()))
+                    * u128::from(self.axis_set(Axis::Y, class).count(y.clone()))
+            })
+            .sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn alpha(text: &str) -> Alpha {
+        text.parse().expect("valid")
+    }
+
+    #[test]
+    fn membership_agrees_with_the_real_formula() {
+        for text in ["sqrt(3)", "(5-sqrt(3))/2", "(1+sqrt(5))/2", "1.3"] {
+            let a = alpha(text);
+            let pattern = Pattern::new(a);
+            let (v, t) = (a.to_f64(), a.set_side_f64());
+            for y in -60..60i64 {
+                for x in -60..60i64 {
+                    let dx = ((v * x as f64 + y as f64) / 2.0).rem_euclid(1.0);
+                    let dy = ((v * y as f64 + x as f64) / 2.0).rem_euclid(1.0);
+                    // Keep off the ends, where f64 cannot tell.
+                    let clear = [dx, dy]
+                        .iter()
+                        .all(|d| (d - t).abs() > 1e-9 && *d > 1e-9 && *d < 1.0 - 1e-9);
+                    if clear {
+                        assert_eq!(pattern.contains(x, y), dx < t && dy < t, "{text} {x} {y}");
+                    }
+                }
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn four_products_make_the_pattern(
+            x0 in any::<i64>(), y0 in any::<i64>(), w in 0i64..60, h in 0i64..60, ox: u64, oy: u64,
+        ) {
+            let (x0, y0) = (x0.min(i64::MAX - 60), y0.min(i64::MAX - 60));
+            let pattern = Pattern::with_origin(alpha("(5-sqrt(3))/2"), IndexOrigin { x: ox, y: oy });
+            let mut direct = Vec::new();
+            for y in y0..y0 + h {
+                direct.extend((x0..x0 + w).filter(|&x| pattern.contains(x, y)).map(|x| (y, x)));
+            }
+            let mut products = Vec::new();
+            for class in Class::ALL {
+                for y in pattern.axis_set(Axis::Y, class).iter(y0..y0 + h) {
+                    let columns = pattern.axis_set(Axis::X, class).iter(x0..x0 + w);
+                    products.extend(columns.map(|x| (y, x)));
+                }
+            }
+            products.sort_unstable();
+            prop_assert_eq!(pattern.count(x0..x0 + w, y0..y0 + h), direct.len() as u128);
+            prop_assert_eq!(products, direct);
+        }
+    }
+
+    #[test]
+    fn density_is_the_area_of_the_set_region() {
+        let pattern = Pattern::new(alpha("(5-sqrt(3))/2"));
+        let side = 1i64 << 40;
+        let count = pattern.count(-side..side, -side..side) as f64;
+        let t = pattern.alpha().set_side_f64();
+        assert!((count / (4.0 * (side as f64).powi(2)) - t * t).abs() < 1e-11);
+    }
+}
