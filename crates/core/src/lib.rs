@@ -17,7 +17,7 @@
 //!
 //! // A table without displacements: the AA pattern itself.
 //! let table = Table::undisplaced("sqrt(3)".parse::<Alpha>()?, 20, "pattern")?;
-//! let sampler = Arc::new(Sampler::new(table)?);
+//! let sampler = Arc::new(Sampler::new(table));
 //! let region = Region::new([-50.0, -50.0], [50.0, 50.0])?;
 //! let plan = sampler.plan(Spacing::new(1.0)?, Seed::default(), region)?;
 //! let mut points = vec![[0.0f64; 2]; usize::try_from(plan.count())?];
@@ -32,12 +32,12 @@ extern crate alloc;
 
 pub mod map;
 pub mod pattern;
-//pub mod sample;
+pub mod sample;
 pub mod table;
 
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
-//pub use sample::{Plan, Point, PointId, Region, Sampler, Seed, Spacing};
+pub use sample::{Plan, Point, PointId, Region, Sampler, Seed, Spacing};
 pub use table::Table;
 
 /// The version of the algorithm that turns a table, a density, a seed and a lattice address into

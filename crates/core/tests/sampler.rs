@@ -1,0 +1,326 @@
+//! The sampler against brute force, and the laws: partitions, order, blocks, threads.
+
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use rayon::prelude::*;
+use strew_core::{
+    Alpha, Map, Pattern, Plan, Point, PointId, Region, Sampler, Seed, Spacing, Table,
+    sample::{F32, F64, Format, Points},
+    table::{FRACTION_BITS, Provenance},
+};
+
+const ALPHAS: [&str; 3] = ["(5-sqrt(3))/2", "sqrt(3)", "(1+sqrt(5))/2"];
+
+/// A table with arbitrary vectors up to about ±13 grid units, as long as any published one's.
+fn table(alpha: &str, radius: u32) -> Table {
+    let map = Map::new(alpha.parse::<Alpha>().expect("valid"), radius).expect("small");
+    let blocks = map.intervals() * map.intervals();
+    let mut state = 0x1234_5678_9abc_def0u64;
+    let mut next = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state % (26 << FRACTION_BITS)) as i32 - (13 << FRACTION_BITS)
+    };
+    let vectors = (0..blocks).map(|_| [next(), next()]).collect();
+    Table::new(map, "test", vectors, Provenance::default()).expect("valid")
+}
+
+fn samplers() -> &'static [Arc<Sampler>; 3] {
+    static ONCE: std::sync::OnceLock<[Arc<Sampler>; 3]> = std::sync::OnceLock::new();
+    ONCE.get_or_init(|| ALPHAS.map(|alpha| Arc::new(Sampler::new(table(alpha, 20)))))
+}
+
+fn all<F: Format>(plan: &Plan, block: usize) -> Vec<F::Item> {
+    let mut blocks = plan.blocks::<F>();
+    let mut buffer = vec![F::Item::default(); block];
+    let mut items = Vec::new();
+    loop {
+        let filled = blocks.fill(&mut buffer);
+        items.extend_from_slice(&buffer[..filled]);
+        if filled < block {
+            return items;
+        }
+    }
+}
+
+/// Every point of a region from first principles: each lattice address near it is looked at, its
+/// index computed anew, its block searched, its position converted.
+fn brute_force(sampler: &Sampler, spacing: Spacing, seed: Seed, region: Region) -> Vec<Point> {
+    let table = sampler.table();
+    let (map, alpha) = (table.map(), table.alpha());
+    let pattern = Pattern::with_origin(alpha, seed.origin());
+    let step = spacing.get() * alpha.set_side_f64() / f64::from(1u32 << FRACTION_BITS);
+    let lattice = |v: f64| (v / step / f64::from(1u32 << FRACTION_BITS)).floor() as i64;
+    // Within ±2⁵² lattice units f64 is off by at most a few units here.
+    let reach = 13 + 8;
+    let mut points = Vec::new();
+    let (min, max) = (region.min().map(lattice), region.max().map(lattice));
+    for y in min[1] - reach..=max[1] + reach {
+        for x in min[0] - reach..=max[0] + reach {
+            if !pattern.contains(x, y) {
+                continue;
+            }
+            let (dx, dy) = pattern.index(x, y);
+            let find = |d| {
+                (0..map.intervals())
+                    .find(|&i| map.interval(i).contains(&d))
+                    .expect("in")
+            };
+            let vector = table.displacements()[find(dy) * map.intervals() + find(dx)];
+            let place =
+                |v: i64, d: i32| ((i128::from(v) << FRACTION_BITS) + i128::from(d)) as f64 * step;
+            let p = [place(x, vector[0]), place(y, vector[1])];
+            if region.contains(p) {
+                points.push(Point {
+                    id: PointId { x, y },
+                    x: p[0],
+                    y: p[1],
+                });
+            }
+        }
+    }
+    points
+}
+
+fn in_order_of_ids(mut points: Vec<Point>) -> Vec<Point> {
+    points.sort_by_key(|p| (p.id.x.div_euclid(1024), p.id.y, p.id.x));
+    points
+}
+
+/// Regions by kind: near, far, negative, tiny, thin, empty; sides in mean spacings.
+fn any_region() -> impl Strategy<Value = (Spacing, Region)> {
+    let place = prop_oneof![
+        4 => -40.0..40.0f64,
+        2 => -1e6..1e6f64,
+        1 => -1e12..1e12f64,
+        1 => Just(0.0),
+    ];
+    let side = prop_oneof![
+        5 => 0.0..25.0f64,
+        2 => 0.0..1.0f64,
+        1 => 0.0..1e-6f64,
+        1 => Just(0.0),
+        1 => 20.0..80.0f64,
+    ];
+    let spacing = prop_oneof![3 => 0.01..100.0f64, 1 => Just(1.0), 1 => 1e-9..1e9f64];
+    (spacing, place.clone(), place, side.clone(), side).prop_map(|(spacing, x, y, w, h)| {
+        let min = [x * spacing, y * spacing];
+        let max = [min[0] + w * spacing, min[1] + h * spacing];
+        (
+            Spacing::new(spacing).expect("valid"),
+            Region::new(min, max).expect("ordered"),
+        )
+    })
+}
+
+fn any_sampler() -> impl Strategy<Value = Arc<Sampler>> {
+    (0..3usize).prop_map(|i| samplers()[i].clone())
+}
+
+fn any_seed() -> impl Strategy<Value = Seed> {
+    prop_oneof![Just(Seed(0)), any::<u64>().prop_map(Seed)]
+}
+
+/// A partition of a region into boxes by random cuts, some of them on top of each other.
+fn cut(region: Region, cuts: &[(bool, f64)]) -> Vec<Region> {
+    let mut parts = vec![region];
+    for (i, &(vertical, at)) in cuts.iter().enumerate() {
+        let part = parts.swap_remove((i * 7919) % parts.len());
+        let axis = usize::from(vertical);
+        let (min, max) = (part.min(), part.max());
+        let middle = (min[axis] + at * (max[axis] - min[axis])).clamp(min[axis], max[axis]);
+        let (mut upper_min, mut lower_max) = (min, max);
+        upper_min[axis] = middle;
+        lower_max[axis] = middle;
+        parts.push(Region::new(min, lower_max).expect("ordered"));
+        parts.push(Region::new(upper_min, max).expect("ordered"));
+    }
+    parts
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1500))]
+
+    #[test]
+    fn a_region_holds_what_brute_force_finds(
+        sampler in any_sampler(), seed in any_seed(), (spacing, region) in any_region(),
+    ) {
+        let plan = sampler.plan(spacing, seed, region).expect("in range");
+        let points = all::<Points>(&plan, 777);
+        let expected = in_order_of_ids(brute_force(&sampler, spacing, seed, region));
+        prop_assert_eq!(plan.count(), expected.len() as u128);
+        prop_assert_eq!(&points, &expected);
+        for point in points.iter().take(20) {
+            prop_assert_eq!(sampler.point(spacing, seed, point.id), Some(*point));
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(10_000))]
+
+    #[test]
+    fn a_partition_gives_every_point_exactly_once(
+        sampler in any_sampler(),
+        seed in any_seed(),
+        (spacing, region) in any_region(),
+        cuts in proptest::collection::vec((any::<bool>(), prop_oneof![0.0..1.0f64, Just(0.0), Just(1.0)]), 1..8),
+    ) {
+        let whole = sampler.plan(spacing, seed, region).expect("in range");
+        let mut from_parts = Vec::new();
+        let mut counted = 0;
+        for part in cut(region, &cuts) {
+            let plan = sampler.plan(spacing, seed, part).expect("in range");
+            counted += plan.count();
+            let points = all::<Points>(&plan, 100);
+            prop_assert_eq!(points.len() as u128, plan.count());
+            prop_assert!(points.iter().all(|p| part.contains([p.x, p.y])));
+            // The order of a part is its order in the whole.
+            prop_assert_eq!(&in_order_of_ids(points.clone()), &points);
+            from_parts.extend(points);
+        }
+        prop_assert_eq!(counted, whole.count());
+        prop_assert_eq!(in_order_of_ids(from_parts), all::<Points>(&whole, 100));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn formats_blocks_and_tiles_agree(
+        sampler in any_sampler(), seed in any_seed(), (spacing, region) in any_region(),
+        block in 1usize..300, tile in 1usize..3000,
+    ) {
+        let plan = sampler.plan(spacing, seed, region).expect("in range");
+        let points = all::<Points>(&plan, 64);
+        let pairs: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
+        prop_assert_eq!(&all::<F64>(&plan, block), &pairs);
+
+        let tiles: Vec<_> = plan.tiles(tile).collect();
+        let filled: Vec<Vec<[f64; 2]>> = tiles
+            .par_iter()
+            .map(|tile| {
+                let mut items = vec![[0.0; 2]; plan.count() as usize];
+                let filled = plan.tile_blocks::<F64>(tile).fill(&mut items);
+                items.truncate(filled);
+                items
+            })
+            .collect();
+        prop_assert_eq!(&filled.concat(), &pairs);
+
+        let (min, max) = (region.min(), region.max());
+        for (relative, p) in all::<F32>(&plan, block).iter().zip(&pairs) {
+            for axis in 0..2 {
+                let extent = max[axis] - min[axis];
+                prop_assert!(relative[axis] >= 0.0 && f64::from(relative[axis]) < extent);
+                // f32's own rounding, the f64 rounding of what it is compared with, and one unit.
+                let allowed = extent * 1.2e-7 + p[axis].abs() * 4.5e-16 + spacing.get() * 1e-7;
+                let offset = p[axis] - min[axis];
+                prop_assert!((f64::from(relative[axis]) - offset).abs() <= allowed);
+            }
+        }
+    }
+}
+
+/// Large enough for kept templates, several bands and many blocks.
+#[test]
+fn a_large_region_is_the_same_in_any_block_size_and_with_any_threads() {
+    let sampler = &samplers()[0];
+    let region = Region::new([-700.0, -333.3], [900.1, 1200.7]).expect("ordered");
+    let plan = sampler
+        .plan(Spacing::new(1.0).expect("valid"), Seed(5), region)
+        .expect("in range");
+    let reference = all::<F64>(&plan, 1 << 16);
+    assert_eq!(reference.len() as u128, plan.count());
+    assert!((reference.len() as f64 / (1600.1 * 1534.0) - 1.0).abs() < 0.01);
+    assert_eq!(all::<F64>(&plan, 1_000_003), reference);
+    assert_eq!(all::<F64>(&plan, 17), reference);
+    for threads in [1, 2, 3] {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads");
+        let tiles: Vec<_> = plan.tiles(50_000).collect();
+        let filled: Vec<Vec<[f64; 2]>> = pool.install(|| {
+            tiles
+                .par_iter()
+                .map(|tile| {
+                    let mut items = vec![[0.0; 2]; 50_000];
+                    let filled = plan.tile_blocks::<F64>(tile).fill(&mut items);
+                    items.truncate(filled);
+                    items
+                })
+                .collect()
+        });
+        assert_eq!(filled.concat(), reference, "{threads} threads");
+    }
+}
+
+#[test]
+fn counts_of_regions_too_large_to_list_add_up() {
+    let sampler = &samplers()[0];
+    let spacing = Spacing::new(1.0).expect("valid");
+    let count = |min, max| {
+        let region = Region::new(min, max).expect("ordered");
+        sampler
+            .plan(spacing, Seed(3), region)
+            .expect("in range")
+            .count()
+    };
+    let whole = count([-1e9, -5e8], [1e9, 5e8]);
+    assert!((whole as f64 / 2e18 - 1.0).abs() < 1e-8, "{whole}");
+    let quarters = count([-1e9, -5e8], [12_345.6, 0.1])
+        + count([12_345.6, -5e8], [1e9, 0.1])
+        + count([-1e9, 0.1], [12_345.6, 5e8])
+        + count([12_345.6, 0.1], [1e9, 5e8]);
+    assert_eq!(whole, quarters);
+}
+
+#[test]
+fn regions_beyond_the_lattice_are_refused() {
+    let sampler = &samplers()[0];
+    let plan = |min, max| {
+        let region = Region::new(min, max).expect("ordered");
+        sampler.plan(Spacing::new(1.0).expect("valid"), Seed(0), region)
+    };
+    let error = plan([0.0, 0.0], [1.0, 1e300]).expect_err("too far");
+    assert!(error.to_string().starts_with("max_y is 1e300"), "{error}");
+    assert!(plan([-1e16, 0.0], [1.0, 1.0]).is_err());
+    let limit = 1.42e15;
+    assert!(plan([-limit, -limit], [limit, limit]).is_ok());
+    // At the very edge everything still works.
+    let edge = plan([limit, limit], [limit + 40.0, limit + 40.0]).expect("in range");
+    assert_eq!(all::<Points>(&edge, 64).len() as u128, edge.count());
+    assert!(edge.count() > 1000);
+    assert_eq!(
+        sampler.point(
+            Spacing::new(1.0).expect("valid"),
+            Seed(0),
+            PointId { x: i64::MIN, y: 3 }
+        ),
+        None
+    );
+}
+
+#[test]
+fn reversed_and_non_finite_boxes_are_refused() {
+    for (min, max, name) in [
+        ([f64::NAN, 0.0], [1.0, 1.0], "min_x"),
+        ([0.0, f64::NEG_INFINITY], [1.0, 1.0], "min_y"),
+        ([0.0, 0.0], [f64::INFINITY, 1.0], "max_x"),
+        ([0.0, 0.0], [1.0, f64::NAN], "max_y"),
+        ([2.0, 0.0], [1.0, 1.0], "max_x"),
+        ([0.0, 2.0], [1.0, 1.0], "max_y"),
+    ] {
+        let error = Region::new(min, max).expect_err("refused").to_string();
+        assert!(error.starts_with(name), "{error}");
+    }
+    assert!(
+        Region::new([1.0, 1.0], [1.0, 1.0])
+            .expect("empty")
+            .is_empty()
+    );
+}
