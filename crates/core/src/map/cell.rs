@@ -155,10 +155,12 @@ impl Cell {
             let excess = i128::from(ratio.n - ratio.d);
             (excess > 0).then(|| (i128::from(t) * i128::from(ratio.d) / excess) as u64)
         };
+        #[expect(clippy::reversed_empty_ranges, reason = "an empty range on purpose")]
+        let empty: RangeInclusive<u64> = 1..=0;
         let range: RangeInclusive<u64> = match (bound(cell.high), bound(cell.low)) {
             (Some(first), Some(last)) => first.max(1)..=last + 1,
             (Some(first), None) => first.max(1)..=u64::MAX,
-            _ => 1..=0,
+            _ => empty,
         };
         range.filter(move |&q| cell.contains(t + q, q))
     }

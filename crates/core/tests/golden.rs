@@ -1,0 +1,139 @@
+//! Golden vectors: the exact bits of answers, the same on every machine.
+//!
+//! A change here is a change of the algorithm: raise `ALGORITHM_VERSION` with it.
+
+use std::sync::Arc;
+
+use strew_core::{
+    ALGORITHM_VERSION, Alpha, Map, Plan, PointId, Region, Sampler, Seed, Spacing, Table,
+    sample::{F32, F64, Format, Points},
+    table::{Digest, Provenance},
+};
+
+/// Vectors from a linear congruential generator, up to ±8 grid units.
+fn table(alpha: &str) -> Table {
+    let map = Map::new(alpha.parse::<Alpha>().expect("valid"), 30).expect("small");
+    let blocks = map.intervals() * map.intervals();
+    let mut state = 20_261_121u64;
+    let mut next = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 36) as i32 - (1 << 27)
+    };
+    let vectors = (0..blocks).map(|_| [next(), next()]).collect();
+    Table::new(map, "golden", vectors, Provenance::default()).expect("valid")
+}
+
+fn items<F: Format>(plan: &Plan) -> Vec<F::Item> {
+    let mut items = vec![F::Item::default(); plan.count() as usize + 1];
+    let filled = plan.blocks::<F>().fill(&mut items);
+    items.truncate(filled);
+    items
+}
+
+/// BLAKE3 over the little-endian bytes of all points: ids and f64 pairs, then f32 pairs.
+fn digest(plan: &Plan) -> String {
+    let mut bytes = Vec::new();
+    for p in items::<Points>(plan) {
+        bytes.extend(p.id.x.to_le_bytes());
+        bytes.extend(p.id.y.to_le_bytes());
+        bytes.extend(p.x.to_le_bytes());
+        bytes.extend(p.y.to_le_bytes());
+    }
+    for pair in items::<F64>(plan) {
+        bytes.extend(pair.iter().flat_map(|v| v.to_le_bytes()));
+    }
+    for pair in items::<F32>(plan) {
+        bytes.extend(pair.iter().flat_map(|v| v.to_le_bytes()));
+    }
+    Digest::of(&bytes).to_string()[..16].to_string()
+}
+
+#[test]
+fn answers_have_these_bits() {
+    assert_eq!(
+        ALGORITHM_VERSION, 1,
+        "new golden vectors belong to a new algorithm version"
+    );
+    let near = ([0.0, 0.0], [40.0, 30.0]);
+    let cases = [
+        ("(5-sqrt(3))/2", 1.0, 0, near, 1195, "5c517a0460a72aaf"),
+        ("(5-sqrt(3))/2", 1.0, 1, near, 1208, "c17f4eec72f5029b"),
+        (
+            "sqrt(3)",
+            0.37,
+            42,
+            ([-20.0, -10.5], [3.3, 11.1]),
+            3646,
+            "cf6a7140481f9a56",
+        ),
+        (
+            "(1+sqrt(5))/2",
+            2.5,
+            u64::MAX,
+            ([-1e9, 1e9], [-999_999_800.0, 1_000_000_123.0]),
+            3911,
+            "8aaec04ccf0ba78a",
+        ),
+        (
+            "(5-sqrt(3))/2",
+            1e-6,
+            7,
+            ([123.0, 456.0], [123.000_1, 456.000_1]),
+            10005,
+            "cdab8c71daa295fc",
+        ),
+        (
+            "sqrt(3)",
+            1e3,
+            9,
+            ([-1e15, 1e15], [-9.999_999_999e14, 1.000_000_000_2e15]),
+            20021,
+            "4a753e4a1e21ac8b",
+        ),
+        (
+            "sqrt(3)",
+            1.0,
+            3,
+            ([0.0, 0.0], [900.0, 700.0]),
+            629825,
+            "0dab9bebd4daad1a",
+        ),
+    ];
+    let found: Vec<_> = cases
+        .iter()
+        .map(|&(alpha, spacing, seed, (min, max), ..)| {
+            let sampler = Arc::new(Sampler::new(table(alpha)));
+            let region = Region::new(min, max).expect("ordered");
+            let spacing = Spacing::new(spacing).expect("valid");
+            let plan = sampler.plan(spacing, Seed(seed), region).expect("in range");
+            (plan.count(), digest(&plan))
+        })
+        .collect();
+    let expected: Vec<_> = cases
+        .iter()
+        .map(|&(.., count, digest)| (count, digest.to_string()))
+        .collect();
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn single_points_have_these_bits() {
+    let sampler = Arc::new(Sampler::new(table("(5-sqrt(3))/2")));
+    let spacing = Spacing::new(1.0).expect("valid");
+    let point = |seed, x, y| {
+        sampler
+            .point(spacing, Seed(seed), PointId { x, y })
+            .map(|p| (p.x.to_bits(), p.y.to_bits()))
+    };
+    assert_eq!(
+        point(0, 0, 0),
+        Some((13_831_125_425_154_072_585, 13_835_666_997_921_582_809))
+    );
+    assert_eq!(point(0, 3, 3), None);
+    assert_eq!(
+        sampler.table().digest().to_string(),
+        "5670a3bd8d7e5cf01bd8f4c635d8163d7ed51165e2998b9d8de35aeab460d7c7"
+    );
+}
