@@ -1,0 +1,99 @@
+//! The invariants of ARCHITECTURE.md, told as absences.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Every source file of the workspace, as (path from the root, text).
+fn sources() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut open: Vec<PathBuf> =
+        ["src", "crates", "tests", "benches", "examples", "build.rs"].map(|d| root.join(d)).to_vec();
+    let mut found = Vec::new();
+    while let Some(path) = open.pop() {
+        if path.is_dir() {
+            let entries = fs::read_dir(&path).expect("readable");
+            open.extend(entries.map(|entry| entry.expect("readable").path()));
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            let name = path.strip_prefix(root).expect("inside").to_string_lossy().replace('\\', "/");
+            found.push((name, fs::read_to_string(&path).expect("UTF-8")));
+        }
+    }
+    assert!(found.len() > 30, "the sources are where they are looked for");
+    found.retain(|(name, _)| name != "tests/tidy.rs");
+    found
+}
+
+/// Code without its comments.
+fn code(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    text.lines()
+        .enumerate()
+        .map(|(i, line)| (i + 1, line.split("//").next().unwrap_or("")))
+        .filter(|(_, line)| !line.trim().is_empty())
+}
+
+/// Fails if any file under `room` names one of the words in its code.
+fn never_names(room: &str, words: &[&str]) {
+    for (name, text) in sources().iter().filter(|(name, _)| name.starts_with(room)) {
+        for (line, text) in code(text) {
+            for word in words {
+                assert!(!text.contains(word), "{name}:{line} names `{word}`: {text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_core_knows_no_wire_no_runtime_and_no_files() {
+    never_names("crates/core/src", &[
+        "tokio", "axum", "tonic", "hyper", "http::", "serde", "rayon", "std::fs", "std::io",
+        "std::net", "std::thread", "std::time",
+    ]);
+}
+
+#[test]
+fn the_forge_knows_no_wire_and_no_runtime() {
+    never_names("crates/forge/src", &["tokio", "axum", "tonic", "hyper", "http::", "std::net"]);
+}
+
+#[test]
+fn the_service_knows_no_door_and_the_doors_not_each_other() {
+    never_names("src/service", &["axum", "tonic", "http::", "crate::rest", "crate::grpc"]);
+    never_names("src/rest", &["crate::grpc", "tonic"]);
+    never_names("src/grpc", &["crate::rest", "axum"]);
+}
+
+#[test]
+fn unsafe_code_stands_only_in_the_kernel() {
+    for (name, text) in sources() {
+        if name.starts_with("crates/core/src/sample/kernel/") {
+            continue;
+        }
+        for (line, text) in code(&text) {
+            let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+            assert!(!words.clone().any(|w| w == "unsafe"), "{name}:{line} is unsafe: {text}");
+        }
+    }
+}
+
+#[test]
+fn files_hold_one_idea_and_say_what_it_is() {
+    for (name, text) in sources() {
+        assert!(text.lines().count() <= 500, "{name} has more than 500 lines");
+        assert!(text.starts_with("//!"), "{name} does not begin by saying what it is for");
+        let stem = Path::new(&name).file_stem().expect("named").to_string_lossy();
+        let vague = ["utils", "util", "helpers", "helper", "common", "misc"];
+        assert!(!vague.contains(&stem.as_ref()), "{name} has a name that says nothing");
+        for marker in ["TODO", "FIXME", "XXX"] {
+            assert!(!text.contains(marker), "{name} has a {marker}");
+        }
+    }
+}
+
+#[test]
+fn libraries_print_nothing() {
+    for room in ["crates/core/src", "crates/forge/src", "src/service", "src/rest", "src/grpc"] {
+        never_names(room, &["println!", "eprintln!", "print!(", "dbg!"]);
+    }
+}
