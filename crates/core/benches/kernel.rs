@@ -26,7 +26,7 @@ fn table() -> Table {
         state = state
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 38) as i32 - (1 << 25)
+        (state >> 42) as i32 - (1 << 21)
     };
     let vectors = (0..blocks).map(|_| [next(), next()]).collect();
     Table::new(map, "bench", vectors, Provenance::default()).expect("valid")

@@ -1,6 +1,6 @@
 //! The sampler: region × spacing × seed → a plan with the exact count → blocks of points.
 //!
-//! Positions are integers in fixed point, 2⁻²⁴ grid units, until the last conversion: one
+//! Positions are integers in fixed point, 2⁻²⁰ grid units, until the last conversion: one
 //! multiplication by the step, the world size of a unit. That conversion is monotone, so the
 //! bounds of a region become integer bounds once, and integers decide membership: what is reported
 //! is inside the region on the very coordinates reported, and any partition of a region gives

@@ -350,7 +350,7 @@ mod tests {
     fn table() -> Table {
         let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 5).expect("small");
         let n = map.intervals() * map.intervals();
-        let displacements = (0..n as i32).map(|i| [i << 20, -(i << 18)]).collect();
+        let displacements = (0..n as i32).map(|i| [i << 16, -(i << 14)]).collect();
         let provenance = Provenance {
             optimizer: "gaussian".into(),
             parameters: vec![("sigma".into(), "1".into())],

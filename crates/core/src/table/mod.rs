@@ -19,14 +19,17 @@ pub use error::TableError;
 pub use file::{FORMAT_VERSION, MAX_FILE_BYTES};
 pub use provenance::{Figures, Provenance};
 
-/// Fraction bits of every coordinate: one unit is 2⁻²⁴ grid units, about 2·10⁻⁸ mean spacings.
-pub const FRACTION_BITS: u32 = 24;
+/// Fraction bits of every coordinate: one unit is 2⁻²⁰ grid units, about 3·10⁻⁷ mean spacings.
+///
+/// Fine enough that its rounding adds less than 10⁻¹² to the low-frequency power, and coarse enough
+/// that all coordinates of a tile fit 32-bit lanes.
+pub const FRACTION_BITS: u32 = 20;
 
 /// The largest displacement along an axis, in grid units (exclusive). Published tables stay within
 /// 13; vectors longer than the map's half-width would outrun what a block knows.
 pub const MAX_DISPLACEMENT: f64 = 127.0;
 
-/// A displacement in units of 2⁻²⁴ grid units.
+/// A displacement in units of 2⁻²⁰ grid units.
 pub type Displacement = [i32; 2];
 
 /// The displacement vectors of one noise profile for one neighborhood map, with their history.
@@ -43,7 +46,7 @@ pub struct Table {
 
 impl Table {
     /// A table from its parts: `displacements` holds n² vectors, row = interval of dY, column =
-    /// interval of dX, in units of 2⁻²⁴ grid units.
+    /// interval of dX, in units of 2⁻²⁰ grid units.
     ///
     /// # Errors
     /// [`TableError`] for a wrong number of vectors, a vector of [`MAX_DISPLACEMENT`] or more, a

@@ -28,7 +28,7 @@ mod tests {
         let map = crate::Map::new("sqrt(3)".parse().expect("valid"), 3).expect("small");
         let n = map.intervals() * map.intervals();
         let vectors: Vec<[i32; 2]> = (0..n as i32)
-            .map(|i| [i.wrapping_mul(7_654_321) % (1 << 30), -3 * i])
+            .map(|i| [i.wrapping_mul(7_654_321) % (1 << 26), -3 * i])
             .collect();
         let table = Table::new(map, "blue", vectors.clone(), Provenance::default()).expect("valid");
         let mut text = String::new();
