@@ -7,7 +7,7 @@
 use std::{hint::black_box, sync::Arc, time::Instant};
 
 use strew_core::{
-    Alpha, Map, Plan, Region, Sampler, Seed, Spacing, Table,
+    Alpha, Map, Placement, Plan, Region, Sampler, Seed, Spacing, Table,
     sample::{F32, F64, Format, Points},
     table::Provenance,
 };
@@ -69,7 +69,10 @@ fn main() {
     let sampler = Arc::new(Sampler::new(table));
     let region = Region::new([0.0, 0.0], [side, side]).expect("ordered");
     let plan = sampler
-        .plan(Spacing::new(1.0).expect("valid"), Seed(0), region)
+        .plan(
+            Placement::new(Spacing::new(1.0).expect("valid"), Seed(0)),
+            region,
+        )
         .expect("in range");
     let points = plan.count() as u64;
 

@@ -13,13 +13,13 @@
 //!
 //! ```
 //! use std::sync::Arc;
-//! use strew_core::{Alpha, Region, Sampler, Seed, Spacing, Table};
+//! use strew_core::{Alpha, Placement, Region, Sampler, Seed, Spacing, Table};
 //!
 //! // A table without displacements: the AA pattern itself.
 //! let table = Table::undisplaced("sqrt(3)".parse::<Alpha>()?, 20, "pattern")?;
 //! let sampler = Arc::new(Sampler::new(table));
 //! let region = Region::new([-50.0, -50.0], [50.0, 50.0])?;
-//! let plan = sampler.plan(Spacing::new(1.0)?, Seed::default(), region)?;
+//! let plan = sampler.plan(Placement::new(Spacing::new(1.0)?, Seed::default()), region)?;
 //! let mut points = vec![[0.0f64; 2]; usize::try_from(plan.count())?];
 //! let filled = plan.blocks_f64().fill(&mut points);
 //! assert_eq!(filled as u128, plan.count());
@@ -37,7 +37,7 @@ pub mod table;
 
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
-pub use sample::{Plan, Point, PointId, Region, Sampler, Seed, Spacing};
+pub use sample::{Placement, Plan, Point, PointId, Region, Sampler, Seed, Spacing, Warp};
 pub use table::Table;
 
 /// The version of the algorithm that turns a table, a density, a seed and a lattice address into

@@ -5,7 +5,8 @@
 use std::sync::Arc;
 
 use strew_core::{
-    ALGORITHM_VERSION, Alpha, Map, Plan, PointId, Region, Sampler, Seed, Spacing, Table,
+    ALGORITHM_VERSION, Alpha, Map, Placement, Plan, PointId, Region, Sampler, Seed, Spacing, Table,
+    Warp,
     sample::{F32, F64, Format, Points},
     table::{Digest, Provenance},
 };
@@ -107,7 +108,12 @@ fn answers_have_these_bits() {
             let sampler = Arc::new(Sampler::new(table(alpha)));
             let region = Region::new(min, max).expect("ordered");
             let spacing = Spacing::new(spacing).expect("valid");
-            let plan = sampler.plan(spacing, Seed(seed), region).expect("in range");
+            let plan = sampler
+                .plan(
+                    Placement::new(spacing, Seed(seed)).with_warp(Warp::OFF),
+                    region,
+                )
+                .expect("in range");
             (plan.count(), digest(&plan))
         })
         .collect();
@@ -124,7 +130,10 @@ fn single_points_have_these_bits() {
     let spacing = Spacing::new(1.0).expect("valid");
     let point = |seed, x, y| {
         sampler
-            .point(spacing, Seed(seed), PointId { x, y })
+            .point(
+                Placement::new(spacing, Seed(seed)).with_warp(Warp::OFF),
+                PointId { x, y },
+            )
             .map(|p| (p.x.to_bits(), p.y.to_bits()))
     };
     assert_eq!(

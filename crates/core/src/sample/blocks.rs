@@ -4,15 +4,19 @@
 //! *templates* serve all rows of a band. In a tall band they are kept; in a short one, where few
 //! rows share one, each row makes its own.
 
-use alloc::{vec, vec::Vec};
+use alloc::{boxed::Box, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    Frame, Listed, Sampler,
+    Frame, Listed, PointId, Sampler,
     kernel::{Format, emit},
     plan::Plan,
+    warped::WarpedTile,
 };
-use crate::pattern::{Axis, Class};
+use crate::{
+    pattern::{Axis, Class},
+    table::FRACTION_BITS,
+};
 
 /// How many lattice columns a band has. Part of the order of points, so of the algorithm version.
 pub(super) const BAND_WIDTH: i64 = 1024;
@@ -80,6 +84,8 @@ pub struct Blocks<F: Format> {
     done: usize,
     columns: [Listed; 4],
     templates: Templates<F>,
+    /// With warp: the tile under way.
+    tile: Option<Box<WarpedTile>>,
 }
 
 impl<F: Format> Blocks<F> {
@@ -98,6 +104,7 @@ impl<F: Format> Blocks<F> {
             done: 0,
             columns: Default::default(),
             templates: Templates::new(plan.sampler.map().intervals(), kept),
+            tile: None,
         }
     }
 
@@ -131,20 +138,14 @@ impl<F: Format> Blocks<F> {
 
     /// Writes what is left of the row under way, or as much as there is room for.
     fn fill_from_row(&mut self, out: &mut [F::Item]) -> usize {
-        let Plan {
-            sampler,
-            frame,
-            y: span,
-            ..
-        } = &self.plan;
-        let y = self.y;
-        let Some((x_parity, index)) = frame.pattern.visit(Axis::Y, y) else {
+        let Plan { sampler, frame, .. } = &self.plan;
+        let Some((x_parity, index)) = frame.pattern.visit(Axis::Y, self.y) else {
             self.y += 1;
             return 0;
         };
         let class = Class {
             x: x_parity,
-            y: (y & 1) as u8,
+            y: (self.y & 1) as u8,
         };
         let key = (class, sampler.map().locate(index));
         let template = self.templates.get(key, self.done > 0, |template| {
@@ -155,35 +156,20 @@ impl<F: Format> Blocks<F> {
                 key.1,
             );
         });
-        let columns = &template.columns[self.done..];
-        let displacements = &template.displacements[self.done..];
-        let row = self.format.row(y);
-        let (written, done) = if span.inner.contains(&y) {
-            let written = columns.len().min(out.len());
-            emit(
-                &self.format,
-                row,
-                columns,
-                displacements,
-                &mut out[..written],
-            );
-            (written, written)
-        } else {
-            let (mut written, mut done) = (0, 0);
-            for (&column, &displacement) in columns.iter().zip(displacements) {
-                if span.holds(y, displacement) {
-                    let Some(item) = out.get_mut(written) else {
-                        break;
-                    };
-                    *item = self.format.item(column, row, displacement);
-                    written += 1;
-                }
-                done += 1;
+        let (written, done) = match &frame.shears {
+            None => template.fill_plain(&self.plan, &self.format, self.y, self.done, out),
+            Some(shears) => {
+                let Plan { x, y, .. } = &self.plan;
+                let band = self.bands.start - 1;
+                let tile = match &mut self.tile {
+                    Some(tile) if tile.covers(band, self.y) => tile,
+                    slot => slot.insert(Box::new(WarpedTile::new(shears, band, self.y, x, y))),
+                };
+                template.fill_warped(tile, &self.plan, &self.format, self.y, self.done, out)
             }
-            (written, done)
         };
         self.done += done;
-        if self.done == template.columns.len() {
+        if self.done == template.displacements.len() {
             self.y += 1;
             self.done = 0;
         }
@@ -192,7 +178,12 @@ impl<F: Format> Blocks<F> {
 }
 
 /// Lists the columns of a stretch of the lattice by class.
-fn list_columns(sampler: &Sampler, frame: &Frame, range: Range<i64>, lists: &mut [Listed; 4]) {
+pub(super) fn list_columns(
+    sampler: &Sampler,
+    frame: &Frame,
+    range: Range<i64>,
+    lists: &mut [Listed; 4],
+) {
     lists.iter_mut().for_each(Vec::clear);
     for x in range {
         if let Some((y_parity, index)) = frame.pattern.visit(Axis::X, x) {
@@ -208,7 +199,12 @@ fn list_columns(sampler: &Sampler, frame: &Frame, range: Range<i64>, lists: &mut
 /// The columns of a row that lie in the region, with their vertical displacements.
 #[derive(Debug)]
 struct Template<F: Format> {
+    /// Without warp: what a column contributes, for columns that lie in the region.
     columns: Vec<F::Column>,
+    /// With warp: all columns, and their displaced x relative to the band's start.
+    lattice: Vec<i64>,
+    displaced: Vec<i32>,
+    /// The vertical displacements, one per column.
     displacements: Vec<i32>,
     made: bool,
 }
@@ -217,6 +213,8 @@ impl<F: Format> Template<F> {
     const fn new() -> Self {
         Self {
             columns: Vec::new(),
+            lattice: Vec::new(),
+            displaced: Vec::new(),
             displacements: Vec::new(),
             made: false,
         }
@@ -224,16 +222,93 @@ impl<F: Format> Template<F> {
 
     fn make(&mut self, plan: &Plan, format: &F, listed: &Listed, block_y: usize) {
         self.columns.clear();
+        self.lattice.clear();
+        self.displaced.clear();
         self.displacements.clear();
         let row = plan.sampler.row(block_y);
         for &(x, block_x) in listed {
             let [dx, dy] = row[block_x as usize];
-            if plan.x.holds(x, dx) {
+            if plan.frame.shears.is_some() {
+                self.lattice.push(x);
+                self.displaced
+                    .push(((x.rem_euclid(BAND_WIDTH) as i32) << FRACTION_BITS) + dx);
+            } else if plan.x.holds(x, dx) {
                 self.columns.push(format.column(x, dx));
-                self.displacements.push(dy);
+            } else {
+                continue;
             }
+            self.displacements.push(dy);
         }
         self.made = true;
+    }
+
+    /// Writes the row's points from column `done` on; gives how many items were written and how
+    /// many columns are done with.
+    fn fill_plain(
+        &self,
+        plan: &Plan,
+        format: &F,
+        y: i64,
+        done: usize,
+        out: &mut [F::Item],
+    ) -> (usize, usize) {
+        let (columns, displacements) = (&self.columns[done..], &self.displacements[done..]);
+        let row = format.row(y);
+        if plan.y.inner.contains(&y) {
+            let written = columns.len().min(out.len());
+            emit(format, row, columns, displacements, &mut out[..written]);
+            return (written, written);
+        }
+        let (mut written, mut done) = (0, 0);
+        for (&column, &displacement) in columns.iter().zip(displacements) {
+            if plan.y.holds(y, displacement) {
+                let Some(item) = out.get_mut(written) else {
+                    break;
+                };
+                *item = format.item(column, row, displacement);
+                written += 1;
+            }
+            done += 1;
+        }
+        (written, done)
+    }
+
+    /// The same with warp.
+    fn fill_warped(
+        &self,
+        tile: &WarpedTile,
+        plan: &Plan,
+        format: &F,
+        y: i64,
+        done: usize,
+        out: &mut [F::Item],
+    ) -> (usize, usize) {
+        let base = format.base(tile.origin);
+        let row = tile.relative(Axis::Y, y);
+        let displaced = &self.displaced[done..];
+        let (lattice, displacements) = (&self.lattice[done..], &self.displacements[done..]);
+        let columns = displaced.iter().zip(displacements).zip(lattice);
+        let id = |x| PointId { x, y };
+        if plan.y.inner.contains(&y) && tile.is_inside(&plan.x) {
+            let written = displaced.len().min(out.len());
+            for (item, ((&x, &dy), &column)) in out.iter_mut().zip(columns) {
+                *item = format.at(base, tile.apply([x, row + dy]), id(column));
+            }
+            return (written, written);
+        }
+        let (mut written, mut done) = (0, 0);
+        for ((&x, &dy), &column) in columns {
+            let position = tile.apply([x, row + dy]);
+            if tile.holds(position) {
+                let Some(item) = out.get_mut(written) else {
+                    break;
+                };
+                *item = format.at(base, position, id(column));
+                written += 1;
+            }
+            done += 1;
+        }
+        (written, done)
     }
 }
 

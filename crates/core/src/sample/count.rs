@@ -8,12 +8,15 @@
 use alloc::{vec, vec::Vec};
 use core::ops::Range;
 
-use super::{Frame, Listed, Sampler, plan::Span};
+use super::{Frame, Listed, Sampler, plan::Span, warped};
 use crate::pattern::{Axis, Class};
 
 pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u128 {
     if x.bounds.is_empty() || y.bounds.is_empty() {
         return 0;
+    }
+    if let Some(shears) = &frame.shears {
+        return warped::count(sampler, frame, shears, x, y);
     }
     Class::ALL
         .into_iter()

@@ -10,26 +10,32 @@ mod blocks;
 mod count;
 mod id;
 pub(crate) mod kernel;
+mod placement;
 mod plan;
 mod region;
 mod seed;
 mod spacing;
+mod warp;
+mod warped;
 
 use alloc::{sync::Arc, vec::Vec};
 
 use crate::{
     map::Map,
-    pattern::{Axis, IndexOrigin, Pattern},
+    pattern::{Axis, Pattern},
     table::{FRACTION_BITS, Table},
 };
+use warp::Shears;
 
 pub use blocks::{Blocks, Tile};
 pub use id::{PointId, PointIdError};
 pub use kernel::{F32, F64, Format, Points};
+pub use placement::Placement;
 pub use plan::{Plan, PlanError};
 pub use region::{Region, RegionError};
 pub use seed::Seed;
 pub use spacing::{Spacing, SpacingError};
+pub use warp::{Warp, WarpError};
 
 /// Lattice coordinates of a region stay within ±2⁵². There an `f64` can still tell lattice points
 /// apart, and no intermediate value overflows or rounds twice.
@@ -84,23 +90,19 @@ impl Sampler {
 
     /// What a region holds: the exact count now, the points on demand.
     ///
-    /// Takes microseconds for small regions and less than a few milliseconds for any.
+    /// Without warp this takes microseconds for small regions and less than a few milliseconds for
+    /// any; with warp time in proportion to the region's circumference.
     ///
     /// # Errors
     /// [`PlanError`] if the region reaches beyond ±2⁵² lattice units at this spacing.
-    pub fn plan(
-        self: &Arc<Self>,
-        spacing: Spacing,
-        seed: Seed,
-        region: Region,
-    ) -> Result<Plan, PlanError> {
-        Plan::new(self.clone(), Frame::new(self, spacing, seed), region)
+    pub fn plan(self: &Arc<Self>, placement: Placement, region: Region) -> Result<Plan, PlanError> {
+        Plan::new(self.clone(), Frame::new(self, placement), region)
     }
 
     /// The point of an id, or `None` if the pattern has no point at that lattice address.
     #[must_use]
-    pub fn point(&self, spacing: Spacing, seed: Seed, id: PointId) -> Option<Point> {
-        let frame = Frame::new(self, spacing, seed);
+    pub fn point(&self, placement: Placement, id: PointId) -> Option<Point> {
+        let frame = Frame::new(self, placement);
         let within = -LATTICE_LIMIT..=LATTICE_LIMIT;
         if !within.contains(&id.x) || !within.contains(&id.y) {
             return None;
@@ -109,12 +111,9 @@ impl Sampler {
         let map = self.map();
         let (block_x, block_y) = (map.interval_of(index_x)?, map.interval_of(index_y)?);
         let [dx, dy] = self.row(block_y)[block_x];
-        let place = |v: i64, d: i32| frame.world(fixed(v) + i128::from(d));
-        Some(Point {
-            id,
-            x: place(id.x, dx),
-            y: place(id.y, dy),
-        })
+        let displaced = [fixed(id.x) + i128::from(dx), fixed(id.y) + i128::from(dy)];
+        let [x, y] = frame.warped(displaced).map(|k| frame.world(k));
+        Some(Point { id, x, y })
     }
 
     fn map(&self) -> &Map {
@@ -127,8 +126,11 @@ impl Sampler {
         &self.table.displacements()[block_y * n..][..n]
     }
 
-    fn reach(&self, axis: Axis) -> [i32; 2] {
-        self.reach[axis as usize]
+    /// How far a point of this frame may lie from its lattice address along an axis.
+    fn reach(&self, frame: &Frame, axis: Axis) -> [i32; 2] {
+        let [least, most] = self.reach[axis as usize];
+        let warp = frame.shears.map_or(0, |shears| shears.reach());
+        [least - warp, most + warp]
     }
 }
 
@@ -137,29 +139,38 @@ const fn fixed(v: i64) -> i128 {
     (v as i128) << FRACTION_BITS
 }
 
-/// Where the lattice lies in the world: the pattern from the seed's origin, and the step.
+/// Where the lattice lies in the world: the pattern from the seed's origin, the warp, the step.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     pattern: Pattern,
-    spacing: Spacing,
-    seed: Seed,
+    placement: Placement,
+    shears: Option<Shears>,
     /// World units per fixed-point unit.
     step: f64,
 }
 
 impl Frame {
-    fn new(sampler: &Sampler, spacing: Spacing, seed: Seed) -> Self {
+    fn new(sampler: &Sampler, placement: Placement) -> Self {
         let alpha = sampler.table.alpha();
-        let origin: IndexOrigin = seed.origin();
-        // The mean spacing in the grid is 1/t: at scale = spacing · t it becomes the one asked for.
-        let scale = spacing.get() * alpha.set_side_f64();
-        let step = scale / f64::from(1u32 << FRACTION_BITS);
-        Self {
-            pattern: Pattern::with_origin(alpha, origin),
+        let Placement {
             spacing,
             seed,
-            step,
+            warp,
+        } = placement;
+        // The mean spacing in the grid is 1/t: at scale = spacing · t it becomes the one asked for.
+        let scale = spacing.get() * alpha.set_side_f64();
+        Self {
+            pattern: Pattern::with_origin(alpha, seed.origin()),
+            placement,
+            shears: Shears::new(warp, seed, alpha.set_side_f64()),
+            step: scale / f64::from(1u32 << FRACTION_BITS),
         }
+    }
+
+    /// Where a displaced point ends up.
+    fn warped(&self, displaced: [i128; 2]) -> [i128; 2] {
+        self.shears
+            .map_or(displaced, |shears| shears.apply(displaced))
     }
 
     /// The world coordinate of a fixed-point one. Monotone.

@@ -4,7 +4,7 @@ use alloc::sync::Arc;
 use core::ops::Range;
 
 use super::{
-    Blocks, F32, F64, Format, Frame, LATTICE_LIMIT, Points, Region, Sampler, Seed, Spacing, Tile,
+    Blocks, F32, F64, Format, Frame, LATTICE_LIMIT, Placement, Points, Region, Sampler, Tile,
     count, fixed, region::Corner,
 };
 use crate::{pattern::Axis, table::FRACTION_BITS};
@@ -112,8 +112,8 @@ impl Plan {
                 });
             }
         }
-        let x = Span::new(&frame, sampler.reach(Axis::X), min_x, max_x);
-        let y = Span::new(&frame, sampler.reach(Axis::Y), min_y, max_y);
+        let x = Span::new(&frame, sampler.reach(&frame, Axis::X), min_x, max_x);
+        let y = Span::new(&frame, sampler.reach(&frame, Axis::Y), min_y, max_y);
         debug_assert!(x.all.end < 2 * LATTICE_LIMIT && y.all.end < 2 * LATTICE_LIMIT);
         let count = count::count(&sampler, &frame, &x, &y);
         Ok(Self {
@@ -138,16 +138,10 @@ impl Plan {
         self.region
     }
 
-    /// The mean spacing.
+    /// Spacing, seed and warp.
     #[must_use]
-    pub const fn spacing(&self) -> Spacing {
-        self.frame.spacing
-    }
-
-    /// The seed.
-    #[must_use]
-    pub const fn seed(&self) -> Seed {
-        self.frame.seed
+    pub const fn placement(&self) -> Placement {
+        self.frame.placement
     }
 
     /// The sampler that answers.

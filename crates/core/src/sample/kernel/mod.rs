@@ -25,6 +25,15 @@ pub trait Format: Copy + Send + core::fmt::Debug + 'static + sealed::Sealed {
     fn row(&self, y: i64) -> Self::Row;
     #[doc(hidden)]
     fn item(&self, column: Self::Column, row: Self::Row, displacement: i32) -> Self::Item;
+
+    /// What a tile contributes to the items of a warped plane.
+    #[doc(hidden)]
+    type Base: Copy;
+    #[doc(hidden)]
+    fn base(&self, origin: [i64; 2]) -> Self::Base;
+    /// The item of a fixed-point position relative to the tile's origin.
+    #[doc(hidden)]
+    fn at(&self, base: Self::Base, position: [i32; 2], id: PointId) -> Self::Item;
 }
 
 mod sealed {
@@ -85,6 +94,17 @@ impl Format for F64 {
     fn item(&self, x: f64, row: f64, displacement: i32) -> [f64; 2] {
         [x, self.place(row, displacement)]
     }
+
+    type Base = [f64; 2];
+
+    fn base(&self, origin: [i64; 2]) -> [f64; 2] {
+        origin.map(|v| fixed(v) as f64)
+    }
+
+    #[inline(always)]
+    fn at(&self, base: [f64; 2], [x, y]: [i32; 2], _: PointId) -> [f64; 2] {
+        [self.place(base[0], x), self.place(base[1], y)]
+    }
 }
 
 /// Points with ids, in `f64` world coordinates.
@@ -115,6 +135,18 @@ impl Format for Points {
             x,
             y: self.0.place(row, displacement),
         }
+    }
+
+    type Base = [f64; 2];
+
+    fn base(&self, origin: [i64; 2]) -> [f64; 2] {
+        self.0.base(origin)
+    }
+
+    #[inline(always)]
+    fn at(&self, base: [f64; 2], position: [i32; 2], id: PointId) -> Point {
+        let [x, y] = self.0.at(base, position, id);
+        Point { id, x, y }
     }
 }
 
@@ -148,7 +180,7 @@ impl Format for F32 {
 
     fn column(&self, x: i64, displacement: i32) -> f32 {
         let base = (fixed(x) - self.first[0]) as f64;
-        (((base + f64::from(displacement)) * self.step) as f32).min(self.last[0])
+        self.place(0, base, displacement)
     }
 
     fn row(&self, y: i64) -> f64 {
@@ -157,10 +189,25 @@ impl Format for F32 {
 
     #[inline(always)]
     fn item(&self, x: f32, row: f64, displacement: i32) -> [f32; 2] {
-        [
-            x,
-            (((row + f64::from(displacement)) * self.step) as f32).min(self.last[1]),
-        ]
+        [x, self.place(1, row, displacement)]
+    }
+
+    type Base = [f64; 2];
+
+    fn base(&self, origin: [i64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| (fixed(origin[axis]) - self.first[axis]) as f64)
+    }
+
+    #[inline(always)]
+    fn at(&self, base: [f64; 2], [x, y]: [i32; 2], _: PointId) -> [f32; 2] {
+        [self.place(0, base[0], x), self.place(1, base[1], y)]
+    }
+}
+
+impl F32 {
+    #[inline(always)]
+    fn place(&self, axis: usize, base: f64, displacement: i32) -> f32 {
+        (((base + f64::from(displacement)) * self.step) as f32).min(self.last[axis])
     }
 }
 
