@@ -1,25 +1,16 @@
 //! Walking a plan: bands of columns, rows within a band, columns within a row.
-//!
-//! A row's columns with their x and Δy depend only on the row's class and block, so at most 4·n
-//! *templates* serve all rows of a band. In a tall band they are kept; in a short one, where few
-//! rows share one, each row makes its own.
 
-use alloc::{boxed::Box, vec, vec::Vec};
+use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
-    Frame, Listed, PointId, Sampler,
-    kernel::{Format, emit},
+    Frame, Listed, Sampler,
+    kernel::{Format, Row},
+    patch::{BAND_WIDTH, Patch},
     plan::Plan,
-    warped::WarpedTile,
+    template::Templates,
 };
-use crate::{
-    pattern::{Axis, Class},
-    table::FRACTION_BITS,
-};
-
-/// How many lattice columns a band has. Part of the order of points, so of the algorithm version.
-pub(super) const BAND_WIDTH: i64 = 1024;
+use crate::pattern::{Axis, Class};
 
 /// From this many lattice rows on a band keeps its templates.
 const TALL: i64 = 512;
@@ -76,6 +67,8 @@ pub struct Blocks<F: Format> {
     format: F,
     /// Bands still to come.
     bands: Range<i64>,
+    /// The band under way.
+    band: i64,
     /// The rows of every band.
     rows: Range<i64>,
     /// The row under way, at the end of `rows` when a new band is due.
@@ -84,8 +77,8 @@ pub struct Blocks<F: Format> {
     done: usize,
     columns: [Listed; 4],
     templates: Templates<F>,
-    /// With warp: the tile under way.
-    tile: Option<Box<WarpedTile>>,
+    patch: Patch,
+    base: [f64; 2],
 }
 
 impl<F: Format> Blocks<F> {
@@ -95,16 +88,20 @@ impl<F: Format> Blocks<F> {
             None => (bands(plan), plan.y.all.clone()),
         };
         let kept = rows.end - rows.start >= TALL;
+        let format = F::new(plan);
+        let patch = Patch::new(&plan.frame, bands.start, rows.start, &plan.x, &plan.y);
         Self {
-            format: F::new(plan),
+            base: format.base(patch.origin()),
+            format,
             plan: plan.clone(),
+            band: bands.start,
             bands,
             y: rows.end,
             rows,
             done: 0,
             columns: Default::default(),
-            templates: Templates::new(plan.sampler.map().intervals(), kept),
-            tile: None,
+            templates: Templates::new(&plan.sampler, kept),
+            patch,
         }
     }
 
@@ -116,7 +113,11 @@ impl<F: Format> Blocks<F> {
             if self.y == self.rows.end && !self.next_band() {
                 break;
             }
-            filled += self.fill_from_row(&mut out[filled..]);
+            if self.y == self.patch.end() {
+                self.next_patch();
+            }
+            let end = self.rows.end.min(self.patch.end());
+            filled += self.fill_rows(end, &mut out[filled..]);
         }
         filled
     }
@@ -131,49 +132,61 @@ impl<F: Format> Blocks<F> {
         } = &self.plan;
         list_columns(sampler, frame, clip(band, &x.all), &mut self.columns);
         self.templates.forget();
+        self.band = band;
         self.y = self.rows.start;
         self.done = 0;
+        self.next_patch();
         true
     }
 
-    /// Writes what is left of the row under way, or as much as there is room for.
-    fn fill_from_row(&mut self, out: &mut [F::Item]) -> usize {
-        let Plan { sampler, frame, .. } = &self.plan;
-        let Some((x_parity, index)) = frame.pattern.visit(Axis::Y, self.y) else {
-            self.y += 1;
-            return 0;
-        };
-        let class = Class {
-            x: x_parity,
-            y: (self.y & 1) as u8,
-        };
-        let key = (class, sampler.map().locate(index));
-        let template = self.templates.get(key, self.done > 0, |template| {
-            template.make(
-                &self.plan,
-                &self.format,
-                &self.columns[class.ordinal()],
-                key.1,
-            );
-        });
-        let (written, done) = match &frame.shears {
-            None => template.fill_plain(&self.plan, &self.format, self.y, self.done, out),
-            Some(shears) => {
-                let Plan { x, y, .. } = &self.plan;
-                let band = self.bands.start - 1;
-                let tile = match &mut self.tile {
-                    Some(tile) if tile.covers(band, self.y) => tile,
-                    slot => slot.insert(Box::new(WarpedTile::new(shears, band, self.y, x, y))),
-                };
-                template.fill_warped(tile, &self.plan, &self.format, self.y, self.done, out)
+    /// Moves to the patch of the row under way.
+    fn next_patch(&mut self) {
+        let Plan { frame, x, y, .. } = &self.plan;
+        self.patch = Patch::new(frame, self.band, self.y, x, y);
+        self.base = self.format.base(self.patch.origin());
+    }
+
+    /// Writes points of the patch's rows up to `end`, or as many as there is room for.
+    fn fill_rows(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+        let Plan {
+            sampler,
+            frame,
+            y: span,
+            ..
+        } = &self.plan;
+        let (format, patch, base) = (&self.format, &self.patch, self.base);
+        let mut filled = 0;
+        while self.y < end && filled < out.len() {
+            let y = self.y;
+            let Some((x_parity, index)) = frame.pattern.visit(Axis::Y, y) else {
+                self.y += 1;
+                continue;
+            };
+            let class = Class {
+                x: x_parity,
+                y: (y & 1) as u8,
+            };
+            let block = sampler.map().locate(index);
+            let template = self.templates.get(class, block, self.done > 0, |template| {
+                let listed = &self.columns[class.ordinal()];
+                template.make(format, base, patch, listed, sampler.row(block));
+            });
+            let row = Row {
+                base,
+                y: patch.relative(Axis::Y, y),
+                lattice: y,
+            };
+            let is_inner = span.inner.contains(&y);
+            let (written, done) =
+                template.fill(format, patch, row, is_inner, self.done, &mut out[filled..]);
+            filled += written;
+            self.done += done;
+            if self.done == template.len() {
+                self.y += 1;
+                self.done = 0;
             }
-        };
-        self.done += done;
-        if self.done == template.displacements.len() {
-            self.y += 1;
-            self.done = 0;
         }
-        written
+        filled
     }
 }
 
@@ -193,166 +206,5 @@ pub(super) fn list_columns(
             };
             lists[class.ordinal()].push((x, sampler.map().locate(index) as u32));
         }
-    }
-}
-
-/// The columns of a row that lie in the region, with their vertical displacements.
-#[derive(Debug)]
-struct Template<F: Format> {
-    /// Without warp: what a column contributes, for columns that lie in the region.
-    columns: Vec<F::Column>,
-    /// With warp: all columns, and their displaced x relative to the band's start.
-    lattice: Vec<i64>,
-    displaced: Vec<i32>,
-    /// The vertical displacements, one per column.
-    displacements: Vec<i32>,
-    made: bool,
-}
-
-impl<F: Format> Template<F> {
-    const fn new() -> Self {
-        Self {
-            columns: Vec::new(),
-            lattice: Vec::new(),
-            displaced: Vec::new(),
-            displacements: Vec::new(),
-            made: false,
-        }
-    }
-
-    fn make(&mut self, plan: &Plan, format: &F, listed: &Listed, block_y: usize) {
-        self.columns.clear();
-        self.lattice.clear();
-        self.displaced.clear();
-        self.displacements.clear();
-        let row = plan.sampler.row(block_y);
-        for &(x, block_x) in listed {
-            let [dx, dy] = row[block_x as usize];
-            if plan.frame.shears.is_some() {
-                self.lattice.push(x);
-                self.displaced
-                    .push(((x.rem_euclid(BAND_WIDTH) as i32) << FRACTION_BITS) + dx);
-            } else if plan.x.holds(x, dx) {
-                self.columns.push(format.column(x, dx));
-            } else {
-                continue;
-            }
-            self.displacements.push(dy);
-        }
-        self.made = true;
-    }
-
-    /// Writes the row's points from column `done` on; gives how many items were written and how
-    /// many columns are done with.
-    fn fill_plain(
-        &self,
-        plan: &Plan,
-        format: &F,
-        y: i64,
-        done: usize,
-        out: &mut [F::Item],
-    ) -> (usize, usize) {
-        let (columns, displacements) = (&self.columns[done..], &self.displacements[done..]);
-        let row = format.row(y);
-        if plan.y.inner.contains(&y) {
-            let written = columns.len().min(out.len());
-            emit(format, row, columns, displacements, &mut out[..written]);
-            return (written, written);
-        }
-        let (mut written, mut done) = (0, 0);
-        for (&column, &displacement) in columns.iter().zip(displacements) {
-            if plan.y.holds(y, displacement) {
-                let Some(item) = out.get_mut(written) else {
-                    break;
-                };
-                *item = format.item(column, row, displacement);
-                written += 1;
-            }
-            done += 1;
-        }
-        (written, done)
-    }
-
-    /// The same with warp.
-    fn fill_warped(
-        &self,
-        tile: &WarpedTile,
-        plan: &Plan,
-        format: &F,
-        y: i64,
-        done: usize,
-        out: &mut [F::Item],
-    ) -> (usize, usize) {
-        let base = format.base(tile.origin);
-        let row = tile.relative(Axis::Y, y);
-        let displaced = &self.displaced[done..];
-        let (lattice, displacements) = (&self.lattice[done..], &self.displacements[done..]);
-        let columns = displaced.iter().zip(displacements).zip(lattice);
-        let id = |x| PointId { x, y };
-        if plan.y.inner.contains(&y) && tile.is_inside(&plan.x) {
-            let written = displaced.len().min(out.len());
-            for (item, ((&x, &dy), &column)) in out.iter_mut().zip(columns) {
-                *item = format.at(base, tile.apply([x, row + dy]), id(column));
-            }
-            return (written, written);
-        }
-        let (mut written, mut done) = (0, 0);
-        for ((&x, &dy), &column) in columns {
-            let position = tile.apply([x, row + dy]);
-            if tile.holds(position) {
-                let Some(item) = out.get_mut(written) else {
-                    break;
-                };
-                *item = format.at(base, position, id(column));
-                written += 1;
-            }
-            done += 1;
-        }
-        (written, done)
-    }
-}
-
-/// Templates by class and block of the row: all of a tall band's, or only the last.
-#[derive(Debug)]
-struct Templates<F: Format> {
-    slots: Vec<Template<F>>,
-    intervals: usize,
-    kept: bool,
-}
-
-impl<F: Format> Templates<F> {
-    fn new(intervals: usize, kept: bool) -> Self {
-        Self {
-            slots: vec![],
-            intervals,
-            kept,
-        }
-    }
-
-    fn forget(&mut self) {
-        self.slots.iter_mut().for_each(|slot| slot.made = false);
-    }
-
-    /// The template of a row; `same` says that the row is the one asked for last.
-    fn get(
-        &mut self,
-        (class, block): (Class, usize),
-        same: bool,
-        make: impl FnOnce(&mut Template<F>),
-    ) -> &Template<F> {
-        let slot = if self.kept {
-            class.ordinal() * self.intervals + block
-        } else {
-            0
-        };
-        if self.slots.is_empty() {
-            let slots = if self.kept { 4 * self.intervals } else { 1 };
-            self.slots.resize_with(slots, Template::new);
-        }
-        let template = &mut self.slots[slot];
-        if !template.made || !(self.kept || same) {
-            make(template);
-        }
-        template
     }
 }

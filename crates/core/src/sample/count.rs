@@ -8,15 +8,15 @@
 use alloc::{vec, vec::Vec};
 use core::ops::Range;
 
-use super::{Frame, Listed, Sampler, plan::Span, warped};
+use super::{Frame, Listed, Sampler, margins, plan::Span};
 use crate::pattern::{Axis, Class};
 
 pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u128 {
     if x.bounds.is_empty() || y.bounds.is_empty() {
         return 0;
     }
-    if let Some(shears) = &frame.shears {
-        return warped::count(sampler, frame, shears, x, y);
+    if frame.shears.is_some() {
+        return margins::count(sampler, frame, x, y);
     }
     Class::ALL
         .into_iter()

@@ -10,13 +10,15 @@ mod blocks;
 mod count;
 mod id;
 pub(crate) mod kernel;
+mod margins;
+mod patch;
 mod placement;
 mod plan;
 mod region;
 mod seed;
 mod spacing;
+mod template;
 mod warp;
-mod warped;
 
 use alloc::{sync::Arc, vec::Vec};
 

@@ -185,19 +185,19 @@ pub(super) fn evaluate(cubic: &Cubic, at: i32) -> i32 {
     (((cubic[3] * u + cubic[2]) * u + cubic[1]) * u + cubic[0]) as i32
 }
 
-/// Cells that a tile may touch per direction.
-const TILE_CELLS: usize = 32;
-/// The first of them, relative to the tile's origin.
+/// Cells that a patch may touch per direction.
+const PATCH_CELLS: usize = 32;
+/// The first of them, relative to the patch's origin.
 const FIRST_CELL: i32 = -12;
 
-/// The shears near one tile: positions relative to its origin fit 32 bits, and all cubics are at
+/// The shears near one patch: positions relative to its origin fit 32 bits, and all cubics are at
 /// hand. The origin is a multiple of the knot distance along both axes.
 #[derive(Clone, Debug)]
-pub(super) struct TileShears {
-    cubics: [[Cubic; TILE_CELLS]; 4],
+pub(super) struct PatchShears {
+    cubics: [[Cubic; PATCH_CELLS]; 4],
 }
 
-impl TileShears {
+impl PatchShears {
     pub(super) fn new(shears: &Shears, origin: [i64; 2]) -> Self {
         let [x, y] = origin.map(|v| v >> KNOT_BITS);
         let first = [y, x, x - y, x + y];
@@ -213,7 +213,7 @@ impl TileShears {
 
     #[inline(always)]
     fn noise(&self, direction: usize, s: i32) -> i32 {
-        let cell = ((s >> CELL_BITS) - FIRST_CELL) as usize % TILE_CELLS;
+        let cell = ((s >> CELL_BITS) - FIRST_CELL) as usize % PATCH_CELLS;
         evaluate(&self.cubics[direction][cell], s & CELL_MASK as i32)
     }
 
@@ -250,7 +250,7 @@ mod tests {
         }
 
         #[test]
-        fn a_tile_gives_the_same_bits(
+        fn a_patch_gives_the_same_bits(
             seed: u64, column in -(1i64 << 42)..1 << 42, row in -(1i64 << 42)..1 << 42,
             x in -150i32 << FRACTION_BITS..1174 << FRACTION_BITS,
             y in -150i32 << FRACTION_BITS..662 << FRACTION_BITS,
@@ -259,8 +259,8 @@ mod tests {
             let origin = [column * 1024, row * 512];
             let base = origin.map(|v| i128::from(v) << FRACTION_BITS);
             let there = shears.apply([base[0] + i128::from(x), base[1] + i128::from(y)]);
-            let tile = TileShears::new(&shears, origin).apply(x, y);
-            prop_assert_eq!([there[0] - base[0], there[1] - base[1]], tile.map(i128::from));
+            let patch = PatchShears::new(&shears, origin).apply(x, y);
+            prop_assert_eq!([there[0] - base[0], there[1] - base[1]], patch.map(i128::from));
         }
     }
 

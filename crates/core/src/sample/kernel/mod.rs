@@ -1,39 +1,32 @@
 //! The innermost loops: a row is a template of its columns plus the row's place.
 //!
-//! What is written here in plain code is the definition of every output format; any faster path
-//! must give the same bits.
+//! What is written here in plain code is the definition of every output format; a faster path must
+//! give the same bits. Positions are 32-bit fixed-point offsets from a tile's origin, which is
+//! exact in `f64`; their sum is rounded once, as the conversion of the whole integer would be,
+//! while lattice coordinates stay below 2⁵³.
 
 use super::{Point, PointId, fixed, plan::Plan};
 
-/// An output format: what a column contributes once per template, what a row contributes, and how
-/// the two make an item.
+/// An output format: how a position becomes an item, the part along x first, since a template
+/// keeps it for all rows.
 pub trait Format: Copy + Send + core::fmt::Debug + 'static + sealed::Sealed {
     /// What is written for a point.
     type Item: Copy + Default + Send + 'static;
-    /// A column of a template.
+    /// What a column of a template contributes.
     #[doc(hidden)]
     type Column: Copy + Send + core::fmt::Debug + 'static;
-    /// A row's share.
-    #[doc(hidden)]
-    type Row: Copy;
 
     #[doc(hidden)]
     fn new(plan: &Plan) -> Self;
+    /// The place of a tile's origin.
     #[doc(hidden)]
-    fn column(&self, x: i64, displacement: i32) -> Self::Column;
+    fn base(&self, origin: [i64; 2]) -> [f64; 2];
+    /// The share of a point's x: its offset from the tile's origin and its lattice column.
     #[doc(hidden)]
-    fn row(&self, y: i64) -> Self::Row;
+    fn column(&self, base: [f64; 2], x: i32, column: i64) -> Self::Column;
+    /// The item: the same for y.
     #[doc(hidden)]
-    fn item(&self, column: Self::Column, row: Self::Row, displacement: i32) -> Self::Item;
-
-    /// What a tile contributes to the items of a warped plane.
-    #[doc(hidden)]
-    type Base: Copy;
-    #[doc(hidden)]
-    fn base(&self, origin: [i64; 2]) -> Self::Base;
-    /// The item of a fixed-point position relative to the tile's origin.
-    #[doc(hidden)]
-    fn at(&self, base: Self::Base, position: [i32; 2], id: PointId) -> Self::Item;
+    fn item(&self, base: [f64; 2], column: Self::Column, y: i32, row: i64) -> Self::Item;
 }
 
 mod sealed {
@@ -43,16 +36,24 @@ mod sealed {
     impl Sealed for super::Points {}
 }
 
+/// A lattice row of a tile: where it is, and its offset from the tile's origin.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) base: [f64; 2],
+    pub(super) y: i32,
+    pub(super) lattice: i64,
+}
+
 /// Writes one item per column.
 pub(super) fn emit<F: Format>(
     format: &F,
-    row: F::Row,
+    row: Row,
     columns: &[F::Column],
     displacements: &[i32],
     out: &mut [F::Item],
 ) {
     for ((item, &column), &displacement) in out.iter_mut().zip(columns).zip(displacements) {
-        *item = format.item(column, row, displacement);
+        *item = format.item(row.base, column, row.y + displacement, row.lattice);
     }
 }
 
@@ -63,18 +64,15 @@ pub struct F64 {
 }
 
 impl F64 {
-    /// The world coordinate of a lattice coordinate (as an exact `f64` in fixed point) and its
-    /// displacement. The sum is rounded once, as the integer sum's conversion would be: both terms
-    /// are exact while lattice coordinates stay below 2⁵³.
-    fn place(&self, base: f64, displacement: i32) -> f64 {
-        (base + f64::from(displacement)) * self.step
+    #[inline(always)]
+    fn place(&self, base: f64, offset: i32) -> f64 {
+        (base + f64::from(offset)) * self.step
     }
 }
 
 impl Format for F64 {
     type Item = [f64; 2];
     type Column = f64;
-    type Row = f64;
 
     fn new(plan: &Plan) -> Self {
         Self {
@@ -82,28 +80,18 @@ impl Format for F64 {
         }
     }
 
-    fn column(&self, x: i64, displacement: i32) -> f64 {
-        self.place(fixed(x) as f64, displacement)
-    }
-
-    fn row(&self, y: i64) -> f64 {
-        fixed(y) as f64
-    }
-
-    #[inline(always)]
-    fn item(&self, x: f64, row: f64, displacement: i32) -> [f64; 2] {
-        [x, self.place(row, displacement)]
-    }
-
-    type Base = [f64; 2];
-
     fn base(&self, origin: [i64; 2]) -> [f64; 2] {
         origin.map(|v| fixed(v) as f64)
     }
 
     #[inline(always)]
-    fn at(&self, base: [f64; 2], [x, y]: [i32; 2], _: PointId) -> [f64; 2] {
-        [self.place(base[0], x), self.place(base[1], y)]
+    fn column(&self, base: [f64; 2], x: i32, _: i64) -> f64 {
+        self.place(base[0], x)
+    }
+
+    #[inline(always)]
+    fn item(&self, base: [f64; 2], x: f64, y: i32, _: i64) -> [f64; 2] {
+        [x, self.place(base[1], y)]
     }
 }
 
@@ -114,39 +102,27 @@ pub struct Points(F64);
 impl Format for Points {
     type Item = Point;
     type Column = (i64, f64);
-    type Row = (i64, f64);
 
     fn new(plan: &Plan) -> Self {
         Self(F64::new(plan))
     }
-
-    fn column(&self, x: i64, displacement: i32) -> (i64, f64) {
-        (x, self.0.column(x, displacement))
-    }
-
-    fn row(&self, y: i64) -> (i64, f64) {
-        (y, self.0.row(y))
-    }
-
-    #[inline(always)]
-    fn item(&self, (id_x, x): (i64, f64), (id_y, row): (i64, f64), displacement: i32) -> Point {
-        Point {
-            id: PointId { x: id_x, y: id_y },
-            x,
-            y: self.0.place(row, displacement),
-        }
-    }
-
-    type Base = [f64; 2];
 
     fn base(&self, origin: [i64; 2]) -> [f64; 2] {
         self.0.base(origin)
     }
 
     #[inline(always)]
-    fn at(&self, base: [f64; 2], position: [i32; 2], id: PointId) -> Point {
-        let [x, y] = self.0.at(base, position, id);
-        Point { id, x, y }
+    fn column(&self, base: [f64; 2], x: i32, column: i64) -> (i64, f64) {
+        (column, self.0.place(base[0], x))
+    }
+
+    #[inline(always)]
+    fn item(&self, base: [f64; 2], (column, x): (i64, f64), y: i32, row: i64) -> Point {
+        Point {
+            id: PointId { x: column, y: row },
+            x,
+            y: self.0.place(base[1], y),
+        }
     }
 }
 
@@ -164,10 +140,16 @@ pub struct F32 {
     last: [f32; 2],
 }
 
+impl F32 {
+    #[inline(always)]
+    fn place(&self, axis: usize, base: f64, offset: i32) -> f32 {
+        (((base + f64::from(offset)) * self.step) as f32).min(self.last[axis])
+    }
+}
+
 impl Format for F32 {
     type Item = [f32; 2];
     type Column = f32;
-    type Row = f64;
 
     fn new(plan: &Plan) -> Self {
         let (min, max) = (plan.region().min(), plan.region().max());
@@ -178,36 +160,18 @@ impl Format for F32 {
         }
     }
 
-    fn column(&self, x: i64, displacement: i32) -> f32 {
-        let base = (fixed(x) - self.first[0]) as f64;
-        self.place(0, base, displacement)
-    }
-
-    fn row(&self, y: i64) -> f64 {
-        (fixed(y) - self.first[1]) as f64
-    }
-
-    #[inline(always)]
-    fn item(&self, x: f32, row: f64, displacement: i32) -> [f32; 2] {
-        [x, self.place(1, row, displacement)]
-    }
-
-    type Base = [f64; 2];
-
     fn base(&self, origin: [i64; 2]) -> [f64; 2] {
         [0, 1].map(|axis| (fixed(origin[axis]) - self.first[axis]) as f64)
     }
 
     #[inline(always)]
-    fn at(&self, base: [f64; 2], [x, y]: [i32; 2], _: PointId) -> [f32; 2] {
-        [self.place(0, base[0], x), self.place(1, base[1], y)]
+    fn column(&self, base: [f64; 2], x: i32, _: i64) -> f32 {
+        self.place(0, base[0], x)
     }
-}
 
-impl F32 {
     #[inline(always)]
-    fn place(&self, axis: usize, base: f64, displacement: i32) -> f32 {
-        (((base + f64::from(displacement)) * self.step) as f32).min(self.last[axis])
+    fn item(&self, base: [f64; 2], x: f32, y: i32, _: i64) -> [f32; 2] {
+        [x, self.place(1, base[1], y)]
     }
 }
 
