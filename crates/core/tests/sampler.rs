@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use strew_core::{
     Alpha, Map, Pattern, Placement, Plan, Point, PointId, Region, Sampler, Seed, Spacing, Table,
     Warp,
-    sample::{F32, F64, Format, Points},
+    sample::{Backend, F32, F64, Format, Points},
     table::{FRACTION_BITS, Provenance},
 };
 
@@ -39,7 +39,11 @@ fn samplers() -> &'static [Arc<Sampler>; 3] {
 }
 
 fn all<F: Format>(plan: &Plan, block: usize) -> Vec<F::Item> {
-    let mut blocks = plan.blocks::<F>();
+    all_by::<F>(plan, block, Backend::best())
+}
+
+fn all_by<F: Format>(plan: &Plan, block: usize, backend: Backend) -> Vec<F::Item> {
+    let mut blocks = plan.blocks::<F>().with_backend(backend);
     let mut buffer = vec![F::Item::default(); block];
     let mut items = Vec::new();
     loop {
@@ -226,6 +230,10 @@ proptest! {
         let points = all::<Points>(&plan, 64);
         let pairs: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
         prop_assert_eq!(&all::<F64>(&plan, block), &pairs);
+        for backend in Backend::available() {
+            prop_assert_eq!(&all_by::<F64>(&plan, block, backend), &pairs);
+            prop_assert_eq!(all_by::<F32>(&plan, block, backend), all_by::<F32>(&plan, 99, Backend::Scalar));
+        }
 
         let tiles: Vec<_> = plan.tiles(tile).collect();
         let filled: Vec<Vec<[f64; 2]>> = tiles

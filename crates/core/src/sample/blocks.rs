@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use super::{
     Frame, Listed, Sampler,
-    kernel::{Format, Row},
+    kernel::{Backend, Format, Row},
     patch::{BAND_WIDTH, Patch},
     plan::Plan,
     template::Templates,
@@ -79,6 +79,7 @@ pub struct Blocks<F: Format> {
     templates: Templates<F>,
     patch: Patch,
     base: [f64; 2],
+    backend: Backend,
 }
 
 impl<F: Format> Blocks<F> {
@@ -102,7 +103,15 @@ impl<F: Format> Blocks<F> {
             columns: Default::default(),
             templates: Templates::new(&plan.sampler, kept),
             patch,
+            backend: Backend::best(),
         }
+    }
+
+    /// The same points by another instruction set than the machine's best.
+    #[must_use]
+    pub const fn with_backend(mut self, backend: Backend) -> Self {
+        self.backend = backend;
+        self
     }
 
     /// Writes the next points into `out`; gives how many. Fewer than `out` holds, down to 0, only
@@ -177,8 +186,15 @@ impl<F: Format> Blocks<F> {
                 lattice: y,
             };
             let is_inner = span.inner.contains(&y);
-            let (written, done) =
-                template.fill(format, patch, row, is_inner, self.done, &mut out[filled..]);
+            let (written, done) = template.fill(
+                format,
+                patch,
+                row,
+                is_inner,
+                self.done,
+                self.backend,
+                &mut out[filled..],
+            );
             filled += written;
             self.done += done;
             if self.done == template.len() {

@@ -31,7 +31,7 @@ use warp::Shears;
 
 pub use blocks::{Blocks, Tile};
 pub use id::{PointId, PointIdError};
-pub use kernel::{F32, F64, Format, Points};
+pub use kernel::{Backend, F32, F64, Format, Points};
 pub use placement::Placement;
 pub use plan::{Plan, PlanError};
 pub use region::{Region, RegionError};

@@ -8,7 +8,7 @@ use alloc::{vec, vec::Vec};
 
 use super::{
     Listed, PointId, Sampler,
-    kernel::{Format, Row, emit},
+    kernel::{Backend, Format, Row},
     patch::Patch,
 };
 use crate::pattern::{Axis, Class};
@@ -84,6 +84,7 @@ impl<F: Format> Template<F> {
         row: Row,
         is_inner: bool,
         done: usize,
+        backend: Backend,
         out: &mut [F::Item],
     ) -> (usize, usize) {
         if patch.shears().is_some() {
@@ -92,7 +93,13 @@ impl<F: Format> Template<F> {
         let (columns, displacements) = (&self.columns[done..], &self.displacements[done..]);
         if is_inner {
             let written = columns.len().min(out.len());
-            emit(format, row, columns, displacements, &mut out[..written]);
+            format.fill_row(
+                backend,
+                row,
+                &columns[..written],
+                &displacements[..written],
+                &mut out[..written],
+            );
             return (written, written);
         }
         let (mut written, mut done) = (0, 0);

@@ -5,7 +5,23 @@
 //! exact in `f64`; their sum is rounded once, as the conversion of the whole integer would be,
 //! while lattice coordinates stay below 2⁵³.
 
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+#[expect(
+    unsafe_code,
+    reason = "vector loads and stores by pointer, bounds checked before"
+)]
+mod avx2;
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+#[expect(
+    unsafe_code,
+    reason = "vector loads and stores by pointer, masked to the bounds"
+)]
+mod avx512;
+mod backend;
+
 use super::{Point, PointId, fixed, plan::Plan};
+
+pub use backend::Backend;
 
 /// An output format: how a position becomes an item, the part along x first, since a template
 /// keeps it for all rows.
@@ -27,6 +43,19 @@ pub trait Format: Copy + Send + core::fmt::Debug + 'static + sealed::Sealed {
     /// The item: the same for y.
     #[doc(hidden)]
     fn item(&self, base: [f64; 2], column: Self::Column, y: i32, row: i64) -> Self::Item;
+
+    /// One item per column of a row.
+    #[doc(hidden)]
+    fn fill_row(
+        &self,
+        _: Backend,
+        row: Row,
+        columns: &[Self::Column],
+        displacements: &[i32],
+        out: &mut [Self::Item],
+    ) {
+        emit(self, row, columns, displacements, out);
+    }
 }
 
 mod sealed {
@@ -38,14 +67,15 @@ mod sealed {
 
 /// A lattice row of a tile: where it is, and its offset from the tile's origin.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
+pub struct Row {
     pub(super) base: [f64; 2],
     pub(super) y: i32,
     pub(super) lattice: i64,
 }
 
-/// Writes one item per column.
-pub(super) fn emit<F: Format>(
+/// Writes one item per column: the definition.
+#[inline(always)]
+fn emit<F: Format>(
     format: &F,
     row: Row,
     columns: &[F::Column],
@@ -92,6 +122,38 @@ impl Format for F64 {
     #[inline(always)]
     fn item(&self, base: [f64; 2], x: f64, y: i32, _: i64) -> [f64; 2] {
         [x, self.place(base[1], y)]
+    }
+
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    #[expect(
+        unsafe_code,
+        reason = "a backend is only ever made where the machine has it"
+    )]
+    fn fill_row(
+        &self,
+        backend: Backend,
+        row: Row,
+        columns: &[Self::Column],
+        displacements: &[i32],
+        out: &mut [Self::Item],
+    ) {
+        let scale = (row.base[1], self.step);
+        let done = match backend {
+            Backend::Scalar => 0,
+            // SAFETY: `Backend::available` has found the instructions.
+            Backend::Avx2 => unsafe { avx2::f64_row(scale, row.y, columns, displacements, out) },
+            Backend::Avx512 => {
+                // SAFETY: `Backend::available` has found the instructions.
+                return unsafe { avx512::f64_row(scale, row.y, columns, displacements, out) };
+            }
+        };
+        emit(
+            self,
+            row,
+            &columns[done..],
+            &displacements[done..],
+            &mut out[done..],
+        );
     }
 }
 
@@ -172,6 +234,38 @@ impl Format for F32 {
     #[inline(always)]
     fn item(&self, base: [f64; 2], x: f32, y: i32, _: i64) -> [f32; 2] {
         [x, self.place(1, base[1], y)]
+    }
+
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    #[expect(
+        unsafe_code,
+        reason = "a backend is only ever made where the machine has it"
+    )]
+    fn fill_row(
+        &self,
+        backend: Backend,
+        row: Row,
+        columns: &[Self::Column],
+        displacements: &[i32],
+        out: &mut [Self::Item],
+    ) {
+        let scale = (row.base[1], self.step, self.last[1]);
+        let done = match backend {
+            Backend::Scalar => 0,
+            // SAFETY: `Backend::available` has found the instructions.
+            Backend::Avx2 => unsafe { avx2::f32_row(scale, row.y, columns, displacements, out) },
+            Backend::Avx512 => {
+                // SAFETY: `Backend::available` has found the instructions.
+                return unsafe { avx512::f32_row(scale, row.y, columns, displacements, out) };
+            }
+        };
+        emit(
+            self,
+            row,
+            &columns[done..],
+            &displacements[done..],
+            &mut out[done..],
+        );
     }
 }
 

@@ -1,0 +1,86 @@
+//! Rows by 512-bit vectors: the same operations in the same order as the definition.
+
+use core::arch::x86_64::*;
+
+/// A row of `f32` pairs; see [`F32`](super::F32). All three slices have the same length.
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+pub(super) fn f32_row(
+    (base, step, last): (f64, f64, f32),
+    y: i32,
+    columns: &[f32],
+    displacements: &[i32],
+    out: &mut [[f32; 2]],
+) {
+    let length = out.len().min(columns.len()).min(displacements.len());
+    let (bases, steps) = (_mm512_set1_pd(base), _mm512_set1_pd(step));
+    let (lasts, ys) = (_mm256_set1_ps(last), _mm256_set1_epi32(y));
+    let pairs = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+    let mut i = 0;
+    while i < length {
+        let left = length - i;
+        let mask = if left >= 8 { 0xff } else { (1u8 << left) - 1 };
+        // SAFETY: lanes that the mask leaves out are neither read nor written, and the others lie
+        // within the three slices, whose least length is `length`.
+        unsafe {
+            let displacement = _mm256_maskz_loadu_epi32(mask, displacements.as_ptr().add(i));
+            let offset = _mm512_cvtepi32_pd(_mm256_add_epi32(displacement, ys));
+            let place = _mm512_mul_pd(_mm512_add_pd(bases, offset), steps);
+            let place = _mm256_min_ps(_mm512_cvtpd_ps(place), lasts);
+            let column = _mm256_maskz_loadu_ps(mask, columns.as_ptr().add(i));
+            let both = _mm512_permutex2var_ps(
+                _mm512_castps256_ps512(column),
+                pairs,
+                _mm512_castps256_ps512(place),
+            );
+            if left >= 8 {
+                _mm512_storeu_ps(out.as_mut_ptr().add(i).cast(), both);
+            } else {
+                let mask = ((1u32 << (2 * left)) - 1) as u16;
+                _mm512_mask_storeu_ps(out.as_mut_ptr().add(i).cast(), mask, both);
+            }
+        }
+        i += 8;
+    }
+}
+
+/// A row of `f64` pairs; see [`F64`](super::F64). All three slices have the same length.
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+pub(super) fn f64_row(
+    (base, step): (f64, f64),
+    y: i32,
+    columns: &[f64],
+    displacements: &[i32],
+    out: &mut [[f64; 2]],
+) {
+    let length = out.len().min(columns.len()).min(displacements.len());
+    let (bases, steps) = (_mm512_set1_pd(base), _mm512_set1_pd(step));
+    let ys = _mm256_set1_epi32(y);
+    let low = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11);
+    let high = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
+    let mut i = 0;
+    while i < length {
+        let left = (length - i).min(8);
+        let mask = ((1u16 << left) - 1) as u8;
+        // SAFETY: as in `f32_row`.
+        unsafe {
+            let displacement = _mm256_maskz_loadu_epi32(mask, displacements.as_ptr().add(i));
+            let offset = _mm512_cvtepi32_pd(_mm256_add_epi32(displacement, ys));
+            let place = _mm512_mul_pd(_mm512_add_pd(bases, offset), steps);
+            let column = _mm512_maskz_loadu_pd(mask, columns.as_ptr().add(i));
+            let to: *mut f64 = out.as_mut_ptr().add(i).cast();
+            let first = _mm512_permutex2var_pd(column, low, place);
+            let second = _mm512_permutex2var_pd(column, high, place);
+            if left == 8 {
+                _mm512_storeu_pd(to, first);
+                _mm512_storeu_pd(to.add(8), second);
+            } else {
+                let mask = (1u32 << (2 * left)) - 1;
+                _mm512_mask_storeu_pd(to, mask as u8, first);
+                if left > 4 {
+                    _mm512_mask_storeu_pd(to.add(8), (mask >> 8) as u8, second);
+                }
+            }
+        }
+        i += 8;
+    }
+}
