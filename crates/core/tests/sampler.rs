@@ -69,8 +69,8 @@ fn brute_force(sampler: &Sampler, placement: Placement, region: Region) -> Vec<P
     let step = spacing.get() * alpha.set_side_f64() / f64::from(1u32 << FRACTION_BITS);
     let lattice = |v: f64| (v / step / f64::from(1u32 << FRACTION_BITS)).floor() as i64;
     // Within ±2⁵² lattice units f64 is off by at most a few units here.
-    // Vectors reach 13 units, a warp of strength 2 at most 19.
-    let reach = 13 + 8 + 19;
+    // Vectors reach 13 units, a warp of strength 2 at most 40.
+    let reach = 13 + 8 + 40;
     let mut points = Vec::new();
     let (min, max) = (region.min().map(lattice), region.max().map(lattice));
     for y in min[1] - reach..=max[1] + reach {

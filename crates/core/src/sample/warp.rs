@@ -66,7 +66,7 @@ pub(super) const CELL_BITS: u32 = FRACTION_BITS + KNOT_BITS;
 const CELL_MASK: i128 = (1 << CELL_BITS) - 1;
 
 /// Control values reach this many mean spacings at strength 1, for a shear along an axis.
-const AMPLITUDE: f64 = 1.2;
+const AMPLITUDE: f64 = 2.5;
 
 /// One direction: points move by g(s), s the coordinate across.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -252,8 +252,8 @@ mod tests {
         #[test]
         fn a_patch_gives_the_same_bits(
             seed: u64, column in -(1i64 << 42)..1 << 42, row in -(1i64 << 42)..1 << 42,
-            x in -150i32 << FRACTION_BITS..1174 << FRACTION_BITS,
-            y in -150i32 << FRACTION_BITS..662 << FRACTION_BITS,
+            x in -170i32 << FRACTION_BITS..1194 << FRACTION_BITS,
+            y in -170i32 << FRACTION_BITS..682 << FRACTION_BITS,
         ) {
             let shears = shears(seed);
             let origin = [column * 1024, row * 512];
