@@ -217,7 +217,7 @@ proptest! {
                 let extent = max[axis] - min[axis];
                 prop_assert!(relative[axis] >= 0.0 && f64::from(relative[axis]) < extent);
                 // f32's own rounding, the f64 rounding of what it is compared with, and one unit.
-                let allowed = extent * 1.2e-7 + p[axis].abs() * 4.5e-16 + spacing.get() * 1e-7;
+                let allowed = extent * 1.2e-7 + p[axis].abs() * 4.5e-16 + spacing.get() * 4e-7;
                 let offset = p[axis] - min[axis];
                 prop_assert!((f64::from(relative[axis]) - offset).abs() <= allowed);
             }
