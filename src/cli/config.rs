@@ -9,6 +9,7 @@ use crate::config::{Config, ConfigError, Layers};
 
 /// Flags that change settings, shared by all commands that have any.
 #[derive(Clone, Debug, Default, clap::Args)]
+#[group(skip)]
 pub(crate) struct Args {
     /// A file with settings, in TOML.
     #[arg(long, value_name = "FILE", env = "STREW_CONFIG")]
