@@ -1,7 +1,11 @@
 //! The command line.
 
 mod config;
+mod output;
+mod progress;
+mod sample;
 mod serve;
+mod table;
 
 use std::process::ExitCode;
 
@@ -19,6 +23,11 @@ struct Cli {
 enum Command {
     /// Serve points over REST and gRPC on one port.
     Serve(serve::Args),
+    /// Write the points of a region to a file or standard output, without a server.
+    Sample(sample::Args),
+    /// Look at tables.
+    #[command(subcommand)]
+    Table(table::Command),
     /// Print the merged settings.
     Config(config::Args),
 }
@@ -43,6 +52,8 @@ impl From<anyhow::Error> for Failure {
 pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Serve(args) => serve::run(&args),
+        Command::Sample(args) => sample::run(&args),
+        Command::Table(command) => table::run(&command),
         Command::Config(args) => config::run(&args),
     };
     let (error, code) = match done {

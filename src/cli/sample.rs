@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::anyhow;
-use bytemuck::{cast_slice, zeroed_vec};
+use bytemuck::cast_slice;
 use rayon::prelude::*;
 use strew_core::{
     Plan,
@@ -118,7 +118,7 @@ fn announce(planned: &Planned, encoding: Encoding) {
     if encoding == Encoding::F32 {
         let [x, y] = planned.plan.origin().map(|v| {
             let mut text = vec![];
-            write_number(&mut text, v);
+            write_number(v, &mut text);
             String::from_utf8_lossy(&text).into_owned()
         });
         eprintln!("coordinates are relative to the origin {x},{y}");
@@ -147,7 +147,7 @@ fn packed<F: Scalars>(
     progress: &mut Progress,
 ) -> anyhow::Result<()>
 where
-    F::Item: bytemuck::Zeroable,
+    F::Item: Sync,
 {
     let mut tiles = plan.tiles(TILE_POINTS);
     let batch = 2 * rayon::current_num_threads();
@@ -181,7 +181,7 @@ struct Filled<F: Scalars> {
 
 impl<F: Scalars> Filled<F>
 where
-    F::Item: bytemuck::Zeroable,
+    F::Item: Sync,
 {
     fn new(batch: usize) -> Self {
         let buffers = (0..batch).map(|_| (vec![], 0)).collect();
@@ -194,7 +194,7 @@ where
         self.tiles.extend(tiles.take(self.buffers.len()));
         self.tiles.par_iter().zip(&mut self.buffers).for_each(|(tile, (buffer, filled))| {
             if buffer.is_empty() {
-                *buffer = zeroed_vec(TILE_POINTS);
+                *buffer = vec![F::Item::default(); TILE_POINTS];
             }
             *filled = plan.tile_blocks::<F>(tile).fill(buffer);
             if cfg!(target_endian = "big") {

@@ -6,6 +6,7 @@
 //! on what happens to the folder later.
 
 use std::{
+    cmp::Ordering,
     collections::BTreeMap,
     fmt, fs, io,
     path::{Path, PathBuf},
@@ -23,13 +24,27 @@ use super::Error;
 /// The tables that are built into the program: (file name, content).
 static EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));
 
-/// What a table is found by.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+/// What a table is found by. Keys are in the order of their names, then of their numbers.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
     /// The name of the noise profile.
     pub profile: Arc<str>,
     /// The number α.
     pub alpha: Alpha,
+}
+
+impl Ord for Key {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let rank = |key: &Self| (key.alpha.half(), key.alpha);
+        let by_name = self.profile.cmp(&other.profile);
+        by_name.then_with(|| rank(self).cmp(&rank(other)))
+    }
+}
+
+impl PartialOrd for Key {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
 }
 
 impl fmt::Display for Key {
@@ -92,6 +107,29 @@ impl Entry {
             provenance: table.provenance().clone(),
             bytes,
         })
+    }
+
+    /// Reads a table file, whose size is checked before its content is taken into memory.
+    ///
+    /// # Errors
+    /// [`CatalogError::File`] or [`CatalogError::Table`], naming the file.
+    pub fn from_file(path: PathBuf) -> Result<Self, CatalogError> {
+        let source = Source::File(path.clone());
+        let read = || -> io::Result<Result<Vec<u8>, u64>> {
+            let size = fs::metadata(&path)?.len();
+            if size > MAX_FILE_BYTES {
+                return Ok(Err(size));
+            }
+            fs::read(&path).map(Ok)
+        };
+        match read() {
+            Ok(Ok(bytes)) => Self::read(bytes.into(), source),
+            Ok(Err(bytes)) => Err(CatalogError::Table {
+                source_name: source,
+                error: Box::new(TableError::TooLarge { bytes }),
+            }),
+            Err(error) => Err(CatalogError::File { path, error }),
+        }
     }
 
     /// How many blocks the table has, one vector each.
@@ -187,7 +225,7 @@ impl Catalog {
         }
         if let Some(folder) = folder {
             let files = table_files(folder)?;
-            catalog.add(files.into_iter().map(read_file))?;
+            catalog.add(files.into_iter().map(Entry::from_file))?;
         }
         Ok(catalog)
     }
@@ -253,24 +291,4 @@ fn table_files(folder: &Path) -> Result<Vec<PathBuf>, CatalogError> {
     files.retain(|file| file.extension().is_some_and(|e| e == "strew"));
     files.sort();
     Ok(files)
-}
-
-/// Reads a table file, whose size is checked before its content is taken into memory.
-fn read_file(path: PathBuf) -> Result<Entry, CatalogError> {
-    let source = Source::File(path.clone());
-    let read = || -> io::Result<Result<Vec<u8>, u64>> {
-        let size = fs::metadata(&path)?.len();
-        if size > MAX_FILE_BYTES {
-            return Ok(Err(size));
-        }
-        fs::read(&path).map(Ok)
-    };
-    match read() {
-        Ok(Ok(bytes)) => Entry::read(bytes.into(), source),
-        Ok(Err(bytes)) => Err(CatalogError::Table {
-            source_name: source,
-            error: Box::new(TableError::TooLarge { bytes }),
-        }),
-        Err(error) => Err(CatalogError::File { path, error }),
-    }
 }
