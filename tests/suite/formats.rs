@@ -25,6 +25,14 @@ pub fn points(plan: &Plan) -> Vec<Point> {
     points
 }
 
+/// Fails at the first difference.
+pub fn same(got: &[Point], expected: &[Point]) {
+    for (i, (got, expected)) in got.iter().zip(expected).enumerate() {
+        assert_eq!(got, expected, "point {i}");
+    }
+    assert_eq!(got.len(), expected.len());
+}
+
 /// Blocks so small that there are many.
 fn daemon() -> Daemon {
     Daemon::start(&["limits.block_bytes=4096"])
@@ -71,7 +79,7 @@ fn json_is_one_document_that_echoes_the_query() {
         assert_eq!(document["count"], plan.count() as u64);
         let list = document["points"].as_array().expect("a list");
         let got: Vec<Point> = list.iter().map(point_of).collect();
-        assert_eq!(got, points(&plan));
+        same(&got, &points(&plan));
     }
 }
 
@@ -89,7 +97,7 @@ fn ndjson_ends_with_a_summary() {
     assert_eq!(summary["summary"]["count"], plan.count() as u64);
     assert_eq!(summary["summary"]["query"]["seed"], 5);
     let got: Vec<Point> = lines.iter().map(point_of).collect();
-    assert_eq!(got, points(&plan));
+    same(&got, &points(&plan));
 }
 
 #[test]
@@ -110,7 +118,7 @@ fn csv_has_a_header_and_exact_numbers() {
             }
         })
         .collect();
-    assert_eq!(got, points(&plan));
+    same(&got, &points(&plan));
 }
 
 #[test]

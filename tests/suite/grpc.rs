@@ -12,7 +12,7 @@ use tonic_reflection::pb::{v1, v1alpha};
 
 use crate::{
     daemon::{Daemon, PROFILE},
-    formats::{plan, points},
+    formats::{plan, points, same},
 };
 
 pub fn request(encoding: Encoding) -> StreamPointsRequest {
@@ -85,7 +85,7 @@ async fn the_default_encoding_has_fields_and_ids() {
                 y,
             })
             .collect();
-        assert_eq!(got, points(&plan));
+        same(&got, &points(&plan));
     }
 }
 
