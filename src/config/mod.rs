@@ -1,7 +1,7 @@
 //! Settings: every one has a default in `config/strew.toml`, a meaning there, and a range here.
 //!
 //! Layers, the later the stronger: defaults, a file, the environment, flags. They are merged as
-//! TOML by [`layers`] and read into [`Config`] once; what is read is checked as a whole, and from
+//! TOML by `layers` and read into [`Config`] once; what is read is checked as a whole, and from
 //! then on nobody checks a setting again.
 
 mod layers;

@@ -125,7 +125,8 @@ impl App {
         Ok((router, grpc_health))
     }
 
-    /// What one connection may ask of us.
+    /// What one connection may ask of us. (The bound on heads also bounds what HTTP/1.1 gathers
+    /// before it writes; blocks are larger than that and go out as they are.)
     fn limit_connections<A>(&self, server: &mut axum_server::Server<SocketAddr, A>) {
         let settings = &self.config.server;
         let keepalive = config::seconds(settings.http2_keepalive_seconds);

@@ -75,8 +75,8 @@ impl Planned {
         Self::new(query, entry, &sampler)
     }
 
-    /// How many points the answer has; a lattice row of the largest region has fewer than 2⁶⁴, but
-    /// a region may have more, so this is wider than any limit.
+    /// How many points the answer has. Regions can hold more than 64 bits count, so this is wider
+    /// than any limit.
     #[must_use]
     pub const fn count(&self) -> u128 {
         self.plan.count()
@@ -142,6 +142,7 @@ impl Service {
         if count > u128::from(limit) {
             return Err(Error::TooManyPoints { count, limit });
         }
+        tracing::debug!(count, table = %planned.entry.key, "planned");
         Ok(planned)
     }
 

@@ -186,3 +186,122 @@ where
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::{
+        task::Waker,
+        time::{Duration, Instant},
+    };
+
+    use futures_util::StreamExt as _;
+
+    use super::*;
+
+    /// Counts what it makes, panics at some item, ends at another.
+    struct Numbers {
+        made: Arc<AtomicUsize>,
+        panic_at: usize,
+        end: usize,
+    }
+
+    impl Iterator for Numbers {
+        type Item = usize;
+
+        fn next(&mut self) -> Option<usize> {
+            let i = self.made.load(Ordering::SeqCst);
+            assert_ne!(i, self.panic_at, "as asked for");
+            (i < self.end).then(|| self.made.fetch_add(1, Ordering::SeqCst))
+        }
+    }
+
+    fn numbers(panic_at: usize, end: usize) -> (Numbers, Arc<AtomicUsize>) {
+        let made = Arc::new(AtomicUsize::new(0));
+        let numbers = Numbers {
+            made: made.clone(),
+            panic_at,
+            end,
+        };
+        (numbers, made)
+    }
+
+    fn stream(numbers: Numbers) -> (BlockStream<Numbers>, Arc<Streams>) {
+        let streams = Arc::new(Streams::new(1));
+        let permit = streams.admit().expect("the first");
+        let workers = Workers::new(1).expect("threads");
+        (BlockStream::new(numbers, permit, workers), streams)
+    }
+
+    fn until(what: impl Fn() -> bool) {
+        let start = Instant::now();
+        while !what() {
+            assert!(start.elapsed() < Duration::from_secs(10), "in vain");
+            std::thread::yield_now();
+        }
+    }
+
+    #[tokio::test]
+    async fn everything_comes_in_order_and_the_place_is_free_again() {
+        let (numbers, _) = numbers(usize::MAX, 100);
+        let (stream, streams) = stream(numbers);
+        assert_eq!(streams.open(), 1);
+        assert!(matches!(streams.admit(), Err(Error::Busy { limit: 1 })));
+        let items: Vec<_> = stream.collect().await;
+        assert_eq!(items, (0..100).map(Ok).collect::<Vec<_>>());
+        until(|| streams.open() == 0);
+    }
+
+    #[tokio::test]
+    async fn nothing_is_made_before_it_is_asked_for_and_then_one_ahead() {
+        let (numbers, made) = numbers(usize::MAX, 100);
+        let (mut stream, streams) = stream(numbers);
+        assert_eq!(made.load(Ordering::SeqCst), 0);
+        for taken in 1..=10 {
+            stream.next().await.expect("more").expect("whole");
+            until(|| made.load(Ordering::SeqCst) == taken + 1);
+        }
+        drop(stream);
+        until(|| streams.open() == 0);
+        assert_eq!(made.load(Ordering::SeqCst), 11);
+    }
+
+    #[tokio::test]
+    async fn a_failure_is_an_error_and_not_an_end() {
+        let (numbers, _) = numbers(3, 100);
+        let (stream, streams) = stream(numbers);
+        let items: Vec<_> = stream.collect().await;
+        assert_eq!(items, [Ok(0), Ok(1), Ok(2), Err(Interrupted::Failed)]);
+        until(|| streams.open() == 0);
+    }
+
+    #[tokio::test]
+    async fn a_stop_is_an_error_and_not_an_end() {
+        let (numbers, _) = numbers(usize::MAX, usize::MAX);
+        let (mut stream, streams) = stream(numbers);
+        assert_eq!(stream.next().await, Some(Ok(0)));
+        streams.stop();
+        let rest: Vec<_> = stream.collect().await;
+        assert_eq!(rest, [Err(Interrupted::Shutdown)]);
+        until(|| streams.open() == 0);
+        assert!(matches!(streams.admit(), Err(Error::ShuttingDown)));
+    }
+
+    #[tokio::test]
+    async fn a_waiting_reader_hears_of_the_stop() {
+        let (numbers, _) = numbers(usize::MAX, usize::MAX);
+        let (mut stream, streams) = stream(numbers);
+        // The only worker is busy, so there is nothing to take.
+        let (hold, held) = std::sync::mpsc::channel::<()>();
+        stream.workers.spawn(move || {
+            let _ = held.recv();
+        });
+        let mut context = Context::from_waker(Waker::noop());
+        assert!(stream.poll_next_unpin(&mut context).is_pending());
+        let reader = tokio::spawn(stream.collect::<Vec<_>>());
+        streams.stop();
+        let rest = reader.await.expect("no panic");
+        assert_eq!(rest, [Err(Interrupted::Shutdown)]);
+        drop(hold);
+        until(|| streams.open() == 0);
+    }
+}

@@ -76,7 +76,11 @@ pub struct Daemon {
 impl Daemon {
     /// Starts one on a free port with the test tables and further settings (`key=value`).
     pub fn start(settings: &[&str]) -> Self {
-        let tables = tables();
+        Self::with_tables(tables(), settings)
+    }
+
+    /// Starts one on a free port with a folder of tables and further settings.
+    pub fn with_tables(tables: tempfile::TempDir, settings: &[&str]) -> Self {
         let mut command = strew();
         command
             .args(["serve", "--listen", "127.0.0.1:0", "--tables"])

@@ -67,16 +67,37 @@ fn unknown_paths_and_methods_are_problems() {
 
 #[test]
 fn it_starts_without_any_table_and_says_so() {
-    let daemon = Daemon::start(&["tables.embedded=false", "tables.folder="]);
-    // The flag --tables wins over --set: this folder has the two test tables.
-    assert_eq!(daemon.get("/readyz").json()["tables"], 2);
     let empty = tempfile::tempdir().expect("a folder");
-    let output = strew()
-        .args(["config", "--tables"])
-        .arg(empty.path())
-        .output()
-        .expect("runs");
-    assert!(output.status.success());
+    let daemon = Daemon::with_tables(empty, &["tables.embedded=false"]);
+    assert_eq!(daemon.get("/readyz").json()["tables"], 0);
+    let answer = daemon.get("/v1/points?bbox=0,0,1,1&density=1");
+    assert_eq!(answer.status, 400);
+    assert!(
+        answer.text().contains("no table is loaded"),
+        "{}",
+        answer.text()
+    );
+}
+
+#[test]
+fn a_table_of_the_folder_replaces_a_built_in_one_and_answers_by_default() {
+    let folder = tables();
+    let mine = table("(5-sqrt(3))/2", "blue");
+    write(folder.path(), "mine.strew", &mine);
+    std::fs::write(folder.path().join("notes.txt"), "no table").expect("writable");
+    let daemon = Daemon::with_tables(folder, &[]);
+    let answer = daemon.get("/v1/points?bbox=0,0,9,9&spacing=0.5");
+    assert_eq!(answer.status, 200, "{}", answer.text());
+    assert_eq!(answer.header("strew-table"), mine.digest().to_string());
+    let query = &answer.json()["query"];
+    assert_eq!(
+        (&query["density"], &query["spacing"]),
+        (&4.0.into(), &0.5.into())
+    );
+    assert_eq!(
+        (&query["profile"], &query["seed"]),
+        (&"blue".into(), &0.into())
+    );
 }
 
 /// Starts a daemon that must not start; gives its exit code and what it says.

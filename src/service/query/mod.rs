@@ -2,7 +2,7 @@
 //!
 //! There is one way in, [`Draft::check`]; beyond it nothing is checked again. It reports every
 //! fault it finds, so that a client needs one round to learn them all. Text parameters, of an
-//! address or a command line, become a draft in [`text`].
+//! address or a command line, become [`Parameters`] first.
 
 mod text;
 
@@ -177,17 +177,17 @@ impl Draft<'_> {
     fn key(&self, catalog: &Catalog) -> Result<Key, Vec<Fault>> {
         let profile = self.profile.unwrap_or(DEFAULT_PROFILE);
         let text = self.alpha.unwrap_or(DEFAULT_ALPHA);
-        let alphas: Vec<String> = catalog.alphas(profile).map(|a| a.to_string()).collect();
+        let is_loaded = catalog.alphas(profile).next().is_some();
         let mut faults = vec![];
-        if alphas.is_empty() {
+        if !is_loaded {
             let detail = "no such profile is loaded";
             faults.push(Fault::new("profile", profile, detail, loaded(catalog)));
         }
         let allowed = || {
-            if alphas.is_empty() {
-                loaded(catalog)
+            if is_loaded {
+                some(catalog.alphas(profile).map(|alpha| alpha.to_string()))
             } else {
-                alphas.join(", ")
+                loaded(catalog)
             }
         };
         let alpha = text.parse::<Alpha>().map_err(|error| {
@@ -274,14 +274,24 @@ fn listed(corners: [f64; 4]) -> String {
 
 /// What is loaded, for an error.
 fn loaded(catalog: &Catalog) -> String {
-    let of = |profile: &&str| {
-        let alphas: Vec<String> = catalog.alphas(profile).map(|a| a.to_string()).collect();
-        format!("{profile} with alpha {}", alphas.join(" or "))
+    let of = |profile: &str| {
+        let alphas = some(catalog.alphas(profile).map(|alpha| alpha.to_string()));
+        format!("{profile} (alpha {alphas})")
     };
-    let all: Vec<String> = catalog.profiles().iter().map(of).collect();
-    if all.is_empty() {
-        "nothing: no table is loaded".into()
-    } else {
-        all.join("; ")
+    match catalog.profiles().as_slice() {
+        [] => "nothing: no table is loaded".into(),
+        profiles => some(profiles.iter().map(|profile| of(profile))),
     }
+}
+
+/// A list, but not a long one: errors travel in headers, too.
+fn some(items: impl Iterator<Item = String>) -> String {
+    const SHOWN: usize = 8;
+    let mut items: Vec<String> = items.collect();
+    let more = items.len().saturating_sub(SHOWN);
+    if more > 0 {
+        items.truncate(SHOWN);
+        items.push(format!("and {more} more (see the list of profiles)"));
+    }
+    items.join(", ")
 }

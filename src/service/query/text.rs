@@ -10,6 +10,9 @@ const NAMES: [&str; 7] = [
     "bbox", "density", "spacing", "profile", "alpha", "seed", "format",
 ];
 
+/// No more faults of an address are reported: an error is to be read.
+const MOST_FAULTS: usize = 16;
+
 /// Text parameters by name, each at most once.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Parameters {
@@ -39,6 +42,9 @@ pub fn parse_pairs(text: &str) -> Parsed {
     let mut parameters = Parameters::default();
     let mut faults: Vec<Fault> = vec![];
     for pair in text.split('&').filter(|pair| !pair.is_empty()) {
+        if faults.len() == MOST_FAULTS {
+            break;
+        }
         let (raw_name, raw_value) = pair.split_once('=').unwrap_or((pair, ""));
         let name = percent_decode_str(raw_name).decode_utf8_lossy();
         let Some(slot) = parameters.slot(&name) else {
