@@ -12,7 +12,10 @@ use super::{
         stream_points_response::Message,
     },
 };
-use crate::service::{Error, Planned, encode::Packed};
+use crate::service::{
+    Error, Planned,
+    encode::{Packed, id_text},
+};
 
 /// The messages of an answer.
 #[derive(Debug)]
@@ -123,7 +126,7 @@ impl Fields {
         (filled > 0).then(|| PointBlock {
             x: points.iter().map(|point| point.x).collect(),
             y: points.iter().map(|point| point.y).collect(),
-            id: points.iter().map(|point| point.id.to_string()).collect(),
+            id: points.iter().map(|point| id_text(point.id)).collect(),
             ..PointBlock::default()
         })
     }

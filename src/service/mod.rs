@@ -34,7 +34,8 @@ pub struct Limits {
     /// The most points of one answer. Keeps a slip of a zero from filling a disk; the refusal says
     /// the exact count.
     pub max_points: u64,
-    /// The most answers under way at once. Bounds memory: an answer holds about three blocks.
+    /// The most answers under way at once. Bounds memory: an answer holds 1 to 2 MB,
+    /// two blocks and the rows it is made of.
     pub max_streams: usize,
     /// The size of a block before it is encoded, in bytes.
     pub block_bytes: usize,

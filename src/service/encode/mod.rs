@@ -19,7 +19,7 @@ use text::TextBlocks;
 
 pub use buffer::Pool;
 pub use packed::{Packed, Scalars};
-pub use text::{write_id, write_number};
+pub use text::{id_text, write_id, write_number};
 
 /// The formats of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

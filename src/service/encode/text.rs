@@ -109,6 +109,13 @@ pub fn write_id(id: PointId, out: &mut Vec<u8>) {
     out.extend_from_slice(digits.format(id.y).as_bytes());
 }
 
+/// An id as a text of its own.
+#[must_use]
+pub fn id_text(id: PointId) -> String {
+    let (mut x, mut y) = (itoa::Buffer::new(), itoa::Buffer::new());
+    [x.format(id.x), ":", y.format(id.y)].concat()
+}
+
 /// Writes a value as JSON. What is written here has no maps with strange keys, so it cannot fail.
 pub(super) fn write_json(value: &impl serde::Serialize, out: &mut Vec<u8>) {
     if let Err(error) = serde_json::to_writer(out, value) {
@@ -191,6 +198,7 @@ mod tests {
             let mut out = vec![];
             write_id(id, &mut out);
             prop_assert_eq!(String::from_utf8(out).expect("digits"), id.to_string());
+            prop_assert_eq!(id_text(id), id.to_string());
         }
     }
 }
