@@ -1,6 +1,7 @@
 //! The command line.
 
 mod config;
+mod forge;
 mod output;
 mod progress;
 mod sample;
@@ -25,6 +26,8 @@ enum Command {
     Serve(serve::Args),
     /// Write the points of a region to a file or standard output, without a server.
     Sample(sample::Args),
+    /// Make a table and judge it.
+    Forge(forge::Args),
     /// Look at tables.
     #[command(subcommand)]
     Table(table::Command),
@@ -53,6 +56,7 @@ pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Serve(args) => serve::run(&args),
         Command::Sample(args) => sample::run(&args),
+        Command::Forge(args) => forge::run(&args),
         Command::Table(command) => table::run(&command),
         Command::Config(args) => config::run(&args),
     };

@@ -15,7 +15,7 @@ pub(super) struct Progress {
     bar: Option<ProgressBar>,
     what: &'static str,
     total: u64,
-    done: u64,
+    quiet: bool,
     started: Instant,
     said: Instant,
 }
@@ -33,27 +33,31 @@ impl Progress {
             bar
         });
         let now = Instant::now();
-        // Without a terminal a quiet one has nothing to say, ever.
-        let said = if quiet { now + Duration::from_secs(1 << 40) } else { now };
-        Self { bar, what, total, done: 0, started: now, said }
+        Self {
+            bar,
+            what,
+            total,
+            quiet,
+            started: now,
+            said: now,
+        }
     }
 
     /// `done` units of the work are behind; `note` says more.
     pub(super) fn reach(&mut self, done: u64, note: &str) {
-        self.done = done;
         if let Some(bar) = &self.bar {
             if !note.is_empty() {
                 bar.set_message(format!("{} {note}", self.what));
             }
             bar.set_position(done);
-        } else if Instant::now().saturating_duration_since(self.said) >= EVERY {
+        } else if !self.quiet && Instant::now().saturating_duration_since(self.said) >= EVERY {
             self.said = Instant::now();
-            eprintln!("{}", self.line(note));
+            eprintln!("{}", self.line(done, note));
         }
     }
 
-    fn line(&self, note: &str) -> String {
-        let share = self.done as f64 / self.total.max(1) as f64;
+    fn line(&self, done: u64, note: &str) -> String {
+        let share = done as f64 / self.total.max(1) as f64;
         let elapsed = self.started.elapsed();
         let left = elapsed.mul_f64((1.0 / share.max(1e-9) - 1.0).clamp(0.0, 1e6));
         format!(
