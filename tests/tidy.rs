@@ -8,19 +8,27 @@ use std::{
 /// Every source file of the workspace, as (path from the root, text).
 fn sources() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut open: Vec<PathBuf> =
-        ["src", "crates", "tests", "benches", "examples", "build.rs"].map(|d| root.join(d)).to_vec();
+    let mut open: Vec<PathBuf> = ["src", "crates", "tests", "benches", "examples", "build.rs"]
+        .map(|d| root.join(d))
+        .to_vec();
     let mut found = Vec::new();
     while let Some(path) = open.pop() {
         if path.is_dir() {
             let entries = fs::read_dir(&path).expect("readable");
             open.extend(entries.map(|entry| entry.expect("readable").path()));
         } else if path.extension().is_some_and(|e| e == "rs") {
-            let name = path.strip_prefix(root).expect("inside").to_string_lossy().replace('\\', "/");
+            let name = path
+                .strip_prefix(root)
+                .expect("inside")
+                .to_string_lossy()
+                .replace('\\', "/");
             found.push((name, fs::read_to_string(&path).expect("UTF-8")));
         }
     }
-    assert!(found.len() > 30, "the sources are where they are looked for");
+    assert!(
+        found.len() > 30,
+        "the sources are where they are looked for"
+    );
     found.retain(|(name, _)| name != "tests/tidy.rs");
     found
 }
@@ -46,20 +54,39 @@ fn never_names(room: &str, words: &[&str]) {
 
 #[test]
 fn the_core_knows_no_wire_no_runtime_and_no_files() {
-    never_names("crates/core/src", &[
-        "tokio", "axum", "tonic", "hyper", "http::", "serde", "rayon", "std::fs", "std::io",
-        "std::net", "std::thread", "std::time",
-    ]);
+    never_names(
+        "crates/core/src",
+        &[
+            "tokio",
+            "axum",
+            "tonic",
+            "hyper",
+            "http::",
+            "serde",
+            "rayon",
+            "std::fs",
+            "std::io",
+            "std::net",
+            "std::thread",
+            "std::time",
+        ],
+    );
 }
 
 #[test]
 fn the_forge_knows_no_wire_and_no_runtime() {
-    never_names("crates/forge/src", &["tokio", "axum", "tonic", "hyper", "http::", "std::net"]);
+    never_names(
+        "crates/forge/src",
+        &["tokio", "axum", "tonic", "hyper", "http::", "std::net"],
+    );
 }
 
 #[test]
 fn the_service_knows_no_door_and_the_doors_not_each_other() {
-    never_names("src/service", &["axum", "tonic", "http::", "crate::rest", "crate::grpc"]);
+    never_names(
+        "src/service",
+        &["axum", "tonic", "http::", "crate::rest", "crate::grpc"],
+    );
     never_names("src/rest", &["crate::grpc", "tonic"]);
     never_names("src/grpc", &["crate::rest", "axum"]);
 }
@@ -72,7 +99,10 @@ fn unsafe_code_stands_only_in_the_kernel() {
         }
         for (line, text) in code(&text) {
             let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
-            assert!(!words.clone().any(|w| w == "unsafe"), "{name}:{line} is unsafe: {text}");
+            assert!(
+                !words.clone().any(|w| w == "unsafe"),
+                "{name}:{line} is unsafe: {text}"
+            );
         }
     }
 }
@@ -80,11 +110,23 @@ fn unsafe_code_stands_only_in_the_kernel() {
 #[test]
 fn files_hold_one_idea_and_say_what_it_is() {
     for (name, text) in sources() {
-        assert!(text.lines().count() <= 500, "{name} has more than 500 lines");
-        assert!(text.starts_with("//!"), "{name} does not begin by saying what it is for");
-        let stem = Path::new(&name).file_stem().expect("named").to_string_lossy();
+        assert!(
+            text.lines().count() <= 500,
+            "{name} has more than 500 lines"
+        );
+        assert!(
+            text.starts_with("//!"),
+            "{name} does not begin by saying what it is for"
+        );
+        let stem = Path::new(&name)
+            .file_stem()
+            .expect("named")
+            .to_string_lossy();
         let vague = ["utils", "util", "helpers", "helper", "common", "misc"];
-        assert!(!vague.contains(&stem.as_ref()), "{name} has a name that says nothing");
+        assert!(
+            !vague.contains(&stem.as_ref()),
+            "{name} has a name that says nothing"
+        );
         for marker in ["TODO", "FIXME", "XXX"] {
             assert!(!text.contains(marker), "{name} has a {marker}");
         }
@@ -93,7 +135,13 @@ fn files_hold_one_idea_and_say_what_it_is() {
 
 #[test]
 fn libraries_print_nothing() {
-    for room in ["crates/core/src", "crates/forge/src", "src/service", "src/rest", "src/grpc"] {
+    for room in [
+        "crates/core/src",
+        "crates/forge/src",
+        "src/service",
+        "src/rest",
+        "src/grpc",
+    ] {
         never_names(room, &["println!", "eprintln!", "print!(", "dbg!"]);
     }
 }
