@@ -1,1 +1,5 @@
-fn main() {}
+//! The `strew` program.
+
+fn main() -> std::process::ExitCode {
+    strew::cli::main()
+}

@@ -1,0 +1,70 @@
+//! The command line.
+
+mod config;
+mod forge;
+mod output;
+mod progress;
+mod sample;
+mod serve;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// What `strew` does.
+#[derive(Debug, Parser)]
+#[command(name = "strew", version, about, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Serve points over REST and gRPC on one port.
+    Serve(serve::Args),
+    /// Write the points of a region to a file or standard output, without a server.
+    Sample(sample::Args),
+    /// Make a table and judge it.
+    Forge(forge::Args),
+    /// Look at tables.
+    #[command(subcommand)]
+    Table(table::Command),
+    /// Print the merged settings.
+    Config(config::Args),
+}
+
+/// Why a command failed: decides the exit code.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// Wrong flags or settings: 2.
+    Usage(anyhow::Error),
+    /// Anything else: 1.
+    Other(anyhow::Error),
+}
+
+impl From<anyhow::Error> for Failure {
+    fn from(error: anyhow::Error) -> Self {
+        Self::Other(error)
+    }
+}
+
+/// Runs the program.
+#[must_use]
+pub fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Serve(args) => serve::run(&args),
+        Command::Sample(args) => sample::run(&args),
+        Command::Forge(args) => forge::run(&args),
+        Command::Table(command) => table::run(&command),
+        Command::Config(args) => config::run(&args),
+    };
+    let (error, code) = match done {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Usage(error)) => (error, 2),
+        Err(Failure::Other(error)) => (error, 1),
+    };
+    eprintln!("error: {error:#}");
+    ExitCode::from(code)
+}

@@ -1,0 +1,79 @@
+//! How far long work has come: a bar on a terminal, a line now and then elsewhere.
+
+use std::{
+    io::IsTerminal as _,
+    time::{Duration, Instant},
+};
+
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+
+/// How often a line is written where there is no terminal.
+const EVERY: Duration = Duration::from_secs(10);
+
+/// Shows progress on standard error.
+pub(super) struct Progress {
+    bar: Option<ProgressBar>,
+    what: &'static str,
+    total: u64,
+    quiet: bool,
+    started: Instant,
+    said: Instant,
+}
+
+impl Progress {
+    /// Work of `total` units called `what`; `quiet` shows nothing.
+    pub(super) fn new(what: &'static str, total: u64, quiet: bool) -> Self {
+        let bar = (!quiet && std::io::stderr().is_terminal()).then(|| {
+            let style = ProgressStyle::with_template(
+                "{bar:30} {percent:>3}% of {human_len} {msg} [{elapsed} < {eta}]",
+            );
+            let bar = ProgressBar::new(total);
+            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar.set_message(what);
+            bar
+        });
+        let now = Instant::now();
+        Self {
+            bar,
+            what,
+            total,
+            quiet,
+            started: now,
+            said: now,
+        }
+    }
+
+    /// `done` units of the work are behind; `note` says more.
+    pub(super) fn reach(&mut self, done: u64, note: &str) {
+        if let Some(bar) = &self.bar {
+            if !note.is_empty() {
+                bar.set_message(format!("{} {note}", self.what));
+            }
+            bar.set_position(done);
+        } else if !self.quiet && Instant::now().saturating_duration_since(self.said) >= EVERY {
+            self.said = Instant::now();
+            eprintln!("{}", self.line(done, note));
+        }
+    }
+
+    fn line(&self, done: u64, note: &str) -> String {
+        let share = done as f64 / self.total.max(1) as f64;
+        let elapsed = self.started.elapsed();
+        let left = elapsed.mul_f64((1.0 / share.max(1e-9) - 1.0).clamp(0.0, 1e6));
+        format!(
+            "{:.0}% of {} {} {note} ({} so far, about {} left)",
+            100.0 * share,
+            self.total,
+            self.what,
+            HumanDuration(elapsed),
+            HumanDuration(left)
+        )
+    }
+
+    /// The work is over, done or not: the bar goes away.
+    pub(super) fn finish(self) {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

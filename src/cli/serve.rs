@@ -1,0 +1,70 @@
+//! `strew serve`.
+
+use std::{
+    io::Write as _,
+    net::{SocketAddr, TcpListener},
+};
+
+use anyhow::{Context as _, anyhow};
+
+use super::{Failure, config};
+use crate::ops::{App, ServeError, shutdown, telemetry};
+
+/// Flags of `strew serve`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    #[command(flatten)]
+    settings: config::Args,
+}
+
+/// Serves until a signal comes.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let config = args.settings.merged()?;
+    telemetry::start(&config.log.filter).context("log.filter")?;
+    let listen = config.server.listen;
+    let app = App::new(config).map_err(|error| match error {
+        ServeError::Catalog(_) => Failure::Usage(error.into()),
+        _ => Failure::Other(error.into()),
+    })?;
+    if app.service().catalog().entries().len() == 0 {
+        tracing::warn!("no table is loaded: every query will be refused");
+    }
+    let listener = bind(listen)?;
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .build()
+        .context("cannot start the runtime")?;
+    runtime.block_on(serve(app, listener))?;
+    Ok(())
+}
+
+fn bind(listen: SocketAddr) -> anyhow::Result<TcpListener> {
+    TcpListener::bind(listen).map_err(|error| match error.kind() {
+        std::io::ErrorKind::AddrInUse => anyhow!(
+            "cannot listen on {listen}: the port is in use; choose another with --listen, or 0 \
+             for any free one"
+        ),
+        _ => anyhow!("cannot listen on {listen}: {error}"),
+    })
+}
+
+async fn serve(app: App, listener: TcpListener) -> anyhow::Result<()> {
+    let address = listener.local_addr().context("no address")?;
+    // Listen for signals before saying that we are ready.
+    let stop = shutdown::Signals::new().context("cannot listen for signals")?;
+    announce(address).context("cannot write to standard output")?;
+    tracing::info!(%address, tables = app.service().catalog().entries().len(), "serving");
+    let broken = app.run(listener, stop.first_then_exit()).await?;
+    if broken > 0 {
+        tracing::warn!(broken, "stopped; some streams were broken off");
+    } else {
+        tracing::info!("stopped");
+    }
+    Ok(())
+}
+
+fn announce(address: SocketAddr) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "listening on http://{address}")?;
+    out.flush()
+}

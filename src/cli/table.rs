@@ -1,0 +1,206 @@
+//! `strew table`: what a table is, whether a file is whole, and its vectors as text.
+
+use std::{
+    fmt::Write as _,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context as _, anyhow};
+use clap::Subcommand;
+use strew_core::Table;
+
+use super::{Failure, config, output::Output};
+use crate::service::catalog::{Entry, Source};
+
+/// What to do with tables.
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Tell what a table is, how it was made and what was measured on it.
+    Show(Show),
+    /// Check table files: every byte of them.
+    Verify(Verify),
+    /// Write a table's vectors.
+    Export(Export),
+}
+
+/// Flags of `strew table show`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Show {
+    #[command(flatten)]
+    which: Which,
+}
+
+/// Flags of `strew table verify`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Verify {
+    /// The files.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+}
+
+/// Flags of `strew table export`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Export {
+    #[command(flatten)]
+    which: Which,
+    /// As text: one line `x y` in grid units per block; row = block of dY, column = block of dX.
+    #[arg(long)]
+    text: bool,
+    /// The file to write; - is standard output.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// A table: a file, or one that is loaded.
+#[derive(Debug, clap::Args)]
+struct Which {
+    /// A table file; without one the loaded tables are meant.
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// Only loaded tables of this profile.
+    #[arg(long, conflicts_with = "file")]
+    profile: Option<String>,
+    /// Only loaded tables of this alpha.
+    #[arg(long, conflicts_with = "file", allow_hyphen_values = true)]
+    alpha: Option<String>,
+    #[command(flatten)]
+    settings: config::Args,
+}
+
+/// Runs one of the commands.
+pub(super) fn run(command: &Command) -> Result<(), Failure> {
+    match command {
+        Command::Show(args) => show(args),
+        Command::Verify(args) => verify(args),
+        Command::Export(args) => export(args),
+    }
+}
+
+impl Which {
+    /// The tables meant, with where each comes from; at least one.
+    fn tables(&self) -> Result<Vec<(String, Table)>, Failure> {
+        if let Some(file) = &self.file {
+            let table = read(file).map_err(Failure::Other)?;
+            return Ok(vec![(file.display().to_string(), table)]);
+        }
+        let config = self.settings.merged()?;
+        let catalog = config.catalog().map_err(|error| Failure::Usage(error.into()))?;
+        let alpha = match &self.alpha {
+            Some(text) => {
+                let parsed = text.parse::<strew_core::Alpha>();
+                Some(parsed.map_err(|error| Failure::Usage(anyhow!("--alpha: {error}")))?)
+            }
+            None => None,
+        };
+        let meant = |entry: &Entry| {
+            self.profile.as_ref().is_none_or(|profile| **profile == *entry.key.profile)
+                && alpha.is_none_or(|alpha| alpha == entry.key.alpha)
+        };
+        let named = |entry: &Entry| {
+            let place = match &entry.source {
+                Source::Embedded(name) => format!("{name} (built in)"),
+                Source::File(path) => path.display().to_string(),
+            };
+            let table = entry.table().map_err(|error| Failure::Other(error.into()))?;
+            Ok((place, table))
+        };
+        let tables = catalog.entries().filter(|entry| meant(entry)).map(|entry| named(entry));
+        let tables: Vec<_> = tables.collect::<Result<_, Failure>>()?;
+        if tables.is_empty() {
+            let loaded: Vec<String> = catalog.entries().map(|entry| entry.key.to_string()).collect();
+            return Err(Failure::Usage(anyhow!(
+                "no such table is loaded; loaded are: {}",
+                loaded.join("; ")
+            )));
+        }
+        Ok(tables)
+    }
+}
+
+/// Reads and checks a table file; the error names it.
+fn read(file: &Path) -> anyhow::Result<Table> {
+    Ok(Entry::from_file(file.to_owned())?.table()?)
+}
+
+fn show(args: &Show) -> Result<(), Failure> {
+    let mut text = String::new();
+    for (i, (place, table)) in args.which.tables()?.iter().enumerate() {
+        if i > 0 {
+            text.push('\n');
+        }
+        describe(&mut text, place, table).context("cannot format")?;
+    }
+    let mut output = Output::open(None)?;
+    output.write(text.as_bytes())?;
+    Ok(output.finish()?)
+}
+
+fn describe(text: &mut String, place: &str, table: &Table) -> std::fmt::Result {
+    let (map, provenance) = (table.map(), table.provenance());
+    let n = map.intervals();
+    writeln!(text, "{place}")?;
+    writeln!(text, "  profile    {}", table.profile())?;
+    writeln!(text, "  alpha      {} = {}", table.alpha(), table.alpha().to_f64())?;
+    writeln!(text, "  map        R = {}, {n} intervals, {} blocks", map.radius(), n * n)?;
+    writeln!(text, "  bytes      {}", table.to_bytes().len())?;
+    writeln!(text, "  digest     {}", table.digest())?;
+    writeln!(text, "  optimizer  {}, seed {}", provenance.optimizer, provenance.seed)?;
+    for (name, value) in &provenance.parameters {
+        writeln!(text, "             {name} = {value}")?;
+    }
+    if !provenance.twins.is_empty() {
+        let twins: Vec<String> = provenance.twins.iter().map(ToString::to_string).collect();
+        writeln!(text, "  made on    {}", twins.join(", "))?;
+    }
+    for figures in &provenance.figures {
+        let seen = if figures.seen { "made on it" } else { "unseen" };
+        writeln!(text, "  measured   {}, {} points, {seen}", figures.subject, figures.points)?;
+        for (name, value) in &figures.values {
+            writeln!(text, "             {name} = {value}")?;
+        }
+    }
+    Ok(())
+}
+
+fn verify(args: &Verify) -> Result<(), Failure> {
+    let mut bad = 0;
+    for file in &args.files {
+        match read(file) {
+            Ok(table) => println!(
+                "{}: good, profile {}, alpha {}, digest {}",
+                file.display(),
+                table.profile(),
+                table.alpha(),
+                table.digest()
+            ),
+            Err(error) => {
+                bad += 1;
+                eprintln!("{error:#}");
+            }
+        }
+    }
+    match bad {
+        0 => Ok(()),
+        _ => Err(Failure::Other(anyhow!("{bad} of {} tables are not good", args.files.len()))),
+    }
+}
+
+fn export(args: &Export) -> Result<(), Failure> {
+    let tables = args.which.tables()?;
+    let [(_, table)] = &tables[..] else {
+        return Err(Failure::Usage(anyhow!(
+            "{} tables are loaded: choose one with --profile and --alpha, or name a file",
+            tables.len()
+        )));
+    };
+    let bytes = if args.text {
+        let mut text = String::new();
+        table.write_text(&mut text).context("cannot format")?;
+        text.into_bytes()
+    } else {
+        table.to_bytes()
+    };
+    let mut output = Output::open(args.output.as_deref())?;
+    output.write(&bytes)?;
+    Ok(output.finish()?)
+}

@@ -1,0 +1,293 @@
+//! Merging settings: defaults < file < environment < flags.
+//!
+//! The defaults name every key and fix its type; a later layer can change values, never add keys.
+
+use std::path::{Path, PathBuf};
+
+use toml::{Table, Value};
+
+use super::{Config, DEFAULTS, validate::validate};
+
+/// Variables of the environment that begin so are settings.
+const PREFIX: &str = "STREW_";
+/// The variable that names a configuration file: the only one with the prefix that is no setting.
+const FILE_VARIABLE: &str = "STREW_CONFIG";
+
+/// What is wrong with the configuration.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// The file cannot be read.
+    #[error("cannot read the configuration file {}: {error}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// The file is not TOML.
+    #[error("{source_name} is not valid TOML: {error}")]
+    Syntax {
+        /// The file.
+        source_name: String,
+        /// Where and why.
+        error: Box<toml::de::Error>,
+    },
+    /// A key that does not exist.
+    #[error(
+        "{source_name}: there is no setting `{key}`; {}",
+        suggestion(suggestions)
+    )]
+    UnknownKey {
+        /// Who asked for it.
+        source_name: String,
+        /// The key, or the name of the variable.
+        key: String,
+        /// Keys that exist, the likeliest first.
+        suggestions: Vec<String>,
+    },
+    /// A value of the wrong type.
+    #[error("{source_name}: `{key}` is {value}; allowed: {allowed}")]
+    WrongType {
+        /// Who asked for it.
+        source_name: String,
+        /// The key.
+        key: String,
+        /// The value.
+        value: String,
+        /// The type it must have.
+        allowed: &'static str,
+    },
+    /// A flag that is not of the form `key=value`.
+    #[error("--set {text}: expected key=value, for example limits.max_points=1000")]
+    Assignment {
+        /// The flag's value.
+        text: String,
+    },
+    /// A value that does not read as what it should be.
+    #[error("the merged configuration is not valid: {0}")]
+    Invalid(Box<toml::de::Error>),
+    /// Values out of range.
+    #[error("the merged configuration is not valid: {}", faults.join("; "))]
+    OutOfRange {
+        /// Each with its key, its value and what is allowed.
+        faults: Vec<String>,
+    },
+}
+
+fn suggestion(keys: &[String]) -> String {
+    match keys {
+        [] => "run `strew config` to see all".into(),
+        [key] => format!("did you mean `{key}`?"),
+        keys => format!("there are {}", keys.join(", ")),
+    }
+}
+
+/// The layers under way to a [`Config`].
+#[derive(Clone, Debug)]
+pub struct Layers {
+    merged: Table,
+}
+
+impl Layers {
+    /// The defaults alone.
+    ///
+    /// # Errors
+    /// Never, unless the built-in file is broken.
+    pub fn new() -> Result<Self, ConfigError> {
+        Ok(Self {
+            merged: parse("the built-in configuration", DEFAULTS)?,
+        })
+    }
+
+    /// Lays a file over what is there.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is not TOML, or has a key or type that does not exist.
+    pub fn file(mut self, path: &Path) -> Result<Self, ConfigError> {
+        let text = std::fs::read_to_string(path).map_err(|error| ConfigError::Unreadable {
+            path: path.into(),
+            error,
+        })?;
+        let name = path.display().to_string();
+        let over = parse(&name, &text)?;
+        let keys = self.keys();
+        merge(&mut self.merged, over, "", &name, &keys)?;
+        Ok(self)
+    }
+
+    /// Lays the environment over what is there: `STREW_LIMITS_MAX_POINTS` is `limits.max_points`.
+    ///
+    /// # Errors
+    /// For a variable with the prefix that is no setting, or a value of the wrong type.
+    pub fn environment(
+        mut self,
+        variables: impl IntoIterator<Item = (String, String)>,
+    ) -> Result<Self, ConfigError> {
+        let keys = self.keys();
+        let variable = |key: &str| format!("{PREFIX}{}", key.replace('.', "_").to_uppercase());
+        let names: Vec<String> = keys.iter().map(|key| variable(key)).collect();
+        for (name, value) in variables {
+            if !name.starts_with(PREFIX) || name == FILE_VARIABLE {
+                continue;
+            }
+            let Some(at) = names.iter().position(|known| *known == name) else {
+                return Err(ConfigError::UnknownKey {
+                    source_name: "the environment".into(),
+                    suggestions: closest(&name, &names),
+                    key: name,
+                });
+            };
+            self.set_text(&keys[at], &value, &format!("the environment ({name})"))?;
+        }
+        Ok(self)
+    }
+
+    /// Lays a flag over what is there: `key=value`.
+    ///
+    /// # Errors
+    /// For an unknown key, a value of the wrong type, or a text without `=`.
+    pub fn assignment(mut self, text: &str) -> Result<Self, ConfigError> {
+        let (key, value) = text
+            .split_once('=')
+            .ok_or_else(|| ConfigError::Assignment { text: text.into() })?;
+        let keys = self.keys();
+        if !keys.iter().any(|known| known == key) {
+            return Err(ConfigError::UnknownKey {
+                source_name: format!("--set {text}"),
+                key: key.into(),
+                suggestions: closest(key, &keys),
+            });
+        }
+        self.set_text(key, value, &format!("--set {text}"))?;
+        Ok(self)
+    }
+
+    /// Lays a flag of its own over what is there.
+    ///
+    /// # Errors
+    /// If the value is of the wrong type.
+    pub fn flag(mut self, flag: &str, key: &str, value: &str) -> Result<Self, ConfigError> {
+        self.set_text(key, value, flag)?;
+        Ok(self)
+    }
+
+    /// The merged settings, checked.
+    ///
+    /// # Errors
+    /// For values that do not read as what they should be, or are out of range.
+    pub fn finish(self) -> Result<Config, ConfigError> {
+        let config: Config = self
+            .merged
+            .try_into()
+            .map_err(|error| ConfigError::Invalid(Box::new(error)))?;
+        validate(&config)?;
+        Ok(config)
+    }
+
+    /// Every key, `section.name`, in the order of the defaults.
+    fn keys(&self) -> Vec<String> {
+        self.merged
+            .iter()
+            .filter_map(|(section, value)| Some((section, value.as_table()?)))
+            .flat_map(|(section, table)| table.keys().map(move |key| format!("{section}.{key}")))
+            .collect()
+    }
+
+    /// Sets a key from text, read as the type the key has.
+    fn set_text(&mut self, key: &str, text: &str, source_name: &str) -> Result<(), ConfigError> {
+        let slot = key.split_once('.').and_then(|(section, name)| {
+            self.merged.get_mut(section)?.as_table_mut()?.get_mut(name)
+        });
+        let Some(slot) = slot else {
+            return Err(ConfigError::UnknownKey {
+                source_name: source_name.into(),
+                key: key.into(),
+                suggestions: vec![],
+            });
+        };
+        let plain = text.trim().replace('_', "");
+        let value = match slot {
+            Value::String(_) => Some(Value::String(text.into())),
+            Value::Integer(_) => plain
+                .parse()
+                .map(Value::Integer)
+                .or_else(|_| plain.parse().map(Value::Float))
+                .ok(),
+            Value::Float(_) => plain.parse().ok().map(Value::Float),
+            Value::Boolean(_) => text.trim().parse().ok().map(Value::Boolean),
+            _ => None,
+        };
+        *slot = value
+            .filter(|value| fits(slot, value))
+            .ok_or_else(|| wrong_type(source_name, key, &format!("{text:?}"), slot))?;
+        Ok(())
+    }
+}
+
+fn parse(source_name: &str, text: &str) -> Result<Table, ConfigError> {
+    text.parse().map_err(|error| ConfigError::Syntax {
+        source_name: source_name.into(),
+        error: Box::new(error),
+    })
+}
+
+/// Lays `over` on `under`; every key must exist there.
+fn merge(
+    under: &mut Table,
+    over: Table,
+    prefix: &str,
+    source_name: &str,
+    keys: &[String],
+) -> Result<(), ConfigError> {
+    for (name, value) in over {
+        let key = format!("{prefix}{name}");
+        let Some(slot) = under.get_mut(&name) else {
+            return Err(ConfigError::UnknownKey {
+                source_name: source_name.into(),
+                suggestions: closest(&key, keys),
+                key,
+            });
+        };
+        match (slot, value) {
+            (Value::Table(under), Value::Table(over)) => {
+                merge(under, over, &format!("{key}."), source_name, keys)?;
+            }
+            (slot, value) if fits(slot, &value) => *slot = value,
+            (slot, value) => {
+                return Err(wrong_type(source_name, &key, &value.to_string(), slot));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether a value has the type of a default. Seconds may have a fraction whatever the default
+/// looks like; whether a fraction is right for another number shows when it is read.
+fn fits(default: &Value, value: &Value) -> bool {
+    let number = |value: &Value| value.is_integer() || value.is_float();
+    default.same_type(value) || number(default) && number(value)
+}
+
+fn wrong_type(source_name: &str, key: &str, value: &str, default: &Value) -> ConfigError {
+    ConfigError::WrongType {
+        source_name: source_name.into(),
+        key: key.into(),
+        value: value.into(),
+        allowed: match default {
+            Value::String(_) => "a text",
+            Value::Integer(_) | Value::Float(_) => "a number",
+            Value::Boolean(_) => "true or false",
+            _ => "a section",
+        },
+    }
+}
+
+/// The known keys most like an unknown one: the one that is nearly it, or all.
+fn closest(key: &str, known: &[String]) -> Vec<String> {
+    let like = |other: &String| strsim::normalized_damerau_levenshtein(key, other);
+    match known.iter().max_by(|a, b| like(a).total_cmp(&like(b))) {
+        Some(best) if like(best) > 0.8 => vec![best.clone()],
+        _ => known.to_vec(),
+    }
+}

@@ -1,0 +1,105 @@
+//! Settings: every one has a default in `config/strew.toml`, a meaning there, and a range here.
+//!
+//! Layers, the later the stronger: defaults, a file, the environment, flags. They are merged as
+//! TOML by `layers` and read into [`Config`] once; what is read is checked as a whole, and from
+//! then on nobody checks a setting again.
+
+mod layers;
+mod validate;
+
+use std::{net::SocketAddr, path::PathBuf, time::Duration};
+
+use serde::{Deserialize, Serialize};
+
+use crate::service::Limits;
+
+pub use layers::{ConfigError, Layers};
+
+/// The defaults, with comments.
+pub const DEFAULTS: &str = include_str!("../../config/strew.toml");
+
+/// All settings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Config {
+    /// Where and how to serve.
+    pub server: Server,
+    /// Which tables to load.
+    pub tables: Tables,
+    /// What a query may ask for.
+    pub limits: Limits,
+    /// Who makes points.
+    pub workers: Workers,
+    /// How to stop.
+    pub shutdown: Shutdown,
+    /// What to log.
+    pub log: Log,
+}
+
+/// Where and how to serve.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Server {
+    /// Address and port.
+    pub listen: SocketAddr,
+    /// How long the head of an HTTP/1.1 request may take, in seconds.
+    pub header_read_timeout_seconds: f64,
+    /// The most bytes of a request's head.
+    pub max_header_bytes: u32,
+    /// The most requests at once on one HTTP/2 connection.
+    pub max_requests_per_connection: u32,
+    /// How often a quiet HTTP/2 client is asked for a sign of life, and how long it may take, in
+    /// seconds.
+    pub http2_keepalive_seconds: f64,
+}
+
+/// Which tables to load.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tables {
+    /// Whether the built-in ones are loaded.
+    pub embedded: bool,
+    /// A folder with more; empty for none.
+    pub folder: PathBuf,
+}
+
+/// Who makes points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Workers {
+    /// Threads that make points; 0 for one per core.
+    pub threads: usize,
+}
+
+/// How to stop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shutdown {
+    /// How long requests are still taken after `/readyz` says no, in seconds.
+    pub notice_seconds: f64,
+    /// How long open streams may then go on, in seconds.
+    pub drain_seconds: f64,
+}
+
+/// What to log.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Log {
+    /// A level, or levels by module.
+    pub filter: String,
+}
+
+impl Config {
+    /// The merged settings as TOML.
+    ///
+    /// # Errors
+    /// Only if a path is not Unicode.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string_pretty(self)
+    }
+}
+
+/// Seconds of a setting as a duration; settings are checked to be within range before.
+pub(crate) fn seconds(value: f64) -> Duration {
+    Duration::try_from_secs_f64(value).unwrap_or(Duration::MAX)
+}

@@ -1,0 +1,72 @@
+//! The ranges of settings.
+
+use super::{Config, ConfigError};
+
+/// Checks every setting; reports all that are out of range.
+pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
+    let Config {
+        server,
+        limits,
+        workers,
+        shutdown,
+        log,
+        tables: _,
+    } = config;
+    let mut faults = vec![];
+    let mut within = |key: &str, value: f64, min: f64, max: f64| {
+        if !(min..=max).contains(&value) {
+            faults.push(format!("{key} = {value}; allowed: {min} to {max}"));
+        }
+    };
+    let (second, hour, day) = (1.0, 3600.0, 86400.0);
+    within(
+        "server.header_read_timeout_seconds",
+        server.header_read_timeout_seconds,
+        0.1 * second,
+        hour,
+    );
+    // Below 8192 the HTTP library refuses; 16 MiB a connection is more than any head needs.
+    within(
+        "server.max_header_bytes",
+        f64::from(server.max_header_bytes),
+        8192.0,
+        f64::from(16 << 20),
+    );
+    within(
+        "server.max_requests_per_connection",
+        f64::from(server.max_requests_per_connection),
+        1.0,
+        1e6,
+    );
+    within(
+        "server.http2_keepalive_seconds",
+        server.http2_keepalive_seconds,
+        second,
+        hour,
+    );
+    within("limits.max_points", limits.max_points as f64, 1.0, 1e15);
+    within("limits.max_streams", limits.max_streams as f64, 1.0, 1e6);
+    // gRPC clients refuse messages above 4 MiB, and ours stay below 1 MiB.
+    within(
+        "limits.block_bytes",
+        limits.block_bytes as f64,
+        4096.0,
+        f64::from(512 << 10),
+    );
+    within("limits.cache_bytes", limits.cache_bytes as f64, 0.0, 1e15);
+    within("workers.threads", workers.threads as f64, 0.0, 1024.0);
+    within("shutdown.notice_seconds", shutdown.notice_seconds, 0.0, day);
+    within("shutdown.drain_seconds", shutdown.drain_seconds, 0.0, day);
+    if let Err(error) = log.filter.parse::<tracing_subscriber::EnvFilter>() {
+        faults.push(format!(
+            "log.filter = {:?}; allowed: a level (error, warn, info, debug, trace) or levels by \
+             module (info,strew=debug): {error}",
+            log.filter
+        ));
+    }
+    if faults.is_empty() {
+        Ok(())
+    } else {
+        Err(ConfigError::OutOfRange { faults })
+    }
+}

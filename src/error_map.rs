@@ -1,0 +1,107 @@
+//! What every error is on the wire, for both doors, in one place.
+
+use http::StatusCode;
+use tonic::Code;
+
+use crate::service::Kind;
+
+/// An error kind in HTTP terms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// The status.
+    pub status: StatusCode,
+    /// The last part of the problem type `urn:strew:problem:…`.
+    pub slug: &'static str,
+    /// The problem's title: the same for all problems of the type.
+    pub title: &'static str,
+}
+
+/// What a kind of error is in HTTP.
+#[must_use]
+pub const fn http(kind: Kind) -> Problem {
+    let (status, slug, title) = match kind {
+        Kind::Invalid => (
+            StatusCode::BAD_REQUEST,
+            "invalid-query",
+            "The query is not valid",
+        ),
+        Kind::TooManyPoints => (
+            StatusCode::PAYLOAD_TOO_LARGE,
+            "too-many-points",
+            "The answer would have too many points",
+        ),
+        Kind::NotAcceptable => (
+            StatusCode::NOT_ACCEPTABLE,
+            "not-acceptable",
+            "No acceptable format",
+        ),
+        Kind::NoSuchPath => (StatusCode::NOT_FOUND, "no-such-path", "Nothing is here"),
+        Kind::NoSuchMethod => (
+            StatusCode::METHOD_NOT_ALLOWED,
+            "no-such-method",
+            "The path does not take this method",
+        ),
+        Kind::Busy => (
+            StatusCode::SERVICE_UNAVAILABLE,
+            "busy",
+            "Too many answers are under way",
+        ),
+        Kind::ShuttingDown => (
+            StatusCode::SERVICE_UNAVAILABLE,
+            "shutting-down",
+            "The server is shutting down",
+        ),
+        Kind::Internal => (
+            StatusCode::INTERNAL_SERVER_ERROR,
+            "internal",
+            "Something is wrong in the server",
+        ),
+    };
+    Problem {
+        status,
+        slug,
+        title,
+    }
+}
+
+/// What a kind of error is in gRPC.
+#[must_use]
+pub const fn grpc(kind: Kind) -> Code {
+    match kind {
+        Kind::Invalid | Kind::NotAcceptable => Code::InvalidArgument,
+        Kind::TooManyPoints | Kind::Busy => Code::ResourceExhausted,
+        Kind::NoSuchPath | Kind::NoSuchMethod => Code::Unimplemented,
+        Kind::ShuttingDown => Code::Unavailable,
+        Kind::Internal => Code::Internal,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_kind_is_an_error_by_both_doors_and_has_a_type_of_its_own() {
+        let slugs: BTreeSet<_> = Kind::ALL.iter().map(|&kind| http(kind).slug).collect();
+        assert_eq!(slugs.len(), Kind::ALL.len());
+        for kind in Kind::ALL {
+            let problem = http(kind);
+            let (client, server) = (
+                problem.status.is_client_error(),
+                problem.status.is_server_error(),
+            );
+            assert!(client || server, "{kind:?}");
+            assert!(!problem.title.is_empty(), "{kind:?}");
+            let code = grpc(kind);
+            assert!(code != Code::Ok && code != Code::Unknown, "{kind:?}");
+            // Whose fault it is does not depend on the door.
+            let ours = matches!(
+                code,
+                Code::Internal | Code::Unavailable | Code::ResourceExhausted
+            );
+            assert!(ours || client, "{kind:?}");
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! The gRPC door: messages in, streamed messages out. It decides nothing itself.
+
+mod convert;
+mod encode;
+mod points;
+mod status;
+
+use std::sync::Arc;
+
+use tonic::service::Routes;
+use tonic_health::server::HealthReporter;
+
+use crate::service::Service;
+use points::Points;
+use proto::point_service_server::PointServiceServer;
+
+/// The messages, server and client made from `proto/strew/v1/points.proto`.
+#[allow(missing_docs, reason = "the contract documents everything")]
+#[allow(clippy::all, reason = "made code")]
+#[allow(clippy::allow_attributes_without_reason, reason = "made code")]
+pub mod proto {
+    tonic::include_proto!("strew.v1");
+}
+
+/// The contract as reflection serves it.
+const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
+
+/// Requests are a few numbers and two names.
+const MAX_REQUEST_BYTES: usize = 64 << 10;
+
+/// Why the gRPC door cannot be built: the contract's descriptors do not read.
+pub type BuildError = tonic_reflection::server::Error;
+
+/// The routes of the gRPC door, with reflection and health, and the handle that tells the world
+/// when it closes.
+///
+/// # Errors
+/// Never, unless the program was built wrongly.
+pub async fn routes(service: Arc<Service>) -> Result<(Routes, Health), BuildError> {
+    let (reporter, health) = tonic_health::server::health_reporter();
+    reporter.set_serving::<PointServiceServer<Points>>().await;
+    let reflection = || {
+        tonic_reflection::server::Builder::configure()
+            .register_encoded_file_descriptor_set(DESCRIPTORS)
+            .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
+    };
+    let points =
+        PointServiceServer::new(Points::new(service)).max_decoding_message_size(MAX_REQUEST_BYTES);
+    let routes = Routes::new(points)
+        .add_service(health)
+        .add_service(reflection().build_v1()?)
+        .add_service(reflection().build_v1alpha()?);
+    Ok((routes, Health { reporter }))
+}
+
+/// The standard health service's switch.
+#[derive(Clone, Debug)]
+pub struct Health {
+    reporter: HealthReporter,
+}
+
+impl Health {
+    /// Says that nothing more is served.
+    pub async fn close(&self) {
+        let state = tonic_health::ServingStatus::NotServing;
+        self.reporter.set_service_status("", state).await;
+        self.reporter
+            .set_not_serving::<PointServiceServer<Points>>()
+            .await;
+    }
+}
+
+/// The answer to a method that does not exist.
+#[must_use]
+pub fn unimplemented() -> http::Response<tonic::body::Body> {
+    tonic::Status::unimplemented("there is no such method").into_http()
+}

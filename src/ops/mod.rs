@@ -1,0 +1,8 @@
+//! Running the daemon: one port for both doors, health, a bounded stop, the log.
+
+pub mod health;
+pub mod serve;
+pub mod shutdown;
+pub mod telemetry;
+
+pub use serve::{App, ServeError};

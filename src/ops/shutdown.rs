@@ -1,0 +1,57 @@
+//! The signals that ask a daemon to stop: the first drains, the second ends at once.
+
+use std::io;
+
+/// What a process ends with that a signal cut short.
+const CUT_SHORT: i32 = 1;
+
+/// The signals, listened for from the moment this is made.
+#[derive(Debug)]
+pub struct Signals {
+    #[cfg(unix)]
+    terminate: tokio::signal::unix::Signal,
+    #[cfg(unix)]
+    interrupt: tokio::signal::unix::Signal,
+}
+
+impl Signals {
+    /// Starts to listen for ctrl-C, and for SIGTERM where there is one. Needs a tokio runtime.
+    ///
+    /// # Errors
+    /// If the system does not let us.
+    pub fn new() -> io::Result<Self> {
+        #[cfg(unix)]
+        use tokio::signal::unix::{SignalKind, signal};
+        Ok(Self {
+            #[cfg(unix)]
+            terminate: signal(SignalKind::terminate())?,
+            #[cfg(unix)]
+            interrupt: signal(SignalKind::interrupt())?,
+        })
+    }
+
+    /// Waits for the next one; gives its name.
+    pub async fn next(&mut self) -> &'static str {
+        #[cfg(unix)]
+        tokio::select! {
+            _ = self.terminate.recv() => "SIGTERM",
+            _ = self.interrupt.recv() => "SIGINT",
+        }
+        #[cfg(not(unix))]
+        match tokio::signal::ctrl_c().await {
+            Ok(()) => "ctrl-C",
+            Err(_) => std::future::pending().await,
+        }
+    }
+
+    /// Waits for the first one. From then on the second ends the process at once.
+    pub async fn first_then_exit(mut self) {
+        let signal = self.next().await;
+        tracing::info!(signal, "draining; once more to stop at once");
+        tokio::spawn(async move {
+            self.next().await;
+            tracing::warn!("stopped before the drain was over");
+            std::process::exit(CUT_SHORT);
+        });
+    }
+}

@@ -1,0 +1,179 @@
+//! Which format a client accepts (RFC 9110, 12.5.1).
+
+use http::{HeaderMap, header::ACCEPT};
+
+use crate::service::{Encoding, Error};
+
+/// A format and the content type to call it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Chosen {
+    pub(super) encoding: Encoding,
+    pub(super) content_type: &'static str,
+}
+
+impl Chosen {
+    /// A format that was asked for by name.
+    pub(super) const fn named(encoding: Encoding) -> Self {
+        Self {
+            encoding,
+            content_type: encoding.content_type(),
+        }
+    }
+}
+
+/// What is on offer by media type, in the order of preference where a client has none.
+const OFFERS: [(&str, Chosen); 8] = [
+    ("application/json", Chosen::named(Encoding::Json)),
+    ("application/x-ndjson", Chosen::named(Encoding::Ndjson)),
+    (
+        "application/ndjson",
+        Chosen {
+            encoding: Encoding::Ndjson,
+            content_type: "application/ndjson",
+        },
+    ),
+    (
+        "application/jsonl",
+        Chosen {
+            encoding: Encoding::Ndjson,
+            content_type: "application/jsonl",
+        },
+    ),
+    ("text/csv", Chosen::named(Encoding::Csv)),
+    (
+        "application/vnd.strew.f32",
+        Chosen {
+            encoding: Encoding::F32,
+            content_type: "application/vnd.strew.f32",
+        },
+    ),
+    (
+        "application/vnd.strew.f64",
+        Chosen {
+            encoding: Encoding::F64,
+            content_type: "application/vnd.strew.f64",
+        },
+    ),
+    ("application/octet-stream", Chosen::named(Encoding::F64)),
+];
+
+/// The offer that the `Accept` headers of a request like best; JSON if there are none.
+pub(super) fn accepted(headers: &HeaderMap) -> Result<Chosen, Error> {
+    let lines: Vec<String> = headers
+        .get_all(ACCEPT)
+        .iter()
+        .map(|value| String::from_utf8_lossy(value.as_bytes()).into_owned())
+        .collect();
+    let accept = lines.join(", ");
+    if accept.trim().is_empty() {
+        return Ok(OFFERS[0].1);
+    }
+    let ranges: Vec<Range<'_>> = accept.split(',').filter_map(Range::parse).collect();
+    let mut best: Option<(u16, Chosen)> = None;
+    for (media_type, chosen) in OFFERS {
+        let closest = ranges
+            .iter()
+            .filter(|range| range.holds(media_type))
+            .max_by_key(|range| range.precision());
+        let Some(quality) = closest.map(|range| range.quality) else {
+            continue;
+        };
+        if quality > best.map_or(0, |(quality, _)| quality) {
+            best = Some((quality, chosen));
+        }
+    }
+    best.map(|(_, chosen)| chosen)
+        .ok_or_else(|| Error::NotAcceptable {
+            accept: accept.chars().take(200).collect(),
+            available: OFFERS.map(|(media_type, _)| media_type).join(", "),
+        })
+}
+
+/// A media range with its quality in thousandths.
+#[derive(Debug)]
+struct Range<'a> {
+    main: &'a str,
+    sub: &'a str,
+    quality: u16,
+}
+
+impl<'a> Range<'a> {
+    /// One element of the list; `None` if it is not a media range.
+    fn parse(text: &'a str) -> Option<Self> {
+        let mut parts = text.split(';').map(str::trim);
+        let (main, sub) = parts.next()?.split_once('/')?;
+        let mut quality = 1000;
+        for parameter in parts {
+            let (name, value) = parameter.split_once('=')?;
+            if name.trim().eq_ignore_ascii_case("q") {
+                let value: f64 = value.trim().parse().ok()?;
+                quality = (value.clamp(0.0, 1.0) * 1000.0).round() as u16;
+            }
+        }
+        Some(Self { main, sub, quality })
+    }
+
+    fn holds(&self, media_type: &str) -> bool {
+        let Some((main, sub)) = media_type.split_once('/') else {
+            return false;
+        };
+        let like = |range: &str, part: &str| range == "*" || range.eq_ignore_ascii_case(part);
+        like(self.main, main) && like(self.sub, sub)
+    }
+
+    /// The more precise range decides.
+    fn precision(&self) -> u8 {
+        u8::from(self.main != "*") + u8::from(self.sub != "*")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use http::HeaderValue;
+
+    use super::*;
+
+    fn choose(accept: &str) -> Option<&'static str> {
+        let mut headers = HeaderMap::new();
+        headers.insert(ACCEPT, HeaderValue::from_str(accept).expect("printable"));
+        accepted(&headers).ok().map(|chosen| chosen.content_type)
+    }
+
+    #[test]
+    fn the_client_decides_and_json_is_the_default() {
+        let json = Some("application/json");
+        assert_eq!(
+            accepted(&HeaderMap::new()).map(|c| c.encoding),
+            Ok(Encoding::Json)
+        );
+        for (accept, expected) in [
+            ("", json),
+            ("*/*", json),
+            ("application/*", json),
+            ("text/html, */*;q=0.1", json),
+            ("text/*", Some("text/csv; charset=utf-8; header=present")),
+            (
+                "Text/CSV;q=0.5, application/json;q=0.4",
+                Some("text/csv; charset=utf-8; header=present"),
+            ),
+            ("application/x-ndjson", Some("application/x-ndjson")),
+            (
+                "application/vnd.strew.f32",
+                Some("application/vnd.strew.f32"),
+            ),
+            (
+                "application/vnd.strew.f64",
+                Some("application/vnd.strew.f64"),
+            ),
+            (
+                "application/json;q=0, */*;q=0.5",
+                Some("application/x-ndjson"),
+            ),
+            ("text/html", None),
+            ("application/json;q=0", None),
+            ("nonsense", None),
+        ] {
+            assert_eq!(choose(accept), expected, "{accept}");
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! `GET /v1/profiles`: what is loaded.
+
+use std::sync::Arc;
+
+use axum::{body::Body, extract::State, response::Response};
+use http::{HeaderValue, Uri, header};
+use serde::{Serialize, Serializer, ser::SerializeMap as _};
+use strew_core::{ALGORITHM_VERSION, table};
+
+use crate::service::{Entry, Error, Fault, Service};
+
+/// Lists the tables.
+pub(super) async fn get(State(service): State<Arc<Service>>, uri: Uri) -> Result<Response, Error> {
+    if let Some(text) = uri.query().filter(|text| !text.is_empty()) {
+        let detail = "this list takes no parameters";
+        return Err(Error::Invalid(vec![Fault::new(
+            "query", text, detail, "none",
+        )]));
+    }
+    let document = Profiles {
+        algorithm: ALGORITHM_VERSION,
+        profiles: service
+            .catalog()
+            .entries()
+            .map(|entry| Profile::new(entry))
+            .collect(),
+    };
+    let mut body = serde_json::to_vec(&document)
+        .map_err(|_| Error::Internal("the list of profiles cannot be written"))?;
+    body.push(b'\n');
+    let mut response = Response::new(Body::from(body));
+    let json = HeaderValue::from_static("application/json");
+    response.headers_mut().insert(header::CONTENT_TYPE, json);
+    Ok(response)
+}
+
+#[derive(Serialize)]
+struct Profiles<'a> {
+    algorithm: u32,
+    profiles: Vec<Profile<'a>>,
+}
+
+#[derive(Serialize)]
+struct Profile<'a> {
+    profile: &'a str,
+    alpha: String,
+    radius: u32,
+    intervals: usize,
+    blocks: usize,
+    bytes: usize,
+    digest: &'a str,
+    provenance: Provenance<'a>,
+}
+
+#[derive(Serialize)]
+struct Provenance<'a> {
+    optimizer: &'a str,
+    #[serde(serialize_with = "as_map")]
+    parameters: &'a [(String, String)],
+    seed: u64,
+    twins: Vec<String>,
+    figures: Vec<Figures<'a>>,
+}
+
+#[derive(Serialize)]
+struct Figures<'a> {
+    subject: &'a str,
+    seen: bool,
+    points: u64,
+    #[serde(serialize_with = "as_map")]
+    values: &'a [(String, f64)],
+}
+
+impl<'a> Profile<'a> {
+    fn new(entry: &'a Entry) -> Self {
+        Self {
+            profile: &entry.key.profile,
+            alpha: entry.key.alpha.to_string(),
+            radius: entry.radius,
+            intervals: entry.intervals,
+            blocks: entry.blocks(),
+            bytes: entry.bytes().len(),
+            digest: &entry.digest,
+            provenance: Provenance::new(&entry.provenance),
+        }
+    }
+}
+
+impl<'a> Provenance<'a> {
+    fn new(of: &'a table::Provenance) -> Self {
+        Self {
+            optimizer: &of.optimizer,
+            parameters: &of.parameters,
+            seed: of.seed,
+            twins: of
+                .twins
+                .iter()
+                .map(|t| format!("{}/{}", t.p(), t.q()))
+                .collect(),
+            figures: of
+                .figures
+                .iter()
+                .map(|figures| Figures {
+                    subject: &figures.subject,
+                    seen: figures.seen,
+                    points: figures.points,
+                    values: &figures.values,
+                })
+                .collect(),
+        }
+    }
+}
+
+/// Pairs as an object, in their order.
+fn as_map<S: Serializer, T: Serialize>(
+    pairs: &&[(String, T)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(pairs.len()))?;
+    for (name, value) in *pairs {
+        map.serialize_entry(name, value)?;
+    }
+    map.end()
+}

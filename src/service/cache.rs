@@ -1,0 +1,102 @@
+//! Samplers ready to answer, by (α, profile).
+//!
+//! Bounded by what they hold in memory. A sampler is built once however many queries wait for it,
+//! and on the workers, not where sockets are served.
+
+use std::sync::Arc;
+
+use moka::future::Cache;
+use strew_core::Sampler;
+
+use super::{Entry, Error, Key, Workers};
+
+/// The cache.
+#[derive(Clone)]
+pub(super) struct Samplers {
+    ready: Cache<Key, Arc<Sampler>>,
+}
+
+impl std::fmt::Debug for Samplers {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Samplers")
+            .field("bytes", &self.ready.weighted_size())
+            .finish()
+    }
+}
+
+impl Samplers {
+    /// An empty cache that holds at most this many bytes.
+    pub(super) fn new(bytes: u64) -> Self {
+        let weight = |_: &Key, sampler: &Arc<Sampler>| {
+            u32::try_from(sampler.memory_bytes()).unwrap_or(u32::MAX)
+        };
+        let ready = Cache::builder()
+            .name("samplers")
+            .max_capacity(bytes)
+            .weigher(weight)
+            .build();
+        Self { ready }
+    }
+
+    /// The sampler of a table.
+    pub(super) async fn get(
+        &self,
+        entry: &Arc<Entry>,
+        workers: &Workers,
+    ) -> Result<Arc<Sampler>, Error> {
+        let build = async {
+            let entry = entry.clone();
+            let built = workers.run(move || entry.sampler()).await?;
+            Ok::<_, Error>(Arc::new(built?))
+        };
+        self.ready
+            .try_get_with_by_ref(&entry.key, build)
+            .await
+            .map_err(|error| (*error).clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::service::Catalog;
+
+    fn catalog() -> (tempfile::TempDir, Catalog) {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        for alpha in ["sqrt(3)", "3/2"] {
+            let alpha = alpha.parse().expect("valid");
+            let table = strew_core::Table::undisplaced(alpha, 20, "pattern").expect("small");
+            let name = format!("{}.strew", &table.digest().to_string()[..8]);
+            std::fs::write(folder.path().join(name), table.to_bytes()).expect("writable");
+        }
+        let catalog = Catalog::load(false, Some(folder.path())).expect("valid");
+        (folder, catalog)
+    }
+
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    async fn many_ask_one_builds() {
+        let (_folder, catalog) = catalog();
+        let entry = catalog.entries().next().expect("two").clone();
+        let workers = Workers::new(2).expect("threads");
+        let samplers = Samplers::new(1 << 20);
+        let asked = (0..50).map(|_| samplers.get(&entry, &workers));
+        let got = futures_util::future::join_all(asked).await;
+        let first = got[0].as_ref().expect("built");
+        assert!(
+            got.iter()
+                .all(|s| Arc::ptr_eq(s.as_ref().expect("built"), first))
+        );
+    }
+
+    #[tokio::test]
+    async fn what_does_not_fit_is_answered_all_the_same_and_not_kept() {
+        let (_folder, catalog) = catalog();
+        let workers = Workers::new(1).expect("threads");
+        let samplers = Samplers::new(100);
+        for entry in catalog.entries() {
+            samplers.get(entry, &workers).await.expect("built");
+        }
+        samplers.ready.run_pending_tasks().await;
+        assert_eq!(samplers.ready.weighted_size(), 0);
+    }
+}

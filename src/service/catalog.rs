@@ -1,0 +1,294 @@
+//! The tables that are loaded: the built-in ones and those of a folder.
+//!
+//! Every table is read and checked once, at the start, so that a damaged file is an error then and
+//! not during a query. What stays is the file's bytes, a few kilobytes each, and what is to be said
+//! about it; a ready sampler is made from the bytes when a query needs one. Answers never depend
+//! on what happens to the folder later.
+
+use std::{
+    cmp::Ordering,
+    collections::BTreeMap,
+    fmt, fs, io,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use bytes::Bytes;
+use strew_core::{
+    Alpha, Sampler, Table,
+    table::{MAX_FILE_BYTES, Provenance, TableError},
+};
+
+use super::Error;
+
+/// The tables that are built into the program: (file name, content).
+static EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));
+
+/// What a table is found by. Keys are in the order of their names, then of their numbers.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Key {
+    /// The name of the noise profile.
+    pub profile: Arc<str>,
+    /// The number α.
+    pub alpha: Alpha,
+}
+
+impl Ord for Key {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let rank = |key: &Self| (key.alpha.half(), key.alpha);
+        let by_name = self.profile.cmp(&other.profile);
+        by_name.then_with(|| rank(self).cmp(&rank(other)))
+    }
+}
+
+impl PartialOrd for Key {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "profile `{}`, alpha {}", self.profile, self.alpha)
+    }
+}
+
+/// Where a table comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// Built into the program, under this file name.
+    Embedded(&'static str),
+    /// A file.
+    File(PathBuf),
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Embedded(name) => write!(f, "built-in {name}"),
+            Self::File(path) => path.display().fmt(f),
+        }
+    }
+}
+
+/// A loaded table.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// What it is found by.
+    pub key: Key,
+    /// Where it comes from.
+    pub source: Source,
+    /// The half-width R of its map.
+    pub radius: u32,
+    /// The intervals of its map per axis.
+    pub intervals: usize,
+    /// Its digest, in hexadecimal.
+    pub digest: String,
+    /// How it was made and what was measured on it.
+    pub provenance: Provenance,
+    bytes: Bytes,
+}
+
+impl Entry {
+    fn read(bytes: Bytes, source: Source) -> Result<Self, CatalogError> {
+        let table = Table::from_bytes(&bytes).map_err(|error| CatalogError::Table {
+            source_name: source.clone(),
+            error: Box::new(error),
+        })?;
+        Ok(Self {
+            key: Key {
+                profile: table.profile().into(),
+                alpha: table.alpha(),
+            },
+            source,
+            radius: table.map().radius(),
+            intervals: table.map().intervals(),
+            digest: table.digest().to_string(),
+            provenance: table.provenance().clone(),
+            bytes,
+        })
+    }
+
+    /// Reads a table file, whose size is checked before its content is taken into memory.
+    ///
+    /// # Errors
+    /// [`CatalogError::File`] or [`CatalogError::Table`], naming the file.
+    pub fn from_file(path: PathBuf) -> Result<Self, CatalogError> {
+        let source = Source::File(path.clone());
+        let read = || -> io::Result<Result<Vec<u8>, u64>> {
+            let size = fs::metadata(&path)?.len();
+            if size > MAX_FILE_BYTES {
+                return Ok(Err(size));
+            }
+            fs::read(&path).map(Ok)
+        };
+        match read() {
+            Ok(Ok(bytes)) => Self::read(bytes.into(), source),
+            Ok(Err(bytes)) => Err(CatalogError::Table {
+                source_name: source,
+                error: Box::new(TableError::TooLarge { bytes }),
+            }),
+            Err(error) => Err(CatalogError::File { path, error }),
+        }
+    }
+
+    /// How many blocks the table has, one vector each.
+    #[must_use]
+    pub const fn blocks(&self) -> usize {
+        self.intervals * self.intervals
+    }
+
+    /// The table file.
+    #[must_use]
+    pub const fn bytes(&self) -> &Bytes {
+        &self.bytes
+    }
+
+    /// The table.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] only if memory has been damaged since the table was checked.
+    pub fn table(&self) -> Result<Table, Error> {
+        Table::from_bytes(&self.bytes).map_err(|error| {
+            tracing::error!(source = %self.source, %error, "a checked table is not valid any more");
+            Error::Internal("a table is not valid any more")
+        })
+    }
+
+    /// A sampler of the table. Takes about a millisecond.
+    ///
+    /// # Errors
+    /// As [`table`](Self::table).
+    pub fn sampler(&self) -> Result<Sampler, Error> {
+        Ok(Sampler::new(self.table()?))
+    }
+}
+
+/// Why the tables cannot be loaded.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CatalogError {
+    /// The folder cannot be listed.
+    #[error("cannot list the tables folder {}: {error}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// A file cannot be read.
+    #[error("cannot read the table {}: {error}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// A file is not a valid table.
+    #[error("the table {source_name} is not valid: {error}")]
+    Table {
+        /// Where it is.
+        source_name: Source,
+        /// What is wrong where.
+        error: Box<TableError>,
+    },
+    /// Two tables of one place answer the same queries.
+    #[error("the tables {first} and {second} are both for {key}: keep one")]
+    Twice {
+        /// What both are found by.
+        key: Key,
+        /// One.
+        first: Source,
+        /// The other.
+        second: Source,
+    },
+}
+
+/// The tables that are loaded, by key.
+#[derive(Clone, Debug, Default)]
+pub struct Catalog {
+    entries: BTreeMap<Key, Arc<Entry>>,
+}
+
+impl Catalog {
+    /// Loads the built-in tables, if asked for, and those of a folder, if there is one. A table of
+    /// the folder replaces a built-in one with the same key.
+    ///
+    /// # Errors
+    /// [`CatalogError`], naming the file.
+    pub fn load(embedded: bool, folder: Option<&Path>) -> Result<Self, CatalogError> {
+        let mut catalog = Self::default();
+        if embedded {
+            catalog.add(EMBEDDED.iter().map(|&(name, bytes)| {
+                Entry::read(Bytes::from_static(bytes), Source::Embedded(name))
+            }))?;
+        }
+        if let Some(folder) = folder {
+            let files = table_files(folder)?;
+            catalog.add(files.into_iter().map(Entry::from_file))?;
+        }
+        Ok(catalog)
+    }
+
+    /// Adds the tables of one place over what is there; no two of them may have the same key.
+    fn add(
+        &mut self,
+        entries: impl Iterator<Item = Result<Entry, CatalogError>>,
+    ) -> Result<(), CatalogError> {
+        let mut added: BTreeMap<Key, Arc<Entry>> = BTreeMap::new();
+        for entry in entries {
+            let entry = Arc::new(entry?);
+            if let Some(first) = added.insert(entry.key.clone(), entry.clone()) {
+                return Err(CatalogError::Twice {
+                    key: entry.key.clone(),
+                    first: first.source.clone(),
+                    second: entry.source.clone(),
+                });
+            }
+        }
+        self.entries.extend(added);
+        Ok(())
+    }
+
+    /// The table of a key.
+    #[must_use]
+    pub fn entry(&self, key: &Key) -> Option<Arc<Entry>> {
+        self.entries.get(key).cloned()
+    }
+
+    /// All tables, by profile, then α.
+    pub fn entries(&self) -> impl ExactSizeIterator<Item = &Arc<Entry>> {
+        self.entries.values()
+    }
+
+    /// The names of the profiles, without repetition.
+    pub fn profiles(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = self.entries.keys().map(|key| &*key.profile).collect();
+        names.dedup();
+        names
+    }
+
+    /// The values of α that a profile is loaded for.
+    pub fn alphas(&self, profile: &str) -> impl Iterator<Item = Alpha> {
+        self.entries
+            .keys()
+            .filter(move |key| &*key.profile == profile)
+            .map(|key| key.alpha)
+    }
+}
+
+/// The `*.strew` files of a folder, in the order of their names.
+fn table_files(folder: &Path) -> Result<Vec<PathBuf>, CatalogError> {
+    let problem = |error| CatalogError::Folder {
+        path: folder.into(),
+        error,
+    };
+    let mut files = fs::read_dir(folder)
+        .map_err(problem)?
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(problem)?;
+    files.retain(|file| file.extension().is_some_and(|e| e == "strew"));
+    files.sort();
+    Ok(files)
+}

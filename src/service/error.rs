@@ -1,0 +1,197 @@
+//! What can go wrong with a question, in words for the one who asked.
+//!
+//! One type for all of it, whatever the door: what each becomes on the wire stands in
+//! [`error_map`](crate::error_map). Text here is for clients; what only operators should see goes
+//! to the log where it happens.
+
+use std::fmt;
+
+use serde::Serialize;
+
+/// One thing that is wrong with a query.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Fault {
+    /// The parameter or field.
+    pub field: String,
+    /// Its value; absent if it is missing.
+    pub value: Option<String>,
+    /// What is wrong with it.
+    pub detail: String,
+    /// What is allowed.
+    pub allowed: String,
+}
+
+impl Fault {
+    /// A fault of a given value.
+    pub fn new(
+        field: &str,
+        value: impl fmt::Display,
+        detail: impl Into<String>,
+        allowed: impl Into<String>,
+    ) -> Self {
+        Self {
+            field: shortened(field),
+            value: Some(shortened(&value.to_string())),
+            detail: detail.into(),
+            allowed: allowed.into(),
+        }
+    }
+
+    /// A fault of something that is not there.
+    pub fn missing(field: &str, allowed: impl Into<String>) -> Self {
+        Self {
+            field: field.into(),
+            value: None,
+            detail: "it is missing".into(),
+            allowed: allowed.into(),
+        }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`", self.field)?;
+        if let Some(value) = &self.value {
+            write!(f, " = `{value}`")?;
+        }
+        write!(f, ": {}; allowed: {}", self.detail, self.allowed)
+    }
+}
+
+/// Input is echoed, but not by the kilobyte.
+fn shortened(text: &str) -> String {
+    const SHOWN: usize = 120;
+    match text.char_indices().nth(SHOWN) {
+        Some((at, _)) => format!("{}…", &text[..at]),
+        None => text.into(),
+    }
+}
+
+/// Why a question has no answer.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The query is not valid; every fault that was found.
+    #[error("{}", joined(.0))]
+    Invalid(Vec<Fault>),
+    /// The region holds more points than one answer may have.
+    #[error(
+        "the region holds {count} points; this server gives at most {limit} in one answer: ask \
+         for a smaller bbox or a lower density"
+    )]
+    TooManyPoints {
+        /// The exact count.
+        count: u128,
+        /// The limit.
+        limit: u64,
+    },
+    /// None of the formats the client accepts is made here.
+    #[error("`Accept: {accept}` has no format that is made here; available: {available}")]
+    NotAcceptable {
+        /// What the client accepts.
+        accept: String,
+        /// What there is.
+        available: String,
+    },
+    /// Nothing is at that path.
+    #[error("there is nothing at `{path}`; available: {available}")]
+    NoSuchPath {
+        /// The path.
+        path: String,
+        /// What there is.
+        available: String,
+    },
+    /// The path does not take that method.
+    #[error("`{path}` does not take the method {method}; allowed: {allowed}")]
+    NoSuchMethod {
+        /// The path.
+        path: String,
+        /// The method.
+        method: String,
+        /// What the path takes.
+        allowed: String,
+    },
+    /// As many answers are under way as the server takes on at once.
+    #[error("{limit} answers are under way, the most at once: try again later")]
+    Busy {
+        /// The limit.
+        limit: usize,
+    },
+    /// The server is about to stop.
+    #[error("the server is shutting down: try again later, or elsewhere")]
+    ShuttingDown,
+    /// A fault of the server's own; the log has more.
+    #[error("an internal error: {0}")]
+    Internal(&'static str),
+}
+
+fn joined(faults: &[Fault]) -> String {
+    let texts: Vec<String> = faults.iter().map(Fault::to_string).collect();
+    texts.join("; ")
+}
+
+/// The kinds of [`Error`], without their details.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// [`Error::Invalid`].
+    Invalid,
+    /// [`Error::TooManyPoints`].
+    TooManyPoints,
+    /// [`Error::NotAcceptable`].
+    NotAcceptable,
+    /// [`Error::NoSuchPath`].
+    NoSuchPath,
+    /// [`Error::NoSuchMethod`].
+    NoSuchMethod,
+    /// [`Error::Busy`].
+    Busy,
+    /// [`Error::ShuttingDown`].
+    ShuttingDown,
+    /// [`Error::Internal`].
+    Internal,
+}
+
+impl Kind {
+    /// All kinds.
+    pub const ALL: [Self; 8] = [
+        Self::Invalid,
+        Self::TooManyPoints,
+        Self::NotAcceptable,
+        Self::NoSuchPath,
+        Self::NoSuchMethod,
+        Self::Busy,
+        Self::ShuttingDown,
+        Self::Internal,
+    ];
+}
+
+impl Error {
+    /// The kind, on which the mapping to the wire depends.
+    #[must_use]
+    pub const fn kind(&self) -> Kind {
+        match self {
+            Self::Invalid(_) => Kind::Invalid,
+            Self::TooManyPoints { .. } => Kind::TooManyPoints,
+            Self::NotAcceptable { .. } => Kind::NotAcceptable,
+            Self::NoSuchPath { .. } => Kind::NoSuchPath,
+            Self::NoSuchMethod { .. } => Kind::NoSuchMethod,
+            Self::Busy { .. } => Kind::Busy,
+            Self::ShuttingDown => Kind::ShuttingDown,
+            Self::Internal(_) => Kind::Internal,
+        }
+    }
+
+    /// The faults of an invalid query; none for other errors.
+    #[must_use]
+    pub fn faults(&self) -> &[Fault] {
+        match self {
+            Self::Invalid(faults) => faults,
+            _ => &[],
+        }
+    }
+
+    /// The table of a checked query is gone: a bug, since catalogs do not shrink.
+    pub(crate) const fn lost_table() -> Self {
+        Self::Internal("the table of a checked query is not loaded")
+    }
+}

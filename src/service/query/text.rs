@@ -1,0 +1,170 @@
+//! Queries as text: the parameters of an address or of a command line.
+
+use percent_encoding::percent_decode_str;
+
+use super::{AMOUNT, BOX, Draft, Query};
+use crate::service::{Catalog, Encoding, Error, Fault};
+
+/// The parameters there are.
+const NAMES: [&str; 7] = [
+    "bbox", "density", "spacing", "profile", "alpha", "seed", "format",
+];
+
+/// No more faults of an address are reported: an error is to be read.
+const MOST_FAULTS: usize = 16;
+
+/// Text parameters by name, each at most once.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Parameters {
+    /// `minx,miny,maxx,maxy`.
+    pub bbox: Option<String>,
+    /// Points per unit of area.
+    pub density: Option<String>,
+    /// The mean spacing.
+    pub spacing: Option<String>,
+    /// The name of the noise profile.
+    pub profile: Option<String>,
+    /// The number α.
+    pub alpha: Option<String>,
+    /// The seed.
+    pub seed: Option<String>,
+    /// The name of the format.
+    pub format: Option<String>,
+}
+
+/// Parameters with the faults found so far.
+pub type Parsed = (Parameters, Vec<Fault>);
+
+/// The parameters of an address: `name=value` joined by `&`, percent-encoded. A plus is a plus, as
+/// in `1e+5` and `(1+sqrt(5))/2`, not a space.
+#[must_use]
+pub fn parse_pairs(text: &str) -> Parsed {
+    let mut parameters = Parameters::default();
+    let mut faults: Vec<Fault> = vec![];
+    for pair in text.split('&').filter(|pair| !pair.is_empty()) {
+        if faults.len() == MOST_FAULTS {
+            break;
+        }
+        let (raw_name, raw_value) = pair.split_once('=').unwrap_or((pair, ""));
+        let name = percent_decode_str(raw_name).decode_utf8_lossy();
+        let Some(slot) = parameters.slot(&name) else {
+            faults.push(Fault::new(
+                &name,
+                percent_decode_str(raw_value).decode_utf8_lossy(),
+                "there is no such parameter",
+                NAMES.join(", "),
+            ));
+            continue;
+        };
+        let Ok(value) = percent_decode_str(raw_value).decode_utf8() else {
+            // As it was sent: there is no text to show.
+            faults.push(Fault::new(
+                &name,
+                raw_value,
+                "it is not UTF-8 when decoded",
+                "percent-encoded UTF-8",
+            ));
+            continue;
+        };
+        if let Some(first) = slot {
+            let detail = format!("it is given again; before as `{first}`");
+            faults.push(Fault::new(&name, value, detail, "each parameter once"));
+            continue;
+        }
+        *slot = Some(value.into());
+    }
+    (parameters, faults)
+}
+
+impl Parameters {
+    fn slot(&mut self, name: &str) -> Option<&mut Option<String>> {
+        Some(match name {
+            "bbox" => &mut self.bbox,
+            "density" => &mut self.density,
+            "spacing" => &mut self.spacing,
+            "profile" => &mut self.profile,
+            "alpha" => &mut self.alpha,
+            "seed" => &mut self.seed,
+            "format" => &mut self.format,
+            _ => return None,
+        })
+    }
+
+    /// Checks everything; `faults` are those found before. Gives the format, too, if one is named.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with every fault.
+    pub fn check(
+        &self,
+        catalog: &Catalog,
+        mut faults: Vec<Fault>,
+    ) -> Result<(Query, Option<Encoding>), Error> {
+        let mut draft = Draft {
+            profile: self.profile.as_deref(),
+            alpha: self.alpha.as_deref(),
+            ..Draft::default()
+        };
+        let mut read = |result: Result<(), Fault>| faults.extend(result.err());
+        read(bbox(self.bbox.as_deref()).map(|bbox| draft.bbox = bbox));
+        read(amount("density", self.density.as_deref()).map(|density| draft.density = density));
+        read(amount("spacing", self.spacing.as_deref()).map(|spacing| draft.spacing = spacing));
+        read(seed(self.seed.as_deref()).map(|seed| draft.seed = seed));
+        let mut encoding = None;
+        read(format(self.format.as_deref()).map(|format| encoding = format));
+        let query = draft.check(catalog, faults)?;
+        Ok((query, encoding))
+    }
+}
+
+fn bbox(text: Option<&str>) -> Result<Option<[f64; 4]>, Fault> {
+    let Some(text) = text else { return Ok(None) };
+    let fault = |detail: String| Fault::new("bbox", text, detail, BOX);
+    let parts: Vec<&str> = text.split(',').collect();
+    let parts: [&str; 4] = parts
+        .try_into()
+        .map_err(|parts: Vec<&str>| fault(format!("it has {} parts, not 4", parts.len())))?;
+    let mut corners = [0.0; 4];
+    for ((corner, part), name) in corners
+        .iter_mut()
+        .zip(parts)
+        .zip(["min_x", "min_y", "max_x", "max_y"])
+    {
+        *corner = number(part).map_err(|detail| fault(format!("{name} is `{part}`, {detail}")))?;
+    }
+    Ok(Some(corners))
+}
+
+fn amount(name: &str, text: Option<&str>) -> Result<Option<f64>, Fault> {
+    text.map(number)
+        .transpose()
+        .map_err(|detail| Fault::new(name, text.unwrap_or_default(), detail, AMOUNT))
+}
+
+fn seed(text: Option<&str>) -> Result<u64, Fault> {
+    text.map_or(Ok(0), |text| {
+        text.parse().map_err(|_| {
+            let allowed = format!("an integer from 0 to {}", u64::MAX);
+            Fault::new("seed", text, "it is not such an integer", allowed)
+        })
+    })
+}
+
+fn format(text: Option<&str>) -> Result<Option<Encoding>, Fault> {
+    text.map(|text| {
+        Encoding::from_name(text).ok_or_else(|| {
+            let allowed = Encoding::ALL.map(Encoding::name).join(", ");
+            Fault::new("format", text, "there is no such format", allowed)
+        })
+    })
+    .transpose()
+}
+
+/// A finite number; otherwise what it is instead.
+fn number(text: &str) -> Result<f64, &'static str> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(value) if value.is_nan() => Err("not a number"),
+        Ok(_) => Err("not finite"),
+        Err(_) => Err("not a number"),
+    }
+}

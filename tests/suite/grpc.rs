@@ -1,0 +1,204 @@
+//! The gRPC door: the same points in the same order as the library and the REST door.
+
+use strew::grpc::proto::{
+    BoundingBox, Encoding, ListProfilesRequest, PointBlock, StreamHeader, StreamPointsRequest,
+    point_service_client::PointServiceClient, stream_points_request::Amount,
+    stream_points_response::Message,
+};
+use strew_core::Point;
+use tonic::transport::Channel;
+use tonic_health::pb::{HealthCheckRequest, health_client::HealthClient};
+use tonic_reflection::pb::{v1, v1alpha};
+
+use crate::{
+    daemon::{Daemon, PROFILE},
+    formats::{plan, points, same},
+};
+
+pub fn request(encoding: Encoding) -> StreamPointsRequest {
+    StreamPointsRequest {
+        bbox: Some(BoundingBox {
+            min_x: -3.5,
+            min_y: 1.0,
+            max_x: 40.0,
+            max_y: 33.25,
+        }),
+        amount: Some(Amount::Density(7.0)),
+        profile: Some(PROFILE.into()),
+        alpha: None,
+        seed: 5,
+        encoding: encoding.into(),
+    }
+}
+
+/// A whole stream: header, blocks, and the count of the summary.
+async fn collect(
+    client: &mut PointServiceClient<Channel>,
+    request: StreamPointsRequest,
+) -> (StreamHeader, Vec<PointBlock>, u64) {
+    let answer = client.stream_points(request).await.expect("an answer");
+    let mut stream = answer.into_inner();
+    let (mut header, mut blocks, mut count) = (None, vec![], None);
+    while let Some(response) = stream.message().await.expect("a message") {
+        assert!(count.is_none(), "nothing follows the summary");
+        match response.message.expect("one of the three") {
+            Message::Header(message) => assert!(header.replace(message).is_none()),
+            Message::Block(block) => {
+                assert!(header.is_some(), "the header is first");
+                blocks.push(block);
+            }
+            Message::Summary(summary) => count = Some(summary.count),
+        }
+    }
+    (header.expect("first"), blocks, count.expect("last"))
+}
+
+#[tokio::test]
+async fn the_default_encoding_has_fields_and_ids() {
+    let daemon = Daemon::start(&["limits.block_bytes=4096"]);
+    let mut client = PointServiceClient::new(daemon.channel().await);
+    let plan = plan();
+    for encoding in [Encoding::Unspecified, Encoding::Points] {
+        let (header, blocks, count) = collect(&mut client, request(encoding)).await;
+        assert_eq!(header.count, plan.count() as u64);
+        assert_eq!(count, header.count);
+        assert_eq!(header.table, plan.sampler().table().digest().to_string());
+        assert_eq!(header.algorithm, strew_core::ALGORITHM_VERSION);
+        let origin = header.origin.expect("set");
+        assert_eq!((origin.x, origin.y), (-3.5, 1.0));
+        let query = header.query.expect("set");
+        assert_eq!(query.bbox, request(encoding).bbox);
+        assert_eq!((query.density, query.spacing), (7.0, plan.spacing().get()));
+        assert_eq!((query.alpha.as_str(), query.seed), ("(5-sqrt(3))/2", 5));
+        assert_eq!(query.encoding(), Encoding::Points);
+        assert!(blocks.len() > 10, "blocks are small");
+        let got: Vec<Point> = blocks
+            .iter()
+            .flat_map(|block| {
+                assert_eq!(block.x.len(), block.y.len());
+                assert_eq!(block.x.len(), block.id.len());
+                block.x.iter().zip(&block.y).zip(&block.id)
+            })
+            .map(|((&x, &y), id)| Point {
+                id: id.parse().expect("an id"),
+                x,
+                y,
+            })
+            .collect();
+        same(&got, &points(&plan));
+    }
+}
+
+#[tokio::test]
+async fn packed_encodings_are_the_bytes_of_the_rest_door() {
+    let daemon = Daemon::start(&[]);
+    let mut client = PointServiceClient::new(daemon.channel().await);
+    for (encoding, format) in [(Encoding::F64Le, "f64"), (Encoding::F32Le, "f32")] {
+        let (_, blocks, _) = collect(&mut client, request(encoding)).await;
+        let bytes: Vec<u8> = blocks
+            .iter()
+            .flat_map(|block| block.data.to_vec())
+            .collect();
+        let path = "/v1/points?bbox=-3.5,1,40,33.25&density=7&profile=test&seed=5";
+        let rest = daemon.get(&format!("{path}&format={format}"));
+        assert!(!bytes.is_empty() && bytes == rest.body, "{format}");
+    }
+}
+
+#[tokio::test]
+async fn profiles_are_those_of_the_rest_door() {
+    let daemon = Daemon::start(&[]);
+    let mut client = PointServiceClient::new(daemon.channel().await);
+    let answer = client.list_profiles(ListProfilesRequest {}).await;
+    let answer = answer.expect("an answer").into_inner();
+    let rest = daemon.get("/v1/profiles").json();
+    assert_eq!(rest["algorithm"], answer.algorithm);
+    let listed = rest["profiles"].as_array().expect("a list");
+    assert_eq!(listed.len(), answer.profiles.len());
+    for (rest, grpc) in listed.iter().zip(&answer.profiles) {
+        assert_eq!(rest["profile"], grpc.profile);
+        assert_eq!(rest["alpha"], grpc.alpha);
+        assert_eq!(rest["radius"], grpc.radius);
+        assert_eq!(rest["intervals"], grpc.intervals);
+        assert_eq!(rest["blocks"], grpc.blocks);
+        assert_eq!(rest["bytes"], grpc.bytes);
+        assert_eq!(rest["digest"], grpc.digest);
+        let provenance = grpc.provenance.as_ref().expect("set");
+        assert_eq!(rest["provenance"]["optimizer"], provenance.optimizer);
+        assert_eq!(
+            rest["provenance"]["twins"],
+            serde_json::json!(provenance.twins)
+        );
+        let figures = rest["provenance"]["figures"].as_array().expect("a list");
+        assert_eq!(figures.len(), provenance.figures.len());
+    }
+}
+
+#[tokio::test]
+async fn health_is_serving() {
+    let daemon = Daemon::start(&[]);
+    let mut client = HealthClient::new(daemon.channel().await);
+    for service in ["", "strew.v1.PointService"] {
+        let asked = HealthCheckRequest {
+            service: service.into(),
+        };
+        let answer = client.check(asked).await.expect("an answer").into_inner();
+        assert_eq!(answer.status().as_str_name(), "SERVING", "{service}");
+    }
+}
+
+const SERVICES: [&str; 2] = ["grpc.health.v1.Health", "strew.v1.PointService"];
+
+#[tokio::test]
+async fn reflection_v1_lists_the_services() {
+    use v1::{
+        ServerReflectionRequest, server_reflection_client::ServerReflectionClient,
+        server_reflection_request::MessageRequest, server_reflection_response::MessageResponse,
+    };
+    let daemon = Daemon::start(&[]);
+    let mut client = ServerReflectionClient::new(daemon.channel().await);
+    let ask = |message| ServerReflectionRequest {
+        host: String::new(),
+        message_request: Some(message),
+    };
+    let asked = futures_util::stream::iter([
+        ask(MessageRequest::ListServices(String::new())),
+        ask(MessageRequest::FileContainingSymbol(SERVICES[1].into())),
+    ]);
+    let answer = client.server_reflection_info(asked).await.expect("answers");
+    let mut answers = answer.into_inner();
+    let mut next = async || answers.message().await.expect("a message").expect("two");
+    let Some(MessageResponse::ListServicesResponse(list)) = next().await.message_response else {
+        panic!("no list");
+    };
+    for name in SERVICES {
+        assert!(list.service.iter().any(|s| s.name == name), "{name}");
+    }
+    let Some(MessageResponse::FileDescriptorResponse(files)) = next().await.message_response else {
+        panic!("no contract");
+    };
+    assert_eq!(files.file_descriptor_proto.len(), 1);
+}
+
+#[tokio::test]
+async fn reflection_v1alpha_lists_the_services() {
+    use v1alpha::{
+        ServerReflectionRequest, server_reflection_client::ServerReflectionClient,
+        server_reflection_request::MessageRequest, server_reflection_response::MessageResponse,
+    };
+    let daemon = Daemon::start(&[]);
+    let mut client = ServerReflectionClient::new(daemon.channel().await);
+    let asked = futures_util::stream::iter([ServerReflectionRequest {
+        host: String::new(),
+        message_request: Some(MessageRequest::ListServices(String::new())),
+    }]);
+    let answer = client.server_reflection_info(asked).await.expect("answers");
+    let first = answer.into_inner().message().await.expect("a message");
+    let Some(MessageResponse::ListServicesResponse(list)) = first.expect("one").message_response
+    else {
+        panic!("no list");
+    };
+    for name in SERVICES {
+        assert!(list.service.iter().any(|s| s.name == name), "{name}");
+    }
+}

@@ -1,0 +1,13 @@
+//! The daemon from outside: the real program over real sockets, and the real clients.
+
+mod clients;
+mod daemon;
+mod drain;
+mod formats;
+mod fresh;
+mod grpc;
+mod limits;
+mod raw;
+mod settings;
+mod streaming;
+mod wrong;
