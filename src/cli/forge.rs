@@ -55,8 +55,10 @@ pub(super) struct Args {
 
 impl Args {
     fn job(&self) -> Result<Job, Failure> {
-        let alpha: Alpha =
-            self.alpha.parse().map_err(|error| Failure::Usage(anyhow!("--alpha: {error}")))?;
+        let alpha: Alpha = self
+            .alpha
+            .parse()
+            .map_err(|error| Failure::Usage(anyhow!("--alpha: {error}")))?;
         Ok(Job {
             alpha,
             radius: self.radius,
@@ -146,7 +148,11 @@ impl Watcher {
             }
         })
         .context("cannot listen for interrupts")?;
-        Ok(Self { interrupted, quiet, shown: Mutex::new(None) })
+        Ok(Self {
+            interrupted,
+            quiet,
+            shown: Mutex::new(None),
+        })
     }
 
     fn finish(&self) {
@@ -171,7 +177,9 @@ impl Watch for Watcher {
             *shown = Some((now.stage, Progress::new(what, now.steps.into(), self.quiet)));
         }
         if let Some((_, progress)) = shown.as_mut() {
-            let note = now.energy.map_or(String::new(), |energy| format!("energy {energy:.9}"));
+            let note = now
+                .energy
+                .map_or(String::new(), |energy| format!("energy {energy:.9}"));
             progress.reach(now.step.into(), &note);
         }
     }

@@ -21,7 +21,10 @@ impl Output {
     /// `None` or `-` is standard output.
     pub(super) fn open(path: Option<&Path>) -> anyhow::Result<Self> {
         let Some(path) = path.filter(|path| *path != Path::new("-")) else {
-            return Ok(Self { writer: Box::new(io::stdout()), pending: None });
+            return Ok(Self {
+                writer: Box::new(io::stdout()),
+                pending: None,
+            });
         };
         let special = fs::metadata(path).is_ok_and(|metadata| !metadata.is_file());
         let partial = if special {
@@ -31,14 +34,23 @@ impl Output {
             name.push(".partial");
             name.into()
         };
-        let file = if special { File::options().write(true).open(&partial) } else { File::create(&partial) };
+        let file = if special {
+            File::options().write(true).open(&partial)
+        } else {
+            File::create(&partial)
+        };
         let file = file.with_context(|| format!("cannot write {}", partial.display()))?;
         let pending = (!special).then(|| (partial, path.to_owned()));
-        Ok(Self { writer: Box::new(file), pending })
+        Ok(Self {
+            writer: Box::new(file),
+            pending,
+        })
     }
 
     pub(super) fn write(&mut self, bytes: &[u8]) -> anyhow::Result<()> {
-        self.writer.write_all(bytes).map_err(|error| self.explained(error))
+        self.writer
+            .write_all(bytes)
+            .map_err(|error| self.explained(error))
     }
 
     fn explained(&self, error: io::Error) -> anyhow::Error {
@@ -47,7 +59,9 @@ impl Output {
             None => "the output".into(),
         };
         match error.kind() {
-            io::ErrorKind::BrokenPipe => anyhow::anyhow!("the reader of the output closed it early"),
+            io::ErrorKind::BrokenPipe => {
+                anyhow::anyhow!("the reader of the output closed it early")
+            }
             _ => anyhow::Error::new(error).context(format!("cannot write to {place}")),
         }
     }
@@ -56,8 +70,9 @@ impl Output {
     pub(super) fn finish(mut self) -> anyhow::Result<()> {
         self.writer.flush().map_err(|error| self.explained(error))?;
         if let Some((partial, path)) = &self.pending {
-            fs::rename(partial, path)
-                .with_context(|| format!("cannot rename {} to {}", partial.display(), path.display()))?;
+            fs::rename(partial, path).with_context(|| {
+                format!("cannot rename {} to {}", partial.display(), path.display())
+            })?;
         }
         Ok(())
     }

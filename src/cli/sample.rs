@@ -41,6 +41,9 @@ pub(super) struct Args {
     /// Which set of points [default: 0].
     #[arg(long, allow_hyphen_values = true)]
     seed: Option<String>,
+    /// off, on, or the strength of the warp, 0 to 2 [default: off for seed 0, else on].
+    #[arg(long, allow_hyphen_values = true)]
+    warp: Option<String>,
     /// json, ndjson, csv, f32 or f64 [default: what the output's name ends with, or json].
     #[arg(long)]
     format: Option<String>,
@@ -63,6 +66,7 @@ impl Args {
             profile: self.profile.clone(),
             alpha: self.alpha.clone(),
             seed: self.seed.clone(),
+            warp: self.warp.clone(),
             format: self.format.clone(),
         }
     }
@@ -76,13 +80,21 @@ impl Args {
 /// Writes the points.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged()?;
-    let catalog = config.catalog().map_err(|error| Failure::Usage(error.into()))?;
+    let catalog = config
+        .catalog()
+        .map_err(|error| Failure::Usage(error.into()))?;
     let usage = |error| Failure::Usage(anyhow::Error::new(error));
     let (query, named) = args.parameters().check(&catalog, vec![]).map_err(usage)?;
-    let encoding = named.or_else(|| args.by_extension()).unwrap_or(Encoding::Json);
+    let encoding = named
+        .or_else(|| args.by_extension())
+        .unwrap_or(Encoding::Json);
     let planned = Planned::from_catalog(&catalog, query).map_err(usage)?;
-    let count = u64::try_from(planned.count())
-        .map_err(|_| Failure::Usage(anyhow!("bbox holds {} points, too many to write", planned.count())))?;
+    let count = u64::try_from(planned.count()).map_err(|_| {
+        Failure::Usage(anyhow!(
+            "bbox holds {} points, too many to write",
+            planned.count()
+        ))
+    })?;
     if !args.quiet {
         announce(&planned, encoding);
     }
@@ -105,7 +117,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 
 /// Says on standard error what comes, and what the packed formats have no room for.
 fn announce(planned: &Planned, encoding: Encoding) {
-    let size = Answer::size(planned, encoding).map_or(String::new(), |size| format!(", {size} bytes"));
+    let size =
+        Answer::size(planned, encoding).map_or(String::new(), |size| format!(", {size} bytes"));
     let query = &planned.query;
     eprintln!(
         "{} points{size}: profile {}, alpha {}, spacing {}, table {}",
@@ -126,7 +139,9 @@ fn announce(planned: &Planned, encoding: Encoding) {
 }
 
 fn workers(config: &Config) -> anyhow::Result<rayon::ThreadPool> {
-    Ok(rayon::ThreadPoolBuilder::new().num_threads(config.workers.threads).build()?)
+    Ok(rayon::ThreadPoolBuilder::new()
+        .num_threads(config.workers.threads)
+        .build()?)
 }
 
 fn text(mut answer: Answer, output: &mut Output, progress: &mut Progress) -> anyhow::Result<()> {
@@ -185,28 +200,37 @@ where
 {
     fn new(batch: usize) -> Self {
         let buffers = (0..batch).map(|_| (vec![], 0)).collect();
-        Self { tiles: vec![], buffers }
+        Self {
+            tiles: vec![],
+            buffers,
+        }
     }
 
     /// Takes the next tiles and fills them.
     fn fill(&mut self, plan: &Plan, tiles: &mut (impl Iterator<Item = Tile> + Send)) {
         self.tiles.clear();
         self.tiles.extend(tiles.take(self.buffers.len()));
-        self.tiles.par_iter().zip(&mut self.buffers).for_each(|(tile, (buffer, filled))| {
-            if buffer.is_empty() {
-                *buffer = vec![F::Item::default(); TILE_POINTS];
-            }
-            *filled = plan.tile_blocks::<F>(tile).fill(buffer);
-            if cfg!(target_endian = "big") {
-                for item in &mut buffer[..*filled] {
-                    *item = F::to_little_endian(*item);
+        self.tiles
+            .par_iter()
+            .zip(&mut self.buffers)
+            .for_each(|(tile, (buffer, filled))| {
+                if buffer.is_empty() {
+                    *buffer = vec![F::Item::default(); TILE_POINTS];
                 }
-            }
-        });
+                *filled = plan.tile_blocks::<F>(tile).fill(buffer);
+                if cfg!(target_endian = "big") {
+                    for item in &mut buffer[..*filled] {
+                        *item = F::to_little_endian(*item);
+                    }
+                }
+            });
     }
 
     fn blocks(&self) -> impl Iterator<Item = &[F::Item]> {
-        self.buffers.iter().take(self.tiles.len()).map(|(buffer, filled)| &buffer[..*filled])
+        self.buffers
+            .iter()
+            .take(self.tiles.len())
+            .map(|(buffer, filled)| &buffer[..*filled])
     }
 }
 

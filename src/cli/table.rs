@@ -84,7 +84,9 @@ impl Which {
             return Ok(vec![(file.display().to_string(), table)]);
         }
         let config = self.settings.merged()?;
-        let catalog = config.catalog().map_err(|error| Failure::Usage(error.into()))?;
+        let catalog = config
+            .catalog()
+            .map_err(|error| Failure::Usage(error.into()))?;
         let alpha = match &self.alpha {
             Some(text) => {
                 let parsed = text.parse::<strew_core::Alpha>();
@@ -93,7 +95,9 @@ impl Which {
             None => None,
         };
         let meant = |entry: &Entry| {
-            self.profile.as_ref().is_none_or(|profile| **profile == *entry.key.profile)
+            self.profile
+                .as_ref()
+                .is_none_or(|profile| **profile == *entry.key.profile)
                 && alpha.is_none_or(|alpha| alpha == entry.key.alpha)
         };
         let named = |entry: &Entry| {
@@ -101,13 +105,21 @@ impl Which {
                 Source::Embedded(name) => format!("{name} (built in)"),
                 Source::File(path) => path.display().to_string(),
             };
-            let table = entry.table().map_err(|error| Failure::Other(error.into()))?;
+            let table = entry
+                .table()
+                .map_err(|error| Failure::Other(error.into()))?;
             Ok((place, table))
         };
-        let tables = catalog.entries().filter(|entry| meant(entry)).map(|entry| named(entry));
+        let tables = catalog
+            .entries()
+            .filter(|entry| meant(entry))
+            .map(|entry| named(entry));
         let tables: Vec<_> = tables.collect::<Result<_, Failure>>()?;
         if tables.is_empty() {
-            let loaded: Vec<String> = catalog.entries().map(|entry| entry.key.to_string()).collect();
+            let loaded: Vec<String> = catalog
+                .entries()
+                .map(|entry| entry.key.to_string())
+                .collect();
             return Err(Failure::Usage(anyhow!(
                 "no such table is loaded; loaded are: {}",
                 loaded.join("; ")
@@ -140,11 +152,25 @@ fn describe(text: &mut String, place: &str, table: &Table) -> std::fmt::Result {
     let n = map.intervals();
     writeln!(text, "{place}")?;
     writeln!(text, "  profile    {}", table.profile())?;
-    writeln!(text, "  alpha      {} = {}", table.alpha(), table.alpha().to_f64())?;
-    writeln!(text, "  map        R = {}, {n} intervals, {} blocks", map.radius(), n * n)?;
+    writeln!(
+        text,
+        "  alpha      {} = {}",
+        table.alpha(),
+        table.alpha().to_f64()
+    )?;
+    writeln!(
+        text,
+        "  map        R = {}, {n} intervals, {} blocks",
+        map.radius(),
+        n * n
+    )?;
     writeln!(text, "  bytes      {}", table.to_bytes().len())?;
     writeln!(text, "  digest     {}", table.digest())?;
-    writeln!(text, "  optimizer  {}, seed {}", provenance.optimizer, provenance.seed)?;
+    writeln!(
+        text,
+        "  optimizer  {}, seed {}",
+        provenance.optimizer, provenance.seed
+    )?;
     for (name, value) in &provenance.parameters {
         writeln!(text, "             {name} = {value}")?;
     }
@@ -154,7 +180,11 @@ fn describe(text: &mut String, place: &str, table: &Table) -> std::fmt::Result {
     }
     for figures in &provenance.figures {
         let seen = if figures.seen { "made on it" } else { "unseen" };
-        writeln!(text, "  measured   {}, {} points, {seen}", figures.subject, figures.points)?;
+        writeln!(
+            text,
+            "  measured   {}, {} points, {seen}",
+            figures.subject, figures.points
+        )?;
         for (name, value) in &figures.values {
             writeln!(text, "             {name} = {value}")?;
         }
@@ -181,7 +211,10 @@ fn verify(args: &Verify) -> Result<(), Failure> {
     }
     match bad {
         0 => Ok(()),
-        _ => Err(Failure::Other(anyhow!("{bad} of {} tables are not good", args.files.len()))),
+        _ => Err(Failure::Other(anyhow!(
+            "{bad} of {} tables are not good",
+            args.files.len()
+        ))),
     }
 }
 

@@ -44,6 +44,7 @@ pub(super) fn query(
         profile: request.profile.as_deref(),
         alpha: request.alpha.as_deref(),
         seed: request.seed,
+        warp: request.warp,
     };
     let faults = encoding.as_ref().err().cloned().into_iter().collect();
     let query = draft.check(catalog, faults)?;
@@ -67,6 +68,7 @@ pub(super) fn resolved(query: &Query, encoding: Encoding) -> ResolvedQuery {
         profile: query.profile.clone(),
         alpha: query.alpha.to_string(),
         seed: query.seed.0,
+        warp: query.warp.strength(),
         encoding: encoding.into(),
     }
 }

@@ -61,7 +61,7 @@ impl Planned {
     /// [`Error::Invalid`] if the box reaches farther than points can be told apart.
     pub fn new(query: Query, entry: Arc<Entry>, sampler: &Arc<Sampler>) -> Result<Self, Error> {
         let plan = sampler
-            .plan(query.spacing, query.seed, query.region)
+            .plan(query.placement(), query.region)
             .map_err(|error| query.too_far(&error))?;
         Ok(Self { query, entry, plan })
     }

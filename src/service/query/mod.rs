@@ -8,7 +8,7 @@ mod text;
 
 use serde::Serialize;
 use strew_core::{
-    Alpha, Region, Seed, Spacing,
+    Alpha, Placement, Region, Seed, Spacing, Warp,
     sample::{PlanError, RegionError, SpacingError},
 };
 
@@ -28,6 +28,9 @@ const BOX: &str =
 const AMOUNT: &str =
     "one of density (points per unit of area) and spacing (the mean, density^-1/2)";
 
+/// What a warp may be.
+const WARP: &str = "off, on, or a strength from 0 (off) over 1 (on) to 2";
+
 /// A query as typed fields, not checked yet. What is absent takes its default; a box and one of
 /// density and spacing must be there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,6 +47,8 @@ pub struct Draft<'a> {
     pub alpha: Option<&'a str>,
     /// The seed.
     pub seed: u64,
+    /// The strength of the warp; by default 0 for seed 0 and 1 for every other.
+    pub warp: Option<f64>,
 }
 
 /// A checked query: what is asked for can be answered.
@@ -61,6 +66,8 @@ pub struct Query {
     pub alpha: Alpha,
     /// The seed.
     pub seed: Seed,
+    /// How strongly the plane is warped.
+    pub warp: Warp,
 }
 
 /// A query as answers echo it.
@@ -78,6 +85,8 @@ pub struct Resolved {
     pub alpha: String,
     /// The seed.
     pub seed: u64,
+    /// The strength of the warp; 0 is off.
+    pub warp: f64,
 }
 
 impl Draft<'_> {
@@ -101,12 +110,13 @@ impl Draft<'_> {
         };
         let region = self.region().map_err(&mut add).ok();
         let amount = self.amount().map_err(&mut add).ok();
+        let warp = self.warp().map_err(&mut add).ok();
         let key = self
             .key(catalog)
             .map_err(|faults| faults.into_iter().for_each(&mut add))
             .ok();
-        let (Some(region), Some((spacing, density)), Some(key), true) =
-            (region, amount, key, faults.is_empty())
+        let (Some(region), Some((spacing, density)), Some(warp), Some(key), true) =
+            (region, amount, warp, key, faults.is_empty())
         else {
             return Err(Error::Invalid(faults));
         };
@@ -117,6 +127,7 @@ impl Draft<'_> {
             profile: key.profile.as_ref().into(),
             alpha: key.alpha,
             seed: Seed(self.seed),
+            warp: warp.unwrap_or(Placement::new(spacing, Seed(self.seed)).warp),
         })
     }
 
@@ -143,6 +154,16 @@ impl Draft<'_> {
             }
         }
         Ok(region)
+    }
+
+    /// The warp that is asked for, if any.
+    fn warp(&self) -> Result<Option<Warp>, Fault> {
+        self.warp
+            .map(|strength| {
+                Warp::new(strength)
+                    .map_err(|_| Fault::new("warp", number(strength), "it is out of range", WARP))
+            })
+            .transpose()
     }
 
     /// Spacing and density.
@@ -220,6 +241,16 @@ impl Query {
         }
     }
 
+    /// How the table's points are laid into the world.
+    #[must_use]
+    pub const fn placement(&self) -> Placement {
+        Placement {
+            spacing: self.spacing,
+            seed: self.seed,
+            warp: self.warp,
+        }
+    }
+
     /// As answers echo it.
     #[must_use]
     pub fn resolved(&self) -> Resolved {
@@ -230,6 +261,7 @@ impl Query {
             profile: self.profile.clone(),
             alpha: self.alpha.to_string(),
             seed: self.seed.0,
+            warp: self.warp.strength(),
         }
     }
 

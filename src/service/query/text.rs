@@ -2,12 +2,12 @@
 
 use percent_encoding::percent_decode_str;
 
-use super::{AMOUNT, BOX, Draft, Query};
+use super::{AMOUNT, BOX, Draft, Query, WARP};
 use crate::service::{Catalog, Encoding, Error, Fault};
 
 /// The parameters there are.
-const NAMES: [&str; 7] = [
-    "bbox", "density", "spacing", "profile", "alpha", "seed", "format",
+const NAMES: [&str; 8] = [
+    "bbox", "density", "spacing", "profile", "alpha", "seed", "warp", "format",
 ];
 
 /// No more faults of an address are reported: an error is to be read.
@@ -28,6 +28,8 @@ pub struct Parameters {
     pub alpha: Option<String>,
     /// The seed.
     pub seed: Option<String>,
+    /// `off`, `on` or the strength of the warp.
+    pub warp: Option<String>,
     /// The name of the format.
     pub format: Option<String>,
 }
@@ -85,6 +87,7 @@ impl Parameters {
             "profile" => &mut self.profile,
             "alpha" => &mut self.alpha,
             "seed" => &mut self.seed,
+            "warp" => &mut self.warp,
             "format" => &mut self.format,
             _ => return None,
         })
@@ -109,6 +112,7 @@ impl Parameters {
         read(amount("density", self.density.as_deref()).map(|density| draft.density = density));
         read(amount("spacing", self.spacing.as_deref()).map(|spacing| draft.spacing = spacing));
         read(seed(self.seed.as_deref()).map(|seed| draft.seed = seed));
+        read(warp(self.warp.as_deref()).map(|warp| draft.warp = warp));
         let mut encoding = None;
         read(format(self.format.as_deref()).map(|format| encoding = format));
         let query = draft.check(catalog, faults)?;
@@ -147,6 +151,15 @@ fn seed(text: Option<&str>) -> Result<u64, Fault> {
             Fault::new("seed", text, "it is not such an integer", allowed)
         })
     })
+}
+
+fn warp(text: Option<&str>) -> Result<Option<f64>, Fault> {
+    text.map(|text| match text {
+        "off" => Ok(0.0),
+        "on" => Ok(1.0),
+        _ => number(text).map_err(|detail| Fault::new("warp", text, detail, WARP)),
+    })
+    .transpose()
 }
 
 fn format(text: Option<&str>) -> Result<Option<Encoding>, Fault> {
