@@ -1,1 +1,38 @@
+//! Makes and judges the displacement tables of Strew.
+//!
+//! A [`Job`] says which table: α, the size of the neighborhood map, a [noise profile](profile), a
+//! seed. [`forge`] optimizes the table's vectors — not points — and accepts the table only after it
+//! has been [measured](measure) on point sets it was not optimized on. The result is a
+//! [`Table`](strew_core::Table) with its history, which [`write_table`] puts on disk.
+//!
+//! Equal jobs give equal tables on every machine and with any number of threads: what reaches a
+//! table is computed with plain arithmetic in a fixed order (see [`energy::exp`]).
+//!
+//! ```
+//! use strew_forge::{Job, forge};
+//!
+//! let mut job = Job::new("sqrt(3)".parse()?);
+//! (job.radius, job.steps) = (12, Some(20)); // tiny, for the example
+//! let outcome = forge(&job, &())?;
+//! assert_eq!(outcome.table.profile(), "blue");
+//! // So few steps and blocks do not make a good table, and it says so.
+//! assert!(!outcome.accepted);
+//! assert!(outcome.complaints[0].to_string().contains("low_power"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+pub mod energy;
+mod error;
+mod file;
+mod job;
+pub mod judge;
+pub mod measure;
+pub mod optimize;
+pub mod profile;
+
+pub use error::ForgeError;
+pub use file::{EXTENSION, file_name, read_table, write_table};
+pub use job::{Estimate, Job, MAX_RADIUS, MAX_STEPS, Outcome, forge};
+pub use judge::{Complaint, Figure};
+pub use optimize::{Progress, Stage, Watch};
+pub use profile::Profile;

@@ -1,0 +1,45 @@
+//! A pair energy on a point set: the plain definition.
+
+use rayon::prelude::*;
+
+use super::{PairEnergy, SetEnergy};
+use crate::measure::{Torus, cells::Cells};
+
+/// A pair energy summed over the pairs of a periodic point set. Slower than
+/// [`Pairs`](crate::optimize::Pairs), of which it is the oracle; for sets that have no table.
+#[derive(Clone, Copy, Debug)]
+pub struct Pairwise<E>(pub E);
+
+impl<E: PairEnergy> SetEnergy for Pairwise<E> {
+    fn evaluate(&self, set: &Torus, gradient: &mut [[f64; 2]]) -> f64 {
+        let cutoff = self.0.cutoff();
+        let cells = Cells::new(set.points(), set.side(), (cutoff / 4.0).max(0.5), true);
+        let rings = (cutoff / cells.width()).ceil() as i64;
+        let each: Vec<(u32, f64, [f64; 2])> = cells
+            .members()
+            .par_iter()
+            .map(|&(index, p)| {
+                let (mut energy, mut slope) = (0.0, [0.0; 2]);
+                for ring in 0..=rings {
+                    cells.ring(p, ring, |other, [dx, dy]| {
+                        let squared = dx * dx + dy * dy;
+                        if other == index && squared == 0.0 {
+                            return;
+                        }
+                        let (value, factor) = self.0.pair(squared);
+                        energy += value;
+                        slope[0] += factor * dx;
+                        slope[1] += factor * dy;
+                    });
+                }
+                (index, energy, slope)
+            })
+            .collect();
+        let mut total = 0.0;
+        for (index, energy, slope) in each {
+            total += energy;
+            gradient[index as usize] = slope;
+        }
+        0.5 * total / set.points().len().max(1) as f64
+    }
+}

@@ -1,0 +1,193 @@
+//! Table files on disk: written whole or not at all, read with their path in every error.
+
+use std::{
+    fs::File,
+    io::{Read, Write},
+    path::Path,
+};
+
+use strew_core::{
+    Alpha, Table,
+    table::{MAX_FILE_BYTES, TableError},
+};
+
+use crate::ForgeError;
+
+/// The extension of table files.
+pub const EXTENSION: &str = "strew";
+
+/// The usual name of a table's file: profile, α and size, such as `blue-5-sqrt3-over-2-s.strew`.
+///
+/// α is its canonical text without parentheses, with `/` as `-over-`, `+` as `-plus-`, `*` as
+/// `-times-`. The size is `s` for R = 49, `m` for R = 100, `l` for R = 200, else `r` and R.
+#[must_use]
+pub fn file_name(profile: &str, alpha: Alpha, radius: u32) -> String {
+    let alpha = alpha
+        .to_string()
+        .replace(['(', ')'], "")
+        .replace('/', "-over-")
+        .replace('+', "-plus-")
+        .replace('*', "-times-");
+    let size = match radius {
+        49 => "s".into(),
+        100 => "m".into(),
+        200 => "l".into(),
+        other => format!("r{other}"),
+    };
+    format!("{profile}-{alpha}-{size}.{EXTENSION}")
+}
+
+/// Reads a table file and checks everything in it.
+///
+/// # Errors
+/// [`ForgeError::File`] if it cannot be read, [`ForgeError::TooLarge`] if it has more than
+/// [`MAX_FILE_BYTES`] (it is not read then), [`ForgeError::NotATable`] with what is wrong in it.
+pub fn read_table(path: &Path) -> Result<Table, ForgeError> {
+    let failed = |action| {
+        move |source| ForgeError::File {
+            action,
+            path: path.to_owned(),
+            source,
+        }
+    };
+    let file = File::open(path).map_err(failed("open"))?;
+    let bytes = file.metadata().map_err(failed("examine"))?.len();
+    let too_large = |bytes| ForgeError::TooLarge {
+        path: path.to_owned(),
+        bytes,
+    };
+    if bytes > MAX_FILE_BYTES {
+        return Err(too_large(bytes));
+    }
+    // The file may grow meanwhile, or be a pipe without a size: one byte too many tells.
+    let mut content = Vec::with_capacity(bytes as usize);
+    file.take(MAX_FILE_BYTES + 1)
+        .read_to_end(&mut content)
+        .map_err(failed("read"))?;
+    Table::from_bytes(&content).map_err(|source| match source {
+        TableError::TooLarge { bytes } => too_large(bytes),
+        source => ForgeError::NotATable {
+            path: path.to_owned(),
+            source,
+        },
+    })
+}
+
+/// Writes a table file: under a temporary name in the same folder, flushed to the disk, then
+/// renamed, so that a reader sees the old file or the new one and never a part.
+///
+/// # Errors
+/// [`ForgeError::File`] if a step fails; what stood at `path` stands there still.
+pub fn write_table(path: &Path, table: &Table) -> Result<(), ForgeError> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let failed = |action, path: &Path| {
+        let path = path.to_owned();
+        move |source| ForgeError::File {
+            action,
+            path,
+            source,
+        }
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".strew-").suffix(".part");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // A table is no secret; the umask still applies.
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder
+        .tempfile_in(folder)
+        .map_err(failed("create a file in", folder))?;
+    file.write_all(&table.to_bytes())
+        .map_err(failed("write", path))?;
+    file.as_file().sync_all().map_err(failed("flush", path))?;
+    file.persist(path)
+        .map_err(|e| failed("replace", path)(e.error))?;
+    // The new name is safe only once the folder is. Windows cannot flush a folder, nor needs to.
+    #[cfg(unix)]
+    File::open(folder)
+        .and_then(|folder| folder.sync_all())
+        .map_err(failed("flush", folder))?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Table {
+        Table::undisplaced("sqrt(3)".parse().expect("valid"), 4, "pattern").expect("valid")
+    }
+
+    #[test]
+    fn written_tables_read_back_and_leave_nothing_else() {
+        let folder = tempfile::tempdir().expect("valid");
+        let path = folder.path().join("some.strew");
+        for _ in 0..2 {
+            write_table(&path, &table()).expect("valid");
+            assert_eq!(read_table(&path).expect("valid"), table());
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).expect("valid").count(), 1);
+    }
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().expect("valid");
+        let path = folder.path().join("a-folder-in-the-way");
+        std::fs::create_dir(&path).expect("valid");
+        let error = write_table(&path, &table())
+            .expect_err("refused")
+            .to_string();
+        assert!(error.contains("a-folder-in-the-way"), "{error}");
+        assert_eq!(std::fs::read_dir(folder.path()).expect("valid").count(), 1);
+        let nowhere = folder.path().join("no/such/x.strew");
+        assert!(matches!(
+            write_table(&nowhere, &table()),
+            Err(ForgeError::File { .. })
+        ));
+    }
+
+    #[test]
+    fn errors_name_the_file_and_the_fault() {
+        let folder = tempfile::tempdir().expect("valid");
+        let path = folder.path().join("bad.strew");
+        let missing = read_table(&path).expect_err("refused").to_string();
+        assert!(missing.contains("bad.strew"), "{missing}");
+        std::fs::write(&path, &table().to_bytes()[..100]).expect("valid");
+        let damaged = read_table(&path).expect_err("refused");
+        assert!(matches!(
+            damaged,
+            ForgeError::NotATable {
+                source: TableError::Truncated { have: 100, .. },
+                ..
+            }
+        ));
+        assert!(damaged.to_string().contains("bad.strew"), "{damaged}");
+        // A file of that size with no content on the disk: refused by its size alone.
+        let huge = File::create(&path).expect("valid");
+        huge.set_len(MAX_FILE_BYTES + 1).expect("valid");
+        assert!(matches!(
+            read_table(&path),
+            Err(ForgeError::TooLarge { bytes, .. }) if bytes == MAX_FILE_BYTES + 1
+        ));
+    }
+
+    #[test]
+    fn file_names_say_profile_alpha_and_size() {
+        for (alpha, radius, name) in [
+            ("(5-sqrt(3))/2", 49, "blue-5-sqrt3-over-2-s.strew"),
+            ("sqrt(3)", 100, "blue-sqrt3-m.strew"),
+            ("(1+sqrt(5))/2", 200, "blue-1-plus-sqrt5-over-2-l.strew"),
+            ("3*sqrt(2)/4", 20, "blue-3-times-sqrt2-over-4-r20.strew"),
+        ] {
+            assert_eq!(
+                file_name("blue", alpha.parse().expect("valid"), radius),
+                name
+            );
+        }
+    }
+}

@@ -1,0 +1,476 @@
+//! A job: which table to make, what it will cost, and the making.
+
+use std::time::{Duration, Instant};
+
+use strew_core::{
+    Alpha, Map, Table, Twin,
+    table::{Provenance, from_grid_units},
+};
+
+use crate::{
+    ForgeError,
+    energy::{Gaussian, Guard, PairEnergy},
+    judge::{Complaint, Panel, complaints},
+    optimize::{Descended, Descent, Meter, Objective, Pairs, Stage, Watch, jitter},
+    profile::{GaussianRecipe, Profile, Recipe},
+};
+
+/// How many twins a table is optimized on. They lie on both sides of α, so that among them they
+/// show nearly every pair of blocks that any twin of the map has.
+const TWINS: usize = 6;
+/// Twins with fewer points repeat before a block's neighborhood ends.
+const LEAST_TWIN: u64 = 4000;
+/// The largest half-width a table is made for: 330 intervals at the default α, and about 200 MB of
+/// neighbor lists.
+pub const MAX_RADIUS: u32 = 256;
+/// The largest number of steps.
+pub const MAX_STEPS: u32 = 1_000_000;
+
+/// Which table to make. Equal jobs make equal tables, bit by bit, on every machine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Job {
+    /// The number α.
+    pub alpha: Alpha,
+    /// The map's half-width R, 1 to [`MAX_RADIUS`], in grid units: larger maps have more blocks,
+    /// which lowers every kind of error and takes longer, both as the square.
+    pub radius: u32,
+    /// The name of a [`Profile`].
+    pub profile: String,
+    /// The seed of the random start.
+    pub seed: u64,
+    /// Steps of the optimizer, 1 to [`MAX_STEPS`]; the profile's own number if `None`. The cost is
+    /// proportional; fewer leave power at low frequencies, more sharpen the spectrum's peak.
+    pub steps: Option<u32>,
+}
+
+impl Job {
+    /// The usual job for an α: R = 49, profile `blue`, seed 1, the profile's steps.
+    #[must_use]
+    pub fn new(alpha: Alpha) -> Self {
+        Self {
+            alpha,
+            radius: 49,
+            profile: "blue".into(),
+            seed: 1,
+            steps: None,
+        }
+    }
+
+    /// What the job will cost, from a few evaluations; takes up to a few percent of that cost.
+    ///
+    /// # Errors
+    /// [`ForgeError::Field`] for a part that is not allowed.
+    pub fn estimate(&self) -> Result<Estimate, ForgeError> {
+        let plan = Plan::new(self)?;
+        let mut phase = plan.phases().remove(0).objective;
+        let moves = plan.start(self.seed);
+        let mut gradient = vec![[0.0; 2]; moves.len()];
+        phase.evaluate(&moves, &mut gradient); // builds the neighbor lists
+        let trials = 2;
+        let began = Instant::now();
+        for _ in 0..trials {
+            phase.evaluate(&moves, &mut gradient);
+        }
+        let optimizing = began.elapsed() * plan.steps / trials;
+        let measured_points = plan.panel.points();
+        let measuring = MEASURING_A_POINT * measured_points as u32;
+        Ok(Estimate {
+            blocks: moves.len() as u64,
+            pairs: phase.pairs() as u64,
+            steps: plan.steps,
+            measured_points,
+            time: optimizing + measuring,
+        })
+    }
+}
+
+/// About what measuring takes, up to ν = 4, on two cores.
+const MEASURING_A_POINT: Duration = Duration::from_nanos(3000);
+
+/// What a job will cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Estimate {
+    /// The number of vectors to find.
+    pub blocks: u64,
+    /// Pairs of blocks visited in a step.
+    pub pairs: u64,
+    /// Steps of the optimizer.
+    pub steps: u32,
+    /// Points of all sets that the table will be judged on.
+    pub measured_points: u64,
+    /// The time on this machine, as far as a short trial tells.
+    pub time: Duration,
+}
+
+/// What became of a job.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// The table, with its history. Usable in any case.
+    pub table: Table,
+    /// Whether it was measured on unseen subjects and met every bound of its profile.
+    pub accepted: bool,
+    /// Whether the watch stopped the work: the table is the best until then, and was not judged.
+    pub interrupted: bool,
+    /// The bounds it missed.
+    pub complaints: Vec<Complaint>,
+}
+
+/// Makes a table and judges it. A table that misses a bound is an outcome, not an error.
+///
+/// # Errors
+/// [`ForgeError::Field`] for a part of the job that is not allowed.
+pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
+    let plan = Plan::new(job)?;
+    let mut meter = Meter::new(watch, Stage::Optimizing, plan.steps);
+    let mut done = Descended::at(plan.start(job.seed));
+    let mut steps = 0;
+    for mut phase in plan.phases() {
+        done = phase
+            .descent
+            .run(&mut phase.objective, done.moves, &mut meter);
+        steps += done.steps;
+        if done.interrupted {
+            break;
+        }
+    }
+    let provenance = plan.provenance(job, steps);
+    let table = plan.table(&done.moves, provenance.clone())?;
+    let mut outcome = Outcome {
+        table,
+        accepted: false,
+        interrupted: done.interrupted,
+        complaints: Vec::new(),
+    };
+    if done.interrupted {
+        return Ok(outcome);
+    }
+    let mut meter = Meter::new(watch, Stage::Measuring, plan.panel.subjects());
+    let Some(figures) = plan.panel.measure(&outcome.table, &mut meter) else {
+        outcome.interrupted = true;
+        return Ok(outcome);
+    };
+    outcome.complaints = complaints(plan.profile.bounds, &figures);
+    outcome.accepted = outcome.complaints.is_empty();
+    let judged = Provenance {
+        figures,
+        ..provenance
+    };
+    outcome.table = plan.table(&done.moves, judged)?;
+    Ok(outcome)
+}
+
+/// A checked job.
+struct Plan {
+    profile: &'static Profile,
+    map: Map,
+    twins: Vec<Twin>,
+    panel: Panel,
+    steps: u32,
+}
+
+/// Some steps with one energy.
+struct Phase<E> {
+    objective: Pairs<E>,
+    descent: Descent,
+}
+
+impl Plan {
+    fn new(job: &Job) -> Result<Self, ForgeError> {
+        let profile = Profile::named(&job.profile)?;
+        let steps = job.steps.unwrap_or(profile.steps);
+        in_range("steps", steps, MAX_STEPS)?;
+        in_range("R", job.radius, MAX_RADIUS)?;
+        let map = Map::new(job.alpha, job.radius).map_err(|e| ForgeError::Table(e.into()))?;
+        let twins: Vec<Twin> = map
+            .twins()
+            .filter(|twin| twin.is_uniform() && twin.points() >= LEAST_TWIN)
+            .take(TWINS)
+            .collect();
+        Ok(Self {
+            profile,
+            panel: Panel::new(&map, &twins),
+            map,
+            twins,
+            steps,
+        })
+    }
+
+    /// Mean spacings per grid unit.
+    fn scale(&self) -> f64 {
+        self.map.alpha().set_side_f64()
+    }
+
+    fn start(&self, seed: u64) -> Vec<[f64; 2]> {
+        let blocks = self.map.intervals() * self.map.intervals();
+        jitter(blocks, self.profile.jitter, seed)
+    }
+
+    fn phases(&self) -> Vec<Phase<impl PairEnergy + use<>>> {
+        let Recipe::Gaussian(recipe) = self.profile.recipe;
+        let polish = (f64::from(self.steps) * recipe.polish_share) as u32;
+        [
+            (recipe.sigma, self.steps - polish),
+            (recipe.polish_sigma, polish),
+        ]
+        .map(|(sigma, steps)| self.phase(&recipe, sigma, steps))
+        .into()
+    }
+
+    fn phase(
+        &self,
+        recipe: &GaussianRecipe,
+        sigma: f64,
+        steps: u32,
+    ) -> Phase<impl PairEnergy + use<>> {
+        let guard = Guard::new(recipe.guard_reach, recipe.guard_strength);
+        let energy = (Gaussian::new(sigma), guard);
+        let maps: Vec<Map> = self
+            .twins
+            .iter()
+            .filter_map(|twin| {
+                let alpha = Alpha::from_fraction(twin.p(), twin.q()).ok()?;
+                Map::new(alpha, self.map.radius()).ok()
+            })
+            .collect();
+        Phase {
+            objective: Pairs::new(energy, &maps, self.scale()),
+            descent: Descent {
+                steps,
+                rate: recipe.rate,
+            },
+        }
+    }
+
+    fn provenance(&self, job: &Job, steps: u32) -> Provenance {
+        let (optimizer, mut parameters) = self.profile.recipe.describe();
+        parameters.push(("jitter".into(), self.profile.jitter.to_string()));
+        parameters.push(("steps".into(), self.steps.to_string()));
+        if steps < self.steps {
+            parameters.push(("stopped_after".into(), steps.to_string()));
+        }
+        Provenance {
+            optimizer: optimizer.into(),
+            parameters,
+            seed: job.seed,
+            twins: self.twins.clone(),
+            figures: Vec::new(),
+        }
+    }
+
+    fn table(&self, moves: &[[f64; 2]], provenance: Provenance) -> Result<Table, ForgeError> {
+        let unit = 1.0 / self.scale();
+        let too_long = || ForgeError::Field {
+            field: "displacement",
+            value: "too long".into(),
+            allowed: "vectors that a table can hold; a smaller start or fewer steps".into(),
+        };
+        let vectors = moves
+            .iter()
+            .map(|m| Some([from_grid_units(m[0] * unit)?, from_grid_units(m[1] * unit)?]))
+            .collect::<Option<Vec<_>>>()
+            .ok_or_else(too_long)?;
+        let table = Table::new(self.map.clone(), self.profile.name, vectors, provenance)?;
+        Ok(table)
+    }
+}
+
+fn in_range(field: &'static str, value: u32, most: u32) -> Result<(), ForgeError> {
+    if (1..=most).contains(&value) {
+        return Ok(());
+    }
+    Err(ForgeError::Field {
+        field,
+        value: value.to_string(),
+        allowed: format!("1 to {most}"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+    use crate::Progress;
+
+    fn job(steps: u32) -> Job {
+        Job {
+            radius: 15,
+            steps: Some(steps),
+            ..Job::new("(5-sqrt(3))/2".parse().expect("valid"))
+        }
+    }
+
+    #[test]
+    fn equal_jobs_make_equal_tables_with_any_number_of_threads() {
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let outcome = pool.expect("threads").install(|| forge(&job(30), &()));
+            outcome.expect("a good job").table
+        };
+        let table = with(1);
+        assert_eq!(with(2), table);
+        assert_eq!(with(5), table);
+        let other = Job { seed: 2, ..job(30) };
+        let other = forge(&other, &()).expect("a good job").table;
+        assert_ne!(other.displacements(), table.displacements());
+    }
+
+    #[test]
+    fn the_history_tells_all() {
+        let outcome = forge(&job(30), &()).expect("a good job");
+        let history = outcome.table.provenance();
+        assert_eq!((history.optimizer.as_str(), history.seed), ("gaussian", 1));
+        assert!(history.parameters.contains(&("steps".into(), "30".into())));
+        assert!(history.parameters.contains(&("sigma".into(), "1".into())));
+        assert_eq!(history.twins.len(), TWINS);
+        for figures in &history.figures {
+            let twin = |t: &Twin| figures.subject == format!("twin {t}");
+            assert_eq!(
+                figures.seen,
+                history.twins.iter().any(twin),
+                "{}",
+                figures.subject
+            );
+            assert!(
+                figures.seen || figures.points >= 50_000,
+                "{}",
+                figures.subject
+            );
+        }
+        assert!(
+            history
+                .figures
+                .iter()
+                .any(|f| f.subject.starts_with("window"))
+        );
+        assert_eq!(outcome.accepted, outcome.complaints.is_empty());
+        let back = Table::from_bytes(&outcome.table.to_bytes()).expect("valid");
+        assert_eq!(back, outcome.table);
+    }
+
+    /// Notes all it is told, and stops the work at a step of a stage.
+    struct Observer {
+        stop_at: (Stage, u32),
+        told: Mutex<Vec<Progress>>,
+    }
+
+    impl Watch for Observer {
+        fn progress(&self, progress: &Progress) {
+            self.told.lock().expect("no panic").push(*progress);
+        }
+
+        fn stop(&self) -> bool {
+            let told = self.told.lock().expect("no panic");
+            told.last()
+                .is_some_and(|p| (p.stage, p.step) == self.stop_at)
+        }
+    }
+
+    #[test]
+    fn a_watch_is_told_every_step_and_can_stop_at_any() {
+        let stages = [
+            (Stage::Optimizing, 0),
+            (Stage::Optimizing, 5),
+            (Stage::Optimizing, 11),
+        ];
+        for (stage, step) in stages.into_iter().chain([(Stage::Measuring, 2)]) {
+            let observer = Observer {
+                stop_at: (stage, step),
+                told: Mutex::default(),
+            };
+            let outcome = forge(&job(12), &observer).expect("a good job");
+            assert!(outcome.interrupted && !outcome.accepted, "{stage:?} {step}");
+            assert!(outcome.table.provenance().figures.is_empty());
+            assert!(Table::from_bytes(&outcome.table.to_bytes()).is_ok());
+            let told = observer.told.into_inner().expect("no panic");
+            let optimizing = told.iter().filter(|p| p.stage == Stage::Optimizing);
+            let steps: Vec<u32> = optimizing.map(|p| p.step).collect();
+            let last = if stage == Stage::Optimizing { step } else { 12 };
+            assert_eq!(steps, (0..=last).collect::<Vec<_>>());
+            assert!(
+                told.iter()
+                    .all(|p| p.stage == Stage::Measuring || p.steps == 12)
+            );
+            let stopped_after = ("stopped_after".into(), step.to_string());
+            let says_so = outcome
+                .table
+                .provenance()
+                .parameters
+                .contains(&stopped_after);
+            assert_eq!(says_so, stage == Stage::Optimizing);
+        }
+    }
+
+    #[test]
+    fn bad_parts_are_refused_by_name_value_and_what_is_allowed() {
+        let good = job(1);
+        for (job, words) in [
+            (
+                Job {
+                    steps: Some(0),
+                    ..good.clone()
+                },
+                ["steps", "0", "1 to 1000000"],
+            ),
+            (
+                Job {
+                    steps: Some(u32::MAX),
+                    ..good.clone()
+                },
+                ["steps", "4294967295", "1000000"],
+            ),
+            (
+                Job {
+                    radius: 0,
+                    ..good.clone()
+                },
+                ["R", "0", "1 to 256"],
+            ),
+            (
+                Job {
+                    radius: 257,
+                    ..good.clone()
+                },
+                ["R", "257", "1 to 256"],
+            ),
+            (
+                Job {
+                    profile: "bleu".into(),
+                    ..good.clone()
+                },
+                ["profile", "bleu", "blue"],
+            ),
+        ] {
+            let refused = [
+                forge(&job, &()).expect_err("refused"),
+                job.estimate().expect_err("refused"),
+            ];
+            for error in refused.map(|e| e.to_string()) {
+                assert!(words.iter().all(|word| error.contains(word)), "{error}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_smallest_jobs_work() {
+        for alpha in ["1.05", "1.95", "3/2", "sqrt(2)"] {
+            let job = Job {
+                radius: 1,
+                steps: Some(1),
+                ..Job::new(alpha.parse().expect("valid"))
+            };
+            let outcome = forge(&job, &()).expect("a good job");
+            assert!(!outcome.accepted, "{alpha}");
+        }
+    }
+
+    #[test]
+    fn an_estimate_states_steps_and_sizes_beforehand() {
+        let estimate = job(40).estimate().expect("a good job");
+        assert_eq!(estimate.steps, 40);
+        assert_eq!(estimate.blocks, 21 * 21);
+        assert!(estimate.pairs > 60 * estimate.blocks && estimate.pairs < 250 * estimate.blocks);
+        assert!(estimate.measured_points > 3 * 50_000);
+        assert!(estimate.time > Duration::ZERO);
+    }
+}

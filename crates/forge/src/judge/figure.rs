@@ -1,0 +1,215 @@
+//! Named figures and the bounds on them.
+
+use std::fmt;
+
+use strew_core::table::Figures;
+
+use crate::measure::{Distances, Spectrum, Torus, Window};
+
+/// The width of the rings that radial figures are taken on, in ν: as fine as the smallest twin of
+/// the default map resolves, and the same for sets of all sizes, so that their peaks compare.
+pub const RING_WIDTH: f64 = 1.0 / 64.0;
+
+/// A figure measured on a point set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Figure {
+    /// Mean power over 0 < ν < 0.5.
+    LowPower,
+    /// The largest radial power.
+    PeakPower,
+    /// The frequency of the largest radial power.
+    PeakNu,
+    /// Median anisotropy over 0.8 < ν < 4, in dB.
+    Anisotropy,
+    /// The largest power of a single frequency.
+    Tallest,
+    /// The smallest nearest-neighbor distance, over that of the hexagonal lattice.
+    DeltaMin,
+    /// The mean nearest-neighbor distance, over that of the hexagonal lattice.
+    DeltaAvg,
+}
+
+impl Figure {
+    /// The name in table files and messages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::LowPower => "low_power",
+            Self::PeakPower => "peak_power",
+            Self::PeakNu => "peak_nu",
+            Self::Anisotropy => "anisotropy_db",
+            Self::Tallest => "tallest_peak",
+            Self::DeltaMin => "delta_min",
+            Self::DeltaAvg => "delta_avg",
+        }
+    }
+}
+
+/// All figures of a set, rounded to four significant digits: far more than they mean, and few
+/// enough that another order of a sum inside an FFT does not show.
+fn figures(spectrum: &Spectrum, distances: Distances) -> Vec<(String, f64)> {
+    let summary = spectrum.summary(RING_WIDTH);
+    [
+        (Figure::LowPower, summary.low_power),
+        (Figure::PeakPower, summary.peak_power),
+        (Figure::PeakNu, summary.peak_nu),
+        (Figure::Anisotropy, summary.anisotropy_db),
+        (Figure::Tallest, summary.tallest),
+        (Figure::DeltaMin, distances.delta_min),
+        (Figure::DeltaAvg, distances.delta_avg),
+    ]
+    .map(|(figure, value)| (figure.name().to_owned(), round(value)))
+    .into()
+}
+
+/// The nearest decimal of four significant digits.
+fn round(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(0.0)
+}
+
+/// Measures a periodic set up to the frequency `nu_max`.
+#[must_use]
+pub fn figures_of_torus(subject: String, seen: bool, set: &Torus, nu_max: f64) -> Figures {
+    Figures {
+        subject,
+        seen,
+        points: set.points().len() as u64,
+        values: figures(&Spectrum::of_torus(set, nu_max), Distances::of_torus(set)),
+    }
+}
+
+/// Measures a window up to the frequency `nu_max`.
+#[must_use]
+pub fn figures_of_window(subject: String, seen: bool, set: &Window, nu_max: f64) -> Figures {
+    Figures {
+        subject,
+        seen,
+        points: set.points().len() as u64,
+        values: figures(&Spectrum::of_window(set, nu_max), Distances::of_window(set)),
+    }
+}
+
+/// What a figure must satisfy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// The figure.
+    pub figure: Figure,
+    /// The side on which it must stay.
+    pub side: Side,
+    /// Of this value, which is itself allowed.
+    pub limit: f64,
+}
+
+/// A side of a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Not above it.
+    AtMost,
+    /// Not below it.
+    AtLeast,
+}
+
+impl Bound {
+    /// `figure` ≤ `limit`.
+    #[must_use]
+    pub const fn at_most(figure: Figure, limit: f64) -> Self {
+        Self {
+            figure,
+            side: Side::AtMost,
+            limit,
+        }
+    }
+
+    /// `figure` ≥ `limit`.
+    #[must_use]
+    pub const fn at_least(figure: Figure, limit: f64) -> Self {
+        Self {
+            figure,
+            side: Side::AtLeast,
+            limit,
+        }
+    }
+
+    /// What is wrong with these figures, if anything; a missing figure is wrong.
+    #[must_use]
+    pub fn check(&self, figures: &Figures) -> Option<Complaint> {
+        let value = figures.value(self.figure.name()).unwrap_or(f64::NAN);
+        let holds = match self.side {
+            Side::AtMost => value <= self.limit,
+            Side::AtLeast => value >= self.limit,
+        };
+        (!holds).then(|| Complaint {
+            subject: figures.subject.clone(),
+            bound: *self,
+            value,
+        })
+    }
+}
+
+/// A figure that missed its bound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Complaint {
+    /// The point set it was measured on.
+    pub subject: String,
+    /// The bound it missed.
+    pub bound: Bound,
+    /// What was measured.
+    pub value: f64,
+}
+
+impl fmt::Display for Complaint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let relation = match self.bound.side {
+            Side::AtMost => "at most",
+            Side::AtLeast => "at least",
+        };
+        let (name, limit) = (self.bound.figure.name(), self.bound.limit);
+        let (subject, value) = (&self.subject, self.value);
+        write!(
+            f,
+            "{name} on {subject} is {value}; it must be {relation} {limit}"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_say_which_figure_missed_what() {
+        let figures = Figures {
+            subject: "twin 683/418".into(),
+            seen: false,
+            points: 70_225,
+            values: vec![("low_power".into(), 3e-5), ("delta_min".into(), 0.62)],
+        };
+        assert_eq!(
+            Bound::at_least(Figure::DeltaMin, 0.62).check(&figures),
+            None
+        );
+        assert_eq!(Bound::at_most(Figure::LowPower, 3e-5).check(&figures), None);
+        let complaint = Bound::at_most(Figure::LowPower, 2e-5)
+            .check(&figures)
+            .expect("valid")
+            .to_string();
+        assert_eq!(
+            complaint,
+            "low_power on twin 683/418 is 0.00003; it must be at most 0.00002"
+        );
+        // What was not measured is not good.
+        assert!(
+            Bound::at_most(Figure::PeakPower, 9.0)
+                .check(&figures)
+                .is_some()
+        );
+    }
+
+    #[test]
+    fn figures_keep_four_digits() {
+        assert_eq!(round(0.123_456), 0.1235);
+        assert_eq!(round(5.555_55e-6), 5.556e-6);
+        assert_eq!(round(0.0), 0.0);
+        assert_eq!(round(-12.345_6), -12.35);
+    }
+}

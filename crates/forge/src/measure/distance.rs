@@ -1,0 +1,158 @@
+//! Nearest-neighbor distances.
+
+use rayon::prelude::*;
+
+use super::{Torus, Window, cells::Cells};
+
+/// Nearest-neighbor distances, in units of √(2/√3)·N^−½, the distance in a hexagonal lattice of
+/// the same density: at most 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distances {
+    /// The smallest.
+    pub delta_min: f64,
+    /// The mean.
+    pub delta_avg: f64,
+}
+
+/// Points of a window closer than this to its edge, in mean spacings, may have their nearest
+/// neighbor outside and are left out.
+const MARGIN: f64 = 4.0;
+/// Points per parallel task; fixes the order of the sum.
+const CHUNK: usize = 4096;
+
+impl Distances {
+    /// Of a periodic set. A set of fewer than 2 points has distances to its own images.
+    #[must_use]
+    pub fn of_torus(set: &Torus) -> Self {
+        Self::of(&Cells::new(set.points(), set.side(), 1.0, true), |_| true)
+    }
+
+    /// Of a window: its points at least 4 mean spacings from the edge, to all points. Zeros for a
+    /// window with fewer than 2 points.
+    #[must_use]
+    pub fn of_window(set: &Window) -> Self {
+        let inner = MARGIN..set.side() - MARGIN;
+        let cells = Cells::new(set.points(), set.side(), 1.0, false);
+        Self::of(&cells, |p| p.iter().all(|v| inner.contains(v)))
+    }
+
+    fn of(cells: &Cells, counts: impl Fn(&[f64; 2]) -> bool + Sync) -> Self {
+        let parts: Vec<(f64, f64, usize)> = cells
+            .members()
+            .par_chunks(CHUNK)
+            .map(|chunk| {
+                let (mut least, mut sum, mut counted) = (f64::INFINITY, 0.0, 0);
+                for (index, p) in chunk.iter().filter(|(_, p)| counts(p)) {
+                    let distance = nearest(cells, *index, *p);
+                    least = least.min(distance);
+                    sum += distance;
+                    counted += 1;
+                }
+                (least, sum, counted)
+            })
+            .collect();
+        let least = parts
+            .iter()
+            .map(|part| part.0)
+            .fold(f64::INFINITY, f64::min);
+        let sum: f64 = parts.iter().map(|part| part.1).sum();
+        let counted: usize = parts.iter().map(|part| part.2).sum();
+        let unit = (2.0 / 3.0f64.sqrt()).sqrt();
+        if counted == 0 || !sum.is_finite() {
+            return Self {
+                delta_min: 0.0,
+                delta_avg: 0.0,
+            };
+        }
+        Self {
+            delta_min: least / unit,
+            delta_avg: sum / counted as f64 / unit,
+        }
+    }
+}
+
+/// The distance from a point to its nearest neighbor; infinite if there is none.
+fn nearest(cells: &Cells, index: u32, p: [f64; 2]) -> f64 {
+    let mut least = f64::INFINITY;
+    let rings = (cells.members().len() as f64).sqrt() as i64 * 2 + 2;
+    for ring in 0..=rings {
+        // Whatever lies in this ring is at least this far.
+        let far = (ring - 1).max(0) as f64 * cells.width();
+        if far * far > least {
+            break;
+        }
+        cells.ring(p, ring, |other, [dx, dy]| {
+            let squared = dx * dx + dy * dy;
+            // A point is not its own neighbor, but its images on a torus are.
+            if squared < least && !(other == index && squared == 0.0) {
+                least = squared;
+            }
+        });
+    }
+    least.sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn lattice(columns: usize, rows: usize, skew: f64) -> Vec<[f64; 2]> {
+        (0..rows)
+            .flat_map(|j| {
+                let shift = skew * (j % 2) as f64;
+                (0..columns)
+                    .map(move |i| [(i as f64 + shift) / columns as f64, j as f64 / rows as f64])
+            })
+            .collect()
+    }
+
+    #[test]
+    fn lattices_have_their_known_distances() {
+        let square = Distances::of_torus(&Torus::new(1.0, lattice(32, 32, 0.0)));
+        assert!((square.delta_min - 0.930_604_859_102_1).abs() < 1e-12);
+        assert!((square.delta_avg - 0.930_604_859_102_1).abs() < 1e-12);
+        // 56 × 97/… : rows √3/2 apart, 97/56 ≈ √3.
+        let hexagonal = Distances::of_torus(&Torus::new(1.0, lattice(97, 112, 0.5)));
+        assert!((hexagonal.delta_min - 1.0).abs() < 1e-3, "{hexagonal:?}");
+        assert!(hexagonal.delta_avg <= 1.001);
+    }
+
+    proptest! {
+        #[test]
+        fn agrees_with_all_pairs(points in proptest::collection::vec([0.0f64..1.0, 0.0f64..1.0], 2..120)) {
+            let set = Torus::new(1.0, points);
+            let side = set.side();
+            let gap = |a: f64, b: f64| {
+                let d = (a - b).abs();
+                d.min(side - d)
+            };
+            let each: Vec<f64> = set.points().iter().enumerate().map(|(i, p)| {
+                set.points().iter().enumerate().filter(|&(j, _)| i != j)
+                    .map(|(_, q)| gap(p[0], q[0]).hypot(gap(p[1], q[1])))
+                    .fold(f64::INFINITY, f64::min)
+            }).collect();
+            let unit = (2.0 / 3.0f64.sqrt()).sqrt();
+            let found = Distances::of_torus(&set);
+            let least = each.iter().copied().fold(f64::INFINITY, f64::min) / unit;
+            let mean = each.iter().sum::<f64>() / each.len() as f64 / unit;
+            prop_assert!((found.delta_min - least).abs() < 1e-12);
+            prop_assert!((found.delta_avg - mean).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_window_counts_its_inner_points_only() {
+        let mut points = lattice(40, 40, 0.0);
+        points.push([0.001, 0.0005]); // near the edge, close to a neighbor
+        let window = Window::new(1.0, 1600.0, points);
+        let found = Distances::of_window(&window);
+        assert!(
+            (found.delta_min - 0.930_604_859_102_1).abs() < 1e-9,
+            "{found:?}"
+        );
+        let empty = Distances::of_window(&Window::new(1.0, 1.0, vec![]));
+        assert_eq!(empty.delta_min, 0.0);
+    }
+}

@@ -1,0 +1,306 @@
+//! The power spectrum of a point set, and the figures drawn from it.
+//!
+//! Frequencies ν are in units of √N, so ν = 1 is one cycle per mean spacing; white noise has
+//! power 1.
+
+use super::{Torus, Window, cells::wrap, nufft::transform, taper};
+
+/// The power P(k) = |Σ exp(−2πi k·x)|²/N at every integer k up to a largest frequency.
+#[derive(Clone, Debug)]
+pub struct Spectrum {
+    /// The side of the set, in mean spacings: ν = |k| / side.
+    side: f64,
+    modes: usize,
+    /// By kx in 0..=modes, then ky in −modes..=modes.
+    power: Vec<f64>,
+}
+
+/// The modes of one ring of frequencies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ring {
+    /// The mean frequency of its modes.
+    pub nu: f64,
+    /// Their mean power.
+    pub power: f64,
+    /// 10·log10(variance / mean²) of their power: 0 for a random isotropic set, −200 for a ring of
+    /// equal powers.
+    pub anisotropy_db: f64,
+}
+
+/// The figures of a spectrum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Summary {
+    /// Mean power over 0 < ν < 0.5.
+    pub low_power: f64,
+    /// The largest mean power of a ring.
+    pub peak_power: f64,
+    /// Where that ring is.
+    pub peak_nu: f64,
+    /// The largest power of a single mode.
+    pub tallest: f64,
+    /// The median anisotropy of the rings with 0.8 < ν < 4 (as far as measured), in dB.
+    pub anisotropy_db: f64,
+}
+
+/// Where low power ends.
+const LOW_END: f64 = 0.5;
+/// The range of the anisotropy figure.
+const ANISOTROPY_RANGE: std::ops::Range<f64> = 0.8..4.0;
+
+impl Spectrum {
+    /// Of a periodic set, exact up to 10⁻¹⁰ of √N in amplitude, for |k| ≤ `nu_max`·√N along either
+    /// axis. Memory grows as N·`nu_max`².
+    #[must_use]
+    pub fn of_torus(set: &Torus, nu_max: f64) -> Self {
+        let side = set.side();
+        let modes = (nu_max * side).floor().max(0.0) as usize;
+        let turns: Vec<[f64; 2]> = set
+            .points()
+            .iter()
+            .map(|p| p.map(|v| wrap(v / side, 1.0)))
+            .collect();
+        let unit = 1.0 / set.points().len().max(1) as f64;
+        let power = transform(&turns, None, modes, |_, _, sum| sum.norm_sqr() * unit);
+        Self { side, modes, power }
+    }
+
+    /// An estimate from a window of an unbounded set, at frequencies k/side. Its taper lets through
+    /// less than 10⁻¹² of the power 10 modes away, and blurs over about ±2 modes.
+    #[must_use]
+    pub fn of_window(set: &Window, nu_max: f64) -> Self {
+        let side = set.side();
+        let modes = (nu_max * side).floor().max(0.0) as usize;
+        let turns: Vec<[f64; 2]> = set.points().iter().map(|p| p.map(|v| v / side)).collect();
+        let weights: Vec<f64> = turns
+            .iter()
+            .map(|p| taper::value(p[0]) * taper::value(p[1]))
+            .collect();
+        // At unit density the window holds side² points on average.
+        let area = side * side;
+        let unit = 1.0 / (area * taper::MEAN_SQUARE * taper::MEAN_SQUARE);
+        let power = transform(&turns, Some(&weights), modes, |kx, ky, sum| {
+            let mean = area * taper::coefficient(kx) * taper::coefficient(ky);
+            (sum - mean).norm_sqr() * unit
+        });
+        Self { side, modes, power }
+    }
+
+    /// The largest frequency along an axis.
+    #[must_use]
+    pub fn nu_max(&self) -> f64 {
+        self.modes as f64 / self.side
+    }
+
+    /// The power at k = (`kx`, `ky`) cycles per side, or `None` beyond the largest frequency.
+    #[must_use]
+    pub fn at(&self, kx: i64, ky: i64) -> Option<f64> {
+        // P(−k) = P(k).
+        let (kx, ky) = if kx < 0 { (-kx, -ky) } else { (kx, ky) };
+        let modes = self.modes as i64;
+        (kx <= modes && ky.abs() <= modes)
+            .then(|| self.power[(kx * (2 * modes + 1) + ky + modes) as usize])
+    }
+
+    /// One of every pair k, −k, without k = 0 and within the circle ν ≤ ν_max: (ν, power).
+    fn half_plane(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let modes = self.modes as i64;
+        let rows = self.power.chunks_exact(2 * self.modes + 1);
+        rows.enumerate().flat_map(move |(kx, row)| {
+            let kx = kx as i64;
+            let first = if kx == 0 { 1 } else { -modes };
+            (first..=modes).filter_map(move |ky| {
+                let squared = kx * kx + ky * ky;
+                (squared <= modes * modes).then(|| {
+                    (
+                        (squared as f64).sqrt() / self.side,
+                        row[(ky + modes) as usize],
+                    )
+                })
+            })
+        })
+    }
+
+    /// Rings of width `width` (in ν, at least one mode), from ν = 0 outwards, as far as they are
+    /// whole.
+    #[must_use]
+    pub fn rings(&self, width: f64) -> Vec<Ring> {
+        let width = width.max(1.0 / self.side);
+        let count = (self.nu_max() / width) as usize;
+        let mut sums = vec![[0.0f64; 4]; count];
+        for (nu, power) in self.half_plane() {
+            let Some(sum) = sums.get_mut((nu / width) as usize) else {
+                continue;
+            };
+            sum[0] += 1.0;
+            sum[1] += nu;
+            sum[2] += power;
+            sum[3] += power * power;
+        }
+        sums.into_iter()
+            .filter(|sum| sum[0] > 0.0)
+            .map(|[count, nu, power, square]| {
+                let mean = power / count;
+                let variance = square / count - mean * mean;
+                Ring {
+                    nu: nu / count,
+                    power: mean,
+                    anisotropy_db: 10.0 * (variance / (mean * mean)).max(1e-20).log10(),
+                }
+            })
+            .collect()
+    }
+
+    /// The figures, with rings of width `width`.
+    #[must_use]
+    pub fn summary(&self, width: f64) -> Summary {
+        let (mut low, mut low_count, mut tallest) = (0.0, 0u64, 0.0f64);
+        for (nu, power) in self.half_plane() {
+            if nu < LOW_END {
+                low += power;
+                low_count += 1;
+            }
+            tallest = tallest.max(power);
+        }
+        let rings = self.rings(width);
+        let peak = rings
+            .iter()
+            .copied()
+            .max_by(|a, b| a.power.total_cmp(&b.power));
+        let mut anisotropy: Vec<f64> = rings
+            .iter()
+            .filter(|ring| ANISOTROPY_RANGE.contains(&ring.nu))
+            .map(|ring| ring.anisotropy_db)
+            .collect();
+        anisotropy.sort_by(f64::total_cmp);
+        Summary {
+            low_power: low / low_count.max(1) as f64,
+            peak_power: peak.map_or(0.0, |ring| ring.power),
+            peak_nu: peak.map_or(0.0, |ring| ring.nu),
+            tallest,
+            anisotropy_db: anisotropy.get(anisotropy.len() / 2).copied().unwrap_or(0.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::optimize::SplitMix;
+
+    fn noise(count: usize, seed: u64) -> Vec<[f64; 2]> {
+        let mut random = SplitMix::new(seed);
+        (0..count)
+            .map(|_| [random.next_f64(), random.next_f64()])
+            .collect()
+    }
+
+    /// One point in every cell of a square grid, evenly distributed in it.
+    fn jittered(per_axis: usize, seed: u64) -> Vec<[f64; 2]> {
+        let corners = (0..per_axis).flat_map(|j| (0..per_axis).map(move |i| [i as f64, j as f64]));
+        corners
+            .zip(noise(per_axis * per_axis, seed))
+            .map(|(c, p)| [c[0] + p[0], c[1] + p[1]])
+            .collect()
+    }
+
+    #[test]
+    fn white_noise_has_power_one_and_no_anisotropy() {
+        let summary = Spectrum::of_torus(&Torus::new(1.0, noise(10_000, 1)), 4.0).summary(0.02);
+        assert!((summary.low_power - 1.0).abs() < 0.05, "{summary:?}");
+        assert!(summary.peak_power < 2.0, "{summary:?}");
+        assert!(summary.anisotropy_db.abs() < 0.15, "{summary:?}");
+        let window = Window::new(1.0, 10_000.0, noise(10_000, 2));
+        let summary = Spectrum::of_window(&window, 4.0).summary(0.02);
+        assert!((summary.low_power - 1.0).abs() < 0.15, "{summary:?}");
+        assert!(summary.anisotropy_db.abs() < 0.5, "{summary:?}");
+    }
+
+    #[test]
+    fn a_jittered_grid_has_its_analytic_spectrum() {
+        // 1 − sinc²(νx)·sinc²(νy), averaged over ten sets of 64² points.
+        let sinc = |v: f64| {
+            if v == 0.0 {
+                1.0
+            } else {
+                (PI * v).sin() / (PI * v)
+            }
+        };
+        let sets: Vec<Spectrum> = (0..10)
+            .map(|seed| Spectrum::of_torus(&Torus::new(64.0, jittered(64, seed)), 2.0))
+            .collect();
+        let mut worst: f64 = 0.0;
+        for ring in 1..30 {
+            // Means over small squares of modes, clear of the lattice's own peaks.
+            let (mut found, mut expected, mut modes) = (0.0, 0.0, 0.0);
+            for kx in ring * 4 + 1..ring * 4 + 4 {
+                for ky in 65..=120 {
+                    found += sets
+                        .iter()
+                        .map(|s| s.at(kx, ky).expect("measured"))
+                        .sum::<f64>();
+                    let shape = sinc(kx as f64 / 64.0) * sinc(ky as f64 / 64.0);
+                    expected += 10.0 * (1.0 - shape * shape);
+                    modes += 10.0;
+                }
+            }
+            worst = worst.max((found - expected).abs() / modes);
+        }
+        assert!(worst < 0.1, "{worst}");
+        let low: f64 = sets
+            .iter()
+            .map(|s| s.at(3, 2).expect("measured"))
+            .sum::<f64>()
+            / 10.0;
+        let shape = sinc(3.0 / 64.0) * sinc(2.0 / 64.0);
+        assert!(low < 5.0 * (1.0 - shape * shape), "{low}");
+    }
+
+    #[test]
+    fn a_lattice_has_its_peaks_and_nothing_else() {
+        let lattice = (0..32).flat_map(|j| (0..32).map(move |i| [f64::from(i), f64::from(j)]));
+        let spectrum = Spectrum::of_torus(&Torus::new(32.0, lattice.collect()), 2.5);
+        for kx in -80..=80i64 {
+            for ky in -80..=80i64 {
+                let expected = if kx % 32 == 0 && ky % 32 == 0 {
+                    1024.0
+                } else {
+                    0.0
+                };
+                let found = spectrum.at(kx, ky).expect("measured");
+                assert!((found - expected).abs() < 1e-7, "({kx}, {ky}): {found}");
+            }
+        }
+        assert!(spectrum.at(81, 0).is_none());
+        assert!((spectrum.summary(0.0).tallest - 1024.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_window_resolves_a_power_of_a_millionth() {
+        // A lattice has no power below ν = 0.5 at all. Neither the tall peaks nor the window's own
+        // edge may leak into it.
+        let lattice: Vec<[f64; 2]> = (-1..102)
+            .flat_map(|j| (-1..102).map(move |i| [f64::from(i) + 0.3, f64::from(j) + 0.8]))
+            .collect();
+        let window = Window::new(100.5, 1.0, lattice);
+        let summary = Spectrum::of_window(&window, 0.9).summary(0.02);
+        assert!(summary.low_power < 1e-12, "{summary:?}");
+        // The right density is part of the answer.
+        let wrong = Window::new(100.5, 1.01, window.points().to_vec());
+        assert!(Spectrum::of_window(&wrong, 0.9).summary(0.02).low_power > 1e-6);
+    }
+
+    #[test]
+    fn rings_are_whole_and_sorted() {
+        let spectrum = Spectrum::of_torus(&Torus::new(1.0, noise(400, 3)), 1.0);
+        let rings = spectrum.rings(0.0);
+        assert_eq!(rings.len(), 19); // 1 ≤ |k| < 20
+        assert!(rings.is_sorted_by(|a, b| a.nu < b.nu));
+        assert!(
+            Spectrum::of_torus(&Torus::new(1.0, vec![]), 1.0)
+                .rings(0.1)
+                .is_empty()
+        );
+    }
+}

@@ -1,0 +1,25 @@
+//! Optimizing in table space: the unknowns are the n² vectors of a table, not points.
+
+mod descent;
+mod overlap;
+mod pairs;
+mod start;
+mod watch;
+
+pub use descent::{Descended, Descent};
+pub use pairs::Pairs;
+pub use start::{SplitMix, jitter};
+pub use watch::{Meter, Progress, Stage, Watch};
+
+/// An energy as a function of a table's vectors, in mean spacings (*moves*).
+pub trait Objective {
+    /// The share of points that each block has; they sum to 1.
+    fn masses(&self) -> &[f64];
+
+    /// The energy per point. Writes into `gradient` the derivative by the position of one instance
+    /// of each block, the mean over its instances; times its mass it is the derivative by the
+    /// block's vector.
+    ///
+    /// Gives the same bits whatever the number of threads.
+    fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64;
+}
