@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use strew_core::{Plan, Point, Region, Sampler, Seed, Spacing};
+use strew_core::{Placement, Plan, Point, Region, Sampler, Seed, Spacing};
 
 use crate::{
     daemon::{Daemon, PROFILE, table},
@@ -16,7 +16,9 @@ pub fn plan() -> Plan {
     let sampler = Arc::new(Sampler::new(table("(5-sqrt(3))/2", PROFILE)));
     let region = Region::new([-3.5, 1.0], [40.0, 33.25]).expect("a box");
     let spacing = Spacing::from_density(7.0).expect("positive");
-    sampler.plan(spacing, Seed(5), region).expect("near")
+    sampler
+        .plan(Placement::new(spacing, Seed(5)), region)
+        .expect("near")
 }
 
 pub fn points(plan: &Plan) -> Vec<Point> {
@@ -70,7 +72,7 @@ fn json_is_one_document_that_echoes_the_query() {
         let query = &document["query"];
         assert_eq!(query["bbox"], serde_json::json!([-3.5, 1.0, 40.0, 33.25]));
         assert_eq!(query["density"], 7.0);
-        assert_eq!(query["spacing"], plan.spacing().get());
+        assert_eq!(query["spacing"], plan.placement().spacing.get());
         assert_eq!(query["alpha"], "(5-sqrt(3))/2");
         assert_eq!(query["profile"], PROFILE);
         assert_eq!(query["seed"], 5);
@@ -171,7 +173,7 @@ fn the_format_parameter_wins_over_accept_and_head_has_no_body() {
 fn defaults_and_spellings_do_not_matter() {
     let daemon = Daemon::start(&[]);
     let plain = daemon.get(&format!("{QUERY}&format=f64"));
-    let spacing = plan().spacing().get();
+    let spacing = plan().placement().spacing.get();
     for path in [
         "/v1/points?seed=5&format=f64&profile=test&density=7.0&bbox=-3.5,1.0,4e1,33.25".to_owned(),
         format!(

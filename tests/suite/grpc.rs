@@ -27,6 +27,7 @@ pub fn request(encoding: Encoding) -> StreamPointsRequest {
         profile: Some(PROFILE.into()),
         alpha: None,
         seed: 5,
+        warp: None,
         encoding: encoding.into(),
     }
 }
@@ -68,7 +69,10 @@ async fn the_default_encoding_has_fields_and_ids() {
         assert_eq!((origin.x, origin.y), (-3.5, 1.0));
         let query = header.query.expect("set");
         assert_eq!(query.bbox, request(encoding).bbox);
-        assert_eq!((query.density, query.spacing), (7.0, plan.spacing().get()));
+        assert_eq!(
+            (query.density, query.spacing),
+            (7.0, plan.placement().spacing.get())
+        );
         assert_eq!((query.alpha.as_str(), query.seed), ("(5-sqrt(3))/2", 5));
         assert_eq!(query.encoding(), Encoding::Points);
         assert!(blocks.len() > 10, "blocks are small");

@@ -10,7 +10,7 @@ use strew::grpc::proto::{
     BoundingBox, StreamPointsRequest, point_service_client::PointServiceClient,
     stream_points_request::Amount,
 };
-use strew_core::{Region, Sampler, Seed, Spacing};
+use strew_core::{Placement, Region, Sampler, Seed, Spacing};
 use tonic::Code;
 
 use crate::{
@@ -23,7 +23,9 @@ fn count(half: f64) -> u128 {
     let sampler = Arc::new(Sampler::new(table("(5-sqrt(3))/2", PROFILE)));
     let region = Region::new([-half, -half], [half, half]).expect("a box");
     let spacing = Spacing::new(1.0).expect("positive");
-    let plan = sampler.plan(spacing, Seed(0), region).expect("near");
+    let plan = sampler
+        .plan(Placement::new(spacing, Seed(0)), region)
+        .expect("near");
     plan.count()
 }
 

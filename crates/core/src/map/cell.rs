@@ -6,6 +6,7 @@
 
 use core::ops::RangeInclusive;
 
+use super::twin::MAX_Q;
 use crate::pattern::Alpha;
 
 /// A neighbor shift −(αk + b)/2: the place where a neighbor column enters or leaves.
@@ -127,6 +128,10 @@ impl Cell {
             last = line;
         }
         cell.keep_less(last, Linear::SET_SIDE);
+        if !cell.contains(alpha.half(), 1 << 63) {
+            // Thresholds coincide at α: it lies between two maps.
+            cell.low = cell.high;
+        }
         cell
     }
 
@@ -158,8 +163,8 @@ impl Cell {
         #[expect(clippy::reversed_empty_ranges, reason = "an empty range on purpose")]
         let empty: RangeInclusive<u64> = 1..=0;
         let range: RangeInclusive<u64> = match (bound(cell.high), bound(cell.low)) {
-            (Some(first), Some(last)) => first.max(1)..=last + 1,
-            (Some(first), None) => first.max(1)..=u64::MAX,
+            (Some(first), Some(last)) => first.max(1)..=MAX_Q.min(last + 1),
+            (Some(first), None) => first.max(1)..=MAX_Q,
             _ => empty,
         };
         range.filter(move |&q| cell.contains(t + q, q))

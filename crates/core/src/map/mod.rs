@@ -132,13 +132,14 @@ impl Map {
     }
 
     /// The periodic twins of this map, smallest first: fractions α' = p/q whose thresholds have
-    /// the same order, so that a table made on the twin is valid for α. The list does not end.
+    /// the same order, so that a table made on the twin is valid for α. The list ends at q = 2²⁴; it
+    /// is empty for an α at which thresholds coincide.
     ///
     /// Proof by construction: the order of the thresholds holds on an open interval of α whose
     /// ends are ratios of small integers; a fraction inside it is a twin, and no other is.
     pub fn twins(&self) -> impl Iterator<Item = Twin> + use<> {
         let cell = cell::Cell::new(self.alpha, self.radius);
-        (1u64..).flat_map(move |t| {
+        (1..twin::MAX_Q).flat_map(move |t| {
             cell.denominators(t)
                 .filter_map(move |q| Twin::new(t + q, q))
         })

@@ -31,7 +31,7 @@ pub struct Site {
 }
 
 /// The largest q: a period of 2²⁵ grid units, 10¹³ points, is far beyond what is ever listed.
-const MAX_Q: u64 = 1 << 24;
+pub(super) const MAX_Q: u64 = 1 << 24;
 
 impl Twin {
     /// The twin p/q, or `None` unless q < p < 2q, p and q have no common factor and q ≤ 2²⁴.
@@ -195,6 +195,12 @@ mod tests {
         assert_eq!((first.t(), first.q()), (112, 153));
         let first = map("(1+sqrt(5))/2").twins().next().expect("endless");
         assert_eq!((first.t(), first.q()), (89, 144));
+    }
+
+    #[test]
+    fn an_alpha_on_the_edge_of_two_maps_has_no_twins() {
+        let edge = Map::new("3/2".parse().expect("valid"), 49).expect("small");
+        assert_eq!(edge.twins().next(), None);
     }
 
     #[test]

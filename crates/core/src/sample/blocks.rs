@@ -184,13 +184,12 @@ impl<F: Format> Blocks<F> {
                 base,
                 y: patch.relative(Axis::Y, y),
                 lattice: y,
+                is_inner: span.inner.contains(&y),
             };
-            let is_inner = span.inner.contains(&y);
             let (written, done) = template.fill(
                 format,
                 patch,
                 row,
-                is_inner,
                 self.done,
                 self.backend,
                 &mut out[filled..],

@@ -76,22 +76,21 @@ impl<F: Format> Template<F> {
     }
 
     /// Writes a row's points from column `done` on; gives how many items were written and how many
-    /// columns are done with. `is_inner` says that the row is an inner one.
+    /// columns are done with.
     pub(super) fn fill(
         &self,
         format: &F,
         patch: &Patch,
         row: Row,
-        is_inner: bool,
         done: usize,
         backend: Backend,
         out: &mut [F::Item],
     ) -> (usize, usize) {
         if patch.shears().is_some() {
-            return self.fill_warped(format, patch, row, is_inner, done, out);
+            return self.fill_warped(format, patch, row, done, out);
         }
         let (columns, displacements) = (&self.columns[done..], &self.displacements[done..]);
-        if is_inner {
+        if row.is_inner {
             let written = columns.len().min(out.len());
             format.fill_row(
                 backend,
@@ -122,7 +121,6 @@ impl<F: Format> Template<F> {
         format: &F,
         patch: &Patch,
         row: Row,
-        is_inner: bool,
         done: usize,
         out: &mut [F::Item],
     ) -> (usize, usize) {
@@ -147,7 +145,7 @@ impl<F: Format> Template<F> {
                     },
                 )
             });
-        if is_inner && patch.columns_are_inner {
+        if row.is_inner && patch.columns_are_inner {
             let written = displaced.len().min(out.len());
             for (out, (x, y, id)) in out.iter_mut().zip(columns) {
                 *out = item(shears.apply(x, y), id);
