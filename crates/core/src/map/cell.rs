@@ -111,13 +111,17 @@ impl Cell {
         };
         let side = alpha.set_side();
         let mut inside: alloc::vec::Vec<(u64, Linear)> = alloc::vec::Vec::new();
+        // Two labels are the ends of the set region; any other there coincides with one.
+        let mut at_ends = 0;
         for label in labels(radius) {
             let (index, line) = (label.index(alpha), label.linear(alpha));
-            if index > side {
+            if index == 0 || index == side {
+                at_ends += 1;
+            } else if index > side {
                 // It stays out of the set region.
                 cell.keep_less(Linear::SET_SIDE, line);
                 cell.keep_less(line, Linear::ONE);
-            } else if index > 0 && index < side {
+            } else {
                 inside.push((index, line));
             }
         }
@@ -128,7 +132,7 @@ impl Cell {
             last = line;
         }
         cell.keep_less(last, Linear::SET_SIDE);
-        if !cell.contains(alpha.half(), 1 << 63) {
+        if at_ends > 2 || !cell.contains(alpha.half(), 1 << 63) {
             // Thresholds coincide at α: it lies between two maps.
             cell.low = cell.high;
         }
