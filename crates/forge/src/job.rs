@@ -13,6 +13,7 @@ use crate::{
     judge::{Complaint, Panel, complaints},
     optimize::{Descended, Descent, Meter, Objective, Pairs, Stage, Watch, jitter},
     profile::{GaussianRecipe, Profile, Recipe},
+    twins::{next_to_alpha, of_fraction},
 };
 
 /// How many twins a table is optimized on. They lie on both sides of α, so that among them they
@@ -20,6 +21,9 @@ use crate::{
 const TWINS: usize = 6;
 /// Twins with fewer points repeat before a block's neighborhood ends.
 const LEAST_TWIN: u64 = 4000;
+/// The least side t of the set region (α = 1.1): below, a map of any half-width sees too few
+/// neighbors, and there are too many grid points between them to list.
+const LEAST_SIDE: f64 = 0.05;
 /// The largest half-width a table is made for: 330 intervals at the default α, and about 200 MB of
 /// neighbor lists.
 pub const MAX_RADIUS: u32 = 256;
@@ -181,11 +185,19 @@ impl Plan {
         in_range("steps", steps, MAX_STEPS)?;
         in_range("R", job.radius, MAX_RADIUS)?;
         let map = Map::new(job.alpha, job.radius).map_err(|e| ForgeError::Table(e.into()))?;
-        let twins: Vec<Twin> = map
-            .twins()
+        let twins: Vec<Twin> = next_to_alpha(&map)
             .filter(|twin| twin.is_uniform() && twin.points() >= LEAST_TWIN)
             .take(TWINS)
             .collect();
+        if twins.is_empty() || map.alpha().set_side_f64() < LEAST_SIDE {
+            return Err(ForgeError::Field {
+                field: "alpha",
+                value: job.alpha.to_string(),
+                allowed: "at least 1.1, and not a fraction of small numbers, whose map has ties \
+                          that no periodic twin has"
+                    .into(),
+            });
+        }
         Ok(Self {
             profile,
             panel: Panel::new(&map, &twins),
@@ -227,10 +239,7 @@ impl Plan {
         let maps: Vec<Map> = self
             .twins
             .iter()
-            .filter_map(|twin| {
-                let alpha = Alpha::from_fraction(twin.p(), twin.q()).ok()?;
-                Map::new(alpha, self.map.radius()).ok()
-            })
+            .filter_map(|&twin| of_fraction(&self.map, twin))
             .collect();
         Phase {
             objective: Pairs::new(energy, &maps, self.scale()),
@@ -287,7 +296,7 @@ fn in_range(field: &'static str, value: u32, most: u32) -> Result<(), ForgeError
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Mutex;
+    use std::{str::FromStr, sync::Mutex};
 
     use super::*;
     use crate::Progress;
@@ -404,7 +413,22 @@ mod tests {
     #[test]
     fn bad_parts_are_refused_by_name_value_and_what_is_allowed() {
         let good = job(1);
+        let of = |alpha: &str| Alpha::from_str(alpha).expect("valid");
         for (job, words) in [
+            (
+                Job {
+                    alpha: of("3/2"),
+                    ..good.clone()
+                },
+                ["alpha", "3/2", "1.1"],
+            ),
+            (
+                Job {
+                    alpha: of("1.01"),
+                    ..good.clone()
+                },
+                ["alpha", "101/100", "1.1"],
+            ),
             (
                 Job {
                     steps: Some(0),
@@ -453,7 +477,7 @@ mod tests {
 
     #[test]
     fn the_smallest_jobs_work() {
-        for alpha in ["1.05", "1.95", "3/2", "sqrt(2)"] {
+        for alpha in ["1.11", "1.95", "183/112", "sqrt(2)"] {
             let job = Job {
                 radius: 1,
                 steps: Some(1),

@@ -29,6 +29,7 @@ pub mod judge;
 pub mod measure;
 pub mod optimize;
 pub mod profile;
+mod twins;
 
 pub use error::ForgeError;
 pub use file::{EXTENSION, file_name, read_table, write_table};

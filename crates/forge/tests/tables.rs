@@ -54,7 +54,7 @@ fn shipped_tables_are_good_on_unseen_twins_and_windows() {
             assert!(value("low_power") <= 1e-5, "{alpha} {figures:?}");
             assert!(value("delta_min") >= 0.62, "{alpha} {figures:?}");
             assert!(value("delta_avg") >= 0.8, "{alpha} {figures:?}");
-            assert!(value("peak_power") <= 2.4, "{alpha} {figures:?}");
+            assert!(value("peak_power") <= 2.5, "{alpha} {figures:?}");
         }
     }
 }

@@ -8,11 +8,12 @@ mod figure;
 
 pub use figure::{Bound, Complaint, Figure, RING_WIDTH, Side, figures_of_torus, figures_of_window};
 
-use strew_core::{Table, Twin, table::Figures};
+use strew_core::{Map, Table, Twin, table::Figures};
 
 use crate::{
     measure::{twin_set, window_set},
     optimize::Meter,
+    twins::next_to_alpha,
 };
 
 /// The least number of points of a twin that a table is judged on.
@@ -38,10 +39,10 @@ impl Panel {
     /// compare with, the first unseen twins of at least 50,000, 100,000 and 200,000 points, and
     /// two windows.
     #[must_use]
-    pub fn new(map: &strew_core::Map, seen: &[Twin]) -> Self {
+    pub fn new(map: &Map, seen: &[Twin]) -> Self {
         let mut unseen: Vec<Twin> = Vec::new();
         for factor in [1, 2, 4] {
-            let next = map.twins().find(|twin| {
+            let next = next_to_alpha(map).find(|twin| {
                 twin.points() >= factor * JUDGED_POINTS
                     && !seen.contains(twin)
                     && !unseen.contains(twin)
@@ -129,8 +130,6 @@ pub fn complaints(bounds: &[Bound], figures: &[Figures]) -> Vec<Complaint> {
 
 #[cfg(test)]
 mod tests {
-    use strew_core::Map;
-
     use super::*;
 
     #[test]

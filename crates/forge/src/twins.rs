@@ -1,0 +1,67 @@
+//! The twins a table is made and judged on: those next to α.
+//!
+//! A map's twins may lie anywhere on the interval of α on which its thresholds keep their order.
+//! For small maps that interval is wide, and a twin far from α has another density and other
+//! frequencies. So of each numerator only the two fractions around α are looked at. For maps of
+//! useful size these are all the twins of moderate size there are.
+
+use strew_core::{Alpha, Map, Twin};
+
+/// The largest side t of a twin that is looked for: 17 million points.
+const MAX_SIDE: u64 = 4096;
+
+/// The twins of a map next to its α, smallest first. The list ends; for a fraction of small
+/// numbers, whose thresholds coincide as no twin's do, it may be empty.
+pub(crate) fn next_to_alpha(map: &Map) -> impl Iterator<Item = Twin> {
+    let excess = map.alpha().to_f64() - 1.0;
+    (1..=MAX_SIDE).flat_map(move |t| {
+        let q = (t as f64 / excess) as u64;
+        [q, q + 1]
+            .into_iter()
+            .filter_map(move |q| Twin::new(t + q, q))
+            .filter(|&twin| map.has_twin(twin) && of_fraction(map, twin).is_some())
+    })
+}
+
+/// The map for a twin's fraction, or `None` if its intervals are not this map's after all.
+pub(crate) fn of_fraction(map: &Map, twin: Twin) -> Option<Map> {
+    let alpha = Alpha::from_fraction(twin.p(), twin.q()).ok()?;
+    let same = |found: &Map| found.intervals() == map.intervals();
+    Map::new(alpha, map.radius()).ok().filter(same)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn for_maps_of_useful_size_they_are_all_the_twins_there_are() {
+        for alpha in ["(5-sqrt(3))/2", "sqrt(3)", "(1+sqrt(5))/2"] {
+            let map = Map::new(alpha.parse().expect("valid"), 49).expect("small");
+            let all: Vec<Twin> = map.twins().take(60).collect();
+            let found: Vec<Twin> = next_to_alpha(&map).take(60).collect();
+            assert_eq!(found, all, "{alpha}");
+        }
+    }
+
+    #[test]
+    fn they_are_near_alpha_and_the_list_ends() {
+        for (alpha, radius) in [("1.1", 1), ("1.95", 1), ("sqrt(2)", 3), ("3/2", 4)] {
+            let map = Map::new(alpha.parse().expect("valid"), radius).expect("small");
+            for twin in next_to_alpha(&map)
+                .skip_while(|twin| twin.points() < 4000)
+                .take(50)
+            {
+                let fraction = twin.p() as f64 / twin.q() as f64;
+                assert!(
+                    (fraction - map.alpha().to_f64()).abs() < 0.02,
+                    "{alpha} {twin}"
+                );
+                let finer = of_fraction(&map, twin).expect("the same map");
+                assert_eq!(finer.intervals(), map.intervals());
+            }
+        }
+        let tied = Map::new("3/2".parse().expect("valid"), 4).expect("small");
+        assert_eq!(next_to_alpha(&tied).filter(|t| t.points() > 1).count(), 0);
+    }
+}
