@@ -28,6 +28,7 @@ mod job;
 pub mod judge;
 pub mod measure;
 pub mod optimize;
+mod plan;
 pub mod profile;
 mod twins;
 
@@ -36,4 +37,4 @@ pub use file::{EXTENSION, file_name, read_table, write_table};
 pub use job::{DEFAULT_SEED, Estimate, Job, MAX_RADIUS, MAX_STEPS, Outcome, forge};
 pub use judge::{Complaint, Figure};
 pub use optimize::{Progress, Stage, Watch};
-pub use profile::Profile;
+pub use profile::{Profile, Target};

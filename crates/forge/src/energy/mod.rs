@@ -5,11 +5,13 @@
 //! at all (see [`crate::optimize::Pairs`]). A [`SetEnergy`] is anything else that can be computed
 //! on a periodic point set, such as an error of its spectrum. Every pair energy is a set energy.
 
+mod bessel;
 pub mod exp;
 mod gaussian;
 mod guard;
 mod pairwise;
 
+pub use bessel::BesselJ0;
 pub use gaussian::Gaussian;
 pub use guard::Guard;
 pub use pairwise::Pairwise;

@@ -3,11 +3,13 @@
 mod descent;
 mod overlap;
 mod pairs;
+mod radial;
 mod start;
 mod watch;
 
 pub use descent::{Descended, Descent};
 pub use pairs::Pairs;
+pub use radial::{Radial, RadialWeights, Reach};
 pub use start::{SplitMix, jitter};
 pub use watch::{Meter, Progress, Stage, Watch};
 
@@ -22,4 +24,9 @@ pub trait Objective {
     ///
     /// Gives the same bits whatever the number of threads.
     fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64;
+
+    /// How many pairs one evaluation visits, once there was one.
+    fn pairs(&self) -> usize {
+        0
+    }
 }

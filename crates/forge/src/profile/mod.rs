@@ -4,6 +4,12 @@
 //! To add one: a constant here, its name in [`Profile::ALL`], and, for a new kind of energy, a
 //! variant of [`Recipe`] with its branch in the forge.
 
+mod radial;
+mod target;
+
+pub use radial::RadialRecipe;
+pub use target::{MAX_NU, MAX_POINTS, MAX_POWER, Target};
+
 use crate::{
     ForgeError,
     judge::{Bound, Figure},
@@ -31,6 +37,8 @@ pub struct Profile {
 pub enum Recipe {
     /// Gaussian repulsion, with a guard against close pairs, in two phases.
     Gaussian(GaussianRecipe),
+    /// A radial power curve, on the unbounded pattern.
+    Radial(RadialRecipe),
 }
 
 /// Parameters of [`Recipe::Gaussian`]; lengths in mean spacings.
@@ -75,7 +83,31 @@ const BLUE: Profile = Profile {
 
 impl Profile {
     /// All profiles that can be made.
-    pub const ALL: &'static [Self] = &[BLUE];
+    pub const ALL: &'static [Self] = &[BLUE, radial::STEP];
+
+    /// The radial power curve it follows, if it follows one.
+    #[must_use]
+    pub fn target(&self) -> Option<Target> {
+        match self.recipe {
+            Recipe::Radial(recipe) => Some(Target::fixed(recipe.curve)),
+            Recipe::Gaussian(_) => None,
+        }
+    }
+
+    /// The profile of a curve that somebody drew, under a name that is not taken.
+    ///
+    /// # Errors
+    /// [`ForgeError::Field`] if `name` is that of a known profile.
+    pub fn custom(name: &str) -> Result<&'static Self, ForgeError> {
+        match Self::named(name) {
+            Err(_) => Ok(&radial::CUSTOM),
+            Ok(_) => Err(ForgeError::Field {
+                field: "profile",
+                value: format!("{name:?}"),
+                allowed: "for a curve of your own, a name that no known profile has".into(),
+            }),
+        }
+    }
 
     /// The profile of that name.
     ///
@@ -114,6 +146,7 @@ impl Recipe {
                 let text = parameters.map(|(name, value)| (name.into(), value.to_string()));
                 ("gaussian", text.into())
             }
+            Self::Radial(recipe) => ("radial", recipe.describe()),
         }
     }
 }
