@@ -38,6 +38,9 @@ pub(super) struct Args {
     /// The number alpha [default: (5-sqrt(3))/2].
     #[arg(long, allow_hyphen_values = true)]
     alpha: Option<String>,
+    /// The size of the map: s, m or l, as far as it is loaded [default: s].
+    #[arg(long)]
+    map: Option<String>,
     /// Which set of points [default: 0].
     #[arg(long, allow_hyphen_values = true)]
     seed: Option<String>,
@@ -65,6 +68,7 @@ impl Args {
             spacing: self.spacing.clone(),
             profile: self.profile.clone(),
             alpha: self.alpha.clone(),
+            map: self.map.clone(),
             seed: self.seed.clone(),
             warp: self.warp.clone(),
             format: self.format.clone(),

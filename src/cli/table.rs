@@ -63,6 +63,9 @@ struct Which {
     /// Only loaded tables of this alpha.
     #[arg(long, conflicts_with = "file", allow_hyphen_values = true)]
     alpha: Option<String>,
+    /// Only loaded tables with a map of this size: s, m or l.
+    #[arg(long, conflicts_with = "file")]
+    map: Option<strew_core::map::Size>,
     #[command(flatten)]
     settings: config::Args,
 }
@@ -99,6 +102,7 @@ impl Which {
                 .as_ref()
                 .is_none_or(|profile| **profile == *entry.key.profile)
                 && alpha.is_none_or(|alpha| alpha == entry.key.alpha)
+                && self.map.is_none_or(|size| size == entry.key.size)
         };
         let named = |entry: &Entry| {
             let place = match &entry.source {
@@ -222,7 +226,7 @@ fn export(args: &Export) -> Result<(), Failure> {
     let tables = args.which.tables()?;
     let [(_, table)] = &tables[..] else {
         return Err(Failure::Usage(anyhow!(
-            "{} tables are loaded: choose one with --profile and --alpha, or name a file",
+            "{} tables are loaded: choose one with --profile, --alpha and --map, or name a file",
             tables.len()
         )));
     };

@@ -43,6 +43,7 @@ pub(super) fn query(
         spacing,
         profile: request.profile.as_deref(),
         alpha: request.alpha.as_deref(),
+        map: request.map.as_deref(),
         seed: request.seed,
         warp: request.warp,
     };
@@ -67,6 +68,7 @@ pub(super) fn resolved(query: &Query, encoding: Encoding) -> ResolvedQuery {
         spacing: query.spacing.get(),
         profile: query.profile.clone(),
         alpha: query.alpha.to_string(),
+        map: query.size.to_string(),
         seed: query.seed.0,
         warp: query.warp.strength(),
         encoding: encoding.into(),
@@ -80,6 +82,7 @@ pub(super) fn profile(entry: &Entry) -> Profile {
     Profile {
         profile: entry.key.profile.as_ref().into(),
         alpha: entry.key.alpha.to_string(),
+        map: entry.key.size.to_string(),
         radius: entry.radius,
         intervals: number(entry.intervals),
         blocks: number(entry.blocks()),

@@ -44,6 +44,7 @@ struct Profiles<'a> {
 struct Profile<'a> {
     profile: &'a str,
     alpha: String,
+    map: String,
     radius: u32,
     intervals: usize,
     blocks: usize,
@@ -76,6 +77,7 @@ impl<'a> Profile<'a> {
         Self {
             profile: &entry.key.profile,
             alpha: entry.key.alpha.to_string(),
+            map: entry.key.size.to_string(),
             radius: entry.radius,
             intervals: entry.intervals,
             blocks: entry.blocks(),

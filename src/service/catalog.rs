@@ -16,6 +16,7 @@ use std::{
 use bytes::Bytes;
 use strew_core::{
     Alpha, Sampler, Table,
+    map::Size,
     table::{MAX_FILE_BYTES, Provenance, TableError},
 };
 
@@ -31,11 +32,13 @@ pub struct Key {
     pub profile: Arc<str>,
     /// The number α.
     pub alpha: Alpha,
+    /// The size of its map.
+    pub size: Size,
 }
 
 impl Ord for Key {
     fn cmp(&self, other: &Self) -> Ordering {
-        let rank = |key: &Self| (key.alpha.half(), key.alpha);
+        let rank = |key: &Self| (key.alpha.half(), key.alpha, key.size);
         let by_name = self.profile.cmp(&other.profile);
         by_name.then_with(|| rank(self).cmp(&rank(other)))
     }
@@ -49,7 +52,11 @@ impl PartialOrd for Key {
 
 impl fmt::Display for Key {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "profile `{}`, alpha {}", self.profile, self.alpha)
+        write!(
+            f,
+            "profile `{}`, alpha {}, map {}",
+            self.profile, self.alpha, self.size
+        )
     }
 }
 
@@ -99,6 +106,7 @@ impl Entry {
             key: Key {
                 profile: table.profile().into(),
                 alpha: table.alpha(),
+                size: table.map().size(),
             },
             source,
             radius: table.map().radius(),
@@ -268,12 +276,23 @@ impl Catalog {
         names
     }
 
-    /// The values of α that a profile is loaded for.
-    pub fn alphas(&self, profile: &str) -> impl Iterator<Item = Alpha> {
+    /// The values of α that a profile is loaded for, without repetition.
+    pub fn alphas(&self, profile: &str) -> Vec<Alpha> {
+        let mut alphas: Vec<Alpha> = self.of_profile(profile).map(|key| key.alpha).collect();
+        alphas.dedup();
+        alphas
+    }
+
+    /// The sizes of map that a profile is loaded with for an α, smallest first.
+    pub fn sizes(&self, profile: &str, alpha: Alpha) -> Vec<Size> {
+        let keys = self.of_profile(profile).filter(|key| key.alpha == alpha);
+        keys.map(|key| key.size).collect()
+    }
+
+    fn of_profile(&self, profile: &str) -> impl Iterator<Item = &Key> {
         self.entries
             .keys()
             .filter(move |key| &*key.profile == profile)
-            .map(|key| key.alpha)
     }
 }
 

@@ -30,7 +30,12 @@ pub fn strew() -> Command {
 
 /// A table with displacements from a simple generator: no noise profile, but points of all kinds.
 pub fn table(alpha: &str, profile: &str) -> Table {
-    let map = Map::new(alpha.parse().expect("valid"), 20).expect("small");
+    table_of_radius(alpha, profile, 20)
+}
+
+/// The same for a map of another half-width.
+pub fn table_of_radius(alpha: &str, profile: &str, radius: u32) -> Table {
+    let map = Map::new(alpha.parse().expect("valid"), radius).expect("small");
     let mut state = 1u32;
     let mut next = || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

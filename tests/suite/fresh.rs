@@ -3,7 +3,7 @@
 use std::process::Stdio;
 
 use crate::{
-    daemon::{Daemon, PROFILE, strew, table, tables, write},
+    daemon::{Daemon, PROFILE, strew, table, table_of_radius, tables, write},
     raw,
 };
 
@@ -82,8 +82,10 @@ fn it_starts_without_any_table_and_says_so() {
 #[test]
 fn a_table_of_the_folder_replaces_a_built_in_one_and_answers_by_default() {
     let folder = tables();
-    let mine = table("(5-sqrt(3))/2", "blue");
+    let mine = table_of_radius("(5-sqrt(3))/2", "blue", 49);
     write(folder.path(), "mine.strew", &mine);
+    let other_size = table("(5-sqrt(3))/2", "blue");
+    write(folder.path(), "other-size.strew", &other_size);
     std::fs::write(folder.path().join("notes.txt"), "no table").expect("writable");
     let daemon = Daemon::with_tables(folder, &[]);
     let answer = daemon.get("/v1/points?bbox=0,0,9,9&spacing=0.5");
@@ -97,6 +99,18 @@ fn a_table_of_the_folder_replaces_a_built_in_one_and_answers_by_default() {
     assert_eq!(
         (&query["profile"], &query["seed"]),
         (&"blue".into(), &0.into())
+    );
+    let answer = daemon.get("/v1/points?bbox=0,0,9,9&spacing=0.5&map=r20");
+    assert_eq!(
+        answer.header("strew-table"),
+        other_size.digest().to_string()
+    );
+    assert_eq!(answer.json()["query"]["map"], "r20");
+    let answer = daemon.get("/v1/points?bbox=0,0,9,9&spacing=0.5&map=q");
+    assert!(
+        answer.text().contains("allowed: r20, s"),
+        "{}",
+        answer.text()
     );
 }
 

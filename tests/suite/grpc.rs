@@ -28,6 +28,7 @@ pub fn request(encoding: Encoding) -> StreamPointsRequest {
         alpha: None,
         seed: 5,
         warp: None,
+        map: None,
         encoding: encoding.into(),
     }
 }

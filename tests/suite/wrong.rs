@@ -101,6 +101,8 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
         &["-1", "18446744073709551615"],
     ),
     ("bbox=0,0,10,10&density=1&seed=1.5", &["seed"], &["1.5"]),
+    ("bbox=0,0,10,10&density=1&map=xl", &["map"], &["xl"]),
+    ("bbox=0,0,10,10&density=1&map=l", &["map"], &["l"]),
     ("bbox=0,0,10,10&density=1&warp=3", &["warp"], &["3"]),
     ("bbox=0,0,10,10&density=1&warp=-0.5", &["warp"], &["-0.5"]),
     ("bbox=0,0,10,10&density=1&warp=maybe", &["warp"], &["maybe"]),

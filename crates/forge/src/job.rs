@@ -27,6 +27,10 @@ const LEAST_SIDE: f64 = 0.05;
 /// The largest half-width a table is made for: 330 intervals at the default α, and about 200 MB of
 /// neighbor lists.
 pub const MAX_RADIUS: u32 = 256;
+/// The seed unless a job says otherwise. Among the first 18 it gives the flattest spectra: Bragg
+/// peaks crowd into rings differently from seed to seed, and on twins far from α the largest radial
+/// power comes out between 2.2 and 2.8. The other figures hardly depend on it.
+pub const DEFAULT_SEED: u64 = 17;
 /// The largest number of steps.
 pub const MAX_STEPS: u32 = 1_000_000;
 
@@ -48,14 +52,15 @@ pub struct Job {
 }
 
 impl Job {
-    /// The usual job for an α: R = 49, profile `blue`, seed 1, the profile's steps.
+    /// The usual job for an α: R = 49, profile `blue`, seed [`DEFAULT_SEED`], the profile's
+    /// steps.
     #[must_use]
     pub fn new(alpha: Alpha) -> Self {
         Self {
             alpha,
             radius: 49,
             profile: "blue".into(),
-            seed: 1,
+            seed: DEFAULT_SEED,
             steps: None,
         }
     }
@@ -69,7 +74,9 @@ impl Job {
         let mut phase = plan.phases().remove(0).objective;
         let moves = plan.start(self.seed);
         let mut gradient = vec![[0.0; 2]; moves.len()];
+        let began = Instant::now();
         phase.evaluate(&moves, &mut gradient); // builds the neighbor lists
+        let building = began.elapsed() * NEIGHBOR_LISTS;
         let trials = 2;
         let began = Instant::now();
         for _ in 0..trials {
@@ -83,11 +90,13 @@ impl Job {
             pairs: phase.pairs() as u64,
             steps: plan.steps,
             measured_points,
-            time: optimizing + measuring,
+            time: building + optimizing + measuring,
         })
     }
 }
 
+/// How often neighbor lists are built in a usual run.
+const NEIGHBOR_LISTS: u32 = 10;
 /// About what measuring takes, up to ν = 4, on two cores.
 const MEASURING_A_POINT: Duration = Duration::from_nanos(3000);
 
@@ -328,7 +337,7 @@ mod tests {
     fn the_history_tells_all() {
         let outcome = forge(&job(30), &()).expect("a good job");
         let history = outcome.table.provenance();
-        assert_eq!((history.optimizer.as_str(), history.seed), ("gaussian", 1));
+        assert_eq!((history.optimizer.as_str(), history.seed), ("gaussian", 17));
         assert!(history.parameters.contains(&("steps".into(), "30".into())));
         assert!(history.parameters.contains(&("sigma".into(), "1".into())));
         assert_eq!(history.twins.len(), TWINS);

@@ -33,7 +33,7 @@ mod twins;
 
 pub use error::ForgeError;
 pub use file::{EXTENSION, file_name, read_table, write_table};
-pub use job::{Estimate, Job, MAX_RADIUS, MAX_STEPS, Outcome, forge};
+pub use job::{DEFAULT_SEED, Estimate, Job, MAX_RADIUS, MAX_STEPS, Outcome, forge};
 pub use judge::{Complaint, Figure};
 pub use optimize::{Progress, Stage, Watch};
 pub use profile::Profile;

@@ -9,6 +9,7 @@ mod text;
 use serde::Serialize;
 use strew_core::{
     Alpha, Placement, Region, Seed, Spacing, Warp,
+    map::Size,
     sample::{PlanError, RegionError, SpacingError},
 };
 
@@ -45,6 +46,9 @@ pub struct Draft<'a> {
     pub profile: Option<&'a str>,
     /// The number α, in any form that is read.
     pub alpha: Option<&'a str>,
+    /// The size of the map: `s`, `m`, `l`; the size S if it is loaded, else the smallest, by
+    /// default.
+    pub map: Option<&'a str>,
     /// The seed.
     pub seed: u64,
     /// The strength of the warp; by default 0 for seed 0 and 1 for every other.
@@ -64,6 +68,8 @@ pub struct Query {
     pub profile: String,
     /// The number α.
     pub alpha: Alpha,
+    /// The size of the map.
+    pub size: Size,
     /// The seed.
     pub seed: Seed,
     /// How strongly the plane is warped.
@@ -83,6 +89,8 @@ pub struct Resolved {
     pub profile: String,
     /// The number α in its canonical form.
     pub alpha: String,
+    /// The size of the map.
+    pub map: String,
     /// The seed.
     pub seed: u64,
     /// The strength of the warp; 0 is off.
@@ -126,6 +134,7 @@ impl Draft<'_> {
             density,
             profile: key.profile.as_ref().into(),
             alpha: key.alpha,
+            size: key.size,
             seed: Seed(self.seed),
             warp: warp.unwrap_or(Placement::new(spacing, Seed(self.seed)).warp),
         })
@@ -198,7 +207,8 @@ impl Draft<'_> {
     fn key(&self, catalog: &Catalog) -> Result<Key, Vec<Fault>> {
         let profile = self.profile.unwrap_or(DEFAULT_PROFILE);
         let text = self.alpha.unwrap_or(DEFAULT_ALPHA);
-        let is_loaded = catalog.alphas(profile).next().is_some();
+        let alphas = catalog.alphas(profile);
+        let is_loaded = !alphas.is_empty();
         let mut faults = vec![];
         if !is_loaded {
             let detail = "no such profile is loaded";
@@ -206,7 +216,7 @@ impl Draft<'_> {
         }
         let allowed = || {
             if is_loaded {
-                some(catalog.alphas(profile).map(|alpha| alpha.to_string()))
+                some(alphas.iter().map(ToString::to_string))
             } else {
                 loaded(catalog)
             }
@@ -217,17 +227,35 @@ impl Draft<'_> {
         let (Ok(alpha), true) = (alpha, faults.is_empty()) else {
             return Err(faults);
         };
-        let key = Key {
+        let sizes = catalog.sizes(profile, alpha);
+        let Some(&smallest) = sizes.first() else {
+            let detail = format!("the profile `{profile}` is not loaded for this alpha");
+            return Err(vec![Fault::new("alpha", text, detail, allowed())]);
+        };
+        let size = match self.map {
+            Some(text) => text
+                .parse::<Size>()
+                .ok()
+                .filter(|size| sizes.contains(size))
+                .ok_or_else(|| {
+                    let detail =
+                        format!("the profile `{profile}` is not loaded with this map size");
+                    vec![Fault::new(
+                        "map",
+                        text,
+                        detail,
+                        some(sizes.iter().map(ToString::to_string)),
+                    )]
+                })?,
+            None if sizes.contains(&Size::S) => Size::S,
+            None => smallest,
+        };
+        let entry = catalog.entry(&Key {
             profile: profile.into(),
             alpha,
-        };
-        match catalog.entry(&key) {
-            Some(entry) => Ok(entry.key.clone()),
-            None => {
-                let detail = format!("the profile `{profile}` is not loaded for this alpha");
-                Err(vec![Fault::new("alpha", text, detail, allowed())])
-            }
-        }
+            size,
+        });
+        entry.map(|entry| entry.key.clone()).ok_or_else(Vec::new)
     }
 }
 
@@ -238,6 +266,7 @@ impl Query {
         Key {
             profile: self.profile.as_str().into(),
             alpha: self.alpha,
+            size: self.size,
         }
     }
 
@@ -260,6 +289,7 @@ impl Query {
             spacing: self.spacing.get(),
             profile: self.profile.clone(),
             alpha: self.alpha.to_string(),
+            map: self.size.to_string(),
             seed: self.seed.0,
             warp: self.warp.strength(),
         }
@@ -307,7 +337,7 @@ fn listed(corners: [f64; 4]) -> String {
 /// What is loaded, for an error.
 fn loaded(catalog: &Catalog) -> String {
     let of = |profile: &str| {
-        let alphas = some(catalog.alphas(profile).map(|alpha| alpha.to_string()));
+        let alphas = some(catalog.alphas(profile).iter().map(ToString::to_string));
         format!("{profile} (alpha {alphas})")
     };
     match catalog.profiles().as_slice() {

@@ -6,8 +6,8 @@ use super::{AMOUNT, BOX, Draft, Query, WARP};
 use crate::service::{Catalog, Encoding, Error, Fault};
 
 /// The parameters there are.
-const NAMES: [&str; 8] = [
-    "bbox", "density", "spacing", "profile", "alpha", "seed", "warp", "format",
+const NAMES: [&str; 9] = [
+    "bbox", "density", "spacing", "profile", "alpha", "map", "seed", "warp", "format",
 ];
 
 /// No more faults of an address are reported: an error is to be read.
@@ -26,6 +26,8 @@ pub struct Parameters {
     pub profile: Option<String>,
     /// The number α.
     pub alpha: Option<String>,
+    /// The size of the map: `s`, `m` or `l`.
+    pub map: Option<String>,
     /// The seed.
     pub seed: Option<String>,
     /// `off`, `on` or the strength of the warp.
@@ -86,6 +88,7 @@ impl Parameters {
             "spacing" => &mut self.spacing,
             "profile" => &mut self.profile,
             "alpha" => &mut self.alpha,
+            "map" => &mut self.map,
             "seed" => &mut self.seed,
             "warp" => &mut self.warp,
             "format" => &mut self.format,
@@ -105,6 +108,7 @@ impl Parameters {
         let mut draft = Draft {
             profile: self.profile.as_deref(),
             alpha: self.alpha.as_deref(),
+            map: self.map.as_deref(),
             ..Draft::default()
         };
         let mut read = |result: Result<(), Fault>| faults.extend(result.err());

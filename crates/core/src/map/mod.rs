@@ -6,6 +6,7 @@
 //! n² blocks hold n² displacement vectors.
 
 mod cell;
+mod size;
 mod twin;
 
 use alloc::{vec, vec::Vec};
@@ -13,6 +14,7 @@ use core::ops::Range;
 
 use crate::pattern::Alpha;
 
+pub use size::{Size, SizeError};
 pub use twin::{Site, Twin};
 
 /// The largest half-width a map is built for. At 1024 a table holds about 1.7 million vectors; the
@@ -70,6 +72,12 @@ impl Map {
     #[must_use]
     pub const fn alpha(&self) -> Alpha {
         self.alpha
+    }
+
+    /// The size.
+    #[must_use]
+    pub const fn size(&self) -> Size {
+        Size::of_radius(self.radius)
     }
 
     /// The half-width R, in grid units.

@@ -59,7 +59,7 @@ const BLUE: Profile = Profile {
     recipe: Recipe::Gaussian(GaussianRecipe {
         sigma: 1.0,
         polish_sigma: 1.15,
-        polish_share: 0.44,
+        polish_share: 0.52,
         guard_reach: 0.72,
         guard_strength: 0.3,
         rate: 0.2,

@@ -1,0 +1,106 @@
+//! What the seeded warp is for: isotropic sets, and seeds whose sets are unrelated.
+
+use std::{path::PathBuf, sync::Arc};
+
+use strew_core::{Placement, Region, Sampler, Seed, Spacing, Warp};
+use strew_forge::{
+    file_name,
+    judge::figures_of_window,
+    measure::{Spectrum, Window},
+    read_table,
+};
+
+/// A window of `side`² mean spacings, somewhere off the origin.
+fn window(seed: u64, warp: Warp, side: f64) -> Window {
+    let alpha = "(5-sqrt(3))/2".parse().expect("valid");
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../../tables")
+        .join(file_name("blue", alpha, 49));
+    let table = read_table(&path).unwrap_or_else(|e| panic!("{e}"));
+    let sampler = Arc::new(Sampler::new(table));
+    let spacing = Spacing::new(1.0).expect("valid");
+    let corner = 1000.0 * seed as f64;
+    let region = Region::new([corner, -corner], [corner + side, side - corner]).expect("ordered");
+    let placement = Placement::new(spacing, Seed(seed)).with_warp(warp);
+    let plan = sampler.plan(placement, region).expect("near");
+    let mut points = vec![[0.0; 2]; plan.count() as usize];
+    let filled = plan.blocks_f64().fill(&mut points);
+    assert_eq!(filled, points.len());
+    let moved = points.iter().map(|[x, y]| [x - corner, y + corner]);
+    Window::new(side, 1.0, moved.collect())
+}
+
+#[test]
+fn warped_sets_are_isotropic_and_keep_their_noise() {
+    for seed in [1, 2, 77] {
+        let set = window(seed, Warp::ON, 362.0);
+        let figures = figures_of_window(format!("seed {seed}"), false, &set, 4.0);
+        let value = |name| figures.value(name).expect("measured");
+        assert!(value("anisotropy_db") <= 0.2, "{figures:?}");
+        assert!(value("tallest_peak") <= 35.0, "{figures:?}");
+        assert!(value("low_power") <= 1e-5, "{figures:?}");
+        assert!(value("delta_min") >= 0.60, "{figures:?}");
+    }
+    // What it remedies.
+    let plain = figures_of_window("plain".into(), false, &window(1, Warp::OFF, 362.0), 4.0);
+    assert!(
+        plain.value("anisotropy_db").expect("measured") > 2.0,
+        "{plain:?}"
+    );
+}
+
+#[test]
+fn a_million_warped_points_are_isotropic() {
+    let set = window(3, Warp::ON, 1000.0);
+    let figures = figures_of_window("seed 3".into(), false, &set, 2.0);
+    let value = |name| figures.value(name).expect("measured");
+    assert!(value("anisotropy_db") <= 0.2, "{figures:?}");
+    assert!(value("low_power") <= 1e-5, "{figures:?}");
+    assert!(value("delta_min") >= 0.60, "{figures:?}");
+}
+
+/// The correlation of two power spectra over 0.8 < ν < 2.5, each mode over its ring's mean.
+fn correlation(a: &Window, b: &Window) -> f64 {
+    let spectra = [a, b].map(|set| Spectrum::of_window(set, 2.5));
+    let side = a.side();
+    let modes = (2.5 * side) as i64;
+    // The taper blurs neighbors together: every fifth mode is a sample of its own.
+    let samples = (0..=modes).step_by(5).flat_map(|kx| {
+        let spectra = &spectra;
+        (-modes..=modes).step_by(5).filter_map(move |ky| {
+            let nu = ((kx * kx + ky * ky) as f64).sqrt() / side;
+            let power = |i: usize| spectra[i].at(kx, ky);
+            (0.8..2.5)
+                .contains(&nu)
+                .then_some((nu, power(0)?, power(1)?))
+        })
+    });
+    let mut rings = vec![Vec::new(); 40];
+    for (nu, p, q) in samples {
+        rings[((nu - 0.8) / 0.05) as usize].push((p, q));
+    }
+    let (mut pq, mut pp, mut qq) = (0.0, 0.0, 0.0);
+    for ring in rings.iter().filter(|ring| ring.len() > 10) {
+        let mean =
+            |pick: fn(&(f64, f64)) -> f64| ring.iter().map(pick).sum::<f64>() / ring.len() as f64;
+        let (mean_p, mean_q) = (mean(|s| s.0), mean(|s| s.1));
+        for (p, q) in ring {
+            let (dp, dq) = (p / mean_p - 1.0, q / mean_q - 1.0);
+            (pq, pp, qq) = (pq + dp * dq, pp + dp * dp, qq + dq * dq);
+        }
+    }
+    pq / (pp * qq).sqrt()
+}
+
+#[test]
+fn seeds_are_unrelated_sets() {
+    let set = |seed, warp| window(seed, warp, 362.0);
+    let warped = correlation(&set(1, Warp::ON), &set(2, Warp::ON));
+    // About 50,000 modes: independent sets stay within a few hundredths.
+    assert!(warped.abs() < 0.03, "{warped}");
+    let plain = correlation(&set(1, Warp::OFF), &set(2, Warp::OFF));
+    assert!(
+        plain > 0.3,
+        "without warp the same peaks stand everywhere: {plain}"
+    );
+}
