@@ -3,24 +3,18 @@
 use std::time::{Duration, Instant};
 
 use strew_core::{
-    Alpha, Map, Table, Twin,
+    Alpha, Map, Table,
     table::{Provenance, from_grid_units},
 };
 
 use crate::{
     ForgeError,
-    energy::{Gaussian, Guard, PairEnergy},
+    ground::Ground,
     judge::{Complaint, Panel, complaints},
-    optimize::{Descended, Descent, Meter, Objective, Pairs, Stage, Watch, jitter},
-    profile::{GaussianRecipe, Profile, Recipe},
-    twins::{next_to_alpha, of_fraction},
+    optimize::{Descended, Meter, Stage, Watch, jitter},
+    profile::{Phase, Profile, Recipe},
 };
 
-/// How many twins a table is optimized on. They lie on both sides of α, so that among them they
-/// show nearly every pair of blocks that any twin of the map has.
-const TWINS: usize = 6;
-/// Twins with fewer points repeat before a block's neighborhood ends.
-const LEAST_TWIN: u64 = 4000;
 /// The least side t of the set region (α = 1.1): below, a map of any half-width sees too few
 /// neighbors, and there are too many grid points between them to list.
 const LEAST_SIDE: f64 = 0.05;
@@ -71,41 +65,44 @@ impl Job {
     /// [`ForgeError::Field`] for a part that is not allowed.
     pub fn estimate(&self) -> Result<Estimate, ForgeError> {
         let plan = Plan::new(self)?;
-        let mut phase = plan.phases().remove(0).objective;
         let moves = plan.start(self.seed);
-        let mut gradient = vec![[0.0; 2]; moves.len()];
-        let began = Instant::now();
-        phase.evaluate(&moves, &mut gradient); // builds the neighbor lists
-        let building = began.elapsed() * NEIGHBOR_LISTS;
-        let trials = 2;
-        let began = Instant::now();
-        for _ in 0..trials {
-            phase.evaluate(&moves, &mut gradient);
-        }
-        let optimizing = began.elapsed() * plan.steps / trials;
         let measured_points = plan.panel.points();
-        let measuring = MEASURING_A_POINT * measured_points as u32;
-        Ok(Estimate {
+        let mut estimate = Estimate {
             blocks: moves.len() as u64,
-            pairs: phase.pairs() as u64,
+            pairs: 0,
             steps: plan.steps,
             measured_points,
-            time: building + optimizing + measuring,
-        })
+            time: MEASURING_A_POINT * measured_points as u32,
+        };
+        for phase in plan.phases() {
+            let mut objective = phase.objective;
+            let mut gradient = vec![[0.0; 2]; moves.len()];
+            let began = Instant::now();
+            objective.evaluate(&moves, &mut gradient); // builds the neighbor lists
+            estimate.time += began.elapsed() * NEIGHBOR_LISTS;
+            let trials = 2;
+            let began = Instant::now();
+            for _ in 0..trials {
+                objective.evaluate(&moves, &mut gradient);
+            }
+            estimate.time += began.elapsed() * phase.descent.steps / trials;
+            estimate.pairs = estimate.pairs.max(objective.pairs() as u64);
+        }
+        Ok(estimate)
     }
 }
 
-/// How often neighbor lists are built in a usual run.
-const NEIGHBOR_LISTS: u32 = 10;
+/// How often neighbor lists are built in a phase of a usual run.
+const NEIGHBOR_LISTS: u32 = 5;
 /// About what measuring takes, up to ν = 4, on two cores.
-const MEASURING_A_POINT: Duration = Duration::from_nanos(3000);
+const MEASURING_A_POINT: Duration = Duration::from_nanos(5000);
 
 /// What a job will cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Estimate {
     /// The number of vectors to find.
     pub blocks: u64,
-    /// Pairs of blocks visited in a step.
+    /// Pairs of blocks visited in a step, at most; 0 if it is not a matter of pairs.
     pub pairs: u64,
     /// Steps of the optimizer.
     pub steps: u32,
@@ -140,7 +137,7 @@ pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
     for mut phase in plan.phases() {
         done = phase
             .descent
-            .run(&mut phase.objective, done.moves, &mut meter);
+            .run(phase.objective.as_mut(), done.moves, &mut meter);
         steps += done.steps;
         if done.interrupted {
             break;
@@ -175,30 +172,23 @@ pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
 /// A checked job.
 struct Plan {
     profile: &'static Profile,
-    map: Map,
-    twins: Vec<Twin>,
+    ground: Ground,
     panel: Panel,
     steps: u32,
-}
-
-/// Some steps with one energy.
-struct Phase<E> {
-    objective: Pairs<E>,
-    descent: Descent,
 }
 
 impl Plan {
     fn new(job: &Job) -> Result<Self, ForgeError> {
         let profile = Profile::named(&job.profile)?;
-        let steps = job.steps.unwrap_or(profile.steps);
+        let mut steps = job.steps.unwrap_or(profile.steps);
         in_range("steps", steps, MAX_STEPS)?;
+        if profile.recipe == Recipe::Undisplaced {
+            steps = 0;
+        }
         in_range("R", job.radius, MAX_RADIUS)?;
         let map = Map::new(job.alpha, job.radius).map_err(|e| ForgeError::Table(e.into()))?;
-        let twins: Vec<Twin> = next_to_alpha(&map)
-            .filter(|twin| twin.is_uniform() && twin.points() >= LEAST_TWIN)
-            .take(TWINS)
-            .collect();
-        if twins.is_empty() || map.alpha().set_side_f64() < LEAST_SIDE {
+        let ground = Ground::new(map);
+        if ground.twins.is_empty() || ground.scale() < LEAST_SIDE {
             return Err(ForgeError::Field {
                 field: "alpha",
                 value: job.alpha.to_string(),
@@ -209,54 +199,18 @@ impl Plan {
         }
         Ok(Self {
             profile,
-            panel: Panel::new(&map, &twins),
-            map,
-            twins,
+            panel: Panel::new(&ground.map, &ground.twins),
+            ground,
             steps,
         })
     }
 
-    /// Mean spacings per grid unit.
-    fn scale(&self) -> f64 {
-        self.map.alpha().set_side_f64()
-    }
-
     fn start(&self, seed: u64) -> Vec<[f64; 2]> {
-        let blocks = self.map.intervals() * self.map.intervals();
-        jitter(blocks, self.profile.jitter, seed)
+        jitter(self.ground.blocks(), self.profile.jitter, seed)
     }
 
-    fn phases(&self) -> Vec<Phase<impl PairEnergy + use<>>> {
-        let Recipe::Gaussian(recipe) = self.profile.recipe;
-        let polish = (f64::from(self.steps) * recipe.polish_share) as u32;
-        [
-            (recipe.sigma, self.steps - polish),
-            (recipe.polish_sigma, polish),
-        ]
-        .map(|(sigma, steps)| self.phase(&recipe, sigma, steps))
-        .into()
-    }
-
-    fn phase(
-        &self,
-        recipe: &GaussianRecipe,
-        sigma: f64,
-        steps: u32,
-    ) -> Phase<impl PairEnergy + use<>> {
-        let guard = Guard::new(recipe.guard_reach, recipe.guard_strength);
-        let energy = (Gaussian::new(sigma), guard);
-        let maps: Vec<Map> = self
-            .twins
-            .iter()
-            .filter_map(|&twin| of_fraction(&self.map, twin))
-            .collect();
-        Phase {
-            objective: Pairs::new(energy, &maps, self.scale()),
-            descent: Descent {
-                steps,
-                rate: recipe.rate,
-            },
-        }
+    fn phases(&self) -> Vec<Phase> {
+        self.profile.recipe.phases(&self.ground, self.steps)
     }
 
     fn provenance(&self, job: &Job, steps: u32) -> Provenance {
@@ -270,13 +224,13 @@ impl Plan {
             optimizer: optimizer.into(),
             parameters,
             seed: job.seed,
-            twins: self.twins.clone(),
+            twins: self.ground.twins.clone(),
             figures: Vec::new(),
         }
     }
 
     fn table(&self, moves: &[[f64; 2]], provenance: Provenance) -> Result<Table, ForgeError> {
-        let unit = 1.0 / self.scale();
+        let unit = 1.0 / self.ground.scale();
         let too_long = || ForgeError::Field {
             field: "displacement",
             value: "too long".into(),
@@ -287,7 +241,12 @@ impl Plan {
             .map(|m| Some([from_grid_units(m[0] * unit)?, from_grid_units(m[1] * unit)?]))
             .collect::<Option<Vec<_>>>()
             .ok_or_else(too_long)?;
-        let table = Table::new(self.map.clone(), self.profile.name, vectors, provenance)?;
+        let table = Table::new(
+            self.ground.map.clone(),
+            self.profile.name,
+            vectors,
+            provenance,
+        )?;
         Ok(table)
     }
 }
@@ -307,8 +266,10 @@ fn in_range(field: &'static str, value: u32, most: u32) -> Result<(), ForgeError
 mod tests {
     use std::{str::FromStr, sync::Mutex};
 
+    use strew_core::Twin;
+
     use super::*;
-    use crate::Progress;
+    use crate::{Progress, ground::TWINS};
 
     fn job(steps: u32) -> Job {
         Job {

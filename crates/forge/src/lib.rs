@@ -24,6 +24,7 @@
 pub mod energy;
 mod error;
 mod file;
+mod ground;
 mod job;
 pub mod judge;
 pub mod measure;

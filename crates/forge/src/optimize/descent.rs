@@ -44,7 +44,7 @@ impl Descent {
     /// need, and nothing has to be tuned to them.
     pub fn run(
         &self,
-        objective: &mut impl Objective,
+        objective: &mut (impl Objective + ?Sized),
         start: Vec<[f64; 2]>,
         meter: &mut Meter<'_>,
     ) -> Descended {

@@ -84,12 +84,6 @@ impl<E: PairEnergy> Pairs<E> {
         }
     }
 
-    /// How many pairs one evaluation visits (after the first evaluation).
-    #[must_use]
-    pub fn pairs(&self) -> usize {
-        self.lists.pairs.len()
-    }
-
     fn lists_are_stale(&self, moves: &[[f64; 2]]) -> bool {
         let limit = SKIN * SKIN / 4.0;
         self.lists.built_for.len() != moves.len()
@@ -218,6 +212,10 @@ impl<E: PairEnergy> Objective for Pairs<E> {
             .collect();
         // Every pair was met from both ends.
         0.5 * partial.iter().sum::<f64>()
+    }
+
+    fn pairs(&self) -> usize {
+        self.lists.pairs.len()
     }
 }
 
