@@ -7,7 +7,7 @@ use std::{
 
 use anyhow::{Context as _, anyhow};
 use clap::Subcommand;
-use strew_core::Table;
+use strew_core::{Alpha, Map, Table};
 
 use super::{Failure, config, output::Output};
 use crate::service::catalog::{Entry, Source};
@@ -21,6 +21,8 @@ pub(super) enum Command {
     Verify(Verify),
     /// Write a table's vectors.
     Export(Export),
+    /// Make a table of vectors in the published text form.
+    Import(Import),
 }
 
 /// Flags of `strew table show`.
@@ -51,6 +53,50 @@ pub(super) struct Export {
     output: Option<PathBuf>,
 }
 
+/// Flags of `strew table import`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Import {
+    /// The text: one line `x y` in grid units per block; row = block of dY, column = block of dX.
+    #[arg(value_name = "TEXT")]
+    text: PathBuf,
+    /// The number alpha.
+    #[arg(long, required_unless_present = "t_over_r", allow_hyphen_values = true)]
+    alpha: Option<String>,
+    /// t/r of the published tables, such as 191861/110771, instead of alpha = 1 + t/(t + r).
+    #[arg(long, value_name = "T/R", conflicts_with = "alpha")]
+    t_over_r: Option<String>,
+    /// The half-width R of the map in grid units.
+    #[arg(long, default_value_t = 49)]
+    radius: u32,
+    /// The name of the noise profile.
+    #[arg(long)]
+    profile: String,
+    /// The file to write.
+    #[arg(long, short, value_name = "FILE")]
+    output: PathBuf,
+    /// Replace a file that is there.
+    #[arg(long)]
+    force: bool,
+}
+
+impl Import {
+    fn alpha(&self) -> Result<Alpha, String> {
+        if let Some(text) = &self.t_over_r {
+            let wrong = || format!("--t-over-r is `{text}`; allowed: two positive integers t/r");
+            let (t, r) = text.split_once('/').ok_or_else(wrong)?;
+            let (t, r): (u64, u64) = t.parse().ok().zip(r.parse().ok()).ok_or_else(wrong)?;
+            let q = t
+                .checked_add(r)
+                .filter(|_| t > 0 && r > 0)
+                .ok_or_else(wrong)?;
+            let p = q.checked_add(t).ok_or_else(wrong)?;
+            return Alpha::from_fraction(p, q).map_err(|error| format!("--t-over-r: {error}"));
+        }
+        let text = self.alpha.as_deref().unwrap_or_default();
+        text.parse().map_err(|error| format!("--alpha: {error}"))
+    }
+}
+
 /// A table: a file, or one that is loaded.
 #[derive(Debug, clap::Args)]
 struct Which {
@@ -76,6 +122,7 @@ pub(super) fn run(command: &Command) -> Result<(), Failure> {
         Command::Show(args) => show(args),
         Command::Verify(args) => verify(args),
         Command::Export(args) => export(args),
+        Command::Import(args) => import(args),
     }
 }
 
@@ -240,4 +287,24 @@ fn export(args: &Export) -> Result<(), Failure> {
     let mut output = Output::open(args.output.as_deref())?;
     output.write(&bytes)?;
     Ok(output.finish()?)
+}
+
+fn import(args: &Import) -> Result<(), Failure> {
+    let usage = |problem: String| Failure::Usage(anyhow!(problem));
+    if args.output.exists() && !args.force {
+        let problem = format!(
+            "{} is there already; --force replaces it",
+            args.output.display()
+        );
+        return Err(usage(problem));
+    }
+    let alpha = args.alpha().map_err(usage)?;
+    let map = Map::new(alpha, args.radius).map_err(|error| usage(format!("--radius: {error}")))?;
+    let text = std::fs::read_to_string(&args.text)
+        .with_context(|| format!("cannot read {}", args.text.display()))?;
+    let table = Table::from_text(map, &args.profile, &text)
+        .with_context(|| format!("{} is not a table", args.text.display()))?;
+    strew_forge::write_table(&args.output, &table).map_err(anyhow::Error::from)?;
+    println!("{}  {}", table.digest(), args.output.display());
+    Ok(())
 }

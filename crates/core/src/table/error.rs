@@ -74,6 +74,14 @@ pub enum TableError {
         /// What is wrong there.
         problem: String,
     },
+    /// A line of the text form is wrong.
+    #[error("line {line} of the text: {problem}")]
+    Text {
+        /// The line, from 1; the last one if lines are missing.
+        line: usize,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// α is not valid.
     #[error(transparent)]
     Alpha(#[from] AlphaError),

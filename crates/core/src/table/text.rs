@@ -1,12 +1,14 @@
-//! The published text form of a table: one vector a line, in grid units.
+//! The published text form of a table: one vector a line, in grid units; row = interval of dY,
+//! column = interval of dX.
 
+use alloc::{format, string::String, vec::Vec};
 use core::fmt;
 
-use super::{Table, to_grid_units};
+use super::{MAX_DISPLACEMENT, Provenance, Table, TableError, from_grid_units, to_grid_units};
+use crate::map::Map;
 
 impl Table {
-    /// Writes n² lines of `x y` in grid units; row = interval of dY, column = interval of dX. The
-    /// digits are the shortest that read back to the same vector.
+    /// Writes n² lines of `x y`. The digits are the shortest that read back to the same vector.
     ///
     /// # Errors
     /// Whatever `out` answers.
@@ -15,33 +17,141 @@ impl Table {
             .iter()
             .try_for_each(|&[x, y]| writeln!(out, "{} {}", to_grid_units(x), to_grid_units(y)))
     }
+
+    /// Reads n² lines of `x y` for a map; blank lines are passed over. Vectors are rounded to the
+    /// nearest fixed-point place, so what [`write_text`](Self::write_text) wrote reads back
+    /// exactly.
+    ///
+    /// # Errors
+    /// [`TableError::Text`] with the line that is wrong, or as [`new`](Self::new).
+    pub fn from_text(map: Map, profile: &str, text: &str) -> Result<Self, TableError> {
+        let blocks = map.intervals() * map.intervals();
+        let mut vectors = Vec::with_capacity(blocks.min(text.len()));
+        let lines = text
+            .lines()
+            .enumerate()
+            .map(|(i, line)| (i + 1, line.trim()));
+        for (number, line) in lines.filter(|(_, line)| !line.is_empty()) {
+            if vectors.len() == blocks {
+                let problem = format!("it is beyond the last of {blocks} vectors");
+                return Err(TableError::Text {
+                    line: number,
+                    problem,
+                });
+            }
+            let vector = read_vector(line).map_err(|problem| TableError::Text {
+                line: number,
+                problem,
+            })?;
+            vectors.push(vector);
+        }
+        if vectors.len() < blocks {
+            let n = map.intervals();
+            let problem = format!(
+                "the text ends after {} of {n}² = {blocks} vectors",
+                vectors.len()
+            );
+            return Err(TableError::Text {
+                line: text.lines().count(),
+                problem,
+            });
+        }
+        let provenance = Provenance {
+            optimizer: "imported".into(),
+            ..Provenance::default()
+        };
+        Self::new(map, profile, vectors, provenance)
+    }
+}
+
+fn read_vector(line: &str) -> Result<[i32; 2], String> {
+    let mut parts = line
+        .split(|c: char| c.is_whitespace() || c == ',')
+        .filter(|part| !part.is_empty());
+    let mut next = |axis: &str| {
+        let part = parts.next().ok_or_else(|| format!("{axis} is missing"))?;
+        let shown: String = part.chars().take(40).collect();
+        let value: f64 = part
+            .parse()
+            .map_err(|_| format!("{axis} is `{shown}`, not a number"))?;
+        from_grid_units(value).ok_or_else(|| {
+            format!("{axis} is {shown}; allowed: less than {MAX_DISPLACEMENT} grid units")
+        })
+    };
+    let vector = [next("x")?, next("y")?];
+    match parts.next() {
+        None => Ok(vector),
+        Some(_) => Err("it has more than two numbers".into()),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use alloc::{string::String, vec::Vec};
 
-    use crate::table::{Provenance, Table, from_grid_units};
+    use super::*;
 
-    #[test]
-    fn text_reads_back_exactly() {
-        let map = crate::Map::new("sqrt(3)".parse().expect("valid"), 3).expect("small");
-        let n = map.intervals() * map.intervals();
+    fn map() -> Map {
+        Map::new("sqrt(3)".parse().expect("valid"), 3).expect("small")
+    }
+
+    fn table() -> Table {
+        let n = map().intervals() * map().intervals();
         let vectors: Vec<[i32; 2]> = (0..n as i32)
             .map(|i| [i.wrapping_mul(7_654_321) % (1 << 26), -3 * i])
             .collect();
-        let table = Table::new(map, "blue", vectors.clone(), Provenance::default()).expect("valid");
+        Table::new(map(), "blue", vectors, Provenance::default()).expect("valid")
+    }
+
+    fn text(table: &Table) -> String {
         let mut text = String::new();
         table.write_text(&mut text).expect("strings do not fail");
-        let back: Vec<[i32; 2]> = text
-            .lines()
-            .map(|line| {
-                let mut parts = line
-                    .split(' ')
-                    .map(|v| from_grid_units(v.parse().expect("number")).expect("short"));
-                [parts.next().expect("x"), parts.next().expect("y")]
-            })
-            .collect();
-        assert_eq!(back, vectors);
+        text
+    }
+
+    #[test]
+    fn text_reads_back_exactly() {
+        let back = Table::from_text(map(), "blue", &text(&table())).expect("valid");
+        assert_eq!(back.displacements(), table().displacements());
+        assert_eq!(text(&back), text(&table()));
+    }
+
+    #[test]
+    fn published_decimals_are_rounded_to_the_nearest_place() {
+        let line = "  -1.25\t0.3333333333 \r\n\n";
+        let n = map().intervals() * map().intervals();
+        let read = Table::from_text(map(), "blue", &line.repeat(n)).expect("valid");
+        assert_eq!(read.displacements()[0], [-5 << 18, 349_525]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_line() {
+        let good = text(&table());
+        let lines = good.lines().count();
+        for (bad, line, says) in [
+            (good.replacen(' ', " x", 1), 1, "y is `x"),
+            (good.replacen(' ', "", 1), 1, "missing"),
+            (format!("1 2 3\n{good}"), 1, "more than two"),
+            (format!("NaN 0\n{good}"), 1, "less than"),
+            (format!("0 1e300\n{good}"), 1, "less than"),
+            (format!("{good}0 0\n"), lines + 1, "beyond the last"),
+            (
+                good.lines().skip(2).map(|l| format!("{l}\n")).collect(),
+                lines - 2,
+                "ends after",
+            ),
+            (String::new(), 0, "ends after 0"),
+        ] {
+            match Table::from_text(map(), "blue", &bad) {
+                Err(TableError::Text {
+                    line: found,
+                    problem,
+                }) => {
+                    assert_eq!(found, line, "{problem}");
+                    assert!(problem.contains(says), "{problem}");
+                }
+                other => panic!("{other:?}"),
+            }
+        }
     }
 }
