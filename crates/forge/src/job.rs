@@ -463,7 +463,7 @@ mod tests {
         let estimate = job(40).estimate().expect("a good job");
         assert_eq!(estimate.steps, 40);
         assert_eq!(estimate.blocks, 21 * 21);
-        assert!(estimate.pairs > 60 * estimate.blocks && estimate.pairs < 250 * estimate.blocks);
+        assert!(estimate.pairs > 60 * estimate.blocks && estimate.pairs < 300 * estimate.blocks);
         assert!(estimate.measured_points > 3 * 50_000);
         assert!(estimate.time > Duration::ZERO);
     }
