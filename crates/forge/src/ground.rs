@@ -6,7 +6,7 @@ use crate::twins::{next_to_alpha, of_fraction};
 
 /// How many twins a table is optimized on. They lie on both sides of α, so that among them they
 /// show nearly every pair of blocks that any twin of the map has.
-pub(crate) const TWINS: usize = 6;
+const TWINS: usize = 6;
 /// Twins with fewer points repeat before a block's neighborhood ends.
 const LEAST_TWIN: u64 = 4000;
 

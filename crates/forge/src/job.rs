@@ -2,22 +2,15 @@
 
 use std::time::{Duration, Instant};
 
-use strew_core::{
-    Alpha, Map, Table,
-    table::{Provenance, from_grid_units},
-};
+use strew_core::{Alpha, Table, table::Provenance};
 
 use crate::{
     ForgeError,
-    ground::Ground,
-    judge::{Complaint, Panel, complaints},
-    optimize::{Descended, Meter, Stage, Watch, jitter},
-    profile::{Phase, Profile, Recipe},
+    judge::{Complaint, complaints},
+    optimize::{Descended, Meter, Stage, Watch},
+    plan::Plan,
 };
 
-/// The least side t of the set region (α = 1.1): below, a map of any half-width sees too few
-/// neighbors, and there are too many grid points between them to list.
-const LEAST_SIDE: f64 = 0.05;
 /// The largest half-width a table is made for: 330 intervals at the default α, and about 200 MB of
 /// neighbor lists.
 pub const MAX_RADIUS: u32 = 256;
@@ -36,7 +29,7 @@ pub struct Job {
     /// The map's half-width R, 1 to [`MAX_RADIUS`], in grid units: larger maps have more blocks,
     /// which lowers every kind of error and takes longer, both as the square.
     pub radius: u32,
-    /// The name of a [`Profile`].
+    /// The name of a [`Profile`](crate::Profile).
     pub profile: String,
     /// The seed of the random start.
     pub seed: u64,
@@ -169,99 +162,6 @@ pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
     Ok(outcome)
 }
 
-/// A checked job.
-struct Plan {
-    profile: &'static Profile,
-    ground: Ground,
-    panel: Panel,
-    steps: u32,
-}
-
-impl Plan {
-    fn new(job: &Job) -> Result<Self, ForgeError> {
-        let profile = Profile::named(&job.profile)?;
-        let mut steps = job.steps.unwrap_or(profile.steps);
-        in_range("steps", steps, MAX_STEPS)?;
-        if profile.recipe == Recipe::Undisplaced {
-            steps = 0;
-        }
-        in_range("R", job.radius, MAX_RADIUS)?;
-        let map = Map::new(job.alpha, job.radius).map_err(|e| ForgeError::Table(e.into()))?;
-        let ground = Ground::new(map);
-        if ground.twins.is_empty() || ground.scale() < LEAST_SIDE {
-            return Err(ForgeError::Field {
-                field: "alpha",
-                value: job.alpha.to_string(),
-                allowed: "at least 1.1, and not a fraction of small numbers, whose map has ties \
-                          that no periodic twin has"
-                    .into(),
-            });
-        }
-        Ok(Self {
-            profile,
-            panel: Panel::new(&ground.map, &ground.twins),
-            ground,
-            steps,
-        })
-    }
-
-    fn start(&self, seed: u64) -> Vec<[f64; 2]> {
-        jitter(self.ground.blocks(), self.profile.jitter, seed)
-    }
-
-    fn phases(&self) -> Vec<Phase> {
-        self.profile.recipe.phases(&self.ground, self.steps)
-    }
-
-    fn provenance(&self, job: &Job, steps: u32) -> Provenance {
-        let (optimizer, mut parameters) = self.profile.recipe.describe();
-        parameters.push(("jitter".into(), self.profile.jitter.to_string()));
-        parameters.push(("steps".into(), self.steps.to_string()));
-        if steps < self.steps {
-            parameters.push(("stopped_after".into(), steps.to_string()));
-        }
-        Provenance {
-            optimizer: optimizer.into(),
-            parameters,
-            seed: job.seed,
-            twins: self.ground.twins.clone(),
-            figures: Vec::new(),
-        }
-    }
-
-    fn table(&self, moves: &[[f64; 2]], provenance: Provenance) -> Result<Table, ForgeError> {
-        let unit = 1.0 / self.ground.scale();
-        let too_long = || ForgeError::Field {
-            field: "displacement",
-            value: "too long".into(),
-            allowed: "vectors that a table can hold; a smaller start or fewer steps".into(),
-        };
-        let vectors = moves
-            .iter()
-            .map(|m| Some([from_grid_units(m[0] * unit)?, from_grid_units(m[1] * unit)?]))
-            .collect::<Option<Vec<_>>>()
-            .ok_or_else(too_long)?;
-        let table = Table::new(
-            self.ground.map.clone(),
-            self.profile.name,
-            vectors,
-            provenance,
-        )?;
-        Ok(table)
-    }
-}
-
-fn in_range(field: &'static str, value: u32, most: u32) -> Result<(), ForgeError> {
-    if (1..=most).contains(&value) {
-        return Ok(());
-    }
-    Err(ForgeError::Field {
-        field,
-        value: value.to_string(),
-        allowed: format!("1 to {most}"),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use std::{str::FromStr, sync::Mutex};
@@ -269,7 +169,7 @@ mod tests {
     use strew_core::Twin;
 
     use super::*;
-    use crate::{Progress, ground::TWINS};
+    use crate::Progress;
 
     fn job(steps: u32) -> Job {
         Job {
@@ -301,7 +201,7 @@ mod tests {
         assert_eq!((history.optimizer.as_str(), history.seed), ("gaussian", 17));
         assert!(history.parameters.contains(&("steps".into(), "30".into())));
         assert!(history.parameters.contains(&("sigma".into(), "1".into())));
-        assert_eq!(history.twins.len(), TWINS);
+        assert_eq!(history.twins.len(), 6);
         for figures in &history.figures {
             let twin = |t: &Twin| figures.subject == format!("twin {t}");
             assert_eq!(

@@ -29,6 +29,7 @@ mod job;
 pub mod judge;
 pub mod measure;
 pub mod optimize;
+mod plan;
 pub mod profile;
 mod twins;
 
