@@ -78,7 +78,11 @@ mod tests {
     fn rings(power: impl Fn(f64) -> f64) -> Vec<Ring> {
         let ring = |at: u32| {
             let nu = (f64::from(at) + 0.5) / 64.0;
-            Ring { nu, power: power(nu), anisotropy_db: 0.0 }
+            Ring {
+                nu,
+                power: power(nu),
+                anisotropy_db: 0.0,
+            }
         };
         (0..512).map(ring).collect()
     }
@@ -88,7 +92,10 @@ mod tests {
         // The disc's mean 1 − 0.25/ν² is 0.1 at ν = 0.5/√0.9.
         let step = rings(|nu| if nu < 0.5 { 0.0 } else { 1.0 });
         let found = Crispness::of_rings(&step, 1.0 / 64.0);
-        assert!((found.nu_eff - 0.5 / 0.9f64.sqrt()).abs() < 1e-12, "{found:?}");
+        assert!(
+            (found.nu_eff - 0.5 / 0.9f64.sqrt()).abs() < 1e-12,
+            "{found:?}"
+        );
         assert_eq!(found.omega, 0.0);
     }
 
@@ -109,6 +116,12 @@ mod tests {
     #[test]
     fn white_noise_is_not_crisp_at_all() {
         let found = Crispness::of_rings(&rings(|_| 1.0), 1.0 / 64.0);
-        assert_eq!(found, Crispness { nu_eff: 0.0, omega: 0.0 });
+        assert_eq!(
+            found,
+            Crispness {
+                nu_eff: 0.0,
+                omega: 0.0
+            }
+        );
     }
 }

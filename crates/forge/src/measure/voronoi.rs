@@ -91,7 +91,8 @@ impl Voronoi {
             for edge in vertex.out_edges() {
                 let q = edge.to().position();
                 let angle = 6.0 * (q.y - p[1]).atan2(q.x - p[0]);
-                (real, imaginary, bonds) = (real + angle.cos(), imaginary + angle.sin(), bonds + 1.0);
+                (real, imaginary, bonds) =
+                    (real + angle.cos(), imaginary + angle.sin(), bonds + 1.0);
                 let corner = |face: spade::handles::FaceHandle<'_, _, _, _, _, _>| {
                     face.as_inner().map(|face| face.circumcenter())
                 };
@@ -138,7 +139,10 @@ mod tests {
         // 97 columns, 112 rows: their ratio is √3/2 to 10⁻⁵.
         let found = Voronoi::of_torus(&hexagonal(97, 112));
         assert!(found.area_deviation < 1e-9, "{found:?}");
-        assert!((found.largest_hole - 1.0 / 3f64.sqrt()).abs() < 1e-3, "{found:?}");
+        assert!(
+            (found.largest_hole - 1.0 / 3f64.sqrt()).abs() < 1e-3,
+            "{found:?}"
+        );
         assert!((found.q6 - 1.0).abs() < 1e-3, "{found:?}");
     }
 
@@ -161,14 +165,23 @@ mod tests {
         let points = (0..20_000).map(|_| [random.next_f64(), random.next_f64()]);
         let found = Voronoi::of_torus(&Torus::new(1.0, points.collect()));
         // Known for a Poisson set: the variance of the area is 0.2802 of its squared mean.
-        assert!((found.area_spread - 0.2802f64.sqrt()).abs() < 0.02, "{found:?}");
-        assert!(found.area_deviation > 1.5 && found.largest_hole > 1.3, "{found:?}");
+        assert!(
+            (found.area_spread - 0.2802f64.sqrt()).abs() < 0.02,
+            "{found:?}"
+        );
+        assert!(
+            found.area_deviation > 1.5 && found.largest_hole > 1.3,
+            "{found:?}"
+        );
         assert!((0.3..0.45).contains(&found.q6), "{found:?}");
     }
 
     #[test]
     fn sets_without_cells_have_figures_too() {
-        assert_eq!(Voronoi::of_torus(&Torus::new(1.0, vec![])).largest_hole, 0.0);
+        assert_eq!(
+            Voronoi::of_torus(&Torus::new(1.0, vec![])).largest_hole,
+            0.0
+        );
         let twice = Torus::new(1.0, vec![[0.5, 0.5]; 2]);
         assert_eq!(Voronoi::of_torus(&twice).area_deviation, 1.0);
     }
