@@ -29,6 +29,7 @@ pub mod judge;
 pub mod measure;
 pub mod optimize;
 mod picture;
+mod plan;
 pub mod profile;
 mod report;
 mod twins;
