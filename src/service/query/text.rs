@@ -112,7 +112,7 @@ impl Parameters {
             ..Draft::default()
         };
         let mut read = |result: Result<(), Fault>| faults.extend(result.err());
-        read(bbox(self.bbox.as_deref()).map(|bbox| draft.bbox = bbox));
+        read(read_bbox(self.bbox.as_deref()).map(|bbox| draft.bbox = bbox));
         read(amount("density", self.density.as_deref()).map(|density| draft.density = density));
         read(amount("spacing", self.spacing.as_deref()).map(|spacing| draft.spacing = spacing));
         read(seed(self.seed.as_deref()).map(|seed| draft.seed = seed));
@@ -124,7 +124,11 @@ impl Parameters {
     }
 }
 
-fn bbox(text: Option<&str>) -> Result<Option<[f64; 4]>, Fault> {
+/// The box `min_x,min_y,max_x,max_y` of a text, as far as it is four numbers.
+///
+/// # Errors
+/// A [`Fault`] of `bbox`.
+pub fn read_bbox(text: Option<&str>) -> Result<Option<[f64; 4]>, Fault> {
     let Some(text) = text else { return Ok(None) };
     let fault = |detail: String| Fault::new("bbox", text, detail, BOX);
     let parts: Vec<&str> = text.split(',').collect();

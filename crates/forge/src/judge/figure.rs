@@ -62,7 +62,11 @@ impl Figure {
 
 /// All figures of a set, rounded to four significant digits: far more than they mean, and few
 /// enough that another order of a sum inside an FFT does not show.
-fn figures(spectrum: &Spectrum, distances: Distances, cells: Voronoi) -> Vec<(String, f64)> {
+pub(crate) fn figures_of_spectrum(
+    spectrum: &Spectrum,
+    distances: Distances,
+    cells: Voronoi,
+) -> Vec<(String, f64)> {
     let summary = spectrum.summary(RING_WIDTH);
     let crispness = Crispness::of_rings(&spectrum.rings(RING_WIDTH), RING_WIDTH);
     [
@@ -95,7 +99,7 @@ pub fn figures_of_torus(subject: String, seen: bool, set: &Torus, nu_max: f64) -
         subject,
         seen,
         points: set.points().len() as u64,
-        values: figures(
+        values: figures_of_spectrum(
             &Spectrum::of_torus(set, nu_max),
             Distances::of_torus(set),
             Voronoi::of_torus(set),
@@ -110,7 +114,7 @@ pub fn figures_of_window(subject: String, seen: bool, set: &Window, nu_max: f64)
         subject,
         seen,
         points: set.points().len() as u64,
-        values: figures(
+        values: figures_of_spectrum(
             &Spectrum::of_window(set, nu_max),
             Distances::of_window(set),
             Voronoi::of_window(set),
