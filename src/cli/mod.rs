@@ -2,8 +2,10 @@
 
 mod config;
 mod forge;
+mod measure;
 mod output;
 mod progress;
+mod query;
 mod sample;
 mod serve;
 mod table;
@@ -28,6 +30,8 @@ enum Command {
     Sample(sample::Args),
     /// Make a table and judge it.
     Forge(forge::Args),
+    /// Measure a table, the points of a region, or a file of points.
+    Measure(measure::Args),
     /// Look at tables.
     #[command(subcommand)]
     Table(table::Command),
@@ -57,6 +61,7 @@ pub fn main() -> ExitCode {
         Command::Serve(args) => serve::run(&args),
         Command::Sample(args) => sample::run(&args),
         Command::Forge(args) => forge::run(&args),
+        Command::Measure(args) => measure::run(&args),
         Command::Table(command) => table::run(&command),
         Command::Config(args) => config::run(&args),
     };

@@ -10,43 +10,23 @@ use strew_core::{
     sample::{F32, F64, Tile},
 };
 
-use super::{Failure, config, output::Output, progress::Progress};
+use super::{
+    Failure,
+    output::Output,
+    progress::Progress,
+    query::{Query, described},
+};
 use crate::{
     config::Config,
     service::{
-        Answer, Catalog, Encoding, Planned,
+        Answer, Encoding, Planned,
         encode::{Scalars, write_number},
-        query::Parameters,
     },
 };
 
 /// Flags of `strew sample`: the parameters of `GET /v1/points`, and where to write.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The box: minx,miny,maxx,maxy in world units, half-open.
-    #[arg(long, value_name = "BOX", allow_hyphen_values = true)]
-    bbox: Option<String>,
-    /// Points per unit of area.
-    #[arg(long, allow_hyphen_values = true)]
-    density: Option<String>,
-    /// The mean spacing, density^-1/2.
-    #[arg(long, allow_hyphen_values = true)]
-    spacing: Option<String>,
-    /// The noise profile [default: blue].
-    #[arg(long)]
-    profile: Option<String>,
-    /// The number alpha [default: (5-sqrt(3))/2].
-    #[arg(long, allow_hyphen_values = true)]
-    alpha: Option<String>,
-    /// The size of the map: s, m or l, as far as it is loaded [default: s].
-    #[arg(long)]
-    map: Option<String>,
-    /// Which set of points [default: 0].
-    #[arg(long, allow_hyphen_values = true)]
-    seed: Option<String>,
-    /// off, on, or the strength of the warp, 0 to 2 [default: off for seed 0, else on].
-    #[arg(long, allow_hyphen_values = true)]
-    warp: Option<String>,
     /// json, ndjson, csv, f32 or f64 [default: what the output's name ends with, or json].
     #[arg(long)]
     format: Option<String>,
@@ -57,24 +37,10 @@ pub(super) struct Args {
     #[arg(long, short)]
     quiet: bool,
     #[command(flatten)]
-    settings: config::Args,
+    query: Query,
 }
 
 impl Args {
-    fn parameters(&self) -> Parameters {
-        Parameters {
-            bbox: self.bbox.clone(),
-            density: self.density.clone(),
-            spacing: self.spacing.clone(),
-            profile: self.profile.clone(),
-            alpha: self.alpha.clone(),
-            map: self.map.clone(),
-            seed: self.seed.clone(),
-            warp: self.warp.clone(),
-            format: self.format.clone(),
-        }
-    }
-
     /// The format that the output's name asks for.
     fn by_extension(&self) -> Option<Encoding> {
         Encoding::from_name(self.output.as_ref()?.extension()?.to_str()?)
@@ -83,16 +49,11 @@ impl Args {
 
 /// Writes the points.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let config = args.settings.merged()?;
-    let catalog = config
-        .catalog()
-        .map_err(|error| Failure::Usage(error.into()))?;
-    let usage = |error| Failure::Usage(anyhow::Error::new(error));
-    let (query, named) = args.parameters().check(&catalog, vec![]).map_err(usage)?;
+    let config = args.query.settings()?;
+    let (planned, named) = args.query.planned(&config, args.format.as_deref())?;
     let encoding = named
         .or_else(|| args.by_extension())
         .unwrap_or(Encoding::Json);
-    let planned = Planned::from_catalog(&catalog, query).map_err(usage)?;
     let count = u64::try_from(planned.count()).map_err(|_| {
         Failure::Usage(anyhow!(
             "bbox holds {} points, too many to write",
@@ -123,13 +84,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 fn announce(planned: &Planned, encoding: Encoding) {
     let size =
         Answer::size(planned, encoding).map_or(String::new(), |size| format!(", {size} bytes"));
-    let query = &planned.query;
     eprintln!(
-        "{} points{size}: profile {}, alpha {}, spacing {}, table {}",
+        "{} points{size}: {}, table {}",
         planned.count(),
-        query.profile,
-        query.alpha,
-        query.spacing.get(),
+        described(planned),
         planned.entry.digest
     );
     if encoding == Encoding::F32 {
@@ -235,13 +193,5 @@ where
             .iter()
             .take(self.tiles.len())
             .map(|(buffer, filled)| &buffer[..*filled])
-    }
-}
-
-impl Config {
-    /// The tables that the settings ask for.
-    pub(super) fn catalog(&self) -> Result<Catalog, crate::service::catalog::CatalogError> {
-        let folder = (!self.tables.folder.as_os_str().is_empty()).then_some(&*self.tables.folder);
-        Catalog::load(self.tables.embedded, folder)
     }
 }

@@ -30,7 +30,7 @@ pub struct Job {
     /// The map's half-width R, 1 to [`MAX_RADIUS`], in grid units: larger maps have more blocks,
     /// which lowers every kind of error and takes longer, both as the square.
     pub radius: u32,
-    /// The name of a [`Profile`].
+    /// The name of a [`Profile`](crate::Profile).
     pub profile: String,
     /// The seed of the random start.
     pub seed: u64,
@@ -63,41 +63,44 @@ impl Job {
     /// [`ForgeError::Field`] for a part that is not allowed.
     pub fn estimate(&self) -> Result<Estimate, ForgeError> {
         let plan = Plan::new(self)?;
-        let mut phase = plan.phases().remove(0).objective;
         let moves = plan.start(self.seed);
-        let mut gradient = vec![[0.0; 2]; moves.len()];
-        let began = Instant::now();
-        phase.evaluate(&moves, &mut gradient); // builds the neighbor lists
-        let building = began.elapsed() * NEIGHBOR_LISTS;
-        let trials = 2;
-        let began = Instant::now();
-        for _ in 0..trials {
-            phase.evaluate(&moves, &mut gradient);
-        }
-        let optimizing = began.elapsed() * plan.steps / trials;
         let measured_points = plan.panel.points();
-        let measuring = MEASURING_A_POINT * measured_points as u32;
-        Ok(Estimate {
+        let mut estimate = Estimate {
             blocks: moves.len() as u64,
-            pairs: phase.pairs() as u64,
+            pairs: 0,
             steps: plan.steps,
             measured_points,
-            time: building + optimizing + measuring,
-        })
+            time: MEASURING_A_POINT * measured_points as u32,
+        };
+        for phase in plan.phases() {
+            let mut objective = phase.objective;
+            let mut gradient = vec![[0.0; 2]; moves.len()];
+            let began = Instant::now();
+            objective.evaluate(&moves, &mut gradient); // builds the neighbor lists
+            estimate.time += began.elapsed() * NEIGHBOR_LISTS;
+            let trials = 2;
+            let began = Instant::now();
+            for _ in 0..trials {
+                objective.evaluate(&moves, &mut gradient);
+            }
+            estimate.time += began.elapsed() * phase.descent.steps / trials;
+            estimate.pairs = estimate.pairs.max(objective.pairs() as u64);
+        }
+        Ok(estimate)
     }
 }
 
-/// How often neighbor lists are built in a usual run.
-const NEIGHBOR_LISTS: u32 = 10;
+/// How often neighbor lists are built in a phase of a usual run.
+const NEIGHBOR_LISTS: u32 = 5;
 /// About what measuring takes, up to ν = 4, on two cores.
-const MEASURING_A_POINT: Duration = Duration::from_nanos(3000);
+const MEASURING_A_POINT: Duration = Duration::from_nanos(5000);
 
 /// What a job will cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Estimate {
     /// The number of vectors to find.
     pub blocks: u64,
-    /// Pairs of blocks visited in a step.
+    /// Pairs of blocks visited in a step, at most; 0 if it is not a matter of pairs.
     pub pairs: u64,
     /// Steps of the optimizer.
     pub steps: u32,
@@ -171,7 +174,7 @@ mod tests {
     use strew_core::Twin;
 
     use super::*;
-    use crate::{Progress, plan::TWINS};
+    use crate::Progress;
 
     fn job(steps: u32) -> Job {
         Job {
@@ -203,7 +206,7 @@ mod tests {
         assert_eq!((history.optimizer.as_str(), history.seed), ("gaussian", 17));
         assert!(history.parameters.contains(&("steps".into(), "30".into())));
         assert!(history.parameters.contains(&("sigma".into(), "1".into())));
-        assert_eq!(history.twins.len(), TWINS);
+        assert_eq!(history.twins.len(), 6);
         for figures in &history.figures {
             let twin = |t: &Twin| figures.subject == format!("twin {t}");
             assert_eq!(
@@ -365,7 +368,7 @@ mod tests {
         let estimate = job(40).estimate().expect("a good job");
         assert_eq!(estimate.steps, 40);
         assert_eq!(estimate.blocks, 21 * 21);
-        assert!(estimate.pairs > 60 * estimate.blocks && estimate.pairs < 250 * estimate.blocks);
+        assert!(estimate.pairs > 60 * estimate.blocks && estimate.pairs < 300 * estimate.blocks);
         assert!(estimate.measured_points > 3 * 50_000);
         assert!(estimate.time > Duration::ZERO);
     }

@@ -24,12 +24,15 @@
 pub mod energy;
 mod error;
 mod file;
+mod ground;
 mod job;
 pub mod judge;
 pub mod measure;
 pub mod optimize;
+mod picture;
 mod plan;
 pub mod profile;
+mod report;
 mod twins;
 
 pub use error::ForgeError;
@@ -37,4 +40,6 @@ pub use file::{EXTENSION, file_name, read_table, write_table};
 pub use job::{DEFAULT_SEED, Estimate, Job, MAX_RADIUS, MAX_STEPS, Outcome, forge};
 pub use judge::{Complaint, Figure};
 pub use optimize::{Progress, Stage, Watch};
+pub use picture::{PictureError, picture};
 pub use profile::{Profile, Target};
+pub use report::Report;

@@ -15,7 +15,7 @@ use strew_core::{
 
 use super::{Catalog, Error, Fault, Key};
 
-pub use text::{Parameters, parse_pairs};
+pub use text::{Parameters, parse_pairs, read_bbox};
 
 /// The profile of a query that names none.
 pub const DEFAULT_PROFILE: &str = "blue";

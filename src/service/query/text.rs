@@ -1,9 +1,11 @@
 //! Queries as text: the parameters of an address or of a command line.
 
+use std::sync::Arc;
+
 use percent_encoding::percent_decode_str;
 
 use super::{AMOUNT, BOX, Draft, Query, WARP};
-use crate::service::{Catalog, Encoding, Error, Fault};
+use crate::service::{Catalog, Encoding, Entry, Error, Fault};
 
 /// The parameters there are.
 const NAMES: [&str; 9] = [
@@ -96,6 +98,40 @@ impl Parameters {
         })
     }
 
+    /// The table of a profile that `alpha` and `map` choose; no other parameter may be given.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with every fault.
+    pub fn entry(
+        &self,
+        catalog: &Catalog,
+        profile: &str,
+        mut faults: Vec<Fault>,
+    ) -> Result<Arc<Entry>, Error> {
+        let mut rest = self.clone();
+        let (alpha, map) = (rest.alpha.take(), rest.map.take());
+        for name in NAMES {
+            if let Some(Some(value)) = rest.slot(name) {
+                let detail = "it means nothing here";
+                faults.push(Fault::new(name, value, detail, "alpha, map"));
+            }
+        }
+        let draft = Draft {
+            profile: Some(profile),
+            alpha: alpha.as_deref(),
+            map: map.as_deref(),
+            ..Draft::default()
+        };
+        match draft.key(catalog) {
+            Ok(key) if faults.is_empty() => catalog.entry(&key).ok_or_else(Error::lost_table),
+            Ok(_) => Err(Error::Invalid(faults)),
+            Err(more) => {
+                faults.extend(more);
+                Err(Error::Invalid(faults))
+            }
+        }
+    }
+
     /// Checks everything; `faults` are those found before. Gives the format, too, if one is named.
     ///
     /// # Errors
@@ -112,7 +148,7 @@ impl Parameters {
             ..Draft::default()
         };
         let mut read = |result: Result<(), Fault>| faults.extend(result.err());
-        read(bbox(self.bbox.as_deref()).map(|bbox| draft.bbox = bbox));
+        read(read_bbox(self.bbox.as_deref()).map(|bbox| draft.bbox = bbox));
         read(amount("density", self.density.as_deref()).map(|density| draft.density = density));
         read(amount("spacing", self.spacing.as_deref()).map(|spacing| draft.spacing = spacing));
         read(seed(self.seed.as_deref()).map(|seed| draft.seed = seed));
@@ -124,7 +160,11 @@ impl Parameters {
     }
 }
 
-fn bbox(text: Option<&str>) -> Result<Option<[f64; 4]>, Fault> {
+/// The box `min_x,min_y,max_x,max_y` of a text, as far as it is four numbers.
+///
+/// # Errors
+/// A [`Fault`] of `bbox`.
+pub fn read_bbox(text: Option<&str>) -> Result<Option<[f64; 4]>, Fault> {
     let Some(text) = text else { return Ok(None) };
     let fault = |detail: String| Fault::new("bbox", text, detail, BOX);
     let parts: Vec<&str> = text.split(',').collect();

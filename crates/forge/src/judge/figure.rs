@@ -4,7 +4,7 @@ use std::fmt;
 
 use strew_core::table::Figures;
 
-use crate::measure::{Distances, Spectrum, Torus, Window};
+use crate::measure::{Crispness, Distances, Spectrum, Torus, Voronoi, Window};
 
 /// The width of the rings that radial figures are taken on, in ν: as fine as the smallest twin of
 /// the default map resolves, and the same for sets of all sizes, so that their peaks compare.
@@ -39,6 +39,16 @@ pub enum Figure {
     DeltaMin,
     /// The mean nearest-neighbor distance, over that of the hexagonal lattice.
     DeltaAvg,
+    /// The effective Nyquist frequency after Heck et al. (see [`Crispness`]).
+    NuEff,
+    /// The oscillation after Heck et al.
+    Omega,
+    /// The largest relative deviation of a Voronoi cell's area (see [`Voronoi`]).
+    AreaDeviation,
+    /// The radius of the largest empty circle, over the hexagonal lattice's distance of neighbors.
+    LargestHole,
+    /// Bond-orientational order.
+    Q6,
 }
 
 impl Figure {
@@ -59,14 +69,24 @@ impl Figure {
             Self::Tallest => "tallest_peak",
             Self::DeltaMin => "delta_min",
             Self::DeltaAvg => "delta_avg",
+            Self::NuEff => "nu_eff",
+            Self::Omega => "omega",
+            Self::AreaDeviation => "area_deviation",
+            Self::LargestHole => "largest_hole",
+            Self::Q6 => "q6",
         }
     }
 }
 
 /// All figures of a set, rounded to four significant digits: far more than they mean, and few
 /// enough that another order of a sum inside an FFT does not show.
-fn figures(spectrum: &Spectrum, distances: Distances) -> Vec<(String, f64)> {
+pub(crate) fn figures_of_spectrum(
+    spectrum: &Spectrum,
+    distances: Distances,
+    cells: Voronoi,
+) -> Vec<(String, f64)> {
     let summary = spectrum.summary(RING_WIDTH);
+    let crispness = Crispness::of_rings(&spectrum.rings(RING_WIDTH), RING_WIDTH);
     [
         (Figure::LowPower, summary.low_power),
         (Figure::PeakPower, summary.peak_power),
@@ -75,6 +95,11 @@ fn figures(spectrum: &Spectrum, distances: Distances) -> Vec<(String, f64)> {
         (Figure::Tallest, summary.tallest),
         (Figure::DeltaMin, distances.delta_min),
         (Figure::DeltaAvg, distances.delta_avg),
+        (Figure::NuEff, crispness.nu_eff),
+        (Figure::Omega, crispness.omega),
+        (Figure::AreaDeviation, cells.area_deviation),
+        (Figure::LargestHole, cells.largest_hole),
+        (Figure::Q6, cells.q6),
     ]
     .map(|(figure, value)| (figure.name().to_owned(), round(value)))
     .into()
@@ -92,7 +117,11 @@ pub fn figures_of_torus(subject: String, seen: bool, set: &Torus, nu_max: f64) -
         subject,
         seen,
         points: set.points().len() as u64,
-        values: figures(&Spectrum::of_torus(set, nu_max), Distances::of_torus(set)),
+        values: figures_of_spectrum(
+            &Spectrum::of_torus(set, nu_max),
+            Distances::of_torus(set),
+            Voronoi::of_torus(set),
+        ),
     }
 }
 
@@ -103,7 +132,11 @@ pub fn figures_of_window(subject: String, seen: bool, set: &Window, nu_max: f64)
         subject,
         seen,
         points: set.points().len() as u64,
-        values: figures(&Spectrum::of_window(set, nu_max), Distances::of_window(set)),
+        values: figures_of_spectrum(
+            &Spectrum::of_window(set, nu_max),
+            Distances::of_window(set),
+            Voronoi::of_window(set),
+        ),
     }
 }
 

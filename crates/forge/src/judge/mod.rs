@@ -8,6 +8,7 @@ mod curve;
 mod figure;
 
 pub use curve::{TARGET_RING, curve_figures};
+pub(crate) use figure::figures_of_spectrum;
 pub use figure::{Bound, Complaint, Figure, RING_WIDTH, Side, figures_of_torus, figures_of_window};
 
 use strew_core::{Map, Table, Twin, table::Figures};

@@ -25,7 +25,7 @@ pub trait Objective {
     /// Gives the same bits whatever the number of threads.
     fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64;
 
-    /// How many pairs one evaluation visits, once there was one.
+    /// How many pairs one evaluation visits (after the first), if it visits pairs.
     fn pairs(&self) -> usize {
         0
     }

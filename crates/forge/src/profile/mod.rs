@@ -1,19 +1,27 @@
 //! Noise profiles: what a name such as `blue` asks for.
 //!
 //! A profile says how a table is optimized and what must be measured on it before it is accepted.
-//! To add one: a constant here, its name in [`Profile::ALL`], and, for a new kind of energy, a
-//! variant of [`Recipe`] with its branch in the forge.
+//! To add one: a constant in its family's file, its name in [`Profile::ALL`], and, for a new kind of
+//! energy, a file with a variant of [`Recipe`].
 
+mod gaussian;
+mod pattern;
 mod radial;
 mod target;
 
+pub use gaussian::GaussianRecipe;
 pub use radial::RadialRecipe;
 pub use target::{MAX_NU, MAX_POINTS, MAX_POWER, Target};
 
 use crate::{
     ForgeError,
-    judge::{Bound, Figure},
+    ground::Ground,
+    judge::Bound,
+    optimize::{Descent, Objective},
 };
+use gaussian::{BLUE, SHARP};
+use pattern::PATTERN;
+use radial::{CUSTOM, STEP};
 
 /// A noise profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,58 +47,26 @@ pub enum Recipe {
     Gaussian(GaussianRecipe),
     /// A radial power curve, on the unbounded pattern.
     Radial(RadialRecipe),
+    /// Not at all: every vector is zero.
+    Undisplaced,
 }
 
-/// Parameters of [`Recipe::Gaussian`]; lengths in mean spacings.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GaussianRecipe {
-    /// Width of the Gaussian in the first phase.
-    pub sigma: f64,
-    /// Its width in the second phase. A wider Gaussian goes on lowering the low frequencies and
-    /// leaves the rest as it is; the first phase alone, run until the low frequencies are as low,
-    /// also sharpens the set and raises its spectral peak.
-    pub polish_sigma: f64,
-    /// The second phase's share of the steps.
-    pub polish_share: f64,
-    /// Pairs closer than this are pushed apart besides: the smallest distance ends a little below.
-    pub guard_reach: f64,
-    /// How hard.
-    pub guard_strength: f64,
-    /// Spacings moved per unit of gradient.
-    pub rate: f64,
+/// Some steps with one energy.
+pub(crate) struct Phase {
+    pub(crate) objective: Box<dyn Objective>,
+    pub(crate) descent: Descent,
 }
-
-/// Gaussian blue noise of σ = 1: the least low-frequency power.
-const BLUE: Profile = Profile {
-    name: "blue",
-    summary: "Gaussian blue noise, sigma 1: least power at low frequencies",
-    recipe: Recipe::Gaussian(GaussianRecipe {
-        sigma: 1.0,
-        polish_sigma: 1.15,
-        polish_share: 0.52,
-        guard_reach: 0.72,
-        guard_strength: 0.3,
-        rate: 0.2,
-    }),
-    jitter: 0.7,
-    steps: 250,
-    bounds: &[
-        Bound::at_most(Figure::LowPower, 2e-5),
-        Bound::at_most(Figure::PeakPower, 3.0),
-        Bound::at_least(Figure::DeltaMin, 0.6),
-    ],
-};
 
 impl Profile {
     /// All profiles that can be made.
-    pub const ALL: &'static [Self] = &[BLUE, radial::STEP];
+    pub const ALL: &'static [Self] = &[BLUE, SHARP, STEP, PATTERN];
 
     /// The radial power curve it follows, if it follows one.
     #[must_use]
     pub fn target(&self) -> Option<Target> {
         match self.recipe {
             Recipe::Radial(recipe) => Some(Target::fixed(recipe.curve)),
-            Recipe::Gaussian(_) => None,
+            Recipe::Gaussian(_) | Recipe::Undisplaced => None,
         }
     }
 
@@ -100,7 +76,7 @@ impl Profile {
     /// [`ForgeError::Field`] if `name` is that of a known profile.
     pub fn custom(name: &str) -> Result<&'static Self, ForgeError> {
         match Self::named(name) {
-            Err(_) => Ok(&radial::CUSTOM),
+            Err(_) => Ok(&CUSTOM),
             Ok(_) => Err(ForgeError::Field {
                 field: "profile",
                 value: format!("{name:?}"),
@@ -134,21 +110,35 @@ impl Recipe {
     #[must_use]
     pub fn describe(&self) -> (&'static str, Vec<(String, String)>) {
         match self {
-            Self::Gaussian(recipe) => {
-                let parameters = [
-                    ("sigma", recipe.sigma),
-                    ("polish_sigma", recipe.polish_sigma),
-                    ("polish_share", recipe.polish_share),
-                    ("guard_reach", recipe.guard_reach),
-                    ("guard_strength", recipe.guard_strength),
-                    ("rate", recipe.rate),
-                ];
-                let text = parameters.map(|(name, value)| (name.into(), value.to_string()));
-                ("gaussian", text.into())
-            }
+            Self::Gaussian(recipe) => ("gaussian", recipe.describe()),
             Self::Radial(recipe) => ("radial", recipe.describe()),
+            Self::Undisplaced => ("none", Vec::new()),
         }
     }
+
+    /// What is done, in order, with so many steps in all; `target` is for recipes that follow a
+    /// curve.
+    pub(crate) fn phases(
+        &self,
+        ground: &Ground,
+        target: Option<&Target>,
+        steps: u32,
+    ) -> Vec<Phase> {
+        match self {
+            Self::Gaussian(recipe) => recipe.phases(ground, steps),
+            Self::Radial(recipe) => target
+                .map(|target| recipe.phase(ground, target, steps))
+                .into_iter()
+                .collect(),
+            Self::Undisplaced => Vec::new(),
+        }
+    }
+}
+
+/// Numbers with their names, as text.
+fn named(parameters: &[(&str, f64)]) -> Vec<(String, String)> {
+    let text = |&(name, value): &(&str, f64)| (name.into(), value.to_string());
+    parameters.iter().map(text).collect()
 }
 
 #[cfg(test)]
@@ -159,7 +149,8 @@ mod tests {
     fn profiles_are_found_by_name_and_others_are_refused_with_the_names_there_are() {
         for profile in Profile::ALL {
             assert_eq!(Profile::named(profile.name).expect("valid"), profile);
-            assert!(!profile.bounds.is_empty(), "{}", profile.name);
+            let optimized = profile.recipe != Recipe::Undisplaced;
+            assert_eq!(!profile.bounds.is_empty(), optimized, "{}", profile.name);
         }
         let error = Profile::named("mauve").expect_err("refused").to_string();
         assert!(error.contains("mauve") && error.contains("blue"), "{error}");

@@ -1,9 +1,12 @@
 //! Profiles that follow a radial power curve.
 
-use super::{Profile, Recipe};
+use std::slice;
+
+use super::{Phase, Profile, Recipe, Target, named};
 use crate::{
+    ground::Ground,
     judge::{Bound, Figure},
-    optimize::RadialWeights,
+    optimize::{Descent, Pairs, Radial, RadialWeights, Reach},
 };
 
 /// Parameters of [`Recipe::Radial`].
@@ -21,7 +24,7 @@ impl RadialRecipe {
     /// The parameters but the curve, for a table's history.
     pub(super) fn describe(&self) -> Vec<(String, String)> {
         let weights = &self.weights;
-        let parameters = [
+        named(&[
             ("reach", weights.reach),
             ("nu_max", weights.nu_max),
             ("fit", weights.fit),
@@ -29,10 +32,21 @@ impl RadialRecipe {
             ("edge", weights.edge),
             ("leash", weights.leash),
             ("rate", self.rate),
-        ];
-        parameters
-            .map(|(name, value)| (name.into(), value.to_string()))
-            .into()
+        ])
+    }
+
+    /// All steps, on the unbounded pattern of α: its pairs have exact frequencies too, and those
+    /// that occur in twins alone are too few to show in a spectrum.
+    pub(super) fn phase(&self, ground: &Ground, target: &Target, steps: u32) -> Phase {
+        let reach = Reach(self.weights.reach);
+        let pairs = Pairs::new(reach, slice::from_ref(&ground.map), ground.scale());
+        Phase {
+            objective: Box::new(Radial::new(pairs, target, &self.weights)),
+            descent: Descent {
+                steps,
+                rate: self.rate,
+            },
+        }
     }
 }
 

@@ -1,0 +1,188 @@
+//! Voronoi cells, holes and bonds: what the Delaunay triangulation of a set tells.
+//!
+//! The triangulation itself knows no torus, so a periodic set is given a border: copies of the
+//! points of a band on the other side. Of a window only the inner points are looked at.
+
+use spade::{DelaunayTriangulation, Point2, Triangulation};
+
+use super::{Torus, Window, cells::wrap};
+
+/// The figures of a set's Voronoi diagram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Voronoi {
+    /// The largest deviation of a cell's area from the mean area, as a part of the mean.
+    pub area_deviation: f64,
+    /// The standard deviation of the cells' areas, as a part of the mean.
+    pub area_spread: f64,
+    /// The radius of the largest empty circle (the largest circumradius of a Delaunay triangle),
+    /// over the distance of neighbors in a hexagonal lattice of the same density, which itself has
+    /// 1/√3.
+    pub largest_hole: f64,
+    /// Bond-orientational order: the mean over all points of |mean over its bonds of exp(6iθ)|; 1
+    /// for a hexagonal lattice, 0 for a square one, about 0.37 for a random set.
+    pub q6: f64,
+}
+
+/// The width of the border, in mean spacings, and what is left out of a window: cells farther in
+/// than this are whole unless there is a hole of half this radius.
+const BORDER: f64 = 6.0;
+/// The distance of neighbors in a hexagonal lattice of unit density.
+const HEX: f64 = 1.074_569_931_823_542;
+
+impl Voronoi {
+    /// Of a periodic set. All figures are 0 for a set too small to have a triangulation.
+    #[must_use]
+    pub fn of_torus(set: &Torus) -> Self {
+        let side = set.side();
+        let border = BORDER.min(side);
+        let home = set.points().iter().map(|p| p.map(|v| wrap(v, side)));
+        let mut points: Vec<[f64; 2]> = home.collect();
+        let counted = points.len();
+        for index in 0..counted {
+            let images = points[index].map(|v| {
+                let (left, right) = (v < border, v >= side - border);
+                [Some(0.0), left.then_some(side), right.then_some(-side)]
+            });
+            for (at, dy) in images[1].iter().enumerate() {
+                for (also, dx) in images[0].iter().enumerate() {
+                    if let (Some(dx), Some(dy), true) = (dx, dy, at + also > 0) {
+                        points.push([points[index][0] + dx, points[index][1] + dy]);
+                    }
+                }
+            }
+        }
+        Self::of(&points, |index, _| index < counted)
+    }
+
+    /// Of a window: its points at least 6 mean spacings from the edge.
+    #[must_use]
+    pub fn of_window(set: &Window) -> Self {
+        let inner = BORDER..set.side() - BORDER;
+        Self::of(set.points(), |_, p| p.iter().all(|v| inner.contains(v)))
+    }
+
+    fn of(points: &[[f64; 2]], counts: impl Fn(usize, &[f64; 2]) -> bool) -> Self {
+        let none = Self {
+            area_deviation: 0.0,
+            area_spread: 0.0,
+            largest_hole: 0.0,
+            q6: 0.0,
+        };
+        let vertices = points.iter().map(|p| Point2::new(p[0], p[1])).collect();
+        let Ok(mesh) = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(vertices) else {
+            return none;
+        };
+        // Coincident points share a vertex; then the numbers differ and no cell is anyone's.
+        if mesh.num_vertices() != points.len() {
+            return Self {
+                area_deviation: 1.0,
+                area_spread: 1.0,
+                ..none
+            };
+        }
+        let (mut worst, mut spread, mut hole, mut order, mut counted) =
+            (0.0f64, 0.0, 0.0f64, 0.0, 0u64);
+        for vertex in mesh.vertices() {
+            let p = points[vertex.index()];
+            if !counts(vertex.index(), &p) {
+                continue;
+            }
+            let (mut twice_area, mut bonds, mut real, mut imaginary) = (0.0, 0.0, 0.0, 0.0);
+            for edge in vertex.out_edges() {
+                let q = edge.to().position();
+                let angle = 6.0 * (q.y - p[1]).atan2(q.x - p[0]);
+                (real, imaginary, bonds) =
+                    (real + angle.cos(), imaginary + angle.sin(), bonds + 1.0);
+                let corner = |face: spade::handles::FaceHandle<'_, _, _, _, _, _>| {
+                    face.as_inner().map(|face| face.circumcenter())
+                };
+                if let (Some(a), Some(b)) = (corner(edge.rev().face()), corner(edge.face())) {
+                    let (ax, ay, bx, by) = (a.x - p[0], a.y - p[1], b.x - p[0], b.y - p[1]);
+                    twice_area += ax * by - ay * bx;
+                    hole = hole.max(bx * bx + by * by);
+                }
+            }
+            let deviation = 0.5 * twice_area - 1.0;
+            worst = worst.max(deviation.abs());
+            spread += deviation * deviation;
+            order += (real * real + imaginary * imaginary).sqrt() / f64::max(bonds, 1.0);
+            counted += 1;
+        }
+        let count = counted.max(1) as f64;
+        Self {
+            area_deviation: worst,
+            area_spread: (spread / count).sqrt(),
+            largest_hole: hole.sqrt() / HEX,
+            q6: order / count,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optimize::SplitMix;
+
+    fn hexagonal(columns: usize, rows: usize) -> Torus {
+        let points = (0..rows).flat_map(|j| {
+            let shift = 0.5 * (j % 2) as f64;
+            (0..columns).map(move |i| {
+                let (columns, rows) = (columns as f64, rows as f64);
+                [(i as f64 + shift) / columns, j as f64 / rows]
+            })
+        });
+        Torus::new(1.0, points.collect())
+    }
+
+    #[test]
+    fn a_hexagonal_lattice_has_equal_cells_and_the_smallest_holes() {
+        // 97 columns, 112 rows: their ratio is √3/2 to 10⁻⁵.
+        let found = Voronoi::of_torus(&hexagonal(97, 112));
+        assert!(found.area_deviation < 1e-9, "{found:?}");
+        assert!(
+            (found.largest_hole - 1.0 / 3f64.sqrt()).abs() < 1e-3,
+            "{found:?}"
+        );
+        assert!((found.q6 - 1.0).abs() < 1e-3, "{found:?}");
+    }
+
+    #[test]
+    fn a_missing_point_is_a_hole_of_a_known_size() {
+        let mut points = hexagonal(97, 112).points().to_vec();
+        let window = Window::new(104.0, 1.0, points.clone());
+        let whole = Voronoi::of_window(&window);
+        assert!((whole.largest_hole - 1.0 / 3f64.sqrt()).abs() < 1e-3);
+        points.remove(97 * 56 + 48);
+        let holed = Voronoi::of_window(&Window::new(104.0, 1.0, points));
+        // The empty circle reaches the six neighbors, which each inherit a sixth of the cell.
+        assert!((holed.largest_hole - 1.0).abs() < 1e-3, "{holed:?}");
+        assert!((holed.area_deviation - 1.0 / 6.0).abs() < 1e-3, "{holed:?}");
+    }
+
+    #[test]
+    fn cells_of_a_random_set_add_up_to_the_torus_and_vary_as_known() {
+        let mut random = SplitMix::new(3);
+        let points = (0..20_000).map(|_| [random.next_f64(), random.next_f64()]);
+        let found = Voronoi::of_torus(&Torus::new(1.0, points.collect()));
+        // Known for a Poisson set: the variance of the area is 0.2802 of its squared mean.
+        assert!(
+            (found.area_spread - 0.2802f64.sqrt()).abs() < 0.02,
+            "{found:?}"
+        );
+        assert!(
+            found.area_deviation > 1.5 && found.largest_hole > 1.3,
+            "{found:?}"
+        );
+        assert!((0.3..0.45).contains(&found.q6), "{found:?}");
+    }
+
+    #[test]
+    fn sets_without_cells_have_figures_too() {
+        assert_eq!(
+            Voronoi::of_torus(&Torus::new(1.0, vec![])).largest_hole,
+            0.0
+        );
+        let twice = Torus::new(1.0, vec![[0.5, 0.5]; 2]);
+        assert_eq!(Voronoi::of_torus(&twice).area_deviation, 1.0);
+    }
+}

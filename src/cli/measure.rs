@@ -1,0 +1,280 @@
+//! `strew measure`: the figures and curves of a table, of a region, or of a file of points.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, anyhow, bail};
+use rayon::prelude::*;
+use serde_json::{Map as JsonMap, Value, json};
+use strew_core::{Table, Twin};
+use strew_forge::{
+    Report,
+    measure::{Torus, Window, twin_set, window_set},
+    picture,
+};
+
+use super::{
+    Failure,
+    output::Output,
+    query::{Query, described},
+};
+
+/// Flags of `strew measure`. What is measured: a table file (`--table`), a file of points
+/// (`--points`), or, without either, the points of a query as for `strew sample`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// A table file: measured on periodic twins and on windows of the unbounded pattern.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["points", "bbox"])]
+    table: Option<PathBuf>,
+    /// With --table: a twin p/q; may be repeated [default: the first unseen ones with 70,225 points
+    /// or more].
+    #[arg(long, value_name = "P/Q", requires = "table")]
+    twin: Vec<String>,
+    /// With --table: a window of about this many points.
+    #[arg(long, value_name = "N", requires = "table", default_value_t = 80_000)]
+    window_points: u64,
+    /// A file of points: csv with the columns x and y, or f64 (little-endian pairs) by its ending;
+    /// needs --bbox, the square that the points fill.
+    #[arg(long, value_name = "FILE", requires = "bbox")]
+    points: Option<PathBuf>,
+    /// With --points: the set repeats beyond the square.
+    #[arg(long, requires = "points")]
+    periodic: bool,
+    /// Frequencies are measured up to this, in units of the square root of the density.
+    #[arg(long, default_value_t = 4.0)]
+    nu_max: f64,
+    /// An SVG picture to write: points, spectrum, radial power, anisotropy, RDF. With several
+    /// subjects that of the first.
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
+    /// The file to write the figures to, as JSON; - is standard output.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    query: Query,
+}
+
+/// The largest set that is measured: its spectrum takes some gigabytes at ν = 4.
+const MAX_POINTS: u128 = 4_000_000;
+
+/// Measures.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    if !(0.5..=8.0).contains(&args.nu_max) {
+        let problem = anyhow!("--nu-max is {}; it must be from 0.5 to 8", args.nu_max);
+        return Err(Failure::Usage(problem));
+    }
+    let reports = if let Some(file) = &args.table {
+        of_table(args, file)?
+    } else if let Some(file) = &args.points {
+        vec![of_points(args, file)?]
+    } else {
+        vec![of_query(args)?]
+    };
+    if let (Some(path), Some(report)) = (&args.picture, reports.first()) {
+        let svg = picture(report, &report.figures.subject).context("--picture")?;
+        let mut output = Output::open(Some(path))?;
+        output.write(svg.as_bytes())?;
+        output.finish()?;
+    }
+    let text = json!({ "subjects": reports.iter().map(to_json).collect::<Vec<_>>() });
+    let mut output = Output::open(args.output.as_deref())?;
+    output.write(format!("{text:#}\n").as_bytes())?;
+    Ok(output.finish()?)
+}
+
+fn to_json(report: &Report) -> Value {
+    let figures: JsonMap<String, Value> = report
+        .figures
+        .values
+        .iter()
+        .map(|(name, value)| (name.clone(), json!(value)))
+        .collect();
+    let rings: Vec<Value> = report
+        .rings
+        .iter()
+        .map(|r| json!([r.nu, r.power, r.anisotropy_db]))
+        .collect();
+    json!({
+        "subject": report.figures.subject,
+        "made_on_it": report.figures.seen,
+        "points": report.figures.points,
+        "figures": figures,
+        "radial": { "columns": ["nu", "power", "anisotropy_db"], "rings": rings },
+        "rdf": { "columns": ["distance", "g"], "bins": report.rdf.bins },
+    })
+}
+
+/// A set to be measured.
+enum Subject {
+    Torus(String, bool, Torus),
+    Window(String, Window),
+}
+
+impl Subject {
+    fn measured(self, nu_max: f64) -> Report {
+        match self {
+            Self::Torus(name, seen, set) => Report::of_torus(name, seen, &set, nu_max),
+            Self::Window(name, set) => Report::of_window(name, false, &set, nu_max),
+        }
+    }
+}
+
+fn of_table(args: &Args, file: &Path) -> Result<Vec<Report>, Failure> {
+    let table = strew_forge::read_table(file).map_err(anyhow::Error::from)?;
+    let twins = args.twins(&table).map_err(Failure::Usage)?;
+    let mut subjects = vec![];
+    for twin in twins {
+        let set = twin_set(&table, twin).ok_or_else(|| {
+            Failure::Usage(anyhow!(
+                "--twin {twin} has another map than the table's alpha"
+            ))
+        })?;
+        let seen = table.provenance().twins.contains(&twin);
+        subjects.push(Subject::Torus(format!("twin {twin}"), seen, set));
+    }
+    for seed in [1, 2] {
+        let set = window_set(&table, args.window_points, seed);
+        subjects.push(Subject::Window(format!("window seed {seed}"), set));
+    }
+    Ok(subjects
+        .into_par_iter()
+        .map(|subject| subject.measured(args.nu_max))
+        .collect())
+}
+
+impl Args {
+    fn twins(&self, table: &Table) -> anyhow::Result<Vec<Twin>> {
+        if self.twin.is_empty() {
+            let seen = &table.provenance().twins;
+            let large =
+                |twin: &Twin| twin.points() >= 70_225 && twin.is_uniform() && !seen.contains(twin);
+            return Ok(table.map().twins().filter(large).take(2).collect());
+        }
+        let read = |text: &String| {
+            let twin = text
+                .split_once('/')
+                .and_then(|(p, q)| Twin::new(p.parse().ok()?, q.parse().ok()?));
+            match twin {
+                Some(twin) if u128::from(twin.points()) <= MAX_POINTS => Ok(twin),
+                Some(twin) => bail!(
+                    "--twin {text} has {} points; at most {MAX_POINTS} are measured",
+                    twin.points()
+                ),
+                None => bail!("--twin is `{text}`; allowed: coprime integers p/q with q < p < 2q"),
+            }
+        };
+        self.twin.iter().map(read).collect()
+    }
+}
+
+/// The corner and the side of a square box.
+fn square([min_x, min_y, max_x, max_y]: [f64; 4]) -> anyhow::Result<([f64; 2], f64)> {
+    let (width, height) = (max_x - min_x, max_y - min_y);
+    if (width / height - 1.0).abs() > 1e-9 {
+        bail!("--bbox is {width} wide and {height} high; only squares are measured");
+    }
+    Ok(([min_x, min_y], width))
+}
+
+fn of_query(args: &Args) -> Result<Report, Failure> {
+    let config = args.query.settings()?;
+    let (planned, _) = args.query.planned(&config, None)?;
+    let (corner, side) = square(planned.query.bbox()).map_err(Failure::Usage)?;
+    if planned.count() > MAX_POINTS || planned.count() < 100 {
+        let problem = anyhow!(
+            "--bbox holds {} points; from 100 to {MAX_POINTS} are measured",
+            planned.count()
+        );
+        return Err(Failure::Usage(problem));
+    }
+    let mut points = vec![[0.0; 2]; planned.count() as usize];
+    planned.plan.blocks_f64().fill(&mut points);
+    let name = described(&planned);
+    Ok(window(corner, side, planned.query.density, points, name).measured(args.nu_max))
+}
+
+fn window(
+    corner: [f64; 2],
+    side: f64,
+    density: f64,
+    mut points: Vec<[f64; 2]>,
+    name: String,
+) -> Subject {
+    for p in &mut points {
+        *p = [p[0] - corner[0], p[1] - corner[1]];
+    }
+    Subject::Window(name, Window::new(side, density, points))
+}
+
+fn of_points(args: &Args, file: &Path) -> Result<Report, Failure> {
+    let bbox = args.query.corners().map_err(Failure::Usage)?;
+    let (corner, side) = square(bbox).map_err(Failure::Usage)?;
+    let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
+    let is_packed = file.extension().is_some_and(|ending| ending == "f64");
+    let points = if is_packed {
+        packed(&bytes)
+    } else {
+        csv(&bytes)
+    };
+    let points = points.with_context(|| format!("{} is not a file of points", file.display()))?;
+    let outside = |p: &&[f64; 2]| (0..2).any(|i| !(corner[i]..corner[i] + side).contains(&p[i]));
+    if let Some([x, y]) = points.iter().find(outside) {
+        let problem = anyhow!(
+            "the point ({x}, {y}) of {} is outside --bbox",
+            file.display()
+        );
+        return Err(Failure::Usage(problem));
+    }
+    if points.len() < 100 || points.len() as u128 > MAX_POINTS {
+        let problem = anyhow!(
+            "{} has {} points; from 100 to {MAX_POINTS} are measured",
+            file.display(),
+            points.len()
+        );
+        return Err(Failure::Usage(problem));
+    }
+    let name = file.display().to_string();
+    let subject = if args.periodic {
+        Subject::Torus(name, false, Torus::new(side, points))
+    } else {
+        let density = points.len() as f64 / (side * side);
+        window(corner, side, density, points, name)
+    };
+    Ok(subject.measured(args.nu_max))
+}
+
+fn packed(bytes: &[u8]) -> anyhow::Result<Vec<[f64; 2]>> {
+    if !bytes.len().is_multiple_of(16) {
+        bail!("{} bytes are no whole number of f64 pairs", bytes.len());
+    }
+    let number = |bytes: &[u8]| bytes.try_into().map(f64::from_le_bytes).unwrap_or(f64::NAN);
+    Ok(bytes
+        .chunks_exact(16)
+        .map(|pair| [number(&pair[..8]), number(&pair[8..])])
+        .collect())
+}
+
+fn csv(bytes: &[u8]) -> anyhow::Result<Vec<[f64; 2]>> {
+    let text = std::str::from_utf8(bytes).context("it is not UTF-8")?;
+    let mut lines = text.lines().enumerate();
+    let (_, header) = lines.next().ok_or_else(|| anyhow!("it is empty"))?;
+    let column = |name: &str| {
+        let found = header.split(',').position(|column| column.trim() == name);
+        found.ok_or_else(|| anyhow!("its header `{header}` has no column `{name}`"))
+    };
+    let columns = [column("x")?, column("y")?];
+    let read = |(i, line): (usize, &str)| {
+        let fields: Vec<&str> = line.split(',').collect();
+        let mut point = [0.0; 2];
+        for (value, column) in point.iter_mut().zip(columns) {
+            let field = fields.get(column).map_or("", |field| field.trim());
+            *value = field
+                .parse()
+                .map_err(|_| anyhow!("line {}: `{field}` is not a number", i + 1))?;
+        }
+        Ok(point)
+    };
+    lines
+        .filter(|(_, line)| !line.trim().is_empty())
+        .map(read)
+        .collect()
+}

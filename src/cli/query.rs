@@ -1,0 +1,105 @@
+//! The flags of a query, shared by the commands that take one.
+
+use anyhow::anyhow;
+
+use super::{Failure, config};
+use crate::{
+    config::Config,
+    service::{
+        Catalog, Encoding, Planned,
+        catalog::CatalogError,
+        query::{Parameters, read_bbox},
+    },
+};
+
+/// The parameters of `GET /v1/points`, and the settings that say which tables there are.
+#[derive(Debug, clap::Args)]
+pub(super) struct Query {
+    /// The box: minx,miny,maxx,maxy in world units, half-open.
+    #[arg(long, value_name = "BOX", allow_hyphen_values = true)]
+    bbox: Option<String>,
+    /// Points per unit of area.
+    #[arg(long, allow_hyphen_values = true)]
+    density: Option<String>,
+    /// The mean spacing, density^-1/2.
+    #[arg(long, allow_hyphen_values = true)]
+    spacing: Option<String>,
+    /// The noise profile [default: blue].
+    #[arg(long)]
+    profile: Option<String>,
+    /// The number alpha [default: (5-sqrt(3))/2].
+    #[arg(long, allow_hyphen_values = true)]
+    alpha: Option<String>,
+    /// The size of the map: s, m or l, as far as it is loaded [default: s].
+    #[arg(long)]
+    map: Option<String>,
+    /// Which set of points [default: 0].
+    #[arg(long, allow_hyphen_values = true)]
+    seed: Option<String>,
+    /// off, on, or the strength of the warp, 0 to 2 [default: off for seed 0, else on].
+    #[arg(long, allow_hyphen_values = true)]
+    warp: Option<String>,
+    #[command(flatten)]
+    settings: config::Args,
+}
+
+impl Query {
+    /// The merged settings.
+    pub(super) fn settings(&self) -> Result<Config, Failure> {
+        self.settings.merged()
+    }
+
+    /// The query, checked and planned, and the encoding that `format` names.
+    pub(super) fn planned(
+        &self,
+        config: &Config,
+        format: Option<&str>,
+    ) -> Result<(Planned, Option<Encoding>), Failure> {
+        let catalog = config
+            .catalog()
+            .map_err(|error| Failure::Usage(error.into()))?;
+        let parameters = Parameters {
+            bbox: self.bbox.clone(),
+            density: self.density.clone(),
+            spacing: self.spacing.clone(),
+            profile: self.profile.clone(),
+            alpha: self.alpha.clone(),
+            map: self.map.clone(),
+            seed: self.seed.clone(),
+            warp: self.warp.clone(),
+            format: format.map(Into::into),
+        };
+        let usage = |error| Failure::Usage(anyhow::Error::new(error));
+        let (query, encoding) = parameters.check(&catalog, vec![]).map_err(usage)?;
+        let planned = Planned::from_catalog(&catalog, query).map_err(usage)?;
+        Ok((planned, encoding))
+    }
+
+    /// Only the box: min x, min y, max x, max y.
+    pub(super) fn corners(&self) -> anyhow::Result<[f64; 4]> {
+        let read = read_bbox(self.bbox.as_deref()).map_err(|fault| anyhow!("{fault}"))?;
+        read.ok_or_else(|| anyhow!("--bbox is missing"))
+    }
+}
+
+/// What a planned query asks for, in a few words.
+pub(super) fn described(planned: &Planned) -> String {
+    let query = &planned.query;
+    format!(
+        "profile {}, alpha {}, map {}, spacing {}, seed {}, warp {}",
+        query.profile,
+        query.alpha,
+        query.size,
+        query.spacing.get(),
+        query.seed.0,
+        query.warp.strength()
+    )
+}
+
+impl Config {
+    /// The tables that the settings ask for.
+    pub(super) fn catalog(&self) -> Result<Catalog, CatalogError> {
+        let folder = (!self.tables.folder.as_os_str().is_empty()).then_some(&*self.tables.folder);
+        Catalog::load(self.tables.embedded, folder)
+    }
+}
