@@ -21,7 +21,7 @@ use crate::{
 };
 use gaussian::{BLUE, SHARP};
 use pattern::PATTERN;
-use radial::{CUSTOM, STEP};
+use radial::{CUSTOM, GREEN, PINK, STEP};
 
 /// A noise profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +59,7 @@ pub(crate) struct Phase {
 
 impl Profile {
     /// All profiles that can be made.
-    pub const ALL: &'static [Self] = &[BLUE, SHARP, STEP, PATTERN];
+    pub const ALL: &'static [Self] = &[BLUE, SHARP, STEP, GREEN, PINK, PATTERN];
 
     /// The radial power curve it follows, if it follows one.
     #[must_use]
@@ -127,9 +127,8 @@ impl Recipe {
         match self {
             Self::Gaussian(recipe) => recipe.phases(ground, steps),
             Self::Radial(recipe) => target
-                .map(|target| recipe.phase(ground, target, steps))
-                .into_iter()
-                .collect(),
+                .map(|target| recipe.phases(ground, target, steps))
+                .unwrap_or_default(),
             Self::Undisplaced => Vec::new(),
         }
     }
