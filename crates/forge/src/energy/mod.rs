@@ -8,10 +8,12 @@
 pub mod exp;
 mod gaussian;
 mod guard;
+mod lloyd;
 mod pairwise;
 
 pub use gaussian::Gaussian;
 pub use guard::Guard;
+pub use lloyd::{Cell, Lloyd};
 pub use pairwise::Pairwise;
 
 use crate::measure::Torus;

@@ -3,11 +3,13 @@
 mod descent;
 mod overlap;
 mod pairs;
+mod sets;
 mod start;
 mod watch;
 
 pub use descent::{Descended, Descent};
 pub use pairs::Pairs;
+pub use sets::Sets;
 pub use start::{SplitMix, jitter};
 pub use watch::{Meter, Progress, Stage, Watch};
 

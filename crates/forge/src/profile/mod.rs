@@ -5,9 +5,13 @@
 //! energy, a file with a variant of [`Recipe`].
 
 mod gaussian;
+mod lloyd;
 mod pattern;
+mod spacing;
 
 pub use gaussian::GaussianRecipe;
+pub use lloyd::LloydRecipe;
+pub use spacing::{Push, SpacingRecipe};
 
 use crate::{
     ForgeError,
@@ -16,7 +20,9 @@ use crate::{
     optimize::{Descent, Objective},
 };
 use gaussian::{BLUE, SHARP};
+use lloyd::LLOYD;
 use pattern::PATTERN;
+use spacing::SPACED;
 
 /// A noise profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +46,10 @@ pub struct Profile {
 pub enum Recipe {
     /// Gaussian repulsion, with a guard against close pairs, in two phases.
     Gaussian(GaussianRecipe),
+    /// Pairs in conflict are pushed apart, harder and harder.
+    Spacing(SpacingRecipe),
+    /// Points go to the centroids of their cells.
+    Lloyd(LloydRecipe),
     /// Not at all: every vector is zero.
     Undisplaced,
 }
@@ -52,7 +62,7 @@ pub(crate) struct Phase {
 
 impl Profile {
     /// All profiles that can be made.
-    pub const ALL: &'static [Self] = &[BLUE, SHARP, PATTERN];
+    pub const ALL: &'static [Self] = &[BLUE, SHARP, SPACED, LLOYD, PATTERN];
 
     /// The profile of that name.
     ///
@@ -80,6 +90,8 @@ impl Recipe {
     pub fn describe(&self) -> (&'static str, Vec<(String, String)>) {
         match self {
             Self::Gaussian(recipe) => ("gaussian", recipe.describe()),
+            Self::Spacing(recipe) => ("spacing", recipe.describe()),
+            Self::Lloyd(recipe) => ("lloyd", recipe.describe()),
             Self::Undisplaced => ("none", Vec::new()),
         }
     }
@@ -88,6 +100,8 @@ impl Recipe {
     pub(crate) fn phases(&self, ground: &Ground, steps: u32) -> Vec<Phase> {
         match self {
             Self::Gaussian(recipe) => recipe.phases(ground, steps),
+            Self::Spacing(recipe) => recipe.phases(ground, steps),
+            Self::Lloyd(recipe) => recipe.phases(ground, steps),
             Self::Undisplaced => Vec::new(),
         }
     }
