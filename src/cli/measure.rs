@@ -243,7 +243,7 @@ fn of_points(args: &Args, file: &Path) -> Result<Report, Failure> {
 }
 
 fn packed(bytes: &[u8]) -> anyhow::Result<Vec<[f64; 2]>> {
-    if bytes.len() % 16 != 0 {
+    if !bytes.len().is_multiple_of(16) {
         bail!("{} bytes are no whole number of f64 pairs", bytes.len());
     }
     let number = |bytes: &[u8]| bytes.try_into().map(f64::from_le_bytes).unwrap_or(f64::NAN);

@@ -2,6 +2,7 @@
 
 mod negotiate;
 mod points;
+mod portrait;
 mod problem;
 mod profiles;
 
@@ -14,13 +15,16 @@ use crate::service::{Error, Service};
 use problem::Problem;
 
 /// What there is, for those who look elsewhere.
-const PATHS: &str = "/v1/points, /v1/profiles, /livez, /readyz";
+const PATHS: &str = "/v1/points, /v1/profiles, /v1/profiles/{name}, \
+                     /v1/profiles/{name}/spectrum.svg, /livez, /readyz";
 
 /// The routes of the REST door.
 pub fn routes(service: Arc<Service>) -> Router {
     Router::new()
         .route("/v1/points", get(points::get))
         .route("/v1/profiles", get(profiles::get))
+        .route("/v1/profiles/{name}", get(portrait::get))
+        .route("/v1/profiles/{name}/spectrum.svg", get(portrait::svg))
         .with_state(service)
 }
 

@@ -40,8 +40,9 @@ struct Profiles<'a> {
     profiles: Vec<Profile<'a>>,
 }
 
+/// A table.
 #[derive(Serialize)]
-struct Profile<'a> {
+pub(super) struct Profile<'a> {
     profile: &'a str,
     alpha: String,
     map: String,
@@ -73,7 +74,7 @@ struct Figures<'a> {
 }
 
 impl<'a> Profile<'a> {
-    fn new(entry: &'a Entry) -> Self {
+    pub(super) fn new(entry: &'a Entry) -> Self {
         Self {
             profile: &entry.key.profile,
             alpha: entry.key.alpha.to_string(),

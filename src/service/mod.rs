@@ -9,6 +9,7 @@ pub mod cache;
 pub mod catalog;
 pub mod encode;
 pub mod error;
+mod portrait;
 pub mod query;
 pub mod stream;
 pub mod workers;
@@ -21,11 +22,13 @@ use strew_core::{Plan, Sampler};
 pub use catalog::{Catalog, Entry, Key};
 pub use encode::{Answer, Encoding};
 pub use error::{Error, Fault, Kind};
+pub use portrait::Portrait;
 pub use query::{Draft, Query};
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::Workers;
 
 use cache::Samplers;
+use portrait::Portraits;
 
 /// What a query may ask for, and what answering may hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -90,6 +93,7 @@ pub struct Service {
     catalog: Catalog,
     limits: Limits,
     samplers: Samplers,
+    portraits: Portraits,
     streams: Arc<Streams>,
     workers: Workers,
 }
@@ -100,6 +104,7 @@ impl Service {
     pub fn new(catalog: Catalog, limits: Limits, workers: Workers) -> Self {
         Self {
             samplers: Samplers::new(limits.cache_bytes),
+            portraits: Portraits::new(),
             streams: Arc::new(Streams::new(limits.max_streams)),
             catalog,
             limits,
@@ -145,6 +150,14 @@ impl Service {
         }
         tracing::debug!(count, table = %planned.entry.key, "planned");
         Ok(planned)
+    }
+
+    /// What the points of a table look like.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if it cannot be measured or drawn.
+    pub async fn portrait(&self, entry: &Arc<Entry>) -> Result<Arc<Portrait>, Error> {
+        self.portraits.get(entry, &self.workers).await
     }
 
     /// Streams what an iterator makes, each item made on the workers when it is asked for.

@@ -206,3 +206,31 @@ fn a_region_without_points_is_a_whole_answer() {
         assert!(answer.body.is_empty());
     }
 }
+
+#[test]
+fn a_profile_has_its_curves_and_its_picture() {
+    let daemon = daemon();
+    let answer = daemon.get("/v1/profiles/blue?alpha=sqrt(3)&map=s");
+    assert_eq!(answer.status, 200, "{}", answer.text());
+    let document = answer.json();
+    assert_eq!(document["table"]["alpha"], "sqrt(3)");
+    let rings = document["measured"]["radial"]["values"]
+        .as_array()
+        .expect("rings");
+    let power = |ring: &serde_json::Value| ring[1].as_f64().expect("a number");
+    assert!(
+        rings.len() > 100 && power(&rings[10]) < 0.01,
+        "blue noise has no low power"
+    );
+    let picture = daemon.get("/v1/profiles/blue/spectrum.svg");
+    assert_eq!(picture.header("content-type"), "image/svg+xml");
+    assert!(picture.text().starts_with("<svg"));
+    assert_eq!(daemon.get("/v1/profiles/mauve").status, 404);
+    let wrong = daemon.get("/v1/profiles/blue?seed=1&map=xl");
+    assert_eq!(wrong.status, 400);
+    assert!(
+        wrong.text().contains("`seed`") && wrong.text().contains("`map`"),
+        "{}",
+        wrong.text()
+    );
+}

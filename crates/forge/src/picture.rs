@@ -137,7 +137,7 @@ fn curve(area: &Area<'_>, caption: &str, values: &[[f64; 2]], range: (f64, f64))
 
 fn figures(area: &Area<'_>, report: &Report) -> Drawn {
     let of = &report.figures;
-    let lines = [of.subject.clone(), format!("{} points", of.points)];
+    let lines = [format!("{} points", of.points)];
     let named = of
         .values
         .iter()

@@ -1,9 +1,11 @@
 //! Queries as text: the parameters of an address or of a command line.
 
+use std::sync::Arc;
+
 use percent_encoding::percent_decode_str;
 
 use super::{AMOUNT, BOX, Draft, Query, WARP};
-use crate::service::{Catalog, Encoding, Error, Fault};
+use crate::service::{Catalog, Encoding, Entry, Error, Fault};
 
 /// The parameters there are.
 const NAMES: [&str; 9] = [
@@ -94,6 +96,40 @@ impl Parameters {
             "format" => &mut self.format,
             _ => return None,
         })
+    }
+
+    /// The table of a profile that `alpha` and `map` choose; no other parameter may be given.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with every fault.
+    pub fn entry(
+        &self,
+        catalog: &Catalog,
+        profile: &str,
+        mut faults: Vec<Fault>,
+    ) -> Result<Arc<Entry>, Error> {
+        let mut rest = self.clone();
+        let (alpha, map) = (rest.alpha.take(), rest.map.take());
+        for name in NAMES {
+            if let Some(Some(value)) = rest.slot(name) {
+                let detail = "it means nothing here";
+                faults.push(Fault::new(name, value, detail, "alpha, map"));
+            }
+        }
+        let draft = Draft {
+            profile: Some(profile),
+            alpha: alpha.as_deref(),
+            map: map.as_deref(),
+            ..Draft::default()
+        };
+        match draft.key(catalog) {
+            Ok(key) if faults.is_empty() => catalog.entry(&key).ok_or_else(Error::lost_table),
+            Ok(_) => Err(Error::Invalid(faults)),
+            Err(more) => {
+                faults.extend(more);
+                Err(Error::Invalid(faults))
+            }
+        }
     }
 
     /// Checks everything; `faults` are those found before. Gives the format, too, if one is named.

@@ -47,11 +47,7 @@ impl FromStr for Digest {
     type Err = DigestError;
 
     fn from_str(text: &str) -> Result<Self, DigestError> {
-        let mut bytes = [0; 32];
-        blake3::Hash::from_hex(text)
-            .map_err(|_| DigestError)?
-            .as_bytes()
-            .clone_into(&mut bytes);
-        Ok(Self(bytes))
+        let hash = blake3::Hash::from_hex(text).map_err(|_| DigestError)?;
+        Ok(Self(*hash.as_bytes()))
     }
 }
