@@ -174,7 +174,7 @@ mod tests {
         Lloyd.evaluate(&set, &mut gradient);
         let h = 1e-5;
         for index in [0, 7, 133] {
-            for axis in 0..2 {
+            for (axis, &slope) in gradient[index].iter().enumerate() {
                 let mut at = |by: f64| {
                     set.points_mut()[index][axis] += by;
                     400.0 * Lloyd.evaluate(&set, &mut [[0.0; 2]; 400])
@@ -182,7 +182,7 @@ mod tests {
                 let (up, down) = (at(h), at(-2.0 * h));
                 at(h);
                 let numeric = (up - down) / (2.0 * h);
-                assert!((gradient[index][axis] - numeric).abs() < 1e-5, "{numeric}");
+                assert!((slope - numeric).abs() < 1e-5, "{numeric}");
             }
         }
     }
@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn after_k_steps_points_with_equal_k_ring_neighborhoods_have_moved_equally() {
         // A cell reaches 0.9 spacings and so sees 1.8; a block of half-width 49 fixes 15 of them.
-        for steps in [1, 3, 7] {
+        for steps in [2, 6] {
             let found = disagreement(49, steps);
             assert!(found < 1e-9, "{steps}: {found}");
         }
