@@ -64,6 +64,7 @@ impl Args {
             radius: self.radius,
             profile: self.profile.clone(),
             seed: self.seed,
+            target: None,
             steps: self.steps,
         })
     }

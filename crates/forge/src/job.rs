@@ -9,6 +9,7 @@ use crate::{
     judge::{Complaint, complaints},
     optimize::{Descended, Meter, Stage, Watch},
     plan::Plan,
+    profile::Target,
 };
 
 /// The largest half-width a table is made for: 330 intervals at the default α, and about 200 MB of
@@ -33,6 +34,9 @@ pub struct Job {
     pub profile: String,
     /// The seed of the random start.
     pub seed: u64,
+    /// A radial power curve to follow, under the name `profile`, which must then be none of the
+    /// known ones; `None` for a known profile.
+    pub target: Option<Target>,
     /// Steps of the optimizer, 1 to [`MAX_STEPS`]; the profile's own number if `None`. The cost is
     /// proportional; fewer leave power at low frequencies, more sharpen the spectrum's peak.
     pub steps: Option<u32>,
@@ -48,6 +52,7 @@ impl Job {
             radius: 49,
             profile: "blue".into(),
             seed: DEFAULT_SEED,
+            target: None,
             steps: None,
         }
     }
@@ -130,7 +135,7 @@ pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
     for mut phase in plan.phases() {
         done = phase
             .descent
-            .run(phase.objective.as_mut(), done.moves, &mut meter);
+            .run(&mut *phase.objective, done.moves, &mut meter);
         steps += done.steps;
         if done.interrupted {
             break;

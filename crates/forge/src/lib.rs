@@ -41,5 +41,5 @@ pub use job::{DEFAULT_SEED, Estimate, Job, MAX_RADIUS, MAX_STEPS, Outcome, forge
 pub use judge::{Complaint, Figure};
 pub use optimize::{Progress, Stage, Watch};
 pub use picture::{PictureError, picture};
-pub use profile::Profile;
+pub use profile::{Profile, Target};
 pub use report::Report;

@@ -10,16 +10,25 @@ use crate::{
     ground::Ground,
     judge::Panel,
     optimize::jitter,
-    profile::{Phase, Profile, Recipe},
+    profile::{Phase, Profile, Recipe, Target},
 };
 
 /// The least side t of the set region (α = 1.1): below, a map of any half-width sees too few
 /// neighbors, and there are too many grid points between them to list.
 const LEAST_SIDE: f64 = 0.05;
 
+/// The largest half-width for a radial power curve, whose pairs reach far: 1 GB of neighbor lists.
+const MAX_RADIAL_RADIUS: u32 = 200;
+/// Longer parameters of a history are split.
+const PARAMETER_BYTES: usize = 800;
+
 /// A checked job.
 pub(crate) struct Plan {
     pub(crate) profile: &'static Profile,
+    /// The name of the table's profile.
+    name: String,
+    /// The curve to follow, for profiles that do.
+    target: Option<Target>,
     ground: Ground,
     pub(crate) panel: Panel,
     pub(crate) steps: u32,
@@ -27,15 +36,22 @@ pub(crate) struct Plan {
 
 impl Plan {
     pub(crate) fn new(job: &Job) -> Result<Self, ForgeError> {
-        let profile = Profile::named(&job.profile)?;
+        let (profile, target) = match &job.target {
+            None => {
+                let profile = Profile::named(&job.profile)?;
+                (profile, profile.target())
+            }
+            Some(target) => (Profile::custom(&job.profile)?, Some(target.clone())),
+        };
         let mut steps = job.steps.unwrap_or(profile.steps);
         in_range("steps", steps, MAX_STEPS)?;
         if profile.recipe == Recipe::Undisplaced {
             steps = 0;
         }
-        in_range("R", job.radius, MAX_RADIUS)?;
+        let most = target.as_ref().map_or(MAX_RADIUS, |_| MAX_RADIAL_RADIUS);
+        in_range("R", job.radius, most)?;
         let map = Map::new(job.alpha, job.radius).map_err(|e| ForgeError::Table(e.into()))?;
-        let ground = Ground::new(map);
+        let mut ground = Ground::new(map);
         if ground.twins.is_empty() || ground.scale() < LEAST_SIDE {
             return Err(ForgeError::Field {
                 field: "alpha",
@@ -45,9 +61,16 @@ impl Plan {
                     .into(),
             });
         }
+        if let Recipe::Radial(_) = profile.recipe {
+            // It is optimized on α itself.
+            ground.twins.clear();
+        }
+        let panel = Panel::new(&ground.map, &ground.twins);
         Ok(Self {
             profile,
-            panel: Panel::new(&ground.map, &ground.twins),
+            panel: target.iter().cloned().fold(panel, Panel::with_target),
+            name: job.profile.clone(),
+            target,
             ground,
             steps,
         })
@@ -58,11 +81,20 @@ impl Plan {
     }
 
     pub(crate) fn phases(&self) -> Vec<Phase> {
-        self.profile.recipe.phases(&self.ground, self.steps)
+        self.profile
+            .recipe
+            .phases(&self.ground, self.target.as_ref(), self.steps)
     }
 
     pub(crate) fn provenance(&self, job: &Job, steps: u32) -> Provenance {
         let (optimizer, mut parameters) = self.profile.recipe.describe();
+        for (part, text) in self.target.iter().flat_map(in_parts).enumerate() {
+            let name = match part {
+                0 => "target".into(),
+                more => format!("target_{}", more + 1),
+            };
+            parameters.push((name, text));
+        }
         parameters.push(("jitter".into(), self.profile.jitter.to_string()));
         parameters.push(("steps".into(), self.steps.to_string()));
         if steps < self.steps {
@@ -93,12 +125,7 @@ impl Plan {
             .map(|m| Some([from_grid_units(m[0] * unit)?, from_grid_units(m[1] * unit)?]))
             .collect::<Option<Vec<_>>>()
             .ok_or_else(too_long)?;
-        let table = Table::new(
-            self.ground.map.clone(),
-            self.profile.name,
-            vectors,
-            provenance,
-        )?;
+        let table = Table::new(self.ground.map.clone(), &self.name, vectors, provenance)?;
         Ok(table)
     }
 }
@@ -112,4 +139,21 @@ fn in_range(field: &'static str, value: u32, most: u32) -> Result<(), ForgeError
         value: value.to_string(),
         allowed: format!("1 to {most}"),
     })
+}
+
+/// The points of a curve as text, `nu power` separated by semicolons, in parts of moderate length.
+fn in_parts(target: &Target) -> Vec<String> {
+    let mut parts = vec![String::new()];
+    for [nu, power] in target.points() {
+        let point = format!("{nu} {power}");
+        match parts.last_mut() {
+            Some(part) if part.is_empty() => part.push_str(&point),
+            Some(part) if part.len() + point.len() < PARAMETER_BYTES => {
+                part.push_str("; ");
+                part.push_str(&point);
+            }
+            _ => parts.push(point),
+        }
+    }
+    parts
 }

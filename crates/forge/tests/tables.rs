@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 use strew_core::{Table, Twin, table::Figures};
 use strew_forge::{
-    Figure, Job, file_name, forge,
+    Figure, Job,
+    energy::{Cell, Lloyd},
+    file_name, forge,
     judge::{Bound, RING_WIDTH, complaints, figures_of_torus, figures_of_window},
     measure::{Spectrum, twin_set, window_set},
     read_table,
@@ -87,6 +89,38 @@ fn the_sharp_table_is_crisper_than_bnot_on_unseen_twins_and_windows() {
         Bound::at_most(Figure::LargestHole, 0.75),
     ];
     hold(&table, &unseen(&table, 6), &bounds);
+}
+
+#[test]
+fn spaced_tables_have_neither_close_pairs_nor_wide_holes() {
+    for alpha in [DEFAULT, "sqrt(3)", "(1+sqrt(5))/2"] {
+        let table = shipped("spaced", alpha, 49);
+        let bounds = [
+            Bound::at_least(Figure::DeltaMin, 0.93),
+            Bound::at_most(Figure::LowPower, 5e-3),
+            Bound::at_most(Figure::LargestHole, 0.85),
+        ];
+        hold(&table, &unseen(&table, 3), &bounds);
+    }
+}
+
+#[test]
+fn the_lloyd_table_is_at_rest_on_unseen_twins() {
+    let table = shipped("lloyd", DEFAULT, 49);
+    let seen = &table.provenance().twins;
+    let large = |t: &Twin| t.points() > 70_000 && !seen.contains(t);
+    let twin = table.map().twins().find(large).expect("endless");
+    let set = twin_set(&table, twin).expect("a twin");
+    // Points are as near the centroids of their cells as a table of this size can have them.
+    let cells = Lloyd::cells(&set);
+    let away = |c: &Cell| (c.first[0] * c.first[0] + c.first[1] * c.first[1]).sqrt() / c.area;
+    let mean = cells.iter().map(away).sum::<f64>() / cells.len() as f64;
+    assert!(mean < 0.03, "{mean}");
+    let bounds = [
+        Bound::at_least(Figure::DeltaMin, 0.7),
+        Bound::at_most(Figure::LargestHole, 0.8),
+    ];
+    hold(&table, &unseen(&table, 2), &bounds);
 }
 
 #[test]

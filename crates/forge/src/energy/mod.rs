@@ -5,13 +5,17 @@
 //! at all (see [`crate::optimize::Pairs`]). A [`SetEnergy`] is anything else that can be computed
 //! on a periodic point set, such as an error of its spectrum. Every pair energy is a set energy.
 
+mod bessel;
 pub mod exp;
 mod gaussian;
 mod guard;
+mod lloyd;
 mod pairwise;
 
+pub use bessel::BesselJ0;
 pub use gaussian::Gaussian;
 pub use guard::Guard;
+pub use lloyd::{Cell, Lloyd};
 pub use pairwise::Pairwise;
 
 use crate::measure::Torus;

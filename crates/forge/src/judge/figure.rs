@@ -13,6 +13,18 @@ pub const RING_WIDTH: f64 = 1.0 / 64.0;
 /// A figure measured on a point set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
+    /// Mean power where the target is 0, up to 0.9 of where that ends (see [`super::curve`]).
+    QuietPower,
+    /// The root of the mean squared error of the radial power, ring by ring.
+    TargetRms,
+    /// The same, of the error over the target, as far as the curve is drawn.
+    TargetRelative,
+    /// The largest error of a ring.
+    TargetWorst,
+    /// Where that ring is.
+    TargetWorstNu,
+    /// The largest difference from 1 of a ring beyond the end of the curve.
+    TailWorst,
     /// Mean power over 0 < ν < 0.5.
     LowPower,
     /// The largest radial power.
@@ -44,6 +56,12 @@ impl Figure {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::QuietPower => "quiet_power",
+            Self::TargetRms => "target_rms",
+            Self::TargetRelative => "target_relative_rms",
+            Self::TargetWorst => "target_worst",
+            Self::TargetWorstNu => "target_worst_nu",
+            Self::TailWorst => "tail_worst",
             Self::LowPower => "low_power",
             Self::PeakPower => "peak_power",
             Self::PeakNu => "peak_nu",
@@ -88,7 +106,7 @@ pub(crate) fn figures_of_spectrum(
 }
 
 /// The nearest decimal of four significant digits.
-fn round(value: f64) -> f64 {
+pub(super) fn round(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(0.0)
 }
 

@@ -4,21 +4,26 @@
 //! elsewhere. So it is measured on larger twins, on both sides of α, and on windows cut from the
 //! unbounded pattern of α itself.
 
+mod curve;
 mod figure;
 
+pub use curve::{TARGET_RING, curve_figures};
 pub(crate) use figure::figures_of_spectrum;
 pub use figure::{Bound, Complaint, Figure, RING_WIDTH, Side, figures_of_torus, figures_of_window};
 
 use strew_core::{Map, Table, Twin, table::Figures};
 
 use crate::{
-    measure::{twin_set, window_set},
+    measure::{Spectrum, twin_set, window_set},
     optimize::Meter,
+    profile::Target,
     twins::next_to_alpha,
 };
 
 /// The least number of points of a twin that a table is judged on.
 pub const JUDGED_POINTS: u64 = 50_000;
+/// Smaller twins have so few Bragg peaks that the mean over a ring tells their speckle.
+const CURVE_POINTS: u64 = 70_000;
 /// How many points a window has, about.
 const WINDOW_POINTS: u64 = 80_000;
 /// Where the windows are: any places will do.
@@ -33,6 +38,7 @@ const MODES_MAX: f64 = 1300.0;
 pub struct Panel {
     seen: Vec<Twin>,
     unseen: Vec<Twin>,
+    target: Option<Target>,
 }
 
 impl Panel {
@@ -58,7 +64,23 @@ impl Panel {
                 .into_iter()
                 .collect(),
             unseen,
+            target: None,
         }
+    }
+
+    /// Compares the radial power with a curve besides, on twins of enough points for it.
+    #[must_use]
+    pub fn with_target(mut self, target: Target) -> Self {
+        self.target = Some(target);
+        self.unseen.retain(|twin| twin.points() >= CURVE_POINTS);
+        self
+    }
+
+    fn compared(&self, mut figures: Figures, spectrum: impl FnOnce() -> Spectrum) -> Figures {
+        if let Some(target) = &self.target {
+            figures.values.extend(curve_figures(&spectrum(), target));
+        }
+        figures
     }
 
     /// How many point sets will be measured.
@@ -88,7 +110,8 @@ impl Panel {
             }
             if let Some(set) = twin_set(table, *twin) {
                 let nu_max = NU_MAX.min(MODES_MAX / set.side());
-                all.push(figures_of_torus(format!("twin {twin}"), seen, &set, nu_max));
+                let figures = figures_of_torus(format!("twin {twin}"), seen, &set, nu_max);
+                all.push(self.compared(figures, || Spectrum::of_torus(&set, nu_max)));
             }
             meter.advance(None);
         }
@@ -97,12 +120,8 @@ impl Panel {
                 return None;
             }
             let set = window_set(table, WINDOW_POINTS, seed);
-            all.push(figures_of_window(
-                format!("window seed {seed}"),
-                false,
-                &set,
-                NU_MAX,
-            ));
+            let figures = figures_of_window(format!("window seed {seed}"), false, &set, NU_MAX);
+            all.push(self.compared(figures, || Spectrum::of_window(&set, NU_MAX)));
             meter.advance(None);
         }
         Some(all)

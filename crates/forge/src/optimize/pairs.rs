@@ -19,19 +19,19 @@ use crate::energy::PairEnergy;
 /// the order of summation.
 const LANES: usize = 8;
 /// Blocks per parallel task. It fixes the order of summation too, so it is part of the result.
-const CHUNK: usize = 64;
+pub(super) const CHUNK: usize = 64;
 /// A list of pairs holds those up to cut-off + this, in mean spacings, and stays valid until some
 /// block has moved by half of it.
 const SKIN: f64 = 0.7;
 
 /// A neighbor of a block: at lattice offset (i, j) stands an instance of block `to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Pair {
-    to: u32,
-    i: i16,
-    j: i16,
+pub(super) struct Pair {
+    pub(super) to: u32,
+    pub(super) i: i16,
+    pub(super) j: i16,
     /// How many such neighbors an instance of the block has on average.
-    weight: f32,
+    pub(super) weight: f32,
 }
 
 /// What tells pairs of one block apart: (j, i, to).
@@ -82,6 +82,23 @@ impl<E: PairEnergy> Pairs<E> {
             masses,
             lists: Lists::default(),
         }
+    }
+
+    /// Makes the lists valid for these moves.
+    pub(super) fn refresh(&mut self, moves: &[[f64; 2]]) {
+        if self.lists_are_stale(moves) {
+            self.build_lists(moves);
+        }
+    }
+
+    /// The pairs of a block, valid for the moves of the last [`refresh`](Self::refresh).
+    pub(super) fn list(&self, block: usize) -> &[Pair] {
+        &self.lists.pairs[self.lists.starts[block]..self.lists.starts[block + 1]]
+    }
+
+    /// Mean spacings per grid unit.
+    pub(super) const fn scale(&self) -> f64 {
+        self.scale
     }
 
     fn lists_are_stale(&self, moves: &[[f64; 2]]) -> bool {
@@ -191,10 +208,8 @@ impl<E: PairEnergy> Objective for Pairs<E> {
     }
 
     fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64 {
-        if self.lists_are_stale(moves) {
-            self.build_lists(moves);
-        }
-        let (lists, masses) = (&self.lists, &self.masses);
+        self.refresh(moves);
+        let masses = &self.masses;
         let partial: Vec<f64> = gradient
             .par_chunks_mut(CHUNK)
             .enumerate()
@@ -202,8 +217,7 @@ impl<E: PairEnergy> Objective for Pairs<E> {
                 let mut energy = 0.0;
                 for (at, out) in gradient.iter_mut().enumerate() {
                     let block = chunk * CHUNK + at;
-                    let list = &lists.pairs[lists.starts[block]..lists.starts[block + 1]];
-                    let (value, slope) = self.sum(list, moves, moves[block]);
+                    let (value, slope) = self.sum(self.list(block), moves, moves[block]);
                     *out = slope;
                     energy += masses[block] * value;
                 }

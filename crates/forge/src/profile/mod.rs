@@ -5,9 +5,17 @@
 //! energy, a file with a variant of [`Recipe`].
 
 mod gaussian;
+mod lloyd;
 mod pattern;
+mod radial;
+mod spacing;
+mod target;
 
 pub use gaussian::GaussianRecipe;
+pub use lloyd::LloydRecipe;
+pub use radial::RadialRecipe;
+pub use spacing::{Push, SpacingRecipe};
+pub use target::{MAX_NU, MAX_POINTS, MAX_POWER, Target};
 
 use crate::{
     ForgeError,
@@ -16,7 +24,10 @@ use crate::{
     optimize::{Descent, Objective},
 };
 use gaussian::{BLUE, SHARP};
+use lloyd::LLOYD;
 use pattern::PATTERN;
+use radial::{CUSTOM, STEP};
+use spacing::SPACED;
 
 /// A noise profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +51,12 @@ pub struct Profile {
 pub enum Recipe {
     /// Gaussian repulsion, with a guard against close pairs, in two phases.
     Gaussian(GaussianRecipe),
+    /// Pairs in conflict are pushed apart, harder and harder.
+    Spacing(SpacingRecipe),
+    /// Points go to the centroids of their cells.
+    Lloyd(LloydRecipe),
+    /// A radial power curve, on the unbounded pattern.
+    Radial(RadialRecipe),
     /// Not at all: every vector is zero.
     Undisplaced,
 }
@@ -52,7 +69,33 @@ pub(crate) struct Phase {
 
 impl Profile {
     /// All profiles that can be made.
-    pub const ALL: &'static [Self] = &[BLUE, SHARP, PATTERN];
+    pub const ALL: &'static [Self] = &[BLUE, SHARP, SPACED, STEP, LLOYD, PATTERN];
+
+    /// The radial power curve it follows, if it follows one.
+    #[must_use]
+    pub fn target(&self) -> Option<Target> {
+        match self.recipe {
+            Recipe::Radial(recipe) => Some(Target::fixed(recipe.curve)),
+            Recipe::Gaussian(_) | Recipe::Spacing(_) | Recipe::Lloyd(_) | Recipe::Undisplaced => {
+                None
+            }
+        }
+    }
+
+    /// The profile of a curve that somebody drew, under a name that is not taken.
+    ///
+    /// # Errors
+    /// [`ForgeError::Field`] if `name` is that of a known profile.
+    pub fn custom(name: &str) -> Result<&'static Self, ForgeError> {
+        match Self::named(name) {
+            Err(_) => Ok(&CUSTOM),
+            Ok(_) => Err(ForgeError::Field {
+                field: "profile",
+                value: format!("{name:?}"),
+                allowed: "for a curve of your own, a name that no known profile has".into(),
+            }),
+        }
+    }
 
     /// The profile of that name.
     ///
@@ -80,14 +123,29 @@ impl Recipe {
     pub fn describe(&self) -> (&'static str, Vec<(String, String)>) {
         match self {
             Self::Gaussian(recipe) => ("gaussian", recipe.describe()),
+            Self::Spacing(recipe) => ("spacing", recipe.describe()),
+            Self::Lloyd(recipe) => ("lloyd", recipe.describe()),
+            Self::Radial(recipe) => ("radial", recipe.describe()),
             Self::Undisplaced => ("none", Vec::new()),
         }
     }
 
-    /// What is done, in order, with so many steps in all.
-    pub(crate) fn phases(&self, ground: &Ground, steps: u32) -> Vec<Phase> {
+    /// What is done, in order, with so many steps in all; `target` is for recipes that follow a
+    /// curve.
+    pub(crate) fn phases(
+        &self,
+        ground: &Ground,
+        target: Option<&Target>,
+        steps: u32,
+    ) -> Vec<Phase> {
         match self {
             Self::Gaussian(recipe) => recipe.phases(ground, steps),
+            Self::Spacing(recipe) => recipe.phases(ground, steps),
+            Self::Lloyd(recipe) => recipe.phases(ground, steps),
+            Self::Radial(recipe) => target
+                .map(|target| recipe.phase(ground, target, steps))
+                .into_iter()
+                .collect(),
             Self::Undisplaced => Vec::new(),
         }
     }

@@ -1,0 +1,114 @@
+//! How near a radial power spectrum came to its target.
+//!
+//! Ring by ring, [`TARGET_RING`] wide: the mean power of its modes against the mean of the target
+//! over its area. Narrower rings would tell the speckle of one set rather than its noise.
+
+use super::{Figure, figure::round};
+use crate::{
+    measure::{Ring, Spectrum},
+    profile::Target,
+};
+
+/// The width of the rings, in ν.
+pub const TARGET_RING: f64 = 0.1;
+/// Rings begin this far beyond a curve's end when they are compared with 1.
+const TAIL_GAP: f64 = 0.1;
+/// The part of a band without power that counts: its edge is as blurred as the spectrum.
+const QUIET_PART: f64 = 0.9;
+/// The width of the rings that the power of such a band is summed over.
+const FINE_RING: f64 = 0.005;
+
+/// The figures of a spectrum that should follow `target`.
+#[must_use]
+pub fn curve_figures(spectrum: &Spectrum, target: &Target) -> Vec<(String, f64)> {
+    let rings = spectrum.rings(TARGET_RING);
+    let errors: Vec<Error> = rings.iter().map(|ring| Error::of(ring, target)).collect();
+    let drawn = |error: &&Error| error.from < target.end() && error.wanted > 0.0;
+    let worst = errors
+        .iter()
+        .max_by(|a, b| a.by().abs().total_cmp(&b.by().abs()));
+    let tail = errors
+        .iter()
+        .filter(|error| error.from >= target.end() + TAIL_GAP - 1e-9);
+    let mut figures = vec![
+        (Figure::TargetRms, rms(errors.iter().map(Error::by))),
+        (
+            Figure::TargetRelative,
+            rms(errors.iter().filter(drawn).map(|e| e.by() / e.wanted)),
+        ),
+        (
+            Figure::TargetWorst,
+            worst.map_or(f64::NAN, |e| e.by().abs()),
+        ),
+        (Figure::TargetWorstNu, worst.map_or(f64::NAN, |e| e.nu)),
+        (
+            Figure::TailWorst,
+            tail.map(|e| (e.found - 1.0).abs()).fold(0.0, f64::max),
+        ),
+    ];
+    if let Some(power) = quiet_power(spectrum, target) {
+        figures.push((Figure::QuietPower, power));
+    }
+    figures
+        .into_iter()
+        .map(|(figure, value)| (figure.name().to_owned(), round(value)))
+        .collect()
+}
+
+/// A ring and what it should be.
+struct Error {
+    /// Where the ring begins.
+    from: f64,
+    nu: f64,
+    found: f64,
+    wanted: f64,
+}
+
+impl Error {
+    fn of(ring: &Ring, target: &Target) -> Self {
+        let from = (ring.nu / TARGET_RING).floor() * TARGET_RING;
+        Self {
+            from,
+            nu: ring.nu,
+            found: ring.power,
+            wanted: mean_over_ring(target, from),
+        }
+    }
+
+    fn by(&self) -> f64 {
+        self.found - self.wanted
+    }
+}
+
+/// The mean of a curve over a ring's area.
+fn mean_over_ring(target: &Target, from: f64) -> f64 {
+    let steps = 200;
+    let (mut sum, mut area) = (0.0, 0.0);
+    for step in 0..steps {
+        let nu = from + TARGET_RING * (f64::from(step) + 0.5) / f64::from(steps);
+        sum += nu * target.at(nu);
+        area += nu;
+    }
+    sum / area
+}
+
+fn rms(errors: impl Iterator<Item = f64>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0u32);
+    for error in errors {
+        sum += error * error;
+        count += 1;
+    }
+    (sum / f64::from(count.max(1))).sqrt()
+}
+
+/// Mean power over the area of the band from 0 on where the target is 0, if there is one.
+fn quiet_power(spectrum: &Spectrum, target: &Target) -> Option<f64> {
+    let quiet = target.points().iter().take_while(|p| p[1] == 0.0);
+    let end = QUIET_PART * quiet.last()?[0];
+    let (mut sum, mut area) = (0.0, 0.0);
+    for ring in spectrum.rings(FINE_RING).iter().filter(|r| r.nu < end) {
+        sum += ring.nu * ring.power;
+        area += ring.nu;
+    }
+    (area > 0.0).then(|| sum / area)
+}

@@ -1,0 +1,193 @@
+//! Radial power curves: what a spectrum should be.
+
+use std::{borrow::Cow, fmt, str::FromStr};
+
+use crate::ForgeError;
+
+/// A curve that a radial power spectrum should follow: straight pieces between points (ν, power),
+/// the first power before the first point, and 1 after the last, as in every set without order at
+/// large. Two points of equal ν are a jump.
+///
+/// As text: one point a line, ν and power, separated by spaces, tabs or a comma; `#` begins a
+/// comment.
+///
+/// ```
+/// use strew_forge::profile::Target;
+///
+/// let step: Target = "# nu power\n0 0\n0.55 0\n0.55 1".parse()?;
+/// assert_eq!((step.at(0.3), step.at(0.6), step.at(9.0)), (0.0, 1.0, 1.0));
+/// assert_eq!(step.to_string().parse::<Target>()?, step);
+/// # Ok::<(), strew_forge::ForgeError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target {
+    points: Cow<'static, [[f64; 2]]>,
+}
+
+/// No power is NaN.
+impl Eq for Target {}
+
+/// The largest ν of a point.
+pub const MAX_NU: f64 = 4.0;
+/// The largest power of a point.
+pub const MAX_POWER: f64 = 100.0;
+/// The largest number of points.
+pub const MAX_POINTS: usize = 1_000;
+
+impl Target {
+    /// The curve through these points, which must be in order; for curves known beforehand.
+    #[must_use]
+    pub const fn fixed(points: &'static [[f64; 2]]) -> Self {
+        Self {
+            points: Cow::Borrowed(points),
+        }
+    }
+
+    /// The curve through these points.
+    ///
+    /// # Errors
+    /// [`ForgeError::Field`] unless there are 1 to [`MAX_POINTS`] points, their ν ascends within
+    /// 0 to [`MAX_NU`], and every power is within 0 to [`MAX_POWER`].
+    pub fn new(points: Vec<[f64; 2]>) -> Result<Self, ForgeError> {
+        let refuse = |value: String, allowed: String| ForgeError::Field {
+            field: "target",
+            value,
+            allowed,
+        };
+        if points.is_empty() || points.len() > MAX_POINTS {
+            let value = format!("a curve of {} points", points.len());
+            return Err(refuse(value, format!("1 to {MAX_POINTS} points")));
+        }
+        let mut last = 0.0;
+        for (at, &[nu, power]) in points.iter().enumerate() {
+            let point = || format!("point {} ({nu}, {power})", at + 1);
+            if !(last..=MAX_NU).contains(&nu) {
+                let allowed = format!("nu from {last}, its predecessor's, to {MAX_NU}");
+                return Err(refuse(point(), allowed));
+            }
+            if !(0.0..=MAX_POWER).contains(&power) {
+                return Err(refuse(point(), format!("power from 0 to {MAX_POWER}")));
+            }
+            last = nu;
+        }
+        Ok(Self {
+            points: Cow::Owned(points),
+        })
+    }
+
+    /// The points (ν, power).
+    #[must_use]
+    pub fn points(&self) -> &[[f64; 2]] {
+        &self.points
+    }
+
+    /// The power at ν; at a jump, that after it.
+    #[must_use]
+    pub fn at(&self, nu: f64) -> f64 {
+        let after = self.points.partition_point(|p| p[0] <= nu);
+        match (
+            after.checked_sub(1).map(|i| self.points[i]),
+            self.points.get(after),
+        ) {
+            (None, Some(first)) => first[1],
+            (Some([nu0, power0]), Some([nu1, power1])) => {
+                power0 + (power1 - power0) * ((nu - nu0) / (nu1 - nu0))
+            }
+            // At the last point itself its own power, if that is meant to be one.
+            (Some([last, power]), None) if nu == last => power,
+            _ => 1.0,
+        }
+    }
+
+    /// The ν from which on the power is 1.
+    #[must_use]
+    pub fn end(&self) -> f64 {
+        self.points.last().map_or(0.0, |p| p[0])
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for [nu, power] in self.points.iter() {
+            writeln!(f, "{nu} {power}")?;
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for Target {
+    type Err = ForgeError;
+
+    fn from_str(text: &str) -> Result<Self, ForgeError> {
+        let mut points = Vec::new();
+        for (number, line) in text.lines().enumerate() {
+            let content = line.split('#').next().unwrap_or_default().trim();
+            if content.is_empty() {
+                continue;
+            }
+            let columns: Vec<&str> = content
+                .split(|c: char| c == ',' || c.is_whitespace())
+                .filter(|column| !column.is_empty())
+                .collect();
+            let numbers: Option<Vec<f64>> = columns.iter().map(|c| c.parse().ok()).collect();
+            match numbers.as_deref() {
+                Some(&[nu, power]) => points.push([nu, power]),
+                _ => {
+                    let shown: String = content.chars().take(60).collect();
+                    return Err(ForgeError::Field {
+                        field: "target",
+                        value: format!("{shown:?} on line {}", number + 1),
+                        allowed: "two numbers a line: nu and power".into(),
+                    });
+                }
+            }
+            if points.len() > MAX_POINTS {
+                break;
+            }
+        }
+        Self::new(points)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_jumps_and_ends() {
+        let target: Target = "0.1 4\n0.3, 2 # falls\n\n0.5\t2\n0.5 0.5\n"
+            .parse()
+            .expect("valid");
+        for (nu, power) in [
+            (0.0, 4.0),
+            (0.1, 4.0),
+            (0.2, 3.0),
+            (0.4, 2.0),
+            (0.5, 0.5),
+            (0.51, 1.0),
+        ] {
+            assert!(
+                (target.at(nu) - power).abs() < 1e-12,
+                "{nu}: {}",
+                target.at(nu)
+            );
+        }
+        assert_eq!(target.end(), 0.5);
+    }
+
+    #[test]
+    fn bad_curves_are_refused_by_line_or_point() {
+        for (text, words) in [
+            ("", "0 points"),
+            ("0 1\n0.5 x", "line 2"),
+            ("0 1 2", "two numbers"),
+            ("0.5 1\n0.4 1", "point 2"),
+            ("0 -1", "power from 0"),
+            ("0 nan", "power from 0"),
+            ("5 1", "to 4"),
+        ] {
+            let error = text.parse::<Target>().expect_err("refused").to_string();
+            assert!(error.contains(words), "{text:?}: {error}");
+        }
+    }
+}
