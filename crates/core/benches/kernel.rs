@@ -75,10 +75,17 @@ fn main() {
         )
         .expect("in range");
     let points = plan.count() as u64;
+    let warped = sampler
+        .plan(
+            Placement::new(Spacing::new(1.0).expect("valid"), Seed(1)),
+            region,
+        )
+        .expect("in range");
 
     let (mut f32s, mut f64s) = (vec![[0f32; 2]; BLOCK], vec![[0f64; 2]; BLOCK]);
     let (mut ids, mut plain) = (vec![Default::default(); BLOCK], vec![[0f32; 2]; BLOCK]);
     let mut scanned = vec![[0f32; 2]; BLOCK];
+    let mut warped_f32s = vec![[0f32; 2]; BLOCK];
     let mut marker = 0f32;
     let result = medians(
         rounds,
@@ -93,6 +100,7 @@ fn main() {
             },
             &mut || fill_all::<F32>(&plan, &mut f32s),
             &mut || fill_all::<F64>(&plan, &mut f64s),
+            &mut || fill_all::<F32>(&warped, &mut warped_f32s),
             &mut || fill_all::<Points>(&plan, &mut ids),
         ],
     );
@@ -101,6 +109,7 @@ fn main() {
         "plain fill, f32",
         "box, f32",
         "box, f64",
+        "box with warp, f32",
         "box, ids and f64",
     ];
     println!("{points} points, blocks of {BLOCK}, one core, median of {rounds}");

@@ -7,8 +7,8 @@
 use alloc::{vec, vec::Vec};
 
 use super::{
-    Listed, PointId, Sampler,
-    kernel::{Backend, Format, Row},
+    Listed, Sampler,
+    kernel::{Backend, Columns, Format, Row, warped_row},
     patch::Patch,
 };
 use crate::pattern::{Axis, Class};
@@ -87,7 +87,7 @@ impl<F: Format> Template<F> {
         out: &mut [F::Item],
     ) -> (usize, usize) {
         if patch.shears().is_some() {
-            return self.fill_warped(format, patch, row, done, out);
+            return self.fill_warped(format, patch, row, done, backend, out);
         }
         let (columns, displacements) = (&self.columns[done..], &self.displacements[done..]);
         if row.is_inner {
@@ -122,44 +122,32 @@ impl<F: Format> Template<F> {
         patch: &Patch,
         row: Row,
         done: usize,
+        backend: Backend,
         out: &mut [F::Item],
     ) -> (usize, usize) {
         let Some(shears) = patch.shears() else {
             return (0, 0);
         };
-        let item = |[x, y]: [i32; 2], id: PointId| {
-            format.item(row.base, format.column(row.base, x, id.x), y, id.y)
+        let columns = Columns {
+            displaced: &self.displaced[done..],
+            displacements: &self.displacements[done..],
+            lattice: &self.lattice[done..],
         };
-        let displaced = &self.displaced[done..];
-        let columns = displaced
-            .iter()
-            .zip(&self.displacements[done..])
-            .zip(&self.lattice[done..])
-            .map(|((&x, &dy), &column)| {
-                (
-                    x,
-                    row.y + dy,
-                    PointId {
-                        x: column,
-                        y: row.lattice,
-                    },
-                )
-            });
         if row.is_inner && patch.columns_are_inner {
-            let written = displaced.len().min(out.len());
-            for (out, (x, y, id)) in out.iter_mut().zip(columns) {
-                *out = item(shears.apply(x, y), id);
-            }
+            let written = columns.lattice.len().min(out.len());
+            warped_row(format, backend, shears, row, columns, &mut out[..written]);
             return (written, written);
         }
         let (mut written, mut done) = (0, 0);
-        for (x, y, id) in columns {
-            let position = shears.apply(x, y);
+        for (i, &lattice) in columns.lattice.iter().enumerate() {
+            let y = row.y + columns.displacements[i];
+            let position = shears.apply(columns.displaced[i], y);
             if patch.holds(position) {
                 let Some(out) = out.get_mut(written) else {
                     break;
                 };
-                *out = item(position, id);
+                let column = format.column(row.base, position[0], lattice);
+                *out = format.item(row.base, column, position[1], row.lattice);
                 written += 1;
             }
             done += 1;

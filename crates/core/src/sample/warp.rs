@@ -186,35 +186,39 @@ pub(super) fn evaluate(cubic: &Cubic, at: i32) -> i32 {
 }
 
 /// Cells that a patch may touch per direction.
-const PATCH_CELLS: usize = 32;
+pub(super) const PATCH_CELLS: usize = 32;
 /// The first of them, relative to the patch's origin.
-const FIRST_CELL: i32 = -12;
+pub(super) const FIRST_CELL: i32 = -12;
 
 /// The shears near one patch: positions relative to its origin fit 32 bits, and all cubics are at
 /// hand. The origin is a multiple of the knot distance along both axes.
 #[derive(Clone, Debug)]
 pub(super) struct PatchShears {
-    cubics: [[Cubic; PATCH_CELLS]; 4],
+    /// By direction, by power of u, by cell.
+    pub(super) cubics: [[[f32; PATCH_CELLS]; 4]; 4],
 }
 
 impl PatchShears {
     pub(super) fn new(shears: &Shears, origin: [i64; 2]) -> Self {
         let [x, y] = origin.map(|v| v >> KNOT_BITS);
         let first = [y, x, x - y, x + y];
-        Self {
-            cubics: core::array::from_fn(|direction| {
-                core::array::from_fn(|i| {
-                    let cell = first[direction] + i64::from(FIRST_CELL) + i as i64;
-                    shears.cubic(direction, cell)
-                })
-            }),
+        let mut cubics = [[[0.0; PATCH_CELLS]; 4]; 4];
+        for (direction, table) in cubics.iter_mut().enumerate() {
+            let cells = (first[direction] + i64::from(FIRST_CELL)..).take(PATCH_CELLS);
+            for (i, cell) in cells.enumerate() {
+                for (of_power, coefficient) in table.iter_mut().zip(shears.cubic(direction, cell)) {
+                    of_power[i] = coefficient;
+                }
+            }
         }
+        Self { cubics }
     }
 
     #[inline(always)]
     fn noise(&self, direction: usize, s: i32) -> i32 {
         let cell = ((s >> CELL_BITS) - FIRST_CELL) as usize % PATCH_CELLS;
-        evaluate(&self.cubics[direction][cell], s & CELL_MASK as i32)
+        let [a, b, c, d] = &self.cubics[direction];
+        evaluate(&[a[cell], b[cell], c[cell], d[cell]], s & PATCH_CELL_MASK)
     }
 
     /// [`Shears::apply`], relative to the origin.
@@ -228,6 +232,9 @@ impl PatchShears {
         [x + falling, y - falling]
     }
 }
+
+/// The place of a coordinate in its cell.
+pub(super) const PATCH_CELL_MASK: i32 = (1 << CELL_BITS) - 1;
 
 #[cfg(test)]
 mod tests {

@@ -9,11 +9,13 @@ mod bessel;
 pub mod exp;
 mod gaussian;
 mod guard;
+mod lloyd;
 mod pairwise;
 
 pub use bessel::BesselJ0;
 pub use gaussian::Gaussian;
 pub use guard::Guard;
+pub use lloyd::{Cell, Lloyd};
 pub use pairwise::Pairwise;
 
 use crate::measure::Torus;

@@ -4,12 +4,14 @@ mod descent;
 mod overlap;
 mod pairs;
 mod radial;
+mod sets;
 mod start;
 mod watch;
 
 pub use descent::{Descended, Descent};
 pub use pairs::Pairs;
 pub use radial::{Radial, RadialWeights, Reach};
+pub use sets::Sets;
 pub use start::{SplitMix, jitter};
 pub use watch::{Meter, Progress, Stage, Watch};
 

@@ -5,12 +5,16 @@
 //! energy, a file with a variant of [`Recipe`].
 
 mod gaussian;
+mod lloyd;
 mod pattern;
 mod radial;
+mod spacing;
 mod target;
 
 pub use gaussian::GaussianRecipe;
+pub use lloyd::LloydRecipe;
 pub use radial::RadialRecipe;
+pub use spacing::{Push, SpacingRecipe};
 pub use target::{MAX_NU, MAX_POINTS, MAX_POWER, Target};
 
 use crate::{
@@ -20,8 +24,10 @@ use crate::{
     optimize::{Descent, Objective},
 };
 use gaussian::{BLUE, SHARP};
+use lloyd::LLOYD;
 use pattern::PATTERN;
 use radial::{CUSTOM, GREEN, PINK, STEP};
+use spacing::SPACED;
 
 /// A noise profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +51,10 @@ pub struct Profile {
 pub enum Recipe {
     /// Gaussian repulsion, with a guard against close pairs, in two phases.
     Gaussian(GaussianRecipe),
+    /// Pairs in conflict are pushed apart, harder and harder.
+    Spacing(SpacingRecipe),
+    /// Points go to the centroids of their cells.
+    Lloyd(LloydRecipe),
     /// A radial power curve, on the unbounded pattern.
     Radial(RadialRecipe),
     /// Not at all: every vector is zero.
@@ -59,14 +69,16 @@ pub(crate) struct Phase {
 
 impl Profile {
     /// All profiles that can be made.
-    pub const ALL: &'static [Self] = &[BLUE, SHARP, STEP, GREEN, PINK, PATTERN];
+    pub const ALL: &'static [Self] = &[BLUE, SHARP, SPACED, STEP, GREEN, PINK, LLOYD, PATTERN];
 
     /// The radial power curve it follows, if it follows one.
     #[must_use]
     pub fn target(&self) -> Option<Target> {
         match self.recipe {
             Recipe::Radial(recipe) => Some(Target::fixed(recipe.curve)),
-            Recipe::Gaussian(_) | Recipe::Undisplaced => None,
+            Recipe::Gaussian(_) | Recipe::Spacing(_) | Recipe::Lloyd(_) | Recipe::Undisplaced => {
+                None
+            }
         }
     }
 
@@ -111,6 +123,8 @@ impl Recipe {
     pub fn describe(&self) -> (&'static str, Vec<(String, String)>) {
         match self {
             Self::Gaussian(recipe) => ("gaussian", recipe.describe()),
+            Self::Spacing(recipe) => ("spacing", recipe.describe()),
+            Self::Lloyd(recipe) => ("lloyd", recipe.describe()),
             Self::Radial(recipe) => ("radial", recipe.describe()),
             Self::Undisplaced => ("none", Vec::new()),
         }
@@ -126,6 +140,8 @@ impl Recipe {
     ) -> Vec<Phase> {
         match self {
             Self::Gaussian(recipe) => recipe.phases(ground, steps),
+            Self::Spacing(recipe) => recipe.phases(ground, steps),
+            Self::Lloyd(recipe) => recipe.phases(ground, steps),
             Self::Radial(recipe) => target
                 .map(|target| recipe.phases(ground, target, steps))
                 .unwrap_or_default(),

@@ -3,6 +3,79 @@
 
 use core::arch::x86_64::*;
 
+use super::{Format, Row, shear::Columns};
+use crate::sample::warp::{CELL_BITS, FIRST_CELL, PATCH_CELL_MASK, PATCH_CELLS, PatchShears};
+
+/// Eight entries of a table, by the lowest five bits of their index.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn pick(table: &[f32; PATCH_CELLS], index: __m256i) -> __m256 {
+    let index = _mm256_and_si256(index, _mm256_set1_epi32(PATCH_CELLS as i32 - 1));
+    // SAFETY: the table has 32 entries, and every index has been cut to its lowest five bits.
+    unsafe { _mm256_i32gather_ps::<4>(table.as_ptr(), index) }
+}
+
+/// g of eight coordinates across a direction; see [`PatchShears`].
+#[inline]
+#[target_feature(enable = "avx2")]
+fn noise(shears: &PatchShears, direction: usize, s: __m256i) -> __m256i {
+    let cell = _mm256_srai_epi32::<{ CELL_BITS as i32 }>(s);
+    let cell = _mm256_sub_epi32(cell, _mm256_set1_epi32(FIRST_CELL));
+    let at = _mm256_and_si256(s, _mm256_set1_epi32(PATCH_CELL_MASK));
+    let unit = _mm256_set1_ps(1.0 / (1u32 << CELL_BITS) as f32);
+    let u = _mm256_mul_ps(_mm256_cvtepi32_ps(at), unit);
+    let table = &shears.cubics[direction];
+    let mut value = pick(&table[3], cell);
+    for power in [2, 1, 0] {
+        value = _mm256_add_ps(_mm256_mul_ps(value, u), pick(&table[power], cell));
+    }
+    _mm256_cvttps_epi32(value)
+}
+
+/// Eight warped positions; see [`PatchShears::apply`].
+#[inline]
+#[target_feature(enable = "avx2")]
+fn warp(shears: &PatchShears, x: __m256i, y: __m256i) -> (__m256i, __m256i) {
+    let x = _mm256_add_epi32(x, noise(shears, 0, y));
+    let y = _mm256_add_epi32(y, noise(shears, 1, x));
+    let rising = noise(shears, 2, _mm256_sub_epi32(x, y));
+    let (x, y) = (_mm256_add_epi32(x, rising), _mm256_add_epi32(y, rising));
+    let falling = noise(shears, 3, _mm256_add_epi32(x, y));
+    (_mm256_add_epi32(x, falling), _mm256_sub_epi32(y, falling))
+}
+
+/// As many of a warped row's points as fill whole vectors; gives how many.
+#[target_feature(enable = "avx2")]
+pub(super) fn warped_row<F: Format>(
+    format: &F,
+    shears: &PatchShears,
+    row: Row,
+    columns: Columns<'_>,
+    out: &mut [F::Item],
+) -> usize {
+    let whole = out.len() & !7;
+    let ys = _mm256_set1_epi32(row.y);
+    for start in (0..whole).step_by(8) {
+        let (mut x, mut y) = ([0i32; 8], [0i32; 8]);
+        let displaced = &columns.displaced[start..start + 8];
+        let displacements = &columns.displacements[start..start + 8];
+        // SAFETY: all four hold eight values.
+        unsafe {
+            let from = _mm256_loadu_si256(displaced.as_ptr().cast());
+            let dy = _mm256_loadu_si256(displacements.as_ptr().cast());
+            let (to_x, to_y) = warp(shears, from, _mm256_add_epi32(dy, ys));
+            _mm256_storeu_si256(x.as_mut_ptr().cast(), to_x);
+            _mm256_storeu_si256(y.as_mut_ptr().cast(), to_y);
+        }
+        let lattice = &columns.lattice[start..start + 8];
+        for (i, out) in out[start..start + 8].iter_mut().enumerate() {
+            let column = format.column(row.base, x[i], lattice[i]);
+            *out = format.item(row.base, column, y[i], row.lattice);
+        }
+    }
+    whole
+}
+
 /// As many of a row's `f32` pairs as fill whole vectors; gives how many. See [`F32`](super::F32).
 #[target_feature(enable = "avx2")]
 pub(super) fn f32_row(

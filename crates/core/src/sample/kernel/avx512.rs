@@ -2,6 +2,84 @@
 
 use core::arch::x86_64::*;
 
+use super::{Format, Row, shear::Columns};
+use crate::sample::warp::{CELL_BITS, FIRST_CELL, PATCH_CELL_MASK, PatchShears};
+
+/// Sixteen entries of a table, by the lowest five bits of their index.
+#[inline]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+fn pick(table: &[f32; 32], index: __m512i) -> __m512 {
+    // SAFETY: the table has 32 entries.
+    let (low, high) = unsafe {
+        (
+            _mm512_loadu_ps(table.as_ptr()),
+            _mm512_loadu_ps(table.as_ptr().add(16)),
+        )
+    };
+    _mm512_permutex2var_ps(low, index, high)
+}
+
+/// g of sixteen coordinates across a direction; see [`PatchShears`].
+#[inline]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+fn noise(shears: &PatchShears, direction: usize, s: __m512i) -> __m512i {
+    let cell = _mm512_srai_epi32::<{ CELL_BITS }>(s);
+    let cell = _mm512_sub_epi32(cell, _mm512_set1_epi32(FIRST_CELL));
+    let at = _mm512_and_si512(s, _mm512_set1_epi32(PATCH_CELL_MASK));
+    let unit = _mm512_set1_ps(1.0 / (1u32 << CELL_BITS) as f32);
+    let u = _mm512_mul_ps(_mm512_cvtepi32_ps(at), unit);
+    let table = &shears.cubics[direction];
+    let mut value = pick(&table[3], cell);
+    for power in [2, 1, 0] {
+        value = _mm512_add_ps(_mm512_mul_ps(value, u), pick(&table[power], cell));
+    }
+    _mm512_cvttps_epi32(value)
+}
+
+/// Sixteen warped positions; see [`PatchShears::apply`].
+#[inline]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+fn warp(shears: &PatchShears, x: __m512i, y: __m512i) -> (__m512i, __m512i) {
+    let x = _mm512_add_epi32(x, noise(shears, 0, y));
+    let y = _mm512_add_epi32(y, noise(shears, 1, x));
+    let rising = noise(shears, 2, _mm512_sub_epi32(x, y));
+    let (x, y) = (_mm512_add_epi32(x, rising), _mm512_add_epi32(y, rising));
+    let falling = noise(shears, 3, _mm512_add_epi32(x, y));
+    (_mm512_add_epi32(x, falling), _mm512_sub_epi32(y, falling))
+}
+
+/// As many of a warped row's points as fill whole vectors; gives how many.
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+pub(super) fn warped_row<F: Format>(
+    format: &F,
+    shears: &PatchShears,
+    row: Row,
+    columns: Columns<'_>,
+    out: &mut [F::Item],
+) -> usize {
+    let whole = out.len() & !15;
+    let ys = _mm512_set1_epi32(row.y);
+    for start in (0..whole).step_by(16) {
+        let (mut x, mut y) = ([0i32; 16], [0i32; 16]);
+        let displaced = &columns.displaced[start..start + 16];
+        let displacements = &columns.displacements[start..start + 16];
+        // SAFETY: all four hold sixteen values.
+        unsafe {
+            let from = _mm512_loadu_epi32(displaced.as_ptr());
+            let dy = _mm512_loadu_epi32(displacements.as_ptr());
+            let (to_x, to_y) = warp(shears, from, _mm512_add_epi32(dy, ys));
+            _mm512_storeu_epi32(x.as_mut_ptr(), to_x);
+            _mm512_storeu_epi32(y.as_mut_ptr(), to_y);
+        }
+        let lattice = &columns.lattice[start..start + 16];
+        for (i, out) in out[start..start + 16].iter_mut().enumerate() {
+            let column = format.column(row.base, x[i], lattice[i]);
+            *out = format.item(row.base, column, y[i], row.lattice);
+        }
+    }
+    whole
+}
+
 /// A row of `f32` pairs; see [`F32`](super::F32). All three slices have the same length.
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
 pub(super) fn f32_row(

@@ -18,10 +18,12 @@ mod avx2;
 )]
 mod avx512;
 mod backend;
+mod shear;
 
 use super::{Point, PointId, fixed, plan::Plan};
 
 pub use backend::Backend;
+pub(super) use shear::{Columns, warped_row};
 
 /// An output format: how a position becomes an item, the part along x first, since a template
 /// keeps it for all rows.

@@ -1,0 +1,231 @@
+//! Centroidal Voronoi energy: the squared distance from each place to its nearest point.
+//!
+//! E = Σ ∫ |x − p|² over the cell of p. Its gradient at p is 2·area·(p − centroid), so at unit
+//! density a step of ½ against it goes to the centroid: Lloyd's relaxation.
+//!
+//! A cell is cut out of a square by the bisectors to the neighbors, nearest cells of the list first,
+//! in plain arithmetic and a fixed order: the same bits on every machine and with any number of
+//! threads, and without a triangulation, of which a twin would need a new one each step.
+
+use rayon::prelude::*;
+
+use super::SetEnergy;
+use crate::measure::{Torus, cells::Cells};
+
+/// The centroidal Voronoi energy.
+#[derive(Clone, Copy, Debug)]
+pub struct Lloyd;
+
+/// Moments of a Voronoi cell about its point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cell {
+    /// ∫ 1.
+    pub area: f64,
+    /// ∫ x − p: the area times the way to the centroid.
+    pub first: [f64; 2],
+    /// ∫ |x − p|².
+    pub second: f64,
+}
+
+/// Half the side of the square that cells are cut from, in mean spacings. Cells never come near.
+const START: f64 = 4.0;
+/// Points per parallel task.
+const CHUNK: usize = 256;
+
+impl Lloyd {
+    /// The cells of a periodic set of at least 100 points, in the order of the points.
+    #[must_use]
+    pub fn cells(set: &Torus) -> Vec<Cell> {
+        let list = Cells::new(set.points(), set.side(), 1.0, true);
+        let found: Vec<Vec<(u32, Cell)>> = list
+            .members()
+            .par_chunks(CHUNK)
+            .map(|chunk| {
+                let mut cutter = Cutter::default();
+                let of = |&(index, p): &(u32, [f64; 2])| (index, cutter.cell(&list, index, p));
+                chunk.iter().map(of).collect()
+            })
+            .collect();
+        let mut cells = vec![Cell::default(); set.points().len()];
+        for (index, cell) in found.into_iter().flatten() {
+            cells[index as usize] = cell;
+        }
+        cells
+    }
+}
+
+impl SetEnergy for Lloyd {
+    fn evaluate(&self, set: &Torus, gradient: &mut [[f64; 2]]) -> f64 {
+        let mut energy = 0.0;
+        let cells = Self::cells(set);
+        for (cell, out) in cells.iter().zip(gradient) {
+            *out = cell.first.map(|v| -2.0 * v);
+            energy += cell.second;
+        }
+        energy / cells.len().max(1) as f64
+    }
+}
+
+/// A polygon being cut, around its point as the origin.
+#[derive(Default)]
+struct Cutter {
+    corners: Vec<[f64; 2]>,
+    spare: Vec<[f64; 2]>,
+    /// The largest squared distance of a corner.
+    reach: f64,
+}
+
+impl Cutter {
+    fn cell(&mut self, list: &Cells, own: u32, p: [f64; 2]) -> Cell {
+        self.corners.clear();
+        self.corners.extend([
+            [-START, -START],
+            [START, -START],
+            [START, START],
+            [-START, START],
+        ]);
+        self.reach = 2.0 * START * START;
+        for ring in 0.. {
+            // Whatever lies in this ring is at least this far; its bisector half as far.
+            let far = 0.5 * f64::from((ring - 1).max(0)) * list.width();
+            if far * far > self.reach {
+                break;
+            }
+            list.ring(p, ring.into(), |index, [dx, dy]| {
+                let squared = dx * dx + dy * dy;
+                if squared < 4.0 * self.reach && !(index == own && squared == 0.0) {
+                    self.cut([-dx, -dy], 0.5 * squared);
+                }
+            });
+        }
+        self.moments()
+    }
+
+    /// Keeps what satisfies x·n ≤ limit.
+    fn cut(&mut self, n: [f64; 2], limit: f64) {
+        let excess = |c: &[f64; 2]| c[0] * n[0] + c[1] * n[1] - limit;
+        if self.corners.iter().all(|c| excess(c) <= 0.0) {
+            return;
+        }
+        self.spare.clear();
+        for (at, corner) in self.corners.iter().enumerate() {
+            let next = &self.corners[(at + 1) % self.corners.len()];
+            let (here, there) = (excess(corner), excess(next));
+            if here <= 0.0 {
+                self.spare.push(*corner);
+            }
+            if (here <= 0.0) != (there <= 0.0) {
+                let part = here / (here - there);
+                let along = |axis: usize| corner[axis] + part * (next[axis] - corner[axis]);
+                self.spare.push([along(0), along(1)]);
+            }
+        }
+        std::mem::swap(&mut self.corners, &mut self.spare);
+        let squared = |c: &[f64; 2]| c[0] * c[0] + c[1] * c[1];
+        self.reach = self.corners.iter().map(squared).fold(0.0, f64::max);
+    }
+
+    fn moments(&self) -> Cell {
+        let mut cell = Cell::default();
+        for (at, a) in self.corners.iter().enumerate() {
+            let b = &self.corners[(at + 1) % self.corners.len()];
+            let cross = a[0] * b[1] - a[1] * b[0];
+            cell.area += 0.5 * cross;
+            for axis in 0..2 {
+                cell.first[axis] += cross * (a[axis] + b[axis]) / 6.0;
+                let square = a[axis] * a[axis] + a[axis] * b[axis] + b[axis] * b[axis];
+                cell.second += cross * square / 12.0;
+            }
+        }
+        cell
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use strew_core::{Map, Twin};
+
+    use super::*;
+    use crate::{measure::Voronoi, optimize::SplitMix};
+
+    fn noise(count: usize) -> Torus {
+        let mut random = SplitMix::new(4);
+        let points = (0..count).map(|_| [random.next_f64(), random.next_f64()]);
+        Torus::new(1.0, points.collect())
+    }
+
+    #[test]
+    fn cells_fill_the_torus_and_agree_with_a_triangulation() {
+        let set = noise(3000);
+        let cells = Lloyd::cells(&set);
+        let sum: f64 = cells.iter().map(|cell| cell.area).sum();
+        assert!((sum - 3000.0).abs() < 1e-8, "{sum}");
+        let worst = cells.iter().map(|cell| (cell.area - 1.0).abs());
+        let expected = Voronoi::of_torus(&set);
+        assert!((worst.fold(0.0, f64::max) - expected.area_deviation).abs() < 1e-9);
+        let squares: f64 = cells.iter().map(|cell| (cell.area - 1.0).powi(2)).sum();
+        assert!(((squares / 3000.0).sqrt() - expected.area_spread).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_gradient_is_that_of_the_energy() {
+        let mut set = noise(400);
+        let mut gradient = vec![[0.0; 2]; 400];
+        Lloyd.evaluate(&set, &mut gradient);
+        let h = 1e-5;
+        for index in [0, 7, 133] {
+            for (axis, &slope) in gradient[index].iter().enumerate() {
+                let mut at = |by: f64| {
+                    set.points_mut()[index][axis] += by;
+                    400.0 * Lloyd.evaluate(&set, &mut [[0.0; 2]; 400])
+                };
+                let (up, down) = (at(h), at(-2.0 * h));
+                at(h);
+                let numeric = (up - down) / (2.0 * h);
+                assert!((slope - numeric).abs() < 1e-5, "{numeric}");
+            }
+        }
+    }
+
+    /// After so many steps to the centroid, the largest difference between the ways of two points of
+    /// the same block.
+    fn disagreement(radius: u32, steps: u32) -> f64 {
+        let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), radius).expect("small");
+        let twin = Twin::new(683, 418).expect("coprime");
+        let sites = twin.sites(&map).expect("a twin");
+        let start = sites.iter().map(|s| [f64::from(s.x), f64::from(s.y)]);
+        let mut set = Torus::new(twin.period() as f64, start.collect());
+        let start = set.points().to_vec();
+        for _ in 0..steps {
+            let cells = Lloyd::cells(&set);
+            for (p, cell) in set.points_mut().iter_mut().zip(&cells) {
+                *p = [
+                    p[0] + cell.first[0] / cell.area,
+                    p[1] + cell.first[1] / cell.area,
+                ];
+            }
+        }
+        let n = map.intervals();
+        let mut first: Vec<Option<[f64; 2]>> = vec![None; n * n];
+        let mut worst = 0.0f64;
+        for ((site, p), q) in sites.iter().zip(set.points()).zip(&start) {
+            let way = [p[0] - q[0], p[1] - q[1]];
+            let block = site.block_y as usize * n + site.block_x as usize;
+            let other = first[block].get_or_insert(way);
+            worst = worst.max((way[0] - other[0]).abs().max((way[1] - other[1]).abs()));
+        }
+        worst
+    }
+
+    #[test]
+    fn after_k_steps_points_with_equal_k_ring_neighborhoods_have_moved_equally() {
+        // A cell reaches 0.9 spacings and so sees 1.8; a block of half-width 49 fixes 15 of them.
+        for steps in [2, 6] {
+            let found = disagreement(49, steps);
+            assert!(found < 1e-9, "{steps}: {found}");
+        }
+        assert!(disagreement(7, 1) < 1e-9);
+        // Five more steps see farther than the block of half-width 7 does.
+        assert!(disagreement(7, 6) > 1e-4);
+    }
+}

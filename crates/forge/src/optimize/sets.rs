@@ -1,0 +1,139 @@
+//! Energies of point sets in table space: evaluated on twins, averaged over instances of blocks.
+
+use rayon::prelude::*;
+use strew_core::{Map, Twin, map::Site};
+
+use super::Objective;
+use crate::{energy::SetEnergy, measure::Torus};
+
+/// An energy of point sets as a function of a table's vectors: its mean over the points of several
+/// twins. What meets on none of the twins is not seen (see [`Pairs`](super::Pairs), which sees all),
+/// so there should be several, and none very small.
+pub struct Sets<E> {
+    energy: E,
+    sets: Vec<Instances>,
+    masses: Vec<f64>,
+}
+
+/// The points of one twin.
+struct Instances {
+    /// Undisplaced, in mean spacings.
+    sites: Vec<[f64; 2]>,
+    blocks: Vec<u32>,
+    set: Torus,
+    gradient: Vec<[f64; 2]>,
+}
+
+impl<E: SetEnergy> Sets<E> {
+    /// The energy on those of the twins that are twins of the map.
+    #[must_use]
+    pub fn new(energy: E, map: &Map, twins: &[Twin]) -> Self {
+        let n = map.intervals();
+        let instances = |twin: &Twin| {
+            let sites = twin.sites(map)?;
+            let place = |site: &Site| [f64::from(site.x), f64::from(site.y)];
+            let set = Torus::new(twin.period() as f64, sites.iter().map(place).collect());
+            let block = |site: &Site| site.block_y * n as u32 + site.block_x;
+            Some(Instances {
+                sites: set.points().to_vec(),
+                blocks: sites.iter().map(block).collect(),
+                gradient: vec![[0.0; 2]; sites.len()],
+                set,
+            })
+        };
+        let sets: Vec<Instances> = twins.iter().filter_map(instances).collect();
+        let mut masses = vec![0.0; n * n];
+        for &block in sets.iter().flat_map(|set| &set.blocks) {
+            masses[block as usize] += 1.0;
+        }
+        let total: f64 = masses.iter().sum();
+        masses.iter_mut().for_each(|mass| *mass /= total);
+        Self {
+            energy,
+            sets,
+            masses,
+        }
+    }
+}
+
+impl<E: SetEnergy> Objective for Sets<E> {
+    fn masses(&self) -> &[f64] {
+        &self.masses
+    }
+
+    fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64 {
+        let energy = &self.energy;
+        let energies: Vec<f64> = self
+            .sets
+            .par_iter_mut()
+            .map(
+                |Instances {
+                     sites,
+                     blocks,
+                     set,
+                     gradient,
+                 }| {
+                    for ((p, site), block) in set.points_mut().iter_mut().zip(&*sites).zip(&*blocks)
+                    {
+                        let by = moves[*block as usize];
+                        *p = [site[0] + by[0], site[1] + by[1]];
+                    }
+                    energy.evaluate(set, gradient)
+                },
+            )
+            .collect();
+        gradient.fill([0.0; 2]);
+        let (mut sum, mut points) = (0.0, 0.0);
+        for (set, energy) in self.sets.iter().zip(energies) {
+            for (&block, slope) in set.blocks.iter().zip(&set.gradient) {
+                let out = &mut gradient[block as usize];
+                *out = [out[0] + slope[0], out[1] + slope[1]];
+            }
+            sum += energy * set.sites.len() as f64;
+            points += set.sites.len() as f64;
+        }
+        for (out, mass) in gradient.iter_mut().zip(&self.masses) {
+            let instances = f64::max(mass * points, 1.0);
+            *out = out.map(|v| v / instances);
+        }
+        sum / f64::max(points, 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        energy::{Gaussian, Guard, Pairwise},
+        optimize::{Pairs, jitter},
+    };
+
+    #[test]
+    fn a_pair_energy_on_sets_is_that_of_exact_frequencies() {
+        let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 9).expect("small");
+        let mut twins = map.twins().filter(|t| t.is_uniform() && t.points() > 600);
+        let twin = twins.next().expect("endless");
+        let alpha = strew_core::Alpha::from_fraction(twin.p(), twin.q()).expect("in range");
+        let own = Map::new(alpha, 9).expect("small");
+        let energy = (Gaussian::new(1.0), Guard::new(0.8, 0.3));
+        let scale = twin.t() as f64 / twin.period() as f64;
+        let blocks = map.intervals() * map.intervals();
+        let moves = jitter(blocks, 0.5, 1);
+        let run = |objective: &mut dyn Objective| {
+            let mut gradient = vec![[0.0; 2]; blocks];
+            let value = objective.evaluate(&moves, &mut gradient);
+            (value, gradient)
+        };
+        let (expected, slopes) = run(&mut Pairs::new(energy, &[own], scale));
+        let mut sets = Sets::new(Pairwise(energy), &map, &[twin]);
+        let (found, gradient) = run(&mut sets);
+        assert!(
+            (found - expected).abs() < 1e-6 * expected,
+            "{found} {expected}"
+        );
+        for (a, b) in gradient.iter().zip(&slopes) {
+            assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-5, "{a:?} {b:?}");
+        }
+        assert!((sets.masses().iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+}
