@@ -26,7 +26,7 @@ use crate::{
 use gaussian::{BLUE, SHARP};
 use lloyd::LLOYD;
 use pattern::PATTERN;
-use radial::{CUSTOM, GREEN, PINK, STEP};
+use radial::{CUSTOM, GREEN, PINK, SINGLE_PEAK, STEP};
 use spacing::SPACED;
 
 /// A noise profile.
@@ -69,7 +69,7 @@ pub(crate) struct Phase {
 
 impl Profile {
     /// All profiles that can be made.
-    pub const ALL: &'static [Self] = &[BLUE, SHARP, SPACED, STEP, GREEN, PINK, LLOYD, PATTERN];
+    pub const ALL: &'static [Self] = &[BLUE, SHARP, SPACED, STEP, SINGLE_PEAK, GREEN, PINK, LLOYD, PATTERN];
 
     /// The radial power curve it follows, if it follows one.
     #[must_use]

@@ -155,6 +155,29 @@ pub(super) const PINK: Profile = Profile {
     ],
 };
 
+/// No power up to ν = 0.68, one peak, a shallow dip, flat from 2 on: quiet
+/// farther out than a step can be, without the oscillations of sharper sets.
+pub(super) const SINGLE_PEAK: Profile = Profile {
+    name: "single-peak",
+    summary: "Single-peak blue noise: no power up to nu 0.68, one peak, next to flat from nu 1.25 on",
+    recipe: Recipe::Radial(RadialRecipe {
+        curve: &[[0.0, 0.0], [0.68, 0.0], [0.76, 0.3], [0.87, 1.15], [0.95, 1.8], [1.06, 1.75], [1.15, 1.4], [1.25, 1.03], [1.34, 0.86], [1.46, 0.86], [1.7, 0.93], [2.0, 1.0]],
+        weights: RadialWeights {
+            quiet: 1.0,
+            ..WEIGHTS
+        },
+        warm_share: 0.3,
+        rate: 0.05,
+    }),
+    jitter: 0.7,
+    steps: 500,
+    bounds: &[
+        Bound::at_most(Figure::LowPower, 1e-3),
+        Bound::at_least(Figure::NuEff, 0.8),
+        Bound::at_most(Figure::TargetRms, 0.05),
+    ],
+};
+
 /// A curve that somebody drew: judged by how near it came.
 pub(super) const CUSTOM: Profile = Profile {
     name: "custom",
