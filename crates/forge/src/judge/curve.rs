@@ -23,7 +23,10 @@ const FINE_RING: f64 = 0.005;
 pub fn curve_figures(spectrum: &Spectrum, target: &Target) -> Vec<(String, f64)> {
     let rings = spectrum.rings(TARGET_RING);
     let errors: Vec<Error> = rings.iter().map(|ring| Error::of(ring, target)).collect();
-    let drawn = |error: &&Error| error.from < target.end() && error.wanted > 0.0;
+    let first = target.points().first().map_or(0.0, |p| p[0]);
+    let drawn = |error: &&Error| {
+        error.from >= first && error.from < target.end() - 1e-9 && error.wanted > 0.0
+    };
     let worst = errors
         .iter()
         .max_by(|a, b| a.by().abs().total_cmp(&b.by().abs()));

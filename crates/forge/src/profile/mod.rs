@@ -26,7 +26,7 @@ use crate::{
 use gaussian::{BLUE, SHARP};
 use lloyd::LLOYD;
 use pattern::PATTERN;
-use radial::{CUSTOM, STEP};
+use radial::{CUSTOM, GREEN, PINK, STEP};
 use spacing::SPACED;
 
 /// A noise profile.
@@ -69,7 +69,7 @@ pub(crate) struct Phase {
 
 impl Profile {
     /// All profiles that can be made.
-    pub const ALL: &'static [Self] = &[BLUE, SHARP, SPACED, STEP, LLOYD, PATTERN];
+    pub const ALL: &'static [Self] = &[BLUE, SHARP, SPACED, STEP, GREEN, PINK, LLOYD, PATTERN];
 
     /// The radial power curve it follows, if it follows one.
     #[must_use]
@@ -143,9 +143,8 @@ impl Recipe {
             Self::Spacing(recipe) => recipe.phases(ground, steps),
             Self::Lloyd(recipe) => recipe.phases(ground, steps),
             Self::Radial(recipe) => target
-                .map(|target| recipe.phase(ground, target, steps))
-                .into_iter()
-                .collect(),
+                .map(|target| recipe.phases(ground, target, steps))
+                .unwrap_or_default(),
             Self::Undisplaced => Vec::new(),
         }
     }

@@ -4,9 +4,10 @@ use std::slice;
 
 use super::{Phase, Profile, Recipe, Target, named};
 use crate::{
+    energy::Gaussian,
     ground::Ground,
     judge::{Bound, Figure},
-    optimize::{Descent, Pairs, Radial, RadialWeights, Reach},
+    optimize::{Descent, Objective, Pairs, Radial, RadialWeights, Reach},
 };
 
 /// Parameters of [`Recipe::Radial`].
@@ -16,6 +17,9 @@ pub struct RadialRecipe {
     pub curve: &'static [[f64; 2]],
     /// What its error costs.
     pub weights: RadialWeights,
+    /// The share of the steps that Gaussian repulsion (σ = 1) takes before: it empties the low
+    /// frequencies fast, for curves that are 0 nearly as far as that reaches.
+    pub warm_share: f64,
     /// Spacings moved per unit of gradient, at first.
     pub rate: f64,
 }
@@ -24,7 +28,7 @@ impl RadialRecipe {
     /// The parameters but the curve, for a table's history.
     pub(super) fn describe(&self) -> Vec<(String, String)> {
         let weights = &self.weights;
-        named(&[
+        let mut parameters = vec![
             ("reach", weights.reach),
             ("nu_max", weights.nu_max),
             ("fit", weights.fit),
@@ -32,23 +36,37 @@ impl RadialRecipe {
             ("edge", weights.edge),
             ("leash", weights.leash),
             ("rate", self.rate),
-        ])
+        ];
+        if self.warm_share > 0.0 {
+            parameters.push(("warm_share", self.warm_share));
+        }
+        named(&parameters)
     }
 
     /// All steps, on the unbounded pattern of α: its pairs have exact frequencies too, and those
     /// that occur in twins alone are too few to show in a spectrum.
-    pub(super) fn phase(&self, ground: &Ground, target: &Target, steps: u32) -> Phase {
-        let reach = Reach(self.weights.reach);
-        let pairs = Pairs::new(reach, slice::from_ref(&ground.map), ground.scale());
-        Phase {
-            objective: Box::new(Radial::new(pairs, target, &self.weights)),
-            descent: Descent {
-                steps,
-                rate: self.rate,
-            },
-        }
+    pub(super) fn phases(&self, ground: &Ground, target: &Target, steps: u32) -> Vec<Phase> {
+        let warm = (self.warm_share * f64::from(steps)) as u32;
+        let map = slice::from_ref(&ground.map);
+        let repulsion: Box<dyn Objective> =
+            Box::new(Pairs::new(Gaussian::new(1.0), map, ground.scale()));
+        let pairs = Pairs::new(Reach(self.weights.reach), map, ground.scale());
+        let curve: Box<dyn Objective> = Box::new(Radial::new(pairs, target, &self.weights));
+        let phase = |objective, steps, rate| Phase {
+            objective,
+            descent: Descent { steps, rate },
+        };
+        let phases = [
+            phase(repulsion, warm, WARM_RATE),
+            phase(curve, steps - warm, self.rate),
+        ];
+        let some = phases.into_iter().filter(|phase| phase.descent.steps > 0);
+        some.collect()
     }
 }
+
+/// Spacings moved per unit of gradient of the repulsion.
+const WARM_RATE: f64 = 0.2;
 
 /// What serves every curve.
 const WEIGHTS: RadialWeights = RadialWeights {
@@ -69,6 +87,7 @@ pub(super) const STEP: Profile = Profile {
     recipe: Recipe::Radial(RadialRecipe {
         curve: &[[0.0, 0.0], [0.56, 0.0], [0.56, 1.0]],
         weights: WEIGHTS,
+        warm_share: 0.0,
         rate: 0.1,
     }),
     jitter: 0.7,
@@ -80,6 +99,62 @@ pub(super) const STEP: Profile = Profile {
     ],
 };
 
+/// Power rises from nothing to a broad peak at ν = 0.62: the tone of the middle frequencies. Unlike
+/// most sets of that name it is also silent below.
+pub(super) const GREEN: Profile = Profile {
+    name: "green",
+    summary: "Green noise: silent up to nu 0.42, a broad peak at 0.62, flat from 0.9 on",
+    recipe: Recipe::Radial(RadialRecipe {
+        curve: &[[0.0, 0.0], [0.42, 0.0], [0.62, 3.0], [0.9, 1.0]],
+        weights: WEIGHTS,
+        warm_share: 0.0,
+        rate: 0.05,
+    }),
+    jitter: 0.7,
+    steps: 150,
+    bounds: &[
+        Bound::at_most(Figure::QuietPower, 0.01),
+        Bound::at_least(Figure::PeakPower, 2.5),
+        Bound::at_least(Figure::PeakNu, 0.5),
+        Bound::at_most(Figure::PeakNu, 0.75),
+        Bound::at_most(Figure::TailWorst, 0.1),
+    ],
+};
+
+/// Power falls as ν^(−3/4), from 5.1 at ν = 0.08 to 1 at 0.7: clusters of all sizes.
+pub(super) const PINK: Profile = Profile {
+    name: "pink",
+    summary: "Pink noise: power falls as nu^(-3/4) to 1 at nu 0.7, flat beyond",
+    recipe: Recipe::Radial(RadialRecipe {
+        curve: &[
+            [0.08, 5.088],
+            [0.1, 4.304],
+            [0.12, 3.754],
+            [0.15, 3.175],
+            [0.2, 2.559],
+            [0.25, 2.165],
+            [0.3, 1.888],
+            [0.35, 1.682],
+            [0.4, 1.522],
+            [0.45, 1.393],
+            [0.5, 1.287],
+            [0.55, 1.198],
+            [0.6, 1.123],
+            [0.65, 1.057],
+            [0.7, 1.0],
+        ],
+        weights: WEIGHTS,
+        warm_share: 0.0,
+        rate: 0.02,
+    }),
+    jitter: 0.7,
+    steps: 150,
+    bounds: &[
+        Bound::at_most(Figure::TargetRelative, 0.1),
+        Bound::at_most(Figure::TailWorst, 0.1),
+    ],
+};
+
 /// A curve that somebody drew: judged by how near it came.
 pub(super) const CUSTOM: Profile = Profile {
     name: "custom",
@@ -87,6 +162,7 @@ pub(super) const CUSTOM: Profile = Profile {
     recipe: Recipe::Radial(RadialRecipe {
         curve: &[],
         weights: WEIGHTS,
+        warm_share: 0.0,
         rate: 0.1,
     }),
     jitter: 0.7,
