@@ -10,7 +10,9 @@ use std::{
 
 use anyhow::{Context as _, anyhow};
 use strew_core::Alpha;
-use strew_forge::{ForgeError, Job, Outcome, Stage, Watch, file_name, forge, write_table};
+use strew_forge::{
+    DEFAULT_SEED, ForgeError, Job, Outcome, Stage, Target, Watch, file_name, forge, write_table,
+};
 
 use super::{Failure, progress::Progress};
 use crate::service::query::{DEFAULT_ALPHA, DEFAULT_PROFILE};
@@ -28,8 +30,12 @@ pub(super) struct Args {
     #[arg(long, default_value_t = 49)]
     radius: u32,
     /// The seed of the random start.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
+    /// A radial power curve to follow: lines of two columns, frequency and power. --profile then names
+    /// the new profile.
+    #[arg(long, value_name = "FILE", requires = "profile")]
+    target: Option<PathBuf>,
     /// Steps of the optimizer [default: the profile's].
     #[arg(long)]
     steps: Option<u32>,
@@ -64,9 +70,21 @@ impl Args {
             radius: self.radius,
             profile: self.profile.clone(),
             seed: self.seed,
-            target: None,
+            target: self.target()?,
             steps: self.steps,
         })
+    }
+
+    fn target(&self) -> Result<Option<Target>, Failure> {
+        let Some(file) = &self.target else {
+            return Ok(None);
+        };
+        let text = std::fs::read_to_string(file)
+            .with_context(|| format!("cannot read {}", file.display()))?;
+        let target = text
+            .parse()
+            .with_context(|| format!("{} is not a power curve", file.display()));
+        target.map(Some).map_err(Failure::Usage)
     }
 
     fn path(&self, job: &Job) -> PathBuf {

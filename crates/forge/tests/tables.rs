@@ -101,6 +101,7 @@ fn larger_maps_are_as_good_on_windows_and_unseen_twins() {
         ("blue", 100, &blue),
         ("blue", 200, &blue),
         ("spaced", 100, &spaced),
+        ("spaced", 200, &spaced),
     ] {
         let table = shipped(profile, DEFAULT, radius);
         // Large maps have few twins, and the judge has seen the smaller ones.

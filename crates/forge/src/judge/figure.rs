@@ -13,7 +13,7 @@ pub const RING_WIDTH: f64 = 1.0 / 64.0;
 /// A figure measured on a point set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
-    /// Mean power where the target is 0, up to 0.9 of where that ends (see [`super::curve`]).
+    /// Mean power where the target is 0, up to 0.9 of where that ends.
     QuietPower,
     /// The root of the mean squared error of the radial power, ring by ring.
     TargetRms,
