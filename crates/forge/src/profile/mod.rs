@@ -69,7 +69,17 @@ pub(crate) struct Phase {
 
 impl Profile {
     /// All profiles that can be made.
-    pub const ALL: &'static [Self] = &[BLUE, SHARP, SPACED, STEP, SINGLE_PEAK, GREEN, PINK, LLOYD, PATTERN];
+    pub const ALL: &'static [Self] = &[
+        BLUE,
+        SHARP,
+        SPACED,
+        STEP,
+        SINGLE_PEAK,
+        GREEN,
+        PINK,
+        LLOYD,
+        PATTERN,
+    ];
 
     /// The radial power curve it follows, if it follows one.
     #[must_use]

@@ -161,7 +161,20 @@ pub(super) const SINGLE_PEAK: Profile = Profile {
     name: "single-peak",
     summary: "Single-peak blue noise: no power up to nu 0.68, one peak, next to flat from nu 1.25 on",
     recipe: Recipe::Radial(RadialRecipe {
-        curve: &[[0.0, 0.0], [0.68, 0.0], [0.76, 0.3], [0.87, 1.15], [0.95, 1.8], [1.06, 1.75], [1.15, 1.4], [1.25, 1.03], [1.34, 0.86], [1.46, 0.86], [1.7, 0.93], [2.0, 1.0]],
+        curve: &[
+            [0.0, 0.0],
+            [0.68, 0.0],
+            [0.76, 0.3],
+            [0.87, 1.15],
+            [0.95, 1.8],
+            [1.06, 1.75],
+            [1.15, 1.4],
+            [1.25, 1.03],
+            [1.34, 0.86],
+            [1.46, 0.86],
+            [1.7, 0.93],
+            [2.0, 1.0],
+        ],
         weights: RadialWeights {
             quiet: 1.0,
             ..WEIGHTS
