@@ -348,7 +348,7 @@ fn loaded(catalog: &Catalog) -> String {
 
 /// A list, but not a long one: errors travel in headers, too.
 fn some(items: impl Iterator<Item = String>) -> String {
-    const SHOWN: usize = 8;
+    const SHOWN: usize = 16;
     let mut items: Vec<String> = items.collect();
     let more = items.len().saturating_sub(SHOWN);
     if more > 0 {
