@@ -36,7 +36,7 @@ tables:
         "blue (5-sqrt(3))/2 100" "blue (5-sqrt(3))/2 200" \
         "spaced (5-sqrt(3))/2 49" "spaced sqrt(3) 49" "spaced (1+sqrt(5))/2 49" \
         "spaced (5-sqrt(3))/2 100" "spaced (5-sqrt(3))/2 200" \
-        "sharp (5-sqrt(3))/2 49" "step (5-sqrt(3))/2 49" "green (5-sqrt(3))/2 49" "pink (5-sqrt(3))/2 49" \
+        "sharp (5-sqrt(3))/2 49" "step (5-sqrt(3))/2 49" "green (5-sqrt(3))/2 49" "pink (5-sqrt(3))/2 49" "single-peak (5-sqrt(3))/2 49" \
         "lloyd (5-sqrt(3))/2 49" "pattern (5-sqrt(3))/2 49"; do \
         set -- $job; \
         target/release/strew forge --profile "$1" --alpha "$2" --radius "$3" \
