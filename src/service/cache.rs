@@ -1,4 +1,4 @@
-//! Samplers ready to answer, by (α, profile).
+//! Samplers ready to answer, by profile, α and map size.
 //!
 //! Bounded by what they hold in memory. A sampler is built once however many queries wait for it,
 //! and on the workers, not where sockets are served.

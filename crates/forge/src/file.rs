@@ -8,6 +8,7 @@ use std::{
 
 use strew_core::{
     Alpha, Table,
+    map::Size,
     table::{MAX_FILE_BYTES, TableError},
 };
 
@@ -28,12 +29,7 @@ pub fn file_name(profile: &str, alpha: Alpha, radius: u32) -> String {
         .replace('/', "-over-")
         .replace('+', "-plus-")
         .replace('*', "-times-");
-    let size = match radius {
-        49 => "s".into(),
-        100 => "m".into(),
-        200 => "l".into(),
-        other => format!("r{other}"),
-    };
+    let size = Size::of_radius(radius);
     format!("{profile}-{alpha}-{size}.{EXTENSION}")
 }
 
