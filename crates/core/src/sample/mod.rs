@@ -6,6 +6,7 @@
 //! is inside the region on the very coordinates reported, and any partition of a region gives
 //! every point exactly once.
 
+mod area;
 mod blocks;
 mod count;
 mod id;
@@ -29,6 +30,7 @@ use crate::{
 };
 use warp::Shears;
 
+pub use area::{Area, AreaError, Circle, Polygon};
 pub use blocks::{Blocks, Tile};
 pub use id::{PointId, PointIdError};
 pub use kernel::{Backend, F32, F64, Format, Points};
