@@ -8,7 +8,9 @@
 
 mod area;
 mod blocks;
+mod clear;
 mod count;
+mod cursor;
 mod id;
 pub(crate) mod kernel;
 mod margins;
@@ -17,6 +19,8 @@ mod placement;
 mod plan;
 mod region;
 mod seed;
+mod seek;
+mod sieve;
 mod spacing;
 mod template;
 mod warp;
@@ -32,10 +36,12 @@ use warp::Shears;
 
 pub use area::{Area, AreaError, Circle, Polygon};
 pub use blocks::{Blocks, Tile};
+pub use clear::{Clearance, ClearanceError, Layer};
+pub use cursor::Cursor;
 pub use id::{PointId, PointIdError};
 pub use kernel::{Backend, F32, F64, Format, Points};
 pub use placement::Placement;
-pub use plan::{Plan, PlanError};
+pub use plan::{Plan, PlanError, Selection};
 pub use region::{Region, RegionError};
 pub use seed::Seed;
 pub use spacing::{Spacing, SpacingError};
@@ -100,7 +106,31 @@ impl Sampler {
     /// # Errors
     /// [`PlanError`] if the region reaches beyond ±2⁵² lattice units at this spacing.
     pub fn plan(self: &Arc<Self>, placement: Placement, region: Region) -> Result<Plan, PlanError> {
-        Plan::new(self.clone(), Frame::new(self, placement), region)
+        self.select(Selection::new(placement, region))
+    }
+
+    /// What a selection holds: the exact count now, the points on demand.
+    ///
+    /// A box takes as long as in [`plan`](Self::plan); other areas take time in proportion to their
+    /// rows, and what keeps clear of layers in proportion to its points.
+    ///
+    /// # Errors
+    /// [`PlanError`] if the area reaches beyond ±2⁵² lattice units at this spacing, or has no end.
+    pub fn select(self: &Arc<Self>, selection: Selection) -> Result<Plan, PlanError> {
+        Plan::new(self.clone(), selection, None)
+    }
+
+    /// The rest of a selection from a cursor on, found without counting anything.
+    ///
+    /// # Errors
+    /// As [`select`](Self::select). A cursor of another selection gives its points from that
+    /// lattice address on, and the cursor's counts.
+    pub fn resume(
+        self: &Arc<Self>,
+        selection: Selection,
+        cursor: Cursor,
+    ) -> Result<Plan, PlanError> {
+        Ok(Plan::new(self.clone(), selection, Some(cursor.total))?.from_cursor(cursor))
     }
 
     /// The point of an id, or `None` if the pattern has no point at that lattice address.

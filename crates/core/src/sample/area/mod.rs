@@ -17,7 +17,7 @@ use super::Region;
 
 pub use circle::Circle;
 pub use polygon::Polygon;
-pub(super) use steps::{State, Step, Steps};
+pub(super) use steps::{State, Steps};
 
 /// Why numbers are not an area.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -18,9 +18,9 @@ pub(in crate::sample) enum State {
 
 /// From where on which state holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::sample) struct Step {
-    pub(in crate::sample) from: f64,
-    pub(in crate::sample) state: State,
+struct Step {
+    from: f64,
+    state: State,
 }
 
 /// States along x, ascending, the first from −∞ on. At a step itself nothing is known: what uses
@@ -30,7 +30,7 @@ pub(in crate::sample) struct Steps(Vec<Step>);
 
 impl Steps {
     /// One state everywhere.
-    pub(super) fn all(state: State) -> Self {
+    pub(in crate::sample) fn all(state: State) -> Self {
         Self(vec![Step {
             from: f64::NEG_INFINITY,
             state,
