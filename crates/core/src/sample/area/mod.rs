@@ -253,7 +253,7 @@ mod tests {
         let circle = (point(), 0.1..4.0f64)
             .prop_map(|(center, radius)| Area::from(Circle::new(center, radius).expect("valid")));
         let ring = || {
-            prop::collection::vec(point(), 3..9)
+            prop::collection::vec(point(), 3..7)
                 .prop_filter("different", |ring| Polygon::new(&[ring]).is_ok())
         };
         let polygon = prop::collection::vec(ring(), 1..3)

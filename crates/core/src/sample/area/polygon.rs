@@ -15,13 +15,16 @@ use super::{AreaError, Region, State, Steps};
 /// rectangle has the points of the half-open box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
+    /// The edges that rays can cross.
     edges: Vec<Edge>,
+    /// The horizontal ones: rays along them cross nothing, but strips end there.
+    flat: Vec<Edge>,
     vertices: usize,
     min: [f64; 2],
     max: [f64; 2],
 }
 
-/// An edge that is not horizontal, upward.
+/// An edge, upward.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Edge {
     low: [f64; 2],
@@ -40,6 +43,7 @@ impl Polygon {
         }
         let mut polygon = Self {
             edges: Vec::new(),
+            flat: Vec::new(),
             vertices: 0,
             min: [f64::INFINITY; 2],
             max: [f64::NEG_INFINITY; 2],
@@ -79,9 +83,13 @@ impl Polygon {
                 self.max[axis] = self.max[axis].max(a[axis]);
             }
             let (low, high) = if a[1] < b[1] { (a, b) } else { (b, a) };
-            if low[1] < high[1] {
-                self.edges.push(Edge { low, high });
-            }
+            let is_flat = low[1] == high[1];
+            let edges = if is_flat {
+                &mut self.flat
+            } else {
+                &mut self.edges
+            };
+            edges.push(Edge { low, high });
         }
         Ok(())
     }
@@ -106,21 +114,27 @@ impl Polygon {
     }
 
     /// The same polygon for points with y in the strip.
-    pub(super) fn focus(&self, [y0, y1]: [f64; 2]) -> Self {
-        let near = |edge: &&Edge| edge.low[1] <= y1 && edge.high[1] >= y0;
+    pub(super) fn focus(&self, strip: [f64; 2]) -> Self {
+        let near = |edges: &[Edge]| {
+            let near = edges.iter().filter(|edge| edge.touches(strip));
+            near.copied().collect()
+        };
         Self {
-            edges: self.edges.iter().filter(near).copied().collect(),
+            edges: near(&self.edges),
+            flat: near(&self.flat),
             ..*self
         }
     }
 
-    pub(super) fn steps(&self, [y0, y1]: [f64; 2]) -> Steps {
+    pub(super) fn steps(&self, strip: [f64; 2]) -> Steps {
+        let [y0, _] = strip;
         // Where each edge may be within the strip, and whether it crosses the strip's lower side.
         let mut spans: Vec<([f64; 2], bool)> = self
             .edges
             .iter()
-            .filter(|edge| edge.low[1] <= y1 && edge.high[1] >= y0)
-            .map(|edge| (edge.extent(y0, y1), edge.low[1] <= y0 && y0 < edge.high[1]))
+            .chain(&self.flat)
+            .filter(|edge| edge.touches(strip))
+            .map(|edge| (edge.extent(strip), edge.low[1] <= y0 && y0 < edge.high[1]))
             .collect();
         spans.sort_unstable_by(|a, b| a.0[0].total_cmp(&b.0[0]));
         let mut steps = Steps::all(State::Out);
@@ -154,12 +168,20 @@ impl Edge {
                     && orient2d(coord(self.low), coord(self.high), coord(p)) > 0.0)
     }
 
+    fn touches(&self, [y0, y1]: [f64; 2]) -> bool {
+        self.low[1] <= y1 && self.high[1] >= y0
+    }
+
     /// The x that the edge may have between two y, a little wider than need be.
-    fn extent(&self, y0: f64, y1: f64) -> [f64; 2] {
+    fn extent(&self, [y0, y1]: [f64; 2]) -> [f64; 2] {
         let ([x0, low], [x1, high]) = (self.low, self.high);
         let at = |y: f64| x0 + ((y - low) / (high - low)).clamp(0.0, 1.0) * (x1 - x0);
         let slack = 4e-15 * (x0.abs() + x1.abs());
-        let (a, b) = (at(y0), at(y1));
+        let (a, b) = if low < high {
+            (at(y0), at(y1))
+        } else {
+            (x0, x1)
+        };
         [a.min(b) - slack, a.max(b) + slack]
     }
 }
