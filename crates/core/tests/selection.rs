@@ -57,7 +57,7 @@ fn select(sampler: &Arc<Sampler>, placement: Placement, area: &Area) -> Plan {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
     fn an_area_holds_the_points_of_its_box_that_lie_in_it(
@@ -159,7 +159,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig::with_cases(40))]
 
     #[test]
     fn layers_keep_clear_of_each_other_wherever_regions_end(

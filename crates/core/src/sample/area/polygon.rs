@@ -78,9 +78,9 @@ impl Polygon {
         self.vertices += vertices.len();
         for (i, &a) in vertices.iter().enumerate() {
             let b = vertices[(i + 1) % vertices.len()];
-            for axis in 0..2 {
-                self.min[axis] = self.min[axis].min(a[axis]);
-                self.max[axis] = self.max[axis].max(a[axis]);
+            for (v, (min, max)) in a.iter().zip(self.min.iter_mut().zip(&mut self.max)) {
+                *min = min.min(*v);
+                *max = max.max(*v);
             }
             let (low, high) = if a[1] < b[1] { (a, b) } else { (b, a) };
             let is_flat = low[1] == high[1];
