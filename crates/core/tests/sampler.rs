@@ -18,6 +18,7 @@ fn brute_force(sampler: &Sampler, placement: Placement, region: Region) -> Vec<P
         spacing,
         seed,
         warp,
+        keep: _,
     } = placement;
     let table = sampler.table();
     let (map, alpha) = (table.map(), table.alpha());

@@ -7,7 +7,10 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use strew_core::{
     Area, Circle, Placement, Plan, Point, Polygon, Region, Sampler, Seed, Spacing,
-    sample::{Backend, Clearance, F32, F64, Layer, PlanError, Points, Selection},
+    sample::{
+        Attribute, Attributes, Backend, Clearance, F32, F64, Keep, Layer, PlanError, Points,
+        Selection,
+    },
 };
 use subject::{all, all_by, any_sampler, any_seed, in_order_of_ids, samplers, unit};
 
@@ -200,6 +203,30 @@ proptest! {
             all::<Points>(&sampler.select(selection(area)).expect("in range"), 64)
         });
         prop_assert_eq!(in_order_of_ids(parts.concat()), points);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn a_share_keeps_the_points_of_lesser_rank(
+        sampler in any_sampler(), (seed, warp) in any_seed(), area in any_area(),
+        share in prop_oneof![0.0001..1.0f64, Just(1.0)],
+    ) {
+        let placement = Placement { seed, ..unit(0).with_warp(warp) };
+        let ranks = Attributes::new(vec![Attribute::Rank]).expect("one").bind(&sampler, placement);
+        let mut expected = all::<Points>(&select(&sampler, placement, &area), 500);
+        expected.retain(|p| ranks.value(0, p.id).expect("a member") < share);
+        let kept = placement.with_keep(Keep::new(share).expect("in range"));
+        let plan = select(&sampler, kept, &area);
+        prop_assert_eq!(plan.count(), expected.len() as u128);
+        prop_assert_eq!(&all::<Points>(&plan, 100), &expected);
+        let other = sifted(&sampler, placement, &area);
+        for point in other.iter().take(50) {
+            let found = sampler.point(kept, point.id);
+            prop_assert_eq!(found.is_some(), expected.contains(point));
+        }
     }
 }
 

@@ -7,6 +7,7 @@
 //! every point exactly once.
 
 mod area;
+mod attribute;
 mod blocks;
 mod clear;
 mod count;
@@ -17,12 +18,14 @@ mod margins;
 mod patch;
 mod placement;
 mod plan;
+mod rank;
 mod region;
 mod seed;
 mod seek;
 mod sieve;
 mod spacing;
 mod template;
+mod variants;
 mod warp;
 
 use alloc::{sync::Arc, vec::Vec};
@@ -35,16 +38,21 @@ use crate::{
 use warp::Shears;
 
 pub use area::{Area, AreaError, Circle, Polygon};
+pub use attribute::{
+    Attribute, AttributeError, Attributes, BoundAttributes, Column, ScaleRange, UniformNumber,
+};
 pub use blocks::{Blocks, Tile};
 pub use clear::{Clearance, ClearanceError, Layer};
 pub use cursor::Cursor;
 pub use id::{PointId, PointIdError};
 pub use kernel::{Backend, F32, F64, Format, Points};
-pub use placement::Placement;
+pub use placement::{Keep, KeepError, Placement};
 pub use plan::{Plan, PlanError, Selection};
+pub use rank::{rank, side_for};
 pub use region::{Region, RegionError};
 pub use seed::Seed;
 pub use spacing::{Spacing, SpacingError};
+pub use variants::{Variants, VariantsError};
 pub use warp::{Warp, WarpError};
 
 /// Lattice coordinates of a region stay within ±2⁵². There an `f64` can still tell lattice points
@@ -141,6 +149,9 @@ impl Sampler {
         if !within.contains(&id.x) || !within.contains(&id.y) {
             return None;
         }
+        if !frame.pattern.contains(id.x, id.y) {
+            return None;
+        }
         let (index_x, index_y) = frame.pattern.index(id.x, id.y);
         let map = self.map();
         let (block_x, block_y) = (map.interval_of(index_x)?, map.interval_of(index_y)?);
@@ -190,11 +201,13 @@ impl Frame {
             spacing,
             seed,
             warp,
+            keep,
         } = placement;
         // The mean spacing in the grid is 1/t: at scale = spacing · t it becomes the one asked for.
         let scale = spacing.get() * alpha.set_side_f64();
         Self {
-            pattern: Pattern::with_origin(alpha, seed.origin()),
+            pattern: Pattern::with_origin(alpha, seed.origin())
+                .thinned(side_for(keep.get(), alpha.set_side())),
             placement,
             shears: Shears::new(warp, seed, alpha.set_side_f64()),
             step: scale / f64::from(1u32 << FRACTION_BITS),
