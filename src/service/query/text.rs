@@ -5,11 +5,14 @@ use std::sync::Arc;
 use percent_encoding::percent_decode_str;
 
 use super::{AMOUNT, BOX, Draft, Query, WARP};
-use crate::service::{Catalog, Encoding, Entry, Error, Fault};
+use crate::service::{
+    Catalog, Encoding, Entry, Error, Fault,
+    encode::{MOST_DECIMALS, Options, decimals_allowed},
+};
 
 /// The parameters there are.
-const NAMES: [&str; 9] = [
-    "bbox", "density", "spacing", "profile", "alpha", "map", "seed", "warp", "format",
+const NAMES: [&str; 10] = [
+    "bbox", "density", "spacing", "profile", "alpha", "map", "seed", "warp", "format", "decimals",
 ];
 
 /// No more faults of an address are reported: an error is to be read.
@@ -36,6 +39,8 @@ pub struct Parameters {
     pub warp: Option<String>,
     /// The name of the format.
     pub format: Option<String>,
+    /// Decimals of numbers in text formats.
+    pub decimals: Option<String>,
 }
 
 /// Parameters with the faults found so far.
@@ -94,6 +99,7 @@ impl Parameters {
             "seed" => &mut self.seed,
             "warp" => &mut self.warp,
             "format" => &mut self.format,
+            "decimals" => &mut self.decimals,
             _ => return None,
         })
     }
@@ -132,7 +138,8 @@ impl Parameters {
         }
     }
 
-    /// Checks everything; `faults` are those found before. Gives the format, too, if one is named.
+    /// Checks everything; `faults` are those found before. Gives the options of the output,
+    /// too.
     ///
     /// # Errors
     /// [`Error::Invalid`] with every fault.
@@ -140,7 +147,7 @@ impl Parameters {
         &self,
         catalog: &Catalog,
         mut faults: Vec<Fault>,
-    ) -> Result<(Query, Option<Encoding>), Error> {
+    ) -> Result<(Query, Options), Error> {
         let mut draft = Draft {
             profile: self.profile.as_deref(),
             alpha: self.alpha.as_deref(),
@@ -153,10 +160,11 @@ impl Parameters {
         read(amount("spacing", self.spacing.as_deref()).map(|spacing| draft.spacing = spacing));
         read(seed(self.seed.as_deref()).map(|seed| draft.seed = seed));
         read(warp(self.warp.as_deref()).map(|warp| draft.warp = warp));
-        let mut encoding = None;
-        read(format(self.format.as_deref()).map(|format| encoding = format));
+        let mut options = Options::default();
+        read(format(self.format.as_deref()).map(|format| options.encoding = format));
+        read(decimals(self.decimals.as_deref()).map(|decimals| options.decimals = decimals));
         let query = draft.check(catalog, faults)?;
-        Ok((query, encoding))
+        Ok((query, options))
     }
 }
 
@@ -211,6 +219,17 @@ fn format(text: Option<&str>) -> Result<Option<Encoding>, Fault> {
         Encoding::from_name(text).ok_or_else(|| {
             let allowed = Encoding::ALL.map(Encoding::name).join(", ");
             Fault::new("format", text, "there is no such format", allowed)
+        })
+    })
+    .transpose()
+}
+
+fn decimals(text: Option<&str>) -> Result<Option<u8>, Fault> {
+    text.map(|text| {
+        let parsed = text.parse().ok().filter(|n| *n <= MOST_DECIMALS);
+        parsed.ok_or_else(|| {
+            let detail = "it is not such an integer";
+            Fault::new("decimals", text, detail, decimals_allowed())
         })
     })
     .transpose()
