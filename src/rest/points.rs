@@ -2,20 +2,84 @@
 
 use std::sync::Arc;
 
-use axum::{body::Body, extract::State, response::Response};
-use http::{HeaderMap, HeaderName, HeaderValue, Uri, header};
+use axum::{body::Body, extract::State, response::Response, routing};
+use http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
+use serde_json::{Value, json};
 use strew_core::ALGORITHM_VERSION;
 
-use super::negotiate::{self, Chosen};
-use crate::service::{Answer, Error, Planned, Service, encode::write_number, query::parse_pairs};
+use super::{
+    api::{self, Endpoint, Operation, schemas},
+    negotiate::{self, Chosen},
+};
+use crate::service::{
+    Answer, Error, Kind, Planned, Service, encode::write_number, query::parse_pairs,
+};
 
 const COUNT: HeaderName = HeaderName::from_static("strew-count");
 const TABLE: HeaderName = HeaderName::from_static("strew-table");
 const ALGORITHM: HeaderName = HeaderName::from_static("strew-algorithm");
 const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
 
+/// The path.
+pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
+    let optional = [
+        "density", "spacing", "profile", "alpha", "map", "seed", "warp", "format", "decimals",
+    ];
+    let operation = Operation {
+        method: Method::GET,
+        id: "getPoints",
+        summary: "The points of a region",
+        about: "Streams every point of a half-open box, in a fixed order. The exact count is in \
+                the header strew-count before any point is made.",
+        path_parameters: &[],
+        parameters: api::given(&["bbox"], &optional),
+        body: None,
+        answers: vec![api::Answer {
+            status: 200,
+            about: "The points.",
+            headers: HEADERS.into(),
+            contents: contents(),
+        }],
+        problems: vec![
+            Kind::Invalid,
+            Kind::NotAcceptable,
+            Kind::TooManyPoints,
+            Kind::Busy,
+            Kind::ShuttingDown,
+        ],
+        example: "'/v1/points?bbox=0,0,3,2&spacing=1&format=csv'".into(),
+    };
+    Endpoint::new("/v1/points", service, vec![(operation, routing::get(get))])
+}
+
+/// The headers of an answer with points, and what they say.
+pub(super) const HEADERS: [(&str, &str); 4] = [
+    ("strew-count", "Exactly how many points follow."),
+    ("strew-table", "The digest of the table that answers."),
+    (
+        "strew-algorithm",
+        "The version of the algorithm that answers.",
+    ),
+    (
+        "strew-origin",
+        "With f32: the lower corner, which coordinates are relative to.",
+    ),
+];
+
+/// The content types of points, with what they hold.
+pub(super) fn contents() -> Vec<(String, Value)> {
+    let schema = |content_type: &str| match content_type {
+        "application/json" => schemas::reference("Points"),
+        _ => json!({}),
+    };
+    negotiate::content_types()
+        .into_iter()
+        .map(|content_type| (content_type.into(), schema(content_type)))
+        .collect()
+}
+
 /// Answers a query.
-pub(super) async fn get(
+async fn get(
     State(service): State<Arc<Service>>,
     uri: Uri,
     headers: HeaderMap,

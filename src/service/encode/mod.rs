@@ -37,7 +37,7 @@ use text::TextBlocks;
 pub use buffer::Pool;
 pub use encoding::Encoding;
 pub use number::{Digits, write_number};
-pub use output::{MOST_DECIMALS, Options, Output, decimals_allowed};
+pub use output::{DECIMALS, MOST_DECIMALS, Options, Output};
 pub use packed::{Packed, Scalars};
 pub use rows::{Attributes, Part, Rows};
 pub use schema::{Column, LAYER, Schema, Values};

@@ -6,6 +6,9 @@ use crate::service::{Error, Fault};
 /// More decimals than this say nothing: an `f64` has 17 significant digits.
 pub const MOST_DECIMALS: u8 = 17;
 
+/// What `decimals` may be.
+pub const DECIMALS: &str = "an integer from 0 to 17";
+
 /// What a query asks of its answer's looks, before the format is settled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
@@ -25,7 +28,7 @@ impl Options {
         if let Some(decimals) = self.decimals {
             let fault = |detail: String, allowed| Fault::new("decimals", decimals, detail, allowed);
             if decimals > MOST_DECIMALS {
-                faults.push(fault("it is out of range".into(), decimals_allowed()));
+                faults.push(fault("it is out of range".into(), DECIMALS.into()));
             }
             if !encoding.is_text() {
                 let allowed = Encoding::names_where(Encoding::is_text);
@@ -43,12 +46,6 @@ impl Options {
             ..Output::new(encoding)
         })
     }
-}
-
-/// What `decimals` may be.
-#[must_use]
-pub fn decimals_allowed() -> String {
-    format!("an integer from 0 to {MOST_DECIMALS}")
 }
 
 /// How an answer looks.
