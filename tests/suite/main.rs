@@ -7,6 +7,7 @@ mod formats;
 mod fresh;
 mod grpc;
 mod limits;
+mod openapi;
 mod raw;
 mod settings;
 mod streaming;
