@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use strew_core::{
     Area, Circle, Placement, Plan, Point, Polygon, Region, Sampler, Seed, Spacing,
     sample::{
-        Attribute, Attributes, Backend, Clearance, F32, F64, Keep, Layer, PlanError, Points,
+        Attribute, Attributes, Backend, ClearOf, F32, F64, Keep, Layer, PlanError, Points,
         Selection,
     },
 };
@@ -181,8 +181,8 @@ proptest! {
         let mut near = all::<Points>(&other.plan(rocks.placement, around).expect("in range"), 100);
         near.retain(|p| area.contains([p.x, p.y]));
         let placement = Placement { seed, ..unit(0).with_warp(warp) };
-        let clear: Arc<[Clearance]> =
-            Arc::new([Clearance::new(Arc::new(rocks), distance).expect("valid")]);
+        let clear: Arc<[ClearOf]> =
+            Arc::new([ClearOf::new(Arc::new(rocks), distance).expect("valid")]);
         let selection = |area: Area| Selection { placement, area, clear: clear.clone() };
         let plan = sampler.select(selection(bounds.into())).expect("in range");
         let points = all::<Points>(&plan, 50);
@@ -264,6 +264,6 @@ fn areas_without_end_are_refused() {
         clear: Arc::new([]),
     };
     for distance in [0.0, -1.0, f64::NAN, 17.0] {
-        assert!(Clearance::new(Arc::new(layer.clone()), distance).is_err());
+        assert!(ClearOf::new(Arc::new(layer.clone()), distance).is_err());
     }
 }

@@ -8,7 +8,7 @@ use super::{
     kernel::{Backend, Format, Row},
     patch::{BAND_WIDTH, Patch},
     plan::Plan,
-    sieve::{Run, Sieve},
+    sieve::{Focus, Run},
     template::{Check, Kept, Stretch, Templates},
 };
 use crate::pattern::{Axis, Class};
@@ -80,7 +80,7 @@ pub struct Blocks<F: Format> {
     /// How many points are still to come.
     left: u128,
     /// The plan's sieve, for the patch under way.
-    sieve: Option<Sieve>,
+    sieve: Option<Focus>,
     /// What the sieve says of the row under way.
     runs: Vec<Run>,
     columns: [Listed; 4],
@@ -282,7 +282,7 @@ impl<F: Format> Blocks<F> {
     }
 
     /// The same through a sieve.
-    fn fill_sifted(&mut self, sieve: &Sieve, end: i64, out: &mut [F::Item]) -> usize {
+    fn fill_sifted(&mut self, sieve: &Focus, end: i64, out: &mut [F::Item]) -> usize {
         let Plan {
             sampler, frame, x, ..
         } = &self.plan;

@@ -3,9 +3,10 @@
 //! Whether a point stays is decided by the other layer's points near it, on the unbounded plane,
 //! never by the region that is asked for: so neighboring regions agree.
 
-use alloc::sync::Arc;
+use alloc::{sync::Arc, vec::Vec};
+use core::cell::RefCell;
 
-use super::{Area, Placement, Region, Sampler};
+use super::{Area, Clearance, Placement, Point, Sampler};
 
 /// The points of a layer: everything that decides whether one exists.
 #[derive(Clone, Debug)]
@@ -17,14 +18,14 @@ pub struct Layer {
     /// Where the layer is; everywhere if `None`.
     pub area: Option<Area>,
     /// What its points keep clear of.
-    pub clear: Arc<[Clearance]>,
+    pub clear: Arc<[ClearOf]>,
 }
 
 /// A distance that points keep from all points of a layer.
 #[derive(Clone, Debug)]
-pub struct Clearance {
-    of: Arc<Layer>,
-    distance: f64,
+pub struct ClearOf {
+    layer: Arc<Layer>,
+    clearance: Clearance,
 }
 
 /// A distance that nothing can keep.
@@ -32,66 +33,65 @@ pub struct Clearance {
 #[error(
     "the distance is {distance}; it must be a number above 0 and at most {limit}, {spacings} mean \
      spacings of the layer",
-    spacings = Clearance::MAX_SPACINGS
+    spacings = ClearOf::MAX_SPACINGS
 )]
-pub struct ClearanceError {
+pub struct ClearOfError {
     /// The distance.
     pub distance: f64,
     /// The largest one allowed.
     pub limit: f64,
 }
 
-impl Clearance {
-    /// The largest distance in mean spacings of the layer that is kept clear of. Hardly a point is
-    /// farther than one spacing from the next, so a larger distance leaves nothing within the layer.
+impl ClearOf {
+    /// The largest distance in mean spacings of the layer that is kept clear of. Hardly a place is
+    /// farther than one spacing from the next point, so a larger distance leaves nothing within the
+    /// layer.
     pub const MAX_SPACINGS: f64 = 16.0;
 
     /// A distance from all points of a layer, in world units.
     ///
     /// # Errors
-    /// [`ClearanceError`] unless it is above 0 and at most [`MAX_SPACINGS`](Self::MAX_SPACINGS).
-    pub fn new(of: Arc<Layer>, distance: f64) -> Result<Self, ClearanceError> {
-        let limit = of.placement.spacing.get() * Self::MAX_SPACINGS;
+    /// [`ClearOfError`] unless it is above 0 and at most [`MAX_SPACINGS`](Self::MAX_SPACINGS).
+    pub fn new(layer: Arc<Layer>, distance: f64) -> Result<Self, ClearOfError> {
+        let limit = layer.placement.spacing.get() * Self::MAX_SPACINGS;
+        let refused = ClearOfError { distance, limit };
         if !(distance > 0.0 && distance <= limit) {
-            return Err(ClearanceError { distance, limit });
+            return Err(refused);
         }
-        Ok(Self { of, distance })
+        let finder = layer.sampler.finder(layer.placement);
+        let clearance = finder.clearance(distance).map_err(|_| refused)?;
+        Ok(Self { layer, clearance })
     }
 
+    /// One to ask.
+    pub(super) fn guard(&self) -> Guard {
+        Guard {
+            layer: self.layer.clone(),
+            clearance: RefCell::new(self.clearance.clone()),
+            of_layer: self.layer.clear.iter().map(Self::guard).collect(),
+        }
+    }
+}
+
+/// Asks whether places are clear of a layer.
+#[derive(Clone, Debug)]
+pub(super) struct Guard {
+    layer: Arc<Layer>,
+    /// It keeps memory from place to place.
+    clearance: RefCell<Clearance>,
+    /// What the layer's own points keep clear of.
+    of_layer: Vec<Self>,
+}
+
+impl Guard {
     /// Whether a place is far enough from all points of the layer.
     pub(super) fn leaves(&self, p: [f64; 2]) -> bool {
-        let Layer {
-            sampler,
-            placement,
-            area,
-            clear,
-        } = &*self.of;
-        let d = self.distance;
-        let corner = |sign: f64| p.map(|v| v + sign * d * (1.0 + 1e-9));
-        let Ok(region) = Region::new(corner(-1.0), corner(1.0).map(f64::next_up)) else {
-            return true;
+        let exists = |point: &Point| {
+            let q = [point.x, point.y];
+            let area = self.layer.area.as_ref();
+            area.is_none_or(|area| area.contains(q))
+                && self.of_layer.iter().all(|guard| guard.leaves(q))
         };
-        let Ok(plan) = sampler.plan(*placement, region) else {
-            return true;
-        };
-        let mut blocks = plan.blocks_points();
-        let mut points = [super::Point::default(); 16];
-        loop {
-            let filled = blocks.fill(&mut points);
-            if filled == 0 {
-                return true;
-            }
-            for point in &points[..filled] {
-                let [dx, dy] = [point.x - p[0], point.y - p[1]];
-                let exists = || {
-                    let q = [point.x, point.y];
-                    area.as_ref().is_none_or(|area| area.contains(q))
-                        && clear.iter().all(|clearance| clearance.leaves(q))
-                };
-                if dx * dx + dy * dy < d * d && exists() {
-                    return false;
-                }
-            }
-        }
+        !self.clearance.borrow_mut().is_any_near(p, exists)
     }
 }

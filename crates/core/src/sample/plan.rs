@@ -4,7 +4,7 @@ use alloc::sync::Arc;
 use core::ops::Range;
 
 use super::{
-    Area, Blocks, Clearance, Cursor, F32, F64, Format, Frame, LATTICE_LIMIT, Placement, PointId,
+    Area, Blocks, ClearOf, Cursor, F32, F64, Format, Frame, LATTICE_LIMIT, Placement, PointId,
     Points, Region, Sampler, Tile, count, fixed,
     region::Corner,
     sieve::{self, Sieve},
@@ -19,7 +19,7 @@ pub struct Selection {
     /// Where.
     pub area: Area,
     /// What they keep clear of.
-    pub clear: Arc<[Clearance]>,
+    pub clear: Arc<[ClearOf]>,
 }
 
 impl Selection {

@@ -10,7 +10,7 @@ use core::ops::Range;
 use super::{
     Area, Frame, Sampler,
     area::{State, Steps},
-    clear::Clearance,
+    clear::{ClearOf, Guard},
     fixed,
     patch::PATCH_HEIGHT,
 };
@@ -25,10 +25,19 @@ pub(super) struct Sieve {
     /// Where points may lie, if not in all of the plan's box.
     area: Option<Area>,
     /// What they keep clear of.
-    clear: Arc<[Clearance]>,
+    clear: Arc<[ClearOf]>,
     /// How far a point may lie from its lattice address, in lattice units, by axis.
     reach: [[f64; 2]; 2],
     /// World units per lattice unit.
+    unit: f64,
+}
+
+/// A sieve for some rows, with less to look at. It keeps memory, so each thread has its own.
+#[derive(Clone, Debug)]
+pub(super) struct Focus {
+    area: Option<Area>,
+    guards: Vec<Guard>,
+    reach: [[f64; 2]; 2],
     unit: f64,
 }
 
@@ -46,7 +55,7 @@ impl Sieve {
         sampler: &Sampler,
         frame: &Frame,
         area: Option<Area>,
-        clear: Arc<[Clearance]>,
+        clear: Arc<[ClearOf]>,
     ) -> Option<Self> {
         if area.is_none() && clear.is_empty() {
             return None;
@@ -61,16 +70,21 @@ impl Sieve {
         })
     }
 
-    /// The same sieve for some rows, with less to look at.
-    pub(super) fn focus(&self, rows: Range<i64>) -> Self {
-        let strip = self.strip(rows);
-        Self {
-            area: self.area.as_ref().map(|area| area.focus(strip)),
-            clear: self.clear.clone(),
-            ..*self
-        }
+    /// The sieve of some rows.
+    pub(super) fn focus(&self, rows: Range<i64>) -> Focus {
+        let mut focus = Focus {
+            area: None,
+            guards: self.clear.iter().map(ClearOf::guard).collect(),
+            reach: self.reach,
+            unit: self.unit,
+        };
+        let strip = focus.strip(rows);
+        focus.area = self.area.as_ref().map(|area| area.focus(strip));
+        focus
     }
+}
 
+impl Focus {
     /// Where the points of some rows may lie along y, and a little more.
     fn strip(&self, rows: Range<i64>) -> [f64; 2] {
         let [least, most] = self.reach[1];
@@ -83,7 +97,7 @@ impl Sieve {
     /// Whether a point passes.
     pub(super) fn passes(&self, p: [f64; 2]) -> bool {
         self.area.as_ref().is_none_or(|area| area.contains(p))
-            && self.clear.iter().all(|clearance| clearance.leaves(p))
+            && self.guards.iter().all(|guard| guard.leaves(p))
     }
 
     /// Those columns of a row whose points may pass.
@@ -94,7 +108,7 @@ impl Sieve {
             None => Steps::all(State::In),
         };
         let mut push = |run: Range<i64>, passes: bool| {
-            let passes = passes && self.clear.is_empty();
+            let passes = passes && self.guards.is_empty();
             match runs.last_mut() {
                 _ if run.is_empty() => {}
                 Some(last) if last.passes == passes && last.columns.end == run.start => {
