@@ -210,6 +210,22 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
+    fn a_count_is_met_exactly(
+        sampler in any_sampler(), (seed, warp) in any_seed(), area in any_area(), count in 1u128..2000,
+        is_box: bool,
+    ) {
+        let placement = Placement { seed, ..unit(0).with_warp(warp) };
+        let area = if is_box { area.bounds().expect("bounded").into() } else { area };
+        let selection = Selection::new(placement, area.clone());
+        // Areas without extent hold nothing at any spacing.
+        let fine = Placement { spacing: Spacing::new(0.2).expect("valid"), ..placement };
+        prop_assume!(select(&sampler, fine, &area).count() > 200);
+        let plan = sampler.select_count(&selection, count).expect("found");
+        prop_assert_eq!(plan.count(), count);
+        prop_assert_eq!(all::<Points>(&plan, 500).len() as u128, count);
+    }
+
+    #[test]
     fn a_share_keeps_the_points_of_lesser_rank(
         sampler in any_sampler(), (seed, warp) in any_seed(), area in any_area(),
         share in prop_oneof![0.0001..1.0f64, Just(1.0)],

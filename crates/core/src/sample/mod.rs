@@ -6,6 +6,7 @@
 //! is inside the region on the very coordinates reported, and any partition of a region gives
 //! every point exactly once.
 
+mod amount;
 mod area;
 mod attribute;
 mod blocks;
@@ -40,6 +41,7 @@ use crate::{
 };
 use warp::Shears;
 
+pub use amount::CountError;
 pub use area::{Area, AreaError, Circle, Polygon};
 pub use attribute::{
     Attribute, AttributeError, Attributes, BoundAttributes, Column, ScaleRange, UniformNumber,
