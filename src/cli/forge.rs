@@ -32,8 +32,11 @@ pub(super) struct Args {
     /// The seed of the random start.
     #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
-    /// A radial power curve to follow: lines of two columns, frequency and power. --profile then names
-    /// the new profile.
+    /// A radial power curve to follow. Either lines of two columns, frequency and power, joined by
+    /// straight pieces; or TOML: `[[piece]]` with `from` and `to`, each beginning where the last one
+    /// ended, and `power = P` (level), `power = [P0, P1]` (straight) or
+    /// `law = { power = P, at = N, exponent = E }`, which is P (nu/N)^E. Beyond the end the power is 1.
+    /// --profile then names the new profile.
     #[arg(long, value_name = "FILE", requires = "profile")]
     target: Option<PathBuf>,
     /// Steps of the optimizer [default: the profile's].
@@ -119,6 +122,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             estimate.time.as_secs_f64().max(1.0)
         );
     }
+    let impossible = estimate.correlation.filter(|least| least.is_impossible());
+    if let Some(least) = impossible.filter(|_| !args.quiet) {
+        eprintln!(
+            "warning: no point set has exactly this power curve: its pair correlation would be \
+             {:.2} at distance {:.2} (in mean spacings); what comes nearest is looked for",
+            least.g, least.r
+        );
+    }
     let watcher = Watcher::new(args.quiet)?;
     let outcome = pool.install(|| forge(&job, &watcher)).map_err(usage)?;
     watcher.finish();
@@ -128,12 +139,20 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 /// Writes what may be written and says how it went.
 fn conclude(args: &Args, path: &std::path::Path, outcome: &Outcome) -> Result<(), Failure> {
     let complaints: Vec<String> = outcome.complaints.iter().map(ToString::to_string).collect();
+    let nearness = outcome.nearness.as_ref().map(|near| {
+        let met = if outcome.accepted { "met" } else { "missed" };
+        format!("the target is {met}: {near}")
+    });
     let judged = outcome.accepted || outcome.interrupted || args.keep_rejected;
     if !judged {
+        let why: Vec<String> = nearness.into_iter().chain(complaints).collect();
         return Err(Failure::Other(anyhow!(
             "the table is rejected and not written (--keep-rejected would): {}",
-            complaints.join("; ")
+            why.join("; ")
         )));
+    }
+    if let Some(nearness) = nearness.filter(|_| !args.quiet) {
+        eprintln!("{nearness}");
     }
     write_table(path, &outcome.table).map_err(|error| Failure::Other(error.into()))?;
     println!("{}  {}", outcome.table.digest(), path.display());
