@@ -305,8 +305,7 @@ mod tests {
             radius,
             ..job(steps)
         };
-        // One of each kind of recipe, and stops in each phase, on a border of phases, and right
-        // before and in the measuring.
+        // One of each kind of recipe, stopped in each phase and on a border of phases.
         for (job, stops) in [
             (of("blue", 15, 40), vec![1, 19, 20, 31]),
             (of("spaced", 15, 30), vec![1, 2, 11, 16, 29]),
@@ -314,28 +313,42 @@ mod tests {
             (of("step", 12, 12), vec![3, 11]),
             (of("single-peak", 12, 20), vec![4, 6, 17]),
         ] {
-            let whole = forge(&job, &()).expect("a good job");
-            let optimizing = stops.into_iter().map(|at| (Stage::Optimizing, at));
-            for (stage, after) in optimizing.chain([(Stage::Measuring, 1)]) {
-                let stopper = Stopper::new(stage, after);
+            // Measuring tells nothing new, so it is stopped.
+            let optimized = |from: Option<Checkpoint>| {
+                let stopper = Stopper::new(Stage::Measuring, 0);
+                let outcome = work(&job, from, &stopper).expect("a good job");
+                (
+                    outcome.table.digest(),
+                    stopper.kept.into_inner().expect("no panic"),
+                )
+            };
+            let whole = optimized(None);
+            for after in stops {
+                let stopper = Stopper::new(Stage::Optimizing, after);
                 let stopped = forge(&job, &stopper).expect("a good job");
                 assert!(stopped.interrupted);
                 let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
-                assert_eq!(kept.is_optimized(), stage == Stage::Measuring);
-                if stage == Stage::Optimizing {
-                    assert_eq!(kept.steps(), after);
-                }
+                assert_eq!((kept.steps(), kept.is_optimized()), (after, false));
                 kept.is_of(&job).expect("its own");
-                let found = resume(&job, kept, &()).expect("its own");
-                assert_eq!(
-                    found.table.digest(),
-                    whole.table.digest(),
-                    "{} {stage:?} {after}",
-                    job.profile
-                );
-                assert_eq!(found, whole);
+                assert_eq!(optimized(Some(kept)), whole, "{} {after}", job.profile);
             }
         }
+    }
+
+    #[test]
+    fn measuring_that_was_stopped_is_done_again_without_optimizing() {
+        let whole = forge(&job(9), &()).expect("a good job");
+        let stopper = Stopper::new(Stage::Measuring, 1);
+        assert!(forge(&job(9), &stopper).expect("a good job").interrupted);
+        let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
+        assert!(kept.is_optimized());
+        let observer = Observer {
+            stop_at: (Stage::Measuring, u32::MAX),
+            told: Mutex::default(),
+        };
+        assert_eq!(resume(&job(9), kept, &observer).expect("its own"), whole);
+        let told = observer.told.into_inner().expect("no panic");
+        assert_eq!(told[0].step, 9);
     }
 
     #[test]
