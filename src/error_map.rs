@@ -64,6 +64,12 @@ pub const fn http(kind: Kind) -> Problem {
     }
 }
 
+/// The problem type of a kind of error.
+#[must_use]
+pub fn urn(kind: Kind) -> String {
+    format!("urn:strew:problem:{}", http(kind).slug)
+}
+
 /// What a kind of error is in gRPC.
 #[must_use]
 pub const fn grpc(kind: Kind) -> Code {

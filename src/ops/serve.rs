@@ -117,11 +117,12 @@ impl App {
     /// Both doors, health, and one fallback for all.
     async fn router(&self, readiness: Readiness) -> Result<(Router, grpc::Health), ServeError> {
         let (grpc, grpc_health) = grpc::routes(self.service.clone()).await?;
-        let router = rest::routes(self.service.clone())
-            .merge(health::routes(readiness, self.service.clone()))
-            .method_not_allowed_fallback(rest::wrong_method)
+        let mut endpoints = rest::endpoints(&self.service);
+        endpoints.extend(health::endpoints(readiness, self.service.clone()));
+        let rest::Door { router, paths } = rest::Door::new(endpoints);
+        let router = router
             .merge(grpc.into_axum_router().reset_fallback())
-            .fallback(nothing_here);
+            .fallback(move |request| nothing_here(request, paths));
         Ok((router, grpc_health))
     }
 
@@ -148,11 +149,11 @@ impl App {
 }
 
 /// Where no door is: each kind of client hears it in its own language.
-async fn nothing_here(request: Request) -> Response {
+async fn nothing_here(request: Request, paths: String) -> Response {
     if is_grpc(request.headers()) {
         grpc::unimplemented().map(Body::new)
     } else {
-        rest::not_found(&request)
+        rest::not_found(&request, &paths)
     }
 }
 

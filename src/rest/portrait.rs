@@ -6,15 +6,108 @@ use axum::{
     body::Body,
     extract::{Path, State},
     response::Response,
+    routing,
 };
-use http::{HeaderValue, Uri, header};
+use http::{HeaderValue, Method, Uri, header};
 use serde::Serialize;
+use serde_json::{Value, json};
 
-use super::profiles::Profile;
-use crate::service::{Entry, Error, Portrait, Service, query::parse_pairs};
+use super::{
+    api::{self, Endpoint, Operation, schemas},
+    profiles::{self, Profile},
+};
+use crate::service::{
+    Entry, Error, Kind, Portrait, Service,
+    query::{Parameter, Shape, parse_pairs},
+};
+
+/// The path of the curves.
+pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
+    let numbers = |most: u32| {
+        let number = json!({ "type": "number" });
+        let row = json!({ "type": "array", "items": number, "minItems": most, "maxItems": most });
+        schemas::object(json!({
+            "columns": { "type": "array", "items": { "type": "string" } },
+            "values": { "type": "array", "items": row },
+        }))
+    };
+    let measured = json!({
+        "points": { "type": "integer" },
+        "radial": numbers(3),
+        "rdf": numbers(2),
+    });
+    let document = json!({
+        "table": profiles::schema(),
+        "measured": schemas::object(measured),
+    });
+    let operation = operation(
+        "getProfile",
+        "One noise profile with its curves",
+        "The table's provenance and figures; radial power, anisotropy and radial distribution of a \
+         window of the unbounded pattern.",
+        ("application/json", schemas::object(document)),
+        "'/v1/profiles/blue?alpha=sqrt(3)'",
+    );
+    Endpoint::new(
+        "/v1/profiles/{name}",
+        service,
+        vec![(operation, routing::get(get))],
+    )
+}
+
+/// The path of the picture.
+pub(super) fn picture(service: Arc<Service>) -> Endpoint {
+    let operation = operation(
+        "getSpectrum",
+        "A picture of one noise profile",
+        "Points, radial power, anisotropy and radial distribution.",
+        ("image/svg+xml", json!({ "type": "string" })),
+        "/v1/profiles/blue/spectrum.svg -o spectrum.svg",
+    );
+    Endpoint::new(
+        "/v1/profiles/{name}/spectrum.svg",
+        service,
+        vec![(operation, routing::get(svg))],
+    )
+}
+
+const NAME: &[Parameter] = &[Parameter {
+    name: "name",
+    about: "The noise profile. The list of profiles says what is loaded.",
+    allowed: "the name of a profile that is loaded",
+    shape: Shape::Text,
+    default: None,
+    example: "blue",
+}];
+
+fn operation(
+    id: &'static str,
+    summary: &'static str,
+    about: &'static str,
+    (content_type, schema): (&str, Value),
+    example: &str,
+) -> Operation {
+    Operation {
+        method: Method::GET,
+        id,
+        summary,
+        about,
+        path_parameters: NAME,
+        parameters: api::given(&[], &["alpha", "map"]),
+        body: None,
+        answers: vec![api::Answer {
+            status: 200,
+            about: summary,
+            headers: vec![],
+            contents: vec![(content_type.into(), schema)],
+        }],
+        problems: vec![Kind::Invalid, Kind::NoSuchPath],
+        example: example.into(),
+    }
+}
 
 /// The table of a profile with its measured curves.
-pub(super) async fn get(
+async fn get(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
     uri: Uri,
@@ -41,7 +134,7 @@ pub(super) async fn get(
 }
 
 /// The picture.
-pub(super) async fn svg(
+async fn svg(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
     uri: Uri,

@@ -39,7 +39,7 @@ impl<'a> Problem<'a> {
             _ => (None, None),
         };
         Self {
-            r#type: format!("urn:strew:problem:{}", mapped.slug),
+            r#type: error_map::urn(error.kind()),
             title: mapped.title,
             status: mapped.status.as_u16(),
             detail: error.to_string(),

@@ -8,6 +8,7 @@ mod formats;
 mod fresh;
 mod grpc;
 mod limits;
+mod openapi;
 mod raw;
 mod settings;
 mod streaming;

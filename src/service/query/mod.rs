@@ -4,6 +4,7 @@
 //! fault it finds, so that a client needs one round to learn them all. Text parameters, of an
 //! address or a command line, become [`Parameters`] first.
 
+mod parameters;
 mod text;
 
 use serde::Serialize;
@@ -15,6 +16,7 @@ use strew_core::{
 
 use super::{Catalog, Error, Fault, Key};
 
+pub use parameters::{PARAMETERS, Parameter, Shape};
 pub use text::{Parameters, parse_pairs, read_bbox};
 
 /// The profile of a query that names none.

@@ -6,18 +6,24 @@
 //! is inside the region on the very coordinates reported, and any partition of a region gives
 //! every point exactly once.
 
+mod attribute;
 mod blocks;
 mod count;
 mod id;
 pub(crate) mod kernel;
 mod margins;
+mod nearest;
 mod patch;
 mod placement;
 mod plan;
+mod rank;
 mod region;
+mod scan;
 mod seed;
 mod spacing;
+mod stretch;
 mod template;
+mod variants;
 mod warp;
 
 use alloc::{sync::Arc, vec::Vec};
@@ -29,14 +35,20 @@ use crate::{
 };
 use warp::Shears;
 
+pub use attribute::{
+    Attribute, AttributeError, Attributes, BoundAttributes, Column, ScaleRange, UniformNumber,
+};
 pub use blocks::{Blocks, Tile};
 pub use id::{PointId, PointIdError};
 pub use kernel::{Backend, F32, F64, Format, Points};
+pub use nearest::{Clearance, FindError, Finder, Neighbor};
 pub use placement::Placement;
 pub use plan::{Plan, PlanError};
+pub use rank::{rank, side_for};
 pub use region::{Region, RegionError};
 pub use seed::Seed;
 pub use spacing::{Spacing, SpacingError};
+pub use variants::{Variants, VariantsError};
 pub use warp::{Warp, WarpError};
 
 /// Lattice coordinates of a region stay within ±2⁵². There an `f64` can still tell lattice points
