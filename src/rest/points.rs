@@ -9,6 +9,8 @@ use strew_core::ALGORITHM_VERSION;
 
 use super::{
     api::{self, Endpoint, Operation, schemas},
+    coding,
+    freshness::Freshness,
     negotiate::{self, Chosen},
 };
 use crate::service::{
@@ -23,7 +25,7 @@ const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let optional = [
-        "density", "spacing", "profile", "alpha", "map", "seed", "warp", "format",
+        "density", "spacing", "profile", "alpha", "map", "seed", "warp", "table", "format",
     ];
     let operation = Operation {
         method: Method::GET,
@@ -34,15 +36,19 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         path_parameters: &[],
         parameters: api::given(&["bbox"], &optional),
         body: None,
-        answers: vec![api::Answer {
-            status: 200,
-            about: "The points.",
-            headers: HEADERS.into(),
-            contents: contents(),
-        }],
+        answers: vec![
+            api::Answer {
+                status: 200,
+                about: "The points.",
+                headers: HEADERS.into(),
+                contents: contents(),
+            },
+            api::Answer::unchanged(),
+        ],
         problems: vec![
             Kind::Invalid,
             Kind::NotAcceptable,
+            Kind::OtherTable,
             Kind::TooManyPoints,
             Kind::Busy,
             Kind::ShuttingDown,
@@ -81,6 +87,7 @@ pub(super) fn contents() -> Vec<(String, Value)> {
 /// Answers a query.
 async fn get(
     State(service): State<Arc<Service>>,
+    method: Method,
     uri: Uri,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
@@ -90,17 +97,34 @@ async fn get(
         Some(encoding) => Chosen::named(encoding),
         None => negotiate::accepted(&headers)?,
     };
-    let permit = service.streams().admit()?;
+    let entry = service.catalog().entry(&query.key());
+    let digest = entry.as_ref().map(|entry| &entry.digest);
+    let made_of = (query.resolved(), digest, service.limits().max_points);
+    let freshness = Freshness::of(&uri, &headers, chosen.content_type, &made_of)
+        .pinned(parameters.table.is_some());
+    if let Some(unchanged) = freshness.unchanged(&headers) {
+        return Ok(unchanged);
+    }
+    let is_head = method == Method::HEAD;
+    let permit = (!is_head).then(|| service.streams().admit()).transpose()?;
     let planned = service.plan(query).await?;
+    if let Some(unwanted) = freshness.unwanted(&headers) {
+        return Ok(unwanted);
+    }
     let mut response_headers = describe(&planned, chosen)?;
-    let answer = Answer::new(&planned, chosen.encoding, service.limits().block_bytes);
-    let body = match Answer::size(&planned, chosen.encoding) {
+    let size = Answer::size(&planned, chosen.encoding);
+    let body = match permit {
         // Without a body there is nothing to stream, and HTTP wants to hear so at once.
-        Some(0) => Body::empty(),
-        _ => Body::from_stream(service.stream(permit, answer)),
+        _ if size == Some(0) => Body::empty(),
+        None => coding::unknown_length(),
+        Some(permit) => {
+            let answer = Answer::new(&planned, chosen.encoding, service.limits().block_bytes);
+            Body::from_stream(service.stream(permit, answer))
+        }
     };
     let mut response = Response::new(body);
     std::mem::swap(response.headers_mut(), &mut response_headers);
+    freshness.stamp(&mut response);
     Ok(response)
 }
 
