@@ -14,7 +14,7 @@ use super::{
     negotiate::{self, Chosen},
 };
 use crate::service::{
-    Answer, Encoding, Error, Kind, Planned, Service, encode::write_number, query::parse_pairs,
+    Answer, Error, Kind, Planned, Service, encode::write_number, query::parse_pairs,
 };
 
 const COUNT: HeaderName = HeaderName::from_static("strew-count");
@@ -26,6 +26,7 @@ const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let optional = [
         "density", "spacing", "profile", "alpha", "map", "seed", "warp", "table", "format",
+        "decimals",
     ];
     let operation = Operation {
         method: Method::GET,
@@ -92,11 +93,12 @@ async fn get(
     headers: HeaderMap,
 ) -> Result<Response, Error> {
     let (parameters, faults) = parse_pairs(uri.query().unwrap_or_default());
-    let (query, named) = parameters.check(service.catalog(), faults)?;
-    let chosen = match named {
+    let (query, options) = parameters.check(service.catalog(), faults)?;
+    let chosen = match options.encoding {
         Some(encoding) => Chosen::named(encoding),
         None => negotiate::accepted(&headers)?,
     };
+    let output = options.output(chosen.encoding)?;
     let entry = service.catalog().entry(&query.key());
     let digest = entry.as_ref().map(|entry| &entry.digest);
     let made_of = (query.resolved(), digest, service.limits().max_points);
@@ -111,16 +113,13 @@ async fn get(
     if let Some(unwanted) = freshness.unwanted(&headers) {
         return Ok(unwanted);
     }
-    let mut response_headers = describe(&planned, chosen)?;
-    let size = Answer::size(&planned, chosen.encoding);
+    let answer = Answer::new(&planned, &output, service.limits().block_bytes)?;
+    let mut response_headers = describe(&planned, &answer, chosen)?;
     let body = match permit {
         // Without a body there is nothing to stream, and HTTP wants to hear so at once.
-        _ if size == Some(0) => Body::empty(),
+        _ if answer.size() == Some(0) => Body::empty(),
         None => coding::unknown_length(),
-        Some(permit) => {
-            let answer = Answer::new(&planned, chosen.encoding, service.limits().block_bytes);
-            Body::from_stream(service.stream(permit, answer))
-        }
+        Some(permit) => Body::from_stream(service.blocks(permit, answer)),
     };
     let mut response = Response::new(body);
     std::mem::swap(response.headers_mut(), &mut response_headers);
@@ -129,7 +128,7 @@ async fn get(
 }
 
 /// The headers of an answer.
-fn describe(planned: &Planned, chosen: Chosen) -> Result<HeaderMap, Error> {
+fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<HeaderMap, Error> {
     let text = |text: &str| {
         HeaderValue::from_str(text).map_err(|_| Error::Internal("a header is not text"))
     };
@@ -144,15 +143,14 @@ fn describe(planned: &Planned, chosen: Chosen) -> Result<HeaderMap, Error> {
     headers.insert(COUNT, count.into());
     headers.insert(TABLE, text(&planned.entry.digest)?);
     headers.insert(ALGORITHM, ALGORITHM_VERSION.into());
-    if chosen.encoding == Encoding::F32 {
-        let [x, y] = planned.plan.origin();
+    if let Some([x, y]) = answer.origin() {
         let mut origin = vec![];
         write_number(x, &mut origin);
         origin.push(b',');
         write_number(y, &mut origin);
         headers.insert(ORIGIN, text(&String::from_utf8_lossy(&origin))?);
     }
-    if let Some(size) = Answer::size(planned, chosen.encoding) {
+    if let Some(size) = answer.size() {
         headers.insert(header::CONTENT_LENGTH, size.into());
     }
     Ok(headers)

@@ -7,7 +7,10 @@ use super::{
     AMOUNT, BOX, DEFAULT_ALPHA, DEFAULT_PROFILE, WARP,
     pin::{self, DIGEST},
 };
-use crate::service::Encoding;
+use crate::service::{
+    Encoding,
+    encode::{DECIMALS, MOST_DECIMALS},
+};
 
 /// A parameter of an address.
 #[derive(Clone, Copy, Debug)]
@@ -160,6 +163,18 @@ pub const PARAMETERS: &[Parameter] = &[
         shape: Shape::OneOf(formats),
         default: Some("what Accept likes best, else json"),
         example: "csv",
+    },
+    Parameter {
+        name: "decimals",
+        about: "Decimals of all numbers in text formats, rounded to the nearest, ties to even; a \
+                zero has no sign.",
+        allowed: DECIMALS,
+        shape: Shape::Integer {
+            min: 0,
+            max: MOST_DECIMALS as u64,
+        },
+        default: Some("the shortest digits that read back"),
+        example: "3",
     },
 ];
 

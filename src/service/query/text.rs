@@ -9,7 +9,10 @@ use super::{
     parameters::{PARAMETERS, SEED, names},
     pin,
 };
-use crate::service::{Catalog, Encoding, Entry, Error, Fault};
+use crate::service::{
+    Catalog, Encoding, Entry, Error, Fault,
+    encode::{DECIMALS, MOST_DECIMALS, Options},
+};
 
 /// No more faults of an address are reported: an error is to be read.
 const MOST_FAULTS: usize = 16;
@@ -37,6 +40,8 @@ pub struct Parameters {
     pub table: Option<String>,
     /// The name of the format.
     pub format: Option<String>,
+    /// Decimals of numbers in text formats.
+    pub decimals: Option<String>,
 }
 
 /// Parameters with the faults found so far.
@@ -96,6 +101,7 @@ impl Parameters {
             "warp" => &mut self.warp,
             "table" => &mut self.table,
             "format" => &mut self.format,
+            "decimals" => &mut self.decimals,
             _ => return None,
         })
     }
@@ -143,7 +149,8 @@ impl Parameters {
         }
     }
 
-    /// Checks everything; `faults` are those found before. Gives the format, too, if one is named.
+    /// Checks everything; `faults` are those found before. Gives the options of the output,
+    /// too.
     ///
     /// # Errors
     /// [`Error::Invalid`] with every fault.
@@ -151,7 +158,7 @@ impl Parameters {
         &self,
         catalog: &Catalog,
         mut faults: Vec<Fault>,
-    ) -> Result<(Query, Option<Encoding>), Error> {
+    ) -> Result<(Query, Options), Error> {
         let mut draft = Draft {
             profile: self.profile.as_deref(),
             alpha: self.alpha.as_deref(),
@@ -165,10 +172,11 @@ impl Parameters {
         read(amount("spacing", self.spacing.as_deref()).map(|spacing| draft.spacing = spacing));
         read(seed(self.seed.as_deref()).map(|seed| draft.seed = seed));
         read(warp(self.warp.as_deref()).map(|warp| draft.warp = warp));
-        let mut encoding = None;
-        read(format(self.format.as_deref()).map(|format| encoding = format));
+        let mut options = Options::default();
+        read(format(self.format.as_deref()).map(|format| options.encoding = format));
+        read(decimals(self.decimals.as_deref()).map(|decimals| options.decimals = decimals));
         let query = draft.check(catalog, faults)?;
-        Ok((query, encoding))
+        Ok((query, options))
     }
 }
 
@@ -221,6 +229,17 @@ fn format(text: Option<&str>) -> Result<Option<Encoding>, Fault> {
         Encoding::from_name(text).ok_or_else(|| {
             let allowed = Encoding::ALL.map(Encoding::name).join(", ");
             Fault::new("format", text, "there is no such format", allowed)
+        })
+    })
+    .transpose()
+}
+
+fn decimals(text: Option<&str>) -> Result<Option<u8>, Fault> {
+    text.map(|text| {
+        let parsed = text.parse().ok().filter(|n| *n <= MOST_DECIMALS);
+        parsed.ok_or_else(|| {
+            let detail = "it is not such an integer";
+            Fault::new("decimals", text, detail, DECIMALS)
         })
     })
     .transpose()
