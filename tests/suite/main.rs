@@ -5,6 +5,7 @@ mod clients;
 mod coding;
 mod daemon;
 mod drain;
+mod forge;
 mod formats;
 mod fresh;
 mod grpc;
