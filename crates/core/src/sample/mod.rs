@@ -9,6 +9,7 @@
 mod attribute;
 mod blocks;
 mod count;
+mod distance;
 mod id;
 pub(crate) mod kernel;
 mod margins;
@@ -39,6 +40,7 @@ pub use attribute::{
     Attribute, AttributeError, Attributes, BoundAttributes, Column, ScaleRange, UniformNumber,
 };
 pub use blocks::{Blocks, Tile};
+pub use distance::{DistanceError, LeastDistance};
 pub use id::{PointId, PointIdError};
 pub use kernel::{Backend, F32, F64, Format, Points};
 pub use nearest::{Clearance, FindError, Finder, Neighbor};

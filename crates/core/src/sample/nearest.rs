@@ -177,6 +177,7 @@ impl Finder {
     pub fn clearance(&self, distance: f64) -> Result<Clearance, FindError> {
         check_radius(distance)?;
         self.check_number(distance, 1.0, Clearance::MAX_CANDIDATES)?;
+        self.check_work(distance, 4 * Clearance::MAX_CANDIDATES)?;
         Ok(Clearance {
             finder: self.clone(),
             distance,
@@ -195,7 +196,7 @@ impl Finder {
         check_radius(radius)?;
         // Counts come close to their means in discs of many points.
         self.check_number(radius, self.kept(), limit.saturating_mul(2).max(100))?;
-        self.check_number(radius, 1.0, 2 * Self::MAX_CANDIDATES)?;
+        self.check_work(radius, 2 * Self::MAX_CANDIDATES)?;
         self.check_reach(at, radius)?;
         let squared = radius * radius;
         let (mut found, mut inside) = (Vec::new(), 0usize);
@@ -249,6 +250,20 @@ impl Finder {
             }
         }
         Ok(())
+    }
+
+    /// Refuses a radius that takes looking at more than `limit` points, kept or not, or at as many
+    /// lattice lines as only α next to 1 or 2 can need.
+    fn check_work(&self, radius: f64, limit: usize) -> Result<(), FindError> {
+        const MAX_LINES: f64 = 1e7;
+        let stretched = radius * self.stretch.factor;
+        self.check_number(stretched, 1.0, limit)?;
+        let about = stretched / self.frame.world(fixed(1));
+        if about <= MAX_LINES {
+            Ok(())
+        } else {
+            Err(FindError::TooMany { about, limit })
+        }
     }
 
     /// Refuses a radius within which lie more than `limit` of a part `kept` of all points.
