@@ -30,6 +30,16 @@ pub const fn http(kind: Kind) -> Problem {
             "too-many-points",
             "The answer would have too many points",
         ),
+        Kind::TooManyRows => (
+            StatusCode::PAYLOAD_TOO_LARGE,
+            "too-many-rows",
+            "Counting the points would take too long",
+        ),
+        Kind::OtherTable => (
+            StatusCode::CONFLICT,
+            "other-table",
+            "Another table would answer",
+        ),
         Kind::NotAcceptable => (
             StatusCode::NOT_ACCEPTABLE,
             "not-acceptable",
@@ -75,7 +85,8 @@ pub fn urn(kind: Kind) -> String {
 pub const fn grpc(kind: Kind) -> Code {
     match kind {
         Kind::Invalid | Kind::NotAcceptable => Code::InvalidArgument,
-        Kind::TooManyPoints | Kind::Busy => Code::ResourceExhausted,
+        Kind::TooManyPoints | Kind::TooManyRows | Kind::Busy => Code::ResourceExhausted,
+        Kind::OtherTable => Code::FailedPrecondition,
         Kind::NoSuchPath | Kind::NoSuchMethod => Code::Unimplemented,
         Kind::ShuttingDown => Code::Unavailable,
         Kind::Internal => Code::Internal,

@@ -178,7 +178,7 @@ fn square([min_x, min_y, max_x, max_y]: [f64; 4]) -> anyhow::Result<([f64; 2], f
 fn of_query(args: &Args) -> Result<Report, Failure> {
     let config = args.query.settings()?;
     let (planned, _) = args.query.planned(&config, &Looks::default())?;
-    let (corner, side) = square(planned.query.bbox()).map_err(Failure::Usage)?;
+    let (corner, side) = square(planned.query.region.bbox()).map_err(Failure::Usage)?;
     if planned.count() > MAX_POINTS || planned.count() < 100 {
         let problem = anyhow!(
             "--bbox holds {} points; from 100 to {MAX_POINTS} are measured",
@@ -187,9 +187,10 @@ fn of_query(args: &Args) -> Result<Report, Failure> {
         return Err(Failure::Usage(problem));
     }
     let mut points = vec![[0.0; 2]; planned.count() as usize];
-    planned.plan.blocks_f64().fill(&mut points);
+    let set = &planned.sets[0];
+    set.plan.blocks_f64().fill(&mut points);
     let name = described(&planned);
-    Ok(window(corner, side, planned.query.density, points, name).measured(args.nu_max))
+    Ok(window(corner, side, set.density, points, name).measured(args.nu_max))
 }
 
 fn window(

@@ -6,7 +6,7 @@ use super::{Failure, config};
 use crate::{
     config::Config,
     service::{
-        Catalog, Planned,
+        Catalog, Planned, PlannedSet, Set,
         catalog::CatalogError,
         encode::Options,
         query::{Parameters, read_bbox},
@@ -40,6 +40,9 @@ pub(super) struct Query {
     /// off, on, or the strength of the warp, 0 to 2 [default: off for seed 0, else on].
     #[arg(long, allow_hyphen_values = true)]
     warp: Option<String>,
+    /// The digest of the table that has to make them.
+    #[arg(long, value_name = "DIGEST")]
+    table: Option<String>,
     #[command(flatten)]
     settings: config::Args,
 }
@@ -70,21 +73,25 @@ impl Query {
         let catalog = config
             .catalog()
             .map_err(|error| Failure::Usage(error.into()))?;
-        let parameters = Parameters {
-            bbox: self.bbox.clone(),
-            density: self.density.clone(),
-            spacing: self.spacing.clone(),
-            profile: self.profile.clone(),
-            alpha: self.alpha.clone(),
-            map: self.map.clone(),
-            seed: self.seed.clone(),
-            warp: self.warp.clone(),
-            format: looks.format.clone(),
-            decimals: looks.decimals.clone(),
-        };
+        let parameters = Parameters::of([
+            ("bbox", self.bbox.clone()),
+            ("density", self.density.clone()),
+            ("spacing", self.spacing.clone()),
+            ("profile", self.profile.clone()),
+            ("alpha", self.alpha.clone()),
+            ("map", self.map.clone()),
+            ("seed", self.seed.clone()),
+            ("warp", self.warp.clone()),
+            ("table", self.table.clone()),
+            ("format", looks.format.clone()),
+            ("decimals", looks.decimals.clone()),
+        ]);
         let usage = |error| Failure::Usage(anyhow::Error::new(error));
-        let (query, options) = parameters.check(&catalog, vec![]).map_err(usage)?;
-        let planned = Planned::from_catalog(&catalog, query).map_err(usage)?;
+        let limits = &config.limits;
+        let (query, options) = parameters
+            .check(&catalog, limits.max_vertices, None, vec![])
+            .map_err(usage)?;
+        let planned = Planned::from_catalog(&catalog, query, limits).map_err(usage)?;
         Ok((planned, options))
     }
 
@@ -97,16 +104,25 @@ impl Query {
 
 /// What a planned query asks for, in a few words.
 pub(super) fn described(planned: &Planned) -> String {
-    let query = &planned.query;
-    format!(
-        "profile {}, alpha {}, map {}, spacing {}, seed {}, warp {}",
-        query.profile,
-        query.alpha,
-        query.size,
-        query.spacing.get(),
-        query.seed.0,
-        query.warp.strength()
-    )
+    let sets = planned.query.sets.iter().zip(&planned.sets);
+    let one = |(set, planned): (&Set, &PlannedSet)| {
+        let name = if set.name.is_empty() {
+            String::new()
+        } else {
+            format!("{}: ", set.name)
+        };
+        format!(
+            "{name}profile {}, alpha {}, map {}, spacing {}, seed {}, warp {}, table {}",
+            set.key.profile,
+            set.key.alpha,
+            set.key.size,
+            planned.spacing.get(),
+            set.seed.0,
+            set.warp.strength(),
+            planned.entry.digest
+        )
+    };
+    sets.map(one).collect::<Vec<_>>().join("; ")
 }
 
 impl Config {

@@ -84,10 +84,9 @@ fn announce(planned: &Planned, answer: &Answer) {
         .size()
         .map_or(String::new(), |size| format!(", {size} bytes"));
     eprintln!(
-        "{} points{size}: {}, table {}",
+        "{} points{size}: {}",
         planned.count(),
-        described(planned),
-        planned.entry.digest
+        described(planned)
     );
     if let Some(origin) = answer.origin() {
         let [x, y] = origin.map(|v| {

@@ -6,6 +6,7 @@ use super::{Config, ConfigError};
 pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     let Config {
         server,
+        http,
         limits,
         workers,
         shutdown,
@@ -44,7 +45,15 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         second,
         hour,
     );
+    within(
+        "http.cache_seconds",
+        f64::from(http.cache_seconds),
+        0.0,
+        365.0 * day,
+    );
     within("limits.max_points", limits.max_points as f64, 1.0, 1e15);
+    within("limits.max_rows", limits.max_rows as f64, 1.0, 1e12);
+    within("limits.max_vertices", limits.max_vertices as f64, 3.0, 1e8);
     within("limits.max_streams", limits.max_streams as f64, 1.0, 1e6);
     // gRPC clients refuse messages above 4 MiB, and ours stay below 1 MiB.
     within(

@@ -6,14 +6,40 @@
 use std::sync::Arc;
 
 use moka::future::Cache;
-use strew_core::Sampler;
+use strew_core::{Sampler, sample::LeastDistance};
 
 use super::{Entry, Error, Key, Workers};
 
 /// The cache.
 #[derive(Clone)]
 pub(super) struct Samplers {
-    ready: Cache<Key, Arc<Sampler>>,
+    ready: Cache<Key, Ready>,
+}
+
+/// A table ready to answer.
+#[derive(Clone, Debug)]
+pub struct Ready {
+    /// The table.
+    pub entry: Arc<Entry>,
+    /// Its sampler.
+    pub sampler: Arc<Sampler>,
+    /// What distance its points keep.
+    pub least: LeastDistance,
+}
+
+impl Ready {
+    /// Reads a table: microseconds to milliseconds, by its size.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if it cannot be read any more.
+    pub fn load(entry: &Arc<Entry>) -> Result<Self, Error> {
+        let sampler = Arc::new(entry.sampler()?);
+        Ok(Self {
+            entry: entry.clone(),
+            least: sampler.least_distance(),
+            sampler,
+        })
+    }
 }
 
 impl std::fmt::Debug for Samplers {
@@ -27,8 +53,8 @@ impl std::fmt::Debug for Samplers {
 impl Samplers {
     /// An empty cache that holds at most this many bytes.
     pub(super) fn new(bytes: u64) -> Self {
-        let weight = |_: &Key, sampler: &Arc<Sampler>| {
-            u32::try_from(sampler.memory_bytes()).unwrap_or(u32::MAX)
+        let weight = |_: &Key, ready: &Ready| {
+            u32::try_from(ready.sampler.memory_bytes()).unwrap_or(u32::MAX)
         };
         let ready = Cache::builder()
             .name("samplers")
@@ -38,16 +64,15 @@ impl Samplers {
         Self { ready }
     }
 
-    /// The sampler of a table.
+    /// A table, ready.
     pub(super) async fn get(
         &self,
         entry: &Arc<Entry>,
         workers: &Workers,
-    ) -> Result<Arc<Sampler>, Error> {
+    ) -> Result<Ready, Error> {
         let build = async {
             let entry = entry.clone();
-            let built = workers.run(move || entry.sampler()).await?;
-            Ok::<_, Error>(Arc::new(built?))
+            workers.run(move || Ready::load(&entry)).await?
         };
         self.ready
             .try_get_with_by_ref(&entry.key, build)

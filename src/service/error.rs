@@ -85,6 +85,27 @@ pub enum Error {
         /// The limit.
         limit: u64,
     },
+    /// Counting the region's points would take too long.
+    #[error(
+        "the region spans about {rows} lattice rows that have to be counted one by one; this server \
+         counts at most {limit}: ask for a smaller region, a wider spacing, or a box with warp=off"
+    )]
+    TooManyRows {
+        /// About how many.
+        rows: u128,
+        /// The limit.
+        limit: u64,
+    },
+    /// Another table would answer than the one that the query pins.
+    #[error(
+        "the query pins the table {pinned}, but {loaded} would answer: without `table` it does"
+    )]
+    OtherTable {
+        /// The digest in the query.
+        pinned: String,
+        /// The digest of the table that is loaded.
+        loaded: String,
+    },
     /// None of the formats the client accepts is made here.
     #[error("`Accept: {accept}` has no format that is made here; available: {available}")]
     NotAcceptable {
@@ -137,6 +158,10 @@ pub enum Kind {
     Invalid,
     /// [`Error::TooManyPoints`].
     TooManyPoints,
+    /// [`Error::TooManyRows`].
+    TooManyRows,
+    /// [`Error::OtherTable`].
+    OtherTable,
     /// [`Error::NotAcceptable`].
     NotAcceptable,
     /// [`Error::NoSuchPath`].
@@ -153,9 +178,11 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Invalid,
         Self::TooManyPoints,
+        Self::TooManyRows,
+        Self::OtherTable,
         Self::NotAcceptable,
         Self::NoSuchPath,
         Self::NoSuchMethod,
@@ -172,6 +199,8 @@ impl Error {
         match self {
             Self::Invalid(_) => Kind::Invalid,
             Self::TooManyPoints { .. } => Kind::TooManyPoints,
+            Self::TooManyRows { .. } => Kind::TooManyRows,
+            Self::OtherTable { .. } => Kind::OtherTable,
             Self::NotAcceptable { .. } => Kind::NotAcceptable,
             Self::NoSuchPath { .. } => Kind::NoSuchPath,
             Self::NoSuchMethod { .. } => Kind::NoSuchMethod,

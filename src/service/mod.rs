@@ -5,10 +5,12 @@
 //! [`workers`] and hands out a [`stream`] of blocks that an encoder makes one at a time, on demand.
 //! Encoders ([`encode`]) are plain iterators: a command line can run them without any of the rest.
 
+mod attributes;
 pub mod cache;
 pub mod catalog;
 pub mod encode;
 pub mod error;
+mod planned;
 mod portrait;
 pub mod query;
 pub mod stream;
@@ -19,13 +21,14 @@ use std::sync::Arc;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
 use serde::{Deserialize, Serialize};
-use strew_core::{Plan, Sampler};
 
 pub use catalog::{Catalog, Entry, Key};
 pub use encode::{Answer, Encoding, Output};
+pub use cache::Ready;
 pub use error::{Error, Fault, Kind};
+pub use planned::{Placed, Planned, PlannedSet};
 pub use portrait::Portrait;
-pub use query::{Draft, Query};
+pub use query::{Draft, Query, Set};
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::Workers;
 
@@ -39,6 +42,12 @@ pub struct Limits {
     /// The most points of one answer. Keeps a slip of a zero from filling a disk; the refusal says
     /// the exact count.
     pub max_points: u64,
+    /// The most lattice rows that are counted one by one, where a region is not a box or is warped
+    /// (about three for each mean spacing of its height; for a warped box also of its width). They
+    /// take a few microseconds each before the first point.
+    pub max_rows: u64,
+    /// The most vertices that the polygons of a query have in all: bounds its memory.
+    pub max_vertices: usize,
     /// The most answers under way at once. Bounds memory: an answer holds 1 to 2 MB,
     /// two blocks and the rows it is made of.
     pub max_streams: usize,
@@ -46,47 +55,6 @@ pub struct Limits {
     pub block_bytes: usize,
     /// The most memory for samplers that are ready to answer, in bytes.
     pub cache_bytes: u64,
-}
-
-/// A checked query with its table and its plan: the exact count is known, no point is made yet.
-#[derive(Clone, Debug)]
-pub struct Planned {
-    /// The query.
-    pub query: Query,
-    /// The table that answers.
-    pub entry: Arc<Entry>,
-    /// The plan.
-    pub plan: Plan,
-}
-
-impl Planned {
-    /// Plans a query on a sampler of its table.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] if the box reaches farther than points can be told apart.
-    pub fn new(query: Query, entry: Arc<Entry>, sampler: &Arc<Sampler>) -> Result<Self, Error> {
-        let plan = sampler
-            .plan(query.placement(), query.region)
-            .map_err(|error| query.too_far(&error))?;
-        Ok(Self { query, entry, plan })
-    }
-
-    /// Plans a query at once, in the calling thread: what a command line needs.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new), or [`Error::Internal`] if the table cannot be read any more.
-    pub fn from_catalog(catalog: &Catalog, query: Query) -> Result<Self, Error> {
-        let entry = catalog.entry(&query.key()).ok_or_else(Error::lost_table)?;
-        let sampler = Arc::new(entry.sampler()?);
-        Self::new(query, entry, &sampler)
-    }
-
-    /// How many points the answer has. Regions can hold more than 64 bits count, so this is wider
-    /// than any limit.
-    #[must_use]
-    pub const fn count(&self) -> u128 {
-        self.plan.count()
-    }
 }
 
 /// Everything a front end needs. Cheap to share behind an [`Arc`].
@@ -126,32 +94,65 @@ impl Service {
         &self.limits
     }
 
+    /// The threads that make points.
+    #[must_use]
+    pub const fn workers(&self) -> &Workers {
+        &self.workers
+    }
+
     /// The streams under way.
     #[must_use]
     pub const fn streams(&self) -> &Arc<Streams> {
         &self.streams
     }
 
-    /// Plans a query on the workers.
+    /// The tables of a query's sets, in their order.
     ///
     /// # Errors
-    /// [`Error::TooManyPoints`] over the limit, [`Error::Invalid`] for a box out of reach.
+    /// [`Error::Internal`] if one is not loaded any more.
+    pub fn entries(&self, query: &Query) -> Result<Vec<Arc<Entry>>, Error> {
+        let entry = |set: &Set| self.catalog.entry(&set.key).ok_or_else(Error::lost_table);
+        query.sets.iter().map(entry).collect()
+    }
+
+    /// Plans a query on the workers, whatever it counts.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a region out of reach or an amount that cannot be had,
+    /// [`Error::TooManyRows`] if counting would take too long.
+    pub async fn count(&self, query: Query) -> Result<Planned, Error> {
+        let mut tables = vec![];
+        for entry in self.entries(&query)? {
+            tables.push(self.samplers.get(&entry, &self.workers).await?);
+        }
+        let limits = self.limits.clone();
+        let plan = move || Planned::new(query, &tables, &limits);
+        let planned = self.workers.run(plan).await??;
+        tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
+        Ok(planned)
+    }
+
+    /// Plans a query that is to be answered with its points.
+    ///
+    /// # Errors
+    /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
     pub async fn plan(&self, query: Query) -> Result<Planned, Error> {
-        let entry = self
-            .catalog
-            .entry(&query.key())
-            .ok_or_else(Error::lost_table)?;
-        let sampler = self.samplers.get(&entry, &self.workers).await?;
-        let planned = self
-            .workers
-            .run(move || Planned::new(query, entry, &sampler))
-            .await??;
+        let planned = self.count(query).await?;
         let (count, limit) = (planned.count(), self.limits.max_points);
         if count > u128::from(limit) {
             return Err(Error::TooManyPoints { count, limit });
         }
-        tracing::debug!(count, table = %planned.entry.key, "planned");
         Ok(planned)
+    }
+
+    /// Lays a set into the world, to ask for single points.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for an amount that cannot be had.
+    pub async fn place(&self, set: Set) -> Result<Placed, Error> {
+        let entry = self.catalog.entry(&set.key).ok_or_else(Error::lost_table)?;
+        let ready = self.samplers.get(&entry, &self.workers).await?;
+        Placed::new(set, ready)
     }
 
     /// What the points of a table look like.

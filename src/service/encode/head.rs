@@ -10,8 +10,20 @@ use crate::service::{Entry, Planned, query::Resolved};
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Head {
     pub(super) query: QueryEcho,
-    pub(super) table: TableEcho,
+    #[serde(flatten)]
+    pub(super) tables: Tables,
     pub(super) count: u128,
+    /// The cursor of the points after these, if there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) next: Option<String>,
+}
+
+/// The table, or that of each layer.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Tables {
+    Table(TableEcho),
+    Tables(Vec<TableEcho>),
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -36,27 +48,39 @@ pub(super) struct TableEcho {
 
 impl Head {
     pub(super) fn new(planned: &Planned, output: &Output, count: u128) -> Self {
+        let mut echoes = planned.sets.iter().map(|set| TableEcho::new(&set.entry));
+        let tables = match echoes.next() {
+            Some(only) if !planned.query.is_layered => Tables::Table(only),
+            first => Tables::Tables(first.into_iter().chain(echoes).collect()),
+        };
+        Self {
+            query: QueryEcho {
+                resolved: planned.resolved(),
+                format: output.encoding.name(),
+                decimals: output.decimals,
+                relative_to: output.relative_to,
+            },
+            tables,
+            count,
+            next: planned.next().map(|token| token.to_string()),
+        }
+    }
+}
+
+impl TableEcho {
+    fn new(entry: &Entry) -> Self {
         let Entry {
             key,
             radius,
             digest,
             ..
-        } = &*planned.entry;
+        } = entry;
         Self {
-            query: QueryEcho {
-                resolved: planned.query.resolved(),
-                format: output.encoding.name(),
-                decimals: output.decimals,
-                relative_to: output.relative_to,
-            },
-            table: TableEcho {
-                profile: key.profile.as_ref().into(),
-                alpha: key.alpha.to_string(),
-                radius: *radius,
-                digest: digest.clone(),
-                algorithm: ALGORITHM_VERSION,
-            },
-            count,
+            profile: key.profile.as_ref().into(),
+            alpha: key.alpha.to_string(),
+            radius: *radius,
+            digest: digest.clone(),
+            algorithm: ALGORITHM_VERSION,
         }
     }
 }

@@ -79,18 +79,6 @@ pub struct Plain {
     pub is_f32: bool,
 }
 
-impl Planned {
-    /// The parts of the answer.
-    #[must_use]
-    pub fn parts(&self) -> Vec<Part> {
-        vec![Part {
-            plan: self.plan.clone(),
-            layer: None,
-            attributes: None,
-        }]
-    }
-}
-
 impl Answer {
     /// The answer to a planned query, in blocks of about `block_bytes`.
     ///
@@ -166,7 +154,8 @@ impl Answer {
             blocks,
             size,
             origin,
-            plain,
+            // A window's tiles are those of the whole.
+            plain: plain.filter(|plain| !plain.plan.is_window()),
         }
     }
 

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{
-    head::{Head, QueryEcho, TableEcho},
+    head::{Head, QueryEcho, Tables},
     members::{Members, write_json},
     rows::Row,
     text::TextFormat,
@@ -30,7 +30,10 @@ struct Last<'a> {
 struct Summary<'a> {
     count: u64,
     query: &'a QueryEcho,
-    table: &'a TableEcho,
+    #[serde(flatten)]
+    tables: &'a Tables,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    next: Option<&'a str>,
 }
 
 impl TextFormat for Ndjson {
@@ -46,7 +49,8 @@ impl TextFormat for Ndjson {
             summary: Summary {
                 count: points,
                 query: &self.head.query,
-                table: &self.head.table,
+                tables: &self.head.tables,
+                next: self.head.next.as_deref(),
             },
         };
         write_json(&last, out);

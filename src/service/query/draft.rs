@@ -170,6 +170,19 @@ impl Draft {
 }
 
 impl SetDraft {
+    /// Checks a set without a region.
+    ///
+    /// # Errors
+    /// As [`Draft::check`].
+    pub(super) fn check_alone(&self, catalog: &Catalog, mut faults: Faults) -> Result<Set, Error> {
+        let set = self.check(catalog, String::new(), &mut faults);
+        let (Some(set), true) = (set, faults.is_empty()) else {
+            return Err(faults.into_error());
+        };
+        self.table.hold(catalog, &set.key)?;
+        Ok(set)
+    }
+
     fn check(&self, catalog: &Catalog, path: String, faults: &mut Faults) -> Option<Set> {
         let seed = Seed(self.seed.unwrap_or(0));
         let amount = faults.take(self.amount.check(&path));

@@ -15,8 +15,8 @@ impl Faults {
     }
 
     pub(super) fn add(&mut self, fault: Fault) {
-        // Of several ways to say an amount, what is wrong with one is enough.
-        let same = |known: &Fault| known.field == fault.field || same_amount(known, &fault);
+        // Of several ways to say the same, what is wrong with one is enough.
+        let same = |known: &Fault| known.field == fault.field || same_matter(known, &fault);
         if !self.0.iter().any(same) && self.0.len() < MOST {
             self.0.push(fault);
         }
@@ -46,15 +46,16 @@ impl Faults {
     }
 }
 
-/// Whether two fields say how many points there are, of the same layer.
-fn same_amount(a: &Fault, b: &Fault) -> bool {
-    const AMOUNTS: [&str; 4] = ["density", "spacing", "min_distance", "count"];
-    let split = |field: &str| {
-        let (path, name) = field.rsplit_once('.').unwrap_or(("", field));
-        AMOUNTS.contains(&name).then(|| path.to_owned())
+/// Whether two fields are two ways to say how many points there are, or where, in the same layer.
+fn same_matter(a: &Fault, b: &Fault) -> bool {
+    const MATTERS: [&[&str]; 2] = [
+        &["density", "spacing", "min_distance", "count"],
+        &["region", "bbox", "circle", "polygon"],
+    ];
+    let split = |fault: &Fault| {
+        let (path, name) = fault.field.rsplit_once('.').unwrap_or(("", &fault.field));
+        let matter = MATTERS.iter().position(|names| names.contains(&name))?;
+        Some((path.to_owned(), matter))
     };
-    match (split(&a.field), split(&b.field)) {
-        (Some(a), Some(b)) => a == b,
-        _ => false,
-    }
+    split(a).is_some_and(|a| Some(a) == split(b))
 }

@@ -50,7 +50,7 @@ pub const MOST_PARTS: u32 = 10_000;
 const BOX: &str =
     "four finite numbers min_x,min_y,max_x,max_y with min_x < max_x and min_y < max_y";
 /// How to say how densely points lie.
-const AMOUNT: &str = "one of density (points per unit of area), spacing (the mean, density^-1/2), \
+pub(in crate::service) const AMOUNT: &str = "one of density (points per unit of area), spacing (the mean, density^-1/2), \
                       min_distance (of any two points) and count (of the region)";
 /// What a warp may be.
 const WARP: &str = "off, on, or a strength from 0 (off) over 1 (on) to 2";

@@ -3,7 +3,13 @@
 
 use strew_core::Spacing;
 
-use super::{AMOUNT, BOX, DEFAULT_ALPHA, DEFAULT_PROFILE, WARP};
+use super::{
+    AMOUNT, BOX, DEFAULT_ALPHA, DEFAULT_PROFILE, KEEP, MOST_PARTS, WARP,
+    amount::COUNT,
+    attributes::{ATTRIBUTES, SCALE_RANGE, VARIANTS},
+    pin::{self, DIGEST},
+    region::{CIRCLE, POLYGON},
+};
 use crate::service::{
     Encoding,
     encode::{DECIMALS, MOST_DECIMALS},
@@ -67,15 +73,33 @@ pub enum Shape {
 pub const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "bbox",
-        about: "The region: a half-open box, min ≤ p < max on the reported coordinates.",
+        about: "The region: a half-open box, min ≤ p < max on the reported coordinates. Either this, \
+                circle or polygon.",
         allowed: BOX,
         shape: Shape::Numbers(4),
         default: None,
         example: "0,0,3,2",
     },
     Parameter {
+        name: "circle",
+        about: "The region: the points nearer to x,y than the radius.",
+        allowed: CIRCLE,
+        shape: Shape::Numbers(3),
+        default: None,
+        example: "5,5,3",
+    },
+    Parameter {
+        name: "polygon",
+        about: "The region: a polygon of these vertices. Polygons that share an edge share no point \
+                and lose none.",
+        allowed: POLYGON,
+        shape: Shape::Pattern(super::region::VERTICES),
+        default: None,
+        example: "0,0,4,0,0,4",
+    },
+    Parameter {
         name: "density",
-        about: "Points per unit of area. Either this or spacing.",
+        about: "Points per unit of area. Either this, spacing, min_distance or count.",
         allowed: AMOUNT,
         shape: Shape::Number {
             min: Spacing::MIN_DENSITY,
@@ -86,7 +110,7 @@ pub const PARAMETERS: &[Parameter] = &[
     },
     Parameter {
         name: "spacing",
-        about: "The mean spacing, density^-1/2. Either this or density.",
+        about: "The mean spacing, density^-1/2. Either this, density, min_distance or count.",
         allowed: AMOUNT,
         shape: Shape::Number {
             min: Spacing::MIN,
@@ -94,6 +118,29 @@ pub const PARAMETERS: &[Parameter] = &[
         },
         default: None,
         example: "1",
+    },
+    Parameter {
+        name: "min_distance",
+        about: "The least distance of any two points: the density is the greatest at which it is \
+                guaranteed, with the warp. Not for profiles that promise none.",
+        allowed: AMOUNT,
+        shape: Shape::Number {
+            min: Spacing::MIN,
+            max: Spacing::MAX,
+        },
+        default: None,
+        example: "1",
+    },
+    Parameter {
+        name: "count",
+        about: "How many points the region is to hold: the density is what gives exactly that many.",
+        allowed: COUNT,
+        shape: Shape::Integer {
+            min: 1,
+            max: u64::MAX,
+        },
+        default: None,
+        example: "100",
     },
     Parameter {
         name: "profile",
@@ -145,6 +192,82 @@ pub const PARAMETERS: &[Parameter] = &[
         example: "on",
     },
     Parameter {
+        name: "keep",
+        about: "The share of points to keep, those of the lowest rank: a smaller share keeps some \
+                of the points of a larger one.",
+        allowed: KEEP,
+        shape: Shape::Number { min: 1e-6, max: 1.0 },
+        default: Some("1"),
+        example: "0.5",
+    },
+    Parameter {
+        name: "attributes",
+        about: "Further values of each point, hashed from its id and the seed: angle (radians, 0 to \
+                2π), scale (within scale_range), variant (one of variants, by weight), rank (0 to \
+                1, see keep), u1 to u16 (uniform, 0 to 1).",
+        allowed: ATTRIBUTES,
+        shape: Shape::Pattern("^(angle|scale|variant|rank|u([1-9]|1[0-6]))(,(angle|scale|variant|rank|u([1-9]|1[0-6])))*$"),
+        default: Some("none"),
+        example: "angle,u1",
+    },
+    Parameter {
+        name: "scale_range",
+        about: "The least and the greatest value of the attribute scale.",
+        allowed: SCALE_RANGE,
+        shape: Shape::Numbers(2),
+        default: Some("0,1"),
+        example: "0.8,1.2",
+    },
+    Parameter {
+        name: "variants",
+        about: "The names that the attribute variant chooses from, with their weights.",
+        allowed: VARIANTS,
+        shape: Shape::Pattern("^[A-Za-z0-9_.-]+(:[^,:]+)?(,[A-Za-z0-9_.-]+(:[^,:]+)?)*$"),
+        default: None,
+        example: "oak:3,birch:1",
+    },
+    Parameter {
+        name: "offset",
+        about: "How many points to leave out, in the fixed order, from the beginning or from the \
+                cursor on.",
+        allowed: OFFSET,
+        shape: Shape::Integer {
+            min: 0,
+            max: u64::MAX,
+        },
+        default: Some("0"),
+        example: "3",
+    },
+    Parameter {
+        name: "limit",
+        about: "How many points to give at most. The header strew-next is the cursor of the rest.",
+        allowed: LIMIT,
+        shape: Shape::Integer {
+            min: 1,
+            max: u64::MAX,
+        },
+        default: Some("all"),
+        example: "2",
+    },
+    Parameter {
+        name: "cursor",
+        about: "Where an earlier answer to the same query ended: the value of its header \
+                strew-next.",
+        allowed: "the cursor of an earlier answer to the same query",
+        shape: Shape::Pattern("^[0-9a-f]+$"),
+        default: Some("the beginning"),
+        example: "",
+    },
+    Parameter {
+        name: "table",
+        about: "The digest of the table that has to answer: caches may keep the answer forever. \
+                If another table would answer, there is a problem that names both.",
+        allowed: DIGEST,
+        shape: Shape::Pattern(pin::PATTERN),
+        default: Some("whichever table the query leads to"),
+        example: "985209040b65570b20f8b11cb6d95cad1d2260ad50bd5a1efb61251c18c8a075",
+    },
+    Parameter {
         name: "format",
         about: "The format of the answer; stronger than the header Accept.",
         allowed: "the name of a format",
@@ -164,10 +287,66 @@ pub const PARAMETERS: &[Parameter] = &[
         default: Some("the shortest digits that read back"),
         example: "3",
     },
+    Parameter {
+        name: "at",
+        about: "The place whose neighbors are asked for.",
+        allowed: PLACE,
+        shape: Shape::Numbers(2),
+        default: None,
+        example: "100.5,-3",
+    },
+    Parameter {
+        name: "k",
+        about: "How many of the nearest points are wanted.",
+        allowed: NEAREST,
+        shape: Shape::Integer {
+            min: 1,
+            max: MOST_NEAREST,
+        },
+        default: Some("1, or all within the radius"),
+        example: "8",
+    },
+    Parameter {
+        name: "radius",
+        about: "How far away they may be.",
+        allowed: RADIUS,
+        shape: Shape::Number {
+            min: 0.0,
+            max: f64::MAX,
+        },
+        default: Some("however far"),
+        example: "2",
+    },
+    Parameter {
+        name: "parts",
+        about: "How many queries to split the query into.",
+        allowed: PARTS,
+        shape: Shape::Integer {
+            min: 1,
+            max: MOST_PARTS as u64,
+        },
+        default: None,
+        example: "4",
+    },
 ];
 
 /// What a seed may be.
 pub(super) const SEED: &str = "an integer from 0 to 18446744073709551615";
+
+/// What an offset may be.
+pub(super) const OFFSET: &str = "an integer from 0 to 18446744073709551615";
+/// What a limit may be.
+pub(super) const LIMIT: &str = "an integer from 1 to 18446744073709551615";
+/// What a place may be.
+pub(super) const PLACE: &str = "two finite numbers x,y";
+/// The most neighbors of one answer.
+pub(super) const MOST_NEAREST: u64 = 10_000;
+/// What a number of neighbors may be.
+pub(super) const NEAREST: &str = "an integer from 1 to 10000";
+/// What a radius may be.
+pub(super) const RADIUS: &str = "a finite number from 0 on";
+/// What a number of parts may be.
+pub(super) const PARTS: &str = "an integer from 1 to 10000";
 
 fn formats() -> Vec<&'static str> {
     Encoding::ALL.map(Encoding::name).into()

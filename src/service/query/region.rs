@@ -14,6 +14,8 @@ pub(super) const CIRCLE: &str = "three finite numbers x,y,radius with a radius a
 /// What a polygon must be.
 pub(super) const POLYGON: &str =
     "at least 3 different vertices x,y as x1,y1,x2,y2,…; holes and several polygons: POST a query";
+/// The pattern of a polygon's vertices: numbers joined by commas, six or more.
+pub(super) const VERTICES: &str = "^[^,]+(,[^,]+){5,}$";
 /// What a chunk must be.
 pub(super) const CHUNK: &str =
     "a size above 0 and two integers within ±4503599627370496, the chunk's column and row";

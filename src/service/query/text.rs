@@ -1,44 +1,29 @@
 //! Queries as text: the parameters of an address or of a command line.
 
-use std::sync::Arc;
+use std::{collections::BTreeMap, str::FromStr, sync::Arc};
 
 use percent_encoding::percent_decode_str;
 
 use super::{
-    AMOUNT, BOX, Draft, Query, WARP,
-    parameters::{PARAMETERS, SEED, names},
+    AMOUNT, AmountDraft, AttributesDraft, BOX, Draft, KEEP, Query, RegionDraft, Set, SetDraft,
+    ShapeDraft, TableDraft, WARP, WindowDraft,
+    amount::COUNT,
+    attributes::{SCALE_RANGE, VARIANTS},
+    faults::{Faults, MOST},
+    parameters::{
+        LIMIT, MOST_NEAREST, NEAREST, OFFSET, PARTS, PLACE, Parameter, RADIUS, SEED, names,
+    },
+    region::{CIRCLE, POLYGON},
 };
 use crate::service::{
     Catalog, Encoding, Entry, Error, Fault,
     encode::{DECIMALS, MOST_DECIMALS, Options},
 };
 
-/// No more faults of an address are reported: an error is to be read.
-const MOST_FAULTS: usize = 16;
-
 /// Text parameters by name, each at most once.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Parameters {
-    /// `minx,miny,maxx,maxy`.
-    pub bbox: Option<String>,
-    /// Points per unit of area.
-    pub density: Option<String>,
-    /// The mean spacing.
-    pub spacing: Option<String>,
-    /// The name of the noise profile.
-    pub profile: Option<String>,
-    /// The number α.
-    pub alpha: Option<String>,
-    /// The size of the map: `s`, `m` or `l`.
-    pub map: Option<String>,
-    /// The seed.
-    pub seed: Option<String>,
-    /// `off`, `on` or the strength of the warp.
-    pub warp: Option<String>,
-    /// The name of the format.
-    pub format: Option<String>,
-    /// Decimals of numbers in text formats.
-    pub decimals: Option<String>,
+    values: BTreeMap<&'static str, String>,
 }
 
 /// Parameters with the faults found so far.
@@ -51,12 +36,12 @@ pub fn parse_pairs(text: &str) -> Parsed {
     let mut parameters = Parameters::default();
     let mut faults: Vec<Fault> = vec![];
     for pair in text.split('&').filter(|pair| !pair.is_empty()) {
-        if faults.len() == MOST_FAULTS {
+        if faults.len() == MOST {
             break;
         }
         let (raw_name, raw_value) = pair.split_once('=').unwrap_or((pair, ""));
         let name = percent_decode_str(raw_name).decode_utf8_lossy();
-        let Some(slot) = parameters.slot(&name) else {
+        let Some(parameter) = Parameter::named(&name) else {
             faults.push(Fault::new(
                 &name,
                 percent_decode_str(raw_value).decode_utf8_lossy(),
@@ -75,31 +60,44 @@ pub fn parse_pairs(text: &str) -> Parsed {
             ));
             continue;
         };
-        if let Some(first) = slot {
+        if let Some(first) = parameters.get(parameter.name) {
             let detail = format!("it is given again; before as `{first}`");
             faults.push(Fault::new(&name, value, detail, "each parameter once"));
             continue;
         }
-        *slot = Some(value.into());
+        parameters.values.insert(parameter.name, value.into());
     }
     (parameters, faults)
 }
 
 impl Parameters {
-    fn slot(&mut self, name: &str) -> Option<&mut Option<String>> {
-        Some(match name {
-            "bbox" => &mut self.bbox,
-            "density" => &mut self.density,
-            "spacing" => &mut self.spacing,
-            "profile" => &mut self.profile,
-            "alpha" => &mut self.alpha,
-            "map" => &mut self.map,
-            "seed" => &mut self.seed,
-            "warp" => &mut self.warp,
-            "format" => &mut self.format,
-            "decimals" => &mut self.decimals,
-            _ => return None,
-        })
+    /// Parameters from those of a list that are given.
+    ///
+    /// Names that are no parameter's are left out.
+    #[must_use]
+    pub fn of<'a>(given: impl IntoIterator<Item = (&'a str, Option<String>)>) -> Self {
+        let known = |(name, value): (&str, Option<String>)| {
+            Some((Parameter::named(name)?.name, value?))
+        };
+        Self {
+            values: given.into_iter().filter_map(known).collect(),
+        }
+    }
+
+    /// The text of a parameter, if it is given.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<&str> {
+        self.values.get(name).map(String::as_str)
+    }
+
+    /// Faults every parameter that is not among these.
+    fn only(&self, allowed: &[&str], faults: &mut Faults) {
+        for (name, value) in &self.values {
+            if !allowed.contains(name) {
+                let detail = "it means nothing here";
+                faults.add(Fault::new(name, value, detail, allowed.join(", ")));
+            }
+        }
     }
 
     /// The table of a profile that `alpha` and `map` choose; no other parameter may be given.
@@ -110,61 +108,221 @@ impl Parameters {
         &self,
         catalog: &Catalog,
         profile: &str,
-        mut faults: Vec<Fault>,
+        found: Vec<Fault>,
     ) -> Result<Arc<Entry>, Error> {
-        let mut rest = self.clone();
-        let (alpha, map) = (rest.alpha.take(), rest.map.take());
-        for parameter in PARAMETERS {
-            if let Some(Some(value)) = rest.slot(parameter.name) {
-                let detail = "it means nothing here";
-                faults.push(Fault::new(parameter.name, value, detail, "alpha, map"));
-            }
-        }
-        let draft = Draft {
-            profile: Some(profile),
-            alpha: alpha.as_deref(),
-            map: map.as_deref(),
-            ..Draft::default()
+        let mut faults = Faults::new(found);
+        self.only(&["alpha", "map", "table"], &mut faults);
+        let table = TableDraft {
+            profile: Some(profile.into()),
+            ..self.table()
         };
-        match draft.key(catalog) {
-            Ok(key) if faults.is_empty() => catalog.entry(&key).ok_or_else(Error::lost_table),
-            Ok(_) => Err(Error::Invalid(faults)),
-            Err(more) => {
-                faults.extend(more);
-                Err(Error::Invalid(faults))
-            }
-        }
+        let key = faults.take_all(table.check(catalog, ""));
+        let (Some(key), true) = (key, faults.is_empty()) else {
+            return Err(faults.into_error());
+        };
+        table.hold(catalog, &key)?;
+        catalog.entry(&key).ok_or_else(Error::lost_table)
     }
 
-    /// Checks everything; `faults` are those found before. Gives the options of the output,
-    /// too.
+    /// The query, and the options of the output; `found` are the faults found before. `region` is
+    /// that of the path, where it has one.
     ///
     /// # Errors
-    /// [`Error::Invalid`] with every fault.
+    /// [`Error::Invalid`] with every fault, [`Error::OtherTable`] if a pinned table is not loaded.
     pub fn check(
         &self,
         catalog: &Catalog,
-        mut faults: Vec<Fault>,
+        most_vertices: usize,
+        region: Option<RegionDraft>,
+        found: Vec<Fault>,
     ) -> Result<(Query, Options), Error> {
-        let mut draft = Draft {
-            profile: self.profile.as_deref(),
-            alpha: self.alpha.as_deref(),
-            map: self.map.as_deref(),
-            ..Draft::default()
+        let mut faults = Faults::new(found);
+        let mut allowed: Vec<&str> = [&SET[..], &OUTPUT, &WINDOW].concat();
+        if region.is_none() {
+            allowed.extend(REGION);
+        }
+        self.only(&allowed, &mut faults);
+        let draft = Draft {
+            region: match region {
+                Some(region) => Some(region),
+                None => self.region(&mut faults),
+            },
+            set: self.set(&mut faults),
+            layers: vec![],
+            window: WindowDraft {
+                offset: self.read("offset", OFFSET, integer, &mut faults),
+                limit: self.read("limit", LIMIT, integer, &mut faults),
+                cursor: self.get("cursor").map(Into::into),
+            },
         };
-        let mut read = |result: Result<(), Fault>| faults.extend(result.err());
-        read(read_bbox(self.bbox.as_deref()).map(|bbox| draft.bbox = bbox));
-        read(amount("density", self.density.as_deref()).map(|density| draft.density = density));
-        read(amount("spacing", self.spacing.as_deref()).map(|spacing| draft.spacing = spacing));
-        read(seed(self.seed.as_deref()).map(|seed| draft.seed = seed));
-        read(warp(self.warp.as_deref()).map(|warp| draft.warp = warp));
-        let mut options = Options::default();
-        read(format(self.format.as_deref()).map(|format| options.encoding = format));
-        read(decimals(self.decimals.as_deref()).map(|decimals| options.decimals = decimals));
-        let query = draft.check(catalog, faults)?;
+        let options = self.options(&mut faults);
+        let query = draft.check(catalog, most_vertices, faults.into_inner())?;
         Ok((query, options))
     }
+
+    /// A set of points without a region, as single points are asked for; `others` may be given,
+    /// too.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check).
+    pub fn check_set(
+        &self,
+        catalog: &Catalog,
+        others: &[&str],
+        found: Vec<Fault>,
+    ) -> Result<Set, Error> {
+        let mut faults = Faults::new(found);
+        let set: Vec<&str> = SET.into_iter().filter(|name| *name != "count").collect();
+        self.only(&[&set[..], others].concat(), &mut faults);
+        self.set(&mut faults).check_alone(catalog, faults)
+    }
+
+    /// The place whose neighbors are asked for, how many of them, and how far away they may be.
+    ///
+    /// # Errors
+    /// Every fault.
+    pub fn around(&self) -> Result<([f64; 2], Option<usize>, Option<f64>), Vec<Fault>> {
+        let mut faults = Faults::default();
+        let at = self.read("at", PLACE, numbers, &mut faults);
+        if self.get("at").is_none() {
+            faults.add(Fault::missing("at", PLACE));
+        }
+        let number = |text: &str| integer(text).filter(|k| (1..=MOST_NEAREST).contains(k));
+        let k = self.read("k", NEAREST, number, &mut faults);
+        let distance = |text: &str| finite(text).filter(|radius| *radius >= 0.0);
+        let radius = self.read("radius", RADIUS, distance, &mut faults);
+        match at {
+            Some(at) if faults.is_empty() => Ok((at, k.and_then(|k| k.try_into().ok()), radius)),
+            _ => Err(faults.into_inner()),
+        }
+    }
+
+    /// How many parts a query is split into.
+    ///
+    /// # Errors
+    /// A fault if it is missing or not a number that is allowed.
+    pub fn parts(&self) -> Result<u32, Vec<Fault>> {
+        let mut faults = Faults::default();
+        self.only(&["parts"], &mut faults);
+        let number = |text: &str| {
+            let parts = text.parse::<u32>().ok();
+            parts.filter(|parts| (1..=super::MOST_PARTS).contains(parts))
+        };
+        let parts = self.read("parts", PARTS, number, &mut faults);
+        if self.get("parts").is_none() {
+            faults.add(Fault::missing("parts", PARTS));
+        }
+        parts.filter(|_| faults.is_empty()).ok_or_else(|| faults.into_inner())
+    }
+
+    /// The value of a parameter, if it is given and can be read.
+    fn read<T>(
+        &self,
+        name: &str,
+        allowed: &str,
+        read: impl FnOnce(&str) -> Option<T>,
+        faults: &mut Faults,
+    ) -> Option<T> {
+        let text = self.get(name)?;
+        let value = read(text);
+        if value.is_none() {
+            faults.add(Fault::new(name, text, wrong(text), allowed));
+        }
+        value
+    }
+
+    fn region(&self, faults: &mut Faults) -> Option<RegionDraft> {
+        let given: Vec<&str> = REGION.into_iter().filter(|name| self.get(name).is_some()).collect();
+        let (name, text) = match given.as_slice() {
+            [] => {
+                faults.add(Fault::missing("bbox", BOX));
+                return None;
+            }
+            [name] => (*name, self.get(name)?),
+            [first, second, ..] => {
+                let detail = format!("{first} is given, too");
+                let allowed = "one of bbox, circle and polygon";
+                faults.add(Fault::new(second, self.get(second)?, detail, allowed));
+                return None;
+            }
+        };
+        let shape = match name {
+            "bbox" => faults.take(read_bbox(Some(text)))?.map(ShapeDraft::Box),
+            "circle" => self.read(name, CIRCLE, numbers, faults).map(|[x, y, radius]| {
+                ShapeDraft::Circle([x, y], radius)
+            }),
+            _ => self.read(name, POLYGON, vertices, faults).map(|ring| {
+                ShapeDraft::Polygons(vec![vec![ring]])
+            }),
+        };
+        let path = name.into();
+        Some(RegionDraft {
+            path,
+            shape: shape?,
+        })
+    }
+
+    fn table(&self) -> TableDraft {
+        let text = |name| self.get(name).map(Into::into);
+        TableDraft {
+            profile: text("profile"),
+            alpha: text("alpha"),
+            map: text("map"),
+            table: text("table"),
+        }
+    }
+
+    fn set(&self, faults: &mut Faults) -> SetDraft {
+        SetDraft {
+            amount: AmountDraft {
+                density: self.read("density", AMOUNT, finite, faults),
+                spacing: self.read("spacing", AMOUNT, finite, faults),
+                min_distance: self.read("min_distance", AMOUNT, finite, faults),
+                count: self.read("count", COUNT, integer, faults),
+            },
+            table: self.table(),
+            seed: self.read("seed", SEED, integer, faults),
+            warp: self.read("warp", WARP, strength, faults),
+            keep: self.read("keep", KEEP, finite, faults),
+            attributes: AttributesDraft {
+                names: self
+                    .get("attributes")
+                    .map(|text| text.split(',').map(Into::into).collect())
+                    .unwrap_or_default(),
+                scale_range: self.read("scale_range", SCALE_RANGE, numbers, faults),
+                variants: self.read("variants", VARIANTS, variants_of, faults),
+            },
+        }
+    }
+
+    fn options(&self, faults: &mut Faults) -> Options {
+        let format = |text: &str| {
+            Encoding::from_name(text).ok_or_else(|| {
+                let allowed = Encoding::ALL.map(Encoding::name).join(", ");
+                Fault::new("format", text, "there is no such format", allowed)
+            })
+        };
+        let encoding = self.get("format").map(format).transpose();
+        let decimals = |text: &str| text.parse().ok().filter(|n| *n <= MOST_DECIMALS);
+        Options {
+            encoding: faults.take(encoding).flatten(),
+            decimals: self.read("decimals", DECIMALS, decimals, faults),
+            ..Options::default()
+        }
+    }
 }
+
+/// The parameters that say what the points of a set are.
+const SET: [&str; 14] = [
+    "density", "spacing", "min_distance", "count", "profile", "alpha", "map", "table", "seed",
+    "warp", "keep", "attributes", "scale_range", "variants",
+];
+/// The parameters that say where.
+const REGION: [&str; 3] = ["bbox", "circle", "polygon"];
+/// The parameters that say which of the points.
+const WINDOW: [&str; 3] = ["offset", "limit", "cursor"];
+/// The parameters that say how the answer looks.
+const OUTPUT: [&str; 2] = ["format", "decimals"];
 
 /// The box `min_x,min_y,max_x,max_y` of a text, as far as it is four numbers.
 ///
@@ -188,47 +346,53 @@ pub fn read_bbox(text: Option<&str>) -> Result<Option<[f64; 4]>, Fault> {
     Ok(Some(corners))
 }
 
-fn amount(name: &str, text: Option<&str>) -> Result<Option<f64>, Fault> {
-    text.map(number)
-        .transpose()
-        .map_err(|detail| Fault::new(name, text.unwrap_or_default(), detail, AMOUNT))
+/// `off`, `on` or a number.
+fn strength(text: &str) -> Option<f64> {
+    match text {
+        "off" => Some(0.0),
+        "on" => Some(1.0),
+        _ => finite(text),
+    }
 }
 
-fn seed(text: Option<&str>) -> Result<u64, Fault> {
-    text.map_or(Ok(0), |text| {
-        text.parse()
-            .map_err(|_| Fault::new("seed", text, "it is not such an integer", SEED))
-    })
+/// Names with weights, as `oak:3,birch:1`; a weight that is not given is 1.
+pub(super) fn variants_of(text: &str) -> Option<Vec<(String, f64)>> {
+    let variant = |part: &str| {
+        let (name, weight) = part.split_once(':').unwrap_or((part, "1"));
+        Some((name.to_owned(), finite(weight)?))
+    };
+    text.split(',').map(variant).collect()
 }
 
-fn warp(text: Option<&str>) -> Result<Option<f64>, Fault> {
-    text.map(|text| match text {
-        "off" => Ok(0.0),
-        "on" => Ok(1.0),
-        _ => number(text).map_err(|detail| Fault::new("warp", text, detail, WARP)),
-    })
-    .transpose()
+fn vertices(text: &str) -> Option<Vec<[f64; 2]>> {
+    let values: Vec<f64> = text.split(',').map(finite).collect::<Option<_>>()?;
+    let (pairs, []) = values.as_chunks::<2>() else {
+        return None;
+    };
+    Some(pairs.to_vec())
 }
 
-fn format(text: Option<&str>) -> Result<Option<Encoding>, Fault> {
-    text.map(|text| {
-        Encoding::from_name(text).ok_or_else(|| {
-            let allowed = Encoding::ALL.map(Encoding::name).join(", ");
-            Fault::new("format", text, "there is no such format", allowed)
-        })
-    })
-    .transpose()
+/// So many finite numbers joined by commas.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let values: Vec<f64> = text.split(',').map(finite).collect::<Option<_>>()?;
+    values.try_into().ok()
 }
 
-fn decimals(text: Option<&str>) -> Result<Option<u8>, Fault> {
-    text.map(|text| {
-        let parsed = text.parse().ok().filter(|n| *n <= MOST_DECIMALS);
-        parsed.ok_or_else(|| {
-            let detail = "it is not such an integer";
-            Fault::new("decimals", text, detail, DECIMALS)
-        })
-    })
-    .transpose()
+fn integer<T: FromStr>(text: &str) -> Option<T> {
+    text.parse().ok()
+}
+
+fn finite(text: &str) -> Option<f64> {
+    number(text).ok()
+}
+
+/// What is wrong with a text that cannot be read.
+fn wrong(text: &str) -> &'static str {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_infinite() => "it is not finite",
+        Ok(value) if !value.is_nan() => "it is not in the range allowed",
+        _ => "it is not what is allowed",
+    }
 }
 
 /// A finite number; otherwise what it is instead.
@@ -243,22 +407,45 @@ fn number(text: &str) -> Result<f64, &'static str> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::PARAMETERS, *};
 
     #[test]
     fn every_parameter_of_the_list_is_read_and_its_example_is_in_order() {
         let catalog = Catalog::load(true, None).expect("built in");
         for parameter in PARAMETERS {
-            let amount = ["density", "spacing"].contains(&parameter.name);
-            let mut text = format!("{}={}", parameter.name, parameter.example);
-            if parameter.name != "bbox" {
-                text += "&bbox=0,0,1,1";
+            let name = parameter.name;
+            let mut text = format!("{name}={}", parameter.example);
+            let is_in = |list: &[&str]| list.contains(&name);
+            if is_in(&["at", "k", "radius"]) {
+                if name != "at" {
+                    text += "&at=1,1";
+                }
+                let (parameters, faults) = parse_pairs(&text);
+                assert!(faults.is_empty() && parameters.around().is_ok(), "{text}");
+                continue;
             }
-            if !amount {
+            if name == "parts" {
+                assert!(parse_pairs(&text).0.parts().is_ok(), "{text}");
+                continue;
+            }
+            if name == "cursor" {
+                // Its example is an answer's.
+                continue;
+            }
+            if !is_in(&REGION) {
+                text += "&bbox=0,0,10,10";
+            }
+            if !is_in(&["density", "spacing", "min_distance", "count"]) {
                 text += "&density=1";
             }
+            if name == "scale_range" {
+                text += "&attributes=scale";
+            }
+            if name == "variants" {
+                text += "&attributes=variant";
+            }
             let (parameters, faults) = parse_pairs(&text);
-            let checked = parameters.check(&catalog, faults);
+            let checked = parameters.check(&catalog, 100, None, faults);
             assert!(checked.is_ok(), "{text}: {checked:?}");
         }
         assert_eq!(SEED, format!("an integer from 0 to {}", u64::MAX));

@@ -13,6 +13,7 @@ mod blocks;
 mod clear;
 mod count;
 mod cursor;
+mod distance;
 mod id;
 pub(crate) mod kernel;
 mod margins;
@@ -49,6 +50,7 @@ pub use attribute::{
 pub use blocks::{Blocks, Tile};
 pub use clear::{ClearOf, ClearOfError, Layer};
 pub use cursor::Cursor;
+pub use distance::{DistanceError, LeastDistance};
 pub use id::{PointId, PointIdError};
 pub use kernel::{Backend, F32, F64, Format, Points};
 pub use nearest::{Clearance, FindError, Finder, Neighbor};

@@ -1,0 +1,50 @@
+//! The attributes of points as columns of an answer.
+
+use strew_core::{
+    Point,
+    sample::{Attribute, Attributes, BoundAttributes, Column},
+};
+
+use super::encode::{self, Values};
+
+/// Attributes bound to the points of one set.
+#[derive(Clone, Debug)]
+pub struct PointAttributes {
+    columns: Vec<encode::Column>,
+    bound: BoundAttributes,
+}
+
+impl PointAttributes {
+    /// The columns of `list`, which is what was bound.
+    #[must_use]
+    pub fn new(list: &Attributes, bound: BoundAttributes) -> Self {
+        let column = |attribute: &Attribute| match attribute {
+            Attribute::Variant(variants) => {
+                let names: Vec<String> = variants.names().map(Into::into).collect();
+                encode::Column::dictionary(attribute.name(), names)
+            }
+            other => encode::Column::number(other.name()),
+        };
+        Self {
+            columns: list.as_slice().iter().map(column).collect(),
+            bound,
+        }
+    }
+}
+
+impl encode::Attributes for PointAttributes {
+    fn columns(&self) -> Vec<encode::Column> {
+        self.columns.clone()
+    }
+
+    fn fill(&self, points: &[Point], values: &mut [Values]) {
+        let mut made: Vec<Column> = vec![];
+        self.bound.write_points(points, &mut made);
+        for (values, column) in values.iter_mut().zip(made) {
+            *values = match column {
+                Column::Numbers(numbers) => Values::Numbers(numbers),
+                Column::Variants(indices) => Values::Indices(indices),
+            };
+        }
+    }
+}
