@@ -8,13 +8,16 @@
 mod buffer;
 mod csv;
 mod encoding;
+mod geojson;
 mod head;
 mod json;
 mod members;
 mod ndjson;
+mod npy;
 mod number;
 mod output;
 mod packed;
+mod ply;
 mod records;
 pub mod rows;
 #[cfg(test)]
@@ -32,7 +35,7 @@ use head::Head;
 use members::Members;
 use records::{Layout, Records};
 use rows::Coordinates;
-use text::TextBlocks;
+use text::{TextBlocks, TextFormat};
 
 pub use buffer::Pool;
 pub use encoding::Encoding;
@@ -109,34 +112,48 @@ impl Answer {
         let coordinates = Coordinates::of(output, &parts);
         let rows = Rows::new(parts, coordinates);
         let head = Head::new(planned, output, rows.count());
-        let origin = coordinates.origin();
-        let blocks: Box<dyn Blocks> = match output.encoding {
+        let members = || Members::new(&rows, output);
+        let (layout, before) = match output.encoding {
+            Encoding::F32 => (Layout::F32, None),
+            Encoding::F64 => (Layout::F64, None),
+            Encoding::Npy => (Layout::F64, Some(npy::head(&rows))),
+            Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head))),
             Encoding::Json => {
-                let format = json::Json::new(head, Members::new(&rows, output));
-                Box::new(TextBlocks::new(rows, format, block_bytes))
+                let format = json::Json::new(head, members());
+                return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Ndjson => {
-                let format = ndjson::Ndjson::new(head, Members::new(&rows, output));
-                Box::new(TextBlocks::new(rows, format, block_bytes))
+                let format = ndjson::Ndjson::new(head, members());
+                return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Csv => {
                 let format = csv::Csv::new(&rows, output);
-                Box::new(TextBlocks::new(rows, format, block_bytes))
+                return Ok(Self::of_text(rows, format, block_bytes));
             }
-            Encoding::F32 => {
-                return Ok(Self::of_records(rows, Layout::F32, None, block_bytes));
+            Encoding::Geojson => {
+                let format = geojson::Collection::new(head, members());
+                return Ok(Self::of_text(rows, format, block_bytes));
             }
-            Encoding::F64 => {
-                return Ok(Self::of_records(rows, Layout::F64, None, block_bytes));
+            Encoding::Geojsonseq => {
+                let format = geojson::Sequence::new(members());
+                return Ok(Self::of_text(rows, format, block_bytes));
             }
         };
-        Ok(Self {
+        Ok(Self::of_records(rows, layout, before, block_bytes))
+    }
+
+    /// A text of unknown size.
+    fn of_text<T>(rows: Rows, format: T, block_bytes: usize) -> Self
+    where
+        T: TextFormat + fmt::Debug + Send + 'static,
+    {
+        Self {
             head: None,
-            blocks,
             size: None,
-            origin,
+            origin: rows.coordinates().origin(),
             plain: None,
-        })
+            blocks: Box::new(TextBlocks::new(rows, format, block_bytes)),
+        }
     }
 
     /// Records after a head; straight from the kernel where they are no more than coordinates.
