@@ -22,7 +22,7 @@ impl Chosen {
 }
 
 /// What is on offer by media type, in the order of preference where a client has none.
-const OFFERS: [(&str, Chosen); 13] = [
+const OFFERS: [(&str, Chosen); 14] = [
     ("application/json", Chosen::named(Encoding::Json)),
     ("application/x-ndjson", Chosen::named(Encoding::Ndjson)),
     (
@@ -59,6 +59,10 @@ const OFFERS: [(&str, Chosen); 13] = [
     (
         "application/geo+json-seq",
         Chosen::named(Encoding::Geojsonseq),
+    ),
+    (
+        "application/vnd.apache.arrow.stream",
+        Chosen::named(Encoding::Arrow),
     ),
     ("application/x-npy", Chosen::named(Encoding::Npy)),
     ("application/ply", Chosen::named(Encoding::Ply)),

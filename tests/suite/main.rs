@@ -9,6 +9,7 @@ mod grpc;
 mod limits;
 mod openapi;
 mod raw;
+mod readers;
 mod settings;
 mod streaming;
 mod wrong;

@@ -21,11 +21,15 @@ pub enum Encoding {
     Npy,
     /// PLY vertices, binary and little-endian.
     Ply,
+    /// An Arrow IPC stream.
+    Arrow,
+    /// A Parquet file; only for files, not by any door.
+    Parquet,
 }
 
 impl Encoding {
-    /// All formats.
-    pub const ALL: [Self; 9] = [
+    /// All formats that are streamed: all but Parquet, which is for files.
+    pub const ALL: [Self; 10] = [
         Self::Json,
         Self::Ndjson,
         Self::Csv,
@@ -35,6 +39,7 @@ impl Encoding {
         Self::Geojsonseq,
         Self::Npy,
         Self::Ply,
+        Self::Arrow,
     ];
 
     /// The name in queries.
@@ -50,10 +55,12 @@ impl Encoding {
             Self::Geojsonseq => "geojsonseq",
             Self::Npy => "npy",
             Self::Ply => "ply",
+            Self::Arrow => "arrow",
+            Self::Parquet => "parquet",
         }
     }
 
-    /// The format of a name.
+    /// The streamed format of a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL
@@ -74,6 +81,8 @@ impl Encoding {
             Self::Geojsonseq => "application/geo+json-seq",
             Self::Npy => "application/x-npy",
             Self::Ply => "application/ply",
+            Self::Arrow => "application/vnd.apache.arrow.stream",
+            Self::Parquet => "application/vnd.apache.parquet",
         }
     }
 
@@ -82,7 +91,7 @@ impl Encoding {
     pub const fn is_text(self) -> bool {
         match self {
             Self::Json | Self::Ndjson | Self::Csv | Self::Geojson | Self::Geojsonseq => true,
-            Self::F32 | Self::F64 | Self::Npy | Self::Ply => false,
+            Self::F32 | Self::F64 | Self::Npy | Self::Ply | Self::Arrow | Self::Parquet => false,
         }
     }
 

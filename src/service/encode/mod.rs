@@ -5,6 +5,8 @@
 //! Formats are made of [`Rows`]; only packed coordinates without further columns come straight
 //! from the kernel.
 
+mod arrow;
+mod batches;
 mod buffer;
 mod csv;
 mod encoding;
@@ -17,6 +19,7 @@ mod npy;
 mod number;
 mod output;
 mod packed;
+mod parquet;
 mod ply;
 mod records;
 pub mod rows;
@@ -50,6 +53,12 @@ pub use text::{id_text, write_id};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the answer cannot be encoded: {0}")]
 pub struct EncodeError(pub String);
+
+impl EncodeError {
+    fn of(error: impl fmt::Display) -> Self {
+        Self(error.to_string())
+    }
+}
 
 /// What makes the blocks of an answer.
 trait Blocks: fmt::Debug + Send {
@@ -118,6 +127,14 @@ impl Answer {
             Encoding::F64 => (Layout::F64, None),
             Encoding::Npy => (Layout::F64, Some(npy::head(&rows))),
             Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head))),
+            Encoding::Arrow => {
+                return Self::of_columns(rows, |rows| arrow::Arrow::new(rows, &head, block_bytes));
+            }
+            Encoding::Parquet => {
+                return Self::of_columns(rows, |rows| {
+                    parquet::Parquet::new(rows, &head, block_bytes)
+                });
+            }
             Encoding::Json => {
                 let format = json::Json::new(head, members());
                 return Ok(Self::of_text(rows, format, block_bytes));
@@ -140,6 +157,25 @@ impl Answer {
             }
         };
         Ok(Self::of_records(rows, layout, before, block_bytes))
+    }
+
+    /// A columnar format of unknown size.
+    fn of_columns<B: Blocks + 'static>(
+        rows: Rows,
+        make: impl FnOnce(Rows) -> Result<B, EncodeError>,
+    ) -> Result<Self, Error> {
+        let origin = rows.coordinates().origin();
+        let blocks = make(rows).map_err(|error| {
+            tracing::error!(%error, "an answer cannot begin");
+            Error::Internal("the format cannot be written")
+        })?;
+        Ok(Self {
+            head: None,
+            size: None,
+            origin,
+            plain: None,
+            blocks: Box::new(blocks),
+        })
     }
 
     /// A text of unknown size.
