@@ -3,6 +3,7 @@
 mod clients;
 mod daemon;
 mod drain;
+mod forge;
 mod formats;
 mod fresh;
 mod grpc;

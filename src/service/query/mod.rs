@@ -275,11 +275,7 @@ impl Query {
     /// How the table's points are laid into the world.
     #[must_use]
     pub const fn placement(&self) -> Placement {
-        Placement {
-            spacing: self.spacing,
-            seed: self.seed,
-            warp: self.warp,
-        }
+        Placement::new(self.spacing, self.seed).with_warp(self.warp)
     }
 
     /// As answers echo it.

@@ -97,7 +97,7 @@ impl Sampler {
         Finder {
             sampler: self.clone(),
             stretch: Stretch::of(frame.shears.as_ref()),
-            side: self.table().alpha().set_side(),
+            side: side_for(placement.keep.get(), self.table().alpha().set_side()),
             frame,
         }
     }

@@ -258,6 +258,14 @@ impl Objective for Radial {
         costs.sum::<f64>() + self.pull(moves, gradient)
     }
 
+    fn prepared_for(&self) -> &[[f64; 2]] {
+        self.pairs.prepared_for()
+    }
+
+    fn prepare_for(&mut self, moves: &[[f64; 2]]) {
+        self.pairs.prepare_for(moves);
+    }
+
     fn pairs(&self) -> usize {
         self.pairs.pairs()
     }
@@ -270,7 +278,7 @@ fn taper(x: f64) -> f64 {
 }
 
 /// g(r) − 1 of a set with that spectrum: the transform of T − 1. It cannot be below −1.
-fn excess(target: &Target, bessel: &BesselJ0, r: f64) -> f64 {
+pub(crate) fn excess(target: &Target, bessel: &BesselJ0, r: f64) -> f64 {
     let two_pi = 2.0 * std::f64::consts::PI;
     let steps = (target.end() * TARGET_STEPS) as usize;
     let sum: f64 = (0..=steps)
