@@ -120,10 +120,7 @@ fn sampled_files_are_the_streamed_answers_and_parquet() {
 #[test]
 fn sizes_are_known_before_where_records_are_fixed() {
     let daemon = Daemon::start(&[]);
-    for (format, content_type) in [
-        ("npy", "application/x-npy"),
-        ("ply", "application/ply"),
-    ] {
+    for (format, content_type) in [("npy", "application/x-npy"), ("ply", "application/ply")] {
         let answer = daemon.get(&format!("{QUERY}{format}"));
         assert_eq!(answer.header("content-type"), content_type);
         let size = answer.body.len().to_string();

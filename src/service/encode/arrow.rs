@@ -111,7 +111,9 @@ mod tests {
                 assert_eq!(number.is_empty(), angle.is_null(row));
                 assert!(number.is_empty() || number.parse() == Ok(angle.value(row)));
                 let text = line.next().expect("a field");
-                let inside = text.strip_prefix('"').and_then(|text| text.strip_suffix('"'));
+                let inside = text
+                    .strip_prefix('"')
+                    .and_then(|text| text.strip_suffix('"'));
                 let text = inside.unwrap_or(text);
                 assert_eq!(text.replace("\"\"", "\""), name(variant, row));
             }
