@@ -40,6 +40,9 @@ pub(super) struct Query {
     /// off, on, or the strength of the warp, 0 to 2 [default: off for seed 0, else on].
     #[arg(long, allow_hyphen_values = true)]
     warp: Option<String>,
+    /// The digest of the table that has to make them.
+    #[arg(long, value_name = "DIGEST")]
+    table: Option<String>,
     #[command(flatten)]
     settings: config::Args,
 }
@@ -82,6 +85,7 @@ impl Query {
             map: self.map.clone(),
             seed: self.seed.clone(),
             warp: self.warp.clone(),
+            table: self.table.clone(),
             format: looks.format.clone().filter(|_| !parquet),
             decimals: looks.decimals.clone(),
         };
