@@ -15,6 +15,7 @@ mod http;
 mod limits;
 mod openapi;
 mod raw;
+mod readers;
 mod settings;
 mod streaming;
 mod wrong;
