@@ -45,6 +45,11 @@ pub const fn http(kind: Kind) -> Problem {
             "not-acceptable",
             "No acceptable format",
         ),
+        Kind::NoSuchPoint => (
+            StatusCode::NOT_FOUND,
+            "no-such-point",
+            "There is no such point",
+        ),
         Kind::NoSuchPath => (StatusCode::NOT_FOUND, "no-such-path", "Nothing is here"),
         Kind::NoSuchMethod => (
             StatusCode::METHOD_NOT_ALLOWED,
@@ -87,6 +92,7 @@ pub const fn grpc(kind: Kind) -> Code {
         Kind::Invalid | Kind::NotAcceptable => Code::InvalidArgument,
         Kind::TooManyPoints | Kind::TooManyRows | Kind::Busy => Code::ResourceExhausted,
         Kind::OtherTable => Code::FailedPrecondition,
+        Kind::NoSuchPoint => Code::NotFound,
         Kind::NoSuchPath | Kind::NoSuchMethod => Code::Unimplemented,
         Kind::ShuttingDown => Code::Unavailable,
         Kind::Internal => Code::Internal,

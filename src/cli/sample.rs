@@ -42,7 +42,13 @@ pub(super) struct Args {
 impl Args {
     /// The format that the output's name asks for.
     fn by_extension(&self) -> Option<Encoding> {
-        Encoding::from_name(self.output.as_ref()?.extension()?.to_str()?)
+        match self.output.as_ref()?.extension()?.to_str()? {
+            "arrows" => Some(Encoding::Arrow),
+            "geojsons" | "geojsonl" => Some(Encoding::Geojsonseq),
+            "jsonl" => Some(Encoding::Ndjson),
+            "parquet" => Some(Encoding::Parquet),
+            name => Encoding::from_name(name),
+        }
     }
 }
 
@@ -83,11 +89,7 @@ fn announce(planned: &Planned, answer: &Answer) {
     let size = answer
         .size()
         .map_or(String::new(), |size| format!(", {size} bytes"));
-    eprintln!(
-        "{} points{size}: {}",
-        planned.count(),
-        described(planned)
-    );
+    eprintln!("{} points{size}: {}", planned.count(), described(planned));
     if let Some(origin) = answer.origin() {
         let [x, y] = origin.map(|v| {
             let mut text = vec![];

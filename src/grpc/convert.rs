@@ -4,7 +4,10 @@ use super::proto::{
     BoundingBox, Encoding, Figure, Figures, Parameter, Profile, Provenance, ResolvedQuery,
     StreamPointsRequest, stream_points_request::Amount,
 };
-use crate::service::{Catalog, Draft, Entry, Error, Fault, Query};
+use crate::service::{
+    Catalog, Draft, Entry, Error, Fault, Planned, Query,
+    query::{AmountDraft, RegionDraft, SetDraft, ShapeDraft, TableDraft},
+};
 
 /// The encoding of a request, with the default filled in.
 pub(super) fn encoding(request: &StreamPointsRequest) -> Result<Encoding, Fault> {
@@ -28,6 +31,7 @@ pub(super) fn query(
     request: &StreamPointsRequest,
     encoding: Result<Encoding, Fault>,
     catalog: &Catalog,
+    most_vertices: usize,
 ) -> Result<(Query, Encoding), Error> {
     let (density, spacing) = match request.amount {
         Some(Amount::Density(density)) => (Some(density), None),
@@ -35,29 +39,39 @@ pub(super) fn query(
         None => (None, None),
     };
     let draft = Draft {
-        bbox: request
-            .bbox
-            .as_ref()
-            .map(|b| [b.min_x, b.min_y, b.max_x, b.max_y]),
-        density,
-        spacing,
-        profile: request.profile.as_deref(),
-        alpha: request.alpha.as_deref(),
-        map: request.map.as_deref(),
-        seed: request.seed,
-        warp: request.warp,
-        table: request.table.as_deref(),
+        region: request.bbox.as_ref().map(|b| RegionDraft {
+            path: "bbox".into(),
+            shape: ShapeDraft::Box([b.min_x, b.min_y, b.max_x, b.max_y]),
+        }),
+        set: SetDraft {
+            amount: AmountDraft {
+                density,
+                spacing,
+                ..AmountDraft::default()
+            },
+            table: TableDraft {
+                profile: request.profile.clone(),
+                alpha: request.alpha.clone(),
+                map: request.map.clone(),
+                table: request.table.clone(),
+            },
+            seed: Some(request.seed),
+            warp: request.warp,
+            ..SetDraft::default()
+        },
+        ..Draft::default()
     };
     let faults = encoding.as_ref().err().cloned().into_iter().collect();
-    let query = draft.check(catalog, faults)?;
+    let query = draft.check(catalog, most_vertices, faults)?;
     encoding
         .map(|encoding| (query, encoding))
         .map_err(|fault| Error::Invalid(vec![fault]))
 }
 
 /// A query as answers echo it.
-pub(super) fn resolved(query: &Query, encoding: Encoding) -> ResolvedQuery {
-    let [min_x, min_y, max_x, max_y] = query.bbox();
+pub(super) fn resolved(planned: &Planned, encoding: Encoding) -> ResolvedQuery {
+    let [min_x, min_y, max_x, max_y] = planned.query.region.bbox();
+    let (set, planned) = (&planned.query.sets[0], &planned.sets[0]);
     ResolvedQuery {
         bbox: Some(BoundingBox {
             min_x,
@@ -65,13 +79,13 @@ pub(super) fn resolved(query: &Query, encoding: Encoding) -> ResolvedQuery {
             max_x,
             max_y,
         }),
-        density: query.density,
-        spacing: query.spacing.get(),
-        profile: query.profile.clone(),
-        alpha: query.alpha.to_string(),
-        map: query.size.to_string(),
-        seed: query.seed.0,
-        warp: query.warp.strength(),
+        density: planned.density,
+        spacing: planned.spacing.get(),
+        profile: set.key.profile.as_ref().into(),
+        alpha: set.key.alpha.to_string(),
+        map: set.key.size.to_string(),
+        seed: set.seed.0,
+        warp: set.warp.strength(),
         encoding: encoding.into(),
     }
 }

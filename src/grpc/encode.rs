@@ -42,12 +42,12 @@ impl Messages {
     ) -> Result<Self, Error> {
         let count = u64::try_from(planned.count())
             .map_err(|_| Error::Internal("a count within the limit is too large"))?;
-        let plan = &planned.plan;
+        let plan = &planned.sets[0].plan;
         let [x, y] = plan.origin();
         let header = StreamHeader {
-            query: Some(convert::resolved(&planned.query, encoding)),
+            query: Some(convert::resolved(planned, encoding)),
             count,
-            table: planned.entry.digest.clone(),
+            table: planned.entry().digest.clone(),
             algorithm: ALGORITHM_VERSION,
             origin: Some(Position { x, y }),
         };

@@ -30,7 +30,12 @@ impl Points {
 
     async fn stream(&self, request: &StreamPointsRequest) -> Result<MessageStream, Error> {
         let encoding = convert::encoding(request);
-        let (query, encoding) = convert::query(request, encoding, self.service.catalog())?;
+        let (query, encoding) = convert::query(
+            request,
+            encoding,
+            self.service.catalog(),
+            self.service.limits().max_vertices,
+        )?;
         let permit = self.service.streams().admit()?;
         let planned = self.service.plan(query).await?;
         let messages = Messages::new(&planned, encoding, self.service.limits().block_bytes)?;

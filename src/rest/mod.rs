@@ -1,9 +1,13 @@
 //! The REST door: addresses in, streamed bodies and problems out. It decides nothing itself.
 
+mod answer;
 pub mod api;
+mod chunks;
 mod coding;
 mod cors;
+mod count;
 mod docs;
+mod document;
 mod finish;
 mod freshness;
 mod negotiate;
@@ -12,10 +16,14 @@ mod points;
 mod portrait;
 mod problem;
 mod profiles;
+mod query;
+mod single;
+mod split;
 
 use std::sync::Arc;
 
 use axum::{Router, extract::Request, response::Response};
+use http::StatusCode;
 
 use crate::service::{Error, Service};
 use api::Endpoint;
@@ -26,6 +34,12 @@ use problem::Problem;
 pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
     vec![
         points::endpoint(service.clone()),
+        query::endpoint(service.clone()),
+        chunks::endpoint(service.clone()),
+        count::endpoint(service.clone()),
+        split::endpoint(service.clone()),
+        single::by_id(service.clone()),
+        single::nearest(service.clone()),
         profiles::endpoint(service.clone()),
         portrait::endpoint(service.clone()),
         portrait::picture(service.clone()),
@@ -65,4 +79,25 @@ pub fn not_found(request: &Request, paths: &str) -> Response {
         available: paths.into(),
     };
     Problem::response(&error)
+}
+
+/// The answer to what asks for a gRPC method, but not as a call.
+#[must_use]
+pub fn not_a_call(request: &Request) -> Response {
+    let detail = format!(
+        "`{}` is a gRPC method; allowed: POST with the content type application/grpc or \
+         application/grpc-web",
+        request.uri().path()
+    );
+    Problem::of_status(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
+}
+
+/// The answer to a gRPC call over an HTTP that cannot carry it.
+#[must_use]
+pub fn needs_http2(request: &Request) -> Response {
+    let detail = format!(
+        "`{}` is a gRPC method; allowed: gRPC over HTTP/2, gRPC-Web over any HTTP",
+        request.uri().path()
+    );
+    Problem::of_status(StatusCode::HTTP_VERSION_NOT_SUPPORTED, detail)
 }

@@ -187,7 +187,7 @@ fn asked(
     let (parameters, faults) = parse_pairs(uri.query().unwrap_or_default());
     let entry = parameters.entry(service.catalog(), name, faults)?;
     let freshness = Freshness::of(uri, headers, content_type, &entry.digest);
-    Ok((entry, freshness.pinned(parameters.table.is_some())))
+    Ok((entry, freshness.pinned(parameters.get("table").is_some())))
 }
 
 fn typed(body: Vec<u8>, content_type: &'static str, freshness: &Freshness) -> Response {

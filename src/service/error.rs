@@ -114,6 +114,12 @@ pub enum Error {
         /// What there is.
         available: String,
     },
+    /// The set has no point with that id.
+    #[error("there is no point `{id}` in this set of points")]
+    NoSuchPoint {
+        /// The id.
+        id: String,
+    },
     /// Nothing is at that path.
     #[error("there is nothing at `{path}`; available: {available}")]
     NoSuchPath {
@@ -164,6 +170,8 @@ pub enum Kind {
     OtherTable,
     /// [`Error::NotAcceptable`].
     NotAcceptable,
+    /// [`Error::NoSuchPoint`].
+    NoSuchPoint,
     /// [`Error::NoSuchPath`].
     NoSuchPath,
     /// [`Error::NoSuchMethod`].
@@ -178,12 +186,13 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Invalid,
         Self::TooManyPoints,
         Self::TooManyRows,
         Self::OtherTable,
         Self::NotAcceptable,
+        Self::NoSuchPoint,
         Self::NoSuchPath,
         Self::NoSuchMethod,
         Self::Busy,
@@ -202,6 +211,7 @@ impl Error {
             Self::TooManyRows { .. } => Kind::TooManyRows,
             Self::OtherTable { .. } => Kind::OtherTable,
             Self::NotAcceptable { .. } => Kind::NotAcceptable,
+            Self::NoSuchPoint { .. } => Kind::NoSuchPoint,
             Self::NoSuchPath { .. } => Kind::NoSuchPath,
             Self::NoSuchMethod { .. } => Kind::NoSuchMethod,
             Self::Busy { .. } => Kind::Busy,

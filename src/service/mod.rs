@@ -13,6 +13,7 @@ pub mod error;
 mod planned;
 mod portrait;
 pub mod query;
+mod single;
 pub mod stream;
 pub mod workers;
 
@@ -22,13 +23,14 @@ use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
 use serde::{Deserialize, Serialize};
 
+pub use cache::Ready;
 pub use catalog::{Catalog, Entry, Key};
 pub use encode::{Answer, Encoding, Output};
-pub use cache::Ready;
 pub use error::{Error, Fault, Kind};
 pub use planned::{Placed, Planned, PlannedSet};
 pub use portrait::Portrait;
 pub use query::{Draft, Query, Set};
+pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::Workers;
 

@@ -255,7 +255,12 @@ impl Planned {
 }
 
 fn token(identity: &[u8; 32], set: usize, before: u128, cursor: Cursor) -> Token {
-    Token::new(identity, u16::try_from(set).unwrap_or(u16::MAX), before, cursor)
+    Token::new(
+        identity,
+        u16::try_from(set).unwrap_or(u16::MAX),
+        before,
+        cursor,
+    )
 }
 
 /// Plans sets one after another, each knowing the layers before it.
@@ -321,19 +326,19 @@ impl Planner<'_> {
             let layer = layer.ok_or(Error::Internal("a layer is not planned yet"))?;
             ClearOf::new(layer, distance).map_err(|error| {
                 let allowed = format!("above 0, at most {:e}", error.limit);
-                set.fault("clear_of", distance, "the distance is out of range", allowed)
+                set.fault(
+                    "clear_of",
+                    distance,
+                    "the distance is out of range",
+                    allowed,
+                )
             })
         });
         clear.collect()
     }
 
     /// The plan with exactly as many points as are asked for.
-    fn count(
-        &self,
-        set: &Set,
-        ready: &Ready,
-        selection: &mut Selection,
-    ) -> Result<Plan, Error> {
+    fn count(&self, set: &Set, ready: &Ready, selection: &mut Selection) -> Result<Plan, Error> {
         let Amount::Count(count) = set.amount else {
             return Err(Error::Internal("an amount is not resolved"));
         };
@@ -353,9 +358,10 @@ impl Planner<'_> {
         let allowed = super::query::AMOUNT;
         let plan = ready.sampler.select_count(selection, count.into());
         plan.map_err(|error| match error {
-            CountError::Plan(error) => {
-                self.query.region.too_far(selection.placement.spacing, &error)
-            }
+            CountError::Plan(error) => self
+                .query
+                .region
+                .too_far(selection.placement.spacing, &error),
             other => set.fault("count", count, other.to_string(), allowed),
         })
     }
@@ -406,11 +412,10 @@ impl Planner<'_> {
 
 /// What an amount is on its table; `None` for a count, which needs a region.
 fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>, Error> {
-    let fault = |field, value: f64, detail: String| {
-        set.fault(field, value, detail, super::query::AMOUNT)
-    };
-    let wrong = |field, value: f64| move |error: strew_core::sample::SpacingError| {
-        fault(field, value, error.to_string())
+    let fault =
+        |field, value: f64, detail: String| set.fault(field, value, detail, super::query::AMOUNT);
+    let wrong = |field, value: f64| {
+        move |error: strew_core::sample::SpacingError| fault(field, value, error.to_string())
     };
     match set.amount {
         Amount::Density(density) => {
@@ -422,15 +427,18 @@ fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>, Error> {
             Ok(Some((spacing, spacing.density())))
         }
         Amount::MinDistance(distance) => {
-            let spacing = ready.least.spacing_for(distance, set.warp).map_err(|error| {
-                let detail = match error {
-                    DistanceError::NoPromise { .. } => {
-                        format!("profile `{}`: {error}", set.key.profile)
-                    }
-                    other => other.to_string(),
-                };
-                fault("min_distance", distance, detail)
-            })?;
+            let spacing = ready
+                .least
+                .spacing_for(distance, set.warp)
+                .map_err(|error| {
+                    let detail = match error {
+                        DistanceError::NoPromise { .. } => {
+                            format!("profile `{}`: {error}", set.key.profile)
+                        }
+                        other => other.to_string(),
+                    };
+                    fault("min_distance", distance, detail)
+                })?;
             Ok(Some((spacing, spacing.density())))
         }
         Amount::Count(_) => Ok(None),
@@ -440,4 +448,3 @@ fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>, Error> {
 fn least_distance(set: &Set, ready: &Ready, spacing: Spacing) -> f64 {
     ready.least.with_warp(set.warp) * spacing.get()
 }
-

@@ -106,7 +106,7 @@ fn told(place: &str, given: &Given) -> Value {
 }
 
 /// The JSON Schema of a parameter's values, as they are once read.
-fn schema(shape: Shape) -> Value {
+pub(super) fn schema(shape: Shape) -> Value {
     match shape {
         Shape::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
         Shape::Integer { min, max } => {

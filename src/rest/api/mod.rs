@@ -5,6 +5,7 @@
 //! [`rest::endpoints`](super::endpoints).
 
 mod document;
+mod query;
 pub(super) mod schemas;
 
 use axum::{Router, response::Response, routing::MethodRouter};

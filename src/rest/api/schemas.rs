@@ -2,6 +2,8 @@
 
 use serde_json::{Value, json};
 
+use super::query;
+
 use crate::{error_map, service::Kind};
 
 /// A reference to a schema of the document.
@@ -63,17 +65,32 @@ pub(super) fn shared() -> Value {
             "x": number(),
             "y": number(),
         })),
-        "Query": object(json!({
-            "bbox": { "type": "array", "items": number(), "minItems": 4, "maxItems": 4 },
-            "density": number(),
-            "spacing": number(),
-            "profile": text(),
-            "alpha": text(),
-            "map": text(),
-            "seed": count(),
-            "warp": number(),
-            "format": text(),
-        })),
+        "Query": {
+            "type": "object",
+            "description": "A query as it was understood: of one set of points, or of layers.",
+            "required": ["bbox"],
+            "properties": echo(),
+        },
+        "Set": {
+            "type": "object",
+            "description": "A set of points as it was understood.",
+            "required": SET_REQUIRED,
+            "properties": set_echo(),
+        },
+        "Found": {
+            "type": "object",
+            "description": "A point, with a member for each attribute asked for.",
+            "required": ["id", "x", "y"],
+            "properties": {
+                "id": { "type": "string", "pattern": "^-?[0-9]+:-?[0-9]+$" },
+                "x": number(),
+                "y": number(),
+                "distance": number(),
+            },
+        },
+        "PointsQuery": query::schema(),
+        "Region": query::region(),
+        "Layer": query::layer(),
         "Table": object(json!({
             "profile": text(),
             "alpha": text(),
@@ -81,18 +98,75 @@ pub(super) fn shared() -> Value {
             "digest": reference("Digest"),
             "algorithm": count(),
         })),
-        "Points": object(json!({
-            "query": reference("Query"),
-            "table": reference("Table"),
-            "count": count(),
-            "points": { "type": "array", "items": reference("Point") },
-        })),
+        "Points": {
+            "type": "object",
+            "required": ["query", "count", "points"],
+            "properties": {
+                "query": reference("Query"),
+                "table": reference("Table"),
+                "tables": { "type": "array", "items": reference("Table") },
+                "count": count(),
+                "next": text(),
+                "points": { "type": "array", "items": reference("Point") },
+            },
+        },
         "Digest": {
             "type": "string",
             "pattern": "^[0-9a-f]{64}$",
             "description": "The BLAKE3 digest of a table's file.",
         },
     })
+}
+
+/// What is always there of a set of points.
+const SET_REQUIRED: [&str; 8] = [
+    "density",
+    "spacing",
+    "least_distance",
+    "profile",
+    "alpha",
+    "map",
+    "seed",
+    "warp",
+];
+
+fn set_echo() -> Value {
+    let text = || json!({ "type": "string" });
+    let number = || json!({ "type": "number" });
+    json!({
+        "name": text(),
+        "region": reference("Region"),
+        "density": number(),
+        "spacing": number(),
+        "least_distance": { "type": "number", "description": "No two points are nearer." },
+        "profile": text(),
+        "alpha": text(),
+        "map": text(),
+        "seed": { "type": "integer", "minimum": 0 },
+        "warp": number(),
+        "keep": number(),
+        "attributes": { "type": "array", "items": { "type": "object" } },
+        "clear_of": { "type": "object", "additionalProperties": number() },
+    })
+}
+
+fn echo() -> Value {
+    let count = || json!({ "type": "integer", "minimum": 0 });
+    let mut members = set_echo();
+    let number = json!({ "type": "number" });
+    let others = json!({
+        "bbox": { "type": "array", "items": number, "minItems": 4, "maxItems": 4 },
+        "layers": { "type": "array", "items": reference("Set") },
+        "offset": count(),
+        "limit": count(),
+        "format": { "type": "string" },
+        "decimals": count(),
+        "relative_to": { "type": "array", "items": number, "minItems": 2, "maxItems": 2 },
+    });
+    if let (Some(members), Value::Object(others)) = (members.as_object_mut(), others) {
+        members.extend(others);
+    }
+    members
 }
 
 /// Every problem type that a Strew server knows; and what a library below it may say.

@@ -67,6 +67,17 @@ impl Head {
     }
 }
 
+impl Tables {
+    /// What stands under `table`, or a list of such.
+    pub(super) fn content(&self) -> serde_json::Value {
+        let written = match self {
+            Self::Table(table) => serde_json::to_value(table),
+            Self::Tables(tables) => serde_json::to_value(tables),
+        };
+        written.unwrap_or_default()
+    }
+}
+
 impl TableEcho {
     fn new(entry: &Entry) -> Self {
         let Entry {

@@ -1,6 +1,6 @@
 //! Rows for tests: two layers with attributes of every kind, and their answers.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use bytes::Bytes;
 use strew_core::Point;
@@ -9,7 +9,10 @@ use super::{
     Answer, Attributes, Output, Part,
     schema::{Column, Values},
 };
-use crate::service::{Catalog, Draft, Planned};
+use crate::service::{
+    Catalog, Draft, Limits, Planned,
+    query::{AmountDraft, RegionDraft, SetDraft, ShapeDraft},
+};
 
 /// An angle for every point and a name out of a list; the angle is half the id's column.
 #[derive(Debug)]
@@ -47,15 +50,33 @@ impl Attributes for Marks {
 
 /// A planned query of the embedded tables.
 pub(super) fn planned(bbox: [f64; 4], spacing: f64, seed: u64) -> Planned {
-    let catalog = Catalog::load(true, None).expect("embedded tables");
+    static CATALOG: LazyLock<Catalog> =
+        LazyLock::new(|| Catalog::load(true, None).expect("embedded tables"));
     let draft = Draft {
-        bbox: Some(bbox),
-        spacing: Some(spacing),
-        seed,
+        region: Some(RegionDraft {
+            path: "bbox".into(),
+            shape: ShapeDraft::Box(bbox),
+        }),
+        set: SetDraft {
+            amount: AmountDraft {
+                spacing: Some(spacing),
+                ..AmountDraft::default()
+            },
+            seed: Some(seed),
+            ..SetDraft::default()
+        },
         ..Draft::default()
     };
-    let query = draft.check(&catalog, vec![]).expect("a query");
-    Planned::from_catalog(&catalog, query).expect("a plan")
+    let query = draft.check(&CATALOG, 100, vec![]).expect("a query");
+    let limits = Limits {
+        max_points: 1_000_000,
+        max_rows: 1_000_000,
+        max_vertices: 100,
+        max_streams: 1,
+        block_bytes: 4096,
+        cache_bytes: 0,
+    };
+    Planned::from_catalog(&CATALOG, query, &limits).expect("a plan")
 }
 
 /// The whole answer of both layers, and its size as said before.
@@ -79,7 +100,7 @@ pub(super) fn parts() -> Vec<Part> {
     vec![
         part(
             "trees",
-            planned(bbox, 1.0, 1).plan,
+            planned(bbox, 1.0, 1).sets[0].plan.clone(),
             Marks {
                 names: &["oak", "birch"],
                 has_angle: true,
@@ -87,7 +108,9 @@ pub(super) fn parts() -> Vec<Part> {
         ),
         part(
             "rocks",
-            planned([-10.0, 7.0, 30.0, 40.5], 2.0, 2).plan,
+            planned([-10.0, 7.0, 30.0, 40.5], 2.0, 2).sets[0]
+                .plan
+                .clone(),
             Marks {
                 names: &["grey, \"old\"", "oak", "flint"],
                 has_angle: false,

@@ -38,10 +38,14 @@ impl AmountDraft {
     pub(super) fn check(self, path: &str) -> Result<Amount, Fault> {
         let field = |name: &str| format!("{path}{name}");
         let given = [
-            self.density.map(|v| ("density", number(v), Amount::Density(v))),
-            self.spacing.map(|v| ("spacing", number(v), Amount::Spacing(v))),
-            self.min_distance.map(|v| ("min_distance", number(v), Amount::MinDistance(v))),
-            self.count.map(|v| ("count", v.to_string(), Amount::Count(v))),
+            self.density
+                .map(|v| ("density", number(v), Amount::Density(v))),
+            self.spacing
+                .map(|v| ("spacing", number(v), Amount::Spacing(v))),
+            self.min_distance
+                .map(|v| ("min_distance", number(v), Amount::MinDistance(v))),
+            self.count
+                .map(|v| ("count", v.to_string(), Amount::Count(v))),
         ];
         let mut given = given.into_iter().flatten();
         let Some((name, value, amount)) = given.next() else {
@@ -51,9 +55,8 @@ impl AmountDraft {
             let detail = format!("{name} is given, too, as {value}");
             return Err(Fault::new(&field(other), second, detail, AMOUNT));
         }
-        let out_of_range = |allowed: String| {
-            Fault::new(&field(name), &value, "it is out of range", allowed)
-        };
+        let out_of_range =
+            |allowed: String| Fault::new(&field(name), &value, "it is out of range", allowed);
         let spacing = match amount {
             Amount::Density(density) => Spacing::from_density(density),
             Amount::Spacing(spacing) => Spacing::new(spacing),

@@ -34,7 +34,12 @@ impl AttributesDraft {
         let field = |name: &str| format!("{path}{name}");
         let unused = |name: &str, value: String, by: &str| {
             let detail = format!("it means nothing without the attribute {by}");
-            Fault::new(&field(name), value, detail, format!("{by} among attributes"))
+            Fault::new(
+                &field(name),
+                value,
+                detail,
+                format!("{by} among attributes"),
+            )
         };
         let has = |name: &str| self.names.iter().any(|other| other == name);
         if let Some(range) = self.scale_range
@@ -73,10 +78,19 @@ impl AttributesDraft {
                 let Some(variants) = &self.variants else {
                     return Err(Fault::missing(&field("variants"), VARIANTS));
                 };
-                let pairs = variants.iter().map(|(name, weight)| (name.as_str(), *weight));
-                Variants::new(pairs).map(Attribute::Variant).map_err(|error| {
-                    Fault::new(&field("variants"), joined(variants), error.to_string(), VARIANTS)
-                })
+                let pairs = variants
+                    .iter()
+                    .map(|(name, weight)| (name.as_str(), *weight));
+                Variants::new(pairs)
+                    .map(Attribute::Variant)
+                    .map_err(|error| {
+                        Fault::new(
+                            &field("variants"),
+                            joined(variants),
+                            error.to_string(),
+                            VARIANTS,
+                        )
+                    })
             }
             name => name.parse().map_err(|error: AttributeError| {
                 Fault::new(&field("attributes"), name, error.to_string(), ATTRIBUTES)
@@ -106,7 +120,9 @@ pub(super) fn echo(attributes: &Attributes) -> Value {
 
 /// As a text has them.
 fn joined(variants: &[(String, f64)]) -> String {
-    let pairs = variants.iter().map(|(name, weight)| format!("{name}:{}", number(*weight)));
+    let pairs = variants
+        .iter()
+        .map(|(name, weight)| format!("{name}:{}", number(*weight)));
     pairs.collect::<Vec<_>>().join(",")
 }
 

@@ -37,8 +37,20 @@ pub struct Body {
 const DEEPEST: usize = 8;
 /// The members of a set of points.
 const SET: [&str; 14] = [
-    "density", "spacing", "min_distance", "count", "profile", "alpha", "map", "table", "seed",
-    "warp", "keep", "attributes", "scale_range", "variants",
+    "density",
+    "spacing",
+    "min_distance",
+    "count",
+    "profile",
+    "alpha",
+    "map",
+    "table",
+    "seed",
+    "warp",
+    "keep",
+    "attributes",
+    "scale_range",
+    "variants",
 ];
 
 /// Reads a body.
@@ -58,11 +70,15 @@ pub fn read_body(bytes: &[u8]) -> Result<Body, Error> {
     };
     let mut faults = Faults::default();
     let mut reader = Reader::new("", &members, &mut faults);
-    let mut known = vec!["region", "layers", "offset", "limit", "cursor", "format", "decimals"];
+    let mut known = vec![
+        "region", "layers", "offset", "limit", "cursor", "format", "decimals",
+    ];
     known.extend(SET);
     reader.only(&known);
     let draft = Draft {
-        region: reader.member("region", REGION, |value, reader| region(value, "region", 0, reader)),
+        region: reader.member("region", REGION, |value, reader| {
+            region(value, "region", 0, reader)
+        }),
         set: set(&mut reader),
         layers: layers(&mut reader),
         window: WindowDraft {
@@ -72,14 +88,15 @@ pub fn read_body(bytes: &[u8]) -> Result<Body, Error> {
         },
     };
     let options = Options {
-        encoding: reader.text("format", "the name of a format").and_then(|name| {
-            let encoding = Encoding::from_name(&name);
-            if encoding.is_none() {
-                let allowed = Encoding::ALL.map(Encoding::name).join(", ");
-                reader.fault("format", &name, "there is no such format", &allowed);
-            }
-            encoding
-        }),
+        encoding: reader
+            .text("format", "the name of a format")
+            .and_then(|name| {
+                let encoding = Encoding::from_name(&name);
+                if encoding.is_none() {
+                    reader.found(super::text::no_format("format", &name));
+                }
+                encoding
+            }),
         decimals: reader.integer("decimals", DECIMALS).and_then(|n| {
             let decimals = u8::try_from(n).ok().filter(|n| *n <= MOST_DECIMALS);
             if decimals.is_none() {
@@ -87,7 +104,6 @@ pub fn read_body(bytes: &[u8]) -> Result<Body, Error> {
             }
             decimals
         }),
-        ..Options::default()
     };
     Ok(Body {
         draft,
@@ -149,7 +165,10 @@ fn variants(value: &Value) -> Option<Vec<(String, f64)>> {
             .iter()
             .map(|item| {
                 let name = item.get("name")?.as_str()?;
-                Some((name.into(), item.get("weight").map_or(Some(1.0), Value::as_f64)?))
+                Some((
+                    name.into(),
+                    item.get("weight").map_or(Some(1.0), Value::as_f64)?,
+                ))
             })
             .collect(),
         Value::String(text) => super::text::variants_of(text),
@@ -176,7 +195,12 @@ fn layers(reader: &mut Reader<'_>) -> Vec<LayerDraft> {
     if layers.is_empty()
         && let Some(value) = reader.members().get("layers")
     {
-        reader.fault("layers", &value.to_string(), "there is no layer in it", LAYERS);
+        reader.fault(
+            "layers",
+            &value.to_string(),
+            "there is no layer in it",
+            LAYERS,
+        );
     }
     layers
 }
@@ -205,21 +229,24 @@ fn layer(path: &str, members: &Map<String, Value>, outer: &mut Reader<'_>) -> La
 }
 
 /// A region; `None` with a fault of its own, or for a value that is no region at all.
-fn region(
-    value: &Value,
-    path: &str,
-    depth: usize,
-    outer: &mut Reader<'_>,
-) -> Option<RegionDraft> {
+fn region(value: &Value, path: &str, depth: usize, outer: &mut Reader<'_>) -> Option<RegionDraft> {
     let members = value.as_object()?;
     let kinds = ["bbox", "circle", "polygon", "chunk", "include"];
-    let given: Vec<&str> = kinds.into_iter().filter(|kind| members.contains_key(*kind)).collect();
+    let given: Vec<&str> = kinds
+        .into_iter()
+        .filter(|kind| members.contains_key(*kind))
+        .collect();
     let [kind] = given.as_slice() else {
         return None;
     };
     let mut reader = outer.inner(&format!("{path}."), members);
     let exclude = (*kind == "include").then_some("exclude");
-    reader.only(&[Some(*kind), exclude].into_iter().flatten().collect::<Vec<_>>());
+    reader.only(
+        &[Some(*kind), exclude]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>(),
+    );
     let shape = match *kind {
         "bbox" => reader.member("bbox", BOX, |value, _| numbers(value).map(ShapeDraft::Box)),
         "circle" => reader.member("circle", CIRCLE, |value, _| {
@@ -229,10 +256,18 @@ fn region(
         "polygon" => reader.member("polygon", POLYGON, |value, _| polygons(value)),
         "chunk" => reader.member("chunk", CHUNK, |value, _| {
             let at = |name| value.get(name).and_then(Value::as_i64);
-            Some(ShapeDraft::Chunk(value.get("size")?.as_f64()?, [at("x")?, at("y")?]))
+            Some(ShapeDraft::Chunk(
+                value.get("size")?.as_f64()?,
+                [at("x")?, at("y")?],
+            ))
         }),
         _ if depth == DEEPEST => {
-            reader.fault("include", "", "lists are nested too deeply", "8 levels at most");
+            reader.fault(
+                "include",
+                "",
+                "lists are nested too deeply",
+                "8 levels at most",
+            );
             None
         }
         _ => {
@@ -288,6 +323,10 @@ fn rings(value: &Value) -> Option<Rings> {
 
 /// So many numbers.
 fn numbers<const N: usize>(value: &Value) -> Option<[f64; N]> {
-    let numbers: Vec<f64> = value.as_array()?.iter().map(Value::as_f64).collect::<Option<_>>()?;
+    let numbers: Vec<f64> = value
+        .as_array()?
+        .iter()
+        .map(Value::as_f64)
+        .collect::<Option<_>>()?;
     numbers.try_into().ok()
 }

@@ -69,7 +69,11 @@ impl Token {
             })
         };
         let token = read().ok_or_else(fault)?;
-        if rest.is_empty() { Ok(token) } else { Err(fault()) }
+        if rest.is_empty() {
+            Ok(token)
+        } else {
+            Err(fault())
+        }
     }
 
     /// Checks that it belongs to the query with this identity.

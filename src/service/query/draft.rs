@@ -3,8 +3,11 @@
 use strew_core::{Placement, Seed, Spacing, Warp, sample::Keep};
 
 use super::{
-    AmountDraft, AttributesDraft, KEEP, MOST_LAYERS, Query, RegionDraft, Set, TableDraft,
-    WARP, Window, cursor::Token, faults::Faults, number,
+    AmountDraft, AttributesDraft, KEEP, MOST_LAYERS, Query, RegionDraft, Set, TableDraft, WARP,
+    Window,
+    cursor::Token,
+    faults::Faults,
+    number,
     region::{Budget, REGION},
 };
 use crate::service::{Catalog, Error, Fault};
@@ -208,6 +211,7 @@ impl SetDraft {
             keep: keep?.unwrap_or(Keep::ALL),
             attributes: attributes?,
             key: key?,
+            is_pinned: self.table.table.is_some(),
             path,
             name: String::new(),
             seed,
@@ -245,7 +249,9 @@ impl SetDraft {
             ("keep", self.keep.map(number)),
             ("attributes", (!names.is_empty()).then(|| names.join(","))),
         ];
-        let given = all.into_iter().filter_map(|(name, value)| Some((name, value?)));
+        let given = all
+            .into_iter()
+            .filter_map(|(name, value)| Some((name, value?)));
         given.collect()
     }
 }

@@ -35,7 +35,7 @@ pub use echo::{Resolved, ResolvedSet};
 pub use parameters::{PARAMETERS, Parameter, Shape};
 pub use region::{Asked, RegionDraft, Rings, ShapeDraft};
 pub use table::TableDraft;
-pub use text::{Parameters, parse_pairs, read_bbox};
+pub use text::{Around, Parameters, parse_pairs, read_bbox};
 
 /// The profile of a query that names none.
 pub const DEFAULT_PROFILE: &str = "blue";
@@ -90,6 +90,8 @@ pub struct Set {
     pub name: String,
     /// The table.
     pub key: Key,
+    /// Whether the query names its digest.
+    pub is_pinned: bool,
     /// How many points.
     pub amount: Amount,
     /// The seed.
@@ -104,6 +106,14 @@ pub struct Set {
     pub region: Option<Asked>,
     /// The layers that are kept clear of, by position, with the distance; all before this one.
     pub clear_of: Vec<(usize, f64)>,
+}
+
+impl Query {
+    /// Whether it names the digests of all of its tables, so that its answer never changes.
+    #[must_use]
+    pub fn is_pinned(&self) -> bool {
+        self.sets.iter().all(|set| set.is_pinned)
+    }
 }
 
 impl Set {

@@ -196,7 +196,10 @@ pub const PARAMETERS: &[Parameter] = &[
         about: "The share of points to keep, those of the lowest rank: a smaller share keeps some \
                 of the points of a larger one.",
         allowed: KEEP,
-        shape: Shape::Number { min: 1e-6, max: 1.0 },
+        shape: Shape::Number {
+            min: 1e-6,
+            max: 1.0,
+        },
         default: Some("1"),
         example: "0.5",
     },
@@ -206,7 +209,9 @@ pub const PARAMETERS: &[Parameter] = &[
                 2π), scale (within scale_range), variant (one of variants, by weight), rank (0 to \
                 1, see keep), u1 to u16 (uniform, 0 to 1).",
         allowed: ATTRIBUTES,
-        shape: Shape::Pattern("^(angle|scale|variant|rank|u([1-9]|1[0-6]))(,(angle|scale|variant|rank|u([1-9]|1[0-6])))*$"),
+        shape: Shape::Pattern(
+            "^(angle|scale|variant|rank|u([1-9]|1[0-6]))(,(angle|scale|variant|rank|u([1-9]|1[0-6])))*$",
+        ),
         default: Some("none"),
         example: "angle,u1",
     },

@@ -189,7 +189,11 @@ impl RegionDraft {
                 fault(format!("{which}{error}"), POLYGON.into())
             })
         };
-        let areas: Vec<Area> = polygons.iter().enumerate().map(read).collect::<Result<_, _>>()?;
+        let areas: Vec<Area> = polygons
+            .iter()
+            .enumerate()
+            .map(read)
+            .collect::<Result<_, _>>()?;
         if areas.is_empty() {
             return Err(fault("there is no polygon".into(), REGION.into()));
         }

@@ -26,6 +26,17 @@ pub struct Parameters {
     values: BTreeMap<&'static str, String>,
 }
 
+/// Which neighbors are asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Around {
+    /// The place.
+    pub at: [f64; 2],
+    /// How many at most.
+    pub k: Option<usize>,
+    /// How far away at most.
+    pub radius: Option<f64>,
+}
+
 /// Parameters with the faults found so far.
 pub type Parsed = (Parameters, Vec<Fault>);
 
@@ -76,9 +87,8 @@ impl Parameters {
     /// Names that are no parameter's are left out.
     #[must_use]
     pub fn of<'a>(given: impl IntoIterator<Item = (&'a str, Option<String>)>) -> Self {
-        let known = |(name, value): (&str, Option<String>)| {
-            Some((Parameter::named(name)?.name, value?))
-        };
+        let known =
+            |(name, value): (&str, Option<String>)| Some((Parameter::named(name)?.name, value?));
         Self {
             values: given.into_iter().filter_map(known).collect(),
         }
@@ -181,7 +191,7 @@ impl Parameters {
     ///
     /// # Errors
     /// Every fault.
-    pub fn around(&self) -> Result<([f64; 2], Option<usize>, Option<f64>), Vec<Fault>> {
+    pub fn around(&self) -> Result<Around, Vec<Fault>> {
         let mut faults = Faults::default();
         let at = self.read("at", PLACE, numbers, &mut faults);
         if self.get("at").is_none() {
@@ -192,7 +202,11 @@ impl Parameters {
         let distance = |text: &str| finite(text).filter(|radius| *radius >= 0.0);
         let radius = self.read("radius", RADIUS, distance, &mut faults);
         match at {
-            Some(at) if faults.is_empty() => Ok((at, k.and_then(|k| k.try_into().ok()), radius)),
+            Some(at) if faults.is_empty() => Ok(Around {
+                at,
+                k: k.and_then(|k| k.try_into().ok()),
+                radius,
+            }),
             _ => Err(faults.into_inner()),
         }
     }
@@ -212,7 +226,9 @@ impl Parameters {
         if self.get("parts").is_none() {
             faults.add(Fault::missing("parts", PARTS));
         }
-        parts.filter(|_| faults.is_empty()).ok_or_else(|| faults.into_inner())
+        parts
+            .filter(|_| faults.is_empty())
+            .ok_or_else(|| faults.into_inner())
     }
 
     /// The value of a parameter, if it is given and can be read.
@@ -232,7 +248,10 @@ impl Parameters {
     }
 
     fn region(&self, faults: &mut Faults) -> Option<RegionDraft> {
-        let given: Vec<&str> = REGION.into_iter().filter(|name| self.get(name).is_some()).collect();
+        let given: Vec<&str> = REGION
+            .into_iter()
+            .filter(|name| self.get(name).is_some())
+            .collect();
         let (name, text) = match given.as_slice() {
             [] => {
                 faults.add(Fault::missing("bbox", BOX));
@@ -248,12 +267,12 @@ impl Parameters {
         };
         let shape = match name {
             "bbox" => faults.take(read_bbox(Some(text)))?.map(ShapeDraft::Box),
-            "circle" => self.read(name, CIRCLE, numbers, faults).map(|[x, y, radius]| {
-                ShapeDraft::Circle([x, y], radius)
-            }),
-            _ => self.read(name, POLYGON, vertices, faults).map(|ring| {
-                ShapeDraft::Polygons(vec![vec![ring]])
-            }),
+            "circle" => self
+                .read(name, CIRCLE, numbers, faults)
+                .map(|[x, y, radius]| ShapeDraft::Circle([x, y], radius)),
+            _ => self
+                .read(name, POLYGON, vertices, faults)
+                .map(|ring| ShapeDraft::Polygons(vec![vec![ring]])),
         };
         let path = name.into();
         Some(RegionDraft {
@@ -296,26 +315,33 @@ impl Parameters {
     }
 
     fn options(&self, faults: &mut Faults) -> Options {
-        let format = |text: &str| {
-            Encoding::from_name(text).ok_or_else(|| {
-                let allowed = Encoding::ALL.map(Encoding::name).join(", ");
-                Fault::new("format", text, "there is no such format", allowed)
-            })
-        };
+        let format =
+            |text: &str| Encoding::from_name(text).ok_or_else(|| no_format("format", text));
         let encoding = self.get("format").map(format).transpose();
         let decimals = |text: &str| text.parse().ok().filter(|n| *n <= MOST_DECIMALS);
         Options {
             encoding: faults.take(encoding).flatten(),
             decimals: self.read("decimals", DECIMALS, decimals, faults),
-            ..Options::default()
         }
     }
 }
 
 /// The parameters that say what the points of a set are.
 const SET: [&str; 14] = [
-    "density", "spacing", "min_distance", "count", "profile", "alpha", "map", "table", "seed",
-    "warp", "keep", "attributes", "scale_range", "variants",
+    "density",
+    "spacing",
+    "min_distance",
+    "count",
+    "profile",
+    "alpha",
+    "map",
+    "table",
+    "seed",
+    "warp",
+    "keep",
+    "attributes",
+    "scale_range",
+    "variants",
 ];
 /// The parameters that say where.
 const REGION: [&str; 3] = ["bbox", "circle", "polygon"];
@@ -344,6 +370,17 @@ pub fn read_bbox(text: Option<&str>) -> Result<Option<[f64; 4]>, Fault> {
         *corner = number(part).map_err(|detail| fault(format!("{name} is `{part}`, {detail}")))?;
     }
     Ok(Some(corners))
+}
+
+/// The fault of a format that queries do not have.
+pub(super) fn no_format(field: &str, text: &str) -> Fault {
+    let allowed = Encoding::ALL.map(Encoding::name).join(", ");
+    let detail = if text == Encoding::Parquet.name() {
+        "it is made by `strew sample` only"
+    } else {
+        "there is no such format"
+    };
+    Fault::new(field, text, detail, allowed)
 }
 
 /// `off`, `on` or a number.

@@ -14,11 +14,7 @@ pub(super) struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// `path` is put before the names of members.
-    pub(super) fn new(
-        path: &str,
-        members: &'a Map<String, Value>,
-        faults: &'a mut Faults,
-    ) -> Self {
+    pub(super) fn new(path: &str, members: &'a Map<String, Value>, faults: &'a mut Faults) -> Self {
         Self {
             path: path.into(),
             members,
@@ -31,13 +27,21 @@ impl<'a> Reader<'a> {
     }
 
     /// A reader of an object within this one.
-    pub(super) fn inner<'b>(&'b mut self, path: &str, members: &'b Map<String, Value>) -> Reader<'b> {
+    pub(super) fn inner<'b>(
+        &'b mut self,
+        path: &str,
+        members: &'b Map<String, Value>,
+    ) -> Reader<'b> {
         Reader::new(path, members, self.faults)
     }
 
     pub(super) fn fault(&mut self, name: &str, value: &str, detail: &str, allowed: &str) {
         let field = format!("{}{name}", self.path);
         self.faults.add(Fault::new(&field, value, detail, allowed));
+    }
+
+    pub(super) fn found(&mut self, fault: Fault) {
+        self.faults.add(fault);
     }
 
     /// A fault of something named by its whole path.

@@ -1,0 +1,187 @@
+//! Answers with points, whichever path asks for them: checked, planned, streamed.
+
+use axum::{body::Body, response::Response};
+use http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
+use serde_json::{Value, json};
+use strew_core::ALGORITHM_VERSION;
+
+use super::{
+    api::{self, schemas},
+    coding,
+    freshness::Freshness,
+    negotiate::{self, Chosen},
+};
+use crate::service::{
+    Answer, Error, Kind, Planned, Query, Service,
+    encode::{Options, write_number},
+};
+
+const COUNT: HeaderName = HeaderName::from_static("strew-count");
+const TABLE: HeaderName = HeaderName::from_static("strew-table");
+const ALGORITHM: HeaderName = HeaderName::from_static("strew-algorithm");
+const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
+
+const NEXT: HeaderName = HeaderName::from_static("strew-next");
+
+/// A request, as far as it decides how an answer is sent.
+#[derive(Debug)]
+pub(super) struct Asked {
+    pub(super) method: Method,
+    pub(super) uri: Uri,
+    pub(super) headers: HeaderMap,
+}
+
+/// The headers of an answer with points, and what they say.
+const HEADERS: [(&str, &str); 5] = [
+    ("strew-count", "Exactly how many points follow."),
+    ("strew-table", "The digest of the table that answers."),
+    (
+        "strew-algorithm",
+        "The version of the algorithm that answers.",
+    ),
+    (
+        "strew-origin",
+        "What coordinates are relative to: with f32 the lower corner of a box around the region, \
+         with a chunk its corner.",
+    ),
+    (
+        "strew-next",
+        "With a limit: the cursor of the points after these, if there are any.",
+    ),
+];
+
+/// The content types of points, with what they hold.
+fn contents() -> Vec<(String, Value)> {
+    let schema = |content_type: &str| match content_type {
+        "application/json" => schemas::reference("Points"),
+        _ => json!({}),
+    };
+    negotiate::content_types()
+        .into_iter()
+        .map(|content_type| (content_type.into(), schema(content_type)))
+        .collect()
+}
+
+/// The problems that any answer with points can have.
+pub(super) fn problems() -> Vec<Kind> {
+    vec![
+        Kind::Invalid,
+        Kind::NotAcceptable,
+        Kind::OtherTable,
+        Kind::TooManyPoints,
+        Kind::TooManyRows,
+        Kind::Busy,
+        Kind::ShuttingDown,
+    ]
+}
+
+/// The answer with points, as a path tells it.
+pub(super) fn told() -> api::Answer {
+    api::Answer {
+        status: 200,
+        about: "The points.",
+        headers: HEADERS.into(),
+        contents: contents(),
+    }
+}
+
+/// Answers a checked query.
+pub(super) async fn stream(
+    service: &Service,
+    asked: &Asked,
+    query: Query,
+    options: Options,
+) -> Result<Response, Error> {
+    let Asked {
+        method, headers, ..
+    } = asked;
+    let chosen = match options.encoding {
+        Some(encoding) => Chosen::named(encoding),
+        None => negotiate::accepted(headers)?,
+    };
+    let mut output = options.output(chosen.encoding)?;
+    output.relative_to = query.region.corner;
+    let freshness = freshness(service, asked, &query, chosen.content_type)?;
+    // A body is not part of the address, so what it asks for is not kept by caches.
+    let can_be_kept = *method != Method::POST;
+    if let Some(unchanged) = freshness.unchanged(headers).filter(|_| can_be_kept) {
+        return Ok(unchanged);
+    }
+    let is_head = *method == Method::HEAD;
+    let permit = (!is_head).then(|| service.streams().admit()).transpose()?;
+    let planned = service.plan(query).await?;
+    if let Some(unwanted) = freshness.unwanted(headers).filter(|_| can_be_kept) {
+        return Ok(unwanted);
+    }
+    let answer = Answer::new(&planned, &output, service.limits().block_bytes)?;
+    let mut response_headers = describe(&planned, &answer, chosen)?;
+    let body = match permit {
+        // Without a body there is nothing to stream, and HTTP wants to hear so at once.
+        _ if answer.size() == Some(0) => Body::empty(),
+        None => coding::unknown_length(),
+        Some(permit) => Body::from_stream(service.blocks(permit, answer)),
+    };
+    let mut response = Response::new(body);
+    std::mem::swap(response.headers_mut(), &mut response_headers);
+    if can_be_kept {
+        freshness.stamp(&mut response);
+    }
+    Ok(response)
+}
+
+/// How fresh the answer to a query is, whatever part of it is asked for.
+pub(super) fn freshness(
+    service: &Service,
+    asked: &Asked,
+    query: &Query,
+    content_type: &'static str,
+) -> Result<Freshness, Error> {
+    let entries = service.entries(query)?;
+    let digests: Vec<&str> = entries.iter().map(|entry| entry.digest.as_str()).collect();
+    let window = &query.window;
+    let made_of = (
+        query.identity(&digests),
+        (window.offset, window.limit),
+        window.cursor.map(|token| token.to_string()),
+        service.limits().max_points,
+    );
+    let freshness = Freshness::of(&asked.uri, &asked.headers, content_type, &made_of);
+    Ok(freshness.pinned(query.is_pinned()))
+}
+
+/// The headers of an answer.
+fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<HeaderMap, Error> {
+    let text = |text: &str| {
+        HeaderValue::from_str(text).map_err(|_| Error::Internal("a header is not text"))
+    };
+    let count = u64::try_from(planned.count())
+        .map_err(|_| Error::Internal("a count within the limit is too large"))?;
+    let mut headers = HeaderMap::new();
+    headers.insert(
+        header::CONTENT_TYPE,
+        HeaderValue::from_static(chosen.content_type),
+    );
+    headers.insert(header::VARY, HeaderValue::from_static("accept"));
+    headers.insert(COUNT, count.into());
+    let digests: Vec<&str> = planned
+        .sets
+        .iter()
+        .map(|set| set.entry.digest.as_str())
+        .collect();
+    headers.insert(TABLE, text(&digests.join(", "))?);
+    if let Some(token) = planned.next() {
+        headers.insert(NEXT, text(&token.to_string())?);
+    }
+    headers.insert(ALGORITHM, ALGORITHM_VERSION.into());
+    if let Some([x, y]) = answer.origin() {
+        let mut origin = vec![];
+        write_number(x, &mut origin);
+        origin.push(b',');
+        write_number(y, &mut origin);
+        headers.insert(ORIGIN, text(&String::from_utf8_lossy(&origin))?);
+    }
+    if let Some(size) = answer.size() {
+        headers.insert(header::CONTENT_LENGTH, size.into());
+    }
+    Ok(headers)
+}

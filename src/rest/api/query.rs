@@ -1,0 +1,145 @@
+//! The JSON Schemas of queries as bodies.
+
+use serde_json::{Map, Value, json};
+
+use super::{document, schemas::reference};
+use crate::service::query::Parameter;
+
+/// The members that say what the points of a set are, by the parameters of the same name.
+const SET: [&str; 11] = [
+    "density",
+    "spacing",
+    "min_distance",
+    "count",
+    "profile",
+    "alpha",
+    "map",
+    "table",
+    "seed",
+    "warp",
+    "keep",
+];
+
+fn members(names: &[&str]) -> Map<String, Value> {
+    let member = |name: &&str| {
+        let parameter = Parameter::named(name)?;
+        let mut schema = document::schema(parameter.shape);
+        schema["description"] = parameter.about.into();
+        Some((String::from(*name), schema))
+    };
+    names.iter().filter_map(member).collect()
+}
+
+fn set() -> Map<String, Value> {
+    let mut set = members(&SET);
+    let text = json!({ "type": "string" });
+    let about = |name| Parameter::named(name).map_or("", |parameter| parameter.about);
+    let others = json!({
+        "attributes": { "type": "array", "items": text, "description": about("attributes") },
+        "scale_range": {
+            "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2,
+            "description": about("scale_range"),
+        },
+        "variants": {
+            "type": "object", "additionalProperties": { "type": "number" },
+            "description": about("variants"),
+        },
+    });
+    if let Value::Object(others) = others {
+        set.extend(others);
+    }
+    set
+}
+
+/// A whole query.
+pub(super) fn schema() -> Value {
+    let mut properties = set();
+    properties.extend(members(&[
+        "offset", "limit", "cursor", "format", "decimals",
+    ]));
+    properties.insert("region".into(), reference("Region"));
+    let layers = json!({
+        "type": "array", "minItems": 1, "maxItems": 16, "items": reference("Layer"),
+        "description": "Several sets of points at once, instead of one.",
+    });
+    properties.insert("layers".into(), layers);
+    json!({
+        "type": "object",
+        "description": "Which points are asked for. A region must be given, and how densely points \
+                        lie, once or for each layer.",
+        "required": ["region"],
+        "properties": properties,
+        "additionalProperties": false,
+    })
+}
+
+/// One of several sets of points.
+pub(super) fn layer() -> Value {
+    let mut properties = set();
+    let others = json!({
+        "name": { "type": "string", "pattern": "^[A-Za-z0-9_.-]{1,64}$" },
+        "region": reference("Region"),
+        "clear_of": {
+            "type": "object", "additionalProperties": { "type": "number" },
+            "description": "Names of earlier layers and the distances kept from their points.",
+        },
+    });
+    if let Value::Object(others) = others {
+        properties.extend(others);
+    }
+    json!({
+        "type": "object",
+        "required": ["name"],
+        "properties": properties,
+        "additionalProperties": false,
+    })
+}
+
+/// A region of any kind.
+pub(super) fn region() -> Value {
+    let number = || json!({ "type": "number" });
+    let numbers =
+        |n: u32| json!({ "type": "array", "items": number(), "minItems": n, "maxItems": n });
+    let regions = || json!({ "type": "array", "items": reference("Region") });
+    let object = |properties: Value, required: &[&str]| {
+        json!({
+            "type": "object",
+            "required": required,
+            "properties": properties,
+            "additionalProperties": false,
+        })
+    };
+    let circle = object(
+        json!({ "center": numbers(2), "radius": number() }),
+        &["center", "radius"],
+    );
+    let chunk = object(
+        json!({
+            "size": number(),
+            "x": { "type": "integer" },
+            "y": { "type": "integer" },
+        }),
+        &["size", "x", "y"],
+    );
+    let polygon = json!({
+        "type": "object",
+        "description": "A GeoJSON Polygon or MultiPolygon, holes included.",
+        "required": ["type", "coordinates"],
+        "properties": {
+            "type": { "type": "string", "enum": ["Polygon", "MultiPolygon"] },
+            "coordinates": { "type": "array" },
+        },
+    });
+    let combined = json!({ "include": regions(), "exclude": regions() });
+    json!({
+        "description": "Where: a half-open box, a circle, polygons, a square of the world grid, or \
+                        what lies in any of some regions and in none of others.",
+        "oneOf": [
+            object(json!({ "bbox": numbers(4) }), &["bbox"]),
+            object(json!({ "circle": circle }), &["circle"]),
+            object(json!({ "polygon": polygon }), &["polygon"]),
+            object(json!({ "chunk": chunk }), &["chunk"]),
+            object(combined, &["include"]),
+        ],
+    })
+}

@@ -1,0 +1,124 @@
+//! Single points: by id, and near a place.
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+use strew_core::{
+    Point, PointId,
+    sample::{Attribute, FindError, Neighbor},
+};
+
+use super::{Error, Fault, Placed, query::Around};
+
+/// A point with its attributes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Found {
+    /// Its id as text.
+    pub id: String,
+    /// Its x.
+    pub x: f64,
+    /// Its y.
+    pub y: f64,
+    /// How far it is from the place asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub distance: Option<f64>,
+    /// Its attributes by name.
+    #[serde(flatten)]
+    pub attributes: Map<String, Value>,
+}
+
+/// The most points within a radius.
+pub const MOST_WITHIN: usize = 10_000;
+
+impl Placed {
+    /// The point of an id.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a text that is no id, [`Error::NoSuchPoint`] if the set has no point
+    /// there.
+    pub fn point(&self, id: &str) -> Result<Found, Error> {
+        const ID: &str = "two integers joined by a colon, such as -31:52";
+        let read = id
+            .parse::<PointId>()
+            .map_err(|_| Error::Invalid(vec![Fault::new("id", id, "it is not a point id", ID)]))?;
+        let point = self.ready.sampler.point(self.placement, read);
+        let point = point.ok_or_else(|| Error::NoSuchPoint { id: id.into() })?;
+        Ok(self.found(&point, None))
+    }
+
+    /// The nearest points of a place, nearest first: `k` at most and within `radius`, where these
+    /// are given; else the nearest one.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a place too far out or too many points.
+    pub fn nearest(&self, around: Around) -> Result<Vec<Found>, Error> {
+        let Around { at, k, radius } = around;
+        let finder = self.ready.sampler.finder(self.placement);
+        let found = match (k, radius) {
+            (k, None) => finder.nearest(at, k.unwrap_or(1)),
+            (None, Some(radius)) => finder.within(at, radius, MOST_WITHIN),
+            (Some(k), Some(radius)) => finder.nearest(at, k).map(|mut found| {
+                found.retain(|neighbor| neighbor.distance <= radius);
+                found
+            }),
+        };
+        let found = found.map_err(|error| fault(around, &error))?;
+        let found = found
+            .iter()
+            .map(|Neighbor { point, distance }| self.found(point, Some(*distance)));
+        Ok(found.collect())
+    }
+
+    fn found(&self, point: &Point, distance: Option<f64>) -> Found {
+        let list = self.set.attributes.as_slice();
+        let bound = self
+            .set
+            .attributes
+            .bind(&self.ready.sampler, self.placement);
+        let value = |(i, attribute): (usize, &Attribute)| {
+            let number = bound.value(i, point.id).unwrap_or_default();
+            let value = match attribute {
+                Attribute::Variant(variants) => variants.name(number as u32).into(),
+                _ => number.into(),
+            };
+            (attribute.name().to_owned(), value)
+        };
+        Found {
+            id: point.id.to_string(),
+            x: point.x,
+            y: point.y,
+            distance,
+            attributes: list.iter().enumerate().map(value).collect(),
+        }
+    }
+}
+
+fn fault(Around { at, k, radius }: Around, error: &FindError) -> Error {
+    let (field, value, allowed) = match error {
+        FindError::Radius(value) => (
+            "radius",
+            value.to_string(),
+            "a finite number from 0 on".into(),
+        ),
+        FindError::TooManyNearest(value) => {
+            ("k", value.to_string(), "an integer from 1 to 10000".into())
+        }
+        FindError::TooMany { limit, .. } => match (radius, k) {
+            (Some(radius), _) => (
+                "radius",
+                radius.to_string(),
+                format!("a radius with at most {limit} points within"),
+            ),
+            (None, k) => (
+                "k",
+                k.unwrap_or(1).to_string(),
+                "fewer neighbors, or a larger share to keep".into(),
+            ),
+        },
+        _ => (
+            "at",
+            format!("{},{}", at[0], at[1]),
+            "a place near enough to the origin for points to be told apart".into(),
+        ),
+    };
+    Error::Invalid(vec![Fault::new(field, value, error.to_string(), allowed)])
+}
