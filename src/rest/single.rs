@@ -44,7 +44,7 @@ const ID: &[Parameter] = &[Parameter {
     allowed: "two integers joined by a colon, such as -31:52",
     shape: Shape::Pattern("^-?[0-9]+:-?[0-9]+$"),
     default: None,
-    example: "1:3",
+    example: "0:0",
 }];
 
 /// The path of points by id.
@@ -65,7 +65,7 @@ pub(super) fn by_id(service: Arc<Service>) -> Endpoint {
             api::Answer::unchanged(),
         ],
         problems: vec![Kind::Invalid, Kind::OtherTable, Kind::NoSuchPoint],
-        example: "'/v1/points/1:3?spacing=1&attributes=angle'".into(),
+        example: "'/v1/points/0:0?spacing=1&attributes=angle'".into(),
     };
     let handler = routing::get(point);
     Endpoint::new("/v1/points/{id}", service, vec![(operation, handler)])

@@ -294,8 +294,7 @@ fn region(value: &Value, path: &str, depth: usize, outer: &mut Reader<'_>) -> Op
         "include" => path.into(),
         kind => format!("{path}.{kind}"),
     };
-    // What is wrong with it has been said; an empty region is not checked further.
-    let shape = shape.unwrap_or_else(|| ShapeDraft::Combined(vec![], vec![]));
+    let shape = shape.unwrap_or(ShapeDraft::Unread);
     Some(RegionDraft { path, shape })
 }
 

@@ -48,6 +48,8 @@ pub enum ShapeDraft {
     Chunk(f64, [i64; 2]),
     /// What lies in any region of the first list and in none of the second.
     Combined(Vec<RegionDraft>, Vec<RegionDraft>),
+    /// Something that could not be read, as has been said.
+    Unread,
 }
 
 /// A checked region.
@@ -126,6 +128,7 @@ impl RegionDraft {
             }
             ShapeDraft::Polygons(polygons) => faults.take(self.polygons(polygons, budget)),
             ShapeDraft::Chunk(size, at) => faults.take(self.chunk(*size, *at)).map(Area::from),
+            ShapeDraft::Unread => None,
             ShapeDraft::Combined(include, exclude) => {
                 if include.is_empty() {
                     let field = format!("{}.include", self.path);
@@ -238,6 +241,7 @@ impl RegionDraft {
             ShapeDraft::Chunk(size, [x, y]) => {
                 json!({ "chunk": { "size": size, "x": x, "y": y } })
             }
+            ShapeDraft::Unread => Value::Null,
             ShapeDraft::Combined(include, exclude) => {
                 json!({ "include": list(include), "exclude": list(exclude) })
             }
