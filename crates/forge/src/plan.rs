@@ -62,13 +62,16 @@ impl Plan {
             });
         }
         if let Recipe::Radial(_) = profile.recipe {
-            // It is optimized on α itself.
+            // It is optimized on unbounded patterns.
             ground.twins.clear();
         }
         let panel = Panel::new(&ground.map, &ground.twins);
         Ok(Self {
             profile,
-            panel: target.iter().cloned().fold(panel, Panel::with_target),
+            panel: match &target {
+                Some(target) => panel.with_target(target.clone(), &ground.map),
+                None => panel,
+            },
             name: job.profile.clone(),
             target,
             ground,
@@ -94,6 +97,10 @@ impl Plan {
                 more => format!("target_{}", more + 1),
             };
             parameters.push((name, text));
+        }
+        if let Recipe::Radial(_) = self.profile.recipe {
+            let alphas = self.ground.spread().len();
+            parameters.push(("alphas".into(), alphas.to_string()));
         }
         parameters.push(("jitter".into(), self.profile.jitter.to_string()));
         parameters.push(("steps".into(), self.steps.to_string()));

@@ -4,6 +4,7 @@ mod descent;
 mod overlap;
 mod pairs;
 mod radial;
+mod rings;
 mod sets;
 mod start;
 mod watch;
