@@ -106,12 +106,15 @@ pub(super) const GREEN: Profile = Profile {
     summary: "Green noise: silent up to nu 0.42, a broad peak at 0.62, flat from 0.9 on",
     recipe: Recipe::Radial(RadialRecipe {
         curve: &[[0.0, 0.0], [0.42, 0.0], [0.62, 3.0], [0.9, 1.0]],
-        weights: WEIGHTS,
+        weights: RadialWeights {
+            quiet: 0.8,
+            ..WEIGHTS
+        },
         warm_share: 0.0,
         rate: 0.05,
     }),
     jitter: 0.7,
-    steps: 150,
+    steps: 200,
     bounds: &[
         Bound::at_most(Figure::QuietPower, 0.01),
         Bound::at_least(Figure::PeakPower, 2.5),
@@ -121,16 +124,14 @@ pub(super) const GREEN: Profile = Profile {
     ],
 };
 
-/// Power falls as 1/ν, from 7 at ν = 0.1 to 1 at 0.7: clusters of all sizes.
+/// Power falls as 1/ν, from 5.5 at ν = 0.127 to 1 at 0.7: clusters of all sizes.
 pub(super) const PINK: Profile = Profile {
     name: "pink",
-    summary: "Pink noise: power falls as 1/nu from 7 at nu 0.1 to 1 at nu 0.7, flat beyond",
+    summary: "Pink noise: power falls as 1/nu from 5.5 at nu 0.127 to 1 at nu 0.7, flat beyond",
     recipe: Recipe::Radial(RadialRecipe {
         curve: &[
-            [0.1, 7.0],
-            [0.11, 6.3636],
-            [0.12, 5.8333],
-            [0.13, 5.3846],
+            [0.1, 5.5],
+            [0.1273, 5.5],
             [0.145, 4.8276],
             [0.16, 4.375],
             [0.18, 3.8889],
@@ -152,52 +153,52 @@ pub(super) const PINK: Profile = Profile {
             ..WEIGHTS
         },
         warm_share: 0.0,
-        rate: 0.1,
+        rate: 0.05,
     }),
     jitter: 0.7,
-    steps: 300,
+    steps: 250,
     bounds: &[
         Bound::at_most(Figure::TargetRelative, 0.1),
-        Bound::at_most(Figure::TailWorst, 0.05),
+        Bound::at_most(Figure::TailWorst, 0.1),
     ],
 };
 
-/// No power up to ν = 0.7, one peak, one dip, flat from 1.57 on: quiet farther out than a step can
-/// be, without the oscillations of sharper sets. Among the smooth curves that rise so late, one
-/// whose distances are possible: the density of pairs that it asks for is hardly below 0 anywhere.
+/// No power up to ν = 0.67, one peak, a shallow dip, flat from 1.9 on: quiet farther out than a step
+/// can be, without the oscillations of sharper sets. The curve is one that sets can have: drawn
+/// steeper, it is missed by 0.1, or power comes back at low frequencies.
 pub(super) const SINGLE_PEAK: Profile = Profile {
     name: "single-peak",
-    summary: "Single-peak blue noise: no power up to nu 0.7, one peak, a dip, flat from nu 1.57 on",
+    summary: "Single-peak blue noise: no power up to nu 0.67, one peak, a shallow dip, flat from nu 1.9 on",
     recipe: Recipe::Radial(RadialRecipe {
         curve: &[
             [0.0, 0.0],
-            [0.7, 0.0],
-            [0.73, 0.048],
-            [0.75, 0.122],
-            [0.77, 0.241],
-            [0.79, 0.407],
-            [0.81, 0.618],
-            [0.85, 1.133],
-            [0.89, 1.647],
-            [0.93, 2.034],
-            [0.96, 2.2],
-            [0.99, 2.26],
-            [1.02, 2.21],
-            [1.05, 2.077],
-            [1.09, 1.797],
-            [1.15, 1.292],
-            [1.19, 0.983],
-            [1.23, 0.747],
-            [1.27, 0.606],
-            [1.31, 0.556],
-            [1.35, 0.578],
-            [1.39, 0.653],
-            [1.47, 0.86],
-            [1.53, 0.973],
-            [1.57, 1.0],
+            [0.668, 0.0],
+            [0.708, 0.04],
+            [0.749, 0.16],
+            [0.789, 0.38],
+            [0.83, 0.7],
+            [0.87, 1.09],
+            [0.911, 1.48],
+            [0.951, 1.82],
+            [0.992, 2.02],
+            [1.032, 2.07],
+            [1.073, 1.97],
+            [1.113, 1.77],
+            [1.154, 1.5],
+            [1.194, 1.21],
+            [1.235, 0.98],
+            [1.275, 0.84],
+            [1.316, 0.77],
+            [1.356, 0.75],
+            [1.417, 0.78],
+            [1.518, 0.86],
+            [1.619, 0.9],
+            [1.72, 0.93],
+            [1.822, 0.96],
+            [1.9, 1.0],
         ],
         weights: RadialWeights {
-            quiet: 1.0,
+            quiet: 1.5,
             ..WEIGHTS
         },
         warm_share: 0.3,
@@ -207,7 +208,7 @@ pub(super) const SINGLE_PEAK: Profile = Profile {
     steps: 400,
     bounds: &[
         Bound::at_most(Figure::LowPower, 1e-3),
-        Bound::at_least(Figure::NuEff, 0.815),
+        Bound::at_least(Figure::NuEff, 0.81),
         Bound::at_most(Figure::TargetRms, 0.035),
     ],
 };
