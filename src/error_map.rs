@@ -30,6 +30,11 @@ pub const fn http(kind: Kind) -> Problem {
             "too-many-points",
             "The answer would have too many points",
         ),
+        Kind::OtherTable => (
+            StatusCode::CONFLICT,
+            "other-table",
+            "Another table would answer",
+        ),
         Kind::NotAcceptable => (
             StatusCode::NOT_ACCEPTABLE,
             "not-acceptable",
@@ -64,12 +69,19 @@ pub const fn http(kind: Kind) -> Problem {
     }
 }
 
+/// The problem type of a kind of error.
+#[must_use]
+pub fn urn(kind: Kind) -> String {
+    format!("urn:strew:problem:{}", http(kind).slug)
+}
+
 /// What a kind of error is in gRPC.
 #[must_use]
 pub const fn grpc(kind: Kind) -> Code {
     match kind {
         Kind::Invalid | Kind::NotAcceptable => Code::InvalidArgument,
         Kind::TooManyPoints | Kind::Busy => Code::ResourceExhausted,
+        Kind::OtherTable => Code::FailedPrecondition,
         Kind::NoSuchPath | Kind::NoSuchMethod => Code::Unimplemented,
         Kind::ShuttingDown => Code::Unavailable,
         Kind::Internal => Code::Internal,

@@ -1,23 +1,32 @@
 //! `strew forge`: makes a table, judges it, writes it.
 
 use std::{
-    path::PathBuf,
-    sync::{
-        Arc, Mutex, PoisonError,
-        atomic::{AtomicBool, Ordering},
-    },
+    fs,
+    io::Read as _,
+    path::{Path, PathBuf},
+    time::Duration,
 };
 
 use anyhow::{Context as _, anyhow};
 use strew_core::Alpha;
 use strew_forge::{
-    DEFAULT_SEED, ForgeError, Job, Outcome, Stage, Target, Watch, file_name, forge, write_table,
+    Checkpoint, Complaint, DEFAULT_SEED, Estimate, ForgeError, Job, Outcome, Target, file_name,
+    forge, resume, write_table,
 };
 
-use super::{Failure, progress::Progress};
+use super::{Failure, watcher::Watcher};
 use crate::service::query::{DEFAULT_ALPHA, DEFAULT_PROFILE};
 
+/// Checkpoints lie beside the table, with this behind its name.
+const CHECKPOINT: &str = ".checkpoint";
+/// No file of a curve is larger.
+const MAX_TARGET_BYTES: u64 = 1 << 20;
+
 /// Flags of `strew forge`. Equal jobs make equal tables, bit by bit, on every machine.
+///
+/// Now and then, and on an interrupt, the forge keeps a checkpoint beside the table, under its name
+/// with `.checkpoint` behind it. The same command goes on from there, to the same table as without
+/// the interruption; it is removed when the table is written.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// The noise profile.
@@ -32,8 +41,11 @@ pub(super) struct Args {
     /// The seed of the random start.
     #[arg(long, default_value_t = DEFAULT_SEED)]
     seed: u64,
-    /// A radial power curve to follow: lines of two columns, frequency and power. --profile then names
-    /// the new profile.
+    /// A radial power curve to follow. Either lines of two columns, frequency and power, joined by
+    /// straight pieces; or TOML: `[[piece]]` with `from` and `to`, each beginning where the last one
+    /// ended, and `power = P` (level), `power = [P0, P1]` (straight) or
+    /// `law = { power = P, at = N, exponent = E }`, which is P (nu/N)^E. Beyond the end the power is 1.
+    /// --profile then names the new profile.
     #[arg(long, value_name = "FILE", requires = "profile")]
     target: Option<PathBuf>,
     /// Steps of the optimizer [default: the profile's].
@@ -51,9 +63,16 @@ pub(super) struct Args {
     /// Replace a file that is there.
     #[arg(long)]
     force: bool,
-    /// Write the table also if it misses a bound of its profile.
+    /// Write the table also if it misses a bound of its profile, or if the work is interrupted before
+    /// it is judged.
     #[arg(long)]
     keep_rejected: bool,
+    /// Begin anew, whatever checkpoint there is.
+    #[arg(long)]
+    restart: bool,
+    /// Keep a checkpoint so often, in seconds; 0 after every step.
+    #[arg(long, value_name = "SECONDS", default_value_t = 10)]
+    checkpoint_every: u64,
     /// Say nothing on standard error but errors.
     #[arg(long, short)]
     quiet: bool,
@@ -79,8 +98,17 @@ impl Args {
         let Some(file) = &self.target else {
             return Ok(None);
         };
-        let text = std::fs::read_to_string(file)
+        let mut text = String::new();
+        fs::File::open(file)
+            .and_then(|open| open.take(MAX_TARGET_BYTES + 1).read_to_string(&mut text))
             .with_context(|| format!("cannot read {}", file.display()))?;
+        if text.len() as u64 > MAX_TARGET_BYTES {
+            let problem = anyhow!(
+                "{} is larger than any power curve: at most {MAX_TARGET_BYTES} bytes are read",
+                file.display()
+            );
+            return Err(Failure::Usage(problem));
+        }
         let target = text
             .parse()
             .with_context(|| format!("{} is not a power curve", file.display()));
@@ -92,6 +120,13 @@ impl Args {
         let usual = || folder().join(file_name(&job.profile, job.alpha, job.radius));
         self.output.clone().unwrap_or_else(usual)
     }
+}
+
+/// The checkpoint's place beside a table.
+fn checkpoint_path(table: &Path) -> PathBuf {
+    let mut name = table.as_os_str().to_owned();
+    name.push(CHECKPOINT);
+    name.into()
 }
 
 /// Makes the table.
@@ -108,40 +143,133 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         .build()
         .context("cannot start threads")?;
     let estimate = pool.install(|| job.estimate()).map_err(usage)?;
+    let kept = checkpoint_path(&path);
+    let found = pool.install(|| args.checkpoint(&job, &kept))?;
     if !args.quiet {
+        announce(&path, &estimate);
+        if let Some(found) = &found {
+            let (steps, from) = (found.steps(), kept.display());
+            eprintln!(
+                "going on at step {steps} of {}, from {from}",
+                estimate.steps
+            );
+        }
+    }
+    let every = Duration::from_secs(args.checkpoint_every);
+    let watcher = Watcher::new(&kept, every, args.quiet)?;
+    let outcome = pool.install(|| match found {
+        None => forge(&job, &watcher),
+        Some(found) => resume(&job, found, &watcher),
+    });
+    let outcome = outcome.map_err(usage)?;
+    watcher.finish();
+    if outcome.interrupted {
+        return interrupted(args, &path, &outcome, &watcher);
+    }
+    conclude(args, &path, &outcome)?;
+    // The table is there; what is left of the work serves nobody.
+    match fs::remove_file(&kept) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            let problem = anyhow!(error).context(format!("cannot remove {}", kept.display()));
+            Err(Failure::Other(problem))
+        }
+        _ => Ok(()),
+    }
+}
+
+impl Args {
+    /// The checkpoint to go on from, if there is one of this job.
+    fn checkpoint(&self, job: &Job, path: &Path) -> Result<Option<Checkpoint>, Failure> {
+        if self.restart {
+            return Ok(None);
+        }
+        let advice = "--restart begins anew and replaces it";
+        let found = Checkpoint::read_file(path)
+            .map_err(|error| Failure::Usage(anyhow!("{error}; {advice}")))?;
+        let Some(found) = found else {
+            return Ok(None);
+        };
+        match found.is_of(job) {
+            Ok(()) => Ok(Some(found)),
+            Err(error) if found.is_optimized() => {
+                // A rejected table's: it spares no more than that job's steps.
+                if !self.quiet {
+                    eprintln!("beginning anew: {}: {error}", path.display());
+                }
+                Ok(None)
+            }
+            Err(error) => Err(Failure::Usage(anyhow!(
+                "{}: {error}; finish that job, or {advice}",
+                path.display()
+            ))),
+        }
+    }
+}
+
+/// Says what will be done, and whether it can succeed.
+fn announce(path: &Path, estimate: &Estimate) {
+    eprintln!(
+        "forging {}: {} blocks, {} steps over {} pairs, judged on {} points; about {:.0} s",
+        path.display(),
+        estimate.blocks,
+        estimate.steps,
+        estimate.pairs,
+        estimate.measured_points,
+        estimate.time.as_secs_f64().max(1.0)
+    );
+    if let Some(least) = estimate.correlation.filter(|least| least.is_impossible()) {
         eprintln!(
-            "forging {}: {} blocks, {} steps over {} pairs, judged on {} points; about {:.0} s",
-            path.display(),
-            estimate.blocks,
-            estimate.steps,
-            estimate.pairs,
-            estimate.measured_points,
-            estimate.time.as_secs_f64().max(1.0)
+            "warning: no point set has exactly this power curve: its pair correlation would be \
+             {:.2} at distance {:.2} (in mean spacings); what comes nearest is looked for",
+            least.g, least.r
         );
     }
-    let watcher = Watcher::new(args.quiet)?;
-    let outcome = pool.install(|| forge(&job, &watcher)).map_err(usage)?;
-    watcher.finish();
-    conclude(args, &path, &outcome)
+}
+
+/// Says where interrupted work can go on.
+fn interrupted(
+    args: &Args,
+    path: &Path,
+    outcome: &Outcome,
+    watcher: &Watcher,
+) -> Result<(), Failure> {
+    let mut said = String::from("interrupted");
+    if args.keep_rejected {
+        write_table(path, &outcome.table).map_err(|error| Failure::Other(error.into()))?;
+        println!("{}  {}", outcome.table.digest(), path.display());
+        said += &format!("; {} holds the best so far, not judged", path.display());
+    }
+    if watcher.has_kept() {
+        let force = if args.keep_rejected {
+            " with --force"
+        } else {
+            ""
+        };
+        let kept = checkpoint_path(path);
+        said += &format!("; the same command{force} goes on from {}", kept.display());
+    }
+    Err(Failure::Interrupted(anyhow!(said)))
 }
 
 /// Writes what may be written and says how it went.
-fn conclude(args: &Args, path: &std::path::Path, outcome: &Outcome) -> Result<(), Failure> {
-    let complaints: Vec<String> = outcome.complaints.iter().map(ToString::to_string).collect();
-    let judged = outcome.accepted || outcome.interrupted || args.keep_rejected;
-    if !judged {
+fn conclude(args: &Args, path: &Path, outcome: &Outcome) -> Result<(), Failure> {
+    let complaints = gravest(&outcome.complaints);
+    let nearness = outcome.nearness.as_ref().map(|near| {
+        let met = if outcome.accepted { "met" } else { "missed" };
+        format!("the target is {met}: {near}")
+    });
+    if !outcome.accepted && !args.keep_rejected {
+        let why: Vec<String> = nearness.into_iter().chain(complaints).collect();
         return Err(Failure::Other(anyhow!(
-            "the table is rejected and not written (--keep-rejected would): {}",
-            complaints.join("; ")
+            "the table is rejected and not written (the same command with --keep-rejected writes \
+             it): {}",
+            why.join("; ")
         )));
     }
     write_table(path, &outcome.table).map_err(|error| Failure::Other(error.into()))?;
     println!("{}  {}", outcome.table.digest(), path.display());
-    if outcome.interrupted {
-        return Err(Failure::Other(anyhow!(
-            "interrupted: {} holds the best so far, not judged",
-            path.display()
-        )));
+    if let Some(nearness) = nearness.filter(|_| !args.quiet) {
+        eprintln!("{nearness}");
     }
     for complaint in complaints {
         eprintln!("kept although rejected: {complaint}");
@@ -149,61 +277,25 @@ fn conclude(args: &Args, path: &std::path::Path, outcome: &Outcome) -> Result<()
     Ok(())
 }
 
-/// Shows how far the work is and passes on an interrupt.
-struct Watcher {
-    interrupted: Arc<AtomicBool>,
-    quiet: bool,
-    shown: Mutex<Option<(Stage, Progress)>>,
-}
-
-impl Watcher {
-    fn new(quiet: bool) -> anyhow::Result<Self> {
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let flag = interrupted.clone();
-        ctrlc::set_handler(move || {
-            // The first interrupt ends the work in good order, the second at once.
-            if flag.swap(true, Ordering::Relaxed) {
-                std::process::exit(130);
+/// Of the complaints about each figure the gravest, in words.
+fn gravest(complaints: &[Complaint]) -> Vec<String> {
+    let excess = |c: &Complaint| (c.value - c.bound.limit).abs();
+    let mut said: Vec<(&Complaint, usize)> = Vec::new();
+    for complaint in complaints {
+        let same = |(known, _): &&mut (&Complaint, usize)| known.bound == complaint.bound;
+        match said.iter_mut().find(same) {
+            None => said.push((complaint, 1)),
+            Some((known, count)) => {
+                *count += 1;
+                if excess(complaint) > excess(known) || complaint.value.is_nan() {
+                    *known = complaint;
+                }
             }
-        })
-        .context("cannot listen for interrupts")?;
-        Ok(Self {
-            interrupted,
-            quiet,
-            shown: Mutex::new(None),
-        })
-    }
-
-    fn finish(&self) {
-        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, progress)) = shown.take() {
-            progress.finish();
         }
     }
-}
-
-impl Watch for Watcher {
-    fn progress(&self, now: &strew_forge::Progress) {
-        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
-        if shown.as_ref().is_none_or(|(stage, _)| *stage != now.stage) {
-            if let Some((_, last)) = shown.take() {
-                last.finish();
-            }
-            let what = match now.stage {
-                Stage::Optimizing => "steps",
-                Stage::Measuring => "point sets measured",
-            };
-            *shown = Some((now.stage, Progress::new(what, now.steps.into(), self.quiet)));
-        }
-        if let Some((_, progress)) = shown.as_mut() {
-            let note = now
-                .energy
-                .map_or(String::new(), |energy| format!("energy {energy:.9}"));
-            progress.reach(now.step.into(), &note);
-        }
-    }
-
-    fn stop(&self) -> bool {
-        self.interrupted.load(Ordering::Relaxed)
-    }
+    let words = |(complaint, count): (&Complaint, usize)| match count {
+        1 => complaint.to_string(),
+        _ => format!("{complaint} (missed on {count} point sets)"),
+    };
+    said.into_iter().map(words).collect()
 }

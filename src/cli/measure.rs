@@ -15,7 +15,7 @@ use strew_forge::{
 use super::{
     Failure,
     output::Output,
-    query::{Query, described},
+    query::{Looks, Query, described},
 };
 
 /// Flags of `strew measure`. What is measured: a table file (`--table`), a file of points
@@ -177,7 +177,7 @@ fn square([min_x, min_y, max_x, max_y]: [f64; 4]) -> anyhow::Result<([f64; 2], f
 
 fn of_query(args: &Args) -> Result<Report, Failure> {
     let config = args.query.settings()?;
-    let (planned, _) = args.query.planned(&config, None)?;
+    let (planned, _) = args.query.planned(&config, &Looks::default())?;
     let (corner, side) = square(planned.query.bbox()).map_err(Failure::Usage)?;
     if planned.count() > MAX_POINTS || planned.count() < 100 {
         let problem = anyhow!(

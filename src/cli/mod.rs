@@ -9,6 +9,7 @@ mod query;
 mod sample;
 mod serve;
 mod table;
+mod watcher;
 
 use std::process::ExitCode;
 
@@ -44,9 +45,14 @@ enum Command {
 pub(crate) enum Failure {
     /// Wrong flags or settings: 2.
     Usage(anyhow::Error),
+    /// Stopped from outside, in good order: 130.
+    Interrupted(anyhow::Error),
     /// Anything else: 1.
     Other(anyhow::Error),
 }
+
+/// The exit code after an interrupt, as shells have it.
+const INTERRUPTED: u8 = 130;
 
 impl From<anyhow::Error> for Failure {
     fn from(error: anyhow::Error) -> Self {
@@ -68,6 +74,7 @@ pub fn main() -> ExitCode {
     let (error, code) = match done {
         Ok(()) => return ExitCode::SUCCESS,
         Err(Failure::Usage(error)) => (error, 2),
+        Err(Failure::Interrupted(error)) => (error, INTERRUPTED),
         Err(Failure::Other(error)) => (error, 1),
     };
     eprintln!("error: {error:#}");

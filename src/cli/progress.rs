@@ -15,6 +15,8 @@ pub(super) struct Progress {
     bar: Option<ProgressBar>,
     what: &'static str,
     total: u64,
+    /// Units that were done before.
+    first: u64,
     quiet: bool,
     started: Instant,
     said: Instant,
@@ -37,10 +39,22 @@ impl Progress {
             bar,
             what,
             total,
+            first: 0,
             quiet,
             started: now,
             said: now,
         }
+    }
+
+    /// The same when `first` units were done in an earlier run.
+    pub(super) fn going_on_at(mut self, first: u64) -> Self {
+        self.first = first;
+        if let Some(bar) = &self.bar {
+            // The time left is told by what this run does.
+            bar.set_position(first);
+            bar.reset_eta();
+        }
+        self
     }
 
     /// `done` units of the work are behind; `note` says more.
@@ -59,7 +73,9 @@ impl Progress {
     fn line(&self, done: u64, note: &str) -> String {
         let share = done as f64 / self.total.max(1) as f64;
         let elapsed = self.started.elapsed();
-        let left = elapsed.mul_f64((1.0 / share.max(1e-9) - 1.0).clamp(0.0, 1e6));
+        let here = done.saturating_sub(self.first).max(1) as f64;
+        let to_do = self.total.saturating_sub(done) as f64;
+        let left = elapsed.mul_f64((to_do / here).clamp(0.0, 1e6));
         format!(
             "{:.0}% of {} {} {note} ({} so far, about {} left)",
             100.0 * share,

@@ -6,8 +6,9 @@ use super::{Failure, config};
 use crate::{
     config::Config,
     service::{
-        Catalog, Encoding, Planned,
+        Catalog, Planned,
         catalog::CatalogError,
+        encode::Options,
         query::{Parameters, read_bbox},
     },
 };
@@ -39,8 +40,22 @@ pub(super) struct Query {
     /// off, on, or the strength of the warp, 0 to 2 [default: off for seed 0, else on].
     #[arg(long, allow_hyphen_values = true)]
     warp: Option<String>,
+    /// The digest of the table that has to make them.
+    #[arg(long, value_name = "DIGEST")]
+    table: Option<String>,
     #[command(flatten)]
     settings: config::Args,
+}
+
+/// How an answer is to look.
+#[derive(Debug, Default, clap::Args)]
+pub(super) struct Looks {
+    /// json, ndjson, csv, f32 or f64 [default: what the output's name ends with, or json].
+    #[arg(long)]
+    format: Option<String>,
+    /// Decimals of numbers in text formats, 0 to 17 [default: the shortest digits that read back].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    decimals: Option<String>,
 }
 
 impl Query {
@@ -49,12 +64,12 @@ impl Query {
         self.settings.merged()
     }
 
-    /// The query, checked and planned, and the encoding that `format` names.
+    /// The query, checked and planned, and the options of the output.
     pub(super) fn planned(
         &self,
         config: &Config,
-        format: Option<&str>,
-    ) -> Result<(Planned, Option<Encoding>), Failure> {
+        looks: &Looks,
+    ) -> Result<(Planned, Options), Failure> {
         let catalog = config
             .catalog()
             .map_err(|error| Failure::Usage(error.into()))?;
@@ -67,12 +82,14 @@ impl Query {
             map: self.map.clone(),
             seed: self.seed.clone(),
             warp: self.warp.clone(),
-            format: format.map(Into::into),
+            table: self.table.clone(),
+            format: looks.format.clone(),
+            decimals: looks.decimals.clone(),
         };
         let usage = |error| Failure::Usage(anyhow::Error::new(error));
-        let (query, encoding) = parameters.check(&catalog, vec![]).map_err(usage)?;
+        let (query, options) = parameters.check(&catalog, vec![]).map_err(usage)?;
         let planned = Planned::from_catalog(&catalog, query).map_err(usage)?;
-        Ok((planned, encoding))
+        Ok((planned, options))
     }
 
     /// Only the box: min x, min y, max x, max y.

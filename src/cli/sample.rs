@@ -14,28 +14,27 @@ use super::{
     Failure,
     output::Output,
     progress::Progress,
-    query::{Query, described},
+    query::{Looks, Query, described},
 };
 use crate::{
     config::Config,
     service::{
         Answer, Encoding, Planned,
-        encode::{Scalars, write_number},
+        encode::{Plain, Scalars, write_number},
     },
 };
 
 /// Flags of `strew sample`: the parameters of `GET /v1/points`, and where to write.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// json, ndjson, csv, f32 or f64 [default: what the output's name ends with, or json].
-    #[arg(long)]
-    format: Option<String>,
     /// The file to write; - is standard output.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Say nothing on standard error but errors.
     #[arg(long, short)]
     quiet: bool,
+    #[command(flatten)]
+    looks: Looks,
     #[command(flatten)]
     query: Query,
 }
@@ -50,10 +49,14 @@ impl Args {
 /// Writes the points.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.query.settings()?;
-    let (planned, named) = args.query.planned(&config, args.format.as_deref())?;
-    let encoding = named
+    let (planned, options) = args.query.planned(&config, &args.looks)?;
+    let encoding = options
+        .encoding
         .or_else(|| args.by_extension())
         .unwrap_or(Encoding::Json);
+    let usage = |error| Failure::Usage(anyhow::Error::new(error));
+    let output = options.output(encoding).map_err(usage)?;
+    let answer = Answer::new(&planned, &output, config.limits.block_bytes).map_err(usage)?;
     let count = u64::try_from(planned.count()).map_err(|_| {
         Failure::Usage(anyhow!(
             "bbox holds {} points, too many to write",
@@ -61,19 +64,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         ))
     })?;
     if !args.quiet {
-        announce(&planned, encoding);
+        announce(&planned, &answer);
     }
     let pool = workers(&config)?;
     let mut output = Output::open(args.output.as_deref())?;
     let mut progress = Progress::new("points", count, args.quiet);
-    let plan = &planned.plan;
-    let written = pool.install(|| match encoding {
-        Encoding::F32 => packed::<F32>(plan, &mut output, &mut progress),
-        Encoding::F64 => packed::<F64>(plan, &mut output, &mut progress),
-        Encoding::Json | Encoding::Ndjson | Encoding::Csv => {
-            let answer = Answer::new(&planned, encoding, config.limits.block_bytes);
-            text(answer, &mut output, &mut progress)
-        }
+    let written = pool.install(|| match answer.plain().cloned() {
+        Some(plain) => packed(&plain, &mut output, &mut progress),
+        None => blocks(answer, &mut output, &mut progress),
     });
     progress.finish();
     written?;
@@ -81,17 +79,18 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Says on standard error what comes, and what the packed formats have no room for.
-fn announce(planned: &Planned, encoding: Encoding) {
-    let size =
-        Answer::size(planned, encoding).map_or(String::new(), |size| format!(", {size} bytes"));
+fn announce(planned: &Planned, answer: &Answer) {
+    let size = answer
+        .size()
+        .map_or(String::new(), |size| format!(", {size} bytes"));
     eprintln!(
         "{} points{size}: {}, table {}",
         planned.count(),
         described(planned),
         planned.entry.digest
     );
-    if encoding == Encoding::F32 {
-        let [x, y] = planned.plan.origin().map(|v| {
+    if let Some(origin) = answer.origin() {
+        let [x, y] = origin.map(|v| {
             let mut text = vec![];
             write_number(v, &mut text);
             String::from_utf8_lossy(&text).into_owned()
@@ -106,9 +105,9 @@ fn workers(config: &Config) -> anyhow::Result<rayon::ThreadPool> {
         .build()?)
 }
 
-fn text(mut answer: Answer, output: &mut Output, progress: &mut Progress) -> anyhow::Result<()> {
+fn blocks(mut answer: Answer, output: &mut Output, progress: &mut Progress) -> anyhow::Result<()> {
     while let Some(block) = answer.next() {
-        output.write(&block)?;
+        output.write(&block?)?;
         progress.reach(answer.points(), "");
     }
     Ok(())
@@ -117,8 +116,20 @@ fn text(mut answer: Answer, output: &mut Output, progress: &mut Progress) -> any
 /// Points of a tile: large enough that a tall band's templates are made once for many rows.
 const TILE_POINTS: usize = 1 << 19;
 
+/// Writes what is nothing but packed points on all threads.
+fn packed(plain: &Plain, output: &mut Output, progress: &mut Progress) -> anyhow::Result<()> {
+    if let Some(head) = &plain.head {
+        output.write(head)?;
+    }
+    if plain.is_f32 {
+        tiles::<F32>(&plain.plan, output, progress)
+    } else {
+        tiles::<F64>(&plain.plan, output, progress)
+    }
+}
+
 /// Fills tiles on all threads, a batch ahead of what is being written.
-fn packed<F: Scalars>(
+fn tiles<F: Scalars>(
     plan: &Plan,
     output: &mut Output,
     progress: &mut Progress,

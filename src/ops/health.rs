@@ -5,11 +5,15 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use axum::{Router, body::Body, extract::State, response::Response, routing::get};
-use http::{HeaderValue, StatusCode, header};
+use axum::{body::Body, extract::State, response::Response, routing::get};
+use http::{HeaderValue, Method, StatusCode, header};
 use serde::Serialize;
+use serde_json::{Value, json};
 
-use crate::service::Service;
+use crate::{
+    rest::api::{Answer, Endpoint, Operation},
+    service::Service,
+};
 
 /// Whether requests are welcome. Starts as yes.
 #[derive(Clone, Debug)]
@@ -39,14 +43,70 @@ impl Readiness {
 }
 
 /// `/livez` and `/readyz`.
-pub fn routes(readiness: Readiness, service: Arc<Service>) -> Router {
-    Router::new()
-        .route(
-            "/livez",
-            get(|| async { json(StatusCode::OK, &Alive { alive: true }) }),
-        )
-        .route("/readyz", get(ready))
-        .with_state((readiness, service))
+pub fn endpoints(readiness: Readiness, service: Arc<Service>) -> Vec<Endpoint> {
+    let alive = operation(
+        "getLivez",
+        "Whether the daemon lives",
+        json!({ "alive": { "type": "boolean" } }),
+        vec![(200, "It lives.")],
+        "/livez",
+    );
+    let is_ready = operation(
+        "getReadyz",
+        "Whether the daemon takes requests",
+        json!({
+            "ready": { "type": "boolean" },
+            "tables": { "type": "integer" },
+            "streams": { "type": "integer" },
+        }),
+        vec![(200, "It takes requests."), (503, "It is about to stop.")],
+        "/readyz",
+    );
+    let live = get(|| async { typed(StatusCode::OK, &Alive { alive: true }) });
+    vec![
+        Endpoint::new("/livez", (), vec![(alive, live)]),
+        Endpoint::new(
+            "/readyz",
+            (readiness, service),
+            vec![(is_ready, get(ready))],
+        ),
+    ]
+}
+
+fn operation(
+    id: &'static str,
+    summary: &'static str,
+    members: Value,
+    answers: Vec<(u16, &'static str)>,
+    path: &str,
+) -> Operation {
+    let required: Vec<&String> = members
+        .as_object()
+        .into_iter()
+        .flatten()
+        .map(|m| m.0)
+        .collect();
+    let schema = json!({ "type": "object", "required": required, "properties": members });
+    Operation {
+        method: Method::GET,
+        id,
+        summary,
+        about: "For probes; never cached.",
+        path_parameters: &[],
+        parameters: vec![],
+        body: None,
+        answers: answers
+            .into_iter()
+            .map(|(status, about)| Answer {
+                status,
+                about,
+                headers: vec![],
+                contents: vec![("application/json".into(), schema.clone())],
+            })
+            .collect(),
+        problems: vec![],
+        example: path.into(),
+    }
 }
 
 #[derive(Serialize)]
@@ -74,10 +134,10 @@ async fn ready(State((readiness, service)): State<(Readiness, Arc<Service>)>) ->
         tables: service.catalog().entries().len(),
         streams: service.streams().open(),
     };
-    json(status, &state)
+    typed(status, &state)
 }
 
-fn json(status: StatusCode, value: &impl Serialize) -> Response {
+fn typed(status: StatusCode, value: &impl Serialize) -> Response {
     let mut body = serde_json::to_vec(value).unwrap_or_default();
     body.push(b'\n');
     let mut response = Response::new(Body::from(body));

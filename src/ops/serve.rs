@@ -117,11 +117,15 @@ impl App {
     /// Both doors, health, and one fallback for all.
     async fn router(&self, readiness: Readiness) -> Result<(Router, grpc::Health), ServeError> {
         let (grpc, grpc_health) = grpc::routes(self.service.clone()).await?;
-        let router = rest::routes(self.service.clone())
-            .merge(health::routes(readiness, self.service.clone()))
-            .method_not_allowed_fallback(rest::wrong_method)
+        let mut endpoints = rest::endpoints(&self.service);
+        endpoints.extend(health::endpoints(readiness, self.service.clone()));
+        let rest::Door { router, paths } = rest::Door::new(endpoints);
+        let router = router
             .merge(grpc.into_axum_router().reset_fallback())
-            .fallback(nothing_here);
+            .fallback(move |request| nothing_here(request, paths));
+        let head_bytes = self.config.server.max_header_bytes;
+        let workers = self.service.workers().clone();
+        let router = rest::finished(router, &self.config.http, head_bytes, workers);
         Ok((router, grpc_health))
     }
 
@@ -130,17 +134,18 @@ impl App {
     fn limit_connections<A>(&self, server: &mut axum_server::Server<SocketAddr, A>) {
         let settings = &self.config.server;
         let keepalive = config::seconds(settings.http2_keepalive_seconds);
-        let head_bytes = settings.max_header_bytes;
+        // A head that is only a little too long is refused in words, by `rest::finished`.
+        let most = settings.max_header_bytes.saturating_mul(2);
         let builder = server.http_builder();
         builder
             .http1()
             .timer(TokioTimer::new())
             .header_read_timeout(config::seconds(settings.header_read_timeout_seconds))
-            .max_buf_size(usize::try_from(head_bytes).unwrap_or(usize::MAX));
+            .max_buf_size(usize::try_from(most).unwrap_or(usize::MAX));
         builder
             .http2()
             .timer(TokioTimer::new())
-            .max_header_list_size(head_bytes)
+            .max_header_list_size(most)
             .max_concurrent_streams(settings.max_requests_per_connection)
             .keep_alive_interval(keepalive)
             .keep_alive_timeout(keepalive);
@@ -148,11 +153,11 @@ impl App {
 }
 
 /// Where no door is: each kind of client hears it in its own language.
-async fn nothing_here(request: Request) -> Response {
+async fn nothing_here(request: Request, paths: String) -> Response {
     if is_grpc(request.headers()) {
         grpc::unimplemented().map(Body::new)
     } else {
-        rest::not_found(&request)
+        rest::not_found(&request, &paths)
     }
 }
 

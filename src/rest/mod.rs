@@ -1,6 +1,13 @@
 //! The REST door: addresses in, streamed bodies and problems out. It decides nothing itself.
 
+pub mod api;
+mod coding;
+mod cors;
+mod docs;
+mod finish;
+mod freshness;
 mod negotiate;
+mod openapi;
 mod points;
 mod portrait;
 mod problem;
@@ -8,46 +15,54 @@ mod profiles;
 
 use std::sync::Arc;
 
-use axum::{Router, extract::Request, response::Response, routing::get};
-use http::{HeaderValue, Method, Uri, header};
+use axum::{Router, extract::Request, response::Response};
 
 use crate::service::{Error, Service};
+use api::Endpoint;
+pub use finish::{Settings, finished};
 use problem::Problem;
 
-/// What there is, for those who look elsewhere.
-const PATHS: &str = "/v1/points, /v1/profiles, /v1/profiles/{name}, \
-                     /v1/profiles/{name}/spectrum.svg, /livez, /readyz";
+/// What the REST door answers, without what is said about it.
+pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
+    vec![
+        points::endpoint(service.clone()),
+        profiles::endpoint(service.clone()),
+        portrait::endpoint(service.clone()),
+        portrait::picture(service.clone()),
+    ]
+}
 
-/// The routes of the REST door.
-pub fn routes(service: Arc<Service>) -> Router {
-    Router::new()
-        .route("/v1/points", get(points::get))
-        .route("/v1/profiles", get(profiles::get))
-        .route("/v1/profiles/{name}", get(portrait::get))
-        .route("/v1/profiles/{name}/spectrum.svg", get(portrait::svg))
-        .with_state(service)
+/// All that the port answers by REST, and what is said about it.
+#[derive(Debug)]
+pub struct Door {
+    /// The routes.
+    pub router: Router,
+    /// The paths there are, for those who look elsewhere.
+    pub paths: String,
+}
+
+impl Door {
+    /// A door of these endpoints and their description.
+    #[must_use]
+    pub fn new(mut endpoints: Vec<Endpoint>) -> Self {
+        endpoints.extend(docs::endpoints());
+        endpoints.push(openapi::endpoint(&endpoints));
+        let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
+        let paths = paths.join(", ");
+        let router = endpoints
+            .into_iter()
+            .map(Endpoint::into_router)
+            .fold(Router::new(), Router::merge);
+        Self { router, paths }
+    }
 }
 
 /// The answer where nothing is.
 #[must_use]
-pub fn not_found(request: &Request) -> Response {
+pub fn not_found(request: &Request, paths: &str) -> Response {
     let error = Error::NoSuchPath {
         path: request.uri().path().into(),
-        available: PATHS.into(),
+        available: paths.into(),
     };
     Problem::response(&error)
-}
-
-/// The answer to a method that a path does not take. All paths take the same ones.
-pub async fn wrong_method(method: Method, uri: Uri) -> Response {
-    const ALLOWED: &str = "GET, HEAD";
-    let error = Error::NoSuchMethod {
-        path: uri.path().into(),
-        method: method.to_string(),
-        allowed: ALLOWED.into(),
-    };
-    let mut response = Problem::response(&error);
-    let allow = HeaderValue::from_static(ALLOWED);
-    response.headers_mut().insert(header::ALLOW, allow);
-    response
 }

@@ -57,6 +57,22 @@ const OFFERS: [(&str, Chosen); 8] = [
     ("application/octet-stream", Chosen::named(Encoding::F64)),
 ];
 
+/// The content types that a client can be given, each once.
+pub(super) fn content_types() -> Vec<&'static str> {
+    let named = Encoding::ALL.map(Encoding::content_type);
+    let mut types = vec![];
+    for content_type in OFFERS
+        .iter()
+        .map(|(_, chosen)| chosen.content_type)
+        .chain(named)
+    {
+        if !types.contains(&content_type) {
+            types.push(content_type);
+        }
+    }
+    types
+}
+
 /// The offer that the `Accept` headers of a request like best; JSON if there are none.
 pub(super) fn accepted(headers: &HeaderMap) -> Result<Chosen, Error> {
     let lines: Vec<String> = headers

@@ -6,20 +6,125 @@ use axum::{
     body::Body,
     extract::{Path, State},
     response::Response,
+    routing,
 };
-use http::{HeaderValue, Uri, header};
+use http::{HeaderMap, HeaderValue, Method, Uri, header};
 use serde::Serialize;
+use serde_json::{Value, json};
 
-use super::profiles::Profile;
-use crate::service::{Entry, Error, Portrait, Service, query::parse_pairs};
+use super::{
+    api::{self, Endpoint, Operation, schemas},
+    freshness::Freshness,
+    profiles::{self, Profile},
+};
+use crate::service::{
+    Entry, Error, Kind, Service,
+    query::{Parameter, Shape, parse_pairs},
+};
+
+/// The path of the curves.
+pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
+    let numbers = |most: u32| {
+        let number = json!({ "type": "number" });
+        let row = json!({ "type": "array", "items": number, "minItems": most, "maxItems": most });
+        schemas::object(json!({
+            "columns": { "type": "array", "items": { "type": "string" } },
+            "values": { "type": "array", "items": row },
+        }))
+    };
+    let measured = json!({
+        "points": { "type": "integer" },
+        "radial": numbers(3),
+        "rdf": numbers(2),
+    });
+    let document = json!({
+        "table": profiles::schema(),
+        "measured": schemas::object(measured),
+    });
+    let operation = operation(
+        "getProfile",
+        "One noise profile with its curves",
+        "The table's provenance and figures; radial power, anisotropy and radial distribution of a \
+         window of the unbounded pattern.",
+        ("application/json", schemas::object(document)),
+        "'/v1/profiles/blue?alpha=sqrt(3)'",
+    );
+    Endpoint::new(
+        "/v1/profiles/{name}",
+        service,
+        vec![(operation, routing::get(get))],
+    )
+}
+
+/// The path of the picture.
+pub(super) fn picture(service: Arc<Service>) -> Endpoint {
+    let operation = operation(
+        "getSpectrum",
+        "A picture of one noise profile",
+        "Points, radial power, anisotropy and radial distribution.",
+        ("image/svg+xml", json!({ "type": "string" })),
+        "/v1/profiles/blue/spectrum.svg -o spectrum.svg",
+    );
+    Endpoint::new(
+        "/v1/profiles/{name}/spectrum.svg",
+        service,
+        vec![(operation, routing::get(svg))],
+    )
+}
+
+const NAME: &[Parameter] = &[Parameter {
+    name: "name",
+    about: "The noise profile. The list of profiles says what is loaded.",
+    allowed: "the name of a profile that is loaded",
+    shape: Shape::Text,
+    default: None,
+    example: "blue",
+}];
+
+fn operation(
+    id: &'static str,
+    summary: &'static str,
+    about: &'static str,
+    (content_type, schema): (&str, Value),
+    example: &str,
+) -> Operation {
+    Operation {
+        method: Method::GET,
+        id,
+        summary,
+        about,
+        path_parameters: NAME,
+        parameters: api::given(&[], &["alpha", "map", "table"]),
+        body: None,
+        answers: vec![
+            api::Answer {
+                status: 200,
+                about: summary,
+                headers: vec![],
+                contents: vec![(content_type.into(), schema)],
+            },
+            api::Answer::unchanged(),
+        ],
+        problems: vec![Kind::Invalid, Kind::NoSuchPath, Kind::OtherTable],
+        example: example.into(),
+    }
+}
 
 /// The table of a profile with its measured curves.
-pub(super) async fn get(
+async fn get(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
     uri: Uri,
+    headers: HeaderMap,
 ) -> Result<Response, Error> {
-    let (entry, portrait) = portrait(&service, &name, &uri).await?;
+    let (entry, freshness) = asked(&service, &name, &uri, &headers, "application/json")?;
+    if let Some(unchanged) = freshness.unchanged(&headers) {
+        return Ok(unchanged);
+    }
+    let portrait = service.portrait(&entry).await?;
+    if let Some(unwanted) = freshness.unwanted(&headers) {
+        return Ok(unwanted);
+    }
     let document = Document {
         table: Profile::new(&entry),
         measured: Measured {
@@ -37,24 +142,36 @@ pub(super) async fn get(
     let mut body = serde_json::to_vec(&document)
         .map_err(|_| Error::Internal("the profile cannot be written"))?;
     body.push(b'\n');
-    Ok(typed(body, "application/json"))
+    Ok(typed(body, "application/json", &freshness))
 }
 
 /// The picture.
-pub(super) async fn svg(
+async fn svg(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
     uri: Uri,
+    headers: HeaderMap,
 ) -> Result<Response, Error> {
-    let (_, portrait) = portrait(&service, &name, &uri).await?;
-    Ok(typed(portrait.svg.clone().into_bytes(), "image/svg+xml"))
+    let (entry, freshness) = asked(&service, &name, &uri, &headers, "image/svg+xml")?;
+    if let Some(unchanged) = freshness.unchanged(&headers) {
+        return Ok(unchanged);
+    }
+    let portrait = service.portrait(&entry).await?;
+    if let Some(unwanted) = freshness.unwanted(&headers) {
+        return Ok(unwanted);
+    }
+    let picture = portrait.svg.clone().into_bytes();
+    Ok(typed(picture, "image/svg+xml", &freshness))
 }
 
-async fn portrait(
+/// The table that is asked for, and how fresh what is made of it is.
+fn asked(
     service: &Service,
     name: &str,
     uri: &Uri,
-) -> Result<(Arc<Entry>, Arc<Portrait>), Error> {
+    headers: &HeaderMap,
+    content_type: &'static str,
+) -> Result<(Arc<Entry>, Freshness), Error> {
     if service.catalog().alphas(name).is_empty() {
         return Err(Error::NoSuchPath {
             path: uri.path().into(),
@@ -69,14 +186,15 @@ async fn portrait(
     }
     let (parameters, faults) = parse_pairs(uri.query().unwrap_or_default());
     let entry = parameters.entry(service.catalog(), name, faults)?;
-    let portrait = service.portrait(&entry).await?;
-    Ok((entry, portrait))
+    let freshness = Freshness::of(uri, headers, content_type, &entry.digest);
+    Ok((entry, freshness.pinned(parameters.table.is_some())))
 }
 
-fn typed(body: Vec<u8>, content_type: &'static str) -> Response {
+fn typed(body: Vec<u8>, content_type: &'static str, freshness: &Freshness) -> Response {
     let mut response = Response::new(Body::from(body));
     let value = HeaderValue::from_static(content_type);
     response.headers_mut().insert(header::CONTENT_TYPE, value);
+    freshness.stamp(&mut response);
     response
 }
 

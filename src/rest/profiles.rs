@@ -2,20 +2,99 @@
 
 use std::sync::Arc;
 
-use axum::{body::Body, extract::State, response::Response};
-use http::{HeaderValue, Uri, header};
+use axum::{body::Body, extract::State, response::Response, routing};
+use http::{HeaderMap, HeaderValue, Method, Uri, header};
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
+use serde_json::{Value, json};
 use strew_core::{ALGORITHM_VERSION, table};
 
-use crate::service::{Entry, Error, Fault, Service};
+use super::{
+    api::{self, Endpoint, Operation, schemas},
+    freshness::Freshness,
+};
+use crate::service::{Entry, Error, Fault, Kind, Service};
+
+/// The path.
+pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
+    let document = json!({
+        "algorithm": { "type": "integer" },
+        "profiles": { "type": "array", "items": schema() },
+    });
+    let operation = Operation {
+        method: Method::GET,
+        id: "listProfiles",
+        summary: "The noise profiles that are loaded",
+        about: "Every table with its provenance and its measured figures.",
+        path_parameters: &[],
+        parameters: vec![],
+        body: None,
+        answers: vec![
+            api::Answer {
+                status: 200,
+                about: "The list, sorted by profile, then alpha.",
+                headers: vec![],
+                contents: vec![("application/json".into(), schemas::object(document))],
+            },
+            api::Answer::unchanged(),
+        ],
+        problems: vec![Kind::Invalid],
+        example: "/v1/profiles".into(),
+    };
+    Endpoint::new(
+        "/v1/profiles",
+        service,
+        vec![(operation, routing::get(get))],
+    )
+}
+
+/// The JSON Schema of a table's description.
+pub(super) fn schema() -> Value {
+    let (text, number) = (json!({ "type": "string" }), json!({ "type": "integer" }));
+    let figures = json!({
+        "subject": text,
+        "seen": { "type": "boolean" },
+        "points": number,
+        "values": { "type": "object", "additionalProperties": { "type": "number" } },
+    });
+    let provenance = json!({
+        "optimizer": text,
+        "parameters": { "type": "object", "additionalProperties": text },
+        "seed": number,
+        "twins": { "type": "array", "items": text },
+        "figures": { "type": "array", "items": schemas::object(figures) },
+    });
+    schemas::object(json!({
+        "profile": text,
+        "alpha": text,
+        "map": text,
+        "radius": number,
+        "intervals": number,
+        "blocks": number,
+        "bytes": number,
+        "digest": schemas::reference("Digest"),
+        "provenance": schemas::object(provenance),
+    }))
+}
 
 /// Lists the tables.
-pub(super) async fn get(State(service): State<Arc<Service>>, uri: Uri) -> Result<Response, Error> {
+async fn get(
+    State(service): State<Arc<Service>>,
+    uri: Uri,
+    headers: HeaderMap,
+) -> Result<Response, Error> {
     if let Some(text) = uri.query().filter(|text| !text.is_empty()) {
         let detail = "this list takes no parameters";
         return Err(Error::Invalid(vec![Fault::new(
             "query", text, detail, "none",
         )]));
+    }
+    let made_of: Vec<&str> = (service.catalog().entries())
+        .map(|entry| entry.digest.as_str())
+        .collect();
+    let freshness = Freshness::of(&uri, &headers, "application/json", &made_of);
+    let unchanged = freshness.unchanged(&headers);
+    if let Some(unchanged) = unchanged.or_else(|| freshness.unwanted(&headers)) {
+        return Ok(unchanged);
     }
     let document = Profiles {
         algorithm: ALGORITHM_VERSION,
@@ -31,6 +110,7 @@ pub(super) async fn get(State(service): State<Arc<Service>>, uri: Uri) -> Result
     let mut response = Response::new(Body::from(body));
     let json = HeaderValue::from_static("application/json");
     response.headers_mut().insert(header::CONTENT_TYPE, json);
+    freshness.stamp(&mut response);
     Ok(response)
 }
 

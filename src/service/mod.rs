@@ -16,11 +16,13 @@ pub mod workers;
 
 use std::sync::Arc;
 
+use bytes::Bytes;
+use futures_util::{Stream, StreamExt as _};
 use serde::{Deserialize, Serialize};
 use strew_core::{Plan, Sampler};
 
 pub use catalog::{Catalog, Entry, Key};
-pub use encode::{Answer, Encoding};
+pub use encode::{Answer, Encoding, Output};
 pub use error::{Error, Fault, Kind};
 pub use portrait::Portrait;
 pub use query::{Draft, Query};
@@ -124,6 +126,12 @@ impl Service {
         &self.limits
     }
 
+    /// The threads that make points.
+    #[must_use]
+    pub const fn workers(&self) -> &Workers {
+        &self.workers
+    }
+
     /// The streams under way.
     #[must_use]
     pub const fn streams(&self) -> &Arc<Streams> {
@@ -158,6 +166,25 @@ impl Service {
     /// [`Error::Internal`] if it cannot be measured or drawn.
     pub async fn portrait(&self, entry: &Arc<Entry>) -> Result<Arc<Portrait>, Error> {
         self.portraits.get(entry, &self.workers).await
+    }
+
+    /// Streams the blocks of an answer. One that cannot be made to its end breaks off.
+    pub fn blocks(
+        &self,
+        permit: Permit,
+        answer: Answer,
+    ) -> impl Stream<Item = Result<Bytes, Interrupted>> + use<> {
+        let blocks = self.stream(permit, answer).map(|made| {
+            made?.map_err(|error| {
+                tracing::error!(%error, "an answer broke off");
+                Interrupted::Failed
+            })
+        });
+        // An empty block only says that there is more to do.
+        blocks.filter(|block| {
+            let said = !matches!(block, Ok(bytes) if bytes.is_empty());
+            std::future::ready(said)
+        })
     }
 
     /// Streams what an iterator makes, each item made on the workers when it is asked for.

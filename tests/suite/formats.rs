@@ -124,6 +124,32 @@ fn csv_has_a_header_and_exact_numbers() {
 }
 
 #[test]
+fn decimals_are_as_many_as_asked_for() {
+    let (daemon, plan) = (daemon(), plan());
+    let fixed = |value: f64| {
+        let text = format!("{value:.3}");
+        if text == "-0.000" {
+            "0.000".into()
+        } else {
+            text
+        }
+    };
+    let expected: Vec<String> = points(&plan)
+        .iter()
+        .map(|p| format!("{},{},{}", p.id, fixed(p.x), fixed(p.y)))
+        .collect();
+    let csv = daemon.get(&format!("{QUERY}&format=csv&decimals=3"));
+    let lines: Vec<&str> = csv.text().lines().skip(1).collect();
+    assert_eq!(lines, expected);
+    let json = daemon.get(&format!("{QUERY}&decimals=0"));
+    assert_eq!(json.json()["query"]["decimals"], 0);
+    assert!(
+        json.text().contains("\"x\":-3,"),
+        "no point of zero decimals"
+    );
+}
+
+#[test]
 fn packed_formats_are_the_librarys_numbers() {
     let (daemon, plan) = (daemon(), plan());
     let f64s: Vec<u8> = points(&plan)

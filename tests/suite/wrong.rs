@@ -118,6 +118,21 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
         &["xml", "ndjson"],
     ),
     (
+        "bbox=0,0,10,10&density=1&format=csv&decimals=18",
+        &["decimals"],
+        &["18", "0 to 17"],
+    ),
+    (
+        "bbox=0,0,10,10&density=1&decimals=-1",
+        &["decimals"],
+        &["-1"],
+    ),
+    (
+        "bbox=0,0,10,10&density=1&decimals=3&format=f64",
+        &["decimals"],
+        &["f64", "ndjson", "csv"],
+    ),
+    (
         "bbox=0,0,10,10&density=1&formt=csv",
         &["formt"],
         &["csv", "format"],

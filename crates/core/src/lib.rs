@@ -39,7 +39,10 @@ pub mod table;
 
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
-pub use sample::{Placement, Plan, Point, PointId, Region, Sampler, Seed, Spacing, Warp};
+pub use sample::{
+    Area, Attribute, Attributes, Circle, Finder, Placement, Plan, Point, PointId, Polygon, Region,
+    Sampler, Seed, Spacing, Warp,
+};
 pub use table::Table;
 
 /// The version of the algorithm that turns a table, a density, a seed and a lattice address into

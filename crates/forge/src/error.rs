@@ -37,6 +37,14 @@ pub enum ForgeError {
         /// Its size.
         bytes: u64,
     },
+    /// A file is not a checkpoint.
+    #[error("{}: {error}", path.display())]
+    NotACheckpoint {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        error: Box<ForgeError>,
+    },
     /// The file system refused.
     #[error("cannot {action} {}: {source}", path.display())]
     File {

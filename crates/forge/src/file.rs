@@ -75,6 +75,11 @@ pub fn read_table(path: &Path) -> Result<Table, ForgeError> {
 /// # Errors
 /// [`ForgeError::File`] if a step fails; what stood at `path` stands there still.
 pub fn write_table(path: &Path, table: &Table) -> Result<(), ForgeError> {
+    write_whole(path, &table.to_bytes())
+}
+
+/// Writes any file in that way.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ForgeError> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -98,8 +103,7 @@ pub fn write_table(path: &Path, table: &Table) -> Result<(), ForgeError> {
     let mut file = builder
         .tempfile_in(folder)
         .map_err(failed("create a file in", folder))?;
-    file.write_all(&table.to_bytes())
-        .map_err(failed("write", path))?;
+    file.write_all(bytes).map_err(failed("write", path))?;
     file.as_file().sync_all().map_err(failed("flush", path))?;
     file.persist(path)
         .map_err(|e| failed("replace", path)(e.error))?;

@@ -1,15 +1,13 @@
-//! A job: which table to make, what it will cost, and the making.
+//! A job: which table to make, and what it will cost.
 
 use std::time::{Duration, Instant};
 
-use strew_core::{Alpha, Table, table::Provenance};
+use strew_core::Alpha;
 
 use crate::{
     ForgeError,
-    judge::{Complaint, complaints},
-    optimize::{Descended, Meter, Stage, Watch},
     plan::Plan,
-    profile::Target,
+    profile::{LeastCorrelation, Target},
 };
 
 /// The largest half-width a table is made for: 330 intervals at the default α, and about 200 MB of
@@ -70,6 +68,7 @@ impl Job {
             pairs: 0,
             steps: plan.steps,
             measured_points,
+            correlation: plan.least_correlation(),
             time: MEASURING_A_POINT * measured_points as u32,
         };
         for phase in plan.phases() {
@@ -96,7 +95,7 @@ const NEIGHBOR_LISTS: u32 = 5;
 const MEASURING_A_POINT: Duration = Duration::from_nanos(5000);
 
 /// What a job will cost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The number of vectors to find.
     pub blocks: u64,
@@ -106,182 +105,25 @@ pub struct Estimate {
     pub steps: u32,
     /// Points of all sets that the table will be judged on.
     pub measured_points: u64,
+    /// For a job that follows a power curve, where the pair correlation of its sets is least: tells
+    /// whether any set can have the curve.
+    pub correlation: Option<LeastCorrelation>,
     /// The time on this machine, as far as a short trial tells.
     pub time: Duration,
 }
 
-/// What became of a job.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
-    /// The table, with its history. Usable in any case.
-    pub table: Table,
-    /// Whether it was measured on unseen subjects and met every bound of its profile.
-    pub accepted: bool,
-    /// Whether the watch stopped the work: the table is the best until then, and was not judged.
-    pub interrupted: bool,
-    /// The bounds it missed.
-    pub complaints: Vec<Complaint>,
-}
-
-/// Makes a table and judges it. A table that misses a bound is an outcome, not an error.
-///
-/// # Errors
-/// [`ForgeError::Field`] for a part of the job that is not allowed.
-pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
-    let plan = Plan::new(job)?;
-    let mut meter = Meter::new(watch, Stage::Optimizing, plan.steps);
-    let mut done = Descended::at(plan.start(job.seed));
-    let mut steps = 0;
-    for mut phase in plan.phases() {
-        done = phase
-            .descent
-            .run(&mut *phase.objective, done.moves, &mut meter);
-        steps += done.steps;
-        if done.interrupted {
-            break;
-        }
-    }
-    let provenance = plan.provenance(job, steps);
-    let table = plan.table(&done.moves, provenance.clone())?;
-    let mut outcome = Outcome {
-        table,
-        accepted: false,
-        interrupted: done.interrupted,
-        complaints: Vec::new(),
-    };
-    if done.interrupted {
-        return Ok(outcome);
-    }
-    let mut meter = Meter::new(watch, Stage::Measuring, plan.panel.subjects());
-    let Some(figures) = plan.panel.measure(&outcome.table, &mut meter) else {
-        outcome.interrupted = true;
-        return Ok(outcome);
-    };
-    outcome.complaints = complaints(plan.profile.bounds, &figures);
-    outcome.accepted = outcome.complaints.is_empty();
-    let judged = Provenance {
-        figures,
-        ..provenance
-    };
-    outcome.table = plan.table(&done.moves, judged)?;
-    Ok(outcome)
-}
-
 #[cfg(test)]
 mod tests {
-    use std::{str::FromStr, sync::Mutex};
-
-    use strew_core::Twin;
+    use std::str::FromStr;
 
     use super::*;
-    use crate::Progress;
+    use crate::forge;
 
     fn job(steps: u32) -> Job {
         Job {
             radius: 15,
             steps: Some(steps),
             ..Job::new("(5-sqrt(3))/2".parse().expect("valid"))
-        }
-    }
-
-    #[test]
-    fn equal_jobs_make_equal_tables_with_any_number_of_threads() {
-        let with = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let outcome = pool.expect("threads").install(|| forge(&job(30), &()));
-            outcome.expect("a good job").table
-        };
-        let table = with(1);
-        assert_eq!(with(2), table);
-        assert_eq!(with(5), table);
-        let other = Job { seed: 2, ..job(30) };
-        let other = forge(&other, &()).expect("a good job").table;
-        assert_ne!(other.displacements(), table.displacements());
-    }
-
-    #[test]
-    fn the_history_tells_all() {
-        let outcome = forge(&job(30), &()).expect("a good job");
-        let history = outcome.table.provenance();
-        assert_eq!((history.optimizer.as_str(), history.seed), ("gaussian", 17));
-        assert!(history.parameters.contains(&("steps".into(), "30".into())));
-        assert!(history.parameters.contains(&("sigma".into(), "1".into())));
-        assert_eq!(history.twins.len(), 6);
-        for figures in &history.figures {
-            let twin = |t: &Twin| figures.subject == format!("twin {t}");
-            assert_eq!(
-                figures.seen,
-                history.twins.iter().any(twin),
-                "{}",
-                figures.subject
-            );
-            assert!(
-                figures.seen || figures.points >= 50_000,
-                "{}",
-                figures.subject
-            );
-        }
-        assert!(
-            history
-                .figures
-                .iter()
-                .any(|f| f.subject.starts_with("window"))
-        );
-        assert_eq!(outcome.accepted, outcome.complaints.is_empty());
-        let back = Table::from_bytes(&outcome.table.to_bytes()).expect("valid");
-        assert_eq!(back, outcome.table);
-    }
-
-    /// Notes all it is told, and stops the work at a step of a stage.
-    struct Observer {
-        stop_at: (Stage, u32),
-        told: Mutex<Vec<Progress>>,
-    }
-
-    impl Watch for Observer {
-        fn progress(&self, progress: &Progress) {
-            self.told.lock().expect("no panic").push(*progress);
-        }
-
-        fn stop(&self) -> bool {
-            let told = self.told.lock().expect("no panic");
-            told.last()
-                .is_some_and(|p| (p.stage, p.step) == self.stop_at)
-        }
-    }
-
-    #[test]
-    fn a_watch_is_told_every_step_and_can_stop_at_any() {
-        let stages = [
-            (Stage::Optimizing, 0),
-            (Stage::Optimizing, 5),
-            (Stage::Optimizing, 11),
-        ];
-        for (stage, step) in stages.into_iter().chain([(Stage::Measuring, 2)]) {
-            let observer = Observer {
-                stop_at: (stage, step),
-                told: Mutex::default(),
-            };
-            let outcome = forge(&job(12), &observer).expect("a good job");
-            assert!(outcome.interrupted && !outcome.accepted, "{stage:?} {step}");
-            assert!(outcome.table.provenance().figures.is_empty());
-            assert!(Table::from_bytes(&outcome.table.to_bytes()).is_ok());
-            let told = observer.told.into_inner().expect("no panic");
-            let optimizing = told.iter().filter(|p| p.stage == Stage::Optimizing);
-            let steps: Vec<u32> = optimizing.map(|p| p.step).collect();
-            let last = if stage == Stage::Optimizing { step } else { 12 };
-            assert_eq!(steps, (0..=last).collect::<Vec<_>>());
-            assert!(
-                told.iter()
-                    .all(|p| p.stage == Stage::Measuring || p.steps == 12)
-            );
-            let stopped_after = ("stopped_after".into(), step.to_string());
-            let says_so = outcome
-                .table
-                .provenance()
-                .parameters
-                .contains(&stopped_after);
-            assert_eq!(says_so, stage == Stage::Optimizing);
         }
     }
 
@@ -347,19 +189,6 @@ mod tests {
             for error in refused.map(|e| e.to_string()) {
                 assert!(words.iter().all(|word| error.contains(word)), "{error}");
             }
-        }
-    }
-
-    #[test]
-    fn the_smallest_jobs_work() {
-        for alpha in ["1.11", "1.95", "183/112", "sqrt(2)"] {
-            let job = Job {
-                radius: 1,
-                steps: Some(1),
-                ..Job::new(alpha.parse().expect("valid"))
-            };
-            let outcome = forge(&job, &()).expect("a good job");
-            assert!(!outcome.accepted, "{alpha}");
         }
     }
 

@@ -21,6 +21,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod checkpoint;
 pub mod energy;
 mod error;
 mod file;
@@ -34,12 +35,15 @@ mod plan;
 pub mod profile;
 mod report;
 mod twins;
+mod work;
 
+pub use checkpoint::Checkpoint;
 pub use error::ForgeError;
 pub use file::{EXTENSION, file_name, read_table, write_table};
-pub use job::{DEFAULT_SEED, Estimate, Job, MAX_RADIUS, MAX_STEPS, Outcome, forge};
+pub use job::{DEFAULT_SEED, Estimate, Job, MAX_RADIUS, MAX_STEPS};
 pub use judge::{Complaint, Figure};
 pub use optimize::{Progress, Stage, Watch};
 pub use picture::{PictureError, picture};
 pub use profile::{Profile, Target};
 pub use report::Report;
+pub use work::{Outcome, forge, resume};

@@ -1,24 +1,27 @@
 //! A checked job: its map, its twins, and the phases of its optimization.
 
 use strew_core::{
-    Map, Table,
-    table::{Provenance, from_grid_units},
+    ALGORITHM_VERSION, Map, Table,
+    table::{FORMAT_VERSION, Provenance, from_grid_units},
 };
 
 use crate::{
     ForgeError, Job, MAX_RADIUS, MAX_STEPS,
     ground::Ground,
-    judge::Panel,
-    optimize::jitter,
-    profile::{Phase, Profile, Recipe, Target},
+    judge::{Bound, Panel, bounds_of_curve},
+    optimize::{Descent, jitter},
+    profile::{LeastCorrelation, Phase, Profile, Recipe, Target},
 };
 
 /// The least side t of the set region (α = 1.1): below, a map of any half-width sees too few
 /// neighbors, and there are too many grid points between them to list.
 const LEAST_SIDE: f64 = 0.05;
 
-/// The largest half-width for a radial power curve, whose pairs reach far: 1 GB of neighbor lists.
+/// The largest half-width for a radial power curve, whose pairs reach far: 1 to 2 GB of neighbor lists.
 const MAX_RADIAL_RADIUS: u32 = 200;
+/// To be raised with any change of what a step computes, down to the last bit: work that was begun
+/// before must not go on after.
+const ARITHMETIC: u32 = 1;
 /// Longer parameters of a history are split.
 const PARAMETER_BYTES: usize = 800;
 
@@ -31,17 +34,24 @@ pub(crate) struct Plan {
     target: Option<Target>,
     ground: Ground,
     pub(crate) panel: Panel,
+    /// What every unseen subject must satisfy.
+    pub(crate) bounds: Vec<Bound>,
     pub(crate) steps: u32,
 }
 
 impl Plan {
     pub(crate) fn new(job: &Job) -> Result<Self, ForgeError> {
-        let (profile, target) = match &job.target {
+        let (profile, target, bounds) = match &job.target {
             None => {
                 let profile = Profile::named(&job.profile)?;
-                (profile, profile.target())
+                (profile, profile.target(), profile.bounds.to_vec())
             }
-            Some(target) => (Profile::custom(&job.profile)?, Some(target.clone())),
+            Some(target) => {
+                let profile = Profile::custom(&job.profile)?;
+                // A table must be able to bear the name: better known now than at the end.
+                Table::undisplaced(job.alpha, 1, &job.profile)?;
+                (profile, Some(target.clone()), bounds_of_curve(target))
+            }
         };
         let mut steps = job.steps.unwrap_or(profile.steps);
         in_range("steps", steps, MAX_STEPS)?;
@@ -72,6 +82,7 @@ impl Plan {
                 Some(target) => panel.with_target(target.clone(), &ground.map),
                 None => panel,
             },
+            bounds,
             name: job.profile.clone(),
             target,
             ground,
@@ -83,10 +94,47 @@ impl Plan {
         jitter(self.ground.blocks(), self.profile.jitter, seed)
     }
 
+    /// Where the pair correlation of the curve is least, if there is a curve to follow.
+    pub(crate) fn least_correlation(&self) -> Option<LeastCorrelation> {
+        self.target.as_ref().map(LeastCorrelation::of)
+    }
+
     pub(crate) fn phases(&self) -> Vec<Phase> {
         self.profile
             .recipe
             .phases(&self.ground, self.target.as_ref(), self.steps)
+    }
+
+    /// How many vectors there are.
+    pub(crate) fn blocks(&self) -> usize {
+        self.ground.blocks()
+    }
+
+    /// Everything that decides the result, as lines of `name = value`: two jobs whose lines agree
+    /// take the same steps.
+    pub(crate) fn identity(&self, job: &Job, phases: &[Phase]) -> String {
+        let provenance = self.provenance(job, self.steps);
+        let mut lines = vec![
+            ("forge".into(), env!("CARGO_PKG_VERSION").into()),
+            ("arithmetic".into(), ARITHMETIC.to_string()),
+            ("points".into(), ALGORITHM_VERSION.to_string()),
+            ("format".into(), FORMAT_VERSION.to_string()),
+            ("profile".into(), self.name.clone()),
+            ("alpha".into(), job.alpha.to_string()),
+            ("radius".into(), job.radius.to_string()),
+            ("seed".into(), job.seed.to_string()),
+            ("optimizer".into(), provenance.optimizer),
+        ];
+        lines.extend(provenance.parameters);
+        let twins = provenance.twins.iter();
+        lines.extend(twins.map(|twin| ("twin".into(), twin.to_string())));
+        let phases = phases.iter().map(|phase| {
+            let Descent { steps, rate } = phase.descent;
+            ("phase".into(), format!("{steps} steps at rate {rate}"))
+        });
+        lines.extend(phases);
+        let line = |(name, value): (String, String)| format!("{name} = {value}\n");
+        lines.into_iter().map(line).collect()
     }
 
     pub(crate) fn provenance(&self, job: &Job, steps: u32) -> Provenance {

@@ -1,25 +1,99 @@
-//! Comma-separated values with the header `id,x,y`.
+//! Comma-separated values with a header: `id,x,y` and the columns, the layer before all.
 
-use strew_core::Point;
+use std::sync::Arc;
 
-use super::text::{TextFormat, write_id, write_number};
+use super::{
+    Output,
+    number::Digits,
+    rows::{Row, Rows},
+    schema::{Kind, Schema, Values},
+    text::{TextFormat, write_id},
+};
 
 #[derive(Debug)]
-pub(super) struct Csv;
+pub(super) struct Csv {
+    schema: Arc<Schema>,
+    /// The names of each column's dictionary, quoted where they need it.
+    names: Vec<Vec<String>>,
+    digits: Digits,
+}
+
+impl Csv {
+    pub(super) fn new(rows: &Rows, output: &Output) -> Self {
+        let schema = rows.schema().clone();
+        let names = schema.columns().iter().map(|column| match &column.kind {
+            Kind::Number => vec![],
+            Kind::Dictionary(names) => names.iter().map(|name| field(name)).collect(),
+        });
+        Self {
+            names: names.collect(),
+            digits: Digits::of(output.decimals),
+            schema,
+        }
+    }
+
+    fn value(&self, column: usize, row: Row<'_>, out: &mut Vec<u8>) {
+        let values = row.columns.get(column).unwrap_or(&Values::Missing);
+        if let Some(name) = values.index(row.index) {
+            let name = self.names[column].get(name as usize);
+            out.extend_from_slice(name.map_or(b"", |name| name.as_bytes()));
+        } else if let Some(number) = values.number(row.index) {
+            self.digits.write(number, out);
+        }
+    }
+}
 
 impl TextFormat for Csv {
     fn begin(&mut self, out: &mut Vec<u8>) {
-        out.extend_from_slice(b"id,x,y\n");
+        let layered = usize::from(self.schema.is_layered());
+        let (layer, columns) = self.schema.columns().split_at(layered);
+        for column in layer {
+            out.extend_from_slice(field(&column.name).as_bytes());
+            out.push(b',');
+        }
+        out.extend_from_slice(b"id,x,y");
+        for column in columns {
+            out.push(b',');
+            out.extend_from_slice(field(&column.name).as_bytes());
+        }
+        out.push(b'\n');
     }
 
-    fn point(&mut self, point: &Point, _first: bool, out: &mut Vec<u8>) {
-        write_id(point.id, out);
+    fn row(&mut self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
+        let layered = usize::from(self.schema.is_layered());
+        if layered > 0 {
+            self.value(0, row, out);
+            out.push(b',');
+        }
+        write_id(row.point.id, out);
         out.push(b',');
-        write_number(point.x, out);
+        self.digits.write(row.point.x, out);
         out.push(b',');
-        write_number(point.y, out);
+        self.digits.write(row.point.y, out);
+        for column in layered..self.names.len() {
+            out.push(b',');
+            self.value(column, row, out);
+        }
         out.push(b'\n');
     }
 
     fn end(&mut self, _points: u64, _out: &mut Vec<u8>) {}
+
+    fn row_bytes(&self) -> usize {
+        let longest = |names: &[String]| names.iter().map(String::len).max().unwrap_or(24);
+        160 + self
+            .names
+            .iter()
+            .map(|names| longest(names) + 1)
+            .sum::<usize>()
+    }
+}
+
+/// A text as a field (RFC 4180): in quotes if it has a comma, a quote or a line break.
+fn field(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.into()
+    }
 }

@@ -1,20 +1,21 @@
 //! One JSON document: `{"query":…,"table":…,"count":N,"points":[…]}`, a point a line.
 
-use strew_core::Point;
-
 use super::{
-    Head,
-    text::{TextFormat, write_json, write_point},
+    head::Head,
+    members::{Members, write_json},
+    rows::Row,
+    text::TextFormat,
 };
 
 #[derive(Debug)]
 pub(super) struct Json {
     head: Head,
+    members: Members,
 }
 
 impl Json {
-    pub(super) const fn new(head: Head) -> Self {
-        Self { head }
+    pub(super) const fn new(head: Head, members: Members) -> Self {
+        Self { head, members }
     }
 }
 
@@ -26,12 +27,16 @@ impl TextFormat for Json {
         out.extend_from_slice(b",\"points\":[");
     }
 
-    fn point(&mut self, point: &Point, first: bool, out: &mut Vec<u8>) {
+    fn row(&mut self, row: Row<'_>, first: bool, out: &mut Vec<u8>) {
         out.extend_from_slice(if first { b"\n" } else { b",\n" });
-        write_point(point, out);
+        self.members.write_point(row, out);
     }
 
     fn end(&mut self, _points: u64, out: &mut Vec<u8>) {
         out.extend_from_slice(b"\n]}\n");
+    }
+
+    fn row_bytes(&self) -> usize {
+        160 + self.members.bytes()
     }
 }

@@ -2,201 +2,206 @@
 //!
 //! An [`Answer`] is a plain iterator that owns all it needs and can move between threads. It makes
 //! the whole document: what comes before the points, the points, and the summary after them.
+//! Formats are made of [`Rows`]; only packed coordinates without further columns come straight
+//! from the kernel.
 
 mod buffer;
 mod csv;
+mod encoding;
+mod head;
 mod json;
+mod members;
 mod ndjson;
+mod number;
+mod output;
 mod packed;
+mod records;
+pub mod rows;
+#[cfg(test)]
+mod sample_rows;
+pub mod schema;
 mod text;
 
-use bytes::Bytes;
-use serde::Serialize;
-use strew_core::{ALGORITHM_VERSION, sample};
+use std::fmt;
 
-use super::{Entry, Planned, query::Resolved};
+use bytes::Bytes;
+use strew_core::{Plan, sample};
+
+use super::{Error, Planned};
+use head::Head;
+use members::Members;
+use records::{Layout, Records};
+use rows::Coordinates;
 use text::TextBlocks;
 
 pub use buffer::Pool;
+pub use encoding::Encoding;
+pub use number::{Digits, write_number};
+pub use output::{DECIMALS, MOST_DECIMALS, Options, Output};
 pub use packed::{Packed, Scalars};
-pub use text::{id_text, write_id, write_number};
+pub use rows::{Attributes, Part, Rows};
+pub use schema::{Column, LAYER, Schema, Values};
+pub use text::{id_text, write_id};
 
-/// The formats of an answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Encoding {
-    /// One JSON document.
-    Json,
-    /// One JSON document a line.
-    Ndjson,
-    /// Comma-separated values.
-    Csv,
-    /// Interleaved little-endian `f32` pairs, relative to the box's lower corner.
-    F32,
-    /// Interleaved little-endian `f64` pairs.
-    F64,
-}
+/// An answer that could not be made to its end: a bug, for what can be refused is refused before.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the answer cannot be encoded: {0}")]
+pub struct EncodeError(pub String);
 
-impl Encoding {
-    /// All formats.
-    pub const ALL: [Self; 5] = [Self::Json, Self::Ndjson, Self::Csv, Self::F32, Self::F64];
-
-    /// The name in queries.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Json => "json",
-            Self::Ndjson => "ndjson",
-            Self::Csv => "csv",
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        }
-    }
-
-    /// The format of a name.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|encoding| encoding.name() == name)
-    }
-
-    /// The content type, when the format is asked for by name.
-    #[must_use]
-    pub const fn content_type(self) -> &'static str {
-        match self {
-            Self::Json => "application/json",
-            Self::Ndjson => "application/x-ndjson",
-            Self::Csv => "text/csv; charset=utf-8; header=present",
-            Self::F32 | Self::F64 => "application/octet-stream",
-        }
-    }
-
-    /// The bytes of a point, where all have the same.
-    #[must_use]
-    pub const fn point_bytes(self) -> Option<u64> {
-        match self {
-            Self::F32 => Some(8),
-            Self::F64 => Some(16),
-            Self::Json | Self::Ndjson | Self::Csv => None,
-        }
-    }
+/// What makes the blocks of an answer.
+trait Blocks: fmt::Debug + Send {
+    /// The next block. It may be empty: then there is more to do before there is more to say.
+    fn next(&mut self) -> Option<Result<Bytes, EncodeError>>;
+    /// How many points have been encoded so far.
+    fn points(&self) -> u64;
 }
 
 /// A planned query on its way out: the blocks of its answer in one format.
 #[derive(Debug)]
 pub struct Answer {
-    blocks: AnyBlocks,
+    /// What comes first, if it is known before.
+    head: Option<Bytes>,
+    blocks: Box<dyn Blocks>,
+    size: Option<u64>,
+    origin: Option<[f64; 2]>,
+    plain: Option<Plain>,
 }
 
-#[derive(Debug)]
-enum AnyBlocks {
-    Json(TextBlocks<json::Json>),
-    Ndjson(TextBlocks<ndjson::Ndjson>),
-    Csv(TextBlocks<csv::Csv>),
-    F32(Packed<sample::F32>),
-    F64(Packed<sample::F64>),
+/// An answer that is nothing but a head and the packed points of one plan. Whoever has several
+/// threads can fill the plan's tiles instead of asking for blocks.
+#[derive(Clone, Debug)]
+pub struct Plain {
+    /// What stands before the points.
+    pub head: Option<Bytes>,
+    /// The points.
+    pub plan: Plan,
+    /// Whether coordinates are `f32` relative to the plan's origin, else `f64`.
+    pub is_f32: bool,
+}
+
+impl Planned {
+    /// The parts of the answer.
+    #[must_use]
+    pub fn parts(&self) -> Vec<Part> {
+        vec![Part {
+            plan: self.plan.clone(),
+            layer: None,
+            attributes: None,
+        }]
+    }
 }
 
 impl Answer {
     /// The answer to a planned query, in blocks of about `block_bytes`.
-    #[must_use]
-    pub fn new(planned: &Planned, encoding: Encoding, block_bytes: usize) -> Self {
-        let head = Head::new(planned, encoding);
-        let plan = &planned.plan;
-        let blocks = match encoding {
-            Encoding::Json => {
-                AnyBlocks::Json(TextBlocks::new(plan, json::Json::new(head), block_bytes))
-            }
-            Encoding::Ndjson => {
-                let lines = ndjson::Ndjson::new(head);
-                AnyBlocks::Ndjson(TextBlocks::new(plan, lines, block_bytes))
-            }
-            Encoding::Csv => AnyBlocks::Csv(TextBlocks::new(plan, csv::Csv, block_bytes)),
-            Encoding::F32 => AnyBlocks::F32(Packed::new(plan, block_bytes)),
-            Encoding::F64 => AnyBlocks::F64(Packed::new(plan, block_bytes)),
-        };
-        Self { blocks }
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the format cannot hold the answer.
+    pub fn new(planned: &Planned, output: &Output, block_bytes: usize) -> Result<Self, Error> {
+        Self::of_parts(planned, planned.parts(), output, block_bytes)
     }
 
-    /// The exact size of a planned answer, where it is known before.
+    fn of_parts(
+        planned: &Planned,
+        parts: Vec<Part>,
+        output: &Output,
+        block_bytes: usize,
+    ) -> Result<Self, Error> {
+        let coordinates = Coordinates::of(output, &parts);
+        let rows = Rows::new(parts, coordinates);
+        let head = Head::new(planned, output, rows.count());
+        let origin = coordinates.origin();
+        let blocks: Box<dyn Blocks> = match output.encoding {
+            Encoding::Json => {
+                let format = json::Json::new(head, Members::new(&rows, output));
+                Box::new(TextBlocks::new(rows, format, block_bytes))
+            }
+            Encoding::Ndjson => {
+                let format = ndjson::Ndjson::new(head, Members::new(&rows, output));
+                Box::new(TextBlocks::new(rows, format, block_bytes))
+            }
+            Encoding::Csv => {
+                let format = csv::Csv::new(&rows, output);
+                Box::new(TextBlocks::new(rows, format, block_bytes))
+            }
+            Encoding::F32 => {
+                return Ok(Self::of_records(rows, Layout::F32, None, block_bytes));
+            }
+            Encoding::F64 => {
+                return Ok(Self::of_records(rows, Layout::F64, None, block_bytes));
+            }
+        };
+        Ok(Self {
+            head: None,
+            blocks,
+            size: None,
+            origin,
+            plain: None,
+        })
+    }
+
+    /// Records after a head; straight from the kernel where they are no more than coordinates.
+    fn of_records(rows: Rows, layout: Layout, head: Option<Bytes>, block_bytes: usize) -> Self {
+        let before = head.as_ref().map_or(0, |head| head.len() as u64);
+        let bytes = layout.record_bytes(rows.schema()) as u64;
+        let size = u64::try_from(rows.count()).ok();
+        let size = size.and_then(|rows| bytes.checked_mul(rows)?.checked_add(before));
+        let origin = rows.coordinates().origin();
+        let plan = rows.plain_plan().cloned();
+        let plain = plan.and_then(|plan| {
+            Some(Plain {
+                head: head.clone(),
+                plan,
+                is_f32: layout.plain_f32()?,
+            })
+        });
+        let blocks: Box<dyn Blocks> = match &plain {
+            Some(Plain { plan, is_f32, .. }) if *is_f32 => {
+                Box::new(Packed::<sample::F32>::new(plan, block_bytes))
+            }
+            Some(Plain { plan, .. }) => Box::new(Packed::<sample::F64>::new(plan, block_bytes)),
+            None => Box::new(Records::new(rows, layout, block_bytes)),
+        };
+        Self {
+            head,
+            blocks,
+            size,
+            origin,
+            plain,
+        }
+    }
+
+    /// The exact size in bytes, where it is known before.
     #[must_use]
-    pub fn size(planned: &Planned, encoding: Encoding) -> Option<u64> {
-        let points = u64::try_from(planned.count()).ok()?;
-        encoding.point_bytes()?.checked_mul(points)
+    pub const fn size(&self) -> Option<u64> {
+        self.size
+    }
+
+    /// What coordinates are relative to, if not to the world's origin.
+    #[must_use]
+    pub const fn origin(&self) -> Option<[f64; 2]> {
+        self.origin
+    }
+
+    /// How to make it from the plan's tiles, if it is that simple.
+    #[must_use]
+    pub const fn plain(&self) -> Option<&Plain> {
+        self.plain.as_ref()
     }
 
     /// How many points have been encoded so far.
     #[must_use]
-    pub const fn points(&self) -> u64 {
-        match &self.blocks {
-            AnyBlocks::Json(blocks) => blocks.points(),
-            AnyBlocks::Ndjson(blocks) => blocks.points(),
-            AnyBlocks::Csv(blocks) => blocks.points(),
-            AnyBlocks::F32(blocks) => blocks.points(),
-            AnyBlocks::F64(blocks) => blocks.points(),
-        }
+    pub fn points(&self) -> u64 {
+        self.blocks.points()
     }
 }
 
 impl Iterator for Answer {
-    type Item = Bytes;
+    type Item = Result<Bytes, EncodeError>;
 
-    fn next(&mut self) -> Option<Bytes> {
-        match &mut self.blocks {
-            AnyBlocks::Json(blocks) => blocks.next(),
-            AnyBlocks::Ndjson(blocks) => blocks.next(),
-            AnyBlocks::Csv(blocks) => blocks.next(),
-            AnyBlocks::F32(blocks) => blocks.next(),
-            AnyBlocks::F64(blocks) => blocks.next(),
-        }
-    }
-}
-
-/// What an answer says about itself: the query as understood, and the table.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct Head {
-    pub(super) query: QueryEcho,
-    pub(super) table: TableEcho,
-    pub(super) count: u128,
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct QueryEcho {
-    #[serde(flatten)]
-    resolved: Resolved,
-    format: &'static str,
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct TableEcho {
-    profile: String,
-    alpha: String,
-    radius: u32,
-    digest: String,
-    algorithm: u32,
-}
-
-impl Head {
-    fn new(planned: &Planned, encoding: Encoding) -> Self {
-        let Entry {
-            key,
-            radius,
-            digest,
-            ..
-        } = &*planned.entry;
-        Self {
-            query: QueryEcho {
-                resolved: planned.query.resolved(),
-                format: encoding.name(),
-            },
-            table: TableEcho {
-                profile: key.profile.as_ref().into(),
-                alpha: key.alpha.to_string(),
-                radius: *radius,
-                digest: digest.clone(),
-                algorithm: ALGORITHM_VERSION,
-            },
-            count: planned.count(),
+    fn next(&mut self) -> Option<Self::Item> {
+        match self.head.take() {
+            Some(head) => Some(Ok(head)),
+            None => self.blocks.next(),
         }
     }
 }

@@ -1,21 +1,23 @@
 //! A JSON document a line: the points, then a summary. Without the summary it is not complete.
 
 use serde::Serialize;
-use strew_core::Point;
 
 use super::{
-    Head, QueryEcho, TableEcho,
-    text::{TextFormat, write_json, write_point},
+    head::{Head, QueryEcho, TableEcho},
+    members::{Members, write_json},
+    rows::Row,
+    text::TextFormat,
 };
 
 #[derive(Debug)]
 pub(super) struct Ndjson {
     head: Head,
+    members: Members,
 }
 
 impl Ndjson {
-    pub(super) const fn new(head: Head) -> Self {
-        Self { head }
+    pub(super) const fn new(head: Head, members: Members) -> Self {
+        Self { head, members }
     }
 }
 
@@ -34,8 +36,8 @@ struct Summary<'a> {
 impl TextFormat for Ndjson {
     fn begin(&mut self, _out: &mut Vec<u8>) {}
 
-    fn point(&mut self, point: &Point, _first: bool, out: &mut Vec<u8>) {
-        write_point(point, out);
+    fn row(&mut self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
+        self.members.write_point(row, out);
         out.push(b'\n');
     }
 
@@ -49,5 +51,9 @@ impl TextFormat for Ndjson {
         };
         write_json(&last, out);
         out.push(b'\n');
+    }
+
+    fn row_bytes(&self) -> usize {
+        160 + self.members.bytes()
     }
 }

@@ -4,13 +4,13 @@ use bytemuck::NoUninit;
 use bytes::Bytes;
 use strew_core::{
     Plan,
-    sample::{Blocks, F32, F64, Format},
+    sample::{self, F32, F64, Format},
 };
 
-use super::buffer::Pool;
+use super::{Blocks, EncodeError, buffer::Pool};
 
 /// A point format whose items are pairs of plain numbers.
-pub trait Scalars: Format<Item: NoUninit> {
+pub trait Scalars: Format<Item: NoUninit + std::fmt::Debug> {
     /// Turns an item around where memory order is not little-endian.
     fn to_little_endian(item: Self::Item) -> Self::Item;
 }
@@ -30,7 +30,7 @@ impl Scalars for F64 {
 /// The blocks of a packed answer.
 #[derive(Debug)]
 pub struct Packed<F: Scalars> {
-    blocks: Blocks<F>,
+    blocks: sample::Blocks<F>,
     pool: Pool<F::Item>,
     points: u64,
 }
@@ -46,12 +46,6 @@ impl<F: Scalars> Packed<F> {
             pool: Pool::new(length),
             points: 0,
         }
-    }
-
-    /// How many points have been encoded so far.
-    #[must_use]
-    pub const fn points(&self) -> u64 {
-        self.points
     }
 }
 
@@ -71,5 +65,15 @@ impl<F: Scalars> Iterator for Packed<F> {
         }
         self.points += filled as u64;
         Some(self.pool.lend(buffer, filled))
+    }
+}
+
+impl<F: Scalars> Blocks for Packed<F> {
+    fn next(&mut self) -> Option<Result<Bytes, EncodeError>> {
+        Iterator::next(self).map(Ok)
+    }
+
+    fn points(&self) -> u64 {
+        self.points
     }
 }

@@ -1,35 +1,35 @@
-//! What the text formats share: blocks of points, ids and numbers.
+//! What the text formats share: blocks of rows, and ids.
 
 use bytes::Bytes;
-use strew_core::{
-    Plan, Point, PointId,
-    sample::{Blocks, Points},
+use strew_core::PointId;
+
+use super::{
+    Blocks, EncodeError,
+    rows::{Row, Rows},
 };
 
-/// A text format: what stands before, at, and after the points.
+/// A text format: what stands before, at, and after the rows.
 pub(super) trait TextFormat {
-    /// Writes what comes before the first point.
+    /// Writes what comes before the first row.
     fn begin(&mut self, out: &mut Vec<u8>);
-    /// Writes a point; `first` says that none was written before.
-    fn point(&mut self, point: &Point, first: bool, out: &mut Vec<u8>);
-    /// Writes what comes after the last of `points` points.
+    /// Writes a row; `first` says that none was written before.
+    fn row(&mut self, row: Row<'_>, first: bool, out: &mut Vec<u8>);
+    /// Writes what comes after the last of `points` rows.
     fn end(&mut self, points: u64, out: &mut Vec<u8>);
+    /// More than is usually written for a row.
+    fn row_bytes(&self) -> usize;
 }
 
 /// Points are made so many at a time: few enough to stay in the fastest memory.
 const POINTS_AT_ONCE: usize = 256;
-/// More than any of the formats writes for a point.
-const POINT_BYTES: usize = 160;
 
 /// The blocks of a text answer.
 #[derive(Debug)]
 pub(super) struct TextBlocks<T> {
-    blocks: Blocks<Points>,
-    made: Box<[Point]>,
+    rows: Rows,
     format: T,
     block_bytes: usize,
     points: u64,
-    count: u128,
     state: State,
 }
 
@@ -41,36 +41,32 @@ enum State {
 }
 
 impl<T: TextFormat> TextBlocks<T> {
-    pub(super) fn new(plan: &Plan, format: T, block_bytes: usize) -> Self {
+    pub(super) const fn new(rows: Rows, format: T, block_bytes: usize) -> Self {
         Self {
-            blocks: plan.blocks(),
-            made: vec![Point::default(); POINTS_AT_ONCE].into(),
+            rows,
             format,
             block_bytes,
             points: 0,
-            count: plan.count(),
             state: State::Begin,
         }
     }
 
     /// What a block may take at most; less when little is left.
     fn capacity(&self) -> usize {
-        let left = usize::try_from(self.count - u128::from(self.points)).unwrap_or(usize::MAX);
-        let whole = self.block_bytes + POINTS_AT_ONCE * POINT_BYTES;
-        whole.min(left.saturating_mul(POINT_BYTES).saturating_add(2048))
+        let left = self.rows.count().saturating_sub(self.points.into());
+        let left = usize::try_from(left).unwrap_or(usize::MAX);
+        let row = self.format.row_bytes();
+        let whole = self.block_bytes + POINTS_AT_ONCE * row;
+        whole.min(left.saturating_mul(row).saturating_add(2048))
     }
 }
 
-impl<T> TextBlocks<T> {
-    pub(super) const fn points(&self) -> u64 {
+impl<T: TextFormat + std::fmt::Debug + Send> Blocks for TextBlocks<T> {
+    fn points(&self) -> u64 {
         self.points
     }
-}
 
-impl<T: TextFormat> Iterator for TextBlocks<T> {
-    type Item = Bytes;
-
-    fn next(&mut self) -> Option<Bytes> {
+    fn next(&mut self) -> Option<Result<Bytes, EncodeError>> {
         if self.state == State::Over {
             return None;
         }
@@ -80,25 +76,18 @@ impl<T: TextFormat> Iterator for TextBlocks<T> {
             self.state = State::Points;
         }
         while out.len() < self.block_bytes {
-            let filled = self.blocks.fill(&mut self.made);
-            if filled == 0 {
+            let Some(batch) = self.rows.next(POINTS_AT_ONCE) else {
                 self.format.end(self.points, &mut out);
                 self.state = State::Over;
                 break;
-            }
-            for point in &self.made[..filled] {
-                self.format.point(point, self.points == 0, &mut out);
+            };
+            for row in batch.rows() {
+                self.format.row(row, self.points == 0, &mut out);
                 self.points += 1;
             }
         }
-        Some(out.into())
+        Some(Ok(out.into()))
     }
-}
-
-/// Writes the shortest digits that read back to the same number. It must be finite, as every
-/// coordinate is; then the text is a valid number in JSON.
-pub fn write_number(value: f64, out: &mut Vec<u8>) {
-    out.extend_from_slice(zmij::Buffer::new().format_finite(value).as_bytes());
 }
 
 /// Writes an id: `column:row`.
@@ -116,82 +105,68 @@ pub fn id_text(id: PointId) -> String {
     [x.format(id.x), ":", y.format(id.y)].concat()
 }
 
-/// Writes a value as JSON. What is written here has no maps with strange keys, so it cannot fail.
-pub(super) fn write_json(value: &impl serde::Serialize, out: &mut Vec<u8>) {
-    if let Err(error) = serde_json::to_writer(out, value) {
-        debug_assert!(false, "{error}");
-    }
-}
-
-/// Writes `{"id":"…","x":…,"y":…}`.
-pub(super) fn write_point(point: &Point, out: &mut Vec<u8>) {
-    out.extend_from_slice(b"{\"id\":\"");
-    write_id(point.id, out);
-    out.extend_from_slice(b"\",\"x\":");
-    write_number(point.x, out);
-    out.extend_from_slice(b",\"y\":");
-    write_number(point.y, out);
-    out.push(b'}');
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::service::encode::{Encoding, Output, sample_rows::answer};
 
-    fn text(value: f64) -> String {
-        let mut out = vec![];
-        write_number(value, &mut out);
-        String::from_utf8(out).expect("digits")
-    }
-
-    fn check(value: f64) {
-        let text = text(value);
-        let back: f64 = text.parse().expect("a number");
-        assert_eq!(back.to_bits(), value.to_bits(), "{text}");
-        assert!(serde_json::from_str::<f64>(&text).is_ok(), "{text} is JSON");
-        // As few digits as Rust's own; where two such numbers are equally near they may differ.
-        let digits = |t: &str| {
-            let mantissa = t.split(['e', 'E']).next().unwrap_or_default();
-            let all: String = mantissa.chars().filter(char::is_ascii_digit).collect();
-            all.trim_matches('0').len()
+    /// Both layers in a text format, with two decimals, line by line.
+    fn lines(encoding: Encoding) -> Vec<String> {
+        let output = Output {
+            decimals: Some(2),
+            ..Output::new(encoding)
         };
-        assert_eq!(digits(&text), digits(&format!("{value:e}")), "{text}");
+        let (bytes, size) = answer(&output, 4096);
+        assert_eq!((bytes.clone(), size), (answer(&output, 1).0, None));
+        let text = String::from_utf8(bytes).expect("UTF-8");
+        text.lines().map(Into::into).collect()
     }
 
     #[test]
-    fn numbers_at_the_edges_are_json_and_read_back() {
-        for value in [
-            0.0,
-            -0.0,
-            5.0,
-            0.1,
-            1e15,
-            1e16,
-            1e21,
-            1e22,
-            -1e300,
-            f64::MAX,
-            f64::MIN_POSITIVE,
-            5e-324,
-            1e-5,
-            1e-7,
-            123_456_789.123_456_79,
-        ] {
-            check(value);
-            check(-value);
+    fn csv_has_the_layer_first_and_what_is_missing_is_empty() {
+        let lines = lines(Encoding::Csv);
+        assert_eq!(lines[0], "layer,id,x,y,angle,variant");
+        let (tree, rock) = (&lines[1], lines.last().expect("rocks"));
+        let fields: Vec<&str> = tree.split(',').collect();
+        assert_eq!((fields[0], fields.len()), ("trees", 6));
+        assert!(
+            fields[2..5]
+                .iter()
+                .all(|n| n.split_once('.').expect("decimals").1.len() == 2)
+        );
+        assert!(rock.starts_with("rocks,") && rock.contains(",,"), "{rock}");
+        assert!(
+            lines
+                .iter()
+                .any(|line| line.ends_with(",,\"grey, \"\"old\"\"\""))
+        );
+    }
+
+    #[test]
+    fn json_has_columns_as_members_and_leaves_out_what_is_missing() {
+        let (ndjson, json) = (lines(Encoding::Ndjson), lines(Encoding::Json));
+        let whole: serde_json::Value = serde_json::from_str(&json.concat()).expect("JSON");
+        assert_eq!(whole["query"]["decimals"], 2);
+        let points = whole["points"].as_array().expect("a list");
+        assert_eq!(points.len(), ndjson.len() - 1);
+        for (line, point) in ndjson.iter().zip(points) {
+            let own: serde_json::Value = serde_json::from_str(line).expect("JSON");
+            assert_eq!(&own, point);
+            let is_tree = point["layer"] == "trees";
+            assert_eq!(point["angle"].is_number(), is_tree);
+            assert_eq!(point.get("angle").is_some(), is_tree);
+            assert!(point["variant"].is_string() && point["id"].is_string());
         }
+        assert!(
+            points
+                .iter()
+                .any(|point| point["variant"] == "grey, \"old\"")
+        );
     }
 
     proptest! {
-        #[test]
-        fn any_finite_number_is_json_and_reads_back(bits: u64) {
-            let value = f64::from_bits(bits);
-            prop_assume!(value.is_finite());
-            check(value);
-        }
-
         #[test]
         fn ids_are_written_as_the_library_writes_them(x: i64, y: i64) {
             let id = PointId { x, y };

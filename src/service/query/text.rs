@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use percent_encoding::percent_decode_str;
 
-use super::{AMOUNT, BOX, Draft, Query, WARP};
-use crate::service::{Catalog, Encoding, Entry, Error, Fault};
-
-/// The parameters there are.
-const NAMES: [&str; 9] = [
-    "bbox", "density", "spacing", "profile", "alpha", "map", "seed", "warp", "format",
-];
+use super::{
+    AMOUNT, BOX, Draft, Query, WARP,
+    parameters::{PARAMETERS, SEED, names},
+    pin,
+};
+use crate::service::{
+    Catalog, Encoding, Entry, Error, Fault,
+    encode::{DECIMALS, MOST_DECIMALS, Options},
+};
 
 /// No more faults of an address are reported: an error is to be read.
 const MOST_FAULTS: usize = 16;
@@ -34,8 +36,12 @@ pub struct Parameters {
     pub seed: Option<String>,
     /// `off`, `on` or the strength of the warp.
     pub warp: Option<String>,
+    /// The digest of the table that has to answer.
+    pub table: Option<String>,
     /// The name of the format.
     pub format: Option<String>,
+    /// Decimals of numbers in text formats.
+    pub decimals: Option<String>,
 }
 
 /// Parameters with the faults found so far.
@@ -58,7 +64,7 @@ pub fn parse_pairs(text: &str) -> Parsed {
                 &name,
                 percent_decode_str(raw_value).decode_utf8_lossy(),
                 "there is no such parameter",
-                NAMES.join(", "),
+                names(),
             ));
             continue;
         };
@@ -93,7 +99,9 @@ impl Parameters {
             "map" => &mut self.map,
             "seed" => &mut self.seed,
             "warp" => &mut self.warp,
+            "table" => &mut self.table,
             "format" => &mut self.format,
+            "decimals" => &mut self.decimals,
             _ => return None,
         })
     }
@@ -109,11 +117,16 @@ impl Parameters {
         mut faults: Vec<Fault>,
     ) -> Result<Arc<Entry>, Error> {
         let mut rest = self.clone();
-        let (alpha, map) = (rest.alpha.take(), rest.map.take());
-        for name in NAMES {
-            if let Some(Some(value)) = rest.slot(name) {
+        let (alpha, map, table) = (rest.alpha.take(), rest.map.take(), rest.table.take());
+        for parameter in PARAMETERS {
+            if let Some(Some(value)) = rest.slot(parameter.name) {
                 let detail = "it means nothing here";
-                faults.push(Fault::new(name, value, detail, "alpha, map"));
+                faults.push(Fault::new(
+                    parameter.name,
+                    value,
+                    detail,
+                    "alpha, map, table",
+                ));
             }
         }
         let draft = Draft {
@@ -122,8 +135,12 @@ impl Parameters {
             map: map.as_deref(),
             ..Draft::default()
         };
+        faults.extend(pin::read(table.as_deref()).err());
         match draft.key(catalog) {
-            Ok(key) if faults.is_empty() => catalog.entry(&key).ok_or_else(Error::lost_table),
+            Ok(key) if faults.is_empty() => {
+                pin::compare(table.as_deref(), catalog, &key)?;
+                catalog.entry(&key).ok_or_else(Error::lost_table)
+            }
             Ok(_) => Err(Error::Invalid(faults)),
             Err(more) => {
                 faults.extend(more);
@@ -132,7 +149,8 @@ impl Parameters {
         }
     }
 
-    /// Checks everything; `faults` are those found before. Gives the format, too, if one is named.
+    /// Checks everything; `faults` are those found before. Gives the options of the output,
+    /// too.
     ///
     /// # Errors
     /// [`Error::Invalid`] with every fault.
@@ -140,11 +158,12 @@ impl Parameters {
         &self,
         catalog: &Catalog,
         mut faults: Vec<Fault>,
-    ) -> Result<(Query, Option<Encoding>), Error> {
+    ) -> Result<(Query, Options), Error> {
         let mut draft = Draft {
             profile: self.profile.as_deref(),
             alpha: self.alpha.as_deref(),
             map: self.map.as_deref(),
+            table: self.table.as_deref(),
             ..Draft::default()
         };
         let mut read = |result: Result<(), Fault>| faults.extend(result.err());
@@ -153,10 +172,11 @@ impl Parameters {
         read(amount("spacing", self.spacing.as_deref()).map(|spacing| draft.spacing = spacing));
         read(seed(self.seed.as_deref()).map(|seed| draft.seed = seed));
         read(warp(self.warp.as_deref()).map(|warp| draft.warp = warp));
-        let mut encoding = None;
-        read(format(self.format.as_deref()).map(|format| encoding = format));
+        let mut options = Options::default();
+        read(format(self.format.as_deref()).map(|format| options.encoding = format));
+        read(decimals(self.decimals.as_deref()).map(|decimals| options.decimals = decimals));
         let query = draft.check(catalog, faults)?;
-        Ok((query, encoding))
+        Ok((query, options))
     }
 }
 
@@ -190,10 +210,8 @@ fn amount(name: &str, text: Option<&str>) -> Result<Option<f64>, Fault> {
 
 fn seed(text: Option<&str>) -> Result<u64, Fault> {
     text.map_or(Ok(0), |text| {
-        text.parse().map_err(|_| {
-            let allowed = format!("an integer from 0 to {}", u64::MAX);
-            Fault::new("seed", text, "it is not such an integer", allowed)
-        })
+        text.parse()
+            .map_err(|_| Fault::new("seed", text, "it is not such an integer", SEED))
     })
 }
 
@@ -216,6 +234,17 @@ fn format(text: Option<&str>) -> Result<Option<Encoding>, Fault> {
     .transpose()
 }
 
+fn decimals(text: Option<&str>) -> Result<Option<u8>, Fault> {
+    text.map(|text| {
+        let parsed = text.parse().ok().filter(|n| *n <= MOST_DECIMALS);
+        parsed.ok_or_else(|| {
+            let detail = "it is not such an integer";
+            Fault::new("decimals", text, detail, DECIMALS)
+        })
+    })
+    .transpose()
+}
+
 /// A finite number; otherwise what it is instead.
 fn number(text: &str) -> Result<f64, &'static str> {
     match text.parse::<f64>() {
@@ -223,5 +252,29 @@ fn number(text: &str) -> Result<f64, &'static str> {
         Ok(value) if value.is_nan() => Err("not a number"),
         Ok(_) => Err("not finite"),
         Err(_) => Err("not a number"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_parameter_of_the_list_is_read_and_its_example_is_in_order() {
+        let catalog = Catalog::load(true, None).expect("built in");
+        for parameter in PARAMETERS {
+            let amount = ["density", "spacing"].contains(&parameter.name);
+            let mut text = format!("{}={}", parameter.name, parameter.example);
+            if parameter.name != "bbox" {
+                text += "&bbox=0,0,1,1";
+            }
+            if !amount {
+                text += "&density=1";
+            }
+            let (parameters, faults) = parse_pairs(&text);
+            let checked = parameters.check(&catalog, faults);
+            assert!(checked.is_ok(), "{text}: {checked:?}");
+        }
+        assert_eq!(SEED, format!("an integer from 0 to {}", u64::MAX));
     }
 }

@@ -30,22 +30,33 @@ impl IndexOrigin {
 pub struct Pattern {
     alpha: Alpha,
     origin: IndexOrigin,
+    /// The side of the set region: t, or less in a thinned pattern.
+    side: u64,
 }
 
 impl Pattern {
     /// The pattern whose lattice origin has the index (0, 0).
     #[must_use]
     pub const fn new(alpha: Alpha) -> Self {
-        Self {
-            alpha,
-            origin: IndexOrigin { x: 0, y: 0 },
-        }
+        Self::with_origin(alpha, IndexOrigin { x: 0, y: 0 })
     }
 
     /// The same pattern with the lattice origin at another index.
     #[must_use]
     pub const fn with_origin(alpha: Alpha, origin: IndexOrigin) -> Self {
-        Self { alpha, origin }
+        Self {
+            alpha,
+            origin,
+            side: alpha.set_side(),
+        }
+    }
+
+    /// The points of this pattern whose index lies in the smaller set region [0, `side`)²: an AA
+    /// pattern again, with a share (`side`/t)² of the points. A side above t changes nothing.
+    #[must_use]
+    pub const fn thinned(self, side: u64) -> Self {
+        let side = if side < self.side { side } else { self.side };
+        Self { side, ..self }
     }
 
     /// The number α.
@@ -75,28 +86,29 @@ impl Pattern {
         )
     }
 
-    /// Whether a lattice point belongs to the pattern (paper, Eq. 4): dX < t and dY < t.
+    /// Whether a lattice point belongs to the pattern (paper, Eq. 4): dX < t and dY < t, or less
+    /// than the side of a thinned one.
     #[must_use]
     pub const fn contains(&self, x: i64, y: i64) -> bool {
         let (dx, dy) = self.index(x, y);
-        let side = self.alpha.set_side();
-        dx < side && dy < side
+        dx < self.side && dy < self.side
     }
 
     /// The columns (`Axis::X`) or rows (`Axis::Y`) of one class: the pattern is the union, over the
     /// four classes, of columns × rows.
     #[must_use]
     pub fn axis_set(&self, axis: Axis, class: Class) -> AxisSet {
-        self.axis_subset(axis, class, 0..self.alpha.set_side())
+        self.axis_subset(axis, class, 0..self.side)
     }
 
-    /// The part of [`axis_set`](Self::axis_set) whose index lies in `interval`, a part of [0, t).
+    /// The part of [`axis_set`](Self::axis_set) whose index lies in `interval`.
     #[must_use]
     pub fn axis_subset(&self, axis: Axis, class: Class, interval: Range<u64>) -> AxisSet {
         let (own, other) = match axis {
             Axis::X => (class.x, class.y),
             Axis::Y => (class.y, class.x),
         };
+        let interval = interval.start..interval.end.min(self.side);
         AxisSet::new(self.alpha, self.axis_index(axis, 0, other), own, interval)
     }
 
@@ -106,10 +118,9 @@ impl Pattern {
     pub const fn visit(&self, axis: Axis, v: i64) -> Option<(u8, u64)> {
         let even = self.axis_index(axis, v, 0);
         let odd = even ^ (1 << 63);
-        let side = self.alpha.set_side();
-        if even < side {
+        if even < self.side {
             Some((0, even))
-        } else if odd < side {
+        } else if odd < self.side {
             Some((1, odd))
         } else {
             None
@@ -167,9 +178,11 @@ mod tests {
         #[test]
         fn four_products_make_the_pattern(
             x0 in any::<i64>(), y0 in any::<i64>(), w in 0i64..60, h in 0i64..60, ox: u64, oy: u64,
+            thinned in 1u64..4,
         ) {
             let (x0, y0) = (x0.min(i64::MAX - 60), y0.min(i64::MAX - 60));
             let pattern = Pattern::with_origin(alpha("(5-sqrt(3))/2"), IndexOrigin { x: ox, y: oy });
+            let pattern = pattern.thinned(pattern.alpha().set_side() / thinned);
             let mut direct = Vec::new();
             for y in y0..y0 + h {
                 direct.extend((x0..x0 + w).filter(|&x| pattern.contains(x, y)).map(|x| (y, x)));

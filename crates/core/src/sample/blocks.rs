@@ -4,11 +4,12 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
-    Frame, Listed, Sampler,
+    Frame, Listed, Sampler, fixed,
     kernel::{Backend, Format, Row},
     patch::{BAND_WIDTH, Patch},
     plan::Plan,
-    template::Templates,
+    sieve::{Focus, Run},
+    template::{Check, Kept, Stretch, Templates},
 };
 use crate::pattern::{Axis, Class};
 
@@ -23,6 +24,10 @@ pub struct Tile {
 }
 
 impl Tile {
+    pub(super) const fn new(band: i64, rows: Range<i64>) -> Self {
+        Self { band, rows }
+    }
+
     pub(super) fn of(plan: &Plan, max_points: usize) -> impl Iterator<Item = Self> + use<> {
         let (rows, columns, pattern) = (plan.y.all.clone(), plan.x.all.clone(), plan.frame.pattern);
         bands(plan).flat_map(move |band| {
@@ -44,7 +49,7 @@ impl Tile {
 }
 
 /// The bands that a plan touches.
-fn bands(plan: &Plan) -> Range<i64> {
+pub(super) fn bands(plan: &Plan) -> Range<i64> {
     let columns = &plan.x.all;
     if columns.is_empty() || plan.y.all.is_empty() {
         return 0..0;
@@ -71,15 +76,44 @@ pub struct Blocks<F: Format> {
     band: i64,
     /// The rows of every band.
     rows: Range<i64>,
-    /// The row under way, at the end of `rows` when a new band is due.
-    y: i64,
-    /// How much of that row's template is done.
-    done: usize,
+    at: Place,
+    /// How many points are still to come.
+    left: u128,
+    /// The plan's sieve, for the patch under way.
+    sieve: Option<Focus>,
+    /// What the sieve says of the row under way.
+    runs: Vec<Run>,
     columns: [Listed; 4],
     templates: Templates<F>,
     patch: Patch,
     base: [f64; 2],
     backend: Backend,
+}
+
+/// Where in a band the next point is.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// The row under way, at the end of the rows when a new band is due.
+    y: i64,
+    /// How much of that row's template is done.
+    done: usize,
+    /// The lattice column where the row under way begins, if the plan is a window and this is its
+    /// first row.
+    from: Option<i64>,
+}
+
+impl Place {
+    const fn row(y: i64) -> Self {
+        Self {
+            y,
+            done: 0,
+            from: None,
+        }
+    }
+
+    const fn next_row(&mut self) {
+        *self = Self::row(self.y + 1);
+    }
 }
 
 impl<F: Format> Blocks<F> {
@@ -88,23 +122,47 @@ impl<F: Format> Blocks<F> {
             Some(tile) => (tile.band..tile.band + 1, tile.rows.clone()),
             None => (bands(plan), plan.y.all.clone()),
         };
-        let kept = rows.end - rows.start >= TALL;
+        let start = plan.start.filter(|_| tile.is_none());
+        let bands = start.map_or(bands.start, |at| at.x.div_euclid(BAND_WIDTH))..bands.end;
+        let tall = rows.end - rows.start >= TALL;
+        let kept = match (&plan.sieve, start) {
+            (Some(_), _) => Kept::All,
+            (None, Some(_)) => Kept::Places,
+            (None, None) => Kept::Plain,
+        };
         let format = F::new(plan);
         let patch = Patch::new(&plan.frame, bands.start, rows.start, &plan.x, &plan.y);
-        Self {
+        let mut blocks = Self {
             base: format.base(patch.origin()),
             format,
             plan: plan.clone(),
             band: bands.start,
             bands,
-            y: rows.end,
+            at: Place::row(rows.end),
             rows,
-            done: 0,
+            left: if tile.is_some() {
+                u128::MAX
+            } else {
+                plan.count()
+            },
+            sieve: None,
+            runs: Vec::new(),
             columns: Default::default(),
-            templates: Templates::new(&plan.sampler, kept),
+            templates: Templates::new(&plan.sampler, tall, kept),
             patch,
             backend: Backend::best(),
+        };
+        if let Some(at) = start
+            && blocks.next_band()
+            && blocks.rows.contains(&at.y)
+        {
+            blocks.at = Place {
+                from: Some(at.x),
+                ..Place::row(at.y)
+            };
+            blocks.next_patch();
         }
+        blocks
     }
 
     /// The same points by another instruction set than the machine's best.
@@ -117,17 +175,27 @@ impl<F: Format> Blocks<F> {
     /// Writes the next points into `out`; gives how many. Fewer than `out` holds, down to 0, only
     /// at the end.
     pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
+        let most = usize::try_from(self.left).map_or(out.len(), |left| left.min(out.len()));
+        let out = &mut out[..most];
         let mut filled = 0;
         while filled < out.len() {
-            if self.y == self.rows.end && !self.next_band() {
+            if self.at.y == self.rows.end && !self.next_band() {
                 break;
             }
-            if self.y == self.patch.end() {
+            if self.at.y == self.patch.end() {
                 self.next_patch();
             }
             let end = self.rows.end.min(self.patch.end());
-            filled += self.fill_rows(end, &mut out[filled..]);
+            filled += match self.sieve.take() {
+                Some(sieve) => {
+                    let filled = self.fill_sifted(&sieve, end, &mut out[filled..]);
+                    self.sieve.get_or_insert(sieve);
+                    filled
+                }
+                None => self.fill_rows(end, &mut out[filled..]),
+            };
         }
+        self.left -= filled as u128;
         filled
     }
 
@@ -142,8 +210,7 @@ impl<F: Format> Blocks<F> {
         list_columns(sampler, frame, clip(band, &x.all), &mut self.columns);
         self.templates.forget();
         self.band = band;
-        self.y = self.rows.start;
-        self.done = 0;
+        self.at = Place::row(self.rows.start);
         self.next_patch();
         true
     }
@@ -151,8 +218,10 @@ impl<F: Format> Blocks<F> {
     /// Moves to the patch of the row under way.
     fn next_patch(&mut self) {
         let Plan { frame, x, y, .. } = &self.plan;
-        self.patch = Patch::new(frame, self.band, self.y, x, y);
+        self.patch = Patch::new(frame, self.band, self.at.y, x, y);
         self.base = self.format.base(self.patch.origin());
+        let rows = self.at.y..self.patch.end().min(self.rows.end);
+        self.sieve = self.plan.sieve.as_ref().map(|sieve| sieve.focus(rows));
     }
 
     /// Writes points of the patch's rows up to `end`, or as many as there is room for.
@@ -165,44 +234,135 @@ impl<F: Format> Blocks<F> {
         } = &self.plan;
         let (format, patch, base) = (&self.format, &self.patch, self.base);
         let mut filled = 0;
-        while self.y < end && filled < out.len() {
-            let y = self.y;
-            let Some((x_parity, index)) = frame.pattern.visit(Axis::Y, y) else {
-                self.y += 1;
+        while self.at.y < end && filled < out.len() {
+            let y = self.at.y;
+            let Some((class, block)) = locate(sampler, frame, y) else {
+                self.at.next_row();
                 continue;
             };
-            let class = Class {
-                x: x_parity,
-                y: (y & 1) as u8,
-            };
-            let block = sampler.map().locate(index);
-            let template = self.templates.get(class, block, self.done > 0, |template| {
-                let listed = &self.columns[class.ordinal()];
-                template.make(format, base, patch, listed, sampler.row(block));
-            });
+            let template = self
+                .templates
+                .get(class, block, self.at.done > 0, |template, kept| {
+                    let listed = &self.columns[class.ordinal()];
+                    template.make(format, base, patch, listed, sampler.row(block), kept);
+                });
+            if let Some(from) = self.at.from.take() {
+                self.at.done = template.columns_before(from);
+            }
+            let check =
+                if span.inner.contains(&y) && (patch.columns_are_inner || !patch.is_warped()) {
+                    Check::Nothing
+                } else {
+                    Check::Bounds
+                };
             let row = Row {
                 base,
                 y: patch.relative(Axis::Y, y),
                 lattice: y,
-                is_inner: span.inner.contains(&y),
+            };
+            let stretch = Stretch {
+                columns: self.at.done..template.len(),
+                check,
             };
             let (written, done) = template.fill(
                 format,
                 patch,
                 row,
-                self.done,
+                stretch,
                 self.backend,
                 &mut out[filled..],
             );
             filled += written;
-            self.done += done;
-            if self.done == template.len() {
-                self.y += 1;
-                self.done = 0;
+            self.at.done += done;
+            if self.at.done == template.len() {
+                self.at.next_row();
             }
         }
         filled
     }
+
+    /// The same through a sieve.
+    fn fill_sifted(&mut self, sieve: &Focus, end: i64, out: &mut [F::Item]) -> usize {
+        let Plan {
+            sampler, frame, x, ..
+        } = &self.plan;
+        let (format, patch, base) = (&self.format, &self.patch, self.base);
+        let columns = clip(self.band, &x.all);
+        let passes = |position: [i32; 2]| {
+            let origin = patch.origin().map(fixed);
+            let place = |axis: usize| frame.world(origin[axis] + i128::from(position[axis]));
+            sieve.passes([place(0), place(1)])
+        };
+        let mut filled = 0;
+        while self.at.y < end && filled < out.len() {
+            let y = self.at.y;
+            let Some((class, block)) = locate(sampler, frame, y) else {
+                self.at.next_row();
+                continue;
+            };
+            let is_under_way = self.at.done > 0;
+            if !is_under_way {
+                sieve.runs(y, &columns, &mut self.runs);
+                if self.runs.is_empty() {
+                    self.at.next_row();
+                    continue;
+                }
+            }
+            let template = self
+                .templates
+                .get(class, block, is_under_way, |template, kept| {
+                    let listed = &self.columns[class.ordinal()];
+                    template.make(format, base, patch, listed, sampler.row(block), kept);
+                });
+            if let Some(from) = self.at.from.take() {
+                self.at.done = template.columns_before(from);
+            }
+            let row = Row {
+                base,
+                y: patch.relative(Axis::Y, y),
+                lattice: y,
+            };
+            for run in &self.runs {
+                let ends = [run.columns.start, run.columns.end].map(|v| template.columns_before(v));
+                let columns = ends[0].max(self.at.done)..ends[1];
+                if columns.is_empty() {
+                    continue;
+                }
+                let check = if run.passes {
+                    Check::Nothing
+                } else {
+                    Check::Each(&passes)
+                };
+                let stretch = Stretch { columns, check };
+                let start = stretch.columns.start;
+                let (written, done) = template.fill(
+                    format,
+                    patch,
+                    row,
+                    stretch,
+                    self.backend,
+                    &mut out[filled..],
+                );
+                filled += written;
+                self.at.done = start + done;
+                if self.at.done < ends[1] {
+                    return filled;
+                }
+            }
+            self.at.next_row();
+        }
+        filled
+    }
+}
+
+/// The class and the block of a row, if it has points.
+fn locate(sampler: &Sampler, frame: &Frame, y: i64) -> Option<(Class, usize)> {
+    let (x_parity, index) = frame.pattern.visit(Axis::Y, y)?;
+    let class = Class {
+        x: x_parity,
+        y: (y & 1) as u8,
+    };
+    Some((class, sampler.map().locate(index)))
 }
 
 /// Lists the columns of a stretch of the lattice by class.

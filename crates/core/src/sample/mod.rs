@@ -6,18 +6,30 @@
 //! is inside the region on the very coordinates reported, and any partition of a region gives
 //! every point exactly once.
 
+mod area;
+mod attribute;
 mod blocks;
+mod clear;
 mod count;
+mod cursor;
+mod distance;
 mod id;
 pub(crate) mod kernel;
 mod margins;
+mod nearest;
 mod patch;
 mod placement;
 mod plan;
+mod rank;
 mod region;
+mod scan;
 mod seed;
+mod seek;
+mod sieve;
 mod spacing;
+mod stretch;
 mod template;
+mod variants;
 mod warp;
 
 use alloc::{sync::Arc, vec::Vec};
@@ -29,14 +41,24 @@ use crate::{
 };
 use warp::Shears;
 
+pub use area::{Area, AreaError, Circle, Polygon};
+pub use attribute::{
+    Attribute, AttributeError, Attributes, BoundAttributes, Column, ScaleRange, UniformNumber,
+};
 pub use blocks::{Blocks, Tile};
+pub use clear::{ClearOf, ClearOfError, Layer};
+pub use cursor::Cursor;
+pub use distance::{DistanceError, LeastDistance};
 pub use id::{PointId, PointIdError};
 pub use kernel::{Backend, F32, F64, Format, Points};
-pub use placement::Placement;
-pub use plan::{Plan, PlanError};
+pub use nearest::{Clearance, FindError, Finder, Neighbor};
+pub use placement::{Keep, KeepError, Placement};
+pub use plan::{Plan, PlanError, Selection};
+pub use rank::{rank, side_for};
 pub use region::{Region, RegionError};
 pub use seed::Seed;
 pub use spacing::{Spacing, SpacingError};
+pub use variants::{Variants, VariantsError};
 pub use warp::{Warp, WarpError};
 
 /// Lattice coordinates of a region stay within ±2⁵². There an `f64` can still tell lattice points
@@ -98,7 +120,31 @@ impl Sampler {
     /// # Errors
     /// [`PlanError`] if the region reaches beyond ±2⁵² lattice units at this spacing.
     pub fn plan(self: &Arc<Self>, placement: Placement, region: Region) -> Result<Plan, PlanError> {
-        Plan::new(self.clone(), Frame::new(self, placement), region)
+        self.select(Selection::new(placement, region))
+    }
+
+    /// What a selection holds: the exact count now, the points on demand.
+    ///
+    /// A box takes as long as in [`plan`](Self::plan); other areas take time in proportion to their
+    /// rows, and what keeps clear of layers in proportion to its points.
+    ///
+    /// # Errors
+    /// [`PlanError`] if the area reaches beyond ±2⁵² lattice units at this spacing, or has no end.
+    pub fn select(self: &Arc<Self>, selection: Selection) -> Result<Plan, PlanError> {
+        Plan::new(self.clone(), selection, None)
+    }
+
+    /// The rest of a selection from a cursor on, found without counting anything.
+    ///
+    /// # Errors
+    /// As [`select`](Self::select). A cursor of another selection gives its points from that
+    /// lattice address on, and the cursor's counts.
+    pub fn resume(
+        self: &Arc<Self>,
+        selection: Selection,
+        cursor: Cursor,
+    ) -> Result<Plan, PlanError> {
+        Ok(Plan::new(self.clone(), selection, Some(cursor.total))?.from_cursor(cursor))
     }
 
     /// The point of an id, or `None` if the pattern has no point at that lattice address.
@@ -107,6 +153,9 @@ impl Sampler {
         let frame = Frame::new(self, placement);
         let within = -LATTICE_LIMIT..=LATTICE_LIMIT;
         if !within.contains(&id.x) || !within.contains(&id.y) {
+            return None;
+        }
+        if !frame.pattern.contains(id.x, id.y) {
             return None;
         }
         let (index_x, index_y) = frame.pattern.index(id.x, id.y);
@@ -158,11 +207,13 @@ impl Frame {
             spacing,
             seed,
             warp,
+            keep,
         } = placement;
         // The mean spacing in the grid is 1/t: at scale = spacing · t it becomes the one asked for.
         let scale = spacing.get() * alpha.set_side_f64();
         Self {
-            pattern: Pattern::with_origin(alpha, seed.origin()),
+            pattern: Pattern::with_origin(alpha, seed.origin())
+                .thinned(side_for(keep.get(), alpha.set_side())),
             placement,
             shears: Shears::new(warp, seed, alpha.set_side_f64()),
             step: scale / f64::from(1u32 << FRACTION_BITS),

@@ -56,6 +56,11 @@ impl Patch {
         self.origin[1] + PATCH_HEIGHT
     }
 
+    /// Whether there is a warp.
+    pub(super) const fn is_warped(&self) -> bool {
+        self.shears.is_some()
+    }
+
     /// The warp, if there is one.
     pub(super) fn shears(&self) -> Option<&PatchShears> {
         self.shears.as_deref()

@@ -4,12 +4,37 @@ use alloc::sync::Arc;
 use core::ops::Range;
 
 use super::{
-    Blocks, F32, F64, Format, Frame, LATTICE_LIMIT, Placement, Points, Region, Sampler, Tile,
-    count, fixed, region::Corner,
+    Area, Blocks, ClearOf, Cursor, F32, F64, Format, Frame, LATTICE_LIMIT, Placement, PointId,
+    Points, Region, Sampler, Tile, count, fixed,
+    region::Corner,
+    sieve::{self, Sieve},
 };
 use crate::{pattern::Axis, table::FRACTION_BITS};
 
-/// A region beyond the lattice.
+/// Which points are asked for.
+#[derive(Clone, Debug)]
+pub struct Selection {
+    /// Spacing, seed and warp.
+    pub placement: Placement,
+    /// Where.
+    pub area: Area,
+    /// What they keep clear of.
+    pub clear: Arc<[ClearOf]>,
+}
+
+impl Selection {
+    /// All points of an area.
+    #[must_use]
+    pub fn new(placement: Placement, area: impl Into<Area>) -> Self {
+        Self {
+            placement,
+            area: area.into(),
+            clear: Arc::new([]),
+        }
+    }
+}
+
+/// Why a selection cannot be planned.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
@@ -26,6 +51,9 @@ pub enum PlanError {
         /// The largest absolute value allowed.
         limit: f64,
     },
+    /// The area has no end.
+    #[error("the area has no end; it must lie within a box")]
+    Unbounded,
 }
 
 /// One axis of a region in lattice terms.
@@ -61,6 +89,24 @@ impl Span {
         Self { bounds, all, inner }
     }
 
+    /// The part of it within a range of lattice coordinates.
+    fn within(&self, range: &Range<i64>) -> Self {
+        let clip = |part: &Range<i64>| {
+            let start = part.start.clamp(range.start, range.end);
+            start..part.end.clamp(start, range.end)
+        };
+        let (all, inner) = (clip(&self.all), clip(&self.inner));
+        Self {
+            bounds: self.bounds.clone(),
+            inner: if inner.is_empty() {
+                all.end..all.end
+            } else {
+                inner
+            },
+            all,
+        }
+    }
+
     /// The two stretches of `all` outside `inner`.
     pub(super) fn margins(&self) -> [Range<i64>; 2] {
         [
@@ -78,24 +124,43 @@ impl Span {
 /// A query made ready: the exact count is known, the points come on demand, in a fixed order.
 ///
 /// The order: bands of 1024 lattice columns at multiples of 1024, ascending; in a band rows
-/// ascending; in a row columns ascending. It is the same whatever the region, so the points of a
-/// part of a region come in the order they have in the whole.
+/// ascending; in a row columns ascending. It is the same whatever the area, so the points of a
+/// part of an area come in the order they have in the whole.
+///
+/// A plan may be a [window](Self::window) of its selection's points: those from a place in that
+/// order on, up to a number.
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub(super) sampler: Arc<Sampler>,
     pub(super) frame: Frame,
     pub(super) x: Span,
     pub(super) y: Span,
+    pub(super) sieve: Option<Arc<Sieve>>,
     region: Region,
+    /// How many points the selection has in all.
+    pub(super) total: u128,
+    /// Where the window begins: the lattice address of its first point, unless that is the
+    /// selection's first.
+    pub(super) start: Option<PointId>,
+    /// How many points come before the window.
+    offset: u128,
     count: u128,
 }
 
 impl Plan {
+    /// A plan; the number of points is counted unless it is known.
     pub(super) fn new(
         sampler: Arc<Sampler>,
-        frame: Frame,
-        region: Region,
+        selection: Selection,
+        known: Option<u128>,
     ) -> Result<Self, PlanError> {
+        let Selection {
+            placement,
+            area,
+            clear,
+        } = selection;
+        let frame = Frame::new(&sampler, placement);
+        let region = area.bounds().ok_or(PlanError::Unbounded)?;
         let limit = frame.limit();
         let ([min_x, min_y], [max_x, max_y]) = (region.min(), region.max());
         for (corner, value) in [
@@ -115,24 +180,127 @@ impl Plan {
         let x = Span::new(&frame, sampler.reach(&frame, Axis::X), min_x, max_x);
         let y = Span::new(&frame, sampler.reach(&frame, Axis::Y), min_y, max_y);
         debug_assert!(x.all.end < 2 * LATTICE_LIMIT && y.all.end < 2 * LATTICE_LIMIT);
-        let count = count::count(&sampler, &frame, &x, &y);
-        Ok(Self {
+        let is_box = matches!(area, Area::Region(_));
+        let part = if is_box && !clear.is_empty() {
+            Some(Area::Region(region))
+        } else {
+            (!is_box).then_some(area)
+        };
+        let sieve = Sieve::new(&sampler, &frame, part, clear);
+        let mut plan = Self {
             sampler,
             frame,
             x,
             y,
+            sieve: sieve.map(Arc::new),
             region,
-            count,
-        })
+            total: 0,
+            start: None,
+            offset: 0,
+            count: 0,
+        };
+        plan.total = known.unwrap_or_else(|| plan.count_within(&plan.x.all, &plan.y.all));
+        plan.count = plan.total;
+        Ok(plan)
     }
 
-    /// How many points the region holds.
+    /// How many points of the selection have lattice addresses in these columns and rows.
+    pub(super) fn count_within(&self, columns: &Range<i64>, rows: &Range<i64>) -> u128 {
+        let (x, y) = (self.x.within(columns), self.y.within(rows));
+        match &self.sieve {
+            Some(sieve) => sieve::count(&self.sampler, &self.frame, sieve, &x.all, &y.all),
+            None => count::count(&self.sampler, &self.frame, &x, &y),
+        }
+    }
+
+    /// How many points the plan has.
     #[must_use]
     pub const fn count(&self) -> u128 {
         self.count
     }
 
-    /// The region.
+    /// How many points the whole selection has, of which the plan may be a window.
+    #[must_use]
+    pub const fn total(&self) -> u128 {
+        self.total
+    }
+
+    /// How many points of the selection come before the plan's.
+    #[must_use]
+    pub const fn offset(&self) -> u128 {
+        self.offset
+    }
+
+    /// The points from number `offset` of this plan on, `limit` at most. Without warp, of a box,
+    /// that is found in O(log), elsewhere in time proportional to the rows.
+    #[must_use]
+    pub fn window(&self, offset: u128, limit: Option<u128>) -> Self {
+        let offset = offset.min(self.count);
+        let count = (self.count - offset).min(limit.unwrap_or(u128::MAX));
+        let mut window = self.clone();
+        if offset > 0 && count > 0 {
+            window.start = self.locate(self.offset + offset);
+        }
+        window.offset += offset;
+        window.count = count;
+        window
+    }
+
+    /// The points from a cursor of the same selection on.
+    #[must_use]
+    pub fn from_cursor(&self, cursor: Cursor) -> Self {
+        let offset = cursor.offset.min(self.total);
+        Self {
+            start: (offset > 0).then_some(cursor.at),
+            offset,
+            count: self.total - offset,
+            ..self.clone()
+        }
+    }
+
+    /// The place of the plan's first point, or `None` if it has none.
+    #[must_use]
+    pub fn cursor(&self) -> Option<Cursor> {
+        if self.count == 0 {
+            return None;
+        }
+        let at = self.start.or_else(|| self.locate(self.offset))?;
+        Some(Cursor {
+            offset: self.offset,
+            total: self.total,
+            at,
+        })
+    }
+
+    /// Where the selection goes on after the plan's last point, or `None` at its end.
+    #[must_use]
+    pub fn next_cursor(&self) -> Option<Cursor> {
+        let offset = self.offset + self.count;
+        let at = self.locate(offset)?;
+        Some(Cursor {
+            offset,
+            total: self.total,
+            at,
+        })
+    }
+
+    /// The plan in `parts` windows, one after another, whose sizes differ by one at most.
+    pub fn split(&self, parts: u32) -> impl Iterator<Item = Self> {
+        let parts = u128::from(parts.max(1));
+        let start = move |i: u128| {
+            let (quotient, rest) = (self.count / parts, self.count % parts);
+            i * quotient + i.min(rest)
+        };
+        (0..parts).map(move |i| self.window(start(i), Some(start(i + 1) - start(i))))
+    }
+
+    /// Whether the plan leaves out points of its selection.
+    #[must_use]
+    pub const fn is_window(&self) -> bool {
+        self.count < self.total
+    }
+
+    /// A box around all points: the region, for a box.
     #[must_use]
     pub const fn region(&self) -> Region {
         self.region
@@ -180,8 +348,8 @@ impl Plan {
         self.blocks()
     }
 
-    /// The plan cut into tiles that hold at most `max_points` points each (or one lattice row of a
-    /// band, if that is more). Tiles one after another give the plan's points in the plan's order,
+    /// The selection, all of it, cut into tiles that hold at most `max_points` points each (or one lattice row of a
+    /// band, if that is more). Tiles one after another give its points in order,
     /// and can be filled independently.
     pub fn tiles(&self, max_points: usize) -> impl Iterator<Item = Tile> + use<> {
         Tile::of(self, max_points)

@@ -95,6 +95,11 @@ impl Region {
         Ok(Self { min, max })
     }
 
+    /// The box between corners that are known to be finite and in order.
+    pub(super) const fn between(min: [f64; 2], max: [f64; 2]) -> Self {
+        Self { min, max }
+    }
+
     /// The lower corner, included.
     #[must_use]
     pub const fn min(&self) -> [f64; 2] {

@@ -5,6 +5,7 @@
 //! rows share one, each row makes its own.
 
 use alloc::{vec, vec::Vec};
+use core::ops::Range;
 
 use super::{
     Listed, Sampler,
@@ -16,14 +17,33 @@ use crate::pattern::{Axis, Class};
 /// The columns of a row.
 #[derive(Debug)]
 pub(super) struct Template<F: Format> {
-    /// Without warp: what a column contributes, for columns that lie in the region.
+    /// What a column contributes; without warp only.
     columns: Vec<F::Column>,
-    /// With warp: all columns, and their displaced x.
+    /// The lattice columns, where they are needed: with warp, for their displaced x, and wherever
+    /// parts of a row are asked for.
     lattice: Vec<i64>,
     displaced: Vec<i32>,
     /// The vertical displacements, one per column.
     displacements: Vec<i32>,
     made: bool,
+}
+
+/// Some columns of a template and what their points must satisfy.
+#[derive(Debug)]
+pub(super) struct Stretch<'a> {
+    pub(super) columns: Range<usize>,
+    pub(super) check: Check<'a>,
+}
+
+/// What points must satisfy.
+#[derive(Clone, Copy)]
+pub(super) enum Check<'a> {
+    /// Nothing: all of them are asked for.
+    Nothing,
+    /// The patch's bounds.
+    Bounds,
+    /// A test of their place, relative to the patch's origin.
+    Each(&'a dyn Fn([i32; 2]) -> bool),
 }
 
 impl<F: Format> Template<F> {
@@ -42,6 +62,12 @@ impl<F: Format> Template<F> {
         self.displacements.len()
     }
 
+    /// How many lie before a lattice column.
+    pub(super) fn columns_before(&self, x: i64) -> usize {
+        debug_assert_eq!(self.lattice.len(), self.len(), "made in part");
+        self.lattice.partition_point(|&v| v < x)
+    }
+
     pub(super) fn make(
         &mut self,
         format: &F,
@@ -49,60 +75,100 @@ impl<F: Format> Template<F> {
         patch: &Patch,
         listed: &Listed,
         vectors: &[[i32; 2]],
+        kept: Kept,
     ) {
         self.columns.clear();
         self.lattice.clear();
         self.displaced.clear();
         self.displacements.clear();
-        let displaced = listed.iter().map(|&(x, block)| {
+        let is_warped = patch.is_warped();
+        let all = is_warped || kept == Kept::All || patch.columns_are_inner;
+        let detailed = is_warped || kept != Kept::Plain;
+        for &(x, block) in listed {
             let [dx, dy] = vectors[block as usize];
-            (x, patch.relative(Axis::X, x) + dx, dy)
-        });
-        if patch.shears().is_some() {
-            for (x, displaced, dy) in displaced {
+            let displaced = patch.relative(Axis::X, x) + dx;
+            if !all && !patch.holds_along(Axis::X, displaced) {
+                continue;
+            }
+            if !is_warped {
+                self.columns.push(format.column(base, displaced, x));
+            }
+            if detailed {
                 self.lattice.push(x);
                 self.displaced.push(displaced);
-                self.displacements.push(dy);
             }
-        } else {
-            for (x, displaced, dy) in displaced {
-                if patch.columns_are_inner || patch.holds_along(Axis::X, displaced) {
-                    self.columns.push(format.column(base, displaced, x));
-                    self.displacements.push(dy);
-                }
-            }
+            self.displacements.push(dy);
         }
         self.made = true;
     }
 
-    /// Writes a row's points from column `done` on; gives how many items were written and how many
-    /// columns are done with.
+    /// Writes points of a row's stretch; gives how many items were written and how many columns are
+    /// done with: all of them, unless `out` was full before.
     pub(super) fn fill(
         &self,
         format: &F,
         patch: &Patch,
         row: Row,
-        done: usize,
+        stretch: Stretch<'_>,
         backend: Backend,
         out: &mut [F::Item],
     ) -> (usize, usize) {
-        if patch.shears().is_some() {
-            return self.fill_warped(format, patch, row, done, backend, out);
+        let Stretch { columns, check } = stretch;
+        match (check, patch.shears()) {
+            (Check::Nothing, shears) => {
+                let written = columns.len().min(out.len());
+                let part = columns.start..columns.start + written;
+                let out = &mut out[..written];
+                match shears {
+                    Some(shears) => {
+                        warped_row(format, backend, shears, row, self.details(part), out);
+                    }
+                    None => format.fill_row(
+                        backend,
+                        row,
+                        &self.columns[part.clone()],
+                        &self.displacements[part],
+                        out,
+                    ),
+                }
+                (written, written)
+            }
+            (Check::Bounds, Some(shears)) => {
+                let place = |x, y| shears.apply(x, y);
+                self.sift(format, row, columns, place, |p| patch.holds(p), out)
+            }
+            (Check::Each(passes), Some(shears)) => {
+                let place = |x, y| shears.apply(x, y);
+                self.sift(format, row, columns, place, passes, out)
+            }
+            (Check::Each(passes), None) => {
+                self.sift(format, row, columns, |x, y| [x, y], passes, out)
+            }
+            // Columns outside have no place in the template.
+            (Check::Bounds, None) => self.clip(format, patch, row, columns, out),
         }
-        let (columns, displacements) = (&self.columns[done..], &self.displacements[done..]);
-        if row.is_inner {
-            let written = columns.len().min(out.len());
-            format.fill_row(
-                backend,
-                row,
-                &columns[..written],
-                &displacements[..written],
-                &mut out[..written],
-            );
-            return (written, written);
+    }
+
+    fn details(&self, part: Range<usize>) -> Columns<'_> {
+        Columns {
+            displaced: &self.displaced[part.clone()],
+            displacements: &self.displacements[part.clone()],
+            lattice: &self.lattice[part],
         }
+    }
+
+    /// Points within the patch's bounds along y.
+    fn clip(
+        &self,
+        format: &F,
+        patch: &Patch,
+        row: Row,
+        part: Range<usize>,
+        out: &mut [F::Item],
+    ) -> (usize, usize) {
         let (mut written, mut done) = (0, 0);
-        for (&column, &displacement) in columns.iter().zip(displacements) {
+        let columns = &self.columns[part.clone()];
+        for (&column, &displacement) in columns.iter().zip(&self.displacements[part]) {
             let y = row.y + displacement;
             if patch.holds_along(Axis::Y, y) {
                 let Some(item) = out.get_mut(written) else {
@@ -116,33 +182,21 @@ impl<F: Format> Template<F> {
         (written, done)
     }
 
-    fn fill_warped(
+    /// Points whose place passes.
+    fn sift(
         &self,
         format: &F,
-        patch: &Patch,
         row: Row,
-        done: usize,
-        backend: Backend,
+        part: Range<usize>,
+        place: impl Fn(i32, i32) -> [i32; 2],
+        passes: impl Fn([i32; 2]) -> bool,
         out: &mut [F::Item],
     ) -> (usize, usize) {
-        let Some(shears) = patch.shears() else {
-            return (0, 0);
-        };
-        let columns = Columns {
-            displaced: &self.displaced[done..],
-            displacements: &self.displacements[done..],
-            lattice: &self.lattice[done..],
-        };
-        if row.is_inner && patch.columns_are_inner {
-            let written = columns.lattice.len().min(out.len());
-            warped_row(format, backend, shears, row, columns, &mut out[..written]);
-            return (written, written);
-        }
         let (mut written, mut done) = (0, 0);
+        let columns = self.details(part);
         for (i, &lattice) in columns.lattice.iter().enumerate() {
-            let y = row.y + columns.displacements[i];
-            let position = shears.apply(columns.displaced[i], y);
-            if patch.holds(position) {
+            let position = place(columns.displaced[i], row.y + columns.displacements[i]);
+            if passes(position) {
                 let Some(out) = out.get_mut(written) else {
                     break;
                 };
@@ -156,21 +210,45 @@ impl<F: Format> Template<F> {
     }
 }
 
+impl core::fmt::Debug for Check<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Nothing => "Nothing",
+            Self::Bounds => "Bounds",
+            Self::Each(_) => "Each",
+        })
+    }
+}
+
+/// What templates keep of their columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kept {
+    /// What whole rows of a box need.
+    Plain,
+    /// Also where columns are, for rows that begin in the middle.
+    Places,
+    /// Columns outside the box, too: a sieve decides.
+    All,
+}
+
 /// Templates by class and block of the row: all of a tall band's, or only the last.
 #[derive(Debug)]
 pub(super) struct Templates<F: Format> {
     slots: Vec<Template<F>>,
     intervals: usize,
-    kept: bool,
+    /// Whether there is a slot for every class and block.
+    tall: bool,
+    kept: Kept,
 }
 
 impl<F: Format> Templates<F> {
-    pub(super) fn new(sampler: &Sampler, kept: bool) -> Self {
+    pub(super) fn new(sampler: &Sampler, tall: bool, kept: Kept) -> Self {
         let intervals = sampler.map().intervals();
-        let slots = if kept { 4 * intervals } else { 1 };
+        let slots = if tall { 4 * intervals } else { 1 };
         let mut templates = Self {
             slots: vec![],
             intervals,
+            tall,
             kept,
         };
         templates.slots.resize_with(slots, Template::new);
@@ -188,16 +266,16 @@ impl<F: Format> Templates<F> {
         class: Class,
         block: usize,
         same: bool,
-        make: impl FnOnce(&mut Template<F>),
+        make: impl FnOnce(&mut Template<F>, Kept),
     ) -> &Template<F> {
-        let slot = if self.kept {
+        let slot = if self.tall {
             class.ordinal() * self.intervals + block
         } else {
             0
         };
         let template = &mut self.slots[slot];
-        if !template.made || !(self.kept || same) {
-            make(template);
+        if !template.made || !(self.tall || same) {
+            make(template, self.kept);
         }
         template
     }

@@ -9,6 +9,8 @@
 //! All of it is integer arithmetic on fixed-point positions but for g, whose cubic is evaluated in
 //! `f32` with plain multiplications and additions: the same bits on every machine, in any lane.
 
+use core::ops::{Add, Sub};
+
 use super::{Seed, seed::split_mix};
 use crate::table::FRACTION_BITS;
 
@@ -123,6 +125,18 @@ impl Shears {
         x.max(y) + rising + falling + 64
     }
 
+    /// The largest control value of each shear, in fixed-point units.
+    pub(super) const fn amplitudes(&self) -> [i32; 4] {
+        self.amplitudes
+    }
+
+    /// The steepest slope of each shear's g: adjacent control values differ by twice the amplitude
+    /// at most.
+    pub(super) fn slopes(&self) -> [f64; 4] {
+        self.amplitudes
+            .map(|a| 2.0 * f64::from(a) / f64::from(1 << CELL_BITS))
+    }
+
     /// The control value of a knot.
     fn control(&self, direction: usize, knot: i64) -> i32 {
         let hash =
@@ -148,33 +162,79 @@ impl Shears {
         evaluate(&cubic, (s & CELL_MASK) as i32).into()
     }
 
-    fn shear(&self, i: usize, [x, y]: [i128; 2], sign: i128) -> [i128; 2] {
-        match DIRECTIONS[i] {
-            Direction::X => [x + sign * self.noise(i, y), y],
-            Direction::Y => [x, y + sign * self.noise(i, x)],
-            Direction::Rising => {
-                let g = sign * self.noise(i, x - y);
-                [x + g, y + g]
-            }
-            Direction::Falling => {
-                let g = sign * self.noise(i, x + y);
-                [x + g, y - g]
-            }
-        }
-    }
-
     /// Where a fixed-point position goes.
     pub(super) fn apply(&self, position: [i128; 2]) -> [i128; 2] {
-        (0..4).fold(position, |p, i| self.shear(i, p, 1))
+        (0..4).fold(position, |p, i| shear(i, p, |s| self.noise(i, s)))
     }
 
     /// Where it came from: the exact inverse.
-    #[cfg_attr(
-        not(test),
-        expect(dead_code, reason = "nearest-point queries will need it")
-    )]
     pub(super) fn invert(&self, position: [i128; 2]) -> [i128; 2] {
-        (0..4).rev().fold(position, |p, i| self.shear(i, p, -1))
+        (0..4)
+            .rev()
+            .fold(position, |p, i| shear(i, p, |s| -self.noise(i, s)))
+    }
+}
+
+/// One shear, `g` of the coordinate across.
+#[inline(always)]
+fn shear<T>(i: usize, [x, y]: [T; 2], g: impl FnOnce(T) -> T) -> [T; 2]
+where
+    T: Copy + Add<Output = T> + Sub<Output = T>,
+{
+    match DIRECTIONS[i] {
+        Direction::X => [x + g(y), y],
+        Direction::Y => [x, y + g(x)],
+        Direction::Rising => {
+            let g = g(x - y);
+            [x + g, y + g]
+        }
+        Direction::Falling => {
+            let g = g(x + y);
+            [x + g, y - g]
+        }
+    }
+}
+
+/// Shears for points near each other: positions are relative to a place near them, and the cubics
+/// used last are remembered.
+#[derive(Debug)]
+pub(super) struct NearShears<'a> {
+    shears: &'a Shears,
+    /// The cells of the origin, by direction.
+    cells: [i64; 4],
+    last: [(i64, Cubic); 4],
+}
+
+impl<'a> NearShears<'a> {
+    /// Near a place, and the origin that positions are relative to: a multiple of the knot distance
+    /// along both axes, so that all coordinates across are whole cells there.
+    pub(super) fn new(shears: &'a Shears, place: [i128; 2]) -> (Self, [i128; 2]) {
+        let [x, y] = place.map(|v| (v >> CELL_BITS) as i64);
+        let cells = [y, x, x - y, x + y];
+        let mut last = [(0, [0.0; 4]); 4];
+        for (i, last) in last.iter_mut().enumerate() {
+            last.1 = shears.cubic(i, cells[i]);
+        }
+        let near = Self {
+            shears,
+            cells,
+            last,
+        };
+        (near, [x, y].map(|v| i128::from(v) << CELL_BITS))
+    }
+
+    /// [`Shears::apply`], relative to the origin.
+    #[inline]
+    pub(super) fn apply(&mut self, position: [i64; 2]) -> [i64; 2] {
+        (0..4).fold(position, |p, i| {
+            shear(i, p, |s| {
+                let cell = s >> CELL_BITS;
+                if self.last[i].0 != cell {
+                    self.last[i] = (cell, self.shears.cubic(i, self.cells[i].wrapping_add(cell)));
+                }
+                evaluate(&self.last[i].1, (s & CELL_MASK as i64) as i32).into()
+            })
+        })
     }
 }
 
@@ -254,6 +314,20 @@ mod tests {
             prop_assert_eq!(shears.invert(there), [x, y]);
             let reach = i128::from(shears.reach());
             prop_assert!((there[0] - x).abs() <= reach && (there[1] - y).abs() <= reach);
+        }
+
+        #[test]
+        fn points_near_a_place_get_the_same_bits(
+            seed: u64, x in -(1i128 << 72)..1 << 72, y in -(1i128 << 72)..1 << 72,
+            near in proptest::collection::vec([-1i64 << 30..1 << 30, -1i64 << 30..1 << 30], 1..20),
+        ) {
+            let shears = shears(seed);
+            let (mut relative, [left, bottom]) = NearShears::new(&shears, [x, y]);
+            for [dx, dy] in near {
+                let there = shears.apply([left + i128::from(dx), bottom + i128::from(dy)]);
+                let [dx, dy] = relative.apply([dx, dy]).map(i128::from);
+                prop_assert_eq!(there, [left + dx, bottom + dy]);
+            }
         }
 
         #[test]

@@ -84,7 +84,7 @@ impl Error {
 }
 
 /// The mean of a curve over a ring's area.
-fn mean_over_ring(target: &Target, from: f64) -> f64 {
+pub(super) fn mean_over_ring(target: &Target, from: f64) -> f64 {
     let steps = 200;
     let (mut sum, mut area) = (0.0, 0.0);
     for step in 0..steps {
@@ -106,8 +106,7 @@ fn rms(errors: impl Iterator<Item = f64>) -> f64 {
 
 /// Mean power over the area of the band from 0 on where the target is 0, if there is one.
 fn quiet_power(spectrum: &Spectrum, target: &Target) -> Option<f64> {
-    let quiet = target.points().iter().take_while(|p| p[1] == 0.0);
-    let end = QUIET_PART * quiet.last()?[0];
+    let end = QUIET_PART * target.quiet_end()?;
     let (mut sum, mut area) = (0.0, 0.0);
     for ring in spectrum.rings(FINE_RING).iter().filter(|r| r.nu < end) {
         sum += ring.nu * ring.power;

@@ -6,10 +6,12 @@
 
 mod curve;
 mod figure;
+mod nearness;
 
 pub use curve::{TARGET_RING, curve_figures};
 pub(crate) use figure::figures_of_spectrum;
 pub use figure::{Bound, Complaint, Figure, RING_WIDTH, Side, figures_of_torus, figures_of_window};
+pub use nearness::{Nearness, bounds_of_curve};
 
 use strew_core::{Map, Table, Twin, table::Figures};
 

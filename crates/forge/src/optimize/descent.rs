@@ -12,7 +12,8 @@ pub struct Descent {
     pub rate: f64,
 }
 
-/// What a descent found.
+/// Everything a descent knows between two steps: going on from it gives what going on would have
+/// given, bit by bit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Descended {
     /// The moves with the lowest energy that was seen.
@@ -21,83 +22,117 @@ pub struct Descended {
     pub energy: f64,
     /// How many evaluations were made.
     pub steps: u32,
-    /// Whether it was stopped before its last step.
-    pub interrupted: bool,
+    /// The last energy, unless the descent has begun anew since.
+    pub(crate) last: f64,
+    /// Steps since the momentum began.
+    pub(crate) age: f64,
+    /// The present rate as a part of the first.
+    pub(crate) slowing: f64,
+    /// Where the last step led.
+    pub(crate) at: Vec<[f64; 2]>,
+    /// The same, carried on by the momentum.
+    pub(crate) ahead: Vec<[f64; 2]>,
+    /// The moves for which the objective made its lists: see [`Objective::prepared_for`].
+    pub(crate) prepared_for: Vec<[f64; 2]>,
 }
 
 impl Descended {
     /// A start, before any step.
     #[must_use]
-    pub const fn at(moves: Vec<[f64; 2]>) -> Self {
+    pub fn at(moves: Vec<[f64; 2]>) -> Self {
         Self {
-            moves,
             energy: f64::INFINITY,
             steps: 0,
-            interrupted: false,
+            last: f64::INFINITY,
+            age: 0.0,
+            slowing: 1.0,
+            at: moves.clone(),
+            ahead: moves.clone(),
+            prepared_for: Vec::new(),
+            moves,
         }
     }
 }
 
 impl Descent {
-    /// Lowers the energy from a start: Nesterov's momentum, which begins anew whenever it points
-    /// uphill (O'Donoghue, Candès 2015). The momentum grows to what the energy's flat directions
-    /// need, and nothing has to be tuned to them.
+    /// Lowers the energy from a start, or goes on where a descent was stopped: Nesterov's momentum,
+    /// which begins anew whenever it points uphill (O'Donoghue, Candès 2015). The momentum grows to
+    /// what the energy's flat directions need, and nothing has to be tuned to them.
+    ///
+    /// `keep` is handed the state between steps when the watch wants it, and when it stops the work.
+    /// It was stopped before its last step if fewer steps are done than were to be.
     pub fn run(
         &self,
         objective: &mut (impl Objective + ?Sized),
-        start: Vec<[f64; 2]>,
+        start: Descended,
         meter: &mut Meter<'_>,
+        keep: &mut dyn FnMut(&Descended),
     ) -> Descended {
         let masses = objective.masses().to_vec();
-        let mut rate = self.rate;
-        let mut at = start.clone();
-        let mut ahead = start.clone();
-        let mut gradient = vec![[0.0; 2]; start.len()];
-        let mut best = Descended::at(start);
-        let (mut age, mut last) = (0.0, f64::INFINITY);
-        for step in 0..self.steps {
-            if meter.stop() {
-                best.interrupted = true;
+        let mut state = start;
+        if !state.prepared_for.is_empty() {
+            objective.prepare_for(&state.prepared_for);
+        }
+        let mut gradient = vec![[0.0; 2]; state.moves.len()];
+        while state.steps < self.steps {
+            let stop = meter.stop();
+            if stop || meter.wants_checkpoint() {
+                objective.prepared_for().clone_into(&mut state.prepared_for);
+                keep(&state);
+            }
+            if stop {
                 break;
             }
-            let energy = objective.evaluate(&ahead, &mut gradient);
-            best.steps = step + 1;
+            let energy = objective.evaluate(&state.ahead, &mut gradient);
+            state.steps += 1;
             meter.advance(Some(energy));
-            if energy < best.energy {
-                best.energy = energy;
-                best.moves.clone_from(&ahead);
-            }
-            // Should it ever rise, begin anew from the best; if momentum was not to blame, the step
-            // was too long.
-            let rose = energy > last || energy.is_nan();
-            last = energy;
-            if rose {
-                rate *= if age <= 1.0 { 0.5 } else { 1.0 };
-                (age, last) = (0.0, f64::INFINITY);
-                at.clone_from(&best.moves);
-                ahead.clone_from(&best.moves);
-                continue;
-            }
-            let mut uphill = 0.0;
-            age += 1.0;
-            let momentum = age / (age + 3.0);
-            for (((at, ahead), slope), mass) in
-                at.iter_mut().zip(&mut ahead).zip(&gradient).zip(&masses)
-            {
-                for axis in 0..2 {
-                    let next = ahead[axis] - rate * slope[axis];
-                    let by = next - at[axis];
-                    uphill += mass * slope[axis] * by;
-                    at[axis] = next;
-                    ahead[axis] = next + momentum * by;
-                }
-            }
-            if uphill > 0.0 {
-                age = 0.0;
-                ahead.clone_from(&at);
+            state.step(self.rate, energy, &gradient, &masses);
+        }
+        state
+    }
+}
+
+impl Descended {
+    /// Takes the step that an energy and its gradient at `ahead` call for.
+    fn step(&mut self, first_rate: f64, energy: f64, gradient: &[[f64; 2]], masses: &[f64]) {
+        if energy < self.energy {
+            self.energy = energy;
+            self.moves.clone_from(&self.ahead);
+        }
+        // Should it ever rise, begin anew from the best; if momentum was not to blame, the step
+        // was too long.
+        let rose = energy > self.last || energy.is_nan();
+        self.last = energy;
+        if rose {
+            self.slowing *= if self.age <= 1.0 { 0.5 } else { 1.0 };
+            (self.age, self.last) = (0.0, f64::INFINITY);
+            self.at.clone_from(&self.moves);
+            self.ahead.clone_from(&self.moves);
+            return;
+        }
+        let rate = first_rate * self.slowing;
+        let mut uphill = 0.0;
+        self.age += 1.0;
+        let momentum = self.age / (self.age + 3.0);
+        for (((at, ahead), slope), mass) in self
+            .at
+            .iter_mut()
+            .zip(&mut self.ahead)
+            .zip(gradient)
+            .zip(masses)
+        {
+            for axis in 0..2 {
+                let next = ahead[axis] - rate * slope[axis];
+                let by = next - at[axis];
+                uphill += mass * slope[axis] * by;
+                at[axis] = next;
+                ahead[axis] = next + momentum * by;
             }
         }
-        best
+        if uphill > 0.0 {
+            self.age = 0.0;
+            self.ahead.clone_from(&self.at);
+        }
     }
 }
 
@@ -128,7 +163,8 @@ mod tests {
 
     fn run(descent: &Descent, watch: &dyn Watch) -> Descended {
         let mut meter = Meter::new(watch, Stage::Optimizing, descent.steps);
-        descent.run(&mut Valley([0.25, 0.75]), vec![[5.0, 5.0]; 2], &mut meter)
+        let start = Descended::at(vec![[5.0, 5.0]; 2]);
+        descent.run(&mut Valley([0.25, 0.75]), start, &mut meter, &mut |_| {})
     }
 
     #[test]
@@ -174,7 +210,6 @@ mod tests {
             rate: 0.9,
         };
         let found = run(&descent, &Impatient(AtomicU32::new(0)));
-        assert!(found.interrupted);
         assert_eq!(found.steps, 7);
         let same = run(
             &Descent {

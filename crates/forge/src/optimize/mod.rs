@@ -12,6 +12,7 @@ mod watch;
 pub use descent::{Descended, Descent};
 pub use pairs::Pairs;
 pub use radial::{Radial, RadialWeights, Reach};
+pub(crate) use rings::excess;
 pub use sets::Sets;
 pub use start::{SplitMix, jitter};
 pub use watch::{Meter, Progress, Stage, Watch};
@@ -27,6 +28,17 @@ pub trait Objective {
     ///
     /// Gives the same bits whatever the number of threads.
     fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64;
+
+    /// The moves that lists of neighbors were made for. The order of a sum follows those lists, so
+    /// they are part of what decides the next bits; empty if there are none.
+    fn prepared_for(&self) -> &[[f64; 2]] {
+        &[]
+    }
+
+    /// Makes the lists for these moves, as if they had been evaluated when the lists were made.
+    fn prepare_for(&mut self, moves: &[[f64; 2]]) {
+        let _ = moves;
+    }
 
     /// How many pairs one evaluation visits (after the first), if it visits pairs.
     fn pairs(&self) -> usize {

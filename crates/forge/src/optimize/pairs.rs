@@ -228,6 +228,14 @@ impl<E: PairEnergy> Objective for Pairs<E> {
         0.5 * partial.iter().sum::<f64>()
     }
 
+    fn prepared_for(&self) -> &[[f64; 2]] {
+        &self.lists.built_for
+    }
+
+    fn prepare_for(&mut self, moves: &[[f64; 2]]) {
+        self.build_lists(moves);
+    }
+
     fn pairs(&self) -> usize {
         self.lists.pairs.len()
     }

@@ -252,6 +252,17 @@ impl Objective for Radial {
         cost + self.pull(moves, gradient)
     }
 
+    /// The patterns make their lists for the same moves.
+    fn prepared_for(&self) -> &[[f64; 2]] {
+        self.patterns[0].pairs.prepared_for()
+    }
+
+    fn prepare_for(&mut self, moves: &[[f64; 2]]) {
+        for one in &mut self.patterns {
+            one.pairs.prepare_for(moves);
+        }
+    }
+
     fn pairs(&self) -> usize {
         self.patterns.iter().map(|one| one.pairs.pairs()).sum()
     }

@@ -144,7 +144,7 @@ fn taper(x: f64) -> f64 {
 }
 
 /// g(r) − 1 of a set with that spectrum: the transform of T − 1. It cannot be below −1.
-fn excess(target: &Target, bessel: &BesselJ0, r: f64) -> f64 {
+pub(crate) fn excess(target: &Target, bessel: &BesselJ0, r: f64) -> f64 {
     let two_pi = 2.0 * std::f64::consts::PI;
     let steps = (target.end() * TARGET_STEPS) as usize;
     let sum: f64 = (0..=steps)

@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use crate::Checkpoint;
+
 /// What is being done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
@@ -23,13 +25,14 @@ pub struct Progress {
     /// While optimizing, the energy per point. It falls within a phase and jumps between phases,
     /// whose energies differ.
     pub energy: Option<f64>,
-    /// Time since the stage began.
+    /// Time since the stage began, or went on.
     pub elapsed: Duration,
     /// Time the stage will still take, if it goes on as it went.
     pub left: Duration,
 }
 
-/// Follows the work. Nothing it does changes the result, except stopping.
+/// Follows the work. Nothing it does changes the result, except stopping; and work that was stopped
+/// and [goes on](crate::Checkpoint) has the same result, too.
 pub trait Watch: Sync {
     /// Told before the first step and after every step; must be quick.
     fn progress(&self, progress: &Progress);
@@ -37,6 +40,17 @@ pub trait Watch: Sync {
     /// Asked before every step; once it answers yes, the work ends with the best so far.
     fn stop(&self) -> bool {
         false
+    }
+
+    /// Asked between steps: whether a checkpoint is wanted now. Each is a copy of all state.
+    fn wants_checkpoint(&self) -> bool {
+        false
+    }
+
+    /// Handed a checkpoint: when one was wanted, when the work is stopped, and when only measuring
+    /// is left.
+    fn checkpoint(&self, checkpoint: &Checkpoint) {
+        let _ = checkpoint;
     }
 }
 
@@ -49,6 +63,8 @@ impl Watch for () {
 pub struct Meter<'a> {
     watch: &'a dyn Watch,
     stage: Stage,
+    /// Steps that were done before.
+    first: u32,
     step: u32,
     steps: u32,
     began: Instant,
@@ -58,10 +74,17 @@ impl<'a> Meter<'a> {
     /// A stage of `steps` steps begins.
     #[must_use]
     pub fn new(watch: &'a dyn Watch, stage: Stage, steps: u32) -> Self {
+        Self::from(watch, stage, steps, 0)
+    }
+
+    /// A stage of `steps` steps goes on, `first` of which are done.
+    #[must_use]
+    pub fn from(watch: &'a dyn Watch, stage: Stage, steps: u32, first: u32) -> Self {
         let meter = Self {
             watch,
             stage,
-            step: 0,
+            first,
+            step: first,
             steps,
             began: Instant::now(),
         };
@@ -73,6 +96,12 @@ impl<'a> Meter<'a> {
     #[must_use]
     pub fn stop(&self) -> bool {
         self.watch.stop()
+    }
+
+    /// Whether the watch wants a checkpoint.
+    #[must_use]
+    pub fn wants_checkpoint(&self) -> bool {
+        self.watch.wants_checkpoint()
     }
 
     /// A step is done.
@@ -89,7 +118,8 @@ impl<'a> Meter<'a> {
             steps: self.steps,
             energy,
             elapsed,
-            left: elapsed * self.steps.saturating_sub(self.step) / self.step.max(1),
+            left: elapsed * self.steps.saturating_sub(self.step)
+                / self.step.saturating_sub(self.first).max(1),
         });
     }
 }

@@ -4,13 +4,16 @@
 //! To add one: a constant in its family's file, its name in [`Profile::ALL`], and, for a new kind of
 //! energy, a file with a variant of [`Recipe`].
 
+mod correlation;
 mod gaussian;
 mod lloyd;
 mod pattern;
+mod pieces;
 mod radial;
 mod spacing;
 mod target;
 
+pub use correlation::LeastCorrelation;
 pub use gaussian::GaussianRecipe;
 pub use lloyd::LloydRecipe;
 pub use radial::RadialRecipe;

@@ -213,7 +213,8 @@ pub(super) const SINGLE_PEAK: Profile = Profile {
     ],
 };
 
-/// A curve that somebody drew: judged by how near it came.
+/// A curve that somebody drew: judged by how near it came, within the
+/// [bounds](crate::judge::bounds_of_curve) that the curve itself gives.
 pub(super) const CUSTOM: Profile = Profile {
     name: "custom",
     summary: "A radial power curve of your own",
@@ -225,8 +226,5 @@ pub(super) const CUSTOM: Profile = Profile {
     }),
     jitter: 0.7,
     steps: 250,
-    bounds: &[
-        Bound::at_most(Figure::TargetRms, 0.1),
-        Bound::at_most(Figure::TargetWorst, 0.5),
-    ],
+    bounds: &[],
 };

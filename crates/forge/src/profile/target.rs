@@ -2,14 +2,18 @@
 
 use std::{borrow::Cow, fmt, str::FromStr};
 
+use super::pieces;
 use crate::ForgeError;
 
 /// A curve that a radial power spectrum should follow: straight pieces between points (ν, power),
 /// the first power before the first point, and 1 after the last, as in every set without order at
 /// large. Two points of equal ν are a jump.
 ///
-/// As text: one point a line, ν and power, separated by spaces, tabs or a comma; `#` begins a
-/// comment.
+/// As text, one of two forms, told apart by what comes first: a number, or a name or bracket.
+/// - One point a line, ν and power, separated by spaces, tabs or a comma; `#` begins a comment.
+/// - TOML of pieces that follow one another without gap: `[[piece]]` with `from` and `to`, and
+///   `power = P` (level), `power = [P0, P1]` (straight) or `law = { power = P, at = N, exponent = E }`
+///   (P·(ν/N)^E, drawn in straight segments to within 0.3 %).
 ///
 /// ```
 /// use strew_forge::profile::Target;
@@ -17,6 +21,8 @@ use crate::ForgeError;
 /// let step: Target = "# nu power\n0 0\n0.55 0\n0.55 1".parse()?;
 /// assert_eq!((step.at(0.3), step.at(0.6), step.at(9.0)), (0.0, 1.0, 1.0));
 /// assert_eq!(step.to_string().parse::<Target>()?, step);
+/// let pieces: Target = "[[piece]]\nfrom = 0\nto = 0.55\npower = 0".parse()?;
+/// assert_eq!((pieces.at(0.3), pieces.at(0.6)), (0.0, 1.0));
 /// # Ok::<(), strew_forge::ForgeError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -99,6 +105,13 @@ impl Target {
         }
     }
 
+    /// The end of the band without power from ν = 0 on, if there is one.
+    #[must_use]
+    pub fn quiet_end(&self) -> Option<f64> {
+        let quiet = self.points.iter().take_while(|p| p[1] == 0.0);
+        quiet.last().map(|p| p[0])
+    }
+
     /// The ν from which on the power is 1.
     #[must_use]
     pub fn end(&self) -> f64 {
@@ -119,6 +132,13 @@ impl FromStr for Target {
     type Err = ForgeError;
 
     fn from_str(text: &str) -> Result<Self, ForgeError> {
+        let mut contents = text
+            .lines()
+            .map(|line| line.split('#').next().unwrap_or_default());
+        let first = contents.find_map(|content| content.trim().chars().next());
+        if first.is_some_and(|c| c == '[' || c == '"' || c.is_ascii_alphabetic()) {
+            return pieces::read(text);
+        }
         let mut points = Vec::new();
         for (number, line) in text.lines().enumerate() {
             let content = line.split('#').next().unwrap_or_default().trim();

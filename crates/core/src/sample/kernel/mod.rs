@@ -73,8 +73,6 @@ pub struct Row {
     pub(super) base: [f64; 2],
     pub(super) y: i32,
     pub(super) lattice: i64,
-    /// Whether its points lie inside wherever the table and the warp move them vertically.
-    pub(super) is_inner: bool,
 }
 
 /// Writes one item per column: the definition.

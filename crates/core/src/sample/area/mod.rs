@@ -1,0 +1,309 @@
+//! Areas: what a query asks for where a box is not enough.
+//!
+//! An area is a shape ([`Region`], [`Circle`], [`Polygon`]) or several of them combined. Whether a
+//! point is inside is decided on its reported `f64` coordinates by exact predicates, and half-open
+//! wherever two areas can meet: boxes and polygons that share an edge share no point and lose none.
+//!
+//! For speed an area also answers for whole strips at once ([`steps`]): between which x all of a
+//! strip is inside, all is outside, or points have to be asked one by one.
+
+mod circle;
+mod polygon;
+mod steps;
+
+use alloc::{boxed::Box, vec::Vec};
+
+use super::Region;
+
+pub use circle::Circle;
+pub use polygon::Polygon;
+pub(super) use steps::{State, Steps};
+
+/// Why numbers are not an area.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AreaError {
+    /// A ring of a polygon is not closed by enough vertices.
+    #[error("ring {ring} has {vertices} different vertices in a row; it must have at least 3")]
+    FewVertices {
+        /// Which ring, from 0.
+        ring: usize,
+        /// How many it has, without the one that closes it.
+        vertices: usize,
+    },
+    /// A coordinate of a polygon is NaN or infinite.
+    #[error("vertex {vertex} of ring {ring} has the coordinate {value}; it must be finite")]
+    VertexNotFinite {
+        /// Which ring, from 0.
+        ring: usize,
+        /// Which vertex, from 0.
+        vertex: usize,
+        /// The coordinate.
+        value: f64,
+    },
+    /// A polygon has no ring.
+    #[error("the polygon has no ring; it must have at least one")]
+    NoRing,
+    /// The center of a circle is NaN or infinite.
+    #[error("the center has the coordinate {0}; it must be finite")]
+    CenterNotFinite(f64),
+    /// The radius of a circle is not a positive finite number.
+    #[error("the radius is {0}; it must be a positive finite number")]
+    Radius(f64),
+}
+
+/// A part of the plane.
+///
+/// ```
+/// use strew_core::{Area, Circle, Polygon, Region};
+///
+/// let lake = Area::from(Circle::new([30.0, 30.0], 5.0)?);
+/// let land = Area::from(Polygon::new(&[[[0.0, 0.0], [100.0, 0.0], [0.0, 100.0]]])?);
+/// let dry = land.without([lake]);
+/// assert!(dry.contains([10.0, 10.0]) && !dry.contains([30.0, 31.0]));
+/// assert_eq!(dry.bounds(), Region::new([0.0, 0.0], [100.0, 100.0]).ok());
+/// # Ok::<(), strew_core::sample::AreaError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub enum Area {
+    /// A half-open box.
+    Region(Region),
+    /// A disk without its rim.
+    Circle(Circle),
+    /// A polygon, holes included.
+    Polygon(Polygon),
+    /// What lies in any of several areas.
+    AnyOf(Vec<Area>),
+    /// What lies in all of several areas; everything, if there are none.
+    AllOf(Vec<Area>),
+    /// What does not lie in an area.
+    Outside(Box<Area>),
+}
+
+impl From<Region> for Area {
+    fn from(region: Region) -> Self {
+        Self::Region(region)
+    }
+}
+
+impl From<Circle> for Area {
+    fn from(circle: Circle) -> Self {
+        Self::Circle(circle)
+    }
+}
+
+impl From<Polygon> for Area {
+    fn from(polygon: Polygon) -> Self {
+        Self::Polygon(polygon)
+    }
+}
+
+impl Area {
+    /// What lies in any of these; an area of its own if there is only one.
+    #[must_use]
+    pub fn any_of(areas: impl IntoIterator<Item = Self>) -> Self {
+        let mut areas: Vec<Self> = areas.into_iter().collect();
+        match areas.pop() {
+            Some(only) if areas.is_empty() => only,
+            last => {
+                areas.extend(last);
+                Self::AnyOf(areas)
+            }
+        }
+    }
+
+    /// What lies in both.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        match self {
+            Self::AllOf(mut areas) => {
+                areas.push(other);
+                Self::AllOf(areas)
+            }
+            area => Self::AllOf([area, other].into()),
+        }
+    }
+
+    /// This area without those.
+    #[must_use]
+    pub fn without(self, excluded: impl IntoIterator<Item = Self>) -> Self {
+        let excluded: Vec<Self> = excluded.into_iter().collect();
+        if excluded.is_empty() {
+            return self;
+        }
+        self.and(Self::Outside(Box::new(Self::any_of(excluded))))
+    }
+
+    /// Whether a point lies inside.
+    #[must_use]
+    pub fn contains(&self, p: [f64; 2]) -> bool {
+        match self {
+            Self::Region(region) => region.contains(p),
+            Self::Circle(circle) => circle.contains(p),
+            Self::Polygon(polygon) => polygon.contains(p),
+            Self::AnyOf(areas) => areas.iter().any(|area| area.contains(p)),
+            Self::AllOf(areas) => areas.iter().all(|area| area.contains(p)),
+            Self::Outside(area) => !area.contains(p),
+        }
+    }
+
+    /// A box around the area, or `None` if it is unbounded. An area that is plainly empty has an
+    /// empty one.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Region> {
+        let corners = |area: &Self| area.bounds().map(|b| (b.min(), b.max()));
+        let region = |(min, max): ([f64; 2], [f64; 2])| {
+            let reversed = (0..2).any(|i| max[i] < min[i]);
+            Region::new(min, if reversed { min } else { max }).ok()
+        };
+        let join = |mut a: [f64; 2], b: [f64; 2], pick: fn(f64, f64) -> f64| {
+            (0..2).for_each(|i| a[i] = pick(a[i], b[i]));
+            a
+        };
+        match self {
+            Self::Region(region) => Some(*region),
+            Self::Circle(circle) => circle.bounds(),
+            Self::Polygon(polygon) => Some(polygon.bounds()),
+            Self::AnyOf(areas) => {
+                let mut all = areas.iter().map(corners);
+                let Some(first) = all.next() else {
+                    return Region::new([0.0; 2], [0.0; 2]).ok();
+                };
+                let hull = all.try_fold(first?, |(min, max), corners| {
+                    let (low, high) = corners?;
+                    Some((join(min, low, f64::min), join(max, high, f64::max)))
+                });
+                region(hull?)
+            }
+            Self::AllOf(areas) => {
+                let common = areas
+                    .iter()
+                    .filter_map(corners)
+                    .reduce(|(min, max), (low, high)| {
+                        (join(min, low, f64::max), join(max, high, f64::min))
+                    });
+                region(common?)
+            }
+            Self::Outside(_) => None,
+        }
+    }
+
+    /// How many vertices its polygons have in all.
+    #[must_use]
+    pub fn vertices(&self) -> usize {
+        match self {
+            Self::Region(_) | Self::Circle(_) => 0,
+            Self::Polygon(polygon) => polygon.vertices(),
+            Self::AnyOf(areas) | Self::AllOf(areas) => areas.iter().map(Self::vertices).sum(),
+            Self::Outside(area) => area.vertices(),
+        }
+    }
+
+    /// The same area for points whose y lies in `strip`, with less to look at.
+    pub(super) fn focus(&self, strip: [f64; 2]) -> Self {
+        let all = |areas: &Vec<Self>| areas.iter().map(|area| area.focus(strip)).collect();
+        match self {
+            Self::Polygon(polygon) => Self::Polygon(polygon.focus(strip)),
+            Self::AnyOf(areas) => Self::AnyOf(all(areas)),
+            Self::AllOf(areas) => Self::AllOf(all(areas)),
+            Self::Outside(area) => Self::Outside(Box::new(area.focus(strip))),
+            Self::Region(_) | Self::Circle(_) => self.clone(),
+        }
+    }
+
+    /// What a strip y₀ ≤ y ≤ y₁ is along x.
+    pub(super) fn steps(&self, strip: [f64; 2]) -> Steps {
+        let fold = |areas: &[Self], empty: State, join: fn(State, State) -> State| {
+            let mut all = areas.iter().map(|area| area.steps(strip));
+            let first = all.next().unwrap_or_else(|| Steps::all(empty));
+            all.fold(first, |a, b| a.join(&b, join))
+        };
+        match self {
+            Self::Region(region) => Steps::of_region(region, strip),
+            Self::Circle(circle) => circle.steps(strip),
+            Self::Polygon(polygon) => polygon.steps(strip),
+            Self::AnyOf(areas) => fold(areas, State::Out, State::max),
+            Self::AllOf(areas) => fold(areas, State::In, State::min),
+            Self::Outside(area) => area.steps(strip).inverted(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn coordinate() -> impl Strategy<Value = f64> {
+        prop_oneof![(-4i8..=4).prop_map(f64::from), -4.0..4.0f64]
+    }
+
+    fn point() -> impl Strategy<Value = [f64; 2]> {
+        [coordinate(), coordinate()]
+    }
+
+    fn any_area() -> impl Strategy<Value = Area> {
+        let region = (point(), point()).prop_map(|(a, b)| {
+            let pick = |f: fn(f64, f64) -> f64| [f(a[0], b[0]), f(a[1], b[1])];
+            Area::from(Region::new(pick(f64::min), pick(f64::max)).expect("ordered"))
+        });
+        let circle = (point(), 0.1..4.0f64)
+            .prop_map(|(center, radius)| Area::from(Circle::new(center, radius).expect("valid")));
+        let ring = || {
+            prop::collection::vec(point(), 3..7)
+                .prop_filter("different", |ring| Polygon::new(&[ring]).is_ok())
+        };
+        let polygon = prop::collection::vec(ring(), 1..3)
+            .prop_map(|rings| Area::from(Polygon::new(&rings).expect("valid")));
+        prop_oneof![region, circle, polygon].prop_recursive(3, 8, 3, |inner| {
+            prop_oneof![
+                prop::collection::vec(inner.clone(), 1..3).prop_map(Area::any_of),
+                (inner.clone(), inner.clone()).prop_map(|(a, b)| a.and(b)),
+                (inner.clone(), inner).prop_map(|(a, b)| a.without([b])),
+            ]
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn steps_and_focus_never_contradict_membership(
+            area in any_area(), y0 in coordinate(), height in 0.0..2.0f64,
+            probes in prop::collection::vec((-5.0..5.0f64, 0.0..=1.0f64), 40),
+            exact in prop::collection::vec((coordinate(), 0.0..=1.0f64), 20),
+        ) {
+            let strip = [y0, y0 + height];
+            let steps = area.steps(strip);
+            let focused = area.focus(strip);
+            for (x, part) in probes.into_iter().chain(exact) {
+                let p = [x, (y0 + part * height).min(strip[1])];
+                let inside = area.contains(p);
+                prop_assert_eq!(focused.contains(p), inside);
+                // At a step itself both sides count as undecided.
+                let nearby = [x - 1e-9, x + 1e-9].map(|x| steps.at(x));
+                if nearby == [State::In; 2] {
+                    prop_assert!(inside, "{p:?} {area:?}");
+                } else if nearby == [State::Out; 2] {
+                    prop_assert!(!inside, "{p:?} {area:?}");
+                }
+            }
+            if let Some(bounds) = area.bounds() {
+                for p in [[y0, y0], [y0, 0.5], [0.25, y0]] {
+                    prop_assert!(!area.contains(p) || bounds.contains(p), "{p:?} {area:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn combinations_of_nothing() {
+        let nothing = Area::any_of(vec![]);
+        assert!(!nothing.contains([0.0, 0.0]));
+        assert_eq!(nothing.bounds().map(|b| b.is_empty()), Some(true));
+        let square = Area::from(Region::new([0.0; 2], [1.0; 2]).expect("valid"));
+        assert_eq!(square.clone().without(vec![]), square);
+        assert_eq!(Area::Outside(Box::new(square)).bounds(), None);
+    }
+}

@@ -1,0 +1,109 @@
+//! What a strip of the plane is along x: inside, outside, or not the same everywhere.
+
+use alloc::{vec, vec::Vec};
+
+use super::Region;
+
+/// What is known of a rectangle of the plane. Ordered, so that "any of" is the maximum and "all of"
+/// the minimum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::sample) enum State {
+    /// Outside, all of it.
+    Out,
+    /// To be asked point by point.
+    Test,
+    /// Inside, all of it.
+    In,
+}
+
+/// From where on which state holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Step {
+    from: f64,
+    state: State,
+}
+
+/// States along x, ascending, the first from −∞ on. At a step itself nothing is known: what uses
+/// them keeps a distance.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::sample) struct Steps(Vec<Step>);
+
+impl Steps {
+    /// One state everywhere.
+    pub(in crate::sample) fn all(state: State) -> Self {
+        Self(vec![Step {
+            from: f64::NEG_INFINITY,
+            state,
+        }])
+    }
+
+    /// Adds a step, not below the last one.
+    pub(super) fn push(&mut self, from: f64, state: State) {
+        if self.0.last().is_none_or(|last| last.state != state) {
+            self.0.push(Step { from, state });
+        }
+    }
+
+    pub(super) fn of_region(region: &Region, [y0, y1]: [f64; 2]) -> Self {
+        let (min, max) = (region.min(), region.max());
+        let mut steps = Self::all(State::Out);
+        if region.is_empty() || y1 < min[1] || y0 >= max[1] {
+            return steps;
+        }
+        let within = min[1] <= y0 && y1 < max[1];
+        steps.push(min[0], if within { State::In } else { State::Test });
+        steps.push(max[0], State::Out);
+        steps
+    }
+
+    /// The states of a combination of two areas.
+    pub(super) fn join(&self, other: &Self, join: fn(State, State) -> State) -> Self {
+        let (mut a, mut b) = (self.0.as_slice(), other.0.as_slice());
+        let mut state = [State::Out; 2];
+        let mut joined = Self(Vec::with_capacity(a.len() + b.len()));
+        while let Some(from) = match (a.first(), b.first()) {
+            (Some(a), Some(b)) => Some(a.from.min(b.from)),
+            (Some(step), None) | (None, Some(step)) => Some(step.from),
+            (None, None) => None,
+        } {
+            for (steps, state) in [&mut a, &mut b].into_iter().zip(&mut state) {
+                while let Some((first, rest)) = steps.split_first()
+                    && first.from <= from
+                {
+                    *state = first.state;
+                    *steps = rest;
+                }
+            }
+            joined.push(from, join(state[0], state[1]));
+        }
+        joined
+    }
+
+    /// The states of everything outside.
+    pub(super) fn inverted(mut self) -> Self {
+        for step in &mut self.0 {
+            step.state = match step.state {
+                State::Out => State::In,
+                State::Test => State::Test,
+                State::In => State::Out,
+            };
+        }
+        self
+    }
+
+    /// The stretches: from where to where which state holds.
+    pub(in crate::sample) fn stretches(&self) -> impl Iterator<Item = (f64, f64, State)> {
+        let ends = self.0.iter().skip(1).map(|step| step.from);
+        let ends = ends.chain([f64::INFINITY]);
+        self.0
+            .iter()
+            .zip(ends)
+            .map(|(step, end)| (step.from, end, step.state))
+    }
+
+    #[cfg(test)]
+    pub(super) fn at(&self, x: f64) -> State {
+        let after = self.0.partition_point(|step| step.from <= x);
+        self.0[after - 1].state
+    }
+}

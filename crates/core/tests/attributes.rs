@@ -1,0 +1,279 @@
+//! Attributes: ranges, uniformity, independence, and the same value in every query.
+
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use strew_core::{
+    Placement, Point, PointId, Region, Sampler, Seed, Spacing, Table, Warp,
+    sample::{Attribute, AttributeError, Attributes, Column, Variants, side_for},
+};
+
+fn sampler() -> Arc<Sampler> {
+    let alpha = "(5-sqrt(3))/2".parse().expect("valid");
+    Arc::new(Sampler::new(
+        Table::undisplaced(alpha, 20, "pattern").expect("valid"),
+    ))
+}
+
+fn placement(seed: u64) -> Placement {
+    Placement::new(Spacing::new(1.0).expect("valid"), Seed(seed))
+}
+
+fn points(seed: u64, min: [f64; 2], max: [f64; 2]) -> Vec<Point> {
+    let region = Region::new(min, max).expect("ordered");
+    let plan = sampler().plan(placement(seed), region).expect("near");
+    let mut points = vec![Point::default(); plan.count() as usize];
+    plan.blocks_points().fill(&mut points);
+    points
+}
+
+fn list(names: &[&str]) -> Attributes {
+    let parse = |name: &&str| name.parse().expect("plain");
+    Attributes::new(names.iter().map(parse).collect()).expect("different")
+}
+
+fn numbers(attributes: &Attributes, seed: u64, points: &[Point]) -> Vec<Vec<f64>> {
+    let bound = attributes.bind(&sampler(), placement(seed));
+    let columns = bound.columns(points.iter().map(|p| p.id));
+    columns
+        .into_iter()
+        .map(|column| match column {
+            Column::Numbers(values) => values,
+            Column::Variants(values) => values.into_iter().map(f64::from).collect(),
+        })
+        .collect()
+}
+
+/// χ² of values in [0, 1) over equal bins, less its mean, in standard deviations.
+fn unevenness(values: impl Iterator<Item = f64>, bins: usize) -> f64 {
+    let mut counts = vec![0.0; bins];
+    values.for_each(|v| counts[(v * bins as f64) as usize] += 1.0);
+    let expected = counts.iter().sum::<f64>() / bins as f64;
+    let square = |count: &f64| (count - expected) * (count - expected) / expected;
+    let chi: f64 = counts.iter().map(square).sum();
+    let freedom = bins as f64 - 1.0;
+    (chi - freedom) / (2.0 * freedom).sqrt()
+}
+
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let (ma, mb) = (mean(a), mean(b));
+    let sum =
+        |f: fn(f64, f64) -> f64| -> f64 { a.iter().zip(b).map(|(x, y)| f(x - ma, y - mb)).sum() };
+    sum(|x, y| x * y) / (sum(|x, _| x * x) * sum(|_, y| y * y)).sqrt()
+}
+
+#[test]
+fn hashed_numbers_are_uniform_and_independent() {
+    let attributes = list(&["u1", "u2", "u16", "angle", "rank"]);
+    let near = points(1, [-100.0, -100.0], [100.0, 100.0]);
+    let far = points(1, [1e12, -3e9], [1e12 + 200.0, -3e9 + 200.0]);
+    for points in [&near, &far] {
+        let mut values = numbers(&attributes, 1, points);
+        values[3]
+            .iter_mut()
+            .for_each(|v| *v /= std::f64::consts::TAU);
+        // Beside them: another seed, and the same numbers of the next points in the row.
+        let other = numbers(&list(&["u1"]), 2, points);
+        let mut next = values[0].clone();
+        next.rotate_left(1);
+        values.extend(other);
+        values.push(next);
+        for (i, a) in values.iter().enumerate() {
+            assert!(a.iter().all(|v| (0.0..1.0).contains(v)));
+            if i != 4 {
+                let score = unevenness(a.iter().copied(), 100);
+                assert!(score.abs() < 4.5, "{i}: {score}");
+            }
+            for b in &values[..i] {
+                let limit = 4.5 / (a.len() as f64).sqrt();
+                assert!(correlation(a, b).abs() < limit, "{i}");
+                // Not only uncorrelated: pairs fill the square evenly. Ranks are more even.
+                let pairs = a
+                    .iter()
+                    .zip(b)
+                    .map(|(x, y)| ((x * 16.0).floor() + y) / 16.0);
+                let score = unevenness(pairs, 256);
+                assert!(score < 4.5, "{i}: {score}");
+            }
+        }
+    }
+}
+
+#[test]
+fn neighbors_along_both_axes_are_independent() {
+    // Plain ids in a square, whether points or not.
+    let bound = list(&["u3"]).bind(&sampler(), placement(0));
+    let value = |x: i64, y: i64| bound.value(0, PointId { x, y }).expect("there");
+    let grid = |dx: i64, dy: i64| -> Vec<f64> {
+        (0..200 * 200)
+            .map(|i| value(i % 200 - 100 + dx, i / 200 - 100 + dy))
+            .collect()
+    };
+    let own = grid(0, 0);
+    for (dx, dy) in [(1, 0), (0, 1), (1, 1), (1, -1), (2, 0), (0, 1 << 20)] {
+        let c = correlation(&own, &grid(dx, dy));
+        assert!(c.abs() < 4.5 / 200.0, "({dx}, {dy}): {c}");
+    }
+    assert_eq!(bound.value(1, PointId { x: 0, y: 0 }), None);
+}
+
+#[test]
+fn variants_come_by_weight_and_scales_in_their_range() {
+    let variants: Variants = "oak:3,birch:1,rare:0.001".parse().expect("valid");
+    let attributes = Attributes::new(vec![
+        Attribute::Variant(variants),
+        Attribute::scale(0.5, 2.0).expect("valid"),
+        Attribute::scale(0.5, 2.0).expect("valid"),
+    ]);
+    assert_eq!(attributes, Err(AttributeError::Repeated("scale")));
+    let attributes = Attributes::new(vec![
+        Attribute::Variant("oak:3,birch:1,rare:0.001".parse().expect("valid")),
+        Attribute::scale(0.5, 2.0).expect("valid"),
+    ])
+    .expect("different");
+    let points = points(9, [0.0, 0.0], [300.0, 300.0]);
+    let values = numbers(&attributes, 9, &points);
+    let count = |index: f64| values[0].iter().filter(|&&v| v == index).count() as f64;
+    let total = points.len() as f64;
+    for (index, weight) in [(0.0, 3.0), (1.0, 1.0), (2.0, 0.001)] {
+        let expected = total * weight / 4.001;
+        let off = (count(index) - expected) / expected.sqrt();
+        assert!(off.abs() < 4.5, "{index}: {off}");
+    }
+    assert!(values[1].iter().all(|v| (0.5..=2.0).contains(v)));
+    let mean = values[1].iter().sum::<f64>() / total;
+    assert!((mean - 1.25).abs() < 0.01, "{mean}");
+}
+
+#[test]
+fn angles_stay_below_a_full_turn() {
+    let most = ((1u64 << 53) - 1) as f64 / (1u64 << 53) as f64;
+    assert!(most * std::f64::consts::TAU < std::f64::consts::TAU);
+}
+
+#[test]
+fn names_are_checked() {
+    for name in ["angle", "rank", "u1", "u16"] {
+        let attribute: Attribute = name.parse().expect("plain");
+        assert_eq!(attribute.name(), name);
+    }
+    for (name, part) in [
+        ("", "no attribute \"\""),
+        ("u0", "no attribute"),
+        ("u17", "u1 to u16"),
+        ("u01", "no attribute"),
+        ("Angle", "no attribute"),
+        ("scale", "needs a range"),
+        ("variant", "needs a list"),
+    ] {
+        let error = name.parse::<Attribute>().expect_err(name).to_string();
+        assert!(error.contains(part), "{error}");
+    }
+    for (min, max) in [
+        (-1.0, 1.0),
+        (2.0, 1.0),
+        (f64::NAN, 1.0),
+        (0.0, f64::INFINITY),
+    ] {
+        assert!(Attribute::scale(min, max).is_err());
+    }
+    assert!(Attribute::uniform(0).is_err() && Attribute::uniform(17).is_err());
+}
+
+#[test]
+fn ranks_are_fractions_of_the_pattern_and_nest() {
+    let points = points(5, [-150.0, -150.0], [150.0, 150.0]);
+    let ranks = &numbers(&list(&["rank"]), 5, &points)[0];
+    let alpha = sampler().table().alpha();
+    let pattern = strew_core::Pattern::with_origin(alpha, Seed(5).origin());
+    for keep in [0.01, 0.1, 0.25, 0.5, 0.9, 1.0] {
+        let kept = ranks.iter().filter(|&&r| r < keep).count() as f64 / points.len() as f64;
+        assert!((kept - keep).abs() < 0.006, "{keep}: {kept}");
+        let side = side_for(keep, alpha.set_side());
+        for (point, rank) in points.iter().zip(ranks) {
+            let (dx, dy) = pattern.index(point.id.x, point.id.y);
+            assert_eq!(dx < side && dy < side, *rank < keep);
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_value_depends_on_id_and_seed_alone(
+        seed: u64, x: i64, y: i64, spacing in 1e-6..1e6f64, strength in 0.0..2.0f64,
+    ) {
+        let attributes = list(&["angle", "u7", "rank"]);
+        let id = PointId { x, y };
+        let warp = Warp::new(strength).expect("in range");
+        let other = Placement::new(Spacing::new(spacing).expect("valid"), Seed(seed)).with_warp(warp);
+        let a = attributes.bind(&sampler(), placement(seed));
+        let b = attributes.bind(&sampler(), other);
+        let mut columns = vec![Column::Variants(vec![3]); 5];
+        b.write([PointId { x: 1, y: 2 }, id].into_iter(), &mut columns);
+        prop_assert_eq!(columns.len(), 3);
+        for (i, column) in columns.iter().enumerate() {
+            let Column::Numbers(values) = column else { panic!("numbers") };
+            prop_assert_eq!(a.value(i, id), Some(values[1]));
+        }
+    }
+}
+
+/// Values are part of the algorithm version.
+#[test]
+fn values_are_pinned() {
+    let attributes = Attributes::new(vec![
+        Attribute::Angle,
+        Attribute::scale(0.5, 1.5).expect("valid"),
+        Attribute::Variant("a:1,b:2,c:3".parse().expect("valid")),
+        Attribute::Rank,
+        Attribute::uniform(1).expect("valid"),
+        Attribute::uniform(16).expect("valid"),
+    ])
+    .expect("different");
+    let bound = attributes.bind(&sampler(), placement(42));
+    let values = |x, y| -> Vec<f64> {
+        (0..6)
+            .filter_map(|i| bound.value(i, PointId { x, y }))
+            .collect()
+    };
+    // From an independent program.
+    let none = 1.0 - f64::EPSILON / 2.0;
+    assert_eq!(
+        values(0, 0),
+        [
+            4.195754032065334,
+            0.5067606996105573,
+            0.0,
+            none,
+            0.11873508124973142,
+            0.5815156750741645
+        ]
+    );
+    assert_eq!(
+        values(-31, 1 << 50),
+        [
+            2.6039389667524135,
+            0.8544614617336099,
+            1.0,
+            none,
+            0.24249765604404494,
+            0.8507424617078189
+        ]
+    );
+    assert_eq!(
+        values(4, -9),
+        [
+            2.3160919274731526,
+            0.8893894479661831,
+            2.0,
+            none,
+            0.32679493172737895,
+            0.8569940914509141
+        ]
+    );
+    assert_eq!(
+        bound.value(3, PointId { x: 0, y: 1 }),
+        Some(0.580742840353171)
+    );
+}

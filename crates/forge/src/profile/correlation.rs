@@ -1,0 +1,91 @@
+//! Whether a point set can have a power curve at all.
+//!
+//! The pair correlation g(r), the density of points at distance r from a point over the mean
+//! density, is 1 plus the transform of the power less 1. A density is never negative, so a curve
+//! whose g would be negative somewhere belongs to no point set, and the nearest that a set can come
+//! leaves an error that no optimizer removes. (g ≥ 0 and P ≥ 0 are necessary. Whether they are enough
+//! is an open question, so what decides in the end is the measured error.)
+
+use rayon::prelude::*;
+
+use super::Target;
+use crate::{energy::BesselJ0, optimize::excess};
+
+/// The pair correlation is looked at up to this distance, in mean spacings,
+const FAR: f64 = 20.0;
+/// at steps of this: the fastest wave of a curve has a length of 1/4.
+const STEP: f64 = 0.01;
+/// What the integral may be wrong by where a curve jumps high.
+const TOLERANCE: f64 = 0.005;
+
+/// Where the pair correlation that belongs to a power curve is least.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeastCorrelation {
+    /// The least value of g.
+    pub g: f64,
+    /// The distance where it is, in mean spacings.
+    pub r: f64,
+}
+
+impl LeastCorrelation {
+    /// Of the sets that have the power curve `target`.
+    #[must_use]
+    pub fn of(target: &Target) -> Self {
+        let bessel = BesselJ0::up_to(2.0 * std::f64::consts::PI * (target.end() + 1.0) * FAR);
+        let at = |step: u32| {
+            let r = f64::from(step) * STEP;
+            let g = 1.0 + excess(target, &bessel, r);
+            Self { g, r }
+        };
+        let all: Vec<Self> = (0..=(FAR / STEP) as u32).into_par_iter().map(at).collect();
+        let none = Self { g: 1.0, r: 0.0 };
+        all.into_iter().fold(
+            none,
+            |least, next| {
+                if next.g < least.g { next } else { least }
+            },
+        )
+    }
+
+    /// Whether it shows that no point set has the curve.
+    #[must_use]
+    pub fn is_impossible(&self) -> bool {
+        self.g < -TOLERANCE
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn least(text: &str) -> LeastCorrelation {
+        LeastCorrelation::of(&text.parse().expect("valid"))
+    }
+
+    #[test]
+    fn a_step_is_possible_up_to_one_over_root_pi() {
+        let step = |nu: f64| least(&format!("0 0\n{nu} 0\n{nu} 1"));
+        assert!(!step(0.5).is_impossible() && !step(0.5642).is_impossible());
+        // g(0) = 1 − π·ν₀² for a step, and nothing is lower.
+        for nu in [0.6, 0.7, 0.9] {
+            let found = step(nu);
+            assert!(found.is_impossible());
+            let expected = 1.0 - std::f64::consts::PI * nu * nu;
+            assert!((found.g - expected).abs() < 4e-3, "{found:?} {expected}");
+            assert_eq!(found.r, 0.0);
+        }
+    }
+
+    #[test]
+    fn a_random_set_and_a_mild_excess_are_possible_and_a_lone_spike_is_not() {
+        assert_eq!(least("0 1").g, 1.0);
+        assert!(!least("0 2\n0.5 1").is_impossible());
+        // g − 1 is about 2πν·(height·width)·J₀(2πνr), whose least value is −0.4 of its first.
+        let spike = least("0.95 1\n0.95 9\n1.05 9\n1.05 1");
+        assert!(spike.is_impossible(), "{spike:?}");
+        assert!(
+            (spike.r - 3.8317 / std::f64::consts::TAU).abs() < 0.02,
+            "{spike:?}"
+        );
+    }
+}

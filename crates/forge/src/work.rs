@@ -1,0 +1,400 @@
+//! The work on a job: optimizing phase by phase, then judging; from the start or from a checkpoint.
+
+use strew_core::{Table, table::Provenance};
+
+use crate::{
+    Checkpoint, ForgeError, Job,
+    judge::{Complaint, Nearness, complaints},
+    optimize::{Descended, Meter, Stage, Watch},
+    plan::Plan,
+};
+
+/// What became of a job.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// The table, with its history. Usable in any case.
+    pub table: Table,
+    /// Whether it was measured on unseen subjects and met every bound of its profile.
+    pub accepted: bool,
+    /// Whether the watch stopped the work: the table is the best until then, and was not judged.
+    pub interrupted: bool,
+    /// The bounds it missed.
+    pub complaints: Vec<Complaint>,
+    /// How near it came to the power curve it should follow, if it was judged and follows one.
+    pub nearness: Option<Nearness>,
+}
+
+/// Makes a table and judges it. A table that misses a bound is an outcome, not an error.
+///
+/// # Errors
+/// [`ForgeError::Field`] for a part of the job that is not allowed.
+pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
+    work(job, None, watch)
+}
+
+/// Goes on with a job from a checkpoint, to the same table as without the interruption.
+///
+/// # Errors
+/// As [`forge`], and [`ForgeError::Field`] for a checkpoint of another job.
+pub fn resume(job: &Job, from: Checkpoint, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
+    work(job, Some(from), watch)
+}
+
+fn work(job: &Job, from: Option<Checkpoint>, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
+    let plan = Plan::new(job)?;
+    let done = optimize(&plan, job, from, watch)?;
+    let provenance = plan.provenance(job, done.steps);
+    let mut outcome = Outcome {
+        table: plan.table(&done.moves, provenance.clone())?,
+        accepted: false,
+        interrupted: done.interrupted,
+        complaints: Vec::new(),
+        nearness: None,
+    };
+    if outcome.interrupted {
+        return Ok(outcome);
+    }
+    let mut meter = Meter::new(watch, Stage::Measuring, plan.panel.subjects());
+    let Some(figures) = plan.panel.measure(&outcome.table, &mut meter) else {
+        outcome.interrupted = true;
+        return Ok(outcome);
+    };
+    outcome.complaints = complaints(&plan.bounds, &figures);
+    outcome.nearness = Nearness::of(&figures);
+    outcome.accepted = outcome.complaints.is_empty();
+    let judged = Provenance {
+        figures,
+        ..provenance
+    };
+    outcome.table = plan.table(&done.moves, judged)?;
+    Ok(outcome)
+}
+
+/// What the optimizer found.
+struct Optimized {
+    moves: Vec<[f64; 2]>,
+    /// Steps taken in all.
+    steps: u32,
+    interrupted: bool,
+}
+
+fn optimize(
+    plan: &Plan,
+    job: &Job,
+    from: Option<Checkpoint>,
+    watch: &dyn Watch,
+) -> Result<Optimized, ForgeError> {
+    let phases = plan.phases();
+    let count = phases.len();
+    let identity = plan.identity(job, &phases);
+    let (first, mut state) = match from {
+        None => (0, Descended::at(plan.start(job.seed))),
+        Some(from) => {
+            from.check(&identity, plan.blocks())?;
+            (from.phase as usize, from.state)
+        }
+    };
+    let checkpoint = |phase: usize, steps, state: &Descended| Checkpoint {
+        job: identity.clone(),
+        phase: phase as u32,
+        steps,
+        of: plan.steps,
+        state: state.clone(),
+    };
+    let before = phases.iter().take(first).map(|phase| phase.descent.steps);
+    let mut steps: u32 = before.sum();
+    let mut meter = Meter::from(watch, Stage::Optimizing, plan.steps, steps + state.steps);
+    for (at, mut phase) in phases.into_iter().enumerate().skip(first) {
+        let mut keep =
+            |state: &Descended| watch.checkpoint(&checkpoint(at, steps + state.steps, state));
+        state = phase
+            .descent
+            .run(&mut *phase.objective, state, &mut meter, &mut keep);
+        steps += state.steps;
+        if state.steps < phase.descent.steps {
+            return Ok(Optimized {
+                moves: state.moves,
+                steps,
+                interrupted: true,
+            });
+        }
+        state = Descended::at(state.moves);
+    }
+    if count > 0 {
+        watch.checkpoint(&checkpoint(count, steps, &state));
+    }
+    Ok(Optimized {
+        moves: state.moves,
+        steps,
+        interrupted: false,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use strew_core::Twin;
+
+    use super::*;
+    use crate::Progress;
+
+    fn job(steps: u32) -> Job {
+        Job {
+            radius: 15,
+            steps: Some(steps),
+            ..Job::new("(5-sqrt(3))/2".parse().expect("valid"))
+        }
+    }
+
+    #[test]
+    fn equal_jobs_make_equal_tables_with_any_number_of_threads() {
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let outcome = pool.expect("threads").install(|| forge(&job(30), &()));
+            outcome.expect("a good job").table
+        };
+        let table = with(1);
+        assert_eq!(with(2), table);
+        assert_eq!(with(5), table);
+        let other = Job { seed: 2, ..job(30) };
+        let other = forge(&other, &()).expect("a good job").table;
+        assert_ne!(other.displacements(), table.displacements());
+    }
+
+    #[test]
+    fn the_history_tells_all() {
+        let outcome = forge(&job(30), &()).expect("a good job");
+        let history = outcome.table.provenance();
+        assert_eq!((history.optimizer.as_str(), history.seed), ("gaussian", 17));
+        assert!(history.parameters.contains(&("steps".into(), "30".into())));
+        assert!(history.parameters.contains(&("sigma".into(), "1".into())));
+        assert_eq!(history.twins.len(), 6);
+        for figures in &history.figures {
+            let twin = |t: &Twin| figures.subject == format!("twin {t}");
+            assert_eq!(
+                figures.seen,
+                history.twins.iter().any(twin),
+                "{}",
+                figures.subject
+            );
+            assert!(
+                figures.seen || figures.points >= 50_000,
+                "{}",
+                figures.subject
+            );
+        }
+        assert!(
+            history
+                .figures
+                .iter()
+                .any(|f| f.subject.starts_with("window"))
+        );
+        assert_eq!(outcome.accepted, outcome.complaints.is_empty());
+        let back = Table::from_bytes(&outcome.table.to_bytes()).expect("valid");
+        assert_eq!(back, outcome.table);
+    }
+
+    /// Notes all it is told, and stops the work at a step of a stage.
+    struct Observer {
+        stop_at: (Stage, u32),
+        told: Mutex<Vec<Progress>>,
+    }
+
+    impl Watch for Observer {
+        fn progress(&self, progress: &Progress) {
+            self.told.lock().expect("no panic").push(*progress);
+        }
+
+        fn stop(&self) -> bool {
+            let told = self.told.lock().expect("no panic");
+            told.last()
+                .is_some_and(|p| (p.stage, p.step) == self.stop_at)
+        }
+    }
+
+    #[test]
+    fn a_watch_is_told_every_step_and_can_stop_at_any() {
+        let stages = [
+            (Stage::Optimizing, 0),
+            (Stage::Optimizing, 5),
+            (Stage::Optimizing, 11),
+        ];
+        for (stage, step) in stages.into_iter().chain([(Stage::Measuring, 2)]) {
+            let observer = Observer {
+                stop_at: (stage, step),
+                told: Mutex::default(),
+            };
+            let outcome = forge(&job(12), &observer).expect("a good job");
+            assert!(outcome.interrupted && !outcome.accepted, "{stage:?} {step}");
+            assert!(outcome.table.provenance().figures.is_empty());
+            assert!(Table::from_bytes(&outcome.table.to_bytes()).is_ok());
+            let told = observer.told.into_inner().expect("no panic");
+            let optimizing = told.iter().filter(|p| p.stage == Stage::Optimizing);
+            let steps: Vec<u32> = optimizing.map(|p| p.step).collect();
+            let last = if stage == Stage::Optimizing { step } else { 12 };
+            assert_eq!(steps, (0..=last).collect::<Vec<_>>());
+            assert!(
+                told.iter()
+                    .all(|p| p.stage == Stage::Measuring || p.steps == 12)
+            );
+            let stopped_after = ("stopped_after".into(), step.to_string());
+            let says_so = outcome
+                .table
+                .provenance()
+                .parameters
+                .contains(&stopped_after);
+            assert_eq!(says_so, stage == Stage::Optimizing);
+        }
+    }
+
+    #[test]
+    fn the_smallest_jobs_work() {
+        for alpha in ["1.11", "1.95", "183/112", "sqrt(2)"] {
+            let job = Job {
+                radius: 1,
+                steps: Some(1),
+                ..Job::new(alpha.parse().expect("valid"))
+            };
+            let outcome = forge(&job, &()).expect("a good job");
+            assert!(!outcome.accepted, "{alpha}");
+        }
+    }
+
+    /// Keeps the last checkpoint, and stops the work after a number of steps.
+    struct Stopper {
+        after: u32,
+        /// Whether measuring is to be stopped, too.
+        stage: Stage,
+        seen: Mutex<Option<Progress>>,
+        kept: Mutex<Option<Checkpoint>>,
+    }
+
+    impl Stopper {
+        fn new(stage: Stage, after: u32) -> Self {
+            Self {
+                after,
+                stage,
+                seen: Mutex::default(),
+                kept: Mutex::default(),
+            }
+        }
+    }
+
+    impl Watch for Stopper {
+        fn progress(&self, progress: &Progress) {
+            *self.seen.lock().expect("no panic") = Some(*progress);
+        }
+
+        fn stop(&self) -> bool {
+            let seen = self.seen.lock().expect("no panic");
+            seen.is_some_and(|p| p.stage == self.stage && p.step >= self.after)
+        }
+
+        fn checkpoint(&self, checkpoint: &Checkpoint) {
+            // Through a file's bytes, as after a crash.
+            let back = Checkpoint::from_bytes(&checkpoint.to_bytes()).expect("valid");
+            *self.kept.lock().expect("no panic") = Some(back);
+        }
+    }
+
+    #[test]
+    fn work_that_was_stopped_goes_on_to_the_same_table() {
+        let of = |profile: &str, radius, steps| Job {
+            profile: profile.into(),
+            radius,
+            ..job(steps)
+        };
+        // One of each kind of recipe, stopped in each phase and on a border of phases.
+        for (job, stops) in [
+            (of("blue", 15, 40), vec![1, 19, 20, 31]),
+            (of("spaced", 15, 30), vec![1, 2, 11, 16, 29]),
+            (of("lloyd", 12, 12), vec![5]),
+            (of("step", 12, 12), vec![3, 11]),
+            (of("single-peak", 12, 20), vec![4, 6, 17]),
+        ] {
+            // Measuring tells nothing new, so it is stopped.
+            let optimized = |from: Option<Checkpoint>| {
+                let stopper = Stopper::new(Stage::Measuring, 0);
+                let outcome = work(&job, from, &stopper).expect("a good job");
+                (
+                    outcome.table.digest(),
+                    stopper.kept.into_inner().expect("no panic"),
+                )
+            };
+            let whole = optimized(None);
+            for after in stops {
+                let stopper = Stopper::new(Stage::Optimizing, after);
+                let stopped = forge(&job, &stopper).expect("a good job");
+                assert!(stopped.interrupted);
+                let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
+                assert_eq!((kept.steps(), kept.is_optimized()), (after, false));
+                kept.is_of(&job).expect("its own");
+                assert_eq!(optimized(Some(kept)), whole, "{} {after}", job.profile);
+            }
+        }
+    }
+
+    #[test]
+    fn measuring_that_was_stopped_is_done_again_without_optimizing() {
+        let whole = forge(&job(9), &()).expect("a good job");
+        let stopper = Stopper::new(Stage::Measuring, 1);
+        assert!(forge(&job(9), &stopper).expect("a good job").interrupted);
+        let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
+        assert!(kept.is_optimized());
+        let observer = Observer {
+            stop_at: (Stage::Measuring, u32::MAX),
+            told: Mutex::default(),
+        };
+        assert_eq!(resume(&job(9), kept, &observer).expect("its own"), whole);
+        let told = observer.told.into_inner().expect("no panic");
+        assert_eq!(told[0].step, 9);
+    }
+
+    #[test]
+    fn any_difference_of_the_jobs_is_told() {
+        let stopper = Stopper::new(Stage::Optimizing, 2);
+        let _ = forge(&job(9), &stopper).expect("a good job");
+        let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
+        let good = job(9);
+        let target: crate::Target = "0 0\n0.5 1".parse().expect("valid");
+        for (other, name) in [
+            (job(10), "steps"),
+            (Job { seed: 3, ..job(9) }, "seed = 3"),
+            (
+                Job {
+                    radius: 14,
+                    ..job(9)
+                },
+                "radius = 14",
+            ),
+            (
+                Job {
+                    profile: "sharp".into(),
+                    ..job(9)
+                },
+                "profile = sharp",
+            ),
+            (
+                Job {
+                    alpha: "sqrt(3)".parse().expect("valid"),
+                    ..job(9)
+                },
+                "sqrt(3)",
+            ),
+            (
+                Job {
+                    profile: "mine".into(),
+                    target: Some(target),
+                    ..job(9)
+                },
+                "profile = mine",
+            ),
+        ] {
+            let refused = kept.is_of(&other).expect_err("another").to_string();
+            assert!(refused.contains(name), "{refused}");
+            assert!(resume(&other, kept.clone(), &()).is_err());
+        }
+        kept.is_of(&good).expect("its own");
+    }
+}

@@ -1,0 +1,186 @@
+//! What the REST door offers, said once: an [`Endpoint`] is a path with its handlers and their
+//! description, so nothing is routed that `/openapi.json` does not tell.
+//!
+//! To add a path, write a module with `pub(super) fn endpoint(service) -> Endpoint` and list it in
+//! [`rest::endpoints`](super::endpoints).
+
+mod document;
+pub(super) mod schemas;
+
+use axum::{Router, response::Response, routing::MethodRouter};
+use http::{HeaderValue, Method, Uri, header};
+use serde_json::Value;
+
+use super::problem::Problem;
+use crate::service::{Error, Kind, query::Parameter};
+
+pub(super) use document::document;
+
+/// A path that answers, and what it answers.
+#[derive(Debug)]
+pub struct Endpoint {
+    path: &'static str,
+    operations: Vec<Operation>,
+    router: Router,
+}
+
+/// One method of a path.
+#[derive(Clone, Debug)]
+pub struct Operation {
+    /// GET (which answers HEAD, too) or POST.
+    pub method: Method,
+    /// A name for programs, in camel case.
+    pub id: &'static str,
+    /// What it does, in a few words.
+    pub summary: &'static str,
+    /// What else is to know.
+    pub about: &'static str,
+    /// The parameters of the path, in its order.
+    pub path_parameters: &'static [Parameter],
+    /// The parameters of the query.
+    pub parameters: Vec<Given>,
+    /// The body of a request, if it has one.
+    pub body: Option<Body>,
+    /// The answers that are not problems.
+    pub answers: Vec<Answer>,
+    /// The problems that this operation can have, besides those that every one can have.
+    pub problems: Vec<Kind>,
+    /// The rest of a `curl` command that works on the built-in tables: first the address, in single
+    /// quotes if it needs them.
+    pub example: String,
+}
+
+/// A parameter, and whether it must be given.
+#[derive(Clone, Copy, Debug)]
+pub struct Given {
+    /// The parameter.
+    pub parameter: &'static Parameter,
+    /// Whether it must be given.
+    pub required: bool,
+}
+
+/// The body of a request.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Its media type.
+    pub media_type: &'static str,
+    /// Its JSON Schema.
+    pub schema: Value,
+    /// A body that is in order on the built-in tables.
+    pub example: Value,
+}
+
+/// An answer that is not a problem.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// Its status.
+    pub status: u16,
+    /// What it is.
+    pub about: &'static str,
+    /// Its headers by name, with what they say.
+    pub headers: Vec<(&'static str, &'static str)>,
+    /// Its media types with the JSON Schemas of their content.
+    pub contents: Vec<(String, Value)>,
+}
+
+impl Answer {
+    /// What a client hears whose copy is still right.
+    #[must_use]
+    pub const fn unchanged() -> Self {
+        Self {
+            status: 304,
+            about: "What the client has (If-None-Match) is still the answer.",
+            headers: vec![],
+            contents: vec![],
+        }
+    }
+}
+
+/// The parameters of these names from the list that all queries share; those in `required` must be
+/// given.
+///
+/// # Panics
+/// At the start of the program, if there is none of a name.
+#[must_use]
+pub fn given(required: &[&str], optional: &[&str]) -> Vec<Given> {
+    let find = |name: &&str| {
+        Parameter::named(name).unwrap_or_else(|| panic!("no parameter is called {name}"))
+    };
+    let of = |names: &[&str], required| -> Vec<Given> {
+        let parameters = names.iter().map(find);
+        parameters
+            .map(|parameter| Given {
+                parameter,
+                required,
+            })
+            .collect()
+    };
+    let mut all = of(required, true);
+    all.extend(of(optional, false));
+    all
+}
+
+impl Endpoint {
+    /// A path with a handler for each of its operations, in the same order. Other methods are
+    /// answered with a problem.
+    pub fn new<S: Clone + Send + Sync + 'static>(
+        path: &'static str,
+        state: S,
+        operations: Vec<(Operation, MethodRouter<S>)>,
+    ) -> Self {
+        let mut methods = MethodRouter::new();
+        let mut allowed: Vec<String> = vec![];
+        let mut told = vec![];
+        for (operation, handler) in operations {
+            methods = methods.merge(handler);
+            allowed.push(operation.method.to_string());
+            if operation.method == Method::GET {
+                allowed.push("HEAD".into());
+            }
+            told.push(operation);
+        }
+        let allowed = allowed.join(", ");
+        let fallback = move |method, uri| {
+            let allowed = allowed.clone();
+            async move { wrong_method(method, uri, allowed) }
+        };
+        Self {
+            path,
+            operations: told,
+            router: Router::new()
+                .route(path, methods.fallback(fallback))
+                .with_state(state),
+        }
+    }
+
+    /// The path, with its parameters in braces.
+    #[must_use]
+    pub const fn path(&self) -> &'static str {
+        self.path
+    }
+
+    /// What it answers.
+    #[must_use]
+    pub fn operations(&self) -> &[Operation] {
+        &self.operations
+    }
+
+    /// Its routes.
+    pub(super) fn into_router(self) -> Router {
+        self.router
+    }
+}
+
+/// The answer to a method that a path does not take.
+fn wrong_method(method: Method, uri: Uri, allowed: String) -> Response {
+    let error = Error::NoSuchMethod {
+        path: uri.path().into(),
+        method: method.to_string(),
+        allowed: allowed.clone(),
+    };
+    let mut response = Problem::response(&error);
+    if let Ok(allow) = HeaderValue::from_str(&allowed) {
+        response.headers_mut().insert(header::ALLOW, allow);
+    }
+    response
+}

@@ -1,0 +1,62 @@
+//! What an answer says about itself: the query as understood, the table, the count.
+
+use serde::Serialize;
+use strew_core::ALGORITHM_VERSION;
+
+use super::Output;
+use crate::service::{Entry, Planned, query::Resolved};
+
+/// The head of a document, or its summary.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Head {
+    pub(super) query: QueryEcho,
+    pub(super) table: TableEcho,
+    pub(super) count: u128,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct QueryEcho {
+    #[serde(flatten)]
+    resolved: Resolved,
+    format: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    decimals: Option<u8>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    relative_to: Option<[f64; 2]>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct TableEcho {
+    profile: String,
+    alpha: String,
+    radius: u32,
+    pub(super) digest: String,
+    algorithm: u32,
+}
+
+impl Head {
+    pub(super) fn new(planned: &Planned, output: &Output, count: u128) -> Self {
+        let Entry {
+            key,
+            radius,
+            digest,
+            ..
+        } = &*planned.entry;
+        Self {
+            query: QueryEcho {
+                resolved: planned.query.resolved(),
+                format: output.encoding.name(),
+                decimals: output.decimals,
+                relative_to: output.relative_to,
+            },
+            table: TableEcho {
+                profile: key.profile.as_ref().into(),
+                alpha: key.alpha.to_string(),
+                radius: *radius,
+                digest: digest.clone(),
+                algorithm: ALGORITHM_VERSION,
+            },
+            count,
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Rows as members of JSON objects, for all formats that are JSON.
+
+use super::{
+    Output,
+    number::Digits,
+    rows::{Row, Rows},
+    schema::{Kind, Values},
+    text::write_id,
+};
+
+/// Writes a value as JSON. What is written here has no maps with strange keys, so it cannot fail.
+pub(super) fn write_json(value: &impl serde::Serialize, out: &mut Vec<u8>) {
+    if let Err(error) = serde_json::to_writer(out, value) {
+        debug_assert!(false, "{error}");
+    }
+}
+
+/// Names and dictionaries of the columns as JSON, made once.
+#[derive(Debug)]
+pub(super) struct Members {
+    columns: Vec<Member>,
+    digits: Digits,
+}
+
+#[derive(Debug)]
+struct Member {
+    /// `"name":`.
+    key: Vec<u8>,
+    /// The names of a dictionary, in quotes.
+    names: Vec<Vec<u8>>,
+}
+
+impl Members {
+    pub(super) fn new(rows: &Rows, output: &Output) -> Self {
+        let quoted = |text: &String| {
+            let mut out = vec![];
+            write_json(text, &mut out);
+            out
+        };
+        let columns = rows.schema().columns().iter().map(|column| {
+            let mut key = quoted(&column.name);
+            key.push(b':');
+            let names = match &column.kind {
+                Kind::Number => vec![],
+                Kind::Dictionary(names) => names.iter().map(quoted).collect(),
+            };
+            Member { key, names }
+        });
+        Self {
+            columns: columns.collect(),
+            digits: Digits::of(output.decimals),
+        }
+    }
+
+    /// How many bytes the columns of a row take, roughly.
+    pub(super) fn bytes(&self) -> usize {
+        let longest = |names: &[Vec<u8>]| names.iter().map(Vec::len).max().unwrap_or(24);
+        let bytes = self.columns.iter();
+        bytes
+            .map(|member| member.key.len() + longest(&member.names) + 1)
+            .sum()
+    }
+
+    /// Writes `{"id":"…","x":…,"y":…}` with the columns as further members.
+    pub(super) fn write_point(&self, row: Row<'_>, out: &mut Vec<u8>) {
+        out.extend_from_slice(b"{\"id\":\"");
+        write_id(row.point.id, out);
+        out.extend_from_slice(b"\",\"x\":");
+        self.digits.write(row.point.x, out);
+        out.extend_from_slice(b",\"y\":");
+        self.digits.write(row.point.y, out);
+        self.write_columns(row, b',', out);
+        out.push(b'}');
+    }
+
+    /// Writes the columns as members, those that the row lacks left out: `before` the first, commas
+    /// between them.
+    fn write_columns(&self, row: Row<'_>, before: u8, out: &mut Vec<u8>) {
+        let mut separator = before;
+        for (member, values) in self.columns.iter().zip(row.columns) {
+            if *values == Values::Missing {
+                continue;
+            }
+            out.push(separator);
+            separator = b',';
+            out.extend_from_slice(&member.key);
+            if let Some(name) = values.index(row.index) {
+                let name = member
+                    .names
+                    .get(name as usize)
+                    .map_or(&b"null"[..], |name| name);
+                out.extend_from_slice(name);
+            } else if let Some(number) = values.number(row.index) {
+                self.digits.write(number, out);
+            } else {
+                out.extend_from_slice(b"null");
+            }
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! How an answer is to look: the format and its options.
+
+use super::Encoding;
+use crate::service::{Error, Fault};
+
+/// More decimals than this say nothing: an `f64` has 17 significant digits.
+pub const MOST_DECIMALS: u8 = 17;
+
+/// What `decimals` may be.
+pub const DECIMALS: &str = "an integer from 0 to 17";
+
+/// What a query asks of its answer's looks, before the format is settled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// The format, if it is asked for by name.
+    pub encoding: Option<Encoding>,
+    /// Decimals of numbers in text formats.
+    pub decimals: Option<u8>,
+}
+
+impl Options {
+    /// The output in a format, the one asked for by name or another if none was.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if an option is out of range or means nothing in that format.
+    pub fn output(self, encoding: Encoding) -> Result<Output, Error> {
+        let mut faults = vec![];
+        if let Some(decimals) = self.decimals {
+            let fault = |detail: String, allowed| Fault::new("decimals", decimals, detail, allowed);
+            if decimals > MOST_DECIMALS {
+                faults.push(fault("it is out of range".into(), DECIMALS.into()));
+            }
+            if !encoding.is_text() {
+                let allowed = Encoding::names_where(Encoding::is_text);
+                faults.push(fault(
+                    format!("it means nothing in the format {}", encoding.name()),
+                    format!("the formats {allowed}"),
+                ));
+            }
+        }
+        if !faults.is_empty() {
+            return Err(Error::Invalid(faults));
+        }
+        Ok(Output {
+            decimals: self.decimals,
+            ..Output::new(encoding)
+        })
+    }
+}
+
+/// How an answer looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Output {
+    /// The format.
+    pub encoding: Encoding,
+    /// Decimals of all numbers in text formats; by default the shortest digits that read back.
+    pub decimals: Option<u8>,
+    /// The point that coordinates are relative to; by default the world's origin, in `f32` the
+    /// region's lower corner.
+    pub relative_to: Option<[f64; 2]>,
+}
+
+impl Output {
+    /// A format without further wishes.
+    #[must_use]
+    pub const fn new(encoding: Encoding) -> Self {
+        Self {
+            encoding,
+            decimals: None,
+            relative_to: None,
+        }
+    }
+}

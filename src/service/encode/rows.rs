@@ -1,0 +1,474 @@
+//! Rows: what all formats with columns are made of.
+//!
+//! An answer has one part, or one for each layer. [`Rows`] walks them one after another and gives
+//! batches of points with the values of every further column. Formats see nothing else, so that a
+//! new column or a new kind of part shows in all of them at once.
+
+use std::{fmt, sync::Arc, vec};
+
+use strew_core::{
+    Plan, Point,
+    sample::{Blocks, F32, Points},
+};
+
+use super::{
+    Encoding, Output,
+    schema::{Column, Kind, Schema, Values},
+};
+
+/// What gives the points of a part their further values.
+pub trait Attributes: fmt::Debug + Send + Sync {
+    /// The columns, each with another name.
+    fn columns(&self) -> Vec<Column>;
+
+    /// Appends a value for each point to each of the columns' values. They come empty, one for
+    /// each of [`columns`](Self::columns) and of its kind.
+    fn fill(&self, points: &[Point], values: &mut [Values]);
+}
+
+/// A part of an answer: a plan, with what its points are and have.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The points.
+    pub plan: Plan,
+    /// The name of its layer, where there are several.
+    pub layer: Option<String>,
+    /// The points' further values.
+    pub attributes: Option<Arc<dyn Attributes>>,
+}
+
+/// What coordinates are relative to, and how exactly they are wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Coordinates {
+    /// As they are in the world.
+    World,
+    /// Relative to a point.
+    Relative([f64; 2]),
+    /// As `f32` relative to a point, in [`Batch::near`]; where the point is a plan's origin they
+    /// are straight from the kernel.
+    Near([f64; 2]),
+}
+
+impl Coordinates {
+    /// What an output asks of the coordinates of some parts.
+    #[must_use]
+    pub fn of(output: &Output, parts: &[Part]) -> Self {
+        let corner = || {
+            let corners = parts.iter().map(|part| part.plan.origin());
+            let least = corners.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1])]);
+            least.unwrap_or_default()
+        };
+        match (output.encoding, output.relative_to) {
+            (Encoding::F32, origin) => Self::Near(origin.unwrap_or_else(corner)),
+            (_, Some(origin)) => Self::Relative(origin),
+            (_, None) => Self::World,
+        }
+    }
+
+    /// What they are relative to, if not to the world's origin.
+    #[must_use]
+    pub const fn origin(self) -> Option<[f64; 2]> {
+        match self {
+            Self::World => None,
+            Self::Relative(origin) | Self::Near(origin) => Some(origin),
+        }
+    }
+}
+
+/// Some rows.
+#[derive(Clone, Copy, Debug)]
+pub struct Batch<'a> {
+    /// The points; there is at least one.
+    pub points: &'a [Point],
+    /// The coordinates as `f32`; empty unless asked for by [`Coordinates::Near`].
+    pub near: &'a [[f32; 2]],
+    /// The values of each column of the schema.
+    pub columns: &'a [Values],
+}
+
+/// One row of a batch.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<'a> {
+    /// Id and coordinates.
+    pub point: &'a Point,
+    /// Which row of the columns it is.
+    pub index: usize,
+    /// The values of each column of the schema.
+    pub columns: &'a [Values],
+}
+
+impl<'a> Batch<'a> {
+    /// The rows, one by one.
+    pub fn rows(self) -> impl Iterator<Item = Row<'a>> {
+        self.points
+            .iter()
+            .enumerate()
+            .map(move |(index, point)| Row {
+                point,
+                index,
+                columns: self.columns,
+            })
+    }
+}
+
+/// The rows of an answer, in order, a batch at a time.
+#[derive(Debug)]
+pub struct Rows {
+    schema: Arc<Schema>,
+    count: u128,
+    coordinates: Coordinates,
+    parts: vec::IntoIter<(usize, Part)>,
+    current: Option<Current>,
+    points: Vec<Point>,
+    near: Vec<[f32; 2]>,
+    columns: Vec<Values>,
+}
+
+impl Rows {
+    /// The rows of some parts, one part after another.
+    #[must_use]
+    pub fn new(parts: Vec<Part>, coordinates: Coordinates) -> Self {
+        let described: Vec<_> = parts
+            .iter()
+            .map(|part| (part.layer.as_deref(), part.own_columns()))
+            .collect();
+        let schema = Schema::joined(&described);
+        Self {
+            columns: schema.empty_values(),
+            schema: Arc::new(schema),
+            count: parts.iter().map(|part| part.plan.count()).sum(),
+            coordinates,
+            parts: parts
+                .into_iter()
+                .enumerate()
+                .collect::<Vec<_>>()
+                .into_iter(),
+            current: None,
+            points: vec![],
+            near: vec![],
+        }
+    }
+
+    /// The columns besides id, x and y.
+    #[must_use]
+    pub const fn schema(&self) -> &Arc<Schema> {
+        &self.schema
+    }
+
+    /// How many rows there are, those already given included.
+    #[must_use]
+    pub const fn count(&self) -> u128 {
+        self.count
+    }
+
+    /// What coordinates are relative to.
+    #[must_use]
+    pub const fn coordinates(&self) -> Coordinates {
+        self.coordinates
+    }
+
+    /// The only plan, if its coordinates as the kernel gives them are all there is. Asked before
+    /// the first batch.
+    #[must_use]
+    pub fn plain_plan(&self) -> Option<&Plan> {
+        let [(_, part)] = self.parts.as_slice() else {
+            return None;
+        };
+        let as_made = match self.coordinates {
+            Coordinates::World => true,
+            Coordinates::Relative(_) => false,
+            Coordinates::Near(origin) => origin == part.plan.origin(),
+        };
+        (as_made && self.schema.columns().is_empty()).then_some(&part.plan)
+    }
+
+    /// The next rows, at most so many (and at least one); `None` when there are no more. A batch
+    /// is of one part.
+    pub fn next(&mut self, most: usize) -> Option<Batch<'_>> {
+        let most = most.max(1);
+        if self.points.len() < most {
+            let left = usize::try_from(self.count).unwrap_or(usize::MAX).max(1);
+            self.points.resize(most.min(left), Point::default());
+        }
+        let most = most.min(self.points.len());
+        let filled = loop {
+            if let Some(current) = &mut self.current {
+                let filled = current.blocks.fill(&mut self.points[..most]);
+                if filled > 0 {
+                    break filled;
+                }
+            }
+            let (number, part) = self.parts.next()?;
+            self.columns = self.schema.empty_values();
+            self.current = Some(Current::new(number, part, &self.schema, self.coordinates));
+        };
+        let current = self.current.as_mut()?;
+        let room = self.points.len();
+        let points = &mut self.points[..filled];
+        current.fill_columns(points, &mut self.columns);
+        match self.coordinates {
+            Coordinates::World => {}
+            Coordinates::Relative(origin) => {
+                let shift = Shift::new(&current.part.plan, origin);
+                for point in points {
+                    [point.x, point.y] = shift.apply(point);
+                }
+            }
+            Coordinates::Near(origin) => {
+                self.near.resize(room, [0.0; 2]);
+                current.fill_near(points, origin, &mut self.near[..filled]);
+            }
+        }
+        Some(Batch {
+            points: &self.points[..filled],
+            near: self.near.get(..filled).unwrap_or_default(),
+            columns: &self.columns,
+        })
+    }
+}
+
+impl Part {
+    fn own_columns(&self) -> Vec<Column> {
+        let columns = self.attributes.as_ref().map(|own| own.columns());
+        columns.unwrap_or_default()
+    }
+}
+
+/// The part under way.
+#[derive(Debug)]
+struct Current {
+    part: Part,
+    blocks: Blocks<Points>,
+    near: Option<Blocks<F32>>,
+    /// The values of the part's own columns.
+    own: Vec<Values>,
+    /// Where each column of the schema comes from.
+    sources: Vec<Source>,
+}
+
+/// Where a column's values come from.
+#[derive(Debug)]
+enum Source {
+    /// It is the layer's.
+    Layer(u32),
+    /// It is one of the part's own, with other indices where its dictionary was joined with others.
+    Own(usize, Option<Vec<u32>>),
+    /// The part does not have it.
+    Nowhere,
+}
+
+impl Current {
+    fn new(number: usize, part: Part, schema: &Schema, coordinates: Coordinates) -> Self {
+        let columns = part.own_columns();
+        let layered = usize::from(schema.is_layered());
+        let layer = schema.columns().iter().take(layered);
+        let layer = layer.map(|_| Source::Layer(u32::try_from(number).unwrap_or(u32::MAX)));
+        let own = schema.columns().iter().skip(layered).map(|column| {
+            let same = |own: &Column| own.name == column.name;
+            let place = columns.iter().position(same);
+            place.map_or(Source::Nowhere, |place| {
+                Source::own(place, &columns[place].kind, &column.kind)
+            })
+        });
+        let at_origin =
+            matches!(coordinates, Coordinates::Near(origin) if origin == part.plan.origin());
+        Self {
+            sources: layer.chain(own).collect(),
+            own: columns.iter().map(|c| Values::of(&c.kind)).collect(),
+            blocks: part.plan.blocks(),
+            near: at_origin.then(|| part.plan.blocks()),
+            part,
+        }
+    }
+
+    fn fill_columns(&mut self, points: &[Point], columns: &mut [Values]) {
+        if let Some(attributes) = &self.part.attributes {
+            self.own.iter_mut().for_each(Values::clear);
+            attributes.fill(points, &mut self.own);
+        }
+        for (column, source) in columns.iter_mut().zip(&self.sources) {
+            match source {
+                Source::Layer(layer) => *column = Values::Indices(vec![*layer; points.len()]),
+                Source::Own(place, None) => std::mem::swap(column, &mut self.own[*place]),
+                Source::Own(place, Some(map)) => {
+                    if let Values::Indices(own) = &self.own[*place] {
+                        let mapped = own.iter().map(|i| map.get(*i as usize).copied());
+                        *column = Values::Indices(mapped.map(Option::unwrap_or_default).collect());
+                    }
+                }
+                Source::Nowhere => *column = Values::Missing,
+            }
+        }
+    }
+
+    fn fill_near(&mut self, points: &[Point], origin: [f64; 2], near: &mut [[f32; 2]]) {
+        match &mut self.near {
+            Some(blocks) => {
+                blocks.fill(near);
+            }
+            None => {
+                let shift = Shift::new(&self.part.plan, origin);
+                for (near, point) in near.iter_mut().zip(points) {
+                    *near = shift.near(point);
+                }
+            }
+        }
+    }
+}
+
+impl Source {
+    fn own(place: usize, own: &Kind, joined: &Kind) -> Self {
+        match (own, joined) {
+            (Kind::Number, Kind::Number) => Self::Own(place, None),
+            (Kind::Dictionary(own), Kind::Dictionary(joined)) if joined.starts_with(own) => {
+                Self::Own(place, None)
+            }
+            (Kind::Dictionary(own), Kind::Dictionary(joined)) => {
+                let index = |name| joined.iter().position(|joined| joined == name);
+                let index = |name| u32::try_from(index(name).unwrap_or_default());
+                let map = own.iter().map(|name| index(name).unwrap_or_default());
+                Self::Own(place, Some(map.collect()))
+            }
+            _ => Self::Nowhere,
+        }
+    }
+}
+
+/// Moves the points of a plan. Rounding never takes one out of the moved region: what would reach
+/// its upper bound takes the number before.
+struct Shift {
+    origin: [f64; 2],
+    bound: [f64; 2],
+}
+
+impl Shift {
+    fn new(plan: &Plan, origin: [f64; 2]) -> Self {
+        let max = plan.region().max();
+        Self {
+            origin,
+            bound: [max[0] - origin[0], max[1] - origin[1]],
+        }
+    }
+
+    fn apply(&self, point: &Point) -> [f64; 2] {
+        let moved = |value: f64, axis: usize| {
+            let moved = value - self.origin[axis];
+            if moved < self.bound[axis] {
+                moved
+            } else {
+                self.bound[axis].next_down()
+            }
+        };
+        [moved(point.x, 0), moved(point.y, 1)]
+    }
+
+    fn near(&self, point: &Point) -> [f32; 2] {
+        let [x, y] = self.apply(point);
+        let near = |value: f64, axis: usize| {
+            let near = value as f32;
+            if f64::from(near) < self.bound[axis] {
+                near
+            } else {
+                near.next_down()
+            }
+        };
+        [near(x, 0), near(y, 1)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::service::encode::{LAYER, sample_rows::parts};
+
+    /// (layer, id, x, y, angle, variant), whatever the size of batches.
+    type Told = Vec<(String, String, [f64; 2], [f32; 2], Option<f64>, String)>;
+
+    fn told(coordinates: Coordinates, most: usize) -> Told {
+        let mut rows = Rows::new(parts(), coordinates);
+        let schema = rows.schema().clone();
+        let names: Vec<&str> = schema.columns().iter().map(|c| &*c.name).collect();
+        assert_eq!(names, [LAYER, "angle", "variant"]);
+        let name = |column: usize, row: Row<'_>| match &schema.columns()[column].kind {
+            Kind::Dictionary(names) => {
+                let index = row.columns[column].index(row.index).expect("never missing");
+                names[index as usize].clone()
+            }
+            Kind::Number => panic!("{column} is no dictionary"),
+        };
+        let mut told = vec![];
+        while let Some(batch) = rows.next(most) {
+            assert!((1..=most).contains(&batch.points.len()));
+            for row in batch.rows() {
+                told.push((
+                    name(0, row),
+                    row.point.id.to_string(),
+                    [row.point.x, row.point.y],
+                    batch.near.get(row.index).copied().unwrap_or_default(),
+                    row.columns[1].number(row.index),
+                    name(2, row),
+                ));
+            }
+        }
+        assert_eq!(told.len() as u128, rows.count());
+        told
+    }
+
+    #[test]
+    fn parts_come_one_after_another_with_their_own_values() {
+        let world = told(Coordinates::World, 64);
+        for most in [1, 7, 100_000] {
+            assert_eq!(told(Coordinates::World, most), world, "at most {most}");
+        }
+        let trees = world.iter().take_while(|row| row.0 == "trees").count();
+        let [all_trees, all_rocks] = [0, 1].map(|i| parts()[i].plan.count());
+        assert_eq!(trees as u128, all_trees);
+        assert_eq!((world.len() - trees) as u128, all_rocks);
+        for (layer, id, _, _, angle, variant) in &world {
+            let (x, y) = id.split_once(':').expect("an id");
+            let [x, y] = [x, y].map(|text| text.parse::<i64>().expect("an integer"));
+            let expected = match (&**layer, y.rem_euclid(2), y.rem_euclid(3)) {
+                ("trees", 0, _) | ("rocks", _, 1) => "oak",
+                ("trees", ..) => "birch",
+                (_, _, 0) => "grey, \"old\"",
+                _ => "flint",
+            };
+            assert_eq!(variant, expected, "{layer} {id}");
+            assert_eq!(*angle, (layer == "trees").then_some(x as f64 / 2.0));
+        }
+    }
+
+    #[test]
+    fn coordinates_relative_to_a_point_stay_inside_the_region() {
+        let world = told(Coordinates::World, 100);
+        let origin = [-10.0, 5.0];
+        let relative = told(Coordinates::Relative(origin), 100);
+        let near = told(Coordinates::Near(origin), 100);
+        for ((world, relative), near) in world.iter().zip(&relative).zip(&near) {
+            for axis in 0..2 {
+                let expected = world.2[axis] - origin[axis];
+                assert_eq!(relative.2[axis], expected);
+                assert!((f64::from(near.3[axis]) - expected).abs() < 4e-6);
+                assert!(f64::from(near.3[axis]) < [40.0, 35.5][axis]);
+            }
+        }
+        // The first layer's own corner is the origin: its numbers are the kernel's.
+        let plan = &parts()[0].plan;
+        let mut kernel = vec![[0.0; 2]; usize::try_from(plan.count()).expect("few")];
+        plan.blocks_f32().fill(&mut kernel);
+        let near: Vec<_> = near.iter().take(kernel.len()).map(|row| row.3).collect();
+        assert_eq!(near, kernel);
+    }
+
+    #[test]
+    fn what_rounds_up_to_the_bound_takes_the_number_before() {
+        let plan = &parts()[0].plan;
+        let shift = Shift::new(plan, plan.origin());
+        let last = Point {
+            x: 30f64.next_down(),
+            y: 40.5f64.next_down(),
+            ..Point::default()
+        };
+        assert_eq!(shift.near(&last), [40f32.next_down(), 35.5f32.next_down()]);
+    }
+}

@@ -1,0 +1,97 @@
+//! Rows for tests: two layers with attributes of every kind, and their answers.
+
+use std::sync::Arc;
+
+use bytes::Bytes;
+use strew_core::Point;
+
+use super::{
+    Answer, Attributes, Output, Part,
+    schema::{Column, Values},
+};
+use crate::service::{Catalog, Draft, Planned};
+
+/// An angle for every point and a name out of a list; the angle is half the id's column.
+#[derive(Debug)]
+struct Marks {
+    names: &'static [&'static str],
+    has_angle: bool,
+}
+
+impl Attributes for Marks {
+    fn columns(&self) -> Vec<Column> {
+        let names: Vec<String> = self.names.iter().map(|name| (*name).into()).collect();
+        let mut columns = vec![Column::dictionary("variant", names)];
+        if self.has_angle {
+            columns.insert(0, Column::number("angle"));
+        }
+        columns
+    }
+
+    fn fill(&self, points: &[Point], values: &mut [Values]) {
+        for values in values {
+            match values {
+                Values::Numbers(angles) => {
+                    angles.extend(points.iter().map(|point| point.id.x as f64 / 2.0));
+                }
+                Values::Indices(indices) => {
+                    let names = self.names.len() as i64;
+                    let index = |point: &Point| point.id.y.rem_euclid(names) as u32;
+                    indices.extend(points.iter().map(index));
+                }
+                Values::Missing => {}
+            }
+        }
+    }
+}
+
+/// A planned query of the embedded tables.
+pub(super) fn planned(bbox: [f64; 4], spacing: f64, seed: u64) -> Planned {
+    let catalog = Catalog::load(true, None).expect("embedded tables");
+    let draft = Draft {
+        bbox: Some(bbox),
+        spacing: Some(spacing),
+        seed,
+        ..Draft::default()
+    };
+    let query = draft.check(&catalog, vec![]).expect("a query");
+    Planned::from_catalog(&catalog, query).expect("a plan")
+}
+
+/// The whole answer of both layers, and its size as said before.
+pub(super) fn answer(output: &Output, block_bytes: usize) -> (Vec<u8>, Option<u64>) {
+    let planned = planned([-10.0, 5.0, 30.0, 40.5], 1.0, 1);
+    let answer = Answer::of_parts(&planned, parts(), output, block_bytes).expect("an answer");
+    let size = answer.size();
+    let blocks: Result<Vec<Bytes>, _> = answer.collect();
+    (blocks.expect("whole").concat(), size)
+}
+
+/// Trees with an angle and a variant, rocks with a variant only, of which one name is a tree's and
+/// one needs quotes.
+pub(super) fn parts() -> Vec<Part> {
+    let part = |layer: &str, plan, marks| Part {
+        plan,
+        layer: Some(layer.into()),
+        attributes: Some(Arc::new(marks)),
+    };
+    let bbox = [-10.0, 5.0, 30.0, 40.5];
+    vec![
+        part(
+            "trees",
+            planned(bbox, 1.0, 1).plan,
+            Marks {
+                names: &["oak", "birch"],
+                has_angle: true,
+            },
+        ),
+        part(
+            "rocks",
+            planned([-10.0, 7.0, 30.0, 40.5], 2.0, 2).plan,
+            Marks {
+                names: &["grey, \"old\"", "oak", "flint"],
+                has_angle: false,
+            },
+        ),
+    ]
+}
