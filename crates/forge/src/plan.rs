@@ -21,7 +21,7 @@ const LEAST_SIDE: f64 = 0.05;
 const MAX_RADIAL_RADIUS: u32 = 200;
 /// To be raised with any change of what a step computes, down to the last bit: work that was begun
 /// before must not go on after.
-const ARITHMETIC: u32 = 1;
+const ARITHMETIC: u32 = 2;
 /// Longer parameters of a history are split.
 const PARAMETER_BYTES: usize = 800;
 

@@ -9,8 +9,8 @@ use strew_core::{
 };
 use strew_forge::{
     Job, Profile, Target, file_name, forge,
-    judge::{complaints, curve_figures, figures_of_torus, figures_of_window},
-    measure::{Spectrum, Window, twin_set, window_set},
+    judge::{Figure, RING_WIDTH, complaints, curve_figures},
+    measure::{Crispness, Spectrum, Window, twin_set, window_set},
     read_table,
 };
 
@@ -30,10 +30,23 @@ fn profiles() -> impl Iterator<Item = (&'static Profile, Target)> {
     Profile::ALL.iter().filter_map(|p| Some((p, p.target()?)))
 }
 
-/// A subject's figures, those against its curve among them.
-fn judged(mut figures: Figures, spectrum: &Spectrum, target: &Target) -> Figures {
-    figures.values.extend(curve_figures(spectrum, target));
-    figures
+/// The figures that bounds of curves ask for.
+fn judged(subject: String, spectrum: &Spectrum, target: &Target) -> Figures {
+    let summary = spectrum.summary(RING_WIDTH);
+    let crispness = Crispness::of_rings(&spectrum.rings(RING_WIDTH), RING_WIDTH);
+    let own = [
+        (Figure::LowPower, summary.low_power),
+        (Figure::PeakPower, summary.peak_power),
+        (Figure::PeakNu, summary.peak_nu),
+        (Figure::NuEff, crispness.nu_eff),
+    ];
+    let mut values = curve_figures(spectrum, target);
+    values.extend(own.map(|(figure, value)| (figure.name().to_owned(), value)));
+    Figures {
+        subject,
+        values,
+        ..Figures::default()
+    }
 }
 
 /// Every twin of 65,000 to 200,000 points: all over the interval of α that the map serves.
@@ -44,8 +57,7 @@ fn on_all_large_twins(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)
     let measure = |twin: Twin| {
         let set = twin_set(table, twin).expect("a twin");
         let spectrum = Spectrum::of_torus(&set, 4.0);
-        let figures = figures_of_torus(format!("twin {twin}"), false, &set, 1.5);
-        (judged(figures, &spectrum, target), spectrum)
+        (judged(format!("twin {twin}"), &spectrum, target), spectrum)
     };
     large.into_par_iter().map(measure).collect()
 }
@@ -57,8 +69,7 @@ fn on_windows(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
     let warped = [3, 4].map(|seed| (format!("warped, seed {seed}"), warped(table, seed)));
     let measure = |(name, set)| {
         let spectrum = Spectrum::of_window(&set, 4.0);
-        let figures = figures_of_window(name, false, &set, 1.5);
-        (judged(figures, &spectrum, target), spectrum)
+        (judged(name, &spectrum, target), spectrum)
     };
     windows.into_iter().chain(warped).map(measure).collect()
 }
