@@ -151,8 +151,7 @@ proptest! {
         let pattern = Pattern::with_origin(alpha, placement.seed.origin());
         let mut all = in_box(&sampler, placement, at, found[k - 1].distance);
         all.retain(|(_, p)| {
-            let (dx, dy) = pattern.index(p.id.x, p.id.y);
-            rank(dx, dy, alpha.set_side()) < keep
+            rank(pattern.depth(p.id.x, p.id.y), alpha.set_side()) < keep
         });
         prop_assert_eq!(found, neighbors(&all[..k]));
     }

@@ -228,7 +228,12 @@ fn format(text: Option<&str>) -> Result<Option<Encoding>, Fault> {
     text.map(|text| {
         Encoding::from_name(text).ok_or_else(|| {
             let allowed = Encoding::ALL.map(Encoding::name).join(", ");
-            Fault::new("format", text, "there is no such format", allowed)
+            let detail = if text == Encoding::Parquet.name() {
+                "it is made by `strew sample` only"
+            } else {
+                "there is no such format"
+            };
+            Fault::new("format", text, detail, allowed)
         })
     })
     .transpose()
