@@ -30,6 +30,11 @@ pub const fn http(kind: Kind) -> Problem {
             "too-many-points",
             "The answer would have too many points",
         ),
+        Kind::OtherTable => (
+            StatusCode::CONFLICT,
+            "other-table",
+            "Another table would answer",
+        ),
         Kind::NotAcceptable => (
             StatusCode::NOT_ACCEPTABLE,
             "not-acceptable",
@@ -76,6 +81,7 @@ pub const fn grpc(kind: Kind) -> Code {
     match kind {
         Kind::Invalid | Kind::NotAcceptable => Code::InvalidArgument,
         Kind::TooManyPoints | Kind::Busy => Code::ResourceExhausted,
+        Kind::OtherTable => Code::FailedPrecondition,
         Kind::NoSuchPath | Kind::NoSuchMethod => Code::Unimplemented,
         Kind::ShuttingDown => Code::Unavailable,
         Kind::Internal => Code::Internal,

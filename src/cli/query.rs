@@ -6,7 +6,7 @@ use super::{Failure, config};
 use crate::{
     config::Config,
     service::{
-        Catalog, Planned,
+        Catalog, Encoding, Planned,
         catalog::CatalogError,
         encode::Options,
         query::{Parameters, read_bbox},
@@ -40,6 +40,9 @@ pub(super) struct Query {
     /// off, on, or the strength of the warp, 0 to 2 [default: off for seed 0, else on].
     #[arg(long, allow_hyphen_values = true)]
     warp: Option<String>,
+    /// The digest of the table that has to make them.
+    #[arg(long, value_name = "DIGEST")]
+    table: Option<String>,
     #[command(flatten)]
     settings: config::Args,
 }
@@ -47,7 +50,8 @@ pub(super) struct Query {
 /// How an answer is to look.
 #[derive(Debug, Default, clap::Args)]
 pub(super) struct Looks {
-    /// json, ndjson, csv, f32 or f64 [default: what the output's name ends with, or json].
+    /// json, ndjson, csv, geojson, geojsonseq, f32, f64, npy, ply, arrow or parquet [default: what
+    /// the output's name ends with, or json].
     #[arg(long)]
     format: Option<String>,
     /// Decimals of numbers in text formats, 0 to 17 [default: the shortest digits that read back].
@@ -70,6 +74,8 @@ impl Query {
         let catalog = config
             .catalog()
             .map_err(|error| Failure::Usage(error.into()))?;
+        // Only files are Parquet, so no query knows the name.
+        let parquet = looks.format.as_deref() == Some(Encoding::Parquet.name());
         let parameters = Parameters {
             bbox: self.bbox.clone(),
             density: self.density.clone(),
@@ -79,12 +85,16 @@ impl Query {
             map: self.map.clone(),
             seed: self.seed.clone(),
             warp: self.warp.clone(),
-            format: looks.format.clone(),
+            table: self.table.clone(),
+            format: looks.format.clone().filter(|_| !parquet),
             decimals: looks.decimals.clone(),
         };
         let usage = |error| Failure::Usage(anyhow::Error::new(error));
-        let (query, options) = parameters.check(&catalog, vec![]).map_err(usage)?;
+        let (query, mut options) = parameters.check(&catalog, vec![]).map_err(usage)?;
         let planned = Planned::from_catalog(&catalog, query).map_err(usage)?;
+        if parquet {
+            options.encoding = Some(Encoding::Parquet);
+        }
         Ok((planned, options))
     }
 

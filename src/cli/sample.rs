@@ -42,7 +42,13 @@ pub(super) struct Args {
 impl Args {
     /// The format that the output's name asks for.
     fn by_extension(&self) -> Option<Encoding> {
-        Encoding::from_name(self.output.as_ref()?.extension()?.to_str()?)
+        match self.output.as_ref()?.extension()?.to_str()? {
+            "arrows" => Some(Encoding::Arrow),
+            "geojsons" | "geojsonl" => Some(Encoding::Geojsonseq),
+            "jsonl" => Some(Encoding::Ndjson),
+            "parquet" => Some(Encoding::Parquet),
+            name => Encoding::from_name(name),
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use std::{net::SocketAddr, path::PathBuf, time::Duration};
 
 use serde::{Deserialize, Serialize};
 
-use crate::service::Limits;
+use crate::{rest, service::Limits};
 
 pub use layers::{ConfigError, Layers};
 
@@ -24,6 +24,8 @@ pub const DEFAULTS: &str = include_str!("../../config/strew.toml");
 pub struct Config {
     /// Where and how to serve.
     pub server: Server,
+    /// How HTTP answers.
+    pub http: rest::Settings,
     /// Which tables to load.
     pub tables: Tables,
     /// What a query may ask for.

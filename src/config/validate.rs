@@ -6,6 +6,7 @@ use super::{Config, ConfigError};
 pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     let Config {
         server,
+        http,
         limits,
         workers,
         shutdown,
@@ -43,6 +44,12 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         server.http2_keepalive_seconds,
         second,
         hour,
+    );
+    within(
+        "http.cache_seconds",
+        f64::from(http.cache_seconds),
+        0.0,
+        365.0 * day,
     );
     within("limits.max_points", limits.max_points as f64, 1.0, 1e15);
     within("limits.max_streams", limits.max_streams as f64, 1.0, 1e6);

@@ -46,6 +46,7 @@ pub(super) fn query(
         map: request.map.as_deref(),
         seed: request.seed,
         warp: request.warp,
+        table: request.table.as_deref(),
     };
     let faults = encoding.as_ref().err().cloned().into_iter().collect();
     let query = draft.check(catalog, faults)?;

@@ -123,6 +123,9 @@ impl App {
         let router = router
             .merge(grpc.into_axum_router().reset_fallback())
             .fallback(move |request| nothing_here(request, paths));
+        let head_bytes = self.config.server.max_header_bytes;
+        let workers = self.service.workers().clone();
+        let router = rest::finished(router, &self.config.http, head_bytes, workers);
         Ok((router, grpc_health))
     }
 
@@ -131,17 +134,18 @@ impl App {
     fn limit_connections<A>(&self, server: &mut axum_server::Server<SocketAddr, A>) {
         let settings = &self.config.server;
         let keepalive = config::seconds(settings.http2_keepalive_seconds);
-        let head_bytes = settings.max_header_bytes;
+        // A head that is only a little too long is refused in words, by `rest::finished`.
+        let most = settings.max_header_bytes.saturating_mul(2);
         let builder = server.http_builder();
         builder
             .http1()
             .timer(TokioTimer::new())
             .header_read_timeout(config::seconds(settings.header_read_timeout_seconds))
-            .max_buf_size(usize::try_from(head_bytes).unwrap_or(usize::MAX));
+            .max_buf_size(usize::try_from(most).unwrap_or(usize::MAX));
         builder
             .http2()
             .timer(TokioTimer::new())
-            .max_header_list_size(head_bytes)
+            .max_header_list_size(most)
             .max_concurrent_streams(settings.max_requests_per_connection)
             .keep_alive_interval(keepalive)
             .keep_alive_timeout(keepalive);

@@ -1,6 +1,11 @@
 //! The REST door: addresses in, streamed bodies and problems out. It decides nothing itself.
 
 pub mod api;
+mod coding;
+mod cors;
+mod docs;
+mod finish;
+mod freshness;
 mod negotiate;
 mod openapi;
 mod points;
@@ -14,6 +19,7 @@ use axum::{Router, extract::Request, response::Response};
 
 use crate::service::{Error, Service};
 use api::Endpoint;
+pub use finish::{Settings, finished};
 use problem::Problem;
 
 /// What the REST door answers, without what is said about it.
@@ -39,6 +45,7 @@ impl Door {
     /// A door of these endpoints and their description.
     #[must_use]
     pub fn new(mut endpoints: Vec<Endpoint>) -> Self {
+        endpoints.extend(docs::endpoints());
         endpoints.push(openapi::endpoint(&endpoints));
         let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
         let paths = paths.join(", ");

@@ -22,7 +22,7 @@ impl Chosen {
 }
 
 /// What is on offer by media type, in the order of preference where a client has none.
-const OFFERS: [(&str, Chosen); 8] = [
+const OFFERS: [(&str, Chosen); 14] = [
     ("application/json", Chosen::named(Encoding::Json)),
     ("application/x-ndjson", Chosen::named(Encoding::Ndjson)),
     (
@@ -55,6 +55,24 @@ const OFFERS: [(&str, Chosen); 8] = [
         },
     ),
     ("application/octet-stream", Chosen::named(Encoding::F64)),
+    ("application/geo+json", Chosen::named(Encoding::Geojson)),
+    (
+        "application/geo+json-seq",
+        Chosen::named(Encoding::Geojsonseq),
+    ),
+    (
+        "application/vnd.apache.arrow.stream",
+        Chosen::named(Encoding::Arrow),
+    ),
+    ("application/x-npy", Chosen::named(Encoding::Npy)),
+    ("application/ply", Chosen::named(Encoding::Ply)),
+    (
+        "model/ply",
+        Chosen {
+            encoding: Encoding::Ply,
+            content_type: "model/ply",
+        },
+    ),
 ];
 
 /// The content types that a client can be given, each once.

@@ -2,10 +2,13 @@
 
 use axum::{body::Body, response::Response, routing};
 use bytes::Bytes;
-use http::{HeaderValue, Method, header};
+use http::{HeaderMap, HeaderValue, Method, Uri, header};
 use serde_json::json;
 
-use super::api::{self, Endpoint, Operation};
+use super::{
+    api::{self, Endpoint, Operation},
+    freshness::Freshness,
+};
 
 const PATH: &str = "/openapi.json";
 
@@ -18,16 +21,31 @@ pub(super) fn endpoint(endpoints: &[Endpoint]) -> Endpoint {
     let mut text = serde_json::to_vec_pretty(&document).unwrap_or_default();
     text.push(b'\n');
     let text = Bytes::from(text);
-    let handler = routing::get(move || {
+    let handler = routing::get(move |uri, headers| {
         let text = text.clone();
-        async move {
-            let mut response = Response::new(Body::from(text));
-            let json = HeaderValue::from_static("application/json");
-            response.headers_mut().insert(header::CONTENT_TYPE, json);
-            response
-        }
+        async move { fixed(&uri, &headers, "application/json", text) }
     });
     Endpoint::new(PATH, (), vec![(operation(), handler)])
+}
+
+/// An answer that is always the same.
+pub(super) fn fixed(
+    uri: &Uri,
+    headers: &HeaderMap,
+    content_type: &'static str,
+    content: Bytes,
+) -> Response {
+    let digest = blake3::hash(&content).to_hex();
+    let freshness = Freshness::of(uri, headers, content_type, &digest.as_str());
+    let unchanged = freshness.unchanged(headers);
+    if let Some(unchanged) = unchanged.or_else(|| freshness.unwanted(headers)) {
+        return unchanged;
+    }
+    let mut response = Response::new(Body::from(content));
+    let value = HeaderValue::from_static(content_type);
+    response.headers_mut().insert(header::CONTENT_TYPE, value);
+    freshness.stamp(&mut response);
+    response
 }
 
 fn operation() -> Operation {
@@ -39,12 +57,15 @@ fn operation() -> Operation {
         path_parameters: &[],
         parameters: vec![],
         body: None,
-        answers: vec![api::Answer {
-            status: 200,
-            about: "The document.",
-            headers: vec![],
-            contents: vec![("application/json".into(), json!({ "type": "object" }))],
-        }],
+        answers: vec![
+            api::Answer {
+                status: 200,
+                about: "The document.",
+                headers: vec![],
+                contents: vec![("application/json".into(), json!({ "type": "object" }))],
+            },
+            api::Answer::unchanged(),
+        ],
         problems: vec![],
         example: PATH.into(),
     }

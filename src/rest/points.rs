@@ -9,6 +9,8 @@ use strew_core::ALGORITHM_VERSION;
 
 use super::{
     api::{self, Endpoint, Operation, schemas},
+    coding,
+    freshness::Freshness,
     negotiate::{self, Chosen},
 };
 use crate::service::{
@@ -23,7 +25,8 @@ const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let optional = [
-        "density", "spacing", "profile", "alpha", "map", "seed", "warp", "format", "decimals",
+        "density", "spacing", "profile", "alpha", "map", "seed", "warp", "table", "format",
+        "decimals",
     ];
     let operation = Operation {
         method: Method::GET,
@@ -34,15 +37,19 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         path_parameters: &[],
         parameters: api::given(&["bbox"], &optional),
         body: None,
-        answers: vec![api::Answer {
-            status: 200,
-            about: "The points.",
-            headers: HEADERS.into(),
-            contents: contents(),
-        }],
+        answers: vec![
+            api::Answer {
+                status: 200,
+                about: "The points.",
+                headers: HEADERS.into(),
+                contents: contents(),
+            },
+            api::Answer::unchanged(),
+        ],
         problems: vec![
             Kind::Invalid,
             Kind::NotAcceptable,
+            Kind::OtherTable,
             Kind::TooManyPoints,
             Kind::Busy,
             Kind::ShuttingDown,
@@ -81,6 +88,7 @@ pub(super) fn contents() -> Vec<(String, Value)> {
 /// Answers a query.
 async fn get(
     State(service): State<Arc<Service>>,
+    method: Method,
     uri: Uri,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
@@ -91,17 +99,31 @@ async fn get(
         None => negotiate::accepted(&headers)?,
     };
     let output = options.output(chosen.encoding)?;
-    let permit = service.streams().admit()?;
+    let entry = service.catalog().entry(&query.key());
+    let digest = entry.as_ref().map(|entry| &entry.digest);
+    let made_of = (query.resolved(), digest, service.limits().max_points);
+    let freshness = Freshness::of(&uri, &headers, chosen.content_type, &made_of)
+        .pinned(parameters.table.is_some());
+    if let Some(unchanged) = freshness.unchanged(&headers) {
+        return Ok(unchanged);
+    }
+    let is_head = method == Method::HEAD;
+    let permit = (!is_head).then(|| service.streams().admit()).transpose()?;
     let planned = service.plan(query).await?;
+    if let Some(unwanted) = freshness.unwanted(&headers) {
+        return Ok(unwanted);
+    }
     let answer = Answer::new(&planned, &output, service.limits().block_bytes)?;
     let mut response_headers = describe(&planned, &answer, chosen)?;
-    let body = match answer.size() {
+    let body = match permit {
         // Without a body there is nothing to stream, and HTTP wants to hear so at once.
-        Some(0) => Body::empty(),
-        _ => Body::from_stream(service.blocks(permit, answer)),
+        _ if answer.size() == Some(0) => Body::empty(),
+        None => coding::unknown_length(),
+        Some(permit) => Body::from_stream(service.blocks(permit, answer)),
     };
     let mut response = Response::new(body);
     std::mem::swap(response.headers_mut(), &mut response_headers);
+    freshness.stamp(&mut response);
     Ok(response)
 }
 

@@ -8,17 +8,18 @@ use axum::{
     response::Response,
     routing,
 };
-use http::{HeaderValue, Method, Uri, header};
+use http::{HeaderMap, HeaderValue, Method, Uri, header};
 use serde::Serialize;
 use serde_json::{Value, json};
 use strew_forge::Aim;
 
 use super::{
     api::{self, Endpoint, Operation, schemas},
+    freshness::Freshness,
     profiles::{self, Profile},
 };
 use crate::service::{
-    Entry, Error, Kind, Portrait, Service,
+    Entry, Error, Kind, Service,
     query::{Parameter, Shape, parse_pairs},
 };
 
@@ -111,15 +112,18 @@ fn operation(
         summary,
         about,
         path_parameters: NAME,
-        parameters: api::given(&[], &["alpha", "map"]),
+        parameters: api::given(&[], &["alpha", "map", "table"]),
         body: None,
-        answers: vec![api::Answer {
-            status: 200,
-            about: summary,
-            headers: vec![],
-            contents: vec![(content_type.into(), schema)],
-        }],
-        problems: vec![Kind::Invalid, Kind::NoSuchPath],
+        answers: vec![
+            api::Answer {
+                status: 200,
+                about: summary,
+                headers: vec![],
+                contents: vec![(content_type.into(), schema)],
+            },
+            api::Answer::unchanged(),
+        ],
+        problems: vec![Kind::Invalid, Kind::NoSuchPath, Kind::OtherTable],
         example: example.into(),
     }
 }
@@ -129,8 +133,16 @@ async fn get(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
     uri: Uri,
+    headers: HeaderMap,
 ) -> Result<Response, Error> {
-    let (entry, portrait) = portrait(&service, &name, &uri).await?;
+    let (entry, freshness) = asked(&service, &name, &uri, &headers, "application/json")?;
+    if let Some(unchanged) = freshness.unchanged(&headers) {
+        return Ok(unchanged);
+    }
+    let portrait = service.portrait(&entry).await?;
+    if let Some(unwanted) = freshness.unwanted(&headers) {
+        return Ok(unwanted);
+    }
     let aim = entry.aim();
     let document = Document {
         table: Profile::new(&entry),
@@ -150,7 +162,7 @@ async fn get(
     let mut body = serde_json::to_vec(&document)
         .map_err(|_| Error::Internal("the profile cannot be written"))?;
     body.push(b'\n');
-    Ok(typed(body, "application/json"))
+    Ok(typed(body, "application/json", &freshness))
 }
 
 /// The picture.
@@ -158,16 +170,28 @@ async fn svg(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
     uri: Uri,
+    headers: HeaderMap,
 ) -> Result<Response, Error> {
-    let (_, portrait) = portrait(&service, &name, &uri).await?;
-    Ok(typed(portrait.svg.clone().into_bytes(), "image/svg+xml"))
+    let (entry, freshness) = asked(&service, &name, &uri, &headers, "image/svg+xml")?;
+    if let Some(unchanged) = freshness.unchanged(&headers) {
+        return Ok(unchanged);
+    }
+    let portrait = service.portrait(&entry).await?;
+    if let Some(unwanted) = freshness.unwanted(&headers) {
+        return Ok(unwanted);
+    }
+    let picture = portrait.svg.clone().into_bytes();
+    Ok(typed(picture, "image/svg+xml", &freshness))
 }
 
-async fn portrait(
+/// The table that is asked for, and how fresh what is made of it is.
+fn asked(
     service: &Service,
     name: &str,
     uri: &Uri,
-) -> Result<(Arc<Entry>, Arc<Portrait>), Error> {
+    headers: &HeaderMap,
+    content_type: &'static str,
+) -> Result<(Arc<Entry>, Freshness), Error> {
     if service.catalog().alphas(name).is_empty() {
         return Err(Error::NoSuchPath {
             path: uri.path().into(),
@@ -182,14 +206,15 @@ async fn portrait(
     }
     let (parameters, faults) = parse_pairs(uri.query().unwrap_or_default());
     let entry = parameters.entry(service.catalog(), name, faults)?;
-    let portrait = service.portrait(&entry).await?;
-    Ok((entry, portrait))
+    let freshness = Freshness::of(uri, headers, content_type, &entry.digest);
+    Ok((entry, freshness.pinned(parameters.table.is_some())))
 }
 
-fn typed(body: Vec<u8>, content_type: &'static str) -> Response {
+fn typed(body: Vec<u8>, content_type: &'static str, freshness: &Freshness) -> Response {
     let mut response = Response::new(Body::from(body));
     let value = HeaderValue::from_static(content_type);
     response.headers_mut().insert(header::CONTENT_TYPE, value);
+    freshness.stamp(&mut response);
     response
 }
 

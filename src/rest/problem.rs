@@ -4,7 +4,7 @@ use axum::{
     body::Body,
     response::{IntoResponse, Response},
 };
-use http::{HeaderValue, header};
+use http::{HeaderValue, StatusCode, header};
 use serde::Serialize;
 
 use crate::{
@@ -19,7 +19,7 @@ const RETRY_AFTER: &str = "1";
 #[derive(Debug, Serialize)]
 pub(super) struct Problem<'a> {
     r#type: String,
-    title: &'static str,
+    title: &'a str,
     status: u16,
     detail: String,
     #[serde(skip_serializing_if = "<[Fault]>::is_empty")]
@@ -28,6 +28,10 @@ pub(super) struct Problem<'a> {
     count: Option<u128>,
     #[serde(skip_serializing_if = "Option::is_none")]
     limit: Option<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pinned: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    loaded: Option<&'a str>,
 }
 
 impl<'a> Problem<'a> {
@@ -38,6 +42,10 @@ impl<'a> Problem<'a> {
             Error::Busy { limit } => (None, u64::try_from(*limit).ok()),
             _ => (None, None),
         };
+        let digests = match error {
+            Error::OtherTable { pinned, loaded } => Some((pinned.as_str(), loaded.as_str())),
+            _ => None,
+        };
         Self {
             r#type: error_map::urn(error.kind()),
             title: mapped.title,
@@ -46,25 +54,76 @@ impl<'a> Problem<'a> {
             errors: error.faults(),
             count,
             limit,
+            pinned: digests.map(|(pinned, _)| pinned),
+            loaded: digests.map(|(_, loaded)| loaded),
         }
     }
 
     /// An error as a whole response.
     pub(super) fn response(error: &'a Error) -> Response {
-        let mut body = serde_json::to_vec(&Self::new(error)).unwrap_or_default();
-        body.push(b'\n');
-        let mut response = Response::new(Body::from(body));
-        *response.status_mut() = error_map::http(error.kind()).status;
-        let headers = response.headers_mut();
-        headers.insert(
-            header::CONTENT_TYPE,
-            HeaderValue::from_static("application/problem+json"),
-        );
+        let mut response = Self::new(error).into_response();
         if matches!(error.kind(), Kind::Busy | Kind::ShuttingDown) {
-            headers.insert(header::RETRY_AFTER, HeaderValue::from_static(RETRY_AFTER));
+            let seconds = HeaderValue::from_static(RETRY_AFTER);
+            response.headers_mut().insert(header::RETRY_AFTER, seconds);
         }
         response
     }
+
+    /// An error that is nothing but a status of HTTP.
+    pub(super) fn of_status(status: StatusCode, detail: String) -> Response {
+        let problem = Problem {
+            r#type: "about:blank".into(),
+            title: status.canonical_reason().unwrap_or("An error"),
+            status: status.as_u16(),
+            detail,
+            errors: &[],
+            count: None,
+            limit: None,
+            pinned: None,
+            loaded: None,
+        };
+        problem.into_response()
+    }
+
+    fn into_response(self) -> Response {
+        let mut body = serde_json::to_vec(&self).unwrap_or_default();
+        body.push(b'\n');
+        let mut response = Response::new(Body::from(body));
+        let status = StatusCode::from_u16(self.status);
+        *response.status_mut() = status.unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
+        let headers = response.headers_mut();
+        let content_type = HeaderValue::from_static("application/problem+json");
+        headers.insert(header::CONTENT_TYPE, content_type);
+        response
+    }
+}
+
+/// The most text of a bare error that is passed on.
+const MOST_TEXT: usize = 1000;
+
+/// Answers that a library made, such as to a path that is not UTF-8, become problems, too.
+pub(super) async fn instead_of_bare(response: Response) -> Response {
+    let status = response.status();
+    let content_type = response.headers().get(header::CONTENT_TYPE);
+    let is_bare = content_type.is_none_or(|of| of.as_bytes().starts_with(b"text/plain"));
+    if !(status.is_client_error() || status.is_server_error()) || !is_bare {
+        return response;
+    }
+    let (parts, body) = response.into_parts();
+    let text = axum::body::to_bytes(body, MOST_TEXT)
+        .await
+        .unwrap_or_default();
+    let detail = match String::from_utf8_lossy(&text) {
+        text if text.trim().is_empty() => "the request cannot be answered".into(),
+        text => text.trim().to_owned(),
+    };
+    let mut problem = Problem::of_status(status, detail);
+    for (name, value) in &parts.headers {
+        if *name != header::CONTENT_TYPE && *name != header::CONTENT_LENGTH {
+            problem.headers_mut().append(name.clone(), value.clone());
+        }
+    }
+    problem
 }
 
 impl IntoResponse for Error {

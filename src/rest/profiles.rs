@@ -3,12 +3,15 @@
 use std::sync::Arc;
 
 use axum::{body::Body, extract::State, response::Response, routing};
-use http::{HeaderValue, Method, Uri, header};
+use http::{HeaderMap, HeaderValue, Method, Uri, header};
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
 use serde_json::{Value, json};
 use strew_core::{ALGORITHM_VERSION, table};
 
-use super::api::{self, Endpoint, Operation, schemas};
+use super::{
+    api::{self, Endpoint, Operation, schemas},
+    freshness::Freshness,
+};
 use crate::service::{Entry, Error, Fault, Kind, Service};
 
 /// The path.
@@ -25,12 +28,15 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         path_parameters: &[],
         parameters: vec![],
         body: None,
-        answers: vec![api::Answer {
-            status: 200,
-            about: "The list, sorted by profile, then alpha.",
-            headers: vec![],
-            contents: vec![("application/json".into(), schemas::object(document))],
-        }],
+        answers: vec![
+            api::Answer {
+                status: 200,
+                about: "The list, sorted by profile, then alpha.",
+                headers: vec![],
+                contents: vec![("application/json".into(), schemas::object(document))],
+            },
+            api::Answer::unchanged(),
+        ],
         problems: vec![Kind::Invalid],
         example: "/v1/profiles".into(),
     };
@@ -71,12 +77,24 @@ pub(super) fn schema() -> Value {
 }
 
 /// Lists the tables.
-async fn get(State(service): State<Arc<Service>>, uri: Uri) -> Result<Response, Error> {
+async fn get(
+    State(service): State<Arc<Service>>,
+    uri: Uri,
+    headers: HeaderMap,
+) -> Result<Response, Error> {
     if let Some(text) = uri.query().filter(|text| !text.is_empty()) {
         let detail = "this list takes no parameters";
         return Err(Error::Invalid(vec![Fault::new(
             "query", text, detail, "none",
         )]));
+    }
+    let made_of: Vec<&str> = (service.catalog().entries())
+        .map(|entry| entry.digest.as_str())
+        .collect();
+    let freshness = Freshness::of(&uri, &headers, "application/json", &made_of);
+    let unchanged = freshness.unchanged(&headers);
+    if let Some(unchanged) = unchanged.or_else(|| freshness.unwanted(&headers)) {
+        return Ok(unchanged);
     }
     let document = Profiles {
         algorithm: ALGORITHM_VERSION,
@@ -92,6 +110,7 @@ async fn get(State(service): State<Arc<Service>>, uri: Uri) -> Result<Response, 
     let mut response = Response::new(Body::from(body));
     let json = HeaderValue::from_static("application/json");
     response.headers_mut().insert(header::CONTENT_TYPE, json);
+    freshness.stamp(&mut response);
     Ok(response)
 }
 

@@ -85,6 +85,16 @@ pub enum Error {
         /// The limit.
         limit: u64,
     },
+    /// Another table would answer than the one that the query pins.
+    #[error(
+        "the query pins the table {pinned}, but {loaded} would answer: without `table` it does"
+    )]
+    OtherTable {
+        /// The digest in the query.
+        pinned: String,
+        /// The digest of the table that is loaded.
+        loaded: String,
+    },
     /// None of the formats the client accepts is made here.
     #[error("`Accept: {accept}` has no format that is made here; available: {available}")]
     NotAcceptable {
@@ -137,6 +147,8 @@ pub enum Kind {
     Invalid,
     /// [`Error::TooManyPoints`].
     TooManyPoints,
+    /// [`Error::OtherTable`].
+    OtherTable,
     /// [`Error::NotAcceptable`].
     NotAcceptable,
     /// [`Error::NoSuchPath`].
@@ -153,9 +165,10 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Invalid,
         Self::TooManyPoints,
+        Self::OtherTable,
         Self::NotAcceptable,
         Self::NoSuchPath,
         Self::NoSuchMethod,
@@ -172,6 +185,7 @@ impl Error {
         match self {
             Self::Invalid(_) => Kind::Invalid,
             Self::TooManyPoints { .. } => Kind::TooManyPoints,
+            Self::OtherTable { .. } => Kind::OtherTable,
             Self::NotAcceptable { .. } => Kind::NotAcceptable,
             Self::NoSuchPath { .. } => Kind::NoSuchPath,
             Self::NoSuchMethod { .. } => Kind::NoSuchMethod,

@@ -126,6 +126,12 @@ impl Service {
         &self.limits
     }
 
+    /// The threads that make points.
+    #[must_use]
+    pub const fn workers(&self) -> &Workers {
+        &self.workers
+    }
+
     /// The streams under way.
     #[must_use]
     pub const fn streams(&self) -> &Arc<Streams> {

@@ -2,6 +2,8 @@
 
 use std::process::Command;
 
+use strew::service::Encoding;
+
 use crate::daemon::Daemon;
 
 const QUERY: &str = "/v1/points?bbox=0,0,50,50&density=2&profile=test&format=";
@@ -13,7 +15,7 @@ fn curl_by_http_1_and_2() {
         return;
     }
     let daemon = Daemon::start(&[]);
-    for format in ["json", "ndjson", "csv", "f32", "f64"] {
+    for format in Encoding::ALL.map(Encoding::name) {
         let url = daemon.url(&format!("{QUERY}{format}"));
         let expected = daemon.get(&format!("{QUERY}{format}")).body;
         for version in ["--http1.1", "--http2-prior-knowledge"] {

@@ -29,6 +29,7 @@ pub fn request(encoding: Encoding) -> StreamPointsRequest {
         seed: 5,
         warp: None,
         map: None,
+        table: None,
         encoding: encoding.into(),
     }
 }

@@ -1,15 +1,19 @@
 //! The daemon from outside: the real program over real sockets, and the real clients.
 
+mod caching;
 mod clients;
+mod coding;
 mod daemon;
 mod drain;
 mod forge;
 mod formats;
 mod fresh;
 mod grpc;
+mod http;
 mod limits;
 mod openapi;
 mod raw;
+mod readers;
 mod settings;
 mod streaming;
 mod wrong;

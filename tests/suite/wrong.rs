@@ -118,6 +118,11 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
         &["xml", "ndjson"],
     ),
     (
+        "bbox=0,0,10,10&density=1&format=parquet",
+        &["format"],
+        &["strew sample", "arrow"],
+    ),
+    (
         "bbox=0,0,10,10&density=1&format=csv&decimals=18",
         &["decimals"],
         &["18", "0 to 17"],

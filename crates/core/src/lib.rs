@@ -40,7 +40,8 @@ pub mod table;
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
 pub use sample::{
-    Area, Circle, Placement, Plan, Point, PointId, Polygon, Region, Sampler, Seed, Spacing, Warp,
+    Area, Attribute, Attributes, Circle, Finder, Placement, Plan, Point, PointId, Polygon, Region,
+    Sampler, Seed, Spacing, Warp,
 };
 pub use table::Table;
 

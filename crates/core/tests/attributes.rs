@@ -192,8 +192,9 @@ fn ranks_are_fractions_of_the_pattern_and_nest() {
         assert!((kept - keep).abs() < 0.006, "{keep}: {kept}");
         let side = side_for(keep, alpha.set_side());
         for (point, rank) in points.iter().zip(ranks) {
-            let (dx, dy) = pattern.index(point.id.x, point.id.y);
-            assert_eq!(dx < side && dy < side, *rank < keep);
+            let (x, y) = (point.id.x, point.id.y);
+            assert_eq!(pattern.depth(x, y) < side, *rank < keep);
+            assert_eq!(pattern.thinned(side).contains(x, y), *rank < keep);
         }
     }
 }
@@ -274,6 +275,6 @@ fn values_are_pinned() {
     );
     assert_eq!(
         bound.value(3, PointId { x: 0, y: 1 }),
-        Some(0.580742840353171)
+        Some(0.5682505136021064)
     );
 }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use strew_core::{
     Alpha, Map, Placement, Point, Region, Sampler, Seed, Spacing, Table, Warp,
     pattern::Pattern,
-    sample::{FindError, Finder, Neighbor, rank},
+    sample::{FindError, Finder, Keep, Neighbor, rank},
     table::{FRACTION_BITS, Provenance},
 };
 
@@ -144,15 +144,14 @@ proptest! {
     fn thinned_searches_see_what_is_kept(
         (sampler, placement, at) in any_query(), keep in 0.01..1.0f64, k in 1usize..20,
     ) {
-        let finder = sampler.finder(placement).keeping(keep);
+        let finder = sampler.finder(placement.with_keep(Keep::new(keep).expect("a share")));
         let found = finder.nearest(at, k).expect("near");
         prop_assert_eq!(found.len(), k);
         let alpha = sampler.table().alpha();
         let pattern = Pattern::with_origin(alpha, placement.seed.origin());
         let mut all = in_box(&sampler, placement, at, found[k - 1].distance);
         all.retain(|(_, p)| {
-            let (dx, dy) = pattern.index(p.id.x, p.id.y);
-            rank(dx, dy, alpha.set_side()) < keep
+            rank(pattern.depth(p.id.x, p.id.y), alpha.set_side()) < keep
         });
         prop_assert_eq!(found, neighbors(&all[..k]));
     }
@@ -214,8 +213,9 @@ fn a_thousand_neighbors_and_the_limits() {
     let edge = [limit - 100.0, 100.0 - limit];
     assert_eq!(finder.nearest(edge, 5).expect("inside").len(), 5);
     // Next to nothing is kept.
+    let few = Keep::new(Keep::MIN).expect("a share");
     assert!(matches!(
-        finder.keeping(0.0).nearest(at, 1),
+        sampler.finder(placement.with_keep(few)).nearest(at, 1000),
         Err(FindError::TooMany { .. })
     ));
 }

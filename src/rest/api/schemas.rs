@@ -36,6 +36,8 @@ pub(super) fn shared() -> Value {
                 "errors": { "type": "array", "items": reference("Fault") },
                 "count": count(),
                 "limit": count(),
+                "pinned": reference("Digest"),
+                "loaded": reference("Digest"),
             },
         },
         "Fault": {

@@ -13,11 +13,34 @@ pub enum Encoding {
     F32,
     /// Interleaved little-endian `f64` pairs.
     F64,
+    /// One GeoJSON feature collection.
+    Geojson,
+    /// GeoJSON features as a text sequence.
+    Geojsonseq,
+    /// A NumPy array of `f64`.
+    Npy,
+    /// PLY vertices, binary and little-endian.
+    Ply,
+    /// An Arrow IPC stream.
+    Arrow,
+    /// A Parquet file; only for files, not by any door.
+    Parquet,
 }
 
 impl Encoding {
-    /// All formats.
-    pub const ALL: [Self; 5] = [Self::Json, Self::Ndjson, Self::Csv, Self::F32, Self::F64];
+    /// All formats that are streamed: all but Parquet, which is for files.
+    pub const ALL: [Self; 10] = [
+        Self::Json,
+        Self::Ndjson,
+        Self::Csv,
+        Self::F32,
+        Self::F64,
+        Self::Geojson,
+        Self::Geojsonseq,
+        Self::Npy,
+        Self::Ply,
+        Self::Arrow,
+    ];
 
     /// The name in queries.
     #[must_use]
@@ -28,10 +51,16 @@ impl Encoding {
             Self::Csv => "csv",
             Self::F32 => "f32",
             Self::F64 => "f64",
+            Self::Geojson => "geojson",
+            Self::Geojsonseq => "geojsonseq",
+            Self::Npy => "npy",
+            Self::Ply => "ply",
+            Self::Arrow => "arrow",
+            Self::Parquet => "parquet",
         }
     }
 
-    /// The format of a name.
+    /// The streamed format of a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL
@@ -39,7 +68,8 @@ impl Encoding {
             .find(|encoding| encoding.name() == name)
     }
 
-    /// The content type, when the format is asked for by name.
+    /// The content type, when the format is asked for by name. NumPy's and PLY are registered by
+    /// nobody; these are the names in use.
     #[must_use]
     pub const fn content_type(self) -> &'static str {
         match self {
@@ -47,13 +77,22 @@ impl Encoding {
             Self::Ndjson => "application/x-ndjson",
             Self::Csv => "text/csv; charset=utf-8; header=present",
             Self::F32 | Self::F64 => "application/octet-stream",
+            Self::Geojson => "application/geo+json",
+            Self::Geojsonseq => "application/geo+json-seq",
+            Self::Npy => "application/x-npy",
+            Self::Ply => "application/ply",
+            Self::Arrow => "application/vnd.apache.arrow.stream",
+            Self::Parquet => "application/vnd.apache.parquet",
         }
     }
 
     /// Whether numbers are written as digits.
     #[must_use]
     pub const fn is_text(self) -> bool {
-        matches!(self, Self::Json | Self::Ndjson | Self::Csv)
+        match self {
+            Self::Json | Self::Ndjson | Self::Csv | Self::Geojson | Self::Geojsonseq => true,
+            Self::F32 | Self::F64 | Self::Npy | Self::Ply | Self::Arrow | Self::Parquet => false,
+        }
     }
 
     /// The names of the formats that some test holds for, for an error.

@@ -73,6 +73,21 @@ impl Members {
         out.push(b'}');
     }
 
+    /// How numbers are written.
+    pub(super) const fn digits(&self) -> Digits {
+        self.digits
+    }
+
+    /// Writes an object of the columns.
+    pub(super) fn write_object(&self, row: Row<'_>, out: &mut Vec<u8>) {
+        let start = out.len();
+        self.write_columns(row, b'{', out);
+        if out.len() == start {
+            out.push(b'{');
+        }
+        out.push(b'}');
+    }
+
     /// Writes the columns as members, those that the row lacks left out: `before` the first, commas
     /// between them.
     fn write_columns(&self, row: Row<'_>, before: u8, out: &mut Vec<u8>) {

@@ -5,16 +5,22 @@
 //! Formats are made of [`Rows`]; only packed coordinates without further columns come straight
 //! from the kernel.
 
+mod arrow;
+mod batches;
 mod buffer;
 mod csv;
 mod encoding;
+mod geojson;
 mod head;
 mod json;
 mod members;
 mod ndjson;
+mod npy;
 mod number;
 mod output;
 mod packed;
+mod parquet;
+mod ply;
 mod records;
 pub mod rows;
 #[cfg(test)]
@@ -32,7 +38,7 @@ use head::Head;
 use members::Members;
 use records::{Layout, Records};
 use rows::Coordinates;
-use text::TextBlocks;
+use text::{TextBlocks, TextFormat};
 
 pub use buffer::Pool;
 pub use encoding::Encoding;
@@ -47,6 +53,12 @@ pub use text::{id_text, write_id};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the answer cannot be encoded: {0}")]
 pub struct EncodeError(pub String);
+
+impl EncodeError {
+    fn of(error: impl fmt::Display) -> Self {
+        Self(error.to_string())
+    }
+}
 
 /// What makes the blocks of an answer.
 trait Blocks: fmt::Debug + Send {
@@ -109,34 +121,75 @@ impl Answer {
         let coordinates = Coordinates::of(output, &parts);
         let rows = Rows::new(parts, coordinates);
         let head = Head::new(planned, output, rows.count());
-        let origin = coordinates.origin();
-        let blocks: Box<dyn Blocks> = match output.encoding {
+        let members = || Members::new(&rows, output);
+        let (layout, before) = match output.encoding {
+            Encoding::F32 => (Layout::F32, None),
+            Encoding::F64 => (Layout::F64, None),
+            Encoding::Npy => (Layout::F64, Some(npy::head(&rows))),
+            Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head))),
+            Encoding::Arrow => {
+                return Self::of_columns(rows, |rows| arrow::Arrow::new(rows, &head, block_bytes));
+            }
+            Encoding::Parquet => {
+                return Self::of_columns(rows, |rows| {
+                    parquet::Parquet::new(rows, &head, block_bytes)
+                });
+            }
             Encoding::Json => {
-                let format = json::Json::new(head, Members::new(&rows, output));
-                Box::new(TextBlocks::new(rows, format, block_bytes))
+                let format = json::Json::new(head, members());
+                return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Ndjson => {
-                let format = ndjson::Ndjson::new(head, Members::new(&rows, output));
-                Box::new(TextBlocks::new(rows, format, block_bytes))
+                let format = ndjson::Ndjson::new(head, members());
+                return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Csv => {
                 let format = csv::Csv::new(&rows, output);
-                Box::new(TextBlocks::new(rows, format, block_bytes))
+                return Ok(Self::of_text(rows, format, block_bytes));
             }
-            Encoding::F32 => {
-                return Ok(Self::of_records(rows, Layout::F32, None, block_bytes));
+            Encoding::Geojson => {
+                let format = geojson::Collection::new(head, members());
+                return Ok(Self::of_text(rows, format, block_bytes));
             }
-            Encoding::F64 => {
-                return Ok(Self::of_records(rows, Layout::F64, None, block_bytes));
+            Encoding::Geojsonseq => {
+                let format = geojson::Sequence::new(members());
+                return Ok(Self::of_text(rows, format, block_bytes));
             }
         };
+        Ok(Self::of_records(rows, layout, before, block_bytes))
+    }
+
+    /// A columnar format of unknown size.
+    fn of_columns<B: Blocks + 'static>(
+        rows: Rows,
+        make: impl FnOnce(Rows) -> Result<B, EncodeError>,
+    ) -> Result<Self, Error> {
+        let origin = rows.coordinates().origin();
+        let blocks = make(rows).map_err(|error| {
+            tracing::error!(%error, "an answer cannot begin");
+            Error::Internal("the format cannot be written")
+        })?;
         Ok(Self {
             head: None,
-            blocks,
             size: None,
             origin,
             plain: None,
+            blocks: Box::new(blocks),
         })
+    }
+
+    /// A text of unknown size.
+    fn of_text<T>(rows: Rows, format: T, block_bytes: usize) -> Self
+    where
+        T: TextFormat + fmt::Debug + Send + 'static,
+    {
+        Self {
+            head: None,
+            size: None,
+            origin: rows.coordinates().origin(),
+            plain: None,
+            blocks: Box::new(TextBlocks::new(rows, format, block_bytes)),
+        }
     }
 
     /// Records after a head; straight from the kernel where they are no more than coordinates.

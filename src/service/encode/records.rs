@@ -5,7 +5,7 @@ use bytes::Bytes;
 use super::{
     Blocks, EncodeError,
     rows::{Batch, Rows},
-    schema::Schema,
+    schema::{Column, Kind, Schema},
 };
 
 /// How a record's fields are laid out.
@@ -15,15 +15,24 @@ pub(super) enum Layout {
     F32,
     /// x, y and the columns as `f64`.
     F64,
+    /// x, y, z = 0 and the columns as `f64`, but names as `i32` indices.
+    Vertex,
 }
 
 impl Layout {
     /// The bytes of a record.
     pub(super) fn record_bytes(self, schema: &Schema) -> usize {
-        let fields = 2 + schema.columns().len();
+        let columns = schema.columns();
         match self {
-            Self::F32 => 4 * fields,
-            Self::F64 => 8 * fields,
+            Self::F32 => 4 * (2 + columns.len()),
+            Self::F64 => 8 * (2 + columns.len()),
+            Self::Vertex => {
+                let bytes = |column: &Column| match column.kind {
+                    Kind::Number => 8,
+                    Kind::Dictionary(_) => 4,
+                };
+                24 + columns.iter().map(bytes).sum::<usize>()
+            }
         }
     }
 
@@ -32,11 +41,12 @@ impl Layout {
         match self {
             Self::F32 => Some(true),
             Self::F64 => Some(false),
+            Self::Vertex => None,
         }
     }
 
-    /// Appends the records of some rows; what a row lacks is not a number.
-    fn write(self, batch: Batch<'_>, out: &mut Vec<u8>) {
+    /// Appends the records of some rows; a number that a row lacks is NaN, an index −1.
+    fn write(self, schema: &Schema, batch: Batch<'_>, out: &mut Vec<u8>) {
         for row in batch.rows() {
             let columns = row.columns.iter();
             let numbers = columns.map(|values| values.number(row.index).unwrap_or(f64::NAN));
@@ -50,6 +60,24 @@ impl Layout {
                 Self::F64 => {
                     for v in [row.point.x, row.point.y].into_iter().chain(numbers) {
                         out.extend_from_slice(&v.to_le_bytes());
+                    }
+                }
+                Self::Vertex => {
+                    for v in [row.point.x, row.point.y, 0.0] {
+                        out.extend_from_slice(&v.to_le_bytes());
+                    }
+                    for (column, values) in schema.columns().iter().zip(row.columns) {
+                        match column.kind {
+                            Kind::Number => {
+                                let number = values.number(row.index).unwrap_or(f64::NAN);
+                                out.extend_from_slice(&number.to_le_bytes());
+                            }
+                            Kind::Dictionary(_) => {
+                                let index = values.index(row.index).map(i32::try_from);
+                                let index = index.and_then(Result::ok).unwrap_or(-1);
+                                out.extend_from_slice(&index.to_le_bytes());
+                            }
+                        }
                     }
                 }
             }
@@ -83,10 +111,11 @@ impl Blocks for Records {
     }
 
     fn next(&mut self) -> Option<Result<Bytes, EncodeError>> {
-        let bytes = self.layout.record_bytes(self.rows.schema());
+        let schema = self.rows.schema().clone();
+        let bytes = self.layout.record_bytes(&schema);
         let batch = self.rows.next(self.block_bytes / bytes)?;
         let mut out = Vec::with_capacity(batch.points.len() * bytes);
-        self.layout.write(batch, &mut out);
+        self.layout.write(&schema, batch, &mut out);
         self.points += batch.points.len() as u64;
         Some(Ok(out.into()))
     }

@@ -1,6 +1,6 @@
 //! Rows for tests: two layers with attributes of every kind, and their answers.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use bytes::Bytes;
 use strew_core::Point;
@@ -47,15 +47,16 @@ impl Attributes for Marks {
 
 /// A planned query of the embedded tables.
 pub(super) fn planned(bbox: [f64; 4], spacing: f64, seed: u64) -> Planned {
-    let catalog = Catalog::load(true, None).expect("embedded tables");
+    static CATALOG: LazyLock<Catalog> =
+        LazyLock::new(|| Catalog::load(true, None).expect("embedded tables"));
     let draft = Draft {
         bbox: Some(bbox),
         spacing: Some(spacing),
         seed,
         ..Draft::default()
     };
-    let query = draft.check(&catalog, vec![]).expect("a query");
-    Planned::from_catalog(&catalog, query).expect("a plan")
+    let query = draft.check(&CATALOG, vec![]).expect("a query");
+    Planned::from_catalog(&CATALOG, query).expect("a plan")
 }
 
 /// The whole answer of both layers, and its size as said before.

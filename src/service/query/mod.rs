@@ -5,6 +5,7 @@
 //! address or a command line, become [`Parameters`] first.
 
 mod parameters;
+mod pin;
 mod text;
 
 use serde::Serialize;
@@ -55,6 +56,8 @@ pub struct Draft<'a> {
     pub seed: u64,
     /// The strength of the warp; by default 0 for seed 0 and 1 for every other.
     pub warp: Option<f64>,
+    /// The digest of the table that has to answer.
+    pub table: Option<&'a str>,
 }
 
 /// A checked query: what is asked for can be answered.
@@ -121,15 +124,17 @@ impl Draft<'_> {
         let region = self.region().map_err(&mut add).ok();
         let amount = self.amount().map_err(&mut add).ok();
         let warp = self.warp().map_err(&mut add).ok();
+        let pin = pin::read(self.table).map_err(&mut add);
         let key = self
             .key(catalog)
             .map_err(|faults| faults.into_iter().for_each(&mut add))
             .ok();
-        let (Some(region), Some((spacing, density)), Some(warp), Some(key), true) =
-            (region, amount, warp, key, faults.is_empty())
+        let (Some(region), Some((spacing, density)), Some(warp), Some(key), Ok(()), true) =
+            (region, amount, warp, key, pin, faults.is_empty())
         else {
             return Err(Error::Invalid(faults));
         };
+        pin::compare(self.table, catalog, &key)?;
         Ok(Query {
             region,
             spacing,

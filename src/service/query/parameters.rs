@@ -3,7 +3,10 @@
 
 use strew_core::Spacing;
 
-use super::{AMOUNT, BOX, DEFAULT_ALPHA, DEFAULT_PROFILE, WARP};
+use super::{
+    AMOUNT, BOX, DEFAULT_ALPHA, DEFAULT_PROFILE, WARP,
+    pin::{self, DIGEST},
+};
 use crate::service::{
     Encoding,
     encode::{DECIMALS, MOST_DECIMALS},
@@ -143,6 +146,15 @@ pub const PARAMETERS: &[Parameter] = &[
         },
         default: Some("off for seed 0, else on"),
         example: "on",
+    },
+    Parameter {
+        name: "table",
+        about: "The digest of the table that has to answer: caches may keep the answer forever. \
+                If another table would answer, there is a problem that names both.",
+        allowed: DIGEST,
+        shape: Shape::Pattern(pin::PATTERN),
+        default: Some("whichever table the query leads to"),
+        example: "985209040b65570b20f8b11cb6d95cad1d2260ad50bd5a1efb61251c18c8a075",
     },
     Parameter {
         name: "format",

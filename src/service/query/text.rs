@@ -7,6 +7,7 @@ use percent_encoding::percent_decode_str;
 use super::{
     AMOUNT, BOX, Draft, Query, WARP,
     parameters::{PARAMETERS, SEED, names},
+    pin,
 };
 use crate::service::{
     Catalog, Encoding, Entry, Error, Fault,
@@ -35,6 +36,8 @@ pub struct Parameters {
     pub seed: Option<String>,
     /// `off`, `on` or the strength of the warp.
     pub warp: Option<String>,
+    /// The digest of the table that has to answer.
+    pub table: Option<String>,
     /// The name of the format.
     pub format: Option<String>,
     /// Decimals of numbers in text formats.
@@ -96,6 +99,7 @@ impl Parameters {
             "map" => &mut self.map,
             "seed" => &mut self.seed,
             "warp" => &mut self.warp,
+            "table" => &mut self.table,
             "format" => &mut self.format,
             "decimals" => &mut self.decimals,
             _ => return None,
@@ -113,11 +117,16 @@ impl Parameters {
         mut faults: Vec<Fault>,
     ) -> Result<Arc<Entry>, Error> {
         let mut rest = self.clone();
-        let (alpha, map) = (rest.alpha.take(), rest.map.take());
+        let (alpha, map, table) = (rest.alpha.take(), rest.map.take(), rest.table.take());
         for parameter in PARAMETERS {
             if let Some(Some(value)) = rest.slot(parameter.name) {
                 let detail = "it means nothing here";
-                faults.push(Fault::new(parameter.name, value, detail, "alpha, map"));
+                faults.push(Fault::new(
+                    parameter.name,
+                    value,
+                    detail,
+                    "alpha, map, table",
+                ));
             }
         }
         let draft = Draft {
@@ -126,8 +135,12 @@ impl Parameters {
             map: map.as_deref(),
             ..Draft::default()
         };
+        faults.extend(pin::read(table.as_deref()).err());
         match draft.key(catalog) {
-            Ok(key) if faults.is_empty() => catalog.entry(&key).ok_or_else(Error::lost_table),
+            Ok(key) if faults.is_empty() => {
+                pin::compare(table.as_deref(), catalog, &key)?;
+                catalog.entry(&key).ok_or_else(Error::lost_table)
+            }
             Ok(_) => Err(Error::Invalid(faults)),
             Err(more) => {
                 faults.extend(more);
@@ -150,6 +163,7 @@ impl Parameters {
             profile: self.profile.as_deref(),
             alpha: self.alpha.as_deref(),
             map: self.map.as_deref(),
+            table: self.table.as_deref(),
             ..Draft::default()
         };
         let mut read = |result: Result<(), Fault>| faults.extend(result.err());
@@ -214,7 +228,12 @@ fn format(text: Option<&str>) -> Result<Option<Encoding>, Fault> {
     text.map(|text| {
         Encoding::from_name(text).ok_or_else(|| {
             let allowed = Encoding::ALL.map(Encoding::name).join(", ");
-            Fault::new("format", text, "there is no such format", allowed)
+            let detail = if text == Encoding::Parquet.name() {
+                "it is made by `strew sample` only"
+            } else {
+                "there is no such format"
+            };
+            Fault::new("format", text, detail, allowed)
         })
     })
     .transpose()

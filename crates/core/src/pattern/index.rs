@@ -51,8 +51,12 @@ impl Pattern {
         }
     }
 
-    /// The points of this pattern whose index lies in the smaller set region [0, `side`)²: an AA
-    /// pattern again, with a share (`side`/t)² of the points. A side above t changes nothing.
+    /// The points of this pattern of [`depth`](Self::depth) below `side`: a share (`side`/t)² of all,
+    /// and a union of four products again. A side above t changes nothing.
+    ///
+    /// A smaller set region at a corner that depends on the class: dX in [0, `side`) in even rows, in
+    /// [t − `side`, t) in odd ones; dY likewise by columns. One corner for all classes would leave
+    /// them in step with each other, and clump what remains.
     #[must_use]
     pub const fn thinned(self, side: u64) -> Self {
         let side = if side < self.side { side } else { self.side };
@@ -86,19 +90,49 @@ impl Pattern {
         )
     }
 
-    /// Whether a lattice point belongs to the pattern (paper, Eq. 4): dX < t and dY < t, or less
-    /// than the side of a thinned one.
+    /// Whether a lattice point belongs to the pattern (paper, Eq. 4): dX < t and dY < t, and its
+    /// depth is below the side of a thinned one.
     #[must_use]
     pub const fn contains(&self, x: i64, y: i64) -> bool {
-        let (dx, dy) = self.index(x, y);
-        dx < self.side && dy < self.side
+        self.depth(x, y) < self.side
+    }
+
+    /// How large the set region of a thinned pattern has to be to hold a lattice point: it belongs
+    /// to [`thinned(side)`](Self::thinned) iff its depth is below `side`. Below t for the points of
+    /// the pattern, t or more for all others.
+    #[must_use]
+    pub const fn depth(&self, x: i64, y: i64) -> u64 {
+        let class = Class::of(x, y);
+        let along_x = self.axis_depth(self.axis_index(Axis::X, x, class.y), class.y);
+        let along_y = self.axis_depth(self.axis_index(Axis::Y, y, class.x), class.x);
+        if along_x > along_y { along_x } else { along_y }
+    }
+
+    /// The part of a depth along one axis: how far the index is from the corner of its class.
+    const fn axis_depth(&self, index: u64, other_parity: u8) -> u64 {
+        if other_parity & 1 == 0 {
+            index
+        } else {
+            // An index outside the set region wraps round to more than t.
+            (self.alpha.set_side() - 1).wrapping_sub(index)
+        }
+    }
+
+    /// The indices of a thinned pattern along an axis, by parity of the other coordinate.
+    const fn window(&self, other_parity: u8) -> Range<u64> {
+        let full = self.alpha.set_side();
+        if other_parity & 1 == 0 {
+            0..self.side
+        } else {
+            full - self.side..full
+        }
     }
 
     /// The columns (`Axis::X`) or rows (`Axis::Y`) of one class: the pattern is the union, over the
     /// four classes, of columns × rows.
     #[must_use]
     pub fn axis_set(&self, axis: Axis, class: Class) -> AxisSet {
-        self.axis_subset(axis, class, 0..self.side)
+        self.axis_subset(axis, class, 0..self.alpha.set_side())
     }
 
     /// The part of [`axis_set`](Self::axis_set) whose index lies in `interval`.
@@ -108,7 +142,8 @@ impl Pattern {
             Axis::X => (class.x, class.y),
             Axis::Y => (class.y, class.x),
         };
-        let interval = interval.start..interval.end.min(self.side);
+        let window = self.window(other);
+        let interval = interval.start.max(window.start)..interval.end.min(window.end);
         AxisSet::new(self.alpha, self.axis_index(axis, 0, other), own, interval)
     }
 
@@ -118,9 +153,9 @@ impl Pattern {
     pub const fn visit(&self, axis: Axis, v: i64) -> Option<(u8, u64)> {
         let even = self.axis_index(axis, v, 0);
         let odd = even ^ (1 << 63);
-        if even < self.side {
+        if self.axis_depth(even, 0) < self.side {
             Some((0, even))
-        } else if odd < self.side {
+        } else if self.axis_depth(odd, 1) < self.side {
             Some((1, odd))
         } else {
             None

@@ -352,8 +352,8 @@ impl BoundAttributes {
                 (min + unit(hash(key, id)) * (max - min)).min(*max)
             }
             Attribute::Rank => {
-                let (x, y) = self.pattern.index(id.x, id.y);
-                rank(x, y, self.pattern.alpha().set_side())
+                let depth = self.pattern.depth(id.x, id.y);
+                rank(depth, self.pattern.alpha().set_side())
             }
             Attribute::Uniform(_) => unit(hash(key, id)),
             Attribute::Variant(variants) => variants.pick(hash(key, id)).into(),

@@ -12,6 +12,7 @@ mod blocks;
 mod clear;
 mod count;
 mod cursor;
+mod distance;
 mod id;
 pub(crate) mod kernel;
 mod margins;
@@ -47,6 +48,7 @@ pub use attribute::{
 pub use blocks::{Blocks, Tile};
 pub use clear::{ClearOf, ClearOfError, Layer};
 pub use cursor::Cursor;
+pub use distance::{DistanceError, LeastDistance};
 pub use id::{PointId, PointIdError};
 pub use kernel::{Backend, F32, F64, Format, Points};
 pub use nearest::{Clearance, FindError, Finder, Neighbor};

@@ -8,7 +8,6 @@ use core::ops::ControlFlow;
 
 use super::{
     Frame, LATTICE_LIMIT, Placement, Point, Sampler, fixed,
-    rank::side_for,
     scan::{Field, Scratch},
     stretch::Stretch,
 };
@@ -86,7 +85,6 @@ pub struct Finder {
     sampler: Arc<Sampler>,
     frame: Frame,
     stretch: Stretch,
-    side: u64,
 }
 
 impl Sampler {
@@ -97,7 +95,6 @@ impl Sampler {
         Finder {
             sampler: self.clone(),
             stretch: Stretch::of(frame.shears.as_ref()),
-            side: side_for(placement.keep.get(), self.table().alpha().set_side()),
             frame,
         }
     }
@@ -110,13 +107,6 @@ impl Finder {
     pub const MAX_CANDIDATES: usize = 4_000_000;
     /// Lattice units left free at the limit: more than the longest displacement and warp.
     const BORDER: i64 = 1 << 20;
-
-    /// The finder that sees only the points of [`rank`](super::rank()) below `keep`.
-    #[must_use]
-    pub fn keeping(self, keep: f64) -> Self {
-        let side = side_for(keep, self.sampler.table().alpha().set_side());
-        Self { side, ..self }
-    }
 
     /// The largest absolute coordinate a search may reach.
     #[must_use]
@@ -139,9 +129,7 @@ impl Finder {
         let spacing = self.frame.placement.spacing.get();
         // A disc that holds k + 2√k + 2 points on average mostly has k.
         let wanted = k as f64 + 2.0 * libm::sqrt(k as f64) + 2.0;
-        // A part too small for any search gives a radius that is refused.
-        let kept = self.kept().max(1e-30);
-        let mut radius = spacing * libm::sqrt(wanted / (core::f64::consts::PI * kept));
+        let mut radius = spacing * libm::sqrt(wanted / (core::f64::consts::PI * self.kept()));
         loop {
             let found = self.search(at, radius, Self::MAX_CANDIDATES)?;
             if found.len() >= k {
@@ -177,6 +165,7 @@ impl Finder {
     pub fn clearance(&self, distance: f64) -> Result<Clearance, FindError> {
         check_radius(distance)?;
         self.check_number(distance, 1.0, Clearance::MAX_CANDIDATES)?;
+        self.check_work(distance, 4 * Clearance::MAX_CANDIDATES)?;
         Ok(Clearance {
             finder: self.clone(),
             distance,
@@ -195,7 +184,7 @@ impl Finder {
         check_radius(radius)?;
         // Counts come close to their means in discs of many points.
         self.check_number(radius, self.kept(), limit.saturating_mul(2).max(100))?;
-        self.check_number(radius, 1.0, 2 * Self::MAX_CANDIDATES)?;
+        self.check_work(radius, 2 * Self::MAX_CANDIDATES)?;
         self.check_reach(at, radius)?;
         let squared = radius * radius;
         let (mut found, mut inside) = (Vec::new(), 0usize);
@@ -222,14 +211,12 @@ impl Finder {
             sampler: &self.sampler,
             frame: &self.frame,
             stretch: self.stretch,
-            side: self.side,
         }
     }
 
     /// The part of the points that is kept.
-    fn kept(&self) -> f64 {
-        let part = self.side as f64 / self.sampler.table().alpha().set_side() as f64;
-        part * part
+    const fn kept(&self) -> f64 {
+        self.frame.placement.keep.get()
     }
 
     fn check_place(&self, at: [f64; 2]) -> Result<(), FindError> {
@@ -249,6 +236,20 @@ impl Finder {
             }
         }
         Ok(())
+    }
+
+    /// Refuses a radius that takes looking at more than `limit` points, kept or not, or at as many
+    /// lattice lines as only α next to 1 or 2 can need.
+    fn check_work(&self, radius: f64, limit: usize) -> Result<(), FindError> {
+        const MAX_LINES: f64 = 1e7;
+        let stretched = radius * self.stretch.factor;
+        self.check_number(stretched, 1.0, limit)?;
+        let about = stretched / self.frame.world(fixed(1));
+        if about <= MAX_LINES {
+            Ok(())
+        } else {
+            Err(FindError::TooMany { about, limit })
+        }
     }
 
     /// Refuses a radius within which lie more than `limit` of a part `kept` of all points.

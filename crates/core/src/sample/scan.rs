@@ -26,13 +26,12 @@ struct Column {
     block: u32,
 }
 
-/// What is scanned: the points of a frame, or of the part of it with an index below `side`.
+/// What is scanned: the points of a frame.
 #[derive(Clone, Copy)]
 pub(super) struct Field<'a> {
     pub(super) sampler: &'a Sampler,
     pub(super) frame: &'a Frame,
     pub(super) stretch: Stretch,
-    pub(super) side: u64,
 }
 
 impl Field<'_> {
@@ -66,9 +65,6 @@ impl Field<'_> {
             let Some((x_parity, index)) = frame.pattern.visit(Axis::Y, y) else {
                 continue;
             };
-            if index >= self.side {
-                continue;
-            }
             let class = Class {
                 x: x_parity,
                 y: (y & 1) as u8,
@@ -136,9 +132,6 @@ impl Field<'_> {
             let Some((y_parity, index)) = self.frame.pattern.visit(Axis::X, x) else {
                 continue;
             };
-            if index >= self.side {
-                continue;
-            }
             let class = Class {
                 x: (x & 1) as u8,
                 y: y_parity,

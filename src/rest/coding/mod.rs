@@ -1,0 +1,249 @@
+//! Content codings: text goes out compressed to clients that accept it, block by block.
+//!
+//! Packed formats, pictures and Arrow stay as they are: noise does not compress. What coding an
+//! answer gets depends on nothing but `Accept-Encoding` and the content type, so that its tag
+//! (`freshness`) can be known before it is made.
+
+mod encoder;
+
+use axum::{body::Body, response::Response};
+use futures_util::{StreamExt as _, stream};
+use http::{HeaderMap, HeaderValue, header};
+
+use super::freshness;
+use crate::service::Workers;
+use encoder::Encoder;
+
+/// How an answer is compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Coding {
+    /// `zstd` (RFC 8878): smaller and several times as fast as gzip.
+    Zstd,
+    /// `gzip` (RFC 1952).
+    Gzip,
+}
+
+impl Coding {
+    /// In the order of our preference.
+    const ALL: [Self; 2] = [Self::Zstd, Self::Gzip];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Zstd => "zstd",
+            Self::Gzip => "gzip",
+        }
+    }
+
+    /// What tells the tag of a compressed answer from that of a plain one.
+    pub(super) const fn suffix(self) -> &'static str {
+        match self {
+            Self::Zstd => "-zstd",
+            Self::Gzip => "-gzip",
+        }
+    }
+
+    /// The coding of an answer of a content type to a request with these headers.
+    pub(super) fn chosen(headers: &HeaderMap, content_type: &str) -> Option<Self> {
+        if !is_text(content_type) {
+            return None;
+        }
+        let lines: Vec<String> = headers
+            .get_all(header::ACCEPT_ENCODING)
+            .iter()
+            .map(|line| String::from_utf8_lossy(line.as_bytes()).to_ascii_lowercase())
+            .collect();
+        let accepted: Vec<(&str, u16)> = lines
+            .iter()
+            .flat_map(|line| line.split(','))
+            .filter_map(quality)
+            .collect();
+        let of = |name: &str| {
+            let named = accepted.iter().find(|(other, _)| *other == name);
+            named.map(|&(_, quality)| quality)
+        };
+        let any = of("*");
+        // Plain is always possible, and preferred only by those who say so.
+        let plain = of("identity").unwrap_or(0);
+        let best = Self::ALL
+            .into_iter()
+            .map(|coding| (coding, of(coding.name()).or(any).unwrap_or(0)))
+            .filter(|&(_, quality)| quality > 0 && quality >= plain)
+            // Of equals the first.
+            .fold(None, |best: Option<(Self, u16)>, next| match best {
+                Some(best) if best.1 >= next.1 => Some(best),
+                _ => Some(next),
+            });
+        best.map(|(coding, _)| coding)
+    }
+}
+
+/// An element of the list: a coding with its quality in thousandths.
+fn quality(element: &str) -> Option<(&str, u16)> {
+    let (name, parameters) = element.split_once(';').unwrap_or((element, ""));
+    let name = match name.trim() {
+        "" => return None,
+        "x-gzip" => "gzip",
+        name => name,
+    };
+    let parameter = parameters.trim();
+    if parameter.is_empty() {
+        return Some((name, 1000));
+    }
+    let quality: f64 = parameter.strip_prefix("q=")?.trim().parse().ok()?;
+    Some((name, (quality.clamp(0.0, 1.0) * 1000.0).round() as u16))
+}
+
+/// Whether content of a type is text, which compresses well.
+fn is_text(content_type: &str) -> bool {
+    let media_type = content_type.split(';').next().unwrap_or_default().trim();
+    let (_, sub) = media_type.split_once('/').unwrap_or_default();
+    media_type.starts_with("text/")
+        || ["json", "x-ndjson", "ndjson", "jsonl", "javascript"].contains(&sub)
+        || ["+json", "+json-seq", "+xml"]
+            .iter()
+            .any(|end| sub.ends_with(end))
+}
+
+/// Compresses an answer as its content type and the client's headers say.
+pub(super) fn apply(
+    accept: &HeaderMap,
+    is_head: bool,
+    workers: &Workers,
+    mut response: Response,
+) -> Response {
+    let headers = response.headers_mut();
+    // Also of answers that stay plain: with other headers they would not.
+    freshness::vary(headers, "accept-encoding");
+    let content_type = headers.get(header::CONTENT_TYPE);
+    let content_type = content_type.and_then(|value| value.to_str().ok());
+    let Some(coding) = content_type.and_then(|of| Coding::chosen(accept, of)) else {
+        return response;
+    };
+    // Tags tell what coding an answer has; what has none may stay plain where that is shorter.
+    let is_short = headers
+        .get(header::CONTENT_LENGTH)
+        .and_then(|value| value.to_str().ok()?.parse::<u64>().ok())
+        .or_else(|| http_body::Body::size_hint(response.body()).exact())
+        .is_some_and(|length| length < SHORT);
+    let headers = response.headers_mut();
+    if headers.contains_key(header::CONTENT_ENCODING)
+        || is_short && !headers.contains_key(header::ETAG)
+    {
+        return response;
+    }
+    let name = HeaderValue::from_static(coding.name());
+    headers.insert(header::CONTENT_ENCODING, name);
+    headers.remove(header::CONTENT_LENGTH);
+    if is_head {
+        // The length is not known, which an empty body would not say.
+        *response.body_mut() = unknown_length();
+        return response;
+    }
+    response.map(|body| compressed(body, coding, workers.clone()))
+}
+
+/// Compressing less than a packet gains nothing.
+const SHORT: u64 = 1024;
+
+/// An empty body of unknown length.
+pub(super) fn unknown_length() -> Body {
+    Body::from_stream(stream::empty::<
+        Result<bytes::Bytes, std::convert::Infallible>,
+    >())
+}
+
+/// A body compressed block by block, each sent on when it is done. The work is done where points
+/// are made; meanwhile the next block is being made.
+fn compressed(body: Body, coding: Coding, workers: Workers) -> Body {
+    let state = Encoder::new(coding).map(|encoder| (body.into_data_stream(), encoder));
+    let start = stream::once(std::future::ready(state));
+    let blocks = start.flat_map(move |state| {
+        let workers = workers.clone();
+        match state {
+            Ok(state) => {
+                stream::try_unfold(Some(state), move |state| next_block(state, workers.clone()))
+                    .left_stream()
+            }
+            Err(error) => {
+                stream::once(std::future::ready(Err(axum::Error::new(error)))).right_stream()
+            }
+        }
+    });
+    Body::from_stream(blocks)
+}
+
+type State = Option<(axum::body::BodyDataStream, Encoder)>;
+
+async fn next_block(
+    state: State,
+    workers: Workers,
+) -> Result<Option<(bytes::Bytes, State)>, axum::Error> {
+    let Some((mut blocks, encoder)) = state else {
+        return Ok(None);
+    };
+    let block = blocks.next().await.transpose()?;
+    let is_last = block.is_none();
+    let made = workers.run(move || encoder.encode(block)).await;
+    let (encoder, encoded) = made.map_err(axum::Error::new)?.map_err(axum::Error::new)?;
+    Ok(Some((encoded, (!is_last).then_some((blocks, encoder)))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_client_decides_and_zstd_comes_first() {
+        let (zstd, gzip) = (Some(Coding::Zstd), Some(Coding::Gzip));
+        for (accept, expected) in [
+            ("", None),
+            ("identity", None),
+            ("br", None),
+            ("gzip", gzip),
+            ("x-gzip", gzip),
+            ("GZIP;Q=0.5", gzip),
+            ("zstd", zstd),
+            ("gzip, deflate, br, zstd", zstd),
+            ("gzip;q=1, zstd;q=0.5", gzip),
+            ("zstd;q=0, gzip", gzip),
+            ("*", zstd),
+            ("zstd;q=0, *", gzip),
+            ("*;q=0", None),
+            ("gzip;q=0", None),
+            ("identity;q=0.5, gzip;q=0.4", None),
+            ("identity, gzip", gzip),
+            ("gzip;quality=1", None),
+        ] {
+            let mut headers = HeaderMap::new();
+            headers.insert(header::ACCEPT_ENCODING, HeaderValue::from_static(accept));
+            assert_eq!(Coding::chosen(&headers, "text/csv"), expected, "{accept}");
+            assert_eq!(Coding::chosen(&headers, "image/png"), None);
+        }
+    }
+
+    #[test]
+    fn text_is_text_and_nothing_else_is() {
+        for text in [
+            "text/csv; charset=utf-8",
+            "application/json",
+            "application/problem+json",
+            "application/geo+json",
+            "application/geo+json-seq",
+            "application/x-ndjson",
+            "image/svg+xml",
+        ] {
+            assert!(is_text(text), "{text}");
+        }
+        for other in [
+            "application/octet-stream",
+            "application/vnd.strew.f32",
+            "application/vnd.apache.arrow.stream",
+            "application/grpc",
+            "image/png",
+            "json",
+            "",
+        ] {
+            assert!(!is_text(other), "{other}");
+        }
+    }
+}

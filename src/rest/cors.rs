@@ -1,0 +1,104 @@
+//! Pages of other origins as clients (the Fetch standard's CORS protocol), without credentials:
+//! there are none.
+
+use axum::{body::Body, response::Response};
+use http::{HeaderMap, HeaderValue, Method, StatusCode, header};
+
+use super::freshness;
+
+/// Who may ask, from a page.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Origins {
+    /// Every page.
+    All,
+    /// Pages of these origins.
+    Some(Vec<String>),
+}
+
+impl Origins {
+    /// From a setting: `*`, or origins with spaces or commas between them.
+    pub(super) fn read(text: &str) -> Self {
+        let mut origins = text
+            .split([' ', ','])
+            .filter(|origin| !origin.is_empty())
+            .map(str::to_ascii_lowercase);
+        if text.trim() == "*" {
+            return Self::All;
+        }
+        Self::Some(origins.by_ref().collect())
+    }
+
+    /// What a page of an origin is told: the origins that may read the answer.
+    fn allowed(&self, origin: &HeaderValue) -> Option<HeaderValue> {
+        match self {
+            Self::All => Some(HeaderValue::from_static("*")),
+            Self::Some(origins) => {
+                let lower = origin.as_bytes().to_ascii_lowercase();
+                let known = origins.iter().any(|known| known.as_bytes() == lower);
+                known.then(|| origin.clone())
+            }
+        }
+    }
+}
+
+/// How long a browser may remember that it is allowed to ask, in seconds; browsers cut it.
+const REMEMBER: &str = "86400";
+
+/// The answer to a browser that asks whether it may ask.
+pub(super) fn preflight(
+    origins: &Origins,
+    method: &Method,
+    headers: &HeaderMap,
+) -> Option<Response> {
+    let asks = headers.contains_key(header::ACCESS_CONTROL_REQUEST_METHOD);
+    if method != Method::OPTIONS || !asks || !headers.contains_key(header::ORIGIN) {
+        return None;
+    }
+    let mut response = Response::new(Body::empty());
+    *response.status_mut() = StatusCode::NO_CONTENT;
+    let answer = response.headers_mut();
+    for (name, value) in [
+        (header::ACCESS_CONTROL_ALLOW_METHODS, "GET, HEAD, POST"),
+        // All of them: without credentials a star is one.
+        (header::ACCESS_CONTROL_ALLOW_HEADERS, "*"),
+        (header::ACCESS_CONTROL_MAX_AGE, REMEMBER),
+        (
+            header::VARY,
+            "access-control-request-method, access-control-request-headers",
+        ),
+    ] {
+        answer.insert(name, HeaderValue::from_static(value));
+    }
+    allow(origins, headers.get(header::ORIGIN), answer);
+    Some(response)
+}
+
+/// Lets the pages that may read an answer do so, with all its headers.
+pub(super) fn allow(origins: &Origins, origin: Option<&HeaderValue>, answer: &mut HeaderMap) {
+    if *origins != Origins::All {
+        freshness::vary(answer, "origin");
+    }
+    let Some(allowed) = origin.and_then(|origin| origins.allowed(origin)) else {
+        return;
+    };
+    answer.insert(header::ACCESS_CONTROL_ALLOW_ORIGIN, allowed);
+    let all = HeaderValue::from_static("*");
+    answer.insert(header::ACCESS_CONTROL_EXPOSE_HEADERS, all);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn origins_are_all_or_listed() {
+        let page = HeaderValue::from_static("https://A.example");
+        assert_eq!(Origins::read(" * "), Origins::All);
+        assert_eq!(Origins::All.allowed(&page).expect("all"), "*");
+        let listed = Origins::read("https://a.example, http://localhost:3000");
+        assert_eq!(listed.allowed(&page).expect("listed"), page);
+        let other = HeaderValue::from_static("https://b.example");
+        assert_eq!(listed.allowed(&other), None);
+        assert_eq!(Origins::read("").allowed(&page), None);
+    }
+}

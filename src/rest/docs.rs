@@ -1,0 +1,99 @@
+//! `/docs`: a page for people that shows `/openapi.json`. It loads nothing from elsewhere.
+
+use axum::{response::Response, routing};
+use bytes::Bytes;
+use http::{HeaderMap, HeaderValue, Method, Uri, header};
+use serde_json::json;
+
+use super::{
+    api::{self, Endpoint, Operation},
+    openapi::fixed,
+};
+
+const PAGE: &str = include_str!("page/page.html");
+const STYLE: &str = include_str!("page/page.css");
+const SCRIPT: &str = include_str!("page/page.js");
+
+/// What the page may load: its own style, its own script, the document.
+const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; \
+                      img-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// The page and its parts.
+pub(super) fn endpoints() -> Vec<Endpoint> {
+    let page = (
+        "/docs",
+        "getDocs",
+        "The API as a page",
+        "text/html; charset=utf-8",
+        PAGE,
+    );
+    let style = (
+        "/docs/page.css",
+        "getDocsStyle",
+        "The page's style",
+        "text/css",
+        STYLE,
+    );
+    let script = (
+        "/docs/page.js",
+        "getDocsScript",
+        "The page's script",
+        "text/javascript",
+        SCRIPT,
+    );
+    [page, style, script].map(endpoint).into()
+}
+
+type Part = (
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static str,
+);
+
+fn endpoint((path, id, summary, content_type, content): Part) -> Endpoint {
+    let operation = Operation {
+        method: Method::GET,
+        id,
+        summary,
+        about: "For people; loads nothing from elsewhere.",
+        path_parameters: &[],
+        parameters: vec![],
+        body: None,
+        answers: vec![
+            api::Answer {
+                status: 200,
+                about: summary,
+                headers: vec![],
+                contents: vec![(content_type.into(), json!({ "type": "string" }))],
+            },
+            api::Answer::unchanged(),
+        ],
+        problems: vec![],
+        example: path.into(),
+    };
+    let handler = routing::get(move |uri: Uri, headers: HeaderMap| async move {
+        part(&uri, &headers, content_type, content)
+    });
+    Endpoint::new(path, (), vec![(operation, handler)])
+}
+
+fn part(
+    uri: &Uri,
+    headers: &HeaderMap,
+    content_type: &'static str,
+    text: &'static str,
+) -> Response {
+    let content = Bytes::from_static(text.as_bytes());
+    let mut response = fixed(uri, headers, content_type, content);
+    let headers = response.headers_mut();
+    for (name, value) in [
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::REFERRER_POLICY, "no-referrer"),
+    ] {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    response
+}

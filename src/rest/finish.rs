@@ -1,0 +1,103 @@
+//! What is done to every answer, whoever made it: CORS, problems instead of bare errors, how long
+//! it may be kept, compression. Answers of other doors only get the first.
+
+use axum::{
+    Router,
+    extract::{Request, State},
+    middleware::{self, Next},
+    response::Response,
+};
+use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    coding,
+    cors::{self, Origins},
+    freshness,
+    problem::{self, Problem},
+};
+use crate::service::Workers;
+
+/// How HTTP answers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// The origins of pages that may ask: `*` for all, else origins with spaces or commas between
+    /// them.
+    pub cors_origins: String,
+    /// How long an answer may be kept that a restart with other tables could change, in seconds.
+    pub cache_seconds: u32,
+}
+
+/// What finishing needs.
+#[derive(Clone, Debug)]
+struct Finish {
+    origins: Origins,
+    cache_seconds: u32,
+    head_bytes: usize,
+    workers: Workers,
+}
+
+/// Finishes the answers of a router; heads of requests longer than `head_bytes` are refused.
+pub fn finished(router: Router, settings: &Settings, head_bytes: u32, workers: Workers) -> Router {
+    let finish = Finish {
+        origins: Origins::read(&settings.cors_origins),
+        cache_seconds: settings.cache_seconds,
+        head_bytes: usize::try_from(head_bytes).unwrap_or(usize::MAX),
+        workers,
+    };
+    router.layer(middleware::from_fn_with_state(finish, finish_answer))
+}
+
+async fn finish_answer(State(finish): State<Finish>, request: Request, next: Next) -> Response {
+    let (method, headers) = (request.method(), request.headers());
+    if let Some(allowed) = cors::preflight(&finish.origins, method, headers) {
+        return allowed;
+    }
+    let is_head = *method == Method::HEAD;
+    let origin = headers.get(header::ORIGIN).cloned();
+    let accept = picked(headers, &header::ACCEPT_ENCODING);
+    let mut response = match too_long(&request, finish.head_bytes) {
+        Some(refusal) => refusal,
+        None => next.run(request).await,
+    };
+    cors::allow(&finish.origins, origin.as_ref(), response.headers_mut());
+    if is_grpc(response.headers()) {
+        return response;
+    }
+    let mut response = problem::instead_of_bare(response).await;
+    freshness::keep(&mut response, finish.cache_seconds);
+    coding::apply(&accept, is_head, &finish.workers, response)
+}
+
+/// The lines of one header.
+fn picked(headers: &HeaderMap, name: &HeaderName) -> HeaderMap {
+    let lines = headers.get_all(name).iter().cloned();
+    lines.map(|line| (name.clone(), line)).collect()
+}
+
+fn is_grpc(headers: &HeaderMap) -> bool {
+    let content_type = headers.get(header::CONTENT_TYPE).map(HeaderValue::as_bytes);
+    content_type.is_some_and(|value| value.starts_with(b"application/grpc"))
+}
+
+/// The refusal of a request whose head is too long. (What is much too long never gets here: the
+/// HTTP library refuses it without a body.)
+fn too_long(request: &Request, limit: usize) -> Option<Response> {
+    let address = request
+        .uri()
+        .path_and_query()
+        .map_or(0, |of| of.as_str().len());
+    let lines = request.headers().iter();
+    let headers: usize = lines.map(|(n, v)| n.as_str().len() + v.len() + 4).sum();
+    let (status, length) = match (address > limit, address + headers > limit) {
+        (true, _) => (StatusCode::URI_TOO_LONG, address),
+        (_, true) => (
+            StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE,
+            address + headers,
+        ),
+        _ => return None,
+    };
+    let detail = format!("it has {length} bytes; allowed: at most {limit}");
+    Some(Problem::of_status(status, detail))
+}

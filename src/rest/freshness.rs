@@ -1,0 +1,184 @@
+//! Whether a client's copy of an answer is still right (RFC 9110, 13; RFC 9111).
+//!
+//! An answer is a pure function of what was asked, of the table and of the program, so its tag is a
+//! hash of those and is known before a point is made. Tags are strong: equal tags, equal bytes. An
+//! address that pins its table (`table=…`) is answered the same forever.
+
+use axum::{body::Body, response::Response};
+use http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
+use serde::Serialize;
+use strew_core::ALGORITHM_VERSION;
+
+use super::coding::Coding;
+
+/// What is known of an answer before it is made.
+#[derive(Clone, Debug)]
+pub(super) struct Freshness {
+    tag: HeaderValue,
+    pinned: bool,
+}
+
+/// An answer that never changes; travels with the response to where `Cache-Control` is set.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pinned;
+
+impl Freshness {
+    /// The freshness of an answer to a request for `uri`, in a content type, `made_of` all else
+    /// that decides its bytes: the query as it was understood, digests of tables, settings.
+    ///
+    /// The address as it was written goes into the tag, too: a parameter that somebody forgets to
+    /// put into `made_of` cannot make two different answers look the same.
+    pub(super) fn of(
+        uri: &Uri,
+        headers: &HeaderMap,
+        content_type: &'static str,
+        made_of: &impl Serialize,
+    ) -> Self {
+        let coding = Coding::chosen(headers, content_type);
+        let asked = uri.path_and_query().map_or("", |asked| asked.as_str());
+        let identity = (
+            env!("CARGO_PKG_VERSION"),
+            ALGORITHM_VERSION,
+            asked,
+            content_type,
+            made_of,
+        );
+        let mut hasher = blake3::Hasher::new();
+        // What goes in are numbers and texts, which always can be written.
+        let _ = serde_json::to_writer(&mut hasher, &identity);
+        let hash = hasher.finalize().to_hex();
+        let suffix = coding.map_or("", Coding::suffix);
+        let tag = format!("\"{}{suffix}\"", &hash[..32]);
+        Self {
+            tag: HeaderValue::from_str(&tag).unwrap_or(HeaderValue::from_static("\"\"")),
+            pinned: false,
+        }
+    }
+
+    /// Whether the address pins the table, so that its answer never changes.
+    pub(super) fn pinned(mut self, pinned: bool) -> Self {
+        self.pinned = pinned;
+        self
+    }
+
+    /// The answer to a client that already has what it asks for.
+    pub(super) fn unchanged(&self, headers: &HeaderMap) -> Option<Response> {
+        self.listed(headers).then(|| self.not_modified())
+    }
+
+    /// The answer to a client that wants none if there is any (`If-None-Match: *`); to be asked
+    /// once it is sure that there is one.
+    pub(super) fn unwanted(&self, headers: &HeaderMap) -> Option<Response> {
+        let any = headers.get(header::IF_NONE_MATCH)?.as_bytes().trim_ascii() == b"*";
+        any.then(|| self.not_modified())
+    }
+
+    /// Puts what caches need onto an answer.
+    pub(super) fn stamp(&self, response: &mut Response) {
+        let tag = self.tag.clone();
+        response.headers_mut().insert(header::ETAG, tag);
+        if self.pinned {
+            response.extensions_mut().insert(Pinned);
+        }
+    }
+
+    fn not_modified(&self) -> Response {
+        let mut response = Response::new(Body::empty());
+        *response.status_mut() = StatusCode::NOT_MODIFIED;
+        self.stamp(&mut response);
+        response
+    }
+
+    /// Whether one of the tags in `If-None-Match` is ours, by weak comparison. Our tags hold
+    /// neither commas nor quotes, so that splitting at commas cannot fake one.
+    fn listed(&self, headers: &HeaderMap) -> bool {
+        let ours = self.tag.as_bytes();
+        headers
+            .get_all(header::IF_NONE_MATCH)
+            .iter()
+            .flat_map(|line| line.as_bytes().split(|&byte| byte == b','))
+            .map(<[u8]>::trim_ascii)
+            .any(|tag| tag.strip_prefix(b"W/").unwrap_or(tag) == ours)
+    }
+}
+
+/// Says how long an answer may be kept, where nobody has said so yet.
+pub(super) fn keep(response: &mut Response, seconds: u32) {
+    let pinned = response.extensions().get::<Pinned>().is_some();
+    let headers = response.headers_mut();
+    if headers.contains_key(header::CACHE_CONTROL) {
+        return;
+    }
+    let value = if pinned {
+        HeaderValue::from_static("public, max-age=31536000, immutable")
+    } else if headers.contains_key(header::ETAG) {
+        let text = format!("public, max-age={seconds}");
+        HeaderValue::from_str(&text).unwrap_or(HeaderValue::from_static("no-cache"))
+    } else {
+        HeaderValue::from_static("no-store")
+    };
+    headers.insert(header::CACHE_CONTROL, value);
+}
+
+/// Says that an answer would be another one with another header of that name.
+pub(super) fn vary(headers: &mut HeaderMap, name: &'static str) {
+    let joined = match headers.get(header::VARY).map(HeaderValue::to_str) {
+        Some(Ok(before)) => HeaderValue::from_str(&format!("{before}, {name}")).ok(),
+        _ => None,
+    };
+    headers.insert(
+        header::VARY,
+        joined.unwrap_or(HeaderValue::from_static(name)),
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(address: &'static str, accept_encoding: &'static str, made_of: &str) -> Freshness {
+        let mut headers = HeaderMap::new();
+        let value = HeaderValue::from_static(accept_encoding);
+        headers.insert(header::ACCEPT_ENCODING, value);
+        let uri = Uri::from_static(address);
+        Freshness::of(&uri, &headers, "application/json", &made_of)
+    }
+
+    #[test]
+    fn a_tag_depends_on_all_that_an_answer_is_made_of_and_on_its_coding() {
+        let base = of("/a?b=1", "identity", "table");
+        assert_eq!(base.tag, of("/a?b=1", "identity", "table").tag);
+        for other in [
+            of("/a?b=2", "identity", "table"),
+            of("/b?b=1", "identity", "table"),
+            of("/a?b=1", "identity", "other"),
+            of("/a?b=1", "gzip", "table"),
+            of("/a?b=1", "zstd", "table"),
+        ] {
+            assert_ne!(base.tag, other.tag);
+        }
+    }
+
+    #[test]
+    fn tags_match_weakly_in_lists_and_over_lines() {
+        let ours = of("/a", "identity", "table");
+        let tag = ours.tag.to_str().expect("text").to_owned();
+        let listed = |lines: &[String]| {
+            let mut headers = HeaderMap::new();
+            for line in lines {
+                let line = HeaderValue::from_str(line).expect("text");
+                headers.append(header::IF_NONE_MATCH, line);
+            }
+            ours.unchanged(&headers).is_some()
+        };
+        assert!(listed(std::slice::from_ref(&tag)));
+        assert!(listed(&[format!("W/{tag}")]));
+        assert!(listed(&[format!("\"x\", W/\"y\",{tag} ")]));
+        assert!(listed(&["\"x\"".into(), tag.clone()]));
+        assert!(!listed(&[]));
+        assert!(!listed(&["\"x\"".into()]));
+        assert!(!listed(&[tag.trim_matches('"').into()]));
+        assert!(!listed(&[format!("w/{tag}")]));
+        assert!(!listed(&["*".into()]));
+    }
+}
