@@ -1,6 +1,8 @@
 //! The gRPC door: messages in, streamed messages out. It decides nothing itself.
 
+mod compression;
 mod convert;
+mod deadline;
 mod encode;
 mod points;
 mod status;
@@ -11,6 +13,7 @@ use tonic::service::Routes;
 use tonic_health::server::HealthReporter;
 
 use crate::service::Service;
+pub use deadline::Deadline;
 use points::Points;
 use proto::point_service_server::PointServiceServer;
 
@@ -44,8 +47,10 @@ pub async fn routes(service: Arc<Service>) -> Result<(Routes, Health), BuildErro
             .register_encoded_file_descriptor_set(DESCRIPTORS)
             .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
     };
-    let points =
-        PointServiceServer::new(Points::new(service)).max_decoding_message_size(MAX_REQUEST_BYTES);
+    let points = compression::COMPRESSIONS.into_iter().fold(
+        PointServiceServer::new(Points::new(service)).max_decoding_message_size(MAX_REQUEST_BYTES),
+        |server, coding| server.accept_compressed(coding).send_compressed(coding),
+    );
     let routes = Routes::new(points)
         .add_service(health)
         .add_service(reflection().build_v1()?)
@@ -68,6 +73,16 @@ impl Health {
             .set_not_serving::<PointServiceServer<Points>>()
             .await;
     }
+}
+
+/// What a call asks of its answer, put right before the call: how it may be compressed, and by when
+/// it must be over.
+///
+/// # Errors
+/// A status that says what is wrong with the call.
+pub fn terms(headers: &mut http::HeaderMap) -> Result<Option<Deadline>, tonic::Status> {
+    compression::settle(headers);
+    Deadline::of(headers)
 }
 
 /// The answer to a method that does not exist.

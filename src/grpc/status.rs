@@ -1,8 +1,8 @@
 //! Errors as gRPC statuses, with the standard details.
 
-use std::time::Duration;
+use std::{collections::HashMap, time::Duration};
 
-use tonic::Status;
+use tonic::{Code, Status};
 use tonic_types::{ErrorDetails, StatusExt as _};
 
 use crate::{
@@ -10,9 +10,13 @@ use crate::{
     service::{Error, Interrupted, Kind},
 };
 
+/// How long a client should wait before it asks a busy server again.
+const RETRY: Duration = Duration::from_secs(1);
+
 /// An error as a status.
 pub(super) fn status(error: &Error) -> Status {
     let mut details = ErrorDetails::new();
+    details.set_error_info(reason(error.kind()), DOMAIN, facts(error));
     for fault in error.faults() {
         let value = fault.value.as_ref();
         let value = value.map_or_else(String::new, |value| format!("`{value}`: "));
@@ -22,8 +26,11 @@ pub(super) fn status(error: &Error) -> Status {
     if let Error::TooManyPoints { .. } = error {
         details.add_quota_failure_violation("limits.max_points", error.to_string());
     }
+    if let Error::OtherTable { pinned, .. } = error {
+        details.add_precondition_failure_violation("TABLE", pinned, error.to_string());
+    }
     if matches!(error.kind(), Kind::Busy | Kind::ShuttingDown) {
-        details.set_retry_info(Some(Duration::from_secs(1)));
+        details.set_retry_info(Some(RETRY));
     }
     Status::with_error_details(error_map::grpc(error.kind()), error.to_string(), details)
 }
@@ -34,5 +41,51 @@ pub(super) fn interrupted(why: Interrupted) -> Status {
         Interrupted::Shutdown => Kind::ShuttingDown,
         Interrupted::Failed => Kind::Internal,
     };
-    Status::new(error_map::grpc(kind), why.to_string())
+    let mut details = ErrorDetails::new();
+    details.set_error_info(reason(kind), DOMAIN, HashMap::new());
+    if kind == Kind::ShuttingDown {
+        details.set_retry_info(Some(RETRY));
+    }
+    Status::with_error_details(error_map::grpc(kind), why.to_string(), details)
+}
+
+/// A fault of the call rather than of its message.
+pub(super) fn faulty_metadata(name: &str, value: &str, detail: &str) -> Status {
+    let mut details = ErrorDetails::new();
+    details.set_error_info(reason(Kind::Invalid), DOMAIN, HashMap::new());
+    details.add_bad_request_violation(name, format!("`{value}`: {detail}"));
+    let message = format!("`{name}` = `{value}`: {detail}");
+    Status::with_error_details(error_map::grpc(Kind::Invalid), message, details)
+}
+
+/// A call whose time is over.
+pub(super) fn too_late(allowed: Duration) -> Status {
+    let mut details = ErrorDetails::new();
+    details.set_error_info("DEADLINE_EXCEEDED", DOMAIN, HashMap::new());
+    let message = format!("the call's deadline of {allowed:?} is over; it is not complete");
+    Status::with_error_details(Code::DeadlineExceeded, message, details)
+}
+
+/// Whose reasons they are.
+const DOMAIN: &str = "strew";
+
+/// The same name as of the problem type by REST, as gRPC writes it.
+fn reason(kind: Kind) -> String {
+    error_map::http(kind).slug.replace('-', "_").to_uppercase()
+}
+
+/// What a program needs to go on, by name.
+fn facts(error: &Error) -> HashMap<String, String> {
+    let pairs: Vec<(&str, String)> = match error {
+        Error::TooManyPoints { count, limit } => {
+            vec![("count", count.to_string()), ("limit", limit.to_string())]
+        }
+        Error::Busy { limit } => vec![("limit", limit.to_string())],
+        Error::OtherTable { pinned, loaded } => {
+            vec![("pinned", pinned.clone()), ("loaded", loaded.clone())]
+        }
+        _ => vec![],
+    };
+    let owned = |(name, value): (&str, String)| (name.to_owned(), value);
+    pairs.into_iter().map(owned).collect()
 }

@@ -1,5 +1,6 @@
 //! Running the daemon: one port for both doors, health, a bounded stop, the log.
 
+mod calls;
 pub mod health;
 pub mod serve;
 pub mod shutdown;

@@ -9,10 +9,12 @@ use std::{
 
 use axum::{Router, body::Body, extract::Request, response::Response};
 use axum_server::Handle;
-use http::{HeaderMap, header};
 use hyper_util::rt::TokioTimer;
 
-use super::health::{self, Readiness};
+use super::{
+    calls,
+    health::{self, Readiness},
+};
 use crate::{
     config::{self, Config},
     grpc, rest,
@@ -121,7 +123,7 @@ impl App {
         endpoints.extend(health::endpoints(readiness, self.service.clone()));
         let rest::Door { router, paths } = rest::Door::new(endpoints);
         let router = router
-            .merge(grpc.into_axum_router().reset_fallback())
+            .merge(calls::routes(grpc.into_axum_router().reset_fallback()))
             .fallback(move |request| nothing_here(request, paths));
         let head_bytes = self.config.server.max_header_bytes;
         let workers = self.service.workers().clone();
@@ -154,15 +156,9 @@ impl App {
 
 /// Where no door is: each kind of client hears it in its own language.
 async fn nothing_here(request: Request, paths: String) -> Response {
-    if is_grpc(request.headers()) {
+    if calls::is_grpc(request.headers()) {
         grpc::unimplemented().map(Body::new)
     } else {
         rest::not_found(&request, &paths)
     }
-}
-
-fn is_grpc(headers: &HeaderMap) -> bool {
-    headers
-        .get(header::CONTENT_TYPE)
-        .is_some_and(|value| value.as_bytes().starts_with(b"application/grpc"))
 }

@@ -16,6 +16,7 @@ mod profiles;
 use std::sync::Arc;
 
 use axum::{Router, extract::Request, response::Response};
+use http::StatusCode;
 
 use crate::service::{Error, Service};
 use api::Endpoint;
@@ -65,4 +66,25 @@ pub fn not_found(request: &Request, paths: &str) -> Response {
         available: paths.into(),
     };
     Problem::response(&error)
+}
+
+/// The answer to what asks for a gRPC method, but not as a call.
+#[must_use]
+pub fn not_a_call(request: &Request) -> Response {
+    let detail = format!(
+        "`{}` is a gRPC method; allowed: POST with the content type application/grpc or \
+         application/grpc-web",
+        request.uri().path()
+    );
+    Problem::of_status(StatusCode::UNSUPPORTED_MEDIA_TYPE, detail)
+}
+
+/// The answer to a gRPC call over an HTTP that cannot carry it.
+#[must_use]
+pub fn needs_http2(request: &Request) -> Response {
+    let detail = format!(
+        "`{}` is a gRPC method; allowed: gRPC over HTTP/2, gRPC-Web over any HTTP",
+        request.uri().path()
+    );
+    Problem::of_status(StatusCode::HTTP_VERSION_NOT_SUPPORTED, detail)
 }

@@ -97,6 +97,7 @@ fn errors_are_problems_whoever_finds_them() {
         ("GET", "/v1/profiles/mauve", none, 404),
         ("PUT", "/v1/profiles", none, 405),
         ("GET", long.as_str(), none, 414),
+        ("GET", "/strew.v1.PointService/StreamPoints", none, 415),
         ("GET", "/livez", &[("x-wide", wide.as_str())][..], 431),
     ];
     for (method, path, headers, status) in cases {

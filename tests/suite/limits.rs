@@ -12,6 +12,7 @@ use strew::grpc::proto::{
 };
 use strew_core::{Placement, Region, Sampler, Seed, Spacing};
 use tonic::Code;
+use tonic_types::StatusExt as _;
 
 use crate::{
     daemon::{Daemon, PATIENCE, PROFILE, table, until},
@@ -63,6 +64,18 @@ async fn too_many_points_are_refused_with_the_exact_count_and_the_limit() {
         let status = client.stream_points(request).await.expect_err("too many");
         assert_eq!(status.code(), Code::ResourceExhausted);
         assert!(status.message().contains(&count) && status.message().contains("1000"));
+        let details = status.get_error_details();
+        let info = details.error_info().expect("details");
+        assert_eq!(
+            (info.reason.as_str(), info.domain.as_str()),
+            ("TOO_MANY_POINTS", "strew")
+        );
+        assert_eq!(info.metadata["count"], count);
+        assert_eq!(info.metadata["limit"], "1000");
+        assert_eq!(
+            details.quota_failure().expect("details").violations.len(),
+            1
+        );
     }
     let fits = daemon.get("/v1/points?bbox=-15,-15,15,15&density=1&profile=test");
     assert_eq!(fits.status, 200);

@@ -9,6 +9,8 @@ mod forge;
 mod formats;
 mod fresh;
 mod grpc;
+mod grpc_calls;
+mod grpc_web;
 mod http;
 mod limits;
 mod openapi;

@@ -38,6 +38,18 @@ pub struct Opened {
 
 /// Sends a request and reads the head of the answer.
 pub fn open(address: &str, method: &str, path: &str, headers: &[(&str, &str)]) -> Opened {
+    send(address, method, path, headers, &[])
+}
+
+/// Sends a request with a body and reads the head of the answer.
+pub fn post(address: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Opened {
+    let length = body.len().to_string();
+    let mut all = vec![("content-length", length.as_str())];
+    all.extend(headers);
+    send(address, "POST", path, &all, body)
+}
+
+fn send(address: &str, method: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Opened {
     let mut stream = TcpStream::connect(address).expect("connected");
     stream.set_read_timeout(Some(PATIENCE)).expect("a socket");
     let mut request = format!("{method} {path} HTTP/1.1\r\nhost: {address}\r\n");
@@ -46,6 +58,7 @@ pub fn open(address: &str, method: &str, path: &str, headers: &[(&str, &str)]) -
     }
     request += "connection: close\r\n\r\n";
     stream.write_all(request.as_bytes()).expect("sent");
+    stream.write_all(body).expect("sent");
     let mut stream = BufReader::new(stream);
     let mut line = String::new();
     stream.read_line(&mut line).expect("a status line");

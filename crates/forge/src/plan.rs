@@ -10,7 +10,7 @@ use crate::{
     ground::Ground,
     judge::{Bound, Panel, bounds_of_curve},
     optimize::{Descent, jitter},
-    profile::{LeastCorrelation, Phase, Profile, Recipe, Target},
+    profile::{LeastCorrelation, Phase, Profile, Recipe, Target, to_parameters},
 };
 
 /// The least side t of the set region (α = 1.1): below, a map of any half-width sees too few
@@ -22,8 +22,6 @@ const MAX_RADIAL_RADIUS: u32 = 200;
 /// To be raised with any change of what a step computes, down to the last bit: work that was begun
 /// before must not go on after.
 const ARITHMETIC: u32 = 1;
-/// Longer parameters of a history are split.
-const PARAMETER_BYTES: usize = 800;
 
 /// A checked job.
 pub(crate) struct Plan {
@@ -136,13 +134,7 @@ impl Plan {
 
     pub(crate) fn provenance(&self, job: &Job, steps: u32) -> Provenance {
         let (optimizer, mut parameters) = self.profile.recipe.describe();
-        for (part, text) in self.target.iter().flat_map(in_parts).enumerate() {
-            let name = match part {
-                0 => "target".into(),
-                more => format!("target_{}", more + 1),
-            };
-            parameters.push((name, text));
-        }
+        parameters.extend(self.target.iter().flat_map(to_parameters));
         parameters.push(("jitter".into(), self.profile.jitter.to_string()));
         parameters.push(("steps".into(), self.steps.to_string()));
         if steps < self.steps {
@@ -187,21 +179,4 @@ fn in_range(field: &'static str, value: u32, most: u32) -> Result<(), ForgeError
         value: value.to_string(),
         allowed: format!("1 to {most}"),
     })
-}
-
-/// The points of a curve as text, `nu power` separated by semicolons, in parts of moderate length.
-fn in_parts(target: &Target) -> Vec<String> {
-    let mut parts = vec![String::new()];
-    for [nu, power] in target.points() {
-        let point = format!("{nu} {power}");
-        match parts.last_mut() {
-            Some(part) if part.is_empty() => part.push_str(&point),
-            Some(part) if part.len() + point.len() < PARAMETER_BYTES => {
-                part.push_str("; ");
-                part.push_str(&point);
-            }
-            _ => parts.push(point),
-        }
-    }
-    parts
 }

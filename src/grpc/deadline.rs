@@ -1,0 +1,147 @@
+//! Deadlines: a call that says by when it must be over (`grpc-timeout`) is over then, visibly, with
+//! DEADLINE_EXCEEDED, and its stream's place is free.
+
+use std::{
+    pin::Pin,
+    task::{Context, Poll},
+    time::Duration,
+};
+
+use bytes::Bytes;
+use http::{HeaderMap, Response};
+use http_body::{Body, Frame};
+use tokio::time::{Instant, Sleep, sleep_until};
+use tonic::Status;
+
+use super::status;
+
+const HEADER: &str = "grpc-timeout";
+
+/// What a timeout may be.
+const ALLOWED: &str = "1 to 8 digits and a unit: H, M, S, m, u or n";
+
+/// When a call must be over.
+#[derive(Clone, Copy, Debug)]
+pub struct Deadline {
+    allowed: Duration,
+    end: Instant,
+}
+
+impl Deadline {
+    /// The deadline of a call that begins now, if it has one.
+    pub(super) fn of(headers: &HeaderMap) -> Result<Option<Self>, Status> {
+        let Some(value) = headers.get(HEADER) else {
+            return Ok(None);
+        };
+        let text = String::from_utf8_lossy(value.as_bytes());
+        let fault = || status::faulty_metadata(HEADER, &text, ALLOWED);
+        let allowed = read(&text).ok_or_else(fault)?;
+        // Beyond what a clock can hold is as good as never.
+        let end = Instant::now().checked_add(allowed);
+        Ok(end.map(|end| Self { allowed, end }))
+    }
+
+    /// The answer to a call, or the status of one that is too late.
+    pub async fn answer<B>(self, call: impl Future<Output = Response<B>>) -> Response<InTime<B>> {
+        match tokio::time::timeout_at(self.end, call).await {
+            Ok(response) => response.map(|body| InTime {
+                body: Some(body),
+                allowed: self.allowed,
+                sleep: Box::pin(sleep_until(self.end)),
+            }),
+            Err(_) => status::too_late(self.allowed)
+                .into_http::<tonic::body::Body>()
+                .map(|_| InTime {
+                    body: None,
+                    allowed: self.allowed,
+                    sleep: Box::pin(sleep_until(self.end)),
+                }),
+        }
+    }
+}
+
+fn read(text: &str) -> Option<Duration> {
+    let unit = text.chars().next_back()?;
+    let digits = text.strip_suffix(unit)?;
+    if digits.is_empty() || digits.len() > 8 || !digits.bytes().all(|b| b.is_ascii_digit()) {
+        return None;
+    }
+    let value: u64 = digits.parse().ok()?;
+    Some(match unit {
+        'H' => Duration::from_secs(value * 3600),
+        'M' => Duration::from_secs(value * 60),
+        'S' => Duration::from_secs(value),
+        'm' => Duration::from_millis(value),
+        'u' => Duration::from_micros(value),
+        'n' => Duration::from_nanos(value),
+        _ => return None,
+    })
+}
+
+/// A body that ends at a deadline: with its status, unless it has ended by then.
+#[derive(Debug)]
+pub struct InTime<B> {
+    /// Nothing once it is over.
+    body: Option<B>,
+    allowed: Duration,
+    sleep: Pin<Box<Sleep>>,
+}
+
+impl<B: Body<Data = Bytes> + Unpin> Body for InTime<B> {
+    type Data = Bytes;
+    type Error = B::Error;
+
+    fn poll_frame(
+        mut self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+    ) -> Poll<Option<Result<Frame<Bytes>, B::Error>>> {
+        let Some(body) = &mut self.body else {
+            return Poll::Ready(None);
+        };
+        if body.is_end_stream() {
+            return Poll::Ready(None);
+        }
+        // The deadline first: a stream that always has more would never see it.
+        if self.sleep.as_mut().poll(cx).is_pending() {
+            return match &mut self.body {
+                Some(body) => Pin::new(body).poll_frame(cx),
+                None => Poll::Ready(None),
+            };
+        }
+        self.body = None;
+        let mut trailers = HeaderMap::new();
+        let told = status::too_late(self.allowed).add_header(&mut trailers);
+        Poll::Ready(told.ok().map(|()| Ok(Frame::trailers(trailers))))
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.as_ref().is_none_or(Body::is_end_stream)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn timeouts_are_read_as_the_protocol_writes_them() {
+        for (text, expected) in [
+            ("1H", Some(Duration::from_secs(3600))),
+            ("2M", Some(Duration::from_secs(120))),
+            ("3S", Some(Duration::from_secs(3))),
+            ("250m", Some(Duration::from_millis(250))),
+            ("99999999u", Some(Duration::from_micros(99_999_999))),
+            ("0n", Some(Duration::ZERO)),
+            ("123456789S", None),
+            ("S", None),
+            ("", None),
+            ("1", None),
+            ("-1S", None),
+            ("1 S", None),
+            ("1s", None),
+            ("1µ", None),
+        ] {
+            assert_eq!(read(text), expected, "{text}");
+        }
+    }
+}
