@@ -26,7 +26,7 @@ const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let optional = [
         "density", "spacing", "profile", "alpha", "map", "seed", "warp", "table", "format",
-        "decimals",
+        "decimals", "size",
     ];
     let operation = Operation {
         method: Method::GET,
