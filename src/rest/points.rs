@@ -26,7 +26,7 @@ const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let optional = [
         "density", "spacing", "profile", "alpha", "map", "seed", "warp", "table", "format",
-        "decimals",
+        "decimals", "size",
     ];
     let operation = Operation {
         method: Method::GET,
@@ -103,6 +103,7 @@ async fn get(
     let digest = entry.as_ref().map(|entry| &entry.digest);
     let made_of = (query.resolved(), digest, service.limits().max_points);
     let freshness = Freshness::of(&uri, &headers, chosen.content_type, &made_of)
+        .negotiated()
         .pinned(parameters.table.is_some());
     if let Some(unchanged) = freshness.unchanged(&headers) {
         return Ok(unchanged);
@@ -139,7 +140,6 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         header::CONTENT_TYPE,
         HeaderValue::from_static(chosen.content_type),
     );
-    headers.insert(header::VARY, HeaderValue::from_static("accept"));
     headers.insert(COUNT, count.into());
     headers.insert(TABLE, text(&planned.entry.digest)?);
     headers.insert(ALGORITHM, ALGORITHM_VERSION.into());

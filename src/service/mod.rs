@@ -40,7 +40,7 @@ pub struct Limits {
     /// the exact count.
     pub max_points: u64,
     /// The most answers under way at once. Bounds memory: an answer holds 1 to 2 MB,
-    /// two blocks and the rows it is made of.
+    /// two blocks and the rows it is made of, and a picture up to 16 MB more.
     pub max_streams: usize,
     /// The size of a block before it is encoded, in bytes.
     pub block_bytes: usize,

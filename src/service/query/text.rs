@@ -1,6 +1,6 @@
 //! Queries as text: the parameters of an address or of a command line.
 
-use std::sync::Arc;
+use std::{ops::RangeInclusive, str::FromStr, sync::Arc};
 
 use percent_encoding::percent_decode_str;
 
@@ -11,7 +11,10 @@ use super::{
 };
 use crate::service::{
     Catalog, Encoding, Entry, Error, Fault,
-    encode::{DECIMALS, MOST_DECIMALS, Options},
+    encode::{
+        DECIMALS, MOST_DECIMALS, Options,
+        preview::{LEAST_SIZE, MOST_SIZE, SIZE},
+    },
 };
 
 /// No more faults of an address are reported: an error is to be read.
@@ -42,6 +45,8 @@ pub struct Parameters {
     pub format: Option<String>,
     /// Decimals of numbers in text formats.
     pub decimals: Option<String>,
+    /// The longer side of a picture, in pixels.
+    pub size: Option<String>,
 }
 
 /// Parameters with the faults found so far.
@@ -102,6 +107,7 @@ impl Parameters {
             "table" => &mut self.table,
             "format" => &mut self.format,
             "decimals" => &mut self.decimals,
+            "size" => &mut self.size,
             _ => return None,
         })
     }
@@ -174,7 +180,16 @@ impl Parameters {
         read(warp(self.warp.as_deref()).map(|warp| draft.warp = warp));
         let mut options = Options::default();
         read(format(self.format.as_deref()).map(|format| options.encoding = format));
-        read(decimals(self.decimals.as_deref()).map(|decimals| options.decimals = decimals));
+        let decimals = integer(
+            "decimals",
+            self.decimals.as_deref(),
+            0..=MOST_DECIMALS,
+            DECIMALS,
+        );
+        read(decimals.map(|decimals| options.decimals = decimals));
+        let sizes = LEAST_SIZE..=MOST_SIZE;
+        let size = integer("size", self.size.as_deref(), sizes, SIZE);
+        read(size.map(|size| options.size = size));
         let query = draft.check(catalog, faults)?;
         Ok((query, options))
     }
@@ -239,13 +254,16 @@ fn format(text: Option<&str>) -> Result<Option<Encoding>, Fault> {
     .transpose()
 }
 
-fn decimals(text: Option<&str>) -> Result<Option<u8>, Fault> {
+/// An integer within a range.
+fn integer<T: FromStr + PartialOrd>(
+    name: &str,
+    text: Option<&str>,
+    range: RangeInclusive<T>,
+    allowed: &str,
+) -> Result<Option<T>, Fault> {
     text.map(|text| {
-        let parsed = text.parse().ok().filter(|n| *n <= MOST_DECIMALS);
-        parsed.ok_or_else(|| {
-            let detail = "it is not such an integer";
-            Fault::new("decimals", text, detail, DECIMALS)
-        })
+        let parsed = text.parse().ok().filter(|n| range.contains(n));
+        parsed.ok_or_else(|| Fault::new(name, text, "it is not such an integer", allowed))
     })
     .transpose()
 }
