@@ -28,6 +28,11 @@ bench:
 no-std:
     cargo build -p strew-core --no-default-features
 
+# Measure the shipped tables again: all figures and pictures of docs/quality.md.
+quality:
+    cargo build --release
+    docs/quality/measure
+
 # Make the shipped tables again, bit for bit.
 tables:
     cargo build --release

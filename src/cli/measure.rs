@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde_json::{Map as JsonMap, Value, json};
 use strew_core::{Table, Twin};
 use strew_forge::{
-    Report,
+    Aim, Report, Target,
     measure::{Torus, Window, twin_set, window_set},
     picture,
 };
@@ -62,15 +62,22 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let problem = anyhow!("--nu-max is {}; it must be from 0.5 to 8", args.nu_max);
         return Err(Failure::Usage(problem));
     }
-    let reports = if let Some(file) = &args.table {
+    let (reports, target) = if let Some(file) = &args.table {
         of_table(args, file)?
     } else if let Some(file) = &args.points {
-        vec![of_points(args, file)?]
+        (vec![of_points(args, file)?], None)
     } else {
-        vec![of_query(args)?]
+        let (report, target) = of_query(args)?;
+        (vec![report], target)
     };
     if let (Some(path), Some(report)) = (&args.picture, reports.first()) {
-        let svg = picture(report, &report.figures.subject).context("--picture")?;
+        let subject = &report.figures.subject;
+        let stem = args.table.as_deref().and_then(Path::file_stem);
+        let title = stem.map_or_else(
+            || subject.clone(),
+            |stem| format!("{}: {subject}", stem.display()),
+        );
+        let svg = picture(report, &title, target.as_ref()).context("--picture")?;
         let mut output = Output::open(Some(path))?;
         output.write(svg.as_bytes())?;
         output.finish()?;
@@ -118,7 +125,8 @@ impl Subject {
     }
 }
 
-fn of_table(args: &Args, file: &Path) -> Result<Vec<Report>, Failure> {
+/// The reports on a table, and the power curve that it should follow.
+fn of_table(args: &Args, file: &Path) -> Result<(Vec<Report>, Option<Target>), Failure> {
     let table = strew_forge::read_table(file).map_err(anyhow::Error::from)?;
     let twins = args.twins(&table).map_err(Failure::Usage)?;
     let mut subjects = vec![];
@@ -135,10 +143,11 @@ fn of_table(args: &Args, file: &Path) -> Result<Vec<Report>, Failure> {
         let set = window_set(&table, args.window_points, seed);
         subjects.push(Subject::Window(format!("window seed {seed}"), set));
     }
-    Ok(subjects
+    let reports = subjects
         .into_par_iter()
-        .map(|subject| subject.measured(args.nu_max))
-        .collect())
+        .map(|subject| subject.measured(args.nu_max));
+    let aim = Aim::of(table.profile(), table.provenance());
+    Ok((reports.collect(), aim.and_then(|aim| aim.curve)))
 }
 
 impl Args {
@@ -175,7 +184,7 @@ fn square([min_x, min_y, max_x, max_y]: [f64; 4]) -> anyhow::Result<([f64; 2], f
     Ok(([min_x, min_y], width))
 }
 
-fn of_query(args: &Args) -> Result<Report, Failure> {
+fn of_query(args: &Args) -> Result<(Report, Option<Target>), Failure> {
     let config = args.query.settings()?;
     let (planned, _) = args.query.planned(&config, &Looks::default())?;
     let (corner, side) = square(planned.query.region.bbox()).map_err(Failure::Usage)?;
@@ -190,7 +199,8 @@ fn of_query(args: &Args) -> Result<Report, Failure> {
     let set = &planned.sets[0];
     set.plan.blocks_f64().fill(&mut points);
     let name = described(&planned);
-    Ok(window(corner, side, set.density, points, name).measured(args.nu_max))
+    let report = window(corner, side, set.density, points, name).measured(args.nu_max);
+    Ok((report, set.entry.aim().and_then(|aim| aim.curve)))
 }
 
 fn window(

@@ -50,13 +50,16 @@ pub(super) struct Query {
 /// How an answer is to look.
 #[derive(Debug, Default, clap::Args)]
 pub(super) struct Looks {
-    /// json, ndjson, csv, geojson, geojsonseq, f32, f64, npy, ply, arrow or parquet [default: what
-    /// the output's name ends with, or json].
+    /// json, ndjson, csv, geojson, geojsonseq, f32, f64, npy, ply, arrow, png, svg or parquet
+    /// [default: what the output's name ends with, or json].
     #[arg(long)]
     format: Option<String>,
     /// Decimals of numbers in text formats, 0 to 17 [default: the shortest digits that read back].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     decimals: Option<String>,
+    /// The longer side of a png or svg in pixels, 16 to 4096 [default: 512].
+    #[arg(long, value_name = "PIXELS", allow_hyphen_values = true)]
+    size: Option<String>,
 }
 
 impl Query {
@@ -88,6 +91,7 @@ impl Query {
             ("table", self.table.clone()),
             ("format", looks.format.clone().filter(|_| !parquet)),
             ("decimals", looks.decimals.clone()),
+            ("size", looks.size.clone()),
         ]);
         let usage = |error| Failure::Usage(anyhow::Error::new(error));
         let limits = &config.limits;

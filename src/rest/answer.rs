@@ -146,7 +146,7 @@ pub(super) fn freshness(
         service.limits().max_points,
     );
     let freshness = Freshness::of(&asked.uri, &asked.headers, content_type, &made_of);
-    Ok(freshness.pinned(query.is_pinned()))
+    Ok(freshness.negotiated().pinned(query.is_pinned()))
 }
 
 /// The headers of an answer.
@@ -161,7 +161,6 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         header::CONTENT_TYPE,
         HeaderValue::from_static(chosen.content_type),
     );
-    headers.insert(header::VARY, HeaderValue::from_static("accept"));
     headers.insert(COUNT, count.into());
     let digests: Vec<&str> = planned
         .sets

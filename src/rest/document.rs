@@ -37,6 +37,7 @@ pub(super) fn no_looks(options: Options) -> Result<(), Error> {
         "decimals",
         options.decimals.map(|decimals| decimals.to_string()),
     );
+    refuse("size", options.size.map(|size| size.to_string()));
     if faults.is_empty() {
         Ok(())
     } else {

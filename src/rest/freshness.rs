@@ -16,6 +16,7 @@ use super::coding::Coding;
 pub(super) struct Freshness {
     tag: HeaderValue,
     pinned: bool,
+    negotiated: bool,
 }
 
 /// An answer that never changes; travels with the response to where `Cache-Control` is set.
@@ -52,7 +53,14 @@ impl Freshness {
         Self {
             tag: HeaderValue::from_str(&tag).unwrap_or(HeaderValue::from_static("\"\"")),
             pinned: false,
+            negotiated: false,
         }
+    }
+
+    /// Says that `Accept` had a say in the content type.
+    pub(super) fn negotiated(mut self) -> Self {
+        self.negotiated = true;
+        self
     }
 
     /// Whether the address pins the table, so that its answer never changes.
@@ -77,6 +85,9 @@ impl Freshness {
     pub(super) fn stamp(&self, response: &mut Response) {
         let tag = self.tag.clone();
         response.headers_mut().insert(header::ETAG, tag);
+        if self.negotiated {
+            vary(response.headers_mut(), "accept");
+        }
         if self.pinned {
             response.extensions_mut().insert(Pinned);
         }

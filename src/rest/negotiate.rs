@@ -22,7 +22,7 @@ impl Chosen {
 }
 
 /// What is on offer by media type, in the order of preference where a client has none.
-const OFFERS: [(&str, Chosen); 14] = [
+const OFFERS: [(&str, Chosen); 16] = [
     ("application/json", Chosen::named(Encoding::Json)),
     ("application/x-ndjson", Chosen::named(Encoding::Ndjson)),
     (
@@ -73,6 +73,8 @@ const OFFERS: [(&str, Chosen); 14] = [
             content_type: "model/ply",
         },
     ),
+    ("image/png", Chosen::named(Encoding::Png)),
+    ("image/svg+xml", Chosen::named(Encoding::Svg)),
 ];
 
 /// The content types that a client can be given, each once.

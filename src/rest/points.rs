@@ -29,7 +29,8 @@ pub(super) const SET: [&str; 14] = [
     "table",
 ];
 /// The parameters that say which of them, and how they look.
-pub(super) const WINDOW_AND_LOOKS: [&str; 5] = ["offset", "limit", "cursor", "format", "decimals"];
+pub(super) const WINDOW_AND_LOOKS: [&str; 6] =
+    ["offset", "limit", "cursor", "format", "decimals", "size"];
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {

@@ -11,6 +11,7 @@ use axum::{
 use http::{HeaderMap, HeaderValue, Method, Uri, header};
 use serde::Serialize;
 use serde_json::{Value, json};
+use strew_forge::Aim;
 
 use super::{
     api::{self, Endpoint, Operation, schemas},
@@ -39,13 +40,15 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     });
     let document = json!({
         "table": profiles::schema(),
+        "target": target_schema(numbers(2)),
         "measured": schemas::object(measured),
     });
     let operation = operation(
         "getProfile",
         "One noise profile with its curves",
-        "The table's provenance and figures; radial power, anisotropy and radial distribution of a \
-         window of the unbounded pattern.",
+        "The table's provenance and figures; what it was made to be, with the radial power curve it \
+         follows if it follows one; radial power, anisotropy and radial distribution of a window of \
+         the unbounded pattern.",
         ("application/json", schemas::object(document)),
         "'/v1/profiles/blue?alpha=sqrt(3)'",
     );
@@ -54,6 +57,21 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         service,
         vec![(operation, routing::get(get))],
     )
+}
+
+/// The JSON Schema of a table's target.
+fn target_schema(mut curve: Value) -> Value {
+    curve["type"] = json!(["object", "null"]);
+    let (text, number) = (json!({ "type": "string" }), json!({ "type": "number" }));
+    let side = json!({ "type": "string", "enum": ["at most", "at least"] });
+    let bound = schemas::object(json!({ "figure": text, "side": side, "limit": number }));
+    let mut target = schemas::object(json!({
+        "statement": text,
+        "bounds": { "type": "array", "items": bound },
+        "curve": curve,
+    }));
+    target["type"] = json!(["object", "null"]);
+    target
 }
 
 /// The path of the picture.
@@ -125,8 +143,10 @@ async fn get(
     if let Some(unwanted) = freshness.unwanted(&headers) {
         return Ok(unwanted);
     }
+    let aim = entry.aim();
     let document = Document {
         table: Profile::new(&entry),
+        target: aim.as_ref().map(Target::new),
         measured: Measured {
             points: portrait.points,
             radial: Curve {
@@ -201,7 +221,43 @@ fn typed(body: Vec<u8>, content_type: &'static str, freshness: &Freshness) -> Re
 #[derive(Serialize)]
 struct Document<'a> {
     table: Profile<'a>,
+    /// `null` for a table that does not tell what it was made to be.
+    target: Option<Target<'a>>,
     measured: Measured<'a>,
+}
+
+/// What a table was made to be.
+#[derive(Serialize)]
+struct Target<'a> {
+    statement: &'a str,
+    bounds: Vec<Limit>,
+    curve: Option<Curve<'a, 2>>,
+}
+
+/// A bound on a figure.
+#[derive(Serialize)]
+struct Limit {
+    figure: &'static str,
+    side: String,
+    limit: f64,
+}
+
+impl<'a> Target<'a> {
+    fn new(aim: &'a Aim) -> Self {
+        let bounds = aim.bounds.iter().map(|bound| Limit {
+            figure: bound.figure.name(),
+            side: bound.side.to_string(),
+            limit: bound.limit,
+        });
+        Self {
+            statement: &aim.statement,
+            bounds: bounds.collect(),
+            curve: aim.curve.as_ref().map(|curve| Curve {
+                columns: ["nu", "power"],
+                values: curve.points(),
+            }),
+        }
+    }
 }
 
 /// What was measured on a window of the unbounded pattern.

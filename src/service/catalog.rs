@@ -20,6 +20,8 @@ use strew_core::{
     table::{MAX_FILE_BYTES, Provenance, TableError},
 };
 
+use strew_forge::Aim;
+
 use super::Error;
 
 /// The tables that are built into the program: (file name, content).
@@ -97,6 +99,12 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// What it was made to be, if its history tells.
+    #[must_use]
+    pub fn aim(&self) -> Option<Aim> {
+        Aim::of(&self.key.profile, &self.provenance)
+    }
+
     fn read(bytes: Bytes, source: Source) -> Result<Self, CatalogError> {
         let table = Table::from_bytes(&bytes).map_err(|error| CatalogError::Table {
             source_name: source.clone(),

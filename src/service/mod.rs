@@ -51,7 +51,7 @@ pub struct Limits {
     /// The most vertices that the polygons of a query have in all: bounds its memory.
     pub max_vertices: usize,
     /// The most answers under way at once. Bounds memory: an answer holds 1 to 2 MB,
-    /// two blocks and the rows it is made of.
+    /// two blocks and the rows it is made of, and a picture up to 16 MB more.
     pub max_streams: usize,
     /// The size of a block before it is encoded, in bytes.
     pub block_bytes: usize,

@@ -13,7 +13,7 @@ use super::{Entry, Error, Workers};
 const POINTS: u64 = 20_000;
 /// Frequencies are measured up to this.
 const NU_MAX: f64 = 4.0;
-/// No more portraits are kept; each has about a megabyte.
+/// No more portraits are kept; each has about 60 kB.
 const MOST: u64 = 64;
 
 /// Curves and a picture of a table's points.
@@ -34,7 +34,8 @@ impl Portrait {
         let table = entry.table()?;
         let set = window_set(&table, POINTS, 1);
         let report = Report::of_window("window seed 1".into(), false, &set, NU_MAX);
-        let svg = picture(&report, &entry.key.to_string()).map_err(|error| {
+        let target = entry.aim().and_then(|aim| aim.curve);
+        let svg = picture(&report, &entry.key.to_string(), target.as_ref()).map_err(|error| {
             tracing::error!(key = %entry.key, %error, "no picture");
             Error::Internal("the picture cannot be drawn")
         })?;

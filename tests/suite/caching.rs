@@ -43,10 +43,7 @@ fn a_copy_that_is_right_is_not_sent_again() {
             assert_eq!(again.status, 304, "{path} {asked}");
             assert!(again.body.is_empty());
             for name in ["etag", "cache-control", "vary"] {
-                let (again, first) = (again.header(name), first.header(name));
-                for part in again.split(", ") {
-                    assert!(first.contains(part), "{path} {name}: {again}, {first}");
-                }
+                assert_eq!(again.header(name), first.header(name), "{path} {name}");
             }
         }
         let other = with(&daemon, path, &[("if-none-match", "\"other\"")]);

@@ -248,6 +248,18 @@ fn a_profile_has_its_curves_and_its_picture() {
         rings.len() > 100 && power(&rings[10]) < 0.01,
         "blue noise has no low power"
     );
+    let target = &document["target"];
+    assert_eq!(target["bounds"][0]["figure"], "low_power");
+    assert_eq!(target["bounds"][0]["side"], "at most");
+    assert!(target["statement"].is_string() && target["curve"].is_null());
+    let step = daemon.get("/v1/profiles/step").json();
+    let curve = step["target"]["curve"]["values"].as_array().expect("drawn");
+    assert!(
+        curve.len() > 1
+            && curve
+                .iter()
+                .all(|p| p.as_array().is_some_and(|p| p.len() == 2))
+    );
     let picture = daemon.get("/v1/profiles/blue/spectrum.svg");
     assert_eq!(picture.header("content-type"), "image/svg+xml");
     assert!(picture.text().starts_with("<svg"));

@@ -3,6 +3,7 @@
 mod caching;
 mod clients;
 mod coding;
+mod contract;
 mod daemon;
 mod drain;
 mod forge;

@@ -80,6 +80,29 @@ def geojson(path):
 
 geojsonseq = geojson
 
+
+def png(path):
+    """The pixels that are not white."""
+    import numpy
+    from PIL import Image
+
+    image = Image.open(path)
+    image.load()
+    assert image.size == (512, 380) and '"format":"png"' in image.text["strew.query"]
+    rows, columns_ = numpy.nonzero(numpy.asarray(image.convert("RGB")).min(axis=2) < 255)
+    columns([""] * len(rows), columns_, rows)
+
+
+def svg(path):
+    """The circles' centers."""
+    from xml.etree import ElementTree
+
+    root = ElementTree.parse(path).getroot()
+    assert (root.get("width"), root.get("height")) == ("512", "380")
+    circles = root.findall(".//{http://www.w3.org/2000/svg}circle")
+    columns([""] * len(circles), *([c.get(name) for c in circles] for name in ("cx", "cy")))
+
+
 if __name__ == "__main__":
     try:
         globals()[sys.argv[1]](sys.argv[2])

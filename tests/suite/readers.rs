@@ -1,6 +1,6 @@
 //! Each format read back by a reader that is not ours, where Python has it.
 
-use std::{path::Path, process::Command};
+use std::{collections::HashSet, path::Path, process::Command};
 
 use strew_core::Point;
 
@@ -115,6 +115,62 @@ fn sampled_files_are_the_streamed_answers_and_parquet() {
             assert!(bytes == answer.body, "{format} of a file is another");
         }
     }
+}
+
+/// Dots lie where points are, y upward, and nowhere else.
+#[test]
+fn pictures_show_every_point() {
+    let (daemon, plan) = (Daemon::start(&["limits.block_bytes=4096"]), plan());
+    let scale = 512.0 / 43.5;
+    let places: Vec<[f64; 2]> = points(&plan)
+        .iter()
+        .map(|point| [(point.x + 3.5) * scale, (33.25 - point.y) * scale])
+        .collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    let rows = |format: &str| {
+        let answer = daemon.get(&format!("{QUERY}{format}"));
+        assert_eq!(answer.status, 200, "{format}");
+        assert!(answer.header("content-type").starts_with("image/"));
+        let file = folder.path().join(format);
+        std::fs::write(&file, &answer.body).expect("writable");
+        let rows = read(format, &file);
+        rows.map(|rows| rows.into_iter().map(|(_, place)| place).collect::<Vec<_>>())
+    };
+    if let Some(centers) = rows("svg") {
+        assert_eq!(centers.len(), places.len());
+        for (center, place) in centers.iter().zip(&places) {
+            let near = |axis: usize| (center[axis] - place[axis]).abs() < 0.0051;
+            assert!(near(0) && near(1), "{center:?} {place:?}");
+        }
+    }
+    let Some(pixels) = rows("png") else {
+        return;
+    };
+    let drawn: HashSet<[i64; 2]> = pixels.iter().map(|place| place.map(|v| v as i64)).collect();
+    let mut allowed = HashSet::new();
+    for place in &places {
+        let [x, y] = place.map(|v| v as i64);
+        assert!(drawn.contains(&[x, y]), "nothing at {place:?}");
+        allowed.extend((-2..=2).flat_map(|dy| (-2..=2).map(move |dx| [x + dx, y + dy])));
+    }
+    assert!(drawn.is_subset(&allowed));
+}
+
+#[test]
+fn sizes_of_pictures_are_as_asked_for() {
+    let daemon = Daemon::start(&[]);
+    let size = |path: &str| {
+        let answer = daemon.get(&format!("{QUERY}png{path}"));
+        assert_eq!(answer.status, 200, "{path}");
+        // The header comes first, by PNG's rules: width and height after 16 bytes.
+        let side = |at: usize| u32::from_be_bytes(answer.body[at..at + 4].try_into().expect("4"));
+        (side(16), side(20))
+    };
+    assert_eq!(size(""), (512, 380));
+    assert_eq!(size("&size=16"), (16, 12));
+    assert_eq!(size("&size=4096"), (4096, 3037));
+    let tall = daemon.get("/v1/points?bbox=0,0,1,1000&density=1&profile=test&format=svg&size=100");
+    assert!(tall.text().contains("width=\"1\" height=\"100\""));
 }
 
 #[test]

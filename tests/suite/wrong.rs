@@ -138,6 +138,21 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
         &["f64", "ndjson", "csv"],
     ),
     (
+        "bbox=0,0,10,10&density=1&size=15&format=png",
+        &["size"],
+        &["15", "16 to 4096"],
+    ),
+    (
+        "bbox=0,0,10,10&density=1&size=100&decimals=2",
+        &["size"],
+        &["json", "png, svg"],
+    ),
+    (
+        "bbox=0,0,1000,1000&density=1&format=svg",
+        &["format"],
+        &["100000", "png"],
+    ),
+    (
         "bbox=0,0,10,10&density=1&formt=csv",
         &["formt"],
         &["csv", "format"],

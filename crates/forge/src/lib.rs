@@ -44,6 +44,6 @@ pub use job::{DEFAULT_SEED, Estimate, Job, MAX_RADIUS, MAX_STEPS};
 pub use judge::{Complaint, Figure};
 pub use optimize::{Progress, Stage, Watch};
 pub use picture::{PictureError, picture};
-pub use profile::{Profile, Target};
+pub use profile::{Aim, Profile, Target};
 pub use report::Report;
 pub use work::{Outcome, forge, resume};

@@ -1,8 +1,13 @@
 //! A picture of a measured set: points, 2-D spectrum, radial power, anisotropy, RDF.
 
+mod overlay;
+
+use std::ops::Range;
+
 use plotters::{coord::Shift, prelude::*};
 
-use crate::Report;
+use crate::{Report, Target};
+use overlay::Frame;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
@@ -20,87 +25,114 @@ const SPECTRUM_CELLS: i64 = 100;
 /// Power that is shown white.
 const WHITE_POWER: f64 = 2.5;
 
-/// An SVG picture of a report; `title` stands above it.
+/// Shades of gray that are told apart: more would only be noise to be stored.
+const SHADES: f64 = 32.0;
+
+/// An SVG picture of a report; `title` stands above it. The power curve that the points should have,
+/// if there is one, is drawn over their own.
 ///
 /// # Errors
 /// [`PictureError`] if the plotting library fails.
-pub fn picture(report: &Report, title: &str) -> Result<String, PictureError> {
+pub fn picture(
+    report: &Report,
+    title: &str,
+    target: Option<&Target>,
+) -> Result<String, PictureError> {
+    let failed = |error: &dyn std::error::Error| PictureError(error.to_string());
     let mut svg = String::new();
-    draw(report, title, &mut svg).map_err(|error| PictureError(error.to_string()))?;
+    let [dotted, shaded] =
+        draw(report, title, target, &mut svg).map_err(|error| failed(&*error))?;
+    let shown = report.points.iter().map(|p| p.map(|v| v / SHOWN));
+    let inside = shown.filter(|p| p.iter().all(|v| (0.0..1.0).contains(v)));
+    let mut marks = overlay::dots(&dotted, inside);
+    let cells = shades(report);
+    marks += &overlay::gray(&shaded, SPECTRUM_CELLS as u32, &cells).map_err(|e| failed(&e))?;
+    if let Some(end) = svg.rfind("</svg>") {
+        svg.insert_str(end, &marks);
+    }
     Ok(svg)
 }
 
-fn draw(report: &Report, title: &str, svg: &mut String) -> Drawn {
+/// Draws all but the dots and the shades, which go to the frames that it gives back.
+fn draw(
+    report: &Report,
+    title: &str,
+    target: Option<&Target>,
+    svg: &mut String,
+) -> Result<[Frame; 2], Box<dyn std::error::Error>> {
     let root = SVGBackend::with_string(svg, (1200, 830)).into_drawing_area();
     root.fill(&WHITE)?;
     let root = root.titled(title, ("sans-serif", 22))?;
     let panels = root.split_evenly((2, 3));
-    points(&panels[0], report)?;
-    spectrum(&panels[1], report)?;
+    let dotted = frame(&panels[0], "points (in mean spacings)", 0.0..SHOWN)?;
+    let end = spectrum_end(report);
+    let shaded = frame(&panels[1], "power spectrum", -end..end)?;
     let power: Vec<[f64; 2]> = report
         .rings
         .iter()
         .map(|ring| [ring.nu, ring.power])
         .collect();
-    curve(
-        &panels[2],
-        "radial power over frequency",
-        &power,
-        (0.0, 2.0),
-    )?;
-    let anisotropy = report
+    let wanted: Vec<[f64; 2]> = target.map_or_else(Vec::new, |target| {
+        power.iter().map(|&[nu, _]| [nu, target.at(nu)]).collect()
+    });
+    let caption = match target {
+        Some(_) => "radial power over frequency (target in red)",
+        None => "radial power over frequency",
+    };
+    curve(&panels[2], caption, &[&power, &wanted], (0.0, 2.0))?;
+    let anisotropy: Vec<[f64; 2]> = report
         .rings
         .iter()
         .skip(4)
-        .map(|ring| [ring.nu, ring.anisotropy_db.max(-20.0)]);
+        .map(|ring| [ring.nu, ring.anisotropy_db.max(-20.0)])
+        .collect();
     curve(
         &panels[3],
         "anisotropy (dB) over frequency",
-        &anisotropy.collect::<Vec<_>>(),
+        &[&anisotropy],
         (-5.0, 5.0),
     )?;
-    curve(
-        &panels[4],
-        "RDF over distance",
-        &report.rdf.bins,
-        (0.0, 2.0),
-    )?;
+    let rdf = &report.rdf.bins;
+    curve(&panels[4], "RDF over distance", &[rdf], (0.0, 2.0))?;
     figures(&panels[5], report)?;
     root.present()?;
-    Ok(())
+    Ok([dotted, shaded])
 }
 
-fn points(area: &Area<'_>, report: &Report) -> Drawn {
+/// A square panel with axes, and where its plot is.
+fn frame(
+    area: &Area<'_>,
+    caption: &str,
+    range: Range<f64>,
+) -> Result<Frame, Box<dyn std::error::Error>> {
     let mut chart = ChartBuilder::on(area)
-        .caption("points (in mean spacings)", ("sans-serif", 16))
+        .caption(caption, ("sans-serif", 16))
         .margin(10)
         .x_label_area_size(24)
         .y_label_area_size(36)
-        .build_cartesian_2d(0.0..SHOWN, 0.0..SHOWN)?;
+        .build_cartesian_2d(range.clone(), range.clone())?;
     chart.configure_mesh().disable_mesh().draw()?;
-    let shown = report
-        .points
-        .iter()
-        .filter(|p| p.iter().all(|v| (0.0..SHOWN).contains(v)));
-    chart.draw_series(shown.map(|p| Circle::new((p[0], p[1]), 2, BLACK.filled())))?;
-    Ok(())
+    let corner = |v: f64| chart.backend_coord(&(v, v));
+    let ((left, bottom), (right, top)) = (corner(range.start), corner(range.end));
+    Ok(Frame {
+        x: left.into()..right.into(),
+        y: top.into()..bottom.into(),
+    })
 }
 
-fn spectrum(area: &Area<'_>, report: &Report) -> Drawn {
-    let end = SPECTRUM_END.min(report.spectrum.nu_max());
-    let mut chart = ChartBuilder::on(area)
-        .caption("power spectrum", ("sans-serif", 16))
-        .margin(10)
-        .x_label_area_size(24)
-        .y_label_area_size(36)
-        .build_cartesian_2d(-end..end, -end..end)?;
-    chart.configure_mesh().disable_mesh().draw()?;
+fn spectrum_end(report: &Report) -> f64 {
+    SPECTRUM_END.min(report.spectrum.nu_max())
+}
+
+/// The mean power of the modes in each cell of the plane, as gray, rows from the top.
+fn shades(report: &Report) -> Vec<u8> {
+    let end = spectrum_end(report);
     let modes = (report.points.len() as f64).sqrt();
     let edge = |i: i64| (2.0 * i as f64 / SPECTRUM_CELLS as f64 - 1.0) * end;
-    for row in 0..SPECTRUM_CELLS {
+    let span = |i: i64| (edge(i) * modes).ceil() as i64..(edge(i + 1) * modes).ceil() as i64;
+    let mut cells = Vec::new();
+    for row in (0..SPECTRUM_CELLS).rev() {
         for column in 0..SPECTRUM_CELLS {
-            let span =
-                |i: i64| (edge(i) * modes).ceil() as i64..(edge(i + 1) * modes).ceil() as i64;
             let (mut sum, mut count) = (0.0, 0u32);
             for ky in span(row) {
                 for kx in span(column).filter(|&kx| (kx, ky) != (0, 0)) {
@@ -110,28 +142,34 @@ fn spectrum(area: &Area<'_>, report: &Report) -> Drawn {
                     }
                 }
             }
-            let shade = (255.0 * (sum / f64::from(count.max(1)) / WHITE_POWER).min(1.0)) as u8;
-            let corners = [(edge(column), edge(row)), (edge(column + 1), edge(row + 1))];
-            let cell = Rectangle::new(corners, RGBColor(shade, shade, shade).filled());
-            chart.draw_series(std::iter::once(cell))?;
+            let part = (sum / f64::from(count.max(1)) / WHITE_POWER).min(1.0);
+            cells.push(((part * (SHADES - 1.0)).round() * (255.0 / (SHADES - 1.0))) as u8);
         }
     }
-    Ok(())
+    cells
 }
 
-/// A curve, with at least `range` of the vertical axis shown.
-fn curve(area: &Area<'_>, caption: &str, values: &[[f64; 2]], range: (f64, f64)) -> Drawn {
-    let end = values.last().map_or(1.0, |last| last[0]);
-    let low = values.iter().map(|v| v[1]).fold(range.0, f64::min);
-    let high = values.iter().map(|v| v[1] * 1.05).fold(range.1, f64::max);
+/// Curves, with at least `range` of the vertical axis shown.
+fn curve(area: &Area<'_>, caption: &str, curves: &[&[[f64; 2]]], range: (f64, f64)) -> Drawn {
+    let values = || curves.iter().flat_map(|curve| curve.iter());
+    let end = values().map(|v| v[0]).fold(0.0, f64::max);
+    let low = values().map(|v| v[1]).fold(range.0, f64::min);
+    let high = values().map(|v| v[1] * 1.05).fold(range.1, f64::max);
     let mut chart = ChartBuilder::on(area)
         .caption(caption, ("sans-serif", 16))
         .margin(10)
         .x_label_area_size(24)
         .y_label_area_size(36)
         .build_cartesian_2d(0.0..end, low..high)?;
-    chart.configure_mesh().light_line_style(WHITE).draw()?;
-    chart.draw_series(LineSeries::new(values.iter().map(|v| (v[0], v[1])), &BLUE))?;
+    chart
+        .configure_mesh()
+        .max_light_lines(1)
+        .light_line_style(WHITE)
+        .draw()?;
+    for (curve, color) in curves.iter().zip([&BLUE, &RED]) {
+        let line = curve.iter().map(|v| (v[0], v[1]));
+        chart.draw_series(LineSeries::new(line, color))?;
+    }
     Ok(())
 }
 

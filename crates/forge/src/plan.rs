@@ -10,20 +10,18 @@ use crate::{
     ground::Ground,
     judge::{Bound, Panel, bounds_of_curve},
     optimize::{Descent, jitter},
-    profile::{LeastCorrelation, Phase, Profile, Recipe, Target},
+    profile::{LeastCorrelation, Phase, Profile, Recipe, Target, to_parameters},
 };
 
 /// The least side t of the set region (α = 1.1): below, a map of any half-width sees too few
 /// neighbors, and there are too many grid points between them to list.
 const LEAST_SIDE: f64 = 0.05;
 
-/// The largest half-width for a radial power curve, whose pairs reach far: 1 GB of neighbor lists.
+/// The largest half-width for a radial power curve, whose pairs reach far: 1 to 2 GB of neighbor lists.
 const MAX_RADIAL_RADIUS: u32 = 200;
 /// To be raised with any change of what a step computes, down to the last bit: work that was begun
 /// before must not go on after.
-const ARITHMETIC: u32 = 1;
-/// Longer parameters of a history are split.
-const PARAMETER_BYTES: usize = 800;
+const ARITHMETIC: u32 = 2;
 
 /// A checked job.
 pub(crate) struct Plan {
@@ -72,13 +70,16 @@ impl Plan {
             });
         }
         if let Recipe::Radial(_) = profile.recipe {
-            // It is optimized on α itself.
+            // It is optimized on unbounded patterns.
             ground.twins.clear();
         }
         let panel = Panel::new(&ground.map, &ground.twins);
         Ok(Self {
             profile,
-            panel: target.iter().cloned().fold(panel, Panel::with_target),
+            panel: match &target {
+                Some(target) => panel.with_target(target.clone(), &ground.map),
+                None => panel,
+            },
             bounds,
             name: job.profile.clone(),
             target,
@@ -136,12 +137,10 @@ impl Plan {
 
     pub(crate) fn provenance(&self, job: &Job, steps: u32) -> Provenance {
         let (optimizer, mut parameters) = self.profile.recipe.describe();
-        for (part, text) in self.target.iter().flat_map(in_parts).enumerate() {
-            let name = match part {
-                0 => "target".into(),
-                more => format!("target_{}", more + 1),
-            };
-            parameters.push((name, text));
+        parameters.extend(self.target.iter().flat_map(to_parameters));
+        if let Recipe::Radial(_) = self.profile.recipe {
+            let alphas = self.ground.spread().len();
+            parameters.push(("alphas".into(), alphas.to_string()));
         }
         parameters.push(("jitter".into(), self.profile.jitter.to_string()));
         parameters.push(("steps".into(), self.steps.to_string()));
@@ -187,21 +186,4 @@ fn in_range(field: &'static str, value: u32, most: u32) -> Result<(), ForgeError
         value: value.to_string(),
         allowed: format!("1 to {most}"),
     })
-}
-
-/// The points of a curve as text, `nu power` separated by semicolons, in parts of moderate length.
-fn in_parts(target: &Target) -> Vec<String> {
-    let mut parts = vec![String::new()];
-    for [nu, power] in target.points() {
-        let point = format!("{nu} {power}");
-        match parts.last_mut() {
-            Some(part) if part.is_empty() => part.push_str(&point),
-            Some(part) if part.len() + point.len() < PARAMETER_BYTES => {
-                part.push_str("; ");
-                part.push_str(&point);
-            }
-            _ => parts.push(point),
-        }
-    }
-    parts
 }

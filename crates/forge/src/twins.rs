@@ -23,6 +23,31 @@ pub(crate) fn next_to_alpha(map: &Map) -> impl Iterator<Item = Twin> {
     })
 }
 
+/// Twins with fewer points have so few Bragg peaks that the mean power of a ring tells their
+/// speckle.
+pub(crate) const LARGE_TWIN: u64 = 65_000;
+/// Of so many large twins the farthest are looked for: for the default map, those of up to 200,000
+/// points. Still larger ones hardly reach farther.
+const LARGE_TWINS: usize = 40;
+
+/// Of the first large twins of a map, those with the least and the greatest α.
+pub(crate) fn farthest(map: &Map) -> Option<[Twin; 2]> {
+    let large = next_to_alpha(map).filter(|twin| twin.points() >= LARGE_TWIN);
+    let twins: Vec<Twin> = large.take(LARGE_TWINS).collect();
+    let least = twins
+        .iter()
+        .min_by(|a, b| fraction(a).total_cmp(&fraction(b)))?;
+    let greatest = twins
+        .iter()
+        .max_by(|a, b| fraction(a).total_cmp(&fraction(b)))?;
+    Some([*least, *greatest])
+}
+
+/// A twin's own α.
+pub(crate) fn fraction(twin: &Twin) -> f64 {
+    twin.p() as f64 / twin.q() as f64
+}
+
 /// The map for a twin's fraction, or `None` if its intervals are not this map's after all.
 pub(crate) fn of_fraction(map: &Map, twin: Twin) -> Option<Map> {
     let alpha = Alpha::from_fraction(twin.p(), twin.q()).ok()?;

@@ -1,13 +1,16 @@
 //! The shipped tables that follow a radial power curve: judged again on twins and windows that
 //! their makers never saw.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, sync::Arc};
 
-use strew_core::{Alpha, Table, Twin, table::Figures};
+use rayon::prelude::*;
+use strew_core::{
+    Alpha, Placement, Region, Sampler, Seed, Spacing, Table, Twin, Warp, table::Figures,
+};
 use strew_forge::{
     Job, Profile, Target, file_name, forge,
-    judge::{complaints, curve_figures, figures_of_torus, figures_of_window},
-    measure::{Spectrum, twin_set, window_set},
+    judge::{Figure, RING_WIDTH, complaints, curve_figures},
+    measure::{Crispness, Spectrum, Window, twin_set, window_set},
     read_table,
 };
 
@@ -27,26 +30,79 @@ fn profiles() -> impl Iterator<Item = (&'static Profile, Target)> {
     Profile::ALL.iter().filter_map(|p| Some((p, p.target()?)))
 }
 
+/// The figures that bounds of curves ask for.
+fn judged(subject: String, spectrum: &Spectrum, target: &Target) -> Figures {
+    let summary = spectrum.summary(RING_WIDTH);
+    let crispness = Crispness::of_rings(&spectrum.rings(RING_WIDTH), RING_WIDTH);
+    let own = [
+        (Figure::LowPower, summary.low_power),
+        (Figure::PeakPower, summary.peak_power),
+        (Figure::PeakNu, summary.peak_nu),
+        (Figure::NuEff, crispness.nu_eff),
+    ];
+    let mut values = curve_figures(spectrum, target);
+    values.extend(own.map(|(figure, value)| (figure.name().to_owned(), value)));
+    Figures {
+        subject,
+        values,
+        ..Figures::default()
+    }
+}
+
+/// Every twin of 65,000 to 200,000 points: all over the interval of α that the map serves.
+fn on_all_large_twins(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
+    let large = table.map().twins().take_while(|t| t.points() <= 200_000);
+    let large: Vec<Twin> = large.filter(|t| t.points() >= 65_000).collect();
+    assert!(large.len() > 30);
+    let measure = |twin: Twin| {
+        let set = twin_set(table, twin).expect("a twin");
+        let spectrum = Spectrum::of_torus(&set, 4.0);
+        (judged(format!("twin {twin}"), &spectrum, target), spectrum)
+    };
+    large.into_par_iter().map(measure).collect()
+}
+
+/// Windows of the unbounded pattern, and a region as it is served with a seed.
+fn on_windows(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
+    let windows =
+        [100, 101].map(|seed| (format!("window {seed}"), window_set(table, 75_000, seed)));
+    let warped = [3, 4].map(|seed| (format!("warped, seed {seed}"), warped(table, seed)));
+    let measure = |(name, set)| {
+        let spectrum = Spectrum::of_window(&set, 4.0);
+        (judged(name, &spectrum, target), spectrum)
+    };
+    windows.into_iter().chain(warped).map(measure).collect()
+}
+
+/// 300² mean spacings with the warp on, somewhere off the origin.
+fn warped(table: &Table, seed: u64) -> Window {
+    let sampler = Arc::new(Sampler::new(table.clone()));
+    let (side, corner) = (300.0, 1000.0 * seed as f64);
+    let region = Region::new([corner; 2], [corner + side; 2]).expect("ordered");
+    let spacing = Spacing::new(1.0).expect("valid");
+    let placement = Placement::new(spacing, Seed(seed)).with_warp(Warp::ON);
+    let plan = sampler.plan(placement, region).expect("near");
+    let mut points = vec![[0.0; 2]; plan.count() as usize];
+    plan.blocks_f64().fill(&mut points);
+    let moved = points.iter().map(|p| p.map(|v| v - corner));
+    Window::new(side, 1.0, moved.collect())
+}
+
 #[test]
-fn shipped_tables_follow_their_curves_on_unseen_twins_and_windows() {
+fn shipped_tables_follow_their_curves_on_all_large_twins_and_windows() {
     for (profile, target) in profiles() {
         let table = shipped(profile);
-        let with = |mut figures: Figures, spectrum: &Spectrum| {
-            figures.values.extend(curve_figures(spectrum, &target));
-            figures
-        };
-        let mut all = Vec::new();
-        // 70,225 points each or more; none of them is in the forge's own panel.
-        for (t, q) in [(265, 418), (329, 519)] {
-            let twin = Twin::new(t + q, q).expect("coprime");
-            let set = twin_set(&table, twin).expect("a twin");
-            let figures = figures_of_torus(format!("twin {twin}"), false, &set, 4.0);
-            all.push(with(figures, &Spectrum::of_torus(&set, 4.0)));
+        let mut all = on_all_large_twins(&table, &target);
+        all.extend(on_windows(&table, &target));
+        if profile.name == "pink" {
+            // From 4 and more at nu 0.1, however that is read.
+            for (figures, spectrum) in &all {
+                let rings = spectrum.rings(0.1);
+                assert!(rings[1].power >= 4.0, "{}: {:?}", figures.subject, rings[1]);
+            }
         }
-        let set = window_set(&table, 75_000, 100);
-        let figures = figures_of_window("window".into(), false, &set, 4.0);
-        all.push(with(figures, &Spectrum::of_window(&set, 4.0)));
-        let wrong = complaints(profile.bounds, &all);
+        let figures: Vec<Figures> = all.into_iter().map(|(figures, _)| figures).collect();
+        let wrong = complaints(profile.bounds, &figures);
         assert!(wrong.is_empty(), "{}: {wrong:#?}", profile.name);
     }
 }

@@ -50,13 +50,8 @@ fn described(operation: &Operation) -> Value {
         required: true,
     });
     let parameters: Vec<Value> = in_path
-        .map(|given| told("path", &given))
-        .chain(
-            operation
-                .parameters
-                .iter()
-                .map(|given| told("query", given)),
-        )
+        .map(|given| told("path", &given, true))
+        .chain(in_query(&operation.parameters))
         .collect();
     let mut responses = Map::new();
     for answer in &operation.answers {
@@ -85,7 +80,20 @@ fn described(operation: &Operation) -> Value {
     told
 }
 
-fn told(place: &str, given: &Given) -> Value {
+/// Of parameters that exclude each other, which their same words about what is allowed tell, only
+/// the first has an example: examples are in order together.
+fn in_query(all: &[Given]) -> Vec<Value> {
+    let is_first = |at: usize, given: &Given| {
+        let same = |other: &Given| other.parameter.allowed == given.parameter.allowed;
+        !all[..at].iter().any(same)
+    };
+    let numbered = all.iter().enumerate();
+    numbered
+        .map(|(at, given)| told("query", given, is_first(at, given)))
+        .collect()
+}
+
+fn told(place: &str, given: &Given, with_example: bool) -> Value {
     let Parameter {
         name,
         about,
@@ -95,14 +103,17 @@ fn told(place: &str, given: &Given) -> Value {
         shape,
     } = given.parameter;
     let default = default.map_or_else(String::new, |default| format!(" Default: {default}."));
-    json!({
+    let mut told = json!({
         "name": name,
         "in": place,
         "required": given.required,
         "description": format!("{about} Allowed: {allowed}.{default}"),
         "schema": schema(*shape),
-        "example": sample(*shape, example),
-    })
+    });
+    if with_example {
+        told["example"] = sample(*shape, example);
+    }
+    told
 }
 
 /// The JSON Schema of a parameter's values, as they are once read.

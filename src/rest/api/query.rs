@@ -55,7 +55,7 @@ fn set() -> Map<String, Value> {
 pub(super) fn schema() -> Value {
     let mut properties = set();
     properties.extend(members(&[
-        "offset", "limit", "cursor", "format", "decimals",
+        "offset", "limit", "cursor", "format", "decimals", "size",
     ]));
     properties.insert("region".into(), reference("Region"));
     let layers = json!({

@@ -85,7 +85,10 @@ function section(path, method, operation, api) {
 function show(api) {
   document.getElementById("version").textContent = api.info.version;
   document.getElementById("about").textContent = api.info.description;
-  for (const [path, item] of Object.entries(api.paths)) {
+  // What is asked for most comes first; the parts of this page need no telling.
+  const rank = ([path]) => (path.startsWith("/v1/") ? 0 : 1);
+  const paths = Object.entries(api.paths).filter(([path]) => !path.startsWith("/docs/"));
+  for (const [path, item] of paths.sort((a, b) => rank(a) - rank(b))) {
     for (const [name, operation] of Object.entries(item)) {
       const method = name.toUpperCase();
       document.getElementById("contents").append(make("a", { href: `#${operation.operationId}` },

@@ -16,7 +16,6 @@ use arrow_schema::{DataType, Field, Metadata};
 use super::{
     EncodeError,
     head::Head,
-    members::write_json,
     rows::Batch,
     schema::{Kind, Schema, Values},
 };
@@ -115,16 +114,7 @@ impl Batches {
     }
 }
 
-/// What an answer says about itself: `strew.query` and `strew.table` as JSON, and `strew.count`.
-pub(super) fn metadata(head: &Head) -> Metadata {
-    fn json(value: &impl serde::Serialize) -> String {
-        let mut out = vec![];
-        write_json(value, &mut out);
-        String::from_utf8_lossy(&out).into_owned()
-    }
-    Metadata::from([
-        ("strew.query", json(&head.query)),
-        ("strew.table", json(&head.tables.content())),
-        ("strew.count", head.count.to_string()),
-    ])
+/// What an answer says about itself, by name: query and table as JSON, and the count.
+fn metadata(head: &Head) -> Metadata {
+    Metadata::from(head.entries())
 }

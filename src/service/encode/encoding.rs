@@ -23,13 +23,17 @@ pub enum Encoding {
     Ply,
     /// An Arrow IPC stream.
     Arrow,
+    /// A picture in pixels.
+    Png,
+    /// A picture of circles.
+    Svg,
     /// A Parquet file; only for files, not by any door.
     Parquet,
 }
 
 impl Encoding {
     /// All formats that are streamed: all but Parquet, which is for files.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Json,
         Self::Ndjson,
         Self::Csv,
@@ -40,6 +44,8 @@ impl Encoding {
         Self::Npy,
         Self::Ply,
         Self::Arrow,
+        Self::Png,
+        Self::Svg,
     ];
 
     /// The name in queries.
@@ -56,6 +62,8 @@ impl Encoding {
             Self::Npy => "npy",
             Self::Ply => "ply",
             Self::Arrow => "arrow",
+            Self::Png => "png",
+            Self::Svg => "svg",
             Self::Parquet => "parquet",
         }
     }
@@ -82,6 +90,8 @@ impl Encoding {
             Self::Npy => "application/x-npy",
             Self::Ply => "application/ply",
             Self::Arrow => "application/vnd.apache.arrow.stream",
+            Self::Png => "image/png",
+            Self::Svg => "image/svg+xml",
             Self::Parquet => "application/vnd.apache.parquet",
         }
     }
@@ -90,9 +100,26 @@ impl Encoding {
     #[must_use]
     pub const fn is_text(self) -> bool {
         match self {
-            Self::Json | Self::Ndjson | Self::Csv | Self::Geojson | Self::Geojsonseq => true,
-            Self::F32 | Self::F64 | Self::Npy | Self::Ply | Self::Arrow | Self::Parquet => false,
+            Self::Json
+            | Self::Ndjson
+            | Self::Csv
+            | Self::Geojson
+            | Self::Geojsonseq
+            | Self::Svg => true,
+            Self::F32
+            | Self::F64
+            | Self::Npy
+            | Self::Ply
+            | Self::Arrow
+            | Self::Png
+            | Self::Parquet => false,
         }
+    }
+
+    /// Whether it is a picture.
+    #[must_use]
+    pub const fn is_picture(self) -> bool {
+        matches!(self, Self::Png | Self::Svg)
     }
 
     /// The names of the formats that some test holds for, for an error.

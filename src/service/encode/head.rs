@@ -3,7 +3,7 @@
 use serde::Serialize;
 use strew_core::ALGORITHM_VERSION;
 
-use super::Output;
+use super::{Output, members::write_json};
 use crate::service::{Entry, Planned, query::Resolved};
 
 /// The head of a document, or its summary.
@@ -35,6 +35,8 @@ pub(super) struct QueryEcho {
     decimals: Option<u8>,
     #[serde(skip_serializing_if = "Option::is_none")]
     relative_to: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    size: Option<u32>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -47,6 +49,20 @@ pub(super) struct TableEcho {
 }
 
 impl Head {
+    /// What formats with room for named texts hold: query and table as JSON, and the count.
+    pub(super) fn entries(&self) -> [(&'static str, String); 3] {
+        fn json(value: &impl Serialize) -> String {
+            let mut out = vec![];
+            write_json(value, &mut out);
+            String::from_utf8_lossy(&out).into_owned()
+        }
+        [
+            ("strew.query", json(&self.query)),
+            ("strew.table", json(&self.tables.content())),
+            ("strew.count", self.count.to_string()),
+        ]
+    }
+
     pub(super) fn new(planned: &Planned, output: &Output, count: u128) -> Self {
         let mut echoes = planned.sets.iter().map(|set| TableEcho::new(&set.entry));
         let tables = match echoes.next() {
@@ -59,6 +75,7 @@ impl Head {
                 format: output.encoding.name(),
                 decimals: output.decimals,
                 relative_to: output.relative_to,
+                size: output.encoding.is_picture().then_some(output.size),
             },
             tables,
             count,

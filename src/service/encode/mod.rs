@@ -8,6 +8,7 @@
 mod arrow;
 mod batches;
 mod buffer;
+mod canvas;
 mod csv;
 mod encoding;
 mod geojson;
@@ -21,11 +22,14 @@ mod output;
 mod packed;
 mod parquet;
 mod ply;
+mod png;
+pub mod preview;
 mod records;
 pub mod rows;
 #[cfg(test)]
 mod sample_rows;
 pub mod schema;
+mod svg;
 mod text;
 
 use std::fmt;
@@ -33,9 +37,10 @@ use std::fmt;
 use bytes::Bytes;
 use strew_core::{Plan, sample};
 
-use super::{Error, Planned};
+use super::{Error, Fault, Planned};
 use head::Head;
 use members::Members;
+use preview::Frame;
 use records::{Layout, Records};
 use rows::Coordinates;
 use text::{TextBlocks, TextFormat};
@@ -107,6 +112,7 @@ impl Answer {
         block_bytes: usize,
     ) -> Result<Self, Error> {
         let coordinates = Coordinates::of(output, &parts);
+        let frame = Frame::new(&parts, output.size);
         let rows = Rows::new(parts, coordinates);
         let head = Head::new(planned, output, rows.count());
         let members = || Members::new(&rows, output);
@@ -115,6 +121,26 @@ impl Answer {
             Encoding::F64 => (Layout::F64, None),
             Encoding::Npy => (Layout::F64, Some(npy::head(&rows))),
             Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head))),
+            Encoding::Png => {
+                return Ok(Self {
+                    head: None,
+                    size: None,
+                    origin: None,
+                    plain: None,
+                    blocks: Box::new(png::Png::new(rows, head, frame, block_bytes)),
+                });
+            }
+            Encoding::Svg => {
+                let most = svg::MOST_POINTS;
+                if rows.count() > most.into() {
+                    let detail = format!("the answer has {} points", rows.count());
+                    let allowed = format!("svg for at most {most} points; png for any number");
+                    let fault = Fault::new("format", "svg", detail, allowed);
+                    return Err(Error::Invalid(vec![fault]));
+                }
+                let format = svg::Svg::new(&rows, head, frame, output.decimals);
+                return Ok(Self::of_text(rows, format, block_bytes));
+            }
             Encoding::Arrow => {
                 return Self::of_columns(rows, |rows| arrow::Arrow::new(rows, &head, block_bytes));
             }

@@ -1,6 +1,9 @@
 //! How an answer is to look: the format and its options.
 
-use super::Encoding;
+use super::{
+    Encoding,
+    preview::{DEFAULT_SIZE, LEAST_SIZE, MOST_SIZE, SIZE},
+};
 use crate::service::{Error, Fault};
 
 /// More decimals than this say nothing: an `f64` has 17 significant digits.
@@ -16,6 +19,8 @@ pub struct Options {
     pub encoding: Option<Encoding>,
     /// Decimals of numbers in text formats.
     pub decimals: Option<u8>,
+    /// The longer side of a picture, in pixels.
+    pub size: Option<u32>,
 }
 
 impl Options {
@@ -25,24 +30,31 @@ impl Options {
     /// [`Error::Invalid`] if an option is out of range or means nothing in that format.
     pub fn output(self, encoding: Encoding) -> Result<Output, Error> {
         let mut faults = vec![];
-        if let Some(decimals) = self.decimals {
-            let fault = |detail: String, allowed| Fault::new("decimals", decimals, detail, allowed);
-            if decimals > MOST_DECIMALS {
-                faults.push(fault("it is out of range".into(), DECIMALS.into()));
-            }
-            if !encoding.is_text() {
-                let allowed = Encoding::names_where(Encoding::is_text);
-                faults.push(fault(
-                    format!("it means nothing in the format {}", encoding.name()),
-                    format!("the formats {allowed}"),
-                ));
-            }
+        let mut check =
+            |name: &str, value: u32, range: bool, fits: fn(Encoding) -> bool, allowed| {
+                if !range {
+                    faults.push(Fault::new(name, value, "it is out of range", allowed));
+                }
+                if !fits(encoding) {
+                    let detail = format!("it means nothing in the format {}", encoding.name());
+                    let allowed = format!("the formats {}", Encoding::names_where(fits));
+                    faults.push(Fault::new(name, value, detail, allowed));
+                }
+            };
+        if let Some(n) = self.decimals {
+            let range = n <= MOST_DECIMALS;
+            check("decimals", n.into(), range, Encoding::is_text, DECIMALS);
+        }
+        if let Some(n) = self.size {
+            let range = (LEAST_SIZE..=MOST_SIZE).contains(&n);
+            check("size", n, range, Encoding::is_picture, SIZE);
         }
         if !faults.is_empty() {
             return Err(Error::Invalid(faults));
         }
         Ok(Output {
             decimals: self.decimals,
+            size: self.size.unwrap_or(DEFAULT_SIZE),
             ..Output::new(encoding)
         })
     }
@@ -58,6 +70,8 @@ pub struct Output {
     /// The point that coordinates are relative to; by default the world's origin, in `f32` the
     /// region's lower corner.
     pub relative_to: Option<[f64; 2]>,
+    /// The longer side of a picture, in pixels.
+    pub size: u32,
 }
 
 impl Output {
@@ -68,6 +82,7 @@ impl Output {
             encoding,
             decimals: None,
             relative_to: None,
+            size: DEFAULT_SIZE,
         }
     }
 }

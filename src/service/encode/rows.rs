@@ -60,8 +60,8 @@ impl Coordinates {
         };
         match (output.encoding, output.relative_to) {
             (Encoding::F32, origin) => Self::Near(origin.unwrap_or_else(corner)),
-            (_, Some(origin)) => Self::Relative(origin),
-            (_, None) => Self::World,
+            (encoding, Some(origin)) if !encoding.is_picture() => Self::Relative(origin),
+            _ => Self::World,
         }
     }
 

@@ -18,7 +18,10 @@ use super::{
 };
 use crate::service::{
     Encoding, Error, Fault,
-    encode::{DECIMALS, MOST_DECIMALS, Options},
+    encode::{
+        DECIMALS, MOST_DECIMALS, Options,
+        preview::{LEAST_SIZE, MOST_SIZE, SIZE},
+    },
 };
 use reader::Reader;
 
@@ -103,6 +106,14 @@ pub fn read_body(bytes: &[u8]) -> Result<Body, Error> {
                 reader.fault("decimals", &n.to_string(), "it is out of range", DECIMALS);
             }
             decimals
+        }),
+        size: reader.integer("size", SIZE).and_then(|n| {
+            let sizes = LEAST_SIZE..=MOST_SIZE;
+            let size = u32::try_from(n).ok().filter(|n| sizes.contains(n));
+            if size.is_none() {
+                reader.fault("size", &n.to_string(), "it is out of range", SIZE);
+            }
+            size
         }),
     };
     Ok(Body {

@@ -12,7 +12,10 @@ use super::{
 };
 use crate::service::{
     Encoding,
-    encode::{DECIMALS, MOST_DECIMALS},
+    encode::{
+        DECIMALS, MOST_DECIMALS,
+        preview::{LEAST_SIZE, MOST_SIZE, SIZE},
+    },
 };
 
 /// A parameter of an address.
@@ -291,6 +294,17 @@ pub const PARAMETERS: &[Parameter] = &[
         },
         default: Some("the shortest digits that read back"),
         example: "3",
+    },
+    Parameter {
+        name: "size",
+        about: "The longer side of a picture in pixels, for png and svg.",
+        allowed: SIZE,
+        shape: Shape::Integer {
+            min: LEAST_SIZE as i64,
+            max: MOST_SIZE as u64,
+        },
+        default: Some("512"),
+        example: "256",
     },
     Parameter {
         name: "at",

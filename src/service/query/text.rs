@@ -17,7 +17,10 @@ use super::{
 };
 use crate::service::{
     Catalog, Encoding, Entry, Error, Fault,
-    encode::{DECIMALS, MOST_DECIMALS, Options},
+    encode::{
+        DECIMALS, MOST_DECIMALS, Options,
+        preview::{LEAST_SIZE, MOST_SIZE, SIZE},
+    },
 };
 
 /// Text parameters by name, each at most once.
@@ -318,10 +321,12 @@ impl Parameters {
         let format =
             |text: &str| Encoding::from_name(text).ok_or_else(|| no_format("format", text));
         let encoding = self.get("format").map(format).transpose();
-        let decimals = |text: &str| text.parse().ok().filter(|n| *n <= MOST_DECIMALS);
+        let decimals = |text: &str| integer(text).filter(|n| *n <= MOST_DECIMALS);
+        let size = |text: &str| integer(text).filter(|n| (LEAST_SIZE..=MOST_SIZE).contains(n));
         Options {
             encoding: faults.take(encoding).flatten(),
             decimals: self.read("decimals", DECIMALS, decimals, faults),
+            size: self.read("size", SIZE, size, faults),
         }
     }
 }
@@ -348,7 +353,7 @@ const REGION: [&str; 3] = ["bbox", "circle", "polygon"];
 /// The parameters that say which of the points.
 const WINDOW: [&str; 3] = ["offset", "limit", "cursor"];
 /// The parameters that say how the answer looks.
-const OUTPUT: [&str; 2] = ["format", "decimals"];
+const OUTPUT: [&str; 3] = ["format", "decimals", "size"];
 
 /// The box `min_x,min_y,max_x,max_y` of a text, as far as it is four numbers.
 ///

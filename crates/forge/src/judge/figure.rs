@@ -208,17 +208,26 @@ pub struct Complaint {
     pub value: f64,
 }
 
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::AtMost => "at most",
+            Self::AtLeast => "at least",
+        })
+    }
+}
+
 impl fmt::Display for Complaint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let relation = match self.bound.side {
-            Side::AtMost => "at most",
-            Side::AtLeast => "at least",
-        };
-        let (name, limit) = (self.bound.figure.name(), self.bound.limit);
-        let (subject, value) = (&self.subject, self.value);
+        let Bound {
+            figure,
+            side,
+            limit,
+        } = self.bound;
+        let (name, subject, value) = (figure.name(), &self.subject, self.value);
         write!(
             f,
-            "{name} on {subject} is {value}; it must be {relation} {limit}"
+            "{name} on {subject} is {value}; it must be {side} {limit}"
         )
     }
 }

@@ -19,13 +19,11 @@ use crate::{
     measure::{Spectrum, twin_set, window_set},
     optimize::Meter,
     profile::Target,
-    twins::next_to_alpha,
+    twins::{LARGE_TWIN, farthest, next_to_alpha},
 };
 
 /// The least number of points of a twin that a table is judged on.
 pub const JUDGED_POINTS: u64 = 50_000;
-/// Smaller twins have so few Bragg peaks that the mean over a ring tells their speckle.
-const CURVE_POINTS: u64 = 70_000;
 /// How many points a window has, about.
 const WINDOW_POINTS: u64 = 80_000;
 /// Where the windows are: any places will do.
@@ -70,11 +68,17 @@ impl Panel {
         }
     }
 
-    /// Compares the radial power with a curve besides, on twins of enough points for it.
+    /// Compares the radial power with a curve besides, on twins of enough points for it, and on
+    /// those of `map` farthest from its α, where a curve is missed first.
     #[must_use]
-    pub fn with_target(mut self, target: Target) -> Self {
+    pub fn with_target(mut self, target: Target, map: &Map) -> Self {
         self.target = Some(target);
-        self.unseen.retain(|twin| twin.points() >= CURVE_POINTS);
+        self.unseen.retain(|twin| twin.points() >= LARGE_TWIN);
+        for twin in farthest(map).into_iter().flatten() {
+            if !self.unseen.contains(&twin) && !self.seen.contains(&twin) {
+                self.unseen.push(twin);
+            }
+        }
         self
     }
 

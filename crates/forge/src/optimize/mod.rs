@@ -4,14 +4,15 @@ mod descent;
 mod overlap;
 mod pairs;
 mod radial;
+mod rings;
 mod sets;
 mod start;
 mod watch;
 
 pub use descent::{Descended, Descent};
 pub use pairs::Pairs;
-pub(crate) use radial::excess;
 pub use radial::{Radial, RadialWeights, Reach};
+pub(crate) use rings::excess;
 pub use sets::Sets;
 pub use start::{SplitMix, jitter};
 pub use watch::{Meter, Progress, Stage, Watch};

@@ -17,7 +17,7 @@ use crate::energy::PairEnergy;
 
 /// Pairs are evaluated in groups of this many, so that the compiler can vectorize; it also fixes
 /// the order of summation.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 /// Blocks per parallel task. It fixes the order of summation too, so it is part of the result.
 pub(super) const CHUNK: usize = 64;
 /// A list of pairs holds those up to cut-off + this, in mean spacings, and stays valid until some

@@ -6,6 +6,7 @@
 
 mod correlation;
 mod gaussian;
+mod history;
 mod lloyd;
 mod pattern;
 mod pieces;
@@ -15,6 +16,8 @@ mod target;
 
 pub use correlation::LeastCorrelation;
 pub use gaussian::GaussianRecipe;
+pub use history::Aim;
+pub(crate) use history::to_parameters;
 pub use lloyd::LloydRecipe;
 pub use radial::RadialRecipe;
 pub use spacing::{Push, SpacingRecipe};

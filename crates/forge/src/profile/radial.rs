@@ -7,7 +7,7 @@ use crate::{
     energy::Gaussian,
     ground::Ground,
     judge::{Bound, Figure},
-    optimize::{Descent, Objective, Pairs, Radial, RadialWeights, Reach},
+    optimize::{Descent, Objective, Pairs, Radial, RadialWeights},
 };
 
 /// Parameters of [`Recipe::Radial`].
@@ -43,15 +43,15 @@ impl RadialRecipe {
         named(&parameters)
     }
 
-    /// All steps, on the unbounded pattern of α: its pairs have exact frequencies too, and those
-    /// that occur in twins alone are too few to show in a spectrum.
+    /// All steps, on unbounded patterns: that of α, whose pairs have exact frequencies too, and for
+    /// the curve also those of other α of the same map, so that it holds on every twin.
     pub(super) fn phases(&self, ground: &Ground, target: &Target, steps: u32) -> Vec<Phase> {
         let warm = (self.warm_share * f64::from(steps)) as u32;
         let map = slice::from_ref(&ground.map);
         let repulsion: Box<dyn Objective> =
             Box::new(Pairs::new(Gaussian::new(1.0), map, ground.scale()));
-        let pairs = Pairs::new(Reach(self.weights.reach), map, ground.scale());
-        let curve: Box<dyn Objective> = Box::new(Radial::new(pairs, target, &self.weights));
+        let curve: Box<dyn Objective> =
+            Box::new(Radial::new(&ground.spread(), target, &self.weights));
         let phase = |objective, steps, rate| Phase {
             objective,
             descent: Descent { steps, rate },
@@ -93,7 +93,7 @@ pub(super) const STEP: Profile = Profile {
     jitter: 0.7,
     steps: 250,
     bounds: &[
-        Bound::at_most(Figure::QuietPower, 2e-4),
+        Bound::at_most(Figure::QuietPower, 5e-4),
         Bound::at_most(Figure::TailWorst, 0.05),
         Bound::at_most(Figure::TargetRms, 0.03),
     ],
@@ -106,12 +106,15 @@ pub(super) const GREEN: Profile = Profile {
     summary: "Green noise: silent up to nu 0.42, a broad peak at 0.62, flat from 0.9 on",
     recipe: Recipe::Radial(RadialRecipe {
         curve: &[[0.0, 0.0], [0.42, 0.0], [0.62, 3.0], [0.9, 1.0]],
-        weights: WEIGHTS,
+        weights: RadialWeights {
+            quiet: 0.8,
+            ..WEIGHTS
+        },
         warm_share: 0.0,
         rate: 0.05,
     }),
     jitter: 0.7,
-    steps: 150,
+    steps: 200,
     bounds: &[
         Bound::at_most(Figure::QuietPower, 0.01),
         Bound::at_least(Figure::PeakPower, 2.5),
@@ -121,73 +124,92 @@ pub(super) const GREEN: Profile = Profile {
     ],
 };
 
-/// Power falls as ν^(−3/4), from 5.1 at ν = 0.08 to 1 at 0.7: clusters of all sizes.
+/// Power falls as 1/ν, from 5.5 at ν = 0.127 to 1 at 0.7: clusters of all sizes.
 pub(super) const PINK: Profile = Profile {
     name: "pink",
-    summary: "Pink noise: power falls as nu^(-3/4) to 1 at nu 0.7, flat beyond",
+    summary: "Pink noise: power falls as 1/nu from 5.5 at nu 0.127 to 1 at nu 0.7, flat beyond",
     recipe: Recipe::Radial(RadialRecipe {
         curve: &[
-            [0.08, 5.088],
-            [0.1, 4.304],
-            [0.12, 3.754],
-            [0.15, 3.175],
-            [0.2, 2.559],
-            [0.25, 2.165],
-            [0.3, 1.888],
-            [0.35, 1.682],
-            [0.4, 1.522],
-            [0.45, 1.393],
-            [0.5, 1.287],
-            [0.55, 1.198],
-            [0.6, 1.123],
-            [0.65, 1.057],
+            [0.1, 5.5],
+            [0.1273, 5.5],
+            [0.145, 4.8276],
+            [0.16, 4.375],
+            [0.18, 3.8889],
+            [0.2, 3.5],
+            [0.225, 3.1111],
+            [0.25, 2.8],
+            [0.28, 2.5],
+            [0.31, 2.2581],
+            [0.35, 2.0],
+            [0.4, 1.75],
+            [0.45, 1.5556],
+            [0.5, 1.4],
+            [0.56, 1.25],
+            [0.63, 1.1111],
             [0.7, 1.0],
         ],
-        weights: WEIGHTS,
+        weights: RadialWeights {
+            leash: 3.0,
+            ..WEIGHTS
+        },
         warm_share: 0.0,
-        rate: 0.02,
+        rate: 0.05,
     }),
     jitter: 0.7,
-    steps: 150,
+    steps: 250,
     bounds: &[
         Bound::at_most(Figure::TargetRelative, 0.1),
         Bound::at_most(Figure::TailWorst, 0.1),
     ],
 };
 
-/// No power up to ν = 0.68, one peak, a shallow dip, flat from 2 on: quiet
-/// farther out than a step can be, without the oscillations of sharper sets.
+/// No power up to ν = 0.67, one peak, a shallow dip, flat from 1.9 on: quiet farther out than a step
+/// can be, without the oscillations of sharper sets. The curve is one that sets can have: drawn
+/// steeper, it is missed by 0.1, or power comes back at low frequencies.
 pub(super) const SINGLE_PEAK: Profile = Profile {
     name: "single-peak",
-    summary: "Single-peak blue noise: no power up to nu 0.68, one peak, next to flat from nu 1.25 on",
+    summary: "Single-peak blue noise: no power up to nu 0.67, one peak, a shallow dip, flat from nu 1.9 on",
     recipe: Recipe::Radial(RadialRecipe {
         curve: &[
             [0.0, 0.0],
-            [0.68, 0.0],
-            [0.76, 0.3],
-            [0.87, 1.15],
-            [0.95, 1.8],
-            [1.06, 1.75],
-            [1.15, 1.4],
-            [1.25, 1.03],
-            [1.34, 0.86],
-            [1.46, 0.86],
-            [1.7, 0.93],
-            [2.0, 1.0],
+            [0.668, 0.0],
+            [0.708, 0.04],
+            [0.749, 0.16],
+            [0.789, 0.38],
+            [0.83, 0.7],
+            [0.87, 1.09],
+            [0.911, 1.48],
+            [0.951, 1.82],
+            [0.992, 2.02],
+            [1.032, 2.07],
+            [1.073, 1.97],
+            [1.113, 1.77],
+            [1.154, 1.5],
+            [1.194, 1.21],
+            [1.235, 0.98],
+            [1.275, 0.84],
+            [1.316, 0.77],
+            [1.356, 0.75],
+            [1.417, 0.78],
+            [1.518, 0.86],
+            [1.619, 0.9],
+            [1.72, 0.93],
+            [1.822, 0.96],
+            [1.9, 1.0],
         ],
         weights: RadialWeights {
-            quiet: 1.0,
+            quiet: 1.5,
             ..WEIGHTS
         },
         warm_share: 0.3,
         rate: 0.05,
     }),
     jitter: 0.7,
-    steps: 500,
+    steps: 400,
     bounds: &[
         Bound::at_most(Figure::LowPower, 1e-3),
-        Bound::at_least(Figure::NuEff, 0.8),
-        Bound::at_most(Figure::TargetRms, 0.05),
+        Bound::at_least(Figure::NuEff, 0.81),
+        Bound::at_most(Figure::TargetRms, 0.035),
     ],
 };
 

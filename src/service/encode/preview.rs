@@ -1,0 +1,113 @@
+//! What pictures of an answer have in common: where a point lies in them, how large its dot is, and
+//! in which color.
+//!
+//! y points up, as on a map. The longer side of what is asked for has the size wanted, the shorter
+//! follows. Dots have a quarter of the mean spacing as radius, within bounds, so that a few points
+//! are seen and many do not run together before they must.
+
+use super::{
+    rows::{Part, Row},
+    schema::{Kind, Schema},
+};
+
+/// The longer side of a picture, in pixels, if nothing else is asked for.
+pub const DEFAULT_SIZE: u32 = 512;
+/// The smallest longer side.
+pub const LEAST_SIZE: u32 = 16;
+/// The largest longer side: a picture is held while it is drawn, a byte for each pixel.
+pub const MOST_SIZE: u32 = 4096;
+/// What `size` may be.
+pub const SIZE: &str = "an integer from 16 to 4096";
+
+/// The colors of Okabe and Ito (2008), told apart with any color vision; the faintest last.
+pub(super) const COLORS: [[u8; 3]; 8] = [
+    [0x00, 0x00, 0x00],
+    [0xe6, 0x9f, 0x00],
+    [0x56, 0xb4, 0xe9],
+    [0x00, 0x9e, 0x73],
+    [0xd5, 0x5e, 0x00],
+    [0x00, 0x72, 0xb2],
+    [0xcc, 0x79, 0xa7],
+    [0xf0, 0xe4, 0x42],
+];
+
+/// Where points lie in a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Frame {
+    /// Pixels from left to right.
+    pub(super) width: u32,
+    /// Pixels from top to bottom.
+    pub(super) height: u32,
+    /// The radius of a dot in pixels.
+    pub(super) radius: f64,
+    left: f64,
+    top: f64,
+    scale: f64,
+}
+
+impl Frame {
+    /// A picture of the regions of some parts, so many pixels on the longer side.
+    pub(super) fn new(parts: &[Part], size: u32) -> Self {
+        let (mut min, mut max) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for region in parts.iter().map(|part| part.plan.region()) {
+            for axis in 0..2 {
+                min[axis] = min[axis].min(region.min()[axis]);
+                max[axis] = max[axis].max(region.max()[axis]);
+            }
+        }
+        // Without any part, a picture of nothing.
+        let (width, height) = (max[0] - min[0], max[1] - min[1]);
+        let longer = width.max(height);
+        let pixels = |side: f64| ((f64::from(size) * (side / longer)).round() as u32).max(1);
+        let scale = f64::from(size) / longer;
+        let count: u128 = parts.iter().map(|part| part.plan.count()).sum();
+        let (width, height) = (pixels(width).min(size), pixels(height).min(size));
+        let spacing = (f64::from(width) * f64::from(height) / count.max(1) as f64).sqrt();
+        Self {
+            width,
+            height,
+            radius: (spacing / 4.0).clamp(0.5, f64::from(size) / 128.0 + 0.5),
+            left: min[0],
+            top: max[1],
+            scale,
+        }
+    }
+
+    /// The place of a point in pixels from the upper left corner.
+    pub(super) fn place(&self, row: Row<'_>) -> [f64; 2] {
+        [
+            (row.point.x - self.left) * self.scale,
+            (self.top - row.point.y) * self.scale,
+        ]
+    }
+}
+
+/// Which color a row has: that of its layer, else that of its first name, else black.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Coloring {
+    column: Option<usize>,
+    /// How many colors there are.
+    pub(super) colors: usize,
+}
+
+impl Coloring {
+    pub(super) fn new(schema: &Schema) -> Self {
+        let names = |kind: &Kind| match kind {
+            Kind::Number => None,
+            Kind::Dictionary(names) => Some(names.len()),
+        };
+        let mut columns = schema.columns().iter().enumerate();
+        let first = columns.find_map(|(i, column)| Some((i, names(&column.kind)?)));
+        Self {
+            column: first.map(|(i, _)| i),
+            colors: first.map_or(1, |(_, names)| names.clamp(1, COLORS.len())),
+        }
+    }
+
+    /// The number of a row's color. With more names than colors, they are used again.
+    pub(super) fn of(self, row: Row<'_>) -> usize {
+        let values = self.column.and_then(|column| row.columns.get(column));
+        let index = values.and_then(|values| values.index(row.index));
+        index.map_or(0, |index| index as usize % self.colors)
+    }
+}

@@ -1,0 +1,66 @@
+//! The API's description against the daemon, by a fuzzer that reads it (schemathesis): nothing it
+//! thinks of is a 5xx, and every answer is one that the description tells.
+
+use std::{process::Command, time::Instant};
+
+use crate::daemon::Daemon;
+
+/// What no description can know: which tables are loaded, and that parameters exclude each other.
+const NOT_TOLD: &str = "positive_data_acceptance";
+
+/// Queries of which many are in order, so that answers with points are looked at, too.
+const IN_ORDER: &str = r#"
+[parameters]
+bbox = "-1,-2,3,2"
+profile = "blue"
+alpha = "(5-sqrt(3))/2"
+map = "s"
+table = "985209040b65570b20f8b11cb6d95cad1d2260ad50bd5a1efb61251c18c8a075"
+"#;
+
+#[test]
+fn a_fuzzer_finds_no_breach_of_contract() {
+    let Ok(python) = std::env::var("STREW_TEST_PYTHON") else {
+        eprintln!("skipped: STREW_TEST_PYTHON names no Python with schemathesis");
+        return;
+    };
+    let fuzzer = || {
+        let mut command = Command::new(&python);
+        command.args(["-m", "schemathesis.cli"]);
+        command
+    };
+    if !fuzzer()
+        .arg("--version")
+        .output()
+        .is_ok_and(|output| output.status.success())
+    {
+        eprintln!("skipped: schemathesis is not installed");
+        return;
+    }
+    let daemon = Daemon::start(&["limits.max_points=100000"]);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let config = folder.path().join("in-order.toml");
+    std::fs::write(&config, IN_ORDER).expect("writable");
+    let start = Instant::now();
+    for in_order in [false, true] {
+        let mut command = fuzzer();
+        if in_order {
+            command.arg("--config-file").arg(&config);
+        }
+        let output = command
+            .args(["run", &daemon.url("/openapi.json"), "--no-color"])
+            .args(["--checks", "all", "--exclude-checks", NOT_TOLD])
+            .args(["--mode", "all", "--max-examples", "25"])
+            .args(["--seed", "1", "--generation-deterministic"])
+            .args(["--request-timeout", "10"])
+            // It keeps notes where it runs.
+            .current_dir(folder.path())
+            .output()
+            .expect("Python runs");
+        let report = String::from_utf8_lossy(&output.stdout);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{report}\n{errors}");
+    }
+    eprintln!("fuzzed for {:?}", start.elapsed());
+    assert_eq!(daemon.get("/livez").status, 200);
+}
