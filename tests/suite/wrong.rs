@@ -293,7 +293,7 @@ fn typed_cases() -> Vec<(StreamPointsRequest, Vec<&'static str>, Vec<&'static st
                 bbox: None,
                 ..base.clone()
             },
-            vec!["bbox"],
+            vec!["region"],
             vec!["missing"],
         ),
         (

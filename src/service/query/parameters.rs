@@ -264,7 +264,7 @@ pub const PARAMETERS: &[Parameter] = &[
         allowed: "the cursor of an earlier answer to the same query",
         shape: Shape::Pattern("^[0-9a-f]+$"),
         default: Some("the beginning"),
-        example: "",
+        example: "01000000000000000000000000000000000000290000000000000000000000000000005100000000000000000000000000000008000000000000000f000000000000007228ff94af7ec61562886f26",
     },
     Parameter {
         name: "table",

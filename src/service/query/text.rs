@@ -431,9 +431,10 @@ fn finite(text: &str) -> Option<f64> {
 /// What is wrong with a text that cannot be read.
 fn wrong(text: &str) -> &'static str {
     match text.parse::<f64>() {
-        Ok(value) if value.is_infinite() => "it is not finite",
+        Ok(value) if value.is_infinite() => "not finite",
         Ok(value) if !value.is_nan() => "it is not in the range allowed",
-        _ => "it is not what is allowed",
+        _ if text.contains(',') => "it is not such a list",
+        _ => "not a number",
     }
 }
 
