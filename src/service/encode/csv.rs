@@ -16,6 +16,8 @@ pub(super) struct Csv {
     /// The names of each column's dictionary, quoted where they need it.
     names: Vec<Vec<String>>,
     digits: Digits,
+    /// 1 if the first column is the layer, which comes before the id.
+    layered: usize,
 }
 
 impl Csv {
@@ -28,6 +30,7 @@ impl Csv {
         Self {
             names: names.collect(),
             digits: Digits::of(output.decimals),
+            layered: usize::from(schema.is_layered()),
             schema,
         }
     }
@@ -45,8 +48,7 @@ impl Csv {
 
 impl TextFormat for Csv {
     fn begin(&mut self, out: &mut Vec<u8>) {
-        let layered = usize::from(self.schema.is_layered());
-        let (layer, columns) = self.schema.columns().split_at(layered);
+        let (layer, columns) = self.schema.columns().split_at(self.layered);
         for column in layer {
             out.extend_from_slice(field(&column.name).as_bytes());
             out.push(b',');
@@ -60,8 +62,7 @@ impl TextFormat for Csv {
     }
 
     fn row(&mut self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
-        let layered = usize::from(self.schema.is_layered());
-        if layered > 0 {
+        if self.layered > 0 {
             self.value(0, row, out);
             out.push(b',');
         }
@@ -70,7 +71,7 @@ impl TextFormat for Csv {
         self.digits.write(row.point.x, out);
         out.push(b',');
         self.digits.write(row.point.y, out);
-        for column in layered..self.names.len() {
+        for column in self.layered..self.names.len() {
             out.push(b',');
             self.value(column, row, out);
         }

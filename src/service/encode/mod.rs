@@ -21,6 +21,7 @@ mod number;
 mod output;
 mod packed;
 mod parquet;
+pub mod part;
 mod ply;
 mod png;
 pub mod preview;
@@ -29,6 +30,7 @@ pub mod rows;
 #[cfg(test)]
 mod sample_rows;
 pub mod schema;
+mod shift;
 mod svg;
 mod text;
 
@@ -42,7 +44,6 @@ use head::Head;
 use members::Members;
 use preview::Frame;
 use records::{Layout, Records};
-use rows::Coordinates;
 use text::{TextBlocks, TextFormat};
 
 pub use buffer::Pool;
@@ -50,7 +51,8 @@ pub use encoding::Encoding;
 pub use number::{Digits, write_number};
 pub use output::{DECIMALS, MOST_DECIMALS, Options, Output};
 pub use packed::{Packed, Scalars};
-pub use rows::{Attributes, Part, Rows};
+pub use part::{Attributes, Part};
+pub use rows::{Batch, Coordinates, Row, Rows};
 pub use schema::{Column, LAYER, Schema, Values};
 pub use text::{id_text, write_id};
 

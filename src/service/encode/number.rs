@@ -4,6 +4,7 @@ use std::io::Write as _;
 
 /// Writes the shortest digits that read back to the same number. It must be finite, as every
 /// coordinate is; then the text is a valid number in JSON.
+#[inline]
 pub fn write_number(value: f64, out: &mut Vec<u8>) {
     out.extend_from_slice(zmij::Buffer::new().format_finite(value).as_bytes());
 }
@@ -25,6 +26,7 @@ impl Digits {
     }
 
     /// Writes a finite number.
+    #[inline]
     pub fn write(self, value: f64, out: &mut Vec<u8>) {
         match self {
             Self::Shortest => write_number(value, out),
@@ -34,7 +36,8 @@ impl Digits {
 }
 
 /// A number is m·2^e, so m·10^decimals is an exact integer of at most 53 + 57 bits, and rounding it
-/// by −e bits is all there is to do.
+/// by −e bits is all there is to do. Apart, so that the other way stays small where it is inlined.
+#[inline(never)]
 fn write_fixed(value: f64, decimals: u8, out: &mut Vec<u8>) {
     let bits = value.to_bits();
     let (exponent, fraction) = ((bits >> 52) & 0x7ff, bits & ((1 << 52) - 1));

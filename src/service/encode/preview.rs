@@ -6,7 +6,8 @@
 //! are seen and many do not run together before they must.
 
 use super::{
-    rows::{Part, Row},
+    part::Part,
+    rows::Row,
     schema::{Kind, Schema},
 };
 

@@ -1,0 +1,148 @@
+//! The parts of an answer, and how one is walked: its points, and where each column's values come
+//! from.
+
+use std::{fmt, sync::Arc};
+
+use strew_core::{
+    Plan, Point,
+    sample::{Blocks, F32, Points},
+};
+
+use super::{
+    rows::Coordinates,
+    schema::{Column, Kind, Schema, Values},
+    shift::Shift,
+};
+
+/// What gives the points of a part their further values.
+pub trait Attributes: fmt::Debug + Send + Sync {
+    /// The columns, each with another name.
+    fn columns(&self) -> Vec<Column>;
+
+    /// Appends a value for each point to each of the columns' values. They come empty, one for
+    /// each of [`columns`](Self::columns) and of its kind.
+    fn fill(&self, points: &[Point], values: &mut [Values]);
+}
+
+/// A part of an answer: a plan, with what its points are and have.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The points.
+    pub plan: Plan,
+    /// The name of its layer, where there are several.
+    pub layer: Option<String>,
+    /// The points' further values.
+    pub attributes: Option<Arc<dyn Attributes>>,
+}
+
+impl Part {
+    pub(super) fn own_columns(&self) -> Vec<Column> {
+        let columns = self.attributes.as_ref().map(|own| own.columns());
+        columns.unwrap_or_default()
+    }
+}
+
+/// The part under way.
+#[derive(Debug)]
+pub(super) struct Current {
+    pub(super) part: Part,
+    pub(super) blocks: Blocks<Points>,
+    near: Option<Blocks<F32>>,
+    /// The values of the part's own columns.
+    own: Vec<Values>,
+    /// Where each column of the schema comes from.
+    sources: Vec<Source>,
+}
+
+/// Where a column's values come from.
+#[derive(Debug)]
+enum Source {
+    /// It is the layer's.
+    Layer(u32),
+    /// It is one of the part's own, with other indices where its dictionary was joined with others.
+    Own(usize, Option<Vec<u32>>),
+    /// The part does not have it.
+    Nowhere,
+}
+
+impl Current {
+    pub(super) fn new(
+        number: usize,
+        part: Part,
+        schema: &Schema,
+        coordinates: Coordinates,
+    ) -> Self {
+        let columns = part.own_columns();
+        let layered = usize::from(schema.is_layered());
+        let layer = schema.columns().iter().take(layered);
+        let layer = layer.map(|_| Source::Layer(u32::try_from(number).unwrap_or(u32::MAX)));
+        let own = schema.columns().iter().skip(layered).map(|column| {
+            let same = |own: &Column| own.name == column.name;
+            let place = columns.iter().position(same);
+            place.map_or(Source::Nowhere, |place| {
+                Source::own(place, &columns[place].kind, &column.kind)
+            })
+        });
+        let at_origin =
+            matches!(coordinates, Coordinates::Near(origin) if origin == part.plan.origin());
+        Self {
+            sources: layer.chain(own).collect(),
+            own: columns.iter().map(|c| Values::of(&c.kind)).collect(),
+            blocks: part.plan.blocks(),
+            near: at_origin.then(|| part.plan.blocks()),
+            part,
+        }
+    }
+
+    pub(super) fn fill_columns(&mut self, points: &[Point], columns: &mut [Values]) {
+        if let Some(attributes) = &self.part.attributes {
+            self.own.iter_mut().for_each(Values::clear);
+            attributes.fill(points, &mut self.own);
+        }
+        for (column, source) in columns.iter_mut().zip(&self.sources) {
+            match source {
+                Source::Layer(layer) => *column = Values::Indices(vec![*layer; points.len()]),
+                Source::Own(place, None) => std::mem::swap(column, &mut self.own[*place]),
+                Source::Own(place, Some(map)) => {
+                    if let Values::Indices(own) = &self.own[*place] {
+                        let mapped = own.iter().map(|i| map.get(*i as usize).copied());
+                        *column = Values::Indices(mapped.map(Option::unwrap_or_default).collect());
+                    }
+                }
+                Source::Nowhere => *column = Values::Missing,
+            }
+        }
+    }
+
+    pub(super) fn fill_near(&mut self, points: &[Point], origin: [f64; 2], near: &mut [[f32; 2]]) {
+        match &mut self.near {
+            Some(blocks) => {
+                blocks.fill(near);
+            }
+            None => {
+                let shift = Shift::new(&self.part.plan, origin);
+                for (near, point) in near.iter_mut().zip(points) {
+                    *near = shift.near(point);
+                }
+            }
+        }
+    }
+}
+
+impl Source {
+    fn own(place: usize, own: &Kind, joined: &Kind) -> Self {
+        match (own, joined) {
+            (Kind::Number, Kind::Number) => Self::Own(place, None),
+            (Kind::Dictionary(own), Kind::Dictionary(joined)) if joined.starts_with(own) => {
+                Self::Own(place, None)
+            }
+            (Kind::Dictionary(own), Kind::Dictionary(joined)) => {
+                let index = |name| joined.iter().position(|joined| joined == name);
+                let index = |name| u32::try_from(index(name).unwrap_or_default());
+                let map = own.iter().map(|name| index(name).unwrap_or_default());
+                Self::Own(place, Some(map.collect()))
+            }
+            _ => Self::Nowhere,
+        }
+    }
+}
