@@ -195,18 +195,28 @@ impl Planned {
 
     /// The place of point number `k` of the answer.
     fn place(&self, mut k: u128) -> Option<Token> {
-        let window = &self.query.window;
-        let mut earlier = window.cursor.map_or(0, |token| token.before);
-        let first = window.cursor.map_or(0, |token| usize::from(token.set));
+        let first = self.query.window.cursor;
+        let first = first.map_or(0, |token| usize::from(token.set));
         for (i, set) in self.sets.iter().enumerate().skip(first) {
             if k < set.plan.count() {
                 let cursor = set.plan.window(k, None).cursor()?;
-                return Some(token(&self.identity, i, earlier, cursor));
+                return Some(self.token(i, cursor));
             }
             k -= set.plan.count();
-            earlier += set.plan.total();
         }
         None
+    }
+
+    /// What to hand back to go on from a place in one of the sets.
+    #[must_use]
+    pub fn token(&self, set: usize, cursor: Cursor) -> Token {
+        let (first, before) = match self.query.window.cursor {
+            Some(token) => (usize::from(token.set), token.before),
+            None => (0, 0),
+        };
+        let sets = self.sets[..set].iter().skip(first);
+        let before = before + sets.map(|set| set.plan.total()).sum::<u128>();
+        token(&self.identity, set, before, cursor)
     }
 
     /// The parts of the answer.
@@ -300,7 +310,14 @@ impl Planner<'_> {
                 let plan = ready.sampler.select(selection.clone());
                 plan.map_err(|error| region.too_far(spacing, &error))?
             }
-            (None, _) => self.count(set, ready, &mut selection)?,
+            (None, cursor) => {
+                let whole = self.count(set, ready, &mut selection)?;
+                match cursor {
+                    Some(token) if i < usize::from(token.set) => whole.window(whole.count(), None),
+                    Some(token) if i == usize::from(token.set) => whole.from_cursor(token.cursor),
+                    _ => whole,
+                }
+            }
         };
         let spacing = plan.placement().spacing;
         selection.placement.spacing = spacing;

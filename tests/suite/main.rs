@@ -1,6 +1,7 @@
 //! The daemon from outside: the real program over real sockets, and the real clients.
 
 mod caching;
+mod calls;
 mod clients;
 mod coding;
 mod contract;
@@ -11,7 +12,10 @@ mod formats;
 mod fresh;
 mod grpc;
 mod grpc_calls;
+mod grpc_queries;
+mod grpc_single;
 mod grpc_web;
+mod grpc_wrong;
 mod http;
 mod limits;
 mod openapi;

@@ -6,7 +6,7 @@
 
 use std::{sync::Arc, vec};
 
-use strew_core::{Plan, Point};
+use strew_core::{Plan, Point, sample::Cursor};
 
 use super::{
     Encoding, Output,
@@ -158,6 +158,13 @@ impl Rows {
             Coordinates::Near(origin) => origin == part.plan.origin(),
         };
         (as_made && self.schema.columns().is_empty()).then_some(&part.plan)
+    }
+
+    /// The place after the rows given so far: the number of the part, and where in it.
+    #[must_use]
+    pub fn cursor(&self) -> Option<(usize, Cursor)> {
+        let current = self.current.as_ref()?;
+        Some((current.number, current.blocks.cursor()?))
     }
 
     /// The next rows, at most so many (and at least one); `None` when there are no more. A batch

@@ -8,8 +8,8 @@ mod reader;
 use serde_json::{Map, Value};
 
 use super::{
-    AMOUNT, AmountDraft, AttributesDraft, BOX, Draft, KEEP, LayerDraft, RegionDraft, Rings,
-    SetDraft, ShapeDraft, TableDraft, WARP, WindowDraft,
+    AMOUNT, AmountDraft, AttributesDraft, BOX, Draft, KEEP, LayerDraft, MOST_LEVELS, RegionDraft,
+    Rings, SetDraft, ShapeDraft, TableDraft, WARP, WindowDraft,
     amount::COUNT,
     attributes::{ATTRIBUTES, SCALE_RANGE, VARIANTS},
     faults::Faults,
@@ -36,8 +36,6 @@ pub struct Body {
     pub faults: Vec<Fault>,
 }
 
-/// Regions in regions in regions are enough.
-const DEEPEST: usize = 8;
 /// The members of a set of points.
 const SET: [&str; 14] = [
     "density",
@@ -272,12 +270,12 @@ fn region(value: &Value, path: &str, depth: usize, outer: &mut Reader<'_>) -> Op
                 [at("x")?, at("y")?],
             ))
         }),
-        _ if depth == DEEPEST => {
+        _ if depth == MOST_LEVELS => {
             reader.fault(
                 "include",
                 "",
                 "lists are nested too deeply",
-                "8 levels at most",
+                &format!("{MOST_LEVELS} levels at most"),
             );
             None
         }

@@ -173,11 +173,12 @@ impl Draft {
 }
 
 impl SetDraft {
-    /// Checks a set without a region.
+    /// Checks a set without a region. `found` are the faults found on the way here.
     ///
     /// # Errors
     /// As [`Draft::check`].
-    pub(super) fn check_alone(&self, catalog: &Catalog, mut faults: Faults) -> Result<Set, Error> {
+    pub fn check_alone(&self, catalog: &Catalog, found: Vec<Fault>) -> Result<Set, Error> {
+        let mut faults = Faults::new(found);
         let set = self.check(catalog, String::new(), &mut faults);
         let (Some(set), true) = (set, faults.is_empty()) else {
             return Err(faults.into_error());

@@ -5,6 +5,7 @@
 //! address or a command line, become [`Parameters`] first; bodies are read by [`read_body`].
 
 mod amount;
+mod around;
 mod attributes;
 mod body;
 mod cursor;
@@ -27,6 +28,7 @@ use strew_core::{
 use super::{Error, Fault, Key};
 
 pub use amount::{Amount, AmountDraft};
+pub use around::{Around, AroundDraft};
 pub use attributes::AttributesDraft;
 pub use body::{Body, read_body};
 pub use cursor::Token;
@@ -35,7 +37,7 @@ pub use echo::{Resolved, ResolvedSet};
 pub use parameters::{PARAMETERS, Parameter, Shape};
 pub use region::{Asked, RegionDraft, Rings, ShapeDraft};
 pub use table::TableDraft;
-pub use text::{Around, Parameters, parse_pairs, read_bbox};
+pub use text::{Parameters, parse_pairs, read_bbox};
 
 /// The profile of a query that names none.
 pub const DEFAULT_PROFILE: &str = "blue";
@@ -45,6 +47,9 @@ pub const DEFAULT_ALPHA: &str = "(5-sqrt(3))/2";
 pub const MOST_LAYERS: usize = 16;
 /// The most parts that a query is split into.
 pub const MOST_PARTS: u32 = 10_000;
+
+/// Regions in regions in regions are enough: so many levels of lists.
+pub const MOST_LEVELS: usize = 8;
 
 /// What a box must be.
 const BOX: &str =
@@ -168,6 +173,18 @@ impl Asked {
             other => Fault::new(&self.path, value, other.to_string(), region::REGION),
         }])
     }
+}
+
+/// Checks how many parts a query is to be split into.
+///
+/// # Errors
+/// A [`Fault`] of `parts`.
+pub fn check_parts(parts: u32) -> Result<u32, Fault> {
+    if (1..=MOST_PARTS).contains(&parts) {
+        return Ok(parts);
+    }
+    let detail = "it is not in the range allowed";
+    Err(Fault::new("parts", parts, detail, parameters::PARTS))
 }
 
 /// The shortest digits of any number.
