@@ -23,7 +23,7 @@ pub(in crate::sample) fn warped_row<F: Format>(
     columns: Columns<'_>,
     out: &mut [F::Item],
 ) {
-    let done = whole_vectors(format, backend, shears, row, columns, out);
+    let done = format.warp_row(backend, shears, row, columns, out);
     for (i, out) in out.iter_mut().enumerate().skip(done) {
         let y = row.y + columns.displacements[i];
         let [x, y] = shears.apply(columns.displaced[i], y);
@@ -37,7 +37,7 @@ pub(in crate::sample) fn warped_row<F: Format>(
     unsafe_code,
     reason = "a backend is only ever made where the machine has it"
 )]
-fn whole_vectors<F: Format>(
+pub(super) fn whole_vectors<F: Format>(
     format: &F,
     backend: Backend,
     shears: &PatchShears,
@@ -55,7 +55,7 @@ fn whole_vectors<F: Format>(
 }
 
 #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
-fn whole_vectors<F: Format>(
+pub(super) fn whole_vectors<F: Format>(
     _: &F,
     _: Backend,
     _: &PatchShears,
