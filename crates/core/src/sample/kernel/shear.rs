@@ -14,6 +14,15 @@ pub struct Columns<'a> {
     pub(in crate::sample) lattice: &'a [i64],
 }
 
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+impl Columns<'_> {
+    /// How many there are, at most `most`.
+    pub(super) fn least(&self, most: usize) -> usize {
+        let all = self.displaced.len().min(self.displacements.len());
+        all.min(self.lattice.len()).min(most)
+    }
+}
+
 /// Writes one item per column, as many as `out` has room for.
 pub(in crate::sample) fn warped_row<F: Format>(
     format: &F,
