@@ -4,6 +4,8 @@ mod caching;
 mod calls;
 mod clients;
 mod coding;
+mod commands;
+mod commands_wrong;
 mod contract;
 mod daemon;
 mod drain;

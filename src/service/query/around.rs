@@ -37,7 +37,7 @@ impl AroundDraft {
     /// # Errors
     /// Every fault.
     pub fn check(self, found: Vec<Fault>) -> Result<Around, Vec<Fault>> {
-        const DETAIL: &str = "it is not in the range allowed";
+        const DETAIL: &str = "it is out of range";
         let mut faults = Faults::new(found);
         match self.at {
             Some(at) if at.iter().all(|v| v.is_finite()) => {}

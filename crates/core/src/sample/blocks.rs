@@ -270,10 +270,12 @@ impl<F: Format> Blocks<F> {
         let Plan {
             sampler,
             frame,
+            x,
             y: span,
             ..
         } = &self.plan;
         let (format, patch, base) = (&self.format, &self.patch, self.base);
+        let is_split = patch.is_warped() && !patch.columns_are_inner;
         let mut filled = 0;
         while self.at.y < end && filled < out.len() {
             let y = self.at.y;
@@ -290,19 +292,30 @@ impl<F: Format> Blocks<F> {
             if let Some(from) = self.at.from.take() {
                 self.at.done = template.columns_before(from);
             }
-            let check =
-                if span.inner.contains(&y) && (patch.columns_are_inner || !patch.is_warped()) {
-                    Check::Nothing
-                } else {
-                    Check::Bounds
-                };
             let row = Row {
                 base,
                 y: patch.relative(Axis::Y, y),
                 lattice: y,
             };
+            let done = self.at.done;
+            let is_inner = span.inner.contains(&y);
+            // Where columns are not all inner ones, those that are need no checks.
+            let (end, check) = if !is_inner {
+                (template.len(), Check::Bounds)
+            } else if !is_split {
+                (template.len(), Check::Nothing)
+            } else {
+                let inner = [x.inner.start, x.inner.end].map(|v| template.columns_before(v));
+                if done < inner[0] {
+                    (inner[0], Check::Bounds)
+                } else if done < inner[1] {
+                    (inner[1], Check::Nothing)
+                } else {
+                    (template.len(), Check::Bounds)
+                }
+            };
             let stretch = Stretch {
-                columns: self.at.done..template.len(),
+                columns: done..end,
                 check,
             };
             let (written, done) = template.fill(

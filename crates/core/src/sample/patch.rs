@@ -1,6 +1,6 @@
 //! Patches: pieces of the lattice small enough for 32-bit positions.
 //!
-//! A patch is one band wide and 512 rows high, at multiples of both. With displacements below 128
+//! A patch is one band wide and 256 rows high, at multiples of both. With displacements below 128
 //! grid units and the warp's reach, positions relative to its origin and their sums and differences
 //! stay within 2³¹ units of 2⁻²⁰ grid units.
 
@@ -14,7 +14,7 @@ use crate::{pattern::Axis, table::FRACTION_BITS};
 pub(super) const BAND_WIDTH: i64 = 1024;
 
 /// How many lattice rows a patch has.
-pub(super) const PATCH_HEIGHT: i64 = 512;
+pub(super) const PATCH_HEIGHT: i64 = 256;
 
 /// What stays the same within a patch.
 #[derive(Clone, Debug)]

@@ -84,20 +84,32 @@ impl<F: Format> Template<F> {
         let is_warped = patch.is_warped();
         let all = kept.has_all(patch);
         let detailed = is_warped || kept != Kept::Plain;
-        for &(x, block) in listed {
+        let displaced = |&(x, block): &(i64, u32)| {
             let [dx, dy] = vectors[block as usize];
-            let displaced = patch.relative(Axis::X, x) + dx;
-            if !all && !patch.holds_along(Axis::X, displaced) {
-                continue;
-            }
+            (x, patch.relative(Axis::X, x) + dx, dy)
+        };
+        if all {
+            let displaced = || listed.iter().map(displaced);
             if !is_warped {
-                self.columns.push(format.column(base, displaced, x));
+                let columns = displaced().map(|(x, at, _)| format.column(base, at, x));
+                self.columns.extend(columns);
             }
             if detailed {
-                self.lattice.push(x);
-                self.displaced.push(displaced);
+                self.lattice.extend(listed.iter().map(|&(x, _)| x));
+                self.displaced.extend(displaced().map(|(_, at, _)| at));
             }
-            self.displacements.push(dy);
+            self.displacements.extend(displaced().map(|(_, _, dy)| dy));
+        } else {
+            for (x, at, dy) in listed.iter().map(displaced) {
+                if patch.holds_along(Axis::X, at) {
+                    self.columns.push(format.column(base, at, x));
+                    self.displacements.push(dy);
+                    if detailed {
+                        self.lattice.push(x);
+                        self.displaced.push(at);
+                    }
+                }
+            }
         }
         self.made = true;
     }

@@ -69,6 +69,9 @@ const CELL_MASK: i128 = (1 << CELL_BITS) - 1;
 
 /// Control values reach this many mean spacings at strength 1, for a shear along an axis.
 const AMPLITUDE: f64 = 2.5;
+/// And at most so many grid units, which only matters where α is near 1 and the pattern sparse: a
+/// patch with its surroundings then spans few enough cells for [`PatchShears`].
+const MAX_AMPLITUDE: f64 = 32.0;
 
 /// One direction: points move by g(s), s the coordinate across.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,7 +111,8 @@ impl Shears {
         if warp.is_off() {
             return None;
         }
-        let unit = AMPLITUDE * warp.strength() / set_side * f64::from(1 << FRACTION_BITS);
+        let unit = (AMPLITUDE * warp.strength() / set_side).min(MAX_AMPLITUDE);
+        let unit = unit * f64::from(1 << FRACTION_BITS);
         // A diagonal shear moves by √2·g.
         let diagonal = unit * core::f64::consts::FRAC_1_SQRT_2;
         let first = split_mix(seed.0 ^ 0x5745_4156_4552_5321);
@@ -245,16 +249,18 @@ pub(super) fn evaluate(cubic: &Cubic, at: i32) -> i32 {
     (((cubic[3] * u + cubic[2]) * u + cubic[1]) * u + cubic[0]) as i32
 }
 
-/// Cells that a patch may touch per direction.
-pub(super) const PATCH_CELLS: usize = 32;
-/// The first of them, relative to the patch's origin.
-pub(super) const FIRST_CELL: i32 = -12;
+/// Cells that the points of a patch may touch per direction, at most: one vector of numbers. A patch
+/// is 1024 × 256 grid units; with displacements below 127 and shears of up to 32, coordinates across
+/// the diagonals stay within 1280 + 4·127 + 2·32 of them, less than 15 cells of 128.
+pub(super) const PATCH_CELLS: usize = 16;
+/// The first cell across each direction, relative to the patch's origin.
+const FIRST_CELLS: [i64; 4] = [-4, -4, -5, -3];
 
 /// The shears near one patch: positions relative to its origin fit 32 bits, and all cubics are at
 /// hand. The origin is a multiple of the knot distance along both axes.
 #[derive(Clone, Debug)]
-pub(super) struct PatchShears {
-    /// By direction, by power of u, by cell.
+pub struct PatchShears {
+    /// By direction, by power of u, by the lowest four bits of the cell's number.
     pub(super) cubics: [[[f32; PATCH_CELLS]; 4]; 4],
 }
 
@@ -264,10 +270,10 @@ impl PatchShears {
         let first = [y, x, x - y, x + y];
         let mut cubics = [[[0.0; PATCH_CELLS]; 4]; 4];
         for (direction, table) in cubics.iter_mut().enumerate() {
-            let cells = (first[direction] + i64::from(FIRST_CELL)..).take(PATCH_CELLS);
-            for (i, cell) in cells.enumerate() {
-                for (of_power, coefficient) in table.iter_mut().zip(shears.cubic(direction, cell)) {
-                    of_power[i] = coefficient;
+            for relative in (FIRST_CELLS[direction]..).take(PATCH_CELLS) {
+                let cubic = shears.cubic(direction, first[direction] + relative);
+                for (of_power, coefficient) in table.iter_mut().zip(cubic) {
+                    of_power[relative.rem_euclid(PATCH_CELLS as i64) as usize] = coefficient;
                 }
             }
         }
@@ -276,7 +282,7 @@ impl PatchShears {
 
     #[inline(always)]
     fn noise(&self, direction: usize, s: i32) -> i32 {
-        let cell = ((s >> CELL_BITS) - FIRST_CELL) as usize % PATCH_CELLS;
+        let cell = (s >> CELL_BITS) as usize % PATCH_CELLS;
         let [a, b, c, d] = &self.cubics[direction];
         evaluate(&[a[cell], b[cell], c[cell], d[cell]], s & PATCH_CELL_MASK)
     }
@@ -333,11 +339,22 @@ mod tests {
         #[test]
         fn a_patch_gives_the_same_bits(
             seed: u64, column in -(1i64 << 42)..1 << 42, row in -(1i64 << 42)..1 << 42,
-            x in -170i32 << FRACTION_BITS..1194 << FRACTION_BITS,
-            y in -170i32 << FRACTION_BITS..682 << FRACTION_BITS,
+            x in -127i32 << FRACTION_BITS..1151 << FRACTION_BITS,
+            y in -127i32 << FRACTION_BITS..383 << FRACTION_BITS,
+            corner in 0u8..8,
+            set_side in prop_oneof![Just(0.317), Just(0.01), 0.01..0.5f64], strength in 0.1..=2.0f64,
         ) {
-            let shears = shears(seed);
-            let origin = [column * 1024, row * 512];
+            // The corners reach the farthest cells.
+            let [x, y] = match corner {
+                0 => [-127 << FRACTION_BITS, -127 << FRACTION_BITS],
+                1 => [(1151 << FRACTION_BITS) - 1, -127 << FRACTION_BITS],
+                2 => [-127 << FRACTION_BITS, (383 << FRACTION_BITS) - 1],
+                3 => [(1151 << FRACTION_BITS) - 1, (383 << FRACTION_BITS) - 1],
+                _ => [x, y],
+            };
+            let warp = Warp::new(strength).expect("in range");
+            let shears = Shears::new(warp, Seed(seed), set_side).expect("on");
+            let origin = [column * 1024, row * 256];
             let base = origin.map(|v| i128::from(v) << FRACTION_BITS);
             let there = shears.apply([base[0] + i128::from(x), base[1] + i128::from(y)]);
             let patch = PatchShears::new(&shears, origin).apply(x, y);

@@ -4,15 +4,26 @@
 use core::arch::x86_64::*;
 
 use super::{Format, Row, shear::Columns};
-use crate::sample::warp::{CELL_BITS, FIRST_CELL, PATCH_CELL_MASK, PATCH_CELLS, PatchShears};
+use crate::sample::warp::{CELL_BITS, PATCH_CELL_MASK, PATCH_CELLS, PatchShears};
 
-/// Eight entries of a table, by the lowest five bits of their index.
+/// Eight entries of a table, by the lowest four bits of their index.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn pick(table: &[f32; PATCH_CELLS], index: __m256i) -> __m256 {
-    let index = _mm256_and_si256(index, _mm256_set1_epi32(PATCH_CELLS as i32 - 1));
-    // SAFETY: the table has 32 entries, and every index has been cut to its lowest five bits.
-    unsafe { _mm256_i32gather_ps::<4>(table.as_ptr(), index) }
+    // SAFETY: the table has sixteen entries.
+    let (low, high) = unsafe {
+        (
+            _mm256_loadu_ps(table.as_ptr()),
+            _mm256_loadu_ps(table.as_ptr().add(8)),
+        )
+    };
+    // The fourth bit of the index, as the sign, chooses the half.
+    let half = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(index));
+    _mm256_blendv_ps(
+        _mm256_permutevar8x32_ps(low, index),
+        _mm256_permutevar8x32_ps(high, index),
+        half,
+    )
 }
 
 /// g of eight coordinates across a direction; see [`PatchShears`].
@@ -20,7 +31,6 @@ fn pick(table: &[f32; PATCH_CELLS], index: __m256i) -> __m256 {
 #[target_feature(enable = "avx2")]
 fn noise(shears: &PatchShears, direction: usize, s: __m256i) -> __m256i {
     let cell = _mm256_srai_epi32::<{ CELL_BITS as i32 }>(s);
-    let cell = _mm256_sub_epi32(cell, _mm256_set1_epi32(FIRST_CELL));
     let at = _mm256_and_si256(s, _mm256_set1_epi32(PATCH_CELL_MASK));
     let unit = _mm256_set1_ps(1.0 / (1u32 << CELL_BITS) as f32);
     let u = _mm256_mul_ps(_mm256_cvtepi32_ps(at), unit);

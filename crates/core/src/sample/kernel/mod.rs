@@ -20,7 +20,7 @@ mod avx512;
 mod backend;
 mod shear;
 
-use super::{Point, PointId, fixed, plan::Plan};
+use super::{Point, PointId, fixed, plan::Plan, warp::PatchShears};
 
 pub use backend::Backend;
 pub(super) use shear::{Columns, warped_row};
@@ -57,6 +57,19 @@ pub trait Format: Copy + Send + core::fmt::Debug + 'static + sealed::Sealed {
         out: &mut [Self::Item],
     ) {
         emit(self, row, columns, displacements, out);
+    }
+
+    /// As many of a warped row's items as fill whole vectors; gives how many.
+    #[doc(hidden)]
+    fn warp_row(
+        &self,
+        backend: Backend,
+        shears: &PatchShears,
+        row: Row,
+        columns: Columns<'_>,
+        out: &mut [Self::Item],
+    ) -> usize {
+        shear::whole_vectors(self, backend, shears, row, columns, out)
     }
 }
 
@@ -268,6 +281,27 @@ impl Format for F32 {
             &displacements[done..],
             &mut out[done..],
         );
+    }
+
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    #[expect(
+        unsafe_code,
+        reason = "a backend is only ever made where the machine has it"
+    )]
+    fn warp_row(
+        &self,
+        backend: Backend,
+        shears: &PatchShears,
+        row: Row,
+        columns: Columns<'_>,
+        out: &mut [Self::Item],
+    ) -> usize {
+        if backend == Backend::Avx512 {
+            let places = (self.step, self.last);
+            // SAFETY: `Backend::available` has found the instructions.
+            return unsafe { avx512::warped_f32_row(places, shears, row, columns, out) };
+        }
+        shear::whole_vectors(self, backend, shears, row, columns, out)
     }
 }
 

@@ -14,6 +14,15 @@ pub struct Columns<'a> {
     pub(in crate::sample) lattice: &'a [i64],
 }
 
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+impl Columns<'_> {
+    /// How many there are, at most `most`.
+    pub(super) fn least(&self, most: usize) -> usize {
+        let all = self.displaced.len().min(self.displacements.len());
+        all.min(self.lattice.len()).min(most)
+    }
+}
+
 /// Writes one item per column, as many as `out` has room for.
 pub(in crate::sample) fn warped_row<F: Format>(
     format: &F,
@@ -23,7 +32,7 @@ pub(in crate::sample) fn warped_row<F: Format>(
     columns: Columns<'_>,
     out: &mut [F::Item],
 ) {
-    let done = whole_vectors(format, backend, shears, row, columns, out);
+    let done = format.warp_row(backend, shears, row, columns, out);
     for (i, out) in out.iter_mut().enumerate().skip(done) {
         let y = row.y + columns.displacements[i];
         let [x, y] = shears.apply(columns.displaced[i], y);
@@ -37,7 +46,7 @@ pub(in crate::sample) fn warped_row<F: Format>(
     unsafe_code,
     reason = "a backend is only ever made where the machine has it"
 )]
-fn whole_vectors<F: Format>(
+pub(super) fn whole_vectors<F: Format>(
     format: &F,
     backend: Backend,
     shears: &PatchShears,
@@ -55,7 +64,7 @@ fn whole_vectors<F: Format>(
 }
 
 #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
-fn whole_vectors<F: Format>(
+pub(super) fn whole_vectors<F: Format>(
     _: &F,
     _: Backend,
     _: &PatchShears,
