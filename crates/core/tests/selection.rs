@@ -156,18 +156,19 @@ proptest! {
         let mut blocks = window.blocks::<F32>();
         let mut block = vec![[0.0; 2]; 1 + parts as usize * 9];
         let mut given = offset;
-        loop {
-            let filled = blocks.fill(&mut block);
-            given += filled;
-            let cursor = blocks.cursor().expect("no tile");
+        while let Some(cursor) = blocks.cursor() {
             prop_assert_eq!(cursor.offset, given as u128);
             let selection = Selection::new(placement, area.clone());
             let rest = sampler.resume(selection, cursor).expect("in range");
-            prop_assert_eq!(&all::<Points>(&rest.window(0, Some(70)), 33), &points[given..points.len().min(given + 70)]);
-            if filled < block.len() {
+            let near = &points[given..points.len().min(given + 70)];
+            prop_assert_eq!(&all::<Points>(&rest.window(0, Some(70)), 33), near);
+            let filled = blocks.fill(&mut block);
+            given += filled;
+            if filled == 0 {
                 break;
             }
         }
+        prop_assert_eq!(given, end);
 
         let split: Vec<Plan> = plan.split(parts).collect();
         prop_assert_eq!(split.len(), parts as usize);

@@ -200,11 +200,15 @@ impl<F: Format> Blocks<F> {
     }
 
     /// The place after the points given so far, found without counting. `None` for a tile, which
-    /// does not know how many points come before it.
+    /// does not know how many points come before it, and for a plan without points, which is
+    /// nowhere.
     ///
     /// Its lattice address may lie before that of the next point, but after that of the last one.
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
+        if self.plan.count() == 0 {
+            return None;
+        }
         let given = self.plan.count().checked_sub(self.left)?;
         let at = if self.at.y == self.rows.end {
             PointId {
