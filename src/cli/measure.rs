@@ -13,10 +13,13 @@ use strew_forge::{
 };
 
 use super::{
-    Failure,
+    Failure, config,
+    flags::{Flags, Measured},
     output::Output,
-    query::{Looks, Query, described},
+    query::described,
+    refusal::Source,
 };
+use crate::service::{Planned, query::read_bbox};
 
 /// Flags of `strew measure`. What is measured: a table file (`--table`), a file of points
 /// (`--points`), or, without either, the points of a query as for `strew sample`.
@@ -50,7 +53,9 @@ pub(super) struct Args {
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    query: Query,
+    flags: Flags<Measured>,
+    #[command(flatten)]
+    settings: config::Args,
 }
 
 /// The largest set that is measured: its spectrum takes some gigabytes at ν = 4.
@@ -151,6 +156,12 @@ fn of_table(args: &Args, file: &Path) -> Result<(Vec<Report>, Option<Target>), F
 }
 
 impl Args {
+    /// Only the box: min x, min y, max x, max y.
+    fn corners(&self) -> anyhow::Result<[f64; 4]> {
+        let read = read_bbox(self.flags.get("bbox")).map_err(|fault| anyhow!("{fault}"))?;
+        read.ok_or_else(|| anyhow!("--bbox is missing"))
+    }
+
     fn twins(&self, table: &Table) -> anyhow::Result<Vec<Twin>> {
         if self.twin.is_empty() {
             let seen = &table.provenance().twins;
@@ -185,8 +196,13 @@ fn square([min_x, min_y, max_x, max_y]: [f64; 4]) -> anyhow::Result<([f64; 2], f
 }
 
 fn of_query(args: &Args) -> Result<(Report, Option<Target>), Failure> {
-    let config = args.query.settings()?;
-    let (planned, _) = args.query.planned(&config, &Looks::default())?;
+    let config = args.settings.merged()?;
+    let catalog = config.tables()?;
+    let parameters = args.flags.parameters(|_| true);
+    let checked = parameters.check(&catalog, 0, None, vec![]);
+    let planned =
+        checked.and_then(|(query, _)| Planned::from_catalog(&catalog, query, &config.limits));
+    let planned = planned.map_err(|error| Source::Flags.refused(error))?;
     let (corner, side) = square(planned.query.region.bbox()).map_err(Failure::Usage)?;
     if planned.count() > MAX_POINTS || planned.count() < 100 {
         let problem = anyhow!(
@@ -217,7 +233,7 @@ fn window(
 }
 
 fn of_points(args: &Args, file: &Path) -> Result<Report, Failure> {
-    let bbox = args.query.corners().map_err(Failure::Usage)?;
+    let bbox = args.corners().map_err(Failure::Usage)?;
     let (corner, side) = square(bbox).map_err(Failure::Usage)?;
     let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
     let is_packed = file.extension().is_some_and(|ending| ending == "f64");

@@ -1,13 +1,18 @@
 //! The command line.
 
 mod config;
+mod count;
+mod flags;
 mod forge;
 mod measure;
 mod output;
+mod point;
 mod progress;
 mod query;
+mod refusal;
 mod sample;
 mod serve;
+mod split;
 mod table;
 mod watcher;
 
@@ -29,6 +34,14 @@ enum Command {
     Serve(serve::Args),
     /// Write the points of a region to a file or standard output, without a server.
     Sample(sample::Args),
+    /// Say how many points a query has, exactly, without making them.
+    Count(count::Args),
+    /// Find a point by its id.
+    Point(point::PointArgs),
+    /// Find the points nearest to a place.
+    Nearest(point::NearestArgs),
+    /// Split a query into parts for parallel readers.
+    Split(split::Args),
     /// Make a table and judge it.
     Forge(forge::Args),
     /// Measure a table, the points of a region, or a file of points.
@@ -66,6 +79,10 @@ pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Serve(args) => serve::run(&args),
         Command::Sample(args) => sample::run(&args),
+        Command::Count(args) => count::run(&args),
+        Command::Point(args) => point::point(&args),
+        Command::Nearest(args) => point::nearest(&args),
+        Command::Split(args) => split::run(&args),
         Command::Forge(args) => forge::run(&args),
         Command::Measure(args) => measure::run(&args),
         Command::Table(command) => table::run(&command),

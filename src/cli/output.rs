@@ -8,6 +8,9 @@ use std::{
 };
 
 use anyhow::Context as _;
+use serde::Serialize;
+
+use super::Failure;
 
 /// An open output. Until [`finish`](Self::finish) a regular file goes by its name with `.partial`
 /// behind it, so that what an interrupted command leaves never looks complete.
@@ -76,4 +79,23 @@ impl Output {
         }
         Ok(())
     }
+}
+
+/// Writes a text to standard output.
+pub(super) fn print(text: &str) -> Result<(), Failure> {
+    let mut output = Output::open(None)?;
+    output.write(text.as_bytes())?;
+    Ok(output.finish()?)
+}
+
+/// Writes documents to standard output, one a line.
+pub(super) fn print_json<T: Serialize>(
+    documents: impl IntoIterator<Item = T>,
+) -> Result<(), Failure> {
+    let mut text = String::new();
+    for document in documents {
+        text += &serde_json::to_string(&document).context("a document cannot be written")?;
+        text.push('\n');
+    }
+    print(&text)
 }

@@ -1,115 +1,208 @@
-//! The flags of a query, shared by the commands that take one.
+//! The query of a command: from flags, from a file of JSON, with a region from a file of GeoJSON.
 
-use anyhow::anyhow;
+use std::{
+    io::Read as _,
+    path::{Path, PathBuf},
+};
 
-use super::{Failure, config};
+use anyhow::{Context as _, anyhow};
+
+use super::{
+    Failure, config,
+    flags::{Flags, LOOKS, Takes, WHERE, flag},
+    refusal::Source,
+};
 use crate::{
     config::Config,
     service::{
-        Catalog, Encoding, Planned, PlannedSet, Set,
+        Catalog, Encoding, Error, Placed, Planned, PlannedSet, Ready, Set,
         catalog::CatalogError,
         encode::Options,
-        query::{Parameters, read_bbox},
+        query::{Body, Draft, Parameters, RegionDraft, ShapeDraft, read_body, read_region},
     },
 };
 
-/// The parameters of `GET /v1/points`, and the settings that say which tables there are.
+/// A query with a region: by flags, or whole in a file.
 #[derive(Debug, clap::Args)]
-pub(super) struct Query {
-    /// The box: minx,miny,maxx,maxy in world units, half-open.
-    #[arg(long, value_name = "BOX", allow_hyphen_values = true)]
-    bbox: Option<String>,
-    /// Points per unit of area.
-    #[arg(long, allow_hyphen_values = true)]
-    density: Option<String>,
-    /// The mean spacing, density^-1/2.
-    #[arg(long, allow_hyphen_values = true)]
-    spacing: Option<String>,
-    /// The noise profile [default: blue].
-    #[arg(long)]
-    profile: Option<String>,
-    /// The number alpha [default: (5-sqrt(3))/2].
-    #[arg(long, allow_hyphen_values = true)]
-    alpha: Option<String>,
-    /// The size of the map: s, m or l, as far as it is loaded [default: s].
-    #[arg(long)]
-    map: Option<String>,
-    /// Which set of points [default: 0].
-    #[arg(long, allow_hyphen_values = true)]
-    seed: Option<String>,
-    /// off, on, or the strength of the warp, 0 to 2 [default: off for seed 0, else on].
-    #[arg(long, allow_hyphen_values = true)]
-    warp: Option<String>,
-    /// The digest of the table that has to make them.
-    #[arg(long, value_name = "DIGEST")]
-    table: Option<String>,
+pub(super) struct Asked<T: Takes> {
+    /// A whole query as JSON, the body of POST /v1/points:query; - is standard input. Beside it only
+    /// the looks of the answer may be given.
+    #[arg(long, value_name = "FILE")]
+    query: Option<PathBuf>,
+    /// The region: a chunk of the world grid. Coordinates are relative to its corner,
+    /// SIZE·CX,SIZE·CY.
+    #[arg(long, value_name = "SIZE/CX/CY", help_heading = WHERE, allow_hyphen_values = true)]
+    chunk: Option<String>,
+    /// The region: the polygons of a GeoJSON file; - is standard input.
+    #[arg(long, value_name = "FILE", help_heading = WHERE)]
+    region: Option<PathBuf>,
     #[command(flatten)]
-    settings: config::Args,
+    pub(super) flags: Flags<T>,
+    #[command(flatten)]
+    pub(super) settings: config::Args,
 }
 
-/// How an answer is to look.
-#[derive(Debug, Default, clap::Args)]
-pub(super) struct Looks {
-    /// json, ndjson, csv, geojson, geojsonseq, f32, f64, npy, ply, arrow, png, svg or parquet
-    /// [default: what the output's name ends with, or json].
-    #[arg(long)]
-    format: Option<String>,
-    /// Decimals of numbers in text formats, 0 to 17 [default: the shortest digits that read back].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    decimals: Option<String>,
-    /// The longer side of a png or svg in pixels, 16 to 4096 [default: 512].
-    #[arg(long, value_name = "PIXELS", allow_hyphen_values = true)]
-    size: Option<String>,
+/// A query that is in order, with its plan.
+#[derive(Debug)]
+pub(super) struct Ask {
+    pub(super) draft: Draft,
+    pub(super) options: Options,
+    pub(super) planned: Planned,
+    pub(super) source: Source,
 }
 
-impl Query {
-    /// The merged settings.
-    pub(super) fn settings(&self) -> Result<Config, Failure> {
-        self.settings.merged()
-    }
-
-    /// The query, checked and planned, and the options of the output.
-    pub(super) fn planned(
-        &self,
-        config: &Config,
-        looks: &Looks,
-    ) -> Result<(Planned, Options), Failure> {
-        let catalog = config
-            .catalog()
-            .map_err(|error| Failure::Usage(error.into()))?;
+impl<T: Takes> Asked<T> {
+    /// The query, checked and planned.
+    pub(super) fn plan(&self, config: &Config) -> Result<Ask, Failure> {
+        let (body, source) = self.read()?;
+        let (options, mut faults) = (body.options, body.faults);
         // Only files are Parquet, so no query knows the name.
-        let parquet = looks.format.as_deref() == Some(Encoding::Parquet.name());
-        let parameters = Parameters::of([
-            ("bbox", self.bbox.clone()),
-            ("density", self.density.clone()),
-            ("spacing", self.spacing.clone()),
-            ("profile", self.profile.clone()),
-            ("alpha", self.alpha.clone()),
-            ("map", self.map.clone()),
-            ("seed", self.seed.clone()),
-            ("warp", self.warp.clone()),
-            ("table", self.table.clone()),
-            ("format", looks.format.clone().filter(|_| !parquet)),
-            ("decimals", looks.decimals.clone()),
-            ("size", looks.size.clone()),
-        ]);
-        let usage = |error| Failure::Usage(anyhow::Error::new(error));
+        let parquet = Some(Encoding::Parquet.name());
+        let is_parquet = |fault: &mut crate::service::Fault| {
+            fault.field == "format" && fault.value.as_deref() == parquet
+        };
+        let to_file = faults.extract_if(.., is_parquet).count() > 0;
+        let mut options = Options {
+            encoding: options.encoding.or(to_file.then_some(Encoding::Parquet)),
+            ..options
+        };
+        self.override_looks(&mut options)?;
+        let catalog = config.tables()?;
         let limits = &config.limits;
-        let (query, mut options) = parameters
-            .check(&catalog, limits.max_vertices, None, vec![])
-            .map_err(usage)?;
-        let planned = Planned::from_catalog(&catalog, query, limits).map_err(usage)?;
-        if parquet {
-            options.encoding = Some(Encoding::Parquet);
-        }
-        Ok((planned, options))
+        let query = body.draft.check(&catalog, limits.max_vertices, faults);
+        let planned = query.and_then(|query| Planned::from_catalog(&catalog, query, limits));
+        Ok(Ask {
+            draft: body.draft,
+            options,
+            planned: planned.map_err(|error| source.refused(error))?,
+            source,
+        })
     }
 
-    /// Only the box: min x, min y, max x, max y.
-    pub(super) fn corners(&self) -> anyhow::Result<[f64; 4]> {
-        let read = read_bbox(self.bbox.as_deref()).map_err(|fault| anyhow!("{fault}"))?;
-        read.ok_or_else(|| anyhow!("--bbox is missing"))
+    fn read(&self) -> Result<(Body, Source), Failure> {
+        let Some(file) = &self.query else {
+            let region = self.region()?;
+            let parameters = self.flags.parameters(|name| name != "parts");
+            return Ok((parameters.draft(region, vec![]), Source::Flags));
+        };
+        let source = Source::File(format!("--query {}", file.display()));
+        let others = self.flags.given().map(|(name, _)| name);
+        let others = others.filter(|name| !LOOKS.contains(name) && *name != "parts");
+        let places = [
+            self.chunk.as_ref().map(|_| "chunk"),
+            self.region.as_ref().map(|_| "region"),
+        ];
+        let others: Vec<String> = others
+            .chain(places.into_iter().flatten())
+            .map(flag)
+            .collect();
+        if !others.is_empty() {
+            return Err(Failure::Usage(anyhow!(
+                "{} cannot be given beside --query {}, which holds the whole query; allowed beside \
+                 it: {}",
+                others.join(", "),
+                file.display(),
+                LOOKS.map(flag).join(", ")
+            )));
+        }
+        let bytes = read_file("--query", file)?;
+        let body = read_body(&bytes).map_err(|error| source.refused(error))?;
+        Ok((body, source))
     }
+
+    /// What flags say of the looks is stronger than what a file says.
+    fn override_looks(&self, options: &mut Options) -> Result<(), Failure> {
+        if self.query.is_none() {
+            return Ok(());
+        }
+        let parquet = Encoding::Parquet;
+        let is_parquet = self.flags.get("format") == Some(parquet.name());
+        let wanted = |name: &str| LOOKS.contains(&name) && !(is_parquet && name == "format");
+        let looks = self.flags.parameters(wanted).looks();
+        let looks = looks.map_err(|faults| Source::Flags.refused(Error::Invalid(faults)))?;
+        let encoding = looks.encoding.or(is_parquet.then_some(parquet));
+        options.encoding = encoding.or(options.encoding);
+        options.decimals = looks.decimals.or(options.decimals);
+        options.size = looks.size.or(options.size);
+        Ok(())
+    }
+
+    /// A region that is no parameter.
+    fn region(&self) -> Result<Option<RegionDraft>, Failure> {
+        let shapes = self.flags.given().map(|(name, _)| name);
+        let shapes = shapes.filter(|name| ["bbox", "circle", "polygon"].contains(name));
+        let others = [
+            self.chunk.as_ref().map(|_| "chunk"),
+            self.region.as_ref().map(|_| "region"),
+        ];
+        let given: Vec<String> = shapes
+            .chain(others.into_iter().flatten())
+            .map(flag)
+            .collect();
+        if given.len() > 1 {
+            return Err(Failure::Usage(anyhow!(
+                "{} are given; a query has one region (several: --query with include and exclude)",
+                given.join(" and ")
+            )));
+        }
+        if let Some(file) = &self.region {
+            let bytes = read_file("--region", file)?;
+            let source = Source::File(format!("--region {}", file.display()));
+            let read = read_region(&bytes);
+            return Ok(Some(
+                read.map_err(|fault| source.refused(Error::Invalid(vec![fault])))?,
+            ));
+        }
+        self.chunk.as_deref().map(chunk).transpose()
+    }
+}
+
+fn chunk(text: &str) -> Result<RegionDraft, Failure> {
+    let read = || {
+        let [size, x, y] = text.split('/').collect::<Vec<_>>().try_into().ok()?;
+        Some(ShapeDraft::Chunk(
+            size.parse().ok()?,
+            [x.parse().ok()?, y.parse().ok()?],
+        ))
+    };
+    let shape = read().ok_or_else(|| {
+        Failure::Usage(anyhow!(
+            "--chunk {text}: it is not such an address; allowed: SIZE/CX/CY, a size above 0 and \
+             two integers, such as 64/-3/2"
+        ))
+    })?;
+    Ok(RegionDraft {
+        path: "chunk".into(),
+        shape,
+    })
+}
+
+/// The bytes of a file, or of standard input.
+fn read_file(flag: &str, path: &Path) -> Result<Vec<u8>, Failure> {
+    let read = if path == Path::new("-") {
+        let mut bytes = vec![];
+        std::io::stdin().read_to_end(&mut bytes).map(|_| bytes)
+    } else {
+        std::fs::read(path)
+    };
+    let read = read.with_context(|| format!("{flag}: cannot read {}", path.display()));
+    read.map_err(Failure::Usage)
+}
+
+/// A set of points without a region, laid into the world.
+pub(super) fn placed(
+    parameters: &Parameters,
+    others: &[&str],
+    config: &Config,
+) -> Result<Placed, Failure> {
+    let catalog = config.tables()?;
+    let place = |set: Set| {
+        let entry = catalog.entry(&set.key).ok_or_else(Error::lost_table)?;
+        Placed::new(set, Ready::load(&entry)?)
+    };
+    let set = parameters.check_set(&catalog, others, vec![]);
+    set.and_then(place)
+        .map_err(|error| Source::Flags.refused(error))
 }
 
 /// What a planned query asks for, in a few words.
@@ -140,5 +233,10 @@ impl Config {
     pub(super) fn catalog(&self) -> Result<Catalog, CatalogError> {
         let folder = (!self.tables.folder.as_os_str().is_empty()).then_some(&*self.tables.folder);
         Catalog::load(self.tables.embedded, folder)
+    }
+
+    /// The same; settings that lead to none are wrong usage.
+    pub(super) fn tables(&self) -> Result<Catalog, Failure> {
+        self.catalog().map_err(|error| Failure::Usage(error.into()))
     }
 }

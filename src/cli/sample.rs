@@ -12,19 +12,20 @@ use strew_core::{
 
 use super::{
     Failure,
-    output::Output,
+    flags::Answered,
+    output::Output as Target,
     progress::Progress,
-    query::{Looks, Query, described},
+    query::{Asked, described},
 };
 use crate::{
     config::Config,
     service::{
-        Answer, Encoding, Planned,
+        Answer, Encoding, Output, Planned,
         encode::{Plain, Scalars, write_number},
     },
 };
 
-/// Flags of `strew sample`: the parameters of `GET /v1/points`, and where to write.
+/// Flags of `strew sample`: a query, and where to write.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// The file to write; - is standard output.
@@ -34,9 +35,7 @@ pub(super) struct Args {
     #[arg(long, short)]
     quiet: bool,
     #[command(flatten)]
-    looks: Looks,
-    #[command(flatten)]
-    query: Query,
+    query: Asked<Answered>,
 }
 
 impl Args {
@@ -54,26 +53,30 @@ impl Args {
 
 /// Writes the points.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let config = args.query.settings()?;
-    let (planned, options) = args.query.planned(&config, &args.looks)?;
+    let config = args.query.settings.merged()?;
+    let ask = args.query.plan(&config)?;
+    let (planned, options) = (&ask.planned, ask.options);
     let encoding = options
         .encoding
         .or_else(|| args.by_extension())
         .unwrap_or(Encoding::Json);
-    let usage = |error| Failure::Usage(anyhow::Error::new(error));
-    let output = options.output(encoding).map_err(usage)?;
-    let answer = Answer::new(&planned, &output, config.limits.block_bytes).map_err(usage)?;
+    let output = options.output(encoding).map(|output| Output {
+        relative_to: planned.query.region.corner,
+        ..output
+    });
+    let answer = output.and_then(|output| Answer::new(planned, &output, config.limits.block_bytes));
+    let answer = answer.map_err(|error| ask.source.refused(error))?;
     let count = u64::try_from(planned.count()).map_err(|_| {
+        let count = planned.count();
         Failure::Usage(anyhow!(
-            "bbox holds {} points, too many to write",
-            planned.count()
+            "the region holds {count} points, too many to write"
         ))
     })?;
     if !args.quiet {
-        announce(&planned, &answer);
+        announce(planned, encoding, &answer);
     }
     let pool = workers(&config)?;
-    let mut output = Output::open(args.output.as_deref())?;
+    let mut output = Target::open(args.output.as_deref())?;
     let mut progress = Progress::new("points", count, args.quiet);
     let written = pool.install(|| match answer.plain().cloned() {
         Some(plain) => packed(&plain, &mut output, &mut progress),
@@ -85,11 +88,19 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Says on standard error what comes, and what the packed formats have no room for.
-fn announce(planned: &Planned, answer: &Answer) {
+fn announce(planned: &Planned, encoding: Encoding, answer: &Answer) {
     let size = answer
         .size()
         .map_or(String::new(), |size| format!(", {size} bytes"));
-    eprintln!("{} points{size}: {}", planned.count(), described(planned));
+    eprintln!(
+        "{} points as {}{size}: {}",
+        planned.count(),
+        encoding.name(),
+        described(planned)
+    );
+    if let Some(next) = planned.next() {
+        eprintln!("the rest begins at the cursor {next}");
+    }
     if let Some(origin) = answer.origin() {
         let [x, y] = origin.map(|v| {
             let mut text = vec![];
@@ -106,7 +117,7 @@ fn workers(config: &Config) -> anyhow::Result<rayon::ThreadPool> {
         .build()?)
 }
 
-fn blocks(mut answer: Answer, output: &mut Output, progress: &mut Progress) -> anyhow::Result<()> {
+fn blocks(mut answer: Answer, output: &mut Target, progress: &mut Progress) -> anyhow::Result<()> {
     while let Some(block) = answer.next() {
         output.write(&block?)?;
         progress.reach(answer.points(), "");
@@ -118,7 +129,7 @@ fn blocks(mut answer: Answer, output: &mut Output, progress: &mut Progress) -> a
 const TILE_POINTS: usize = 1 << 19;
 
 /// Writes what is nothing but packed points on all threads.
-fn packed(plain: &Plain, output: &mut Output, progress: &mut Progress) -> anyhow::Result<()> {
+fn packed(plain: &Plain, output: &mut Target, progress: &mut Progress) -> anyhow::Result<()> {
     if let Some(head) = &plain.head {
         output.write(head)?;
     }
@@ -132,7 +143,7 @@ fn packed(plain: &Plain, output: &mut Output, progress: &mut Progress) -> anyhow
 /// Fills tiles on all threads, a batch ahead of what is being written.
 fn tiles<F: Scalars>(
     plan: &Plan,
-    output: &mut Output,
+    output: &mut Target,
     progress: &mut Progress,
 ) -> anyhow::Result<()>
 where

@@ -3,6 +3,8 @@
 mod caching;
 mod clients;
 mod coding;
+mod commands;
+mod commands_wrong;
 mod contract;
 mod daemon;
 mod drain;

@@ -8,13 +8,14 @@ mod reader;
 use serde_json::{Map, Value};
 
 use super::{
-    AMOUNT, AmountDraft, AttributesDraft, BOX, Draft, KEEP, LayerDraft, RegionDraft, Rings,
-    SetDraft, ShapeDraft, TableDraft, WARP, WindowDraft,
+    AMOUNT, AmountDraft, AttributesDraft, BOX, Draft, KEEP, LayerDraft, RegionDraft, SetDraft,
+    ShapeDraft, TableDraft, WARP, WindowDraft,
     amount::COUNT,
     attributes::{ATTRIBUTES, SCALE_RANGE, VARIANTS},
     faults::Faults,
+    geojson::{GEOJSON, polygons},
     parameters::SEED,
-    region::{CHUNK, CIRCLE, POLYGON, REGION},
+    region::{CHUNK, CIRCLE, REGION},
 };
 use crate::service::{
     Encoding, Error, Fault,
@@ -65,8 +66,9 @@ pub fn read_body(bytes: &[u8]) -> Result<Body, Error> {
         Error::Invalid(vec![Fault::new("body", value, detail, "a JSON object")])
     };
     let value: Value = serde_json::from_slice(bytes).map_err(|error| {
-        let text = String::from_utf8_lossy(bytes).into_owned();
-        fault(text, format!("it is not JSON: {error}"))
+        let text = String::from_utf8_lossy(bytes);
+        let words: Vec<&str> = text.split_whitespace().collect();
+        fault(words.join(" "), format!("it is not JSON: {error}"))
     })?;
     let Value::Object(members) = value else {
         return Err(fault(value.to_string(), "it is not an object".into()));
@@ -74,7 +76,7 @@ pub fn read_body(bytes: &[u8]) -> Result<Body, Error> {
     let mut faults = Faults::default();
     let mut reader = Reader::new("", &members, &mut faults);
     let mut known = vec![
-        "region", "layers", "offset", "limit", "cursor", "format", "decimals",
+        "region", "layers", "offset", "limit", "cursor", "format", "decimals", "size",
     ];
     known.extend(SET);
     reader.only(&known);
@@ -96,7 +98,7 @@ pub fn read_body(bytes: &[u8]) -> Result<Body, Error> {
             .and_then(|name| {
                 let encoding = Encoding::from_name(&name);
                 if encoding.is_none() {
-                    reader.found(super::text::no_format("format", &name));
+                    reader.found(super::values::no_format("format", &name));
                 }
                 encoding
             }),
@@ -182,7 +184,7 @@ fn variants(value: &Value) -> Option<Vec<(String, f64)>> {
                 ))
             })
             .collect(),
-        Value::String(text) => super::text::variants_of(text),
+        Value::String(text) => super::values::variants_of(text),
         _ => None,
     }
 }
@@ -264,7 +266,13 @@ fn region(value: &Value, path: &str, depth: usize, outer: &mut Reader<'_>) -> Op
             let center = numbers(value.get("center")?)?;
             Some(ShapeDraft::Circle(center, value.get("radius")?.as_f64()?))
         }),
-        "polygon" => reader.member("polygon", POLYGON, |value, _| polygons(value)),
+        "polygon" => reader.member("polygon", GEOJSON, |value, reader| {
+            let polygons = polygons(value).map(ShapeDraft::Polygons);
+            Some(polygons.unwrap_or_else(|detail| {
+                reader.fault("polygon", &value.to_string(), &detail, GEOJSON);
+                ShapeDraft::Unread
+            }))
+        }),
         "chunk" => reader.member("chunk", CHUNK, |value, _| {
             let at = |name| value.get(name).and_then(Value::as_i64);
             Some(ShapeDraft::Chunk(
@@ -307,28 +315,6 @@ fn region(value: &Value, path: &str, depth: usize, outer: &mut Reader<'_>) -> Op
     };
     let shape = shape.unwrap_or(ShapeDraft::Unread);
     Some(RegionDraft { path, shape })
-}
-
-/// A GeoJSON Polygon or MultiPolygon, bare or in a Feature.
-fn polygons(value: &Value) -> Option<ShapeDraft> {
-    let coordinates = || value.get("coordinates")?.as_array();
-    let polygons = match value.get("type")?.as_str()? {
-        "Polygon" => vec![rings(value.get("coordinates")?)?],
-        "MultiPolygon" => coordinates()?.iter().map(rings).collect::<Option<_>>()?,
-        "Feature" => return polygons(value.get("geometry")?),
-        _ => return None,
-    };
-    Some(ShapeDraft::Polygons(polygons))
-}
-
-fn rings(value: &Value) -> Option<Rings> {
-    // A position may have an elevation; it does not matter.
-    let position = |value: &Value| {
-        let numbers = value.as_array()?;
-        Some([numbers.first()?.as_f64()?, numbers.get(1)?.as_f64()?])
-    };
-    let ring = |value: &Value| value.as_array()?.iter().map(position).collect();
-    value.as_array()?.iter().map(ring).collect()
 }
 
 /// So many numbers.

@@ -11,11 +11,14 @@ mod cursor;
 mod draft;
 mod echo;
 mod faults;
+mod geojson;
 mod parameters;
 mod pin;
 mod region;
 mod table;
 mod text;
+mod values;
+mod written;
 
 use std::{fmt, sync::Arc};
 
@@ -32,10 +35,12 @@ pub use body::{Body, read_body};
 pub use cursor::Token;
 pub use draft::{Draft, LayerDraft, SetDraft, WindowDraft};
 pub use echo::{Resolved, ResolvedSet};
+pub use geojson::read_region;
 pub use parameters::{PARAMETERS, Parameter, Shape};
 pub use region::{Asked, RegionDraft, Rings, ShapeDraft};
 pub use table::TableDraft;
-pub use text::{Around, Parameters, parse_pairs, read_bbox};
+pub use text::{Around, Parameters, parse_pairs};
+pub use values::read_bbox;
 
 /// The profile of a query that names none.
 pub const DEFAULT_PROFILE: &str = "blue";

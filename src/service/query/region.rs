@@ -6,7 +6,7 @@ use strew_core::{
     sample::{AreaError, RegionError},
 };
 
-use super::{BOX, faults::Faults, number};
+use super::{BOX, faults::Faults, geojson::GEOJSON, number};
 use crate::service::Fault;
 
 /// What a circle must be.
@@ -189,7 +189,11 @@ impl RegionDraft {
                 } else {
                     String::new()
                 };
-                fault(format!("{which}{error}"), POLYGON.into())
+                let allowed = match self.path.as_str() {
+                    "polygon" => POLYGON,
+                    _ => GEOJSON,
+                };
+                fault(format!("{which}{error}"), allowed.into())
             })
         };
         let areas: Vec<Area> = polygons

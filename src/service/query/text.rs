@@ -1,19 +1,22 @@
 //! Queries as text: the parameters of an address or of a command line.
 
-use std::{collections::BTreeMap, str::FromStr, sync::Arc};
+use std::{collections::BTreeMap, sync::Arc};
 
 use percent_encoding::percent_decode_str;
 
 use super::{
-    AMOUNT, AmountDraft, AttributesDraft, BOX, Draft, KEEP, Query, RegionDraft, Set, SetDraft,
-    ShapeDraft, TableDraft, WARP, WindowDraft,
+    AMOUNT, AmountDraft, AttributesDraft, BOX, Body, Draft, KEEP, Query, RegionDraft, Set,
+    SetDraft, ShapeDraft, TableDraft, WARP, WindowDraft,
     amount::COUNT,
     attributes::{SCALE_RANGE, VARIANTS},
     faults::{Faults, MOST},
     parameters::{
-        LIMIT, MOST_NEAREST, NEAREST, OFFSET, PARTS, PLACE, Parameter, RADIUS, SEED, names,
+        LIMIT, MOST_NEAREST, NEAREST, OFFSET, PARTS, PLACE, Parameter, RADIUS, SEED, Shape, names,
     },
     region::{CIRCLE, POLYGON},
+    values::{
+        finite, integer, no_format, numbers, read_bbox, strength, variants_of, vertices, wrong,
+    },
 };
 use crate::service::{
     Catalog, Encoding, Entry, Error, Fault,
@@ -149,6 +152,14 @@ impl Parameters {
         region: Option<RegionDraft>,
         found: Vec<Fault>,
     ) -> Result<(Query, Options), Error> {
+        let body = self.draft(region, found);
+        let query = body.draft.check(catalog, most_vertices, body.faults)?;
+        Ok((query, body.options))
+    }
+
+    /// The query as far as it can be read, with the faults found on the way and before.
+    #[must_use]
+    pub fn draft(&self, region: Option<RegionDraft>, found: Vec<Fault>) -> Body {
         let mut faults = Faults::new(found);
         let mut allowed: Vec<&str> = [&SET[..], &OUTPUT, &WINDOW].concat();
         if region.is_none() {
@@ -169,8 +180,25 @@ impl Parameters {
             },
         };
         let options = self.options(&mut faults);
-        let query = draft.check(catalog, most_vertices, faults.into_inner())?;
-        Ok((query, options))
+        Body {
+            draft,
+            options,
+            faults: faults.into_inner(),
+        }
+    }
+
+    /// Only the options of the output.
+    ///
+    /// # Errors
+    /// Every fault.
+    pub fn looks(&self) -> Result<Options, Vec<Fault>> {
+        let mut faults = Faults::default();
+        let options = self.options(&mut faults);
+        if faults.is_empty() {
+            Ok(options)
+        } else {
+            Err(faults.into_inner())
+        }
     }
 
     /// A set of points without a region, as single points are asked for; `others` may be given,
@@ -245,7 +273,14 @@ impl Parameters {
         let text = self.get(name)?;
         let value = read(text);
         if value.is_none() {
-            faults.add(Fault::new(name, text, wrong(text), allowed));
+            let is_list = Parameter::named(name)
+                .is_some_and(|parameter| matches!(parameter.shape, Shape::Numbers(_)));
+            let detail = if is_list {
+                "it is not such a list of numbers"
+            } else {
+                wrong(text)
+            };
+            faults.add(Fault::new(name, text, detail, allowed));
         }
         value
     }
@@ -354,99 +389,6 @@ const REGION: [&str; 3] = ["bbox", "circle", "polygon"];
 const WINDOW: [&str; 3] = ["offset", "limit", "cursor"];
 /// The parameters that say how the answer looks.
 const OUTPUT: [&str; 3] = ["format", "decimals", "size"];
-
-/// The box `min_x,min_y,max_x,max_y` of a text, as far as it is four numbers.
-///
-/// # Errors
-/// A [`Fault`] of `bbox`.
-pub fn read_bbox(text: Option<&str>) -> Result<Option<[f64; 4]>, Fault> {
-    let Some(text) = text else { return Ok(None) };
-    let fault = |detail: String| Fault::new("bbox", text, detail, BOX);
-    let parts: Vec<&str> = text.split(',').collect();
-    let parts: [&str; 4] = parts
-        .try_into()
-        .map_err(|parts: Vec<&str>| fault(format!("it has {} parts, not 4", parts.len())))?;
-    let mut corners = [0.0; 4];
-    for ((corner, part), name) in corners
-        .iter_mut()
-        .zip(parts)
-        .zip(["min_x", "min_y", "max_x", "max_y"])
-    {
-        *corner = number(part).map_err(|detail| fault(format!("{name} is `{part}`, {detail}")))?;
-    }
-    Ok(Some(corners))
-}
-
-/// The fault of a format that queries do not have.
-pub(super) fn no_format(field: &str, text: &str) -> Fault {
-    let allowed = Encoding::ALL.map(Encoding::name).join(", ");
-    let detail = if text == Encoding::Parquet.name() {
-        "it is made by `strew sample` only"
-    } else {
-        "there is no such format"
-    };
-    Fault::new(field, text, detail, allowed)
-}
-
-/// `off`, `on` or a number.
-fn strength(text: &str) -> Option<f64> {
-    match text {
-        "off" => Some(0.0),
-        "on" => Some(1.0),
-        _ => finite(text),
-    }
-}
-
-/// Names with weights, as `oak:3,birch:1`; a weight that is not given is 1.
-pub(super) fn variants_of(text: &str) -> Option<Vec<(String, f64)>> {
-    let variant = |part: &str| {
-        let (name, weight) = part.split_once(':').unwrap_or((part, "1"));
-        Some((name.to_owned(), finite(weight)?))
-    };
-    text.split(',').map(variant).collect()
-}
-
-fn vertices(text: &str) -> Option<Vec<[f64; 2]>> {
-    let values: Vec<f64> = text.split(',').map(finite).collect::<Option<_>>()?;
-    let (pairs, []) = values.as_chunks::<2>() else {
-        return None;
-    };
-    Some(pairs.to_vec())
-}
-
-/// So many finite numbers joined by commas.
-fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
-    let values: Vec<f64> = text.split(',').map(finite).collect::<Option<_>>()?;
-    values.try_into().ok()
-}
-
-fn integer<T: FromStr>(text: &str) -> Option<T> {
-    text.parse().ok()
-}
-
-fn finite(text: &str) -> Option<f64> {
-    number(text).ok()
-}
-
-/// What is wrong with a text that cannot be read.
-fn wrong(text: &str) -> &'static str {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_infinite() => "not finite",
-        Ok(value) if !value.is_nan() => "it is not in the range allowed",
-        _ if text.contains(',') => "it is not such a list",
-        _ => "not a number",
-    }
-}
-
-/// A finite number; otherwise what it is instead.
-fn number(text: &str) -> Result<f64, &'static str> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(value) if value.is_nan() => Err("not a number"),
-        Ok(_) => Err("not finite"),
-        Err(_) => Err("not a number"),
-    }
-}
 
 #[cfg(test)]
 mod tests {

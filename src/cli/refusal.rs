@@ -1,0 +1,88 @@
+//! Errors of the service in the words of a command line: flags instead of fields, settings instead
+//! of a server.
+
+use anyhow::anyhow;
+
+use super::{Failure, flags::flag};
+use crate::service::{Encoding, Error, Fault, query::Parameter};
+
+/// Where a query came from, which decides what its fields are called.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Source {
+    /// Flags.
+    Flags,
+    /// The JSON of this file.
+    File(String),
+}
+
+impl Source {
+    /// A failure that says what is wrong.
+    pub(super) fn refused(&self, error: Error) -> Failure {
+        let text = match &error {
+            Error::Invalid(faults) => self.told(faults),
+            Error::TooManyPoints { count, limit } => format!(
+                "the query has {count} points, and the settings allow {limit}: ask for a smaller \
+                 region or fewer points, or raise it by --set limits.max_points={count}"
+            ),
+            Error::TooManyRows { rows, limit } => format!(
+                "the region spans about {rows} lattice rows that have to be counted one by one, and \
+                 the settings allow {limit}: ask for a smaller region, a wider spacing, or a box \
+                 with --warp off, or raise it by --set limits.max_rows={rows}"
+            ),
+            Error::OtherTable { pinned, loaded } => format!(
+                "the query pins the table {pinned}, but {loaded} would answer: leave --table out, \
+                 or load the table by --tables DIR"
+            ),
+            Error::NoSuchPoint { .. } | Error::Internal(_) => return Failure::Other(error.into()),
+            _ => return Failure::Usage(error.into()),
+        };
+        Failure::Usage(anyhow!("{text}"))
+    }
+
+    fn told(&self, faults: &[Fault]) -> String {
+        let mut told: Vec<String> = faults.iter().map(|fault| self.one(fault)).collect();
+        let place = match self {
+            Self::Flags => String::new(),
+            Self::File(name) => format!("{name}: "),
+        };
+        match told.as_slice() {
+            [only] => format!("{place}{only}"),
+            _ => {
+                told.insert(0, format!("{place}{} things are wrong", told.len()));
+                told.join("\n  ")
+            }
+        }
+    }
+
+    fn one(&self, fault: &Fault) -> String {
+        let Fault {
+            field,
+            value,
+            detail,
+            allowed,
+        } = fault;
+        if *self != Self::Flags {
+            return fault.to_string();
+        }
+        let is_flag = Parameter::named(field).is_some() || ["chunk", "region"].contains(&&**field);
+        let name = if is_flag { flag(field) } else { field.clone() };
+        match (value, &**field) {
+            (None, "bbox" | "region") => {
+                "a region is missing: give --bbox, --circle, --polygon, --chunk or --region, or a \
+                 whole query by --query"
+                    .into()
+            }
+            (None, "density") => {
+                "an amount is missing: give --density, --spacing, --min-distance or, with a region, \
+                 --count"
+                    .into()
+            }
+            (None, _) => format!("{name} is missing; allowed: {allowed}"),
+            (Some(value), "format") if Encoding::from_name(value).is_none() => {
+                let parquet = Encoding::Parquet.name();
+                format!("{name} {value}: {detail}; allowed: {allowed}, {parquet}")
+            }
+            (Some(value), _) => format!("{name} {value}: {detail}; allowed: {allowed}"),
+        }
+    }
+}

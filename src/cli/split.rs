@@ -1,0 +1,59 @@
+//! `strew split`: a query in parts, each a query for `strew sample --query -`.
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::{Failure, flags::Parted, output, query::Asked, refusal::Source};
+use crate::service::{
+    Error,
+    query::{Draft, Token, WindowDraft},
+};
+
+/// Flags of `strew split`: those of `strew sample`, and the number of parts.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Print the document of POST /v1/points:split instead: the parts with their counts.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    query: Asked<Parted>,
+}
+
+#[derive(Serialize)]
+struct Document {
+    count: u128,
+    parts: Vec<Part>,
+}
+
+#[derive(Serialize)]
+struct Part {
+    count: u64,
+    query: Map<String, Value>,
+}
+
+/// Prints the parts, a query a line.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let config = args.query.settings.merged()?;
+    let parts = args.query.flags.parameters(|name| name == "parts").parts();
+    let parts = parts.map_err(|faults| Source::Flags.refused(Error::Invalid(faults)))?;
+    let ask = args.query.plan(&config)?;
+    let part = |(token, count): (Token, u64)| {
+        let window = WindowDraft {
+            offset: None,
+            limit: Some(count),
+            cursor: Some(token.to_string()),
+        };
+        let draft = Draft {
+            window,
+            ..ask.draft.clone()
+        };
+        let query = draft.to_body(&ask.options);
+        Part { count, query }
+    };
+    let count = ask.planned.count();
+    let parts: Vec<Part> = ask.planned.split(parts).into_iter().map(part).collect();
+    if args.json {
+        return output::print_json([Document { count, parts }]);
+    }
+    output::print_json(parts.into_iter().map(|part| part.query))
+}
