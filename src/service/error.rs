@@ -77,7 +77,7 @@ pub enum Error {
     /// The region holds more points than one answer may have.
     #[error(
         "the region holds {count} points; this server gives at most {limit} in one answer: ask \
-         for a smaller bbox or a lower density"
+         for a smaller region, fewer points, or a part of them with limit and cursor"
     )]
     TooManyPoints {
         /// The exact count.

@@ -8,6 +8,7 @@ mod commands;
 mod commands_wrong;
 mod contract;
 mod daemon;
+mod documented;
 mod drain;
 mod forge;
 mod formats;
