@@ -80,6 +80,8 @@ fn set(
         keep: echo.keep,
         attributes: asked.attributes.as_slice().iter().map(attribute).collect(),
         clear_of: clear_of.collect(),
+        delta_min: entry.measured("delta_min"),
+        delta_avg: entry.measured("delta_avg"),
     }
 }
 

@@ -231,6 +231,9 @@ async fn points_attributes_and_echoes_are_those_of_the_rest_door() {
             }
             assert_eq!(set.keep, echo["keep"].as_f64().unwrap_or(1.0));
             assert_eq!(digests[i]["digest"], set.table);
+            assert_eq!(normal(&set.delta_min.into()), digests[i]["delta_min"]);
+            assert_eq!(normal(&set.delta_avg.into()), digests[i]["delta_avg"]);
+            assert!(set.delta_min.is_some());
             let attributes = echo["attributes"]
                 .as_array()
                 .map(Vec::as_slice)
