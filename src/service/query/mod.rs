@@ -176,6 +176,6 @@ impl Asked {
 }
 
 /// The shortest digits of any number.
-fn number(value: f64) -> String {
+pub(in crate::service) fn number(value: f64) -> String {
     zmij::Buffer::new().format(value).into()
 }
