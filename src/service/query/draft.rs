@@ -136,8 +136,15 @@ impl Draft {
             let earlier: Vec<&str> = self.layers[..i].iter().map(|l| l.name.as_str()).collect();
             let field = |name: &str| format!("{path}{name}");
             if !is_name(&layer.name) || earlier.contains(&layer.name.as_str()) {
-                let detail = "it is not such a name";
-                faults.add(Fault::new(&field("name"), &layer.name, detail, NAME));
+                let detail = if earlier.contains(&layer.name.as_str()) {
+                    "an earlier layer has this name"
+                } else {
+                    "it is not such a name"
+                };
+                faults.add(match layer.name.as_str() {
+                    "" => Fault::missing(&field("name"), NAME),
+                    name => Fault::new(&field("name"), name, detail, NAME),
+                });
             }
             let own = layer.region.as_ref();
             let region = own.map(|region| region.check(budget, faults));

@@ -193,6 +193,6 @@ pub fn check_parts(parts: u32) -> Result<u32, Fault> {
 }
 
 /// The shortest digits of any number.
-fn number(value: f64) -> String {
+pub(in crate::service) fn number(value: f64) -> String {
     zmij::Buffer::new().format(value).into()
 }

@@ -83,6 +83,8 @@ pub struct Blocks<F: Format> {
     sieve: Option<Focus>,
     /// What the sieve says of the row under way.
     runs: Vec<Run>,
+    /// What it says of all rows of the patch alike, if it does: that all pass, or none.
+    whole: Option<Vec<Run>>,
     columns: [Listed; 4],
     templates: Templates<F>,
     patch: Patch,
@@ -147,6 +149,7 @@ impl<F: Format> Blocks<F> {
             },
             sieve: None,
             runs: Vec::new(),
+            whole: None,
             columns: Default::default(),
             templates: Templates::new(&plan.sampler, tall, kept),
             patch,
@@ -266,7 +269,18 @@ impl<F: Format> Blocks<F> {
         self.patch = Patch::new(frame, self.band, self.at.y, x, y);
         self.base = self.format.base(self.patch.origin());
         let rows = self.at.y..self.patch.end().min(self.rows.end);
-        self.sieve = self.plan.sieve.as_ref().map(|sieve| sieve.focus(rows));
+        self.sieve = self.plan.sieve.as_ref().map(|s| s.focus(rows.clone()));
+        self.whole = None;
+        if let Some(sieve) = &self.sieve {
+            let columns = clip(self.band, &self.plan.x.all);
+            sieve.runs(rows, &columns, &mut self.runs);
+            let alike = match self.runs.as_slice() {
+                [] => true,
+                [run] => run.passes && run.columns == columns,
+                _ => false,
+            };
+            self.whole = alike.then(|| self.runs.clone());
+        }
     }
 
     /// Writes points of the patch's rows up to `end`, or as many as there is room for.
@@ -360,7 +374,10 @@ impl<F: Format> Blocks<F> {
             };
             let is_under_way = self.at.done > 0;
             if !is_under_way {
-                sieve.runs(y, &columns, &mut self.runs);
+                match &self.whole {
+                    Some(run) => self.runs.clone_from(run),
+                    None => sieve.runs(y..y + 1, &columns, &mut self.runs),
+                }
                 if self.runs.is_empty() {
                     self.at.next_row();
                     continue;
