@@ -1,5 +1,6 @@
 //! The daemon from outside: the real program over real sockets, and the real clients.
 
+mod amounts;
 mod caching;
 mod clients;
 mod coding;
@@ -16,10 +17,15 @@ mod grpc;
 mod grpc_calls;
 mod grpc_web;
 mod http;
+mod layers;
 mod limits;
 mod openapi;
+mod pages;
 mod raw;
 mod readers;
+mod regions;
 mod settings;
+mod singles;
 mod streaming;
+mod table;
 mod wrong;
