@@ -1,7 +1,5 @@
 //! A planned query as messages: a header, blocks, a summary, made when they are asked for.
 
-use std::fmt::Write as _;
-
 use bytes::Bytes;
 use strew_core::{
     ALGORITHM_VERSION,
@@ -97,8 +95,8 @@ impl Messages {
         };
         if let Some((set, cursor)) = place {
             block.layer = u32::try_from(set).unwrap_or(u32::MAX);
-            // Writing to a string cannot fail.
-            let _ = write!(block.cursor, "{}", self.planned.token(set, cursor));
+            let token = self.planned.token(set, cursor);
+            block.cursor = token.map(|token| token.to_string()).unwrap_or_default();
         }
         Some(block)
     }

@@ -33,9 +33,6 @@ pub mod proto {
 /// The contract as reflection serves it.
 const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
 
-/// What a request may take: polygons of 100,000 vertices take half of it.
-const MAX_REQUEST_BYTES: usize = 4 << 20;
-
 /// Why the gRPC door cannot be built: the contract's descriptors do not read.
 pub type BuildError = tonic_reflection::server::Error;
 
@@ -52,8 +49,9 @@ pub async fn routes(service: Arc<Service>) -> Result<(Routes, Health), BuildErro
             .register_encoded_file_descriptor_set(DESCRIPTORS)
             .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
     };
+    let most = service.limits().max_body_bytes;
     let points = compression::COMPRESSIONS.into_iter().fold(
-        PointServiceServer::new(Points::new(service)).max_decoding_message_size(MAX_REQUEST_BYTES),
+        PointServiceServer::new(Points::new(service)).max_decoding_message_size(most),
         |server, coding| server.accept_compressed(coding).send_compressed(coding),
     );
     let routes = Routes::new(points)

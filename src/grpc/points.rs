@@ -62,7 +62,7 @@ impl Points {
         let planned = self.service.count(query).await?;
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
         let places = move || planned.split(parts);
-        let places = self.service.workers().run(places).await?;
+        let places = self.service.workers().run(places).await??;
         let part = |place| split::part(request, place);
         Ok(SplitPointsResponse {
             count,

@@ -11,6 +11,7 @@ pub mod catalog;
 pub mod encode;
 pub mod error;
 mod planned;
+mod planner;
 mod portrait;
 pub mod query;
 mod single;
@@ -44,12 +45,15 @@ pub struct Limits {
     /// The most points of one answer. Keeps a slip of a zero from filling a disk; the refusal says
     /// the exact count.
     pub max_points: u64,
-    /// The most lattice rows that are counted one by one, where a region is not a box or is warped
-    /// (about three for each mean spacing of its height; for a warped box also of its width). They
+    /// The most lattice rows that are counted one by one, where a region is not a box or is warped:
+    /// about three for each mean spacing of its outline's width and height, and of its height. They
     /// take a few microseconds each before the first point.
     pub max_rows: u64,
     /// The most vertices that the polygons of a query have in all: bounds its memory.
     pub max_vertices: usize,
+    /// The most bytes of a query that comes as a body or a message: bounds what is held of each before it is
+    /// read.
+    pub max_body_bytes: usize,
     /// The most answers under way at once. Bounds memory: an answer holds 1 to 2 MB,
     /// two blocks and the rows it is made of, and a picture up to 16 MB more.
     pub max_streams: usize,

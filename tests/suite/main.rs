@@ -1,5 +1,6 @@
 //! The daemon from outside: the real program over real sockets, and the real clients.
 
+mod amounts;
 mod caching;
 mod calls;
 mod clients;
@@ -20,10 +21,15 @@ mod grpc_single;
 mod grpc_web;
 mod grpc_wrong;
 mod http;
+mod layers;
 mod limits;
 mod openapi;
+mod pages;
 mod raw;
 mod readers;
+mod regions;
 mod settings;
+mod singles;
 mod streaming;
+mod table;
 mod wrong;

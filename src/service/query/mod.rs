@@ -81,7 +81,7 @@ pub struct Query {
 }
 
 /// Which part of the points is asked for, in their order.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Window {
     /// How many are left out at the beginning, or after the cursor.
     pub offset: u64,
