@@ -221,7 +221,18 @@ impl<F: Format> Blocks<F> {
         self.patch = Patch::new(frame, self.band, self.at.y, x, y);
         self.base = self.format.base(self.patch.origin());
         let rows = self.at.y..self.patch.end().min(self.rows.end);
-        self.sieve = self.plan.sieve.as_ref().map(|sieve| sieve.focus(rows));
+        let end = rows.end;
+        self.sieve = self.plan.sieve.as_ref().map(|s| s.focus(rows.clone()));
+        if let Some(sieve) = &self.sieve {
+            let columns = clip(self.band, &x.all);
+            sieve.runs(rows, &columns, &mut self.runs);
+            match self.runs.as_slice() {
+                [] => self.at = Place::row(end),
+                // Such a patch lies inside the plan's box, too: it is filled like one.
+                [run] if run.passes && run.columns == columns => self.sieve = None,
+                _ => {}
+            }
+        }
     }
 
     /// Writes points of the patch's rows up to `end`, or as many as there is room for.
@@ -315,7 +326,7 @@ impl<F: Format> Blocks<F> {
             };
             let is_under_way = self.at.done > 0;
             if !is_under_way {
-                sieve.runs(y, &columns, &mut self.runs);
+                sieve.runs(y..y + 1, &columns, &mut self.runs);
                 if self.runs.is_empty() {
                     self.at.next_row();
                     continue;

@@ -100,11 +100,11 @@ impl Focus {
             && self.guards.iter().all(|guard| guard.leaves(p))
     }
 
-    /// Those columns of a row whose points may pass.
-    pub(super) fn runs(&self, row: i64, columns: &Range<i64>, runs: &mut Vec<Run>) {
+    /// Those columns of some rows whose points may pass.
+    pub(super) fn runs(&self, rows: Range<i64>, columns: &Range<i64>, runs: &mut Vec<Run>) {
         runs.clear();
         let steps = match &self.area {
-            Some(area) => area.steps(self.strip(row..row + 1)),
+            Some(area) => area.steps(self.strip(rows)),
             None => Steps::all(State::In),
         };
         let mut push = |run: Range<i64>, passes: bool| {
@@ -156,9 +156,10 @@ impl Focus {
 /// Lattice units that a boundary is given as room for rounding.
 const SLACK: f64 = 3.0;
 
-/// The same for a place far out: quotients are off by a few units in the last place.
+/// The same for a place far out: quotients are off by a few units in the last place. (Not without
+/// end: what is asked for stays outermost, ±∞ included.)
 fn room(x: f64) -> f64 {
-    SLACK + 2e-15 * x.abs()
+    SLACK + (2e-15 * x.abs()).min(1e300)
 }
 
 /// How many points of a stretch of the lattice pass.
@@ -180,7 +181,7 @@ pub(super) fn count(
             let Some((x_parity, index)) = frame.pattern.visit(Axis::Y, y) else {
                 continue;
             };
-            focused.runs(y, columns, &mut runs);
+            focused.runs(y..y + 1, columns, &mut runs);
             if runs.is_empty() {
                 continue;
             }
