@@ -31,6 +31,7 @@ fn compile_contract(out: &Path) -> Result<(), Box<dyn Error>> {
     tonic_prost_build::configure()
         .build_transport(false)
         .bytes(".strew.v1")
+        .btree_map(".strew.v1")
         .compile_fds(descriptors)?;
     Ok(())
 }

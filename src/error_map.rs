@@ -35,6 +35,11 @@ pub const fn http(kind: Kind) -> Problem {
             "too-many-rows",
             "Counting the points would take too long",
         ),
+        Kind::BodyTooLarge => (
+            StatusCode::PAYLOAD_TOO_LARGE,
+            "body-too-large",
+            "The query is too long",
+        ),
         Kind::OtherTable => (
             StatusCode::CONFLICT,
             "other-table",
@@ -90,7 +95,9 @@ pub fn urn(kind: Kind) -> String {
 pub const fn grpc(kind: Kind) -> Code {
     match kind {
         Kind::Invalid | Kind::NotAcceptable => Code::InvalidArgument,
-        Kind::TooManyPoints | Kind::TooManyRows | Kind::Busy => Code::ResourceExhausted,
+        Kind::TooManyPoints | Kind::TooManyRows | Kind::BodyTooLarge | Kind::Busy => {
+            Code::ResourceExhausted
+        }
         Kind::OtherTable => Code::FailedPrecondition,
         Kind::NoSuchPoint => Code::NotFound,
         Kind::NoSuchPath | Kind::NoSuchMethod => Code::Unimplemented,

@@ -6,7 +6,8 @@ use bytes::Bytes;
 use http::{Request, header};
 use prost::Message as _;
 use strew::grpc::proto::{
-    BoundingBox, Encoding, StreamPointsRequest, stream_points_request::Amount,
+    BoundingBox, Encoding, Region, StreamPointsRequest, region::Shape,
+    stream_points_request::Amount,
 };
 
 /// What a client allows the server to send.
@@ -36,10 +37,12 @@ impl Windows {
 pub fn request(points: u64) -> Bytes {
     let side = (points as f64).sqrt();
     let request = StreamPointsRequest {
-        bbox: Some(BoundingBox {
-            max_x: side,
-            max_y: side,
-            ..BoundingBox::default()
+        region: Some(Region {
+            shape: Some(Shape::Bbox(BoundingBox {
+                max_x: side,
+                max_y: side,
+                ..BoundingBox::default()
+            })),
         }),
         amount: Some(Amount::Spacing(1.0)),
         encoding: Encoding::F32Le.into(),

@@ -22,7 +22,6 @@ use strew::{
 /// A daemon that serves as long as this lives.
 pub struct Host {
     pub address: SocketAddr,
-    pub block_bytes: usize,
     _runtime: tokio::runtime::Runtime,
 }
 
@@ -43,7 +42,6 @@ impl Host {
         runtime.spawn(app.run(listener, std::future::pending()));
         Self {
             address,
-            block_bytes,
             _runtime: runtime,
         }
     }

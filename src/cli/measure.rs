@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde_json::{Map as JsonMap, Value, json};
 use strew_core::{Table, Twin};
 use strew_forge::{
-    Aim, Report, Target,
+    Aim, Report, Resolution, Target,
     measure::{Torus, Window, twin_set, window_set},
     picture,
 };
@@ -45,6 +45,9 @@ pub(super) struct Args {
     /// Frequencies are measured up to this, in units of the square root of the density.
     #[arg(long, default_value_t = 4.0)]
     nu_max: f64,
+    /// The width of the rings of radial power, in the same units; 0 is one mode [default: 1/64].
+    #[arg(long, value_name = "WIDTH")]
+    ring_width: Option<f64>,
     /// An SVG picture to write: points, spectrum, radial power, anisotropy, RDF. With several
     /// subjects that of the first.
     #[arg(long, value_name = "FILE")]
@@ -67,6 +70,16 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let problem = anyhow!("--nu-max is {}; it must be from 0.5 to 8", args.nu_max);
         return Err(Failure::Usage(problem));
     }
+    if !(0.0..=0.5).contains(&args.resolution().ring_width) {
+        let width = args.resolution().ring_width;
+        let problem = anyhow!("--ring-width is {width}; it must be from 0 to 0.5");
+        return Err(Failure::Usage(problem));
+    }
+    let nothing = args.table.is_none() && args.points.is_none();
+    if nothing && args.flags.get("bbox").is_none() {
+        let problem = "nothing to measure: --table FILE, --points FILE or --bbox BOX is missing";
+        return Err(Failure::Usage(anyhow!(problem)));
+    }
     let (reports, target) = if let Some(file) = &args.table {
         of_table(args, file)?
     } else if let Some(file) = &args.points {
@@ -74,6 +87,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     } else {
         let (report, target) = of_query(args)?;
         (vec![report], target)
+    };
+    let reports: Vec<Report> = match &target {
+        Some(target) => reports.into_iter().map(|r| r.compared(target)).collect(),
+        None => reports,
     };
     if let (Some(path), Some(report)) = (&args.picture, reports.first()) {
         let subject = &report.figures.subject;
@@ -122,10 +139,10 @@ enum Subject {
 }
 
 impl Subject {
-    fn measured(self, nu_max: f64) -> Report {
+    fn measured(self, at: Resolution) -> Report {
         match self {
-            Self::Torus(name, seen, set) => Report::of_torus(name, seen, &set, nu_max),
-            Self::Window(name, set) => Report::of_window(name, false, &set, nu_max),
+            Self::Torus(name, seen, set) => Report::of_torus(name, seen, &set, at),
+            Self::Window(name, set) => Report::of_window(name, false, &set, at),
         }
     }
 }
@@ -150,12 +167,20 @@ fn of_table(args: &Args, file: &Path) -> Result<(Vec<Report>, Option<Target>), F
     }
     let reports = subjects
         .into_par_iter()
-        .map(|subject| subject.measured(args.nu_max));
+        .map(|subject| subject.measured(args.resolution()));
     let aim = Aim::of(table.profile(), table.provenance());
     Ok((reports.collect(), aim.and_then(|aim| aim.curve)))
 }
 
 impl Args {
+    fn resolution(&self) -> Resolution {
+        let usual = Resolution::default();
+        Resolution {
+            nu_max: self.nu_max,
+            ring_width: self.ring_width.unwrap_or(usual.ring_width),
+        }
+    }
+
     /// Only the box: min x, min y, max x, max y.
     fn corners(&self) -> anyhow::Result<[f64; 4]> {
         let read = read_bbox(self.flags.get("bbox")).map_err(|fault| anyhow!("{fault}"))?;
@@ -215,7 +240,7 @@ fn of_query(args: &Args) -> Result<(Report, Option<Target>), Failure> {
     let set = &planned.sets[0];
     set.plan.blocks_f64().fill(&mut points);
     let name = described(&planned);
-    let report = window(corner, side, set.density, points, name).measured(args.nu_max);
+    let report = window(corner, side, set.density, points, name).measured(args.resolution());
     Ok((report, set.entry.aim().and_then(|aim| aim.curve)))
 }
 
@@ -266,7 +291,7 @@ fn of_points(args: &Args, file: &Path) -> Result<Report, Failure> {
         let density = points.len() as f64 / (side * side);
         window(corner, side, density, points, name)
     };
-    Ok(subject.measured(args.nu_max))
+    Ok(subject.measured(args.resolution()))
 }
 
 fn packed(bytes: &[u8]) -> anyhow::Result<Vec<[f64; 2]>> {

@@ -39,15 +39,26 @@ pub(super) struct Args {
 }
 
 impl Args {
-    /// The format that the output's name asks for.
-    fn by_extension(&self) -> Option<Encoding> {
-        match self.output.as_ref()?.extension()?.to_str()? {
+    /// The format that the output's name asks for; JSON if it has no ending.
+    fn by_ending(&self) -> Result<Encoding, Failure> {
+        let Some(ending) = self.output.as_ref().and_then(|path| path.extension()) else {
+            return Ok(Encoding::Json);
+        };
+        let ending = ending.to_string_lossy();
+        let encoding = match &*ending {
             "arrows" => Some(Encoding::Arrow),
             "geojsons" | "geojsonl" => Some(Encoding::Geojsonseq),
             "jsonl" => Some(Encoding::Ndjson),
             "parquet" => Some(Encoding::Parquet),
             name => Encoding::from_name(name),
-        }
+        };
+        encoding.ok_or_else(|| {
+            Failure::Usage(anyhow!(
+                "--output ends with .{ending}, which names no format: give --format, or one of the \
+                 endings {}, parquet",
+                Encoding::ALL.map(Encoding::name).join(", ")
+            ))
+        })
     }
 }
 
@@ -56,10 +67,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.query.settings.merged()?;
     let ask = args.query.plan(&config)?;
     let (planned, options) = (&ask.planned, ask.options);
-    let encoding = options
-        .encoding
-        .or_else(|| args.by_extension())
-        .unwrap_or(Encoding::Json);
+    let encoding = match options.encoding {
+        Some(encoding) => encoding,
+        None => args.by_ending()?,
+    };
     let output = options.output(encoding).map(|output| Output {
         relative_to: planned.query.region.corner,
         ..output

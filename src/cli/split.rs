@@ -51,7 +51,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Part { count, query }
     };
     let count = ask.planned.count();
-    let parts: Vec<Part> = ask.planned.split(parts).into_iter().map(part).collect();
+    let split = ask.planned.split(parts);
+    let split = split.map_err(|error| ask.source.refused(error))?;
+    let parts: Vec<Part> = split.into_iter().map(part).collect();
     if args.json {
         return output::print_json([Document { count, parts }]);
     }

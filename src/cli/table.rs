@@ -55,15 +55,16 @@ pub(super) struct Export {
 
 /// Flags of `strew table import`.
 #[derive(Debug, clap::Args)]
+#[command(group(clap::ArgGroup::new("number").required(true).args(["alpha", "t_over_r"])))]
 pub(super) struct Import {
     /// The text: one line `x y` in grid units per block; row = block of dY, column = block of dX.
     #[arg(value_name = "TEXT")]
     text: PathBuf,
     /// The number alpha.
-    #[arg(long, required_unless_present = "t_over_r", allow_hyphen_values = true)]
+    #[arg(long, allow_hyphen_values = true)]
     alpha: Option<String>,
     /// t/r of the published tables, such as 191861/110771, instead of alpha = 1 + t/(t + r).
-    #[arg(long, value_name = "T/R", conflicts_with = "alpha")]
+    #[arg(long, value_name = "T/R")]
     t_over_r: Option<String>,
     /// The half-width R of the map in grid units.
     #[arg(long, default_value_t = 49)]

@@ -54,6 +54,12 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     within("limits.max_points", limits.max_points as f64, 1.0, 1e15);
     within("limits.max_rows", limits.max_rows as f64, 1.0, 1e12);
     within("limits.max_vertices", limits.max_vertices as f64, 3.0, 1e8);
+    within(
+        "limits.max_body_bytes",
+        limits.max_body_bytes as f64,
+        1024.0,
+        f64::from(1 << 30),
+    );
     within("limits.max_streams", limits.max_streams as f64, 1.0, 1e6);
     // gRPC clients refuse messages above 4 MiB, and ours stay below 1 MiB.
     within(

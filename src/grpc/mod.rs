@@ -1,10 +1,15 @@
 //! The gRPC door: messages in, streamed messages out. It decides nothing itself.
 
 mod compression;
-mod convert;
 mod deadline;
-mod encode;
+mod messages;
 mod points;
+mod profile;
+mod query;
+mod region;
+mod resolved;
+mod single;
+mod split;
 mod status;
 
 use std::sync::Arc;
@@ -17,7 +22,7 @@ pub use deadline::Deadline;
 use points::Points;
 use proto::point_service_server::PointServiceServer;
 
-/// The messages, server and client made from `proto/strew/v1/points.proto`.
+/// The messages, server and client made from `proto/strew/v1/`.
 #[allow(missing_docs, reason = "the contract documents everything")]
 #[allow(clippy::all, reason = "made code")]
 #[allow(clippy::allow_attributes_without_reason, reason = "made code")]
@@ -27,9 +32,6 @@ pub mod proto {
 
 /// The contract as reflection serves it.
 const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
-
-/// Requests are a few numbers and two names.
-const MAX_REQUEST_BYTES: usize = 64 << 10;
 
 /// Why the gRPC door cannot be built: the contract's descriptors do not read.
 pub type BuildError = tonic_reflection::server::Error;
@@ -47,8 +49,9 @@ pub async fn routes(service: Arc<Service>) -> Result<(Routes, Health), BuildErro
             .register_encoded_file_descriptor_set(DESCRIPTORS)
             .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
     };
+    let most = service.limits().max_body_bytes;
     let points = compression::COMPRESSIONS.into_iter().fold(
-        PointServiceServer::new(Points::new(service)).max_decoding_message_size(MAX_REQUEST_BYTES),
+        PointServiceServer::new(Points::new(service)).max_decoding_message_size(most),
         |server, coding| server.accept_compressed(coding).send_compressed(coding),
     );
     let routes = Routes::new(points)

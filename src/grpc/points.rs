@@ -7,15 +7,20 @@ use strew_core::ALGORITHM_VERSION;
 use tonic::{Request, Response, Status};
 
 use super::{
-    convert,
-    encode::Messages,
+    messages::Messages,
+    profile,
     proto::{
-        ListProfilesRequest, ListProfilesResponse, StreamPointsRequest, StreamPointsResponse,
+        CountPointsRequest, CountPointsResponse, FindNearestRequest, FindNearestResponse,
+        GetPointRequest, GetPointResponse, ListProfilesRequest, ListProfilesResponse,
+        SplitPointsRequest, SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
         point_service_server::PointService,
     },
-    status,
+    query, resolved, single, split, status,
 };
-use crate::service::{Error, Service};
+use crate::service::{
+    Error, Fault, Service,
+    query::{SetDraft, check_parts},
+};
 
 /// Answers over gRPC.
 #[derive(Debug)]
@@ -29,19 +34,79 @@ impl Points {
     }
 
     async fn stream(&self, request: &StreamPointsRequest) -> Result<MessageStream, Error> {
-        let encoding = convert::encoding(request);
-        let (query, encoding) = convert::query(
-            request,
-            encoding,
-            self.service.catalog(),
-            self.service.limits().max_vertices,
-        )?;
+        let (query, encoding) = query::query(request, &self.service)?;
         let permit = self.service.streams().admit()?;
         let planned = self.service.plan(query).await?;
-        let messages = Messages::new(&planned, encoding, self.service.limits().block_bytes)?;
+        let block_bytes = self.service.limits().block_bytes;
+        let messages = Messages::new(request, planned, encoding, block_bytes)?;
         let stream = self.service.stream(permit, messages);
         Ok(Box::pin(stream.map_err(status::interrupted)))
     }
+
+    async fn count(&self, request: &StreamPointsRequest) -> Result<CountPointsResponse, Error> {
+        let (query, encoding) = query::query(request, &self.service)?;
+        let planned = self.service.count(query).await?;
+        Ok(CountPointsResponse {
+            count: u64::try_from(planned.count()).unwrap_or(u64::MAX),
+            digits: planned.count().to_string(),
+            query: Some(resolved::query(request, &planned, encoding)),
+        })
+    }
+
+    async fn split(
+        &self,
+        request: &StreamPointsRequest,
+        parts: u32,
+    ) -> Result<SplitPointsResponse, Error> {
+        let (query, _) = query::query(request, &self.service)?;
+        let planned = self.service.count(query).await?;
+        let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
+        let places = move || planned.split(parts);
+        let places = self.service.workers().run(places).await??;
+        let part = |place| split::part(request, place);
+        Ok(SplitPointsResponse {
+            count,
+            parts: places.into_iter().map(part).collect(),
+        })
+    }
+
+    async fn point(&self, request: &GetPointRequest) -> Result<GetPointResponse, Error> {
+        let set = SetDraft::from(request).check_alone(self.service.catalog(), vec![])?;
+        let placed = self.service.place(set).await?;
+        Ok(GetPointResponse {
+            point: Some(single::point(placed.point(&request.id)?)),
+            set: Some(resolved::placed(&placed)),
+        })
+    }
+
+    async fn nearest(&self, request: &FindNearestRequest) -> Result<FindNearestResponse, Error> {
+        let mut faults = vec![];
+        let around = query::around(request).check(vec![]);
+        let around = around.map_err(|more| faults.extend(more));
+        let set = SetDraft::from(request).check_alone(self.service.catalog(), faults)?;
+        let around = around.map_err(|()| Error::Internal("a fault is lost"))?;
+        let placed = self.service.place(set).await?;
+        let set = Some(resolved::placed(&placed));
+        let search = move || placed.nearest(around);
+        let found = self.service.workers().run(search).await??;
+        Ok(FindNearestResponse {
+            neighbors: found.into_iter().map(single::point).collect(),
+            set,
+        })
+    }
+}
+
+/// The query of a request, which must be there.
+fn required(query: Option<StreamPointsRequest>) -> Result<StreamPointsRequest, Status> {
+    query.ok_or_else(|| {
+        let fault = Fault::missing("query", "a request as StreamPoints takes it");
+        status::status(&Error::Invalid(vec![fault]))
+    })
+}
+
+fn answered<T>(answer: Result<T, Error>) -> Result<Response<T>, Status> {
+    let answer = answer.map(Response::new);
+    answer.map_err(|error| status::status(&error))
 }
 
 type MessageStream = Pin<Box<dyn Stream<Item = Result<StreamPointsResponse, Status>> + Send>>;
@@ -54,10 +119,45 @@ impl PointService for Points {
         &self,
         request: Request<StreamPointsRequest>,
     ) -> Result<Response<MessageStream>, Status> {
-        let stream = self.stream(request.get_ref()).await;
-        stream
-            .map(Response::new)
-            .map_err(|error| status::status(&error))
+        answered(self.stream(request.get_ref()).await)
+    }
+
+    async fn count_points(
+        &self,
+        request: Request<CountPointsRequest>,
+    ) -> Result<Response<CountPointsResponse>, Status> {
+        let query = required(request.into_inner().query)?;
+        let answer = self.count(&query).await;
+        answered(answer.map_err(|error| status::within("query", error)))
+    }
+
+    async fn split_points(
+        &self,
+        request: Request<SplitPointsRequest>,
+    ) -> Result<Response<SplitPointsResponse>, Status> {
+        let SplitPointsRequest { query, parts } = request.into_inner();
+        let query = required(query)?;
+        let parts = check_parts(parts).and_then(|parts| {
+            split::check_size(&query, parts)?;
+            Ok(parts)
+        });
+        let parts = parts.map_err(|fault| status::status(&Error::Invalid(vec![fault])))?;
+        let answer = self.split(&query, parts).await;
+        answered(answer.map_err(|error| status::within("query", error)))
+    }
+
+    async fn get_point(
+        &self,
+        request: Request<GetPointRequest>,
+    ) -> Result<Response<GetPointResponse>, Status> {
+        answered(self.point(request.get_ref()).await)
+    }
+
+    async fn find_nearest(
+        &self,
+        request: Request<FindNearestRequest>,
+    ) -> Result<Response<FindNearestResponse>, Status> {
+        answered(self.nearest(request.get_ref()).await)
     }
 
     async fn list_profiles(
@@ -66,7 +166,7 @@ impl PointService for Points {
     ) -> Result<Response<ListProfilesResponse>, Status> {
         let entries = self.service.catalog().entries();
         Ok(Response::new(ListProfilesResponse {
-            profiles: entries.map(|entry| convert::profile(entry)).collect(),
+            profiles: entries.map(|entry| profile::profile(entry)).collect(),
             algorithm: ALGORITHM_VERSION,
         }))
     }

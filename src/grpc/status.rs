@@ -7,7 +7,7 @@ use tonic_types::{ErrorDetails, StatusExt as _};
 
 use crate::{
     error_map,
-    service::{Error, Interrupted, Kind},
+    service::{Error, Fault, Interrupted, Kind},
 };
 
 /// How long a client should wait before it asks a busy server again.
@@ -23,8 +23,13 @@ pub(super) fn status(error: &Error) -> Status {
         let description = format!("{value}{}; allowed: {}", fault.detail, fault.allowed);
         details.add_bad_request_violation(&fault.field, description);
     }
-    if let Error::TooManyPoints { .. } = error {
-        details.add_quota_failure_violation("limits.max_points", error.to_string());
+    let quota = match error {
+        Error::TooManyPoints { .. } => Some("limits.max_points"),
+        Error::TooManyRows { .. } => Some("limits.max_rows"),
+        _ => None,
+    };
+    if let Some(subject) = quota {
+        details.add_quota_failure_violation(subject, error.to_string());
     }
     if let Error::OtherTable { pinned, .. } = error {
         details.add_precondition_failure_violation("TABLE", pinned, error.to_string());
@@ -33,6 +38,18 @@ pub(super) fn status(error: &Error) -> Status {
         details.set_retry_info(Some(RETRY));
     }
     Status::with_error_details(error_map::grpc(error.kind()), error.to_string(), details)
+}
+
+/// An error of a message that is a field of the request.
+pub(super) fn within(field: &str, error: Error) -> Error {
+    let path = |fault: Fault| Fault {
+        field: format!("{field}.{}", fault.field),
+        ..fault
+    };
+    match error {
+        Error::Invalid(faults) => Error::Invalid(faults.into_iter().map(path).collect()),
+        other => other,
+    }
 }
 
 /// A broken stream as a status.
@@ -79,6 +96,9 @@ fn facts(error: &Error) -> HashMap<String, String> {
     let pairs: Vec<(&str, String)> = match error {
         Error::TooManyPoints { count, limit } => {
             vec![("count", count.to_string()), ("limit", limit.to_string())]
+        }
+        Error::TooManyRows { rows, limit } => {
+            vec![("rows", rows.to_string()), ("limit", limit.to_string())]
         }
         Error::Busy { limit } => vec![("limit", limit.to_string())],
         Error::OtherTable { pinned, loaded } => {

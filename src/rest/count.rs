@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use axum::{body::Bytes, extract::State, response::Response, routing};
+use axum::{extract::State, response::Response, routing};
 use http::{HeaderMap, Method, Uri};
 use serde::Serialize;
 use serde_json::json;
@@ -10,6 +10,7 @@ use serde_json::json;
 use super::{
     answer::{self, Asked},
     api::{self, Endpoint, Operation, schemas},
+    body::Whole,
     document, points, query,
 };
 use crate::service::{
@@ -66,7 +67,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         parameters: vec![],
         body: Some(query::body()),
         answers: vec![answers()],
-        problems: problems(),
+        problems: [problems(), vec![Kind::BodyTooLarge]].concat(),
         example: r#"/v1/count -d '{"region": {"circle": {"center": [0, 0], "radius": 9}}, "spacing": 1}'"#
             .into(),
     };
@@ -110,7 +111,7 @@ async fn get(
 async fn post(
     State(service): State<Arc<Service>>,
     uri: Uri,
-    body: Bytes,
+    Whole(body): Whole,
 ) -> Result<Response, Error> {
     query::no_parameters(&uri)?;
     let (query, options) = query::read(&service, &body)?;

@@ -2,6 +2,7 @@
 
 mod answer;
 pub mod api;
+mod body;
 mod chunks;
 mod coding;
 mod cors;

@@ -39,7 +39,10 @@ impl<'a> Problem<'a> {
         let mapped = error_map::http(error.kind());
         let (count, limit) = match error {
             Error::TooManyPoints { count, limit } => (Some(*count), Some(*limit)),
-            Error::Busy { limit } => (None, u64::try_from(*limit).ok()),
+            Error::TooManyRows { limit, .. } => (None, Some(*limit)),
+            Error::BodyTooLarge { limit } | Error::Busy { limit } => {
+                (None, u64::try_from(*limit).ok())
+            }
             _ => (None, None),
         };
         let digests = match error {

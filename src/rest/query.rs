@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
-use axum::{body::Bytes, extract::State, response::Response, routing};
+use axum::{extract::State, response::Response, routing};
 use http::{HeaderMap, Method, Uri};
 use serde_json::json;
 
 use super::{
     answer::{self, Asked},
     api::{Body, Endpoint, Operation, schemas},
+    body::Whole,
 };
-use crate::service::{Error, Fault, Query, Service, encode::Options, query::read_body};
+use crate::service::{Error, Fault, Kind, Query, Service, encode::Options, query::read_body};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -24,7 +25,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         parameters: vec![],
         body: Some(body()),
         answers: vec![answer::told()],
-        problems: answer::problems(),
+        problems: [answer::problems(), vec![Kind::BodyTooLarge]].concat(),
         example: format!("/v1/points:query -d '{}'", example()),
     };
     let handler = routing::post(post);
@@ -56,7 +57,7 @@ async fn post(
     method: Method,
     uri: Uri,
     headers: HeaderMap,
-    body: Bytes,
+    Whole(body): Whole,
 ) -> Result<Response, Error> {
     no_parameters(&uri)?;
     let (query, options) = read(&service, &body)?;

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use axum::{body::Bytes, extract::State, response::Response, routing};
+use axum::{extract::State, response::Response, routing};
 use http::{Method, Uri};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::{
     api::{self, Endpoint, Operation, schemas},
+    body::Whole,
     document, query,
 };
 use crate::service::{Error, Kind, Service, query::parse_pairs};
@@ -44,6 +45,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
             Kind::OtherTable,
             Kind::TooManyRows,
             Kind::TooManyPoints,
+            Kind::BodyTooLarge,
         ],
         example:
             r#"'/v1/points:split?parts=2' -d '{"region": {"bbox": [0, 0, 9, 9]}, "spacing": 1}'"#
@@ -68,7 +70,7 @@ struct Part {
 async fn post(
     State(service): State<Arc<Service>>,
     uri: Uri,
-    body: Bytes,
+    Whole(body): Whole,
 ) -> Result<Response, Error> {
     let (parameters, mut faults) = parse_pairs(uri.query().unwrap_or_default());
     let parts = parameters.parts().map_err(|more| faults.extend(more));
@@ -81,7 +83,10 @@ async fn post(
     asked.remove("offset");
     let planned = service.count(query).await?;
     let count = planned.count();
-    let places = service.workers().run(move || planned.split(parts)).await?;
+    let places = service
+        .workers()
+        .run(move || planned.split(parts))
+        .await??;
     let part = |(token, count): (crate::service::query::Token, u64)| {
         let mut query = asked.clone();
         query.insert("cursor".into(), token.to_string().into());

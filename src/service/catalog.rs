@@ -171,6 +171,20 @@ impl Entry {
         })
     }
 
+    /// A figure that was measured on the first set that the table was not made on, if it was.
+    #[must_use]
+    pub fn measured(&self, name: &str) -> Option<f64> {
+        let unseen = self
+            .provenance
+            .figures
+            .iter()
+            .find(|figures| !figures.seen)?;
+        let mut values = unseen.values.iter();
+        values
+            .find(|(known, _)| known == name)
+            .map(|(_, value)| *value)
+    }
+
     /// A sampler of the table. Takes about a millisecond.
     ///
     /// # Errors

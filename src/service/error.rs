@@ -32,7 +32,7 @@ impl Fault {
         Self {
             field: shortened(field),
             value: Some(shortened(&value.to_string())),
-            detail: detail.into(),
+            detail: cut(&detail.into(), 3 * SHOWN),
             allowed: allowed.into(),
         }
     }
@@ -58,10 +58,16 @@ impl fmt::Display for Fault {
     }
 }
 
+/// How many characters of input are echoed.
+const SHOWN: usize = 120;
+
 /// Input is echoed, but not by the kilobyte.
 fn shortened(text: &str) -> String {
-    const SHOWN: usize = 120;
-    match text.char_indices().nth(SHOWN) {
+    cut(text, SHOWN)
+}
+
+fn cut(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
         Some((at, _)) => format!("{}…", &text[..at]),
         None => text.into(),
     }
@@ -77,7 +83,7 @@ pub enum Error {
     /// The region holds more points than one answer may have.
     #[error(
         "the region holds {count} points; this server gives at most {limit} in one answer: ask \
-         for a smaller bbox or a lower density"
+         for a smaller region, fewer points, or a part of them with limit and cursor"
     )]
     TooManyPoints {
         /// The exact count.
@@ -95,6 +101,15 @@ pub enum Error {
         rows: u128,
         /// The limit.
         limit: u64,
+    },
+    /// The query is longer than queries may be.
+    #[error(
+        "the body is longer than {limit} bytes, the most that this server reads: ask with fewer \
+         vertices or regions"
+    )]
+    BodyTooLarge {
+        /// The limit.
+        limit: usize,
     },
     /// Another table would answer than the one that the query pins.
     #[error(
@@ -166,6 +181,8 @@ pub enum Kind {
     TooManyPoints,
     /// [`Error::TooManyRows`].
     TooManyRows,
+    /// [`Error::BodyTooLarge`].
+    BodyTooLarge,
     /// [`Error::OtherTable`].
     OtherTable,
     /// [`Error::NotAcceptable`].
@@ -186,10 +203,11 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Invalid,
         Self::TooManyPoints,
         Self::TooManyRows,
+        Self::BodyTooLarge,
         Self::OtherTable,
         Self::NotAcceptable,
         Self::NoSuchPoint,
@@ -209,6 +227,7 @@ impl Error {
             Self::Invalid(_) => Kind::Invalid,
             Self::TooManyPoints { .. } => Kind::TooManyPoints,
             Self::TooManyRows { .. } => Kind::TooManyRows,
+            Self::BodyTooLarge { .. } => Kind::BodyTooLarge,
             Self::OtherTable { .. } => Kind::OtherTable,
             Self::NotAcceptable { .. } => Kind::NotAcceptable,
             Self::NoSuchPoint { .. } => Kind::NoSuchPoint,

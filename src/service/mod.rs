@@ -11,6 +11,7 @@ pub mod catalog;
 pub mod encode;
 pub mod error;
 mod planned;
+mod planner;
 mod portrait;
 pub mod query;
 mod single;
@@ -44,12 +45,15 @@ pub struct Limits {
     /// The most points of one answer. Keeps a slip of a zero from filling a disk; the refusal says
     /// the exact count.
     pub max_points: u64,
-    /// The most lattice rows that are counted one by one, where a region is not a box or is warped
-    /// (about three for each mean spacing of its height; for a warped box also of its width). They
+    /// The most lattice rows that are counted one by one, where a region is not a box or is warped:
+    /// about three for each mean spacing of its outline's width and height, and of its height. They
     /// take a few microseconds each before the first point.
     pub max_rows: u64,
     /// The most vertices that the polygons of a query have in all: bounds its memory.
     pub max_vertices: usize,
+    /// The most bytes of a query that comes as a body or a message: bounds what is held of each before it is
+    /// read.
+    pub max_body_bytes: usize,
     /// The most answers under way at once. Bounds memory: an answer holds 1 to 2 MB,
     /// two blocks and the rows it is made of, and a picture up to 16 MB more.
     pub max_streams: usize,
@@ -127,9 +131,14 @@ impl Service {
         for entry in self.entries(&query)? {
             tables.push(self.samplers.get(&entry, &self.workers).await?);
         }
-        let limits = self.limits.clone();
-        let plan = move || Planned::new(query, &tables, &limits);
-        let planned = self.workers.run(plan).await??;
+        let planned = if query.is_small() {
+            // Handing it over would take longer.
+            Planned::new(query, &tables, &self.limits)?
+        } else {
+            let limits = self.limits.clone();
+            let plan = move || Planned::new(query, &tables, &limits);
+            self.workers.run(plan).await??
+        };
         tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
         Ok(planned)
     }
@@ -163,6 +172,27 @@ impl Service {
     /// [`Error::Internal`] if it cannot be measured or drawn.
     pub async fn portrait(&self, entry: &Arc<Entry>) -> Result<Arc<Portrait>, Error> {
         self.portraits.get(entry, &self.workers).await
+    }
+
+    /// All of the answer to a [small](Query::is_small) query: handing it to the workers block by
+    /// block would take longer than making it.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if it cannot be made.
+    pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
+        let mut whole = Bytes::new();
+        for block in answer {
+            let block = block.map_err(|error| {
+                tracing::error!(%error, "an answer cannot be made");
+                Error::Internal("the answer cannot be encoded")
+            })?;
+            whole = match (whole.is_empty(), block.is_empty()) {
+                (true, _) => block,
+                (false, true) => whole,
+                (false, false) => [whole, block].concat().into(),
+            };
+        }
+        Ok(whole)
     }
 
     /// Streams the blocks of an answer. One that cannot be made to its end breaks off.

@@ -5,14 +5,12 @@
 use std::sync::Arc;
 
 use moka::future::Cache;
-use strew_forge::{Report, measure::window_set, picture};
+use strew_forge::{Report, Resolution, measure::window_set, picture};
 
 use super::{Entry, Error, Workers};
 
 /// How many points a portrait is taken of.
 const POINTS: u64 = 20_000;
-/// Frequencies are measured up to this.
-const NU_MAX: f64 = 4.0;
 /// No more portraits are kept; each has about 60 kB.
 const MOST: u64 = 64;
 
@@ -33,7 +31,7 @@ impl Portrait {
     fn new(entry: &Entry) -> Result<Self, Error> {
         let table = entry.table()?;
         let set = window_set(&table, POINTS, 1);
-        let report = Report::of_window("window seed 1".into(), false, &set, NU_MAX);
+        let report = Report::of_window("window seed 1".into(), false, &set, Resolution::default());
         let target = entry.aim().and_then(|aim| aim.curve);
         let svg = picture(&report, &entry.key.to_string(), target.as_ref()).map_err(|error| {
             tracing::error!(key = %entry.key, %error, "no picture");

@@ -7,7 +7,10 @@ use strew_core::{
     sample::{Attribute, FindError, Neighbor},
 };
 
-use super::{Error, Fault, Placed, query::Around};
+use super::{
+    Error, Fault, Placed,
+    query::{Around, number},
+};
 
 /// A point with its attributes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -93,7 +96,7 @@ impl Placed {
 }
 
 fn fault(Around { at, k, radius }: Around, error: &FindError) -> Error {
-    let (field, value, allowed) = match error {
+    let (field, value, allowed): (_, _, String) = match error {
         FindError::Radius(value) => (
             "radius",
             value.to_string(),
@@ -102,13 +105,14 @@ fn fault(Around { at, k, radius }: Around, error: &FindError) -> Error {
         FindError::TooManyNearest(value) => {
             ("k", value.to_string(), "an integer from 1 to 10000".into())
         }
-        FindError::TooMany { limit, .. } => match (radius, k) {
-            (Some(radius), _) => (
-                "radius",
-                radius.to_string(),
-                format!("a radius with at most {limit} points within"),
-            ),
-            (None, k) => (
+        FindError::TooMany { about, .. } => match (radius, k) {
+            (Some(radius), None) => {
+                let detail = format!("about {about:.0} points lie within");
+                let allowed = format!("a radius with at most {MOST_WITHIN} points within");
+                let fault = Fault::new("radius", number(radius), detail, allowed);
+                return Error::Invalid(vec![fault]);
+            }
+            (_, k) => (
                 "k",
                 k.unwrap_or(1).to_string(),
                 "fewer neighbors, or a larger share to keep".into(),
@@ -116,7 +120,7 @@ fn fault(Around { at, k, radius }: Around, error: &FindError) -> Error {
         },
         _ => (
             "at",
-            format!("{},{}", at[0], at[1]),
+            format!("{},{}", number(at[0]), number(at[1])),
             "a place near enough to the origin for points to be told apart".into(),
         ),
     };

@@ -43,7 +43,7 @@ channel = grpc.insecure_channel(sys.argv[1])
 pool = DescriptorPool(ProtoReflectionDescriptorDatabase(channel))
 method = pool.FindMethodByName("strew.v1.PointService.StreamPoints")
 request = GetMessageClass(method.input_type)(density=2, profile="test")
-request.bbox.max_x = request.bbox.max_y = 50
+request.region.bbox.max_x = request.region.bbox.max_y = 50
 call = channel.unary_stream(
     "/strew.v1.PointService/StreamPoints",
     request_serializer=lambda message: message.SerializeToString(),

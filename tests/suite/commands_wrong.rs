@@ -3,7 +3,15 @@
 use crate::commands::run;
 
 /// (arguments, what is said).
-const WRONG: [(&str, &[&str]); 30] = [
+const WRONG: [(&str, &[&str]); 32] = [
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 -o trees.shp",
+        &["--output", ".shp", "--format", "parquet"],
+    ),
+    (
+        "nearest --at 0,0 --spacing 1 --radius 1000",
+        &["--radius 1000", "3141593", "10000"],
+    ),
     ("sample", &["--bbox", "--query", "--min-distance"]),
     (
         "sample --spacing 1",
@@ -142,6 +150,20 @@ fn wrong_files_are_named_with_the_place_in_them() {
             "--query=-",
             r#"{"region": {"bbox": [0, 0, 1, 1]}, "spacin": 1}"#,
             &["`spacin` = `1`", "spacing"],
+        ),
+        (
+            "--query=-",
+            r#"{"bbox": [0, 0, 1, 1], "spacing": "1"}"#,
+            &["`bbox`", "the member region", "`spacing`", "not a number"],
+        ),
+        (
+            "--query=-",
+            r#"{"region": {"circle": [0, 0, 1]}, "layers": [{"spacing": 1}]}"#,
+            &[
+                "`region.circle`",
+                "center",
+                "`layers[0].name`: it is missing",
+            ],
         ),
         ("--region=-", "{", &["--region -", "not JSON"]),
         ("--region=-", line, &["geometry is a LineString", "GeoJSON"]),

@@ -129,6 +129,11 @@ impl Daemon {
         raw::get(&self.address, path, &[])
     }
 
+    /// A whole answer to a query as a body.
+    pub fn post(&self, path: &str, body: &serde_json::Value) -> raw::Answer {
+        raw::posted(&self.address, path, &[], body.to_string().as_bytes())
+    }
+
     /// A channel to the gRPC door.
     pub async fn channel(&self) -> tonic::transport::Channel {
         tonic::transport::Endpoint::from_shared(self.url(""))

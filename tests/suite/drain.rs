@@ -6,12 +6,12 @@ use std::{
 };
 
 use strew::grpc::proto::{
-    BoundingBox, StreamPointsRequest, point_service_client::PointServiceClient,
-    stream_points_request::Amount,
+    StreamPointsRequest, point_service_client::PointServiceClient, stream_points_request::Amount,
 };
 use tonic::Code;
 
 use crate::{
+    calls::boxed,
     daemon::{Daemon, PROFILE, until},
     raw,
 };
@@ -87,12 +87,7 @@ async fn a_grpc_stream_breaks_with_a_status() {
     let mut daemon = Daemon::start(&["shutdown.drain_seconds=0.3"]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let request = StreamPointsRequest {
-        bbox: Some(BoundingBox {
-            min_x: 0.0,
-            min_y: 0.0,
-            max_x: 31_700.0,
-            max_y: 31_700.0,
-        }),
+        region: boxed([0.0, 0.0, 31_700.0, 31_700.0]),
         amount: Some(Amount::Density(1.0)),
         profile: Some(PROFILE.into()),
         ..StreamPointsRequest::default()

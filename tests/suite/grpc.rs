@@ -1,59 +1,28 @@
 //! The gRPC door: the same points in the same order as the library and the REST door.
 
 use strew::grpc::proto::{
-    BoundingBox, Encoding, ListProfilesRequest, PointBlock, StreamHeader, StreamPointsRequest,
-    point_service_client::PointServiceClient, stream_points_request::Amount,
-    stream_points_response::Message,
+    Encoding, ListProfilesRequest, StreamPointsRequest, point_service_client::PointServiceClient,
+    region::Shape, stream_points_request::Amount,
 };
 use strew_core::Point;
-use tonic::transport::Channel;
 use tonic_health::pb::{HealthCheckRequest, health_client::HealthClient};
 use tonic_reflection::pb::{v1, v1alpha};
 
 use crate::{
+    calls::{boxed, collect},
     daemon::{Daemon, PROFILE},
     formats::{plan, points, same},
 };
 
-pub fn request(encoding: Encoding) -> StreamPointsRequest {
+fn request(encoding: Encoding) -> StreamPointsRequest {
     StreamPointsRequest {
-        bbox: Some(BoundingBox {
-            min_x: -3.5,
-            min_y: 1.0,
-            max_x: 40.0,
-            max_y: 33.25,
-        }),
+        region: boxed([-3.5, 1.0, 40.0, 33.25]),
         amount: Some(Amount::Density(7.0)),
         profile: Some(PROFILE.into()),
-        alpha: None,
-        seed: 5,
-        warp: None,
-        map: None,
-        table: None,
+        seed: Some(5),
         encoding: encoding.into(),
+        ..StreamPointsRequest::default()
     }
-}
-
-/// A whole stream: header, blocks, and the count of the summary.
-async fn collect(
-    client: &mut PointServiceClient<Channel>,
-    request: StreamPointsRequest,
-) -> (StreamHeader, Vec<PointBlock>, u64) {
-    let answer = client.stream_points(request).await.expect("an answer");
-    let mut stream = answer.into_inner();
-    let (mut header, mut blocks, mut count) = (None, vec![], None);
-    while let Some(response) = stream.message().await.expect("a message") {
-        assert!(count.is_none(), "nothing follows the summary");
-        match response.message.expect("one of the three") {
-            Message::Header(message) => assert!(header.replace(message).is_none()),
-            Message::Block(block) => {
-                assert!(header.is_some(), "the header is first");
-                blocks.push(block);
-            }
-            Message::Summary(summary) => count = Some(summary.count),
-        }
-    }
-    (header.expect("first"), blocks, count.expect("last"))
 }
 
 #[tokio::test]
@@ -62,21 +31,27 @@ async fn the_default_encoding_has_fields_and_ids() {
     let mut client = PointServiceClient::new(daemon.channel().await);
     let plan = plan();
     for encoding in [Encoding::Unspecified, Encoding::Points] {
-        let (header, blocks, count) = collect(&mut client, request(encoding)).await;
+        let whole = collect(&mut client, request(encoding)).await;
+        let (header, blocks) = (whole.header, whole.blocks);
         assert_eq!(header.count, plan.count() as u64);
-        assert_eq!(count, header.count);
-        assert_eq!(header.table, plan.sampler().table().digest().to_string());
+        assert_eq!(whole.summary.count, header.count);
+        assert_eq!(whole.summary.next_cursor, "");
         assert_eq!(header.algorithm, strew_core::ALGORITHM_VERSION);
-        let origin = header.origin.expect("set");
-        assert_eq!((origin.x, origin.y), (-3.5, 1.0));
+        assert_eq!((header.origin, header.columns.len()), (None, 0));
         let query = header.query.expect("set");
-        assert_eq!(query.bbox, request(encoding).bbox);
+        assert_eq!(query.region, request(encoding).region);
+        let bbox = query.bbox.map(Shape::Bbox);
+        assert_eq!(query.region.as_ref().map(|r| r.shape.clone()), Some(bbox));
+        assert_eq!(query.encoding(), Encoding::Points);
+        let [set] = query.sets.as_slice() else {
+            panic!("there is one set of points");
+        };
+        assert_eq!(set.table, plan.sampler().table().digest().to_string());
         assert_eq!(
-            (query.density, query.spacing),
+            (set.density, set.spacing),
             (7.0, plan.placement().spacing.get())
         );
-        assert_eq!((query.alpha.as_str(), query.seed), ("(5-sqrt(3))/2", 5));
-        assert_eq!(query.encoding(), Encoding::Points);
+        assert_eq!((set.alpha.as_str(), set.seed), ("(5-sqrt(3))/2", 5));
         assert!(blocks.len() > 10, "blocks are small");
         let got: Vec<Point> = blocks
             .iter()
@@ -100,11 +75,7 @@ async fn packed_encodings_are_the_bytes_of_the_rest_door() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     for (encoding, format) in [(Encoding::F64Le, "f64"), (Encoding::F32Le, "f32")] {
-        let (_, blocks, _) = collect(&mut client, request(encoding)).await;
-        let bytes: Vec<u8> = blocks
-            .iter()
-            .flat_map(|block| block.data.to_vec())
-            .collect();
+        let bytes = collect(&mut client, request(encoding)).await.bytes();
         let path = "/v1/points?bbox=-3.5,1,40,33.25&density=7&profile=test&seed=5";
         let rest = daemon.get(&format!("{path}&format={format}"));
         assert!(!bytes.is_empty() && bytes == rest.body, "{format}");

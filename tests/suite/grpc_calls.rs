@@ -4,13 +4,13 @@
 use std::time::{Duration, Instant};
 
 use strew::grpc::proto::{
-    BoundingBox, StreamPointsRequest, point_service_client::PointServiceClient,
-    stream_points_request::Amount,
+    StreamPointsRequest, point_service_client::PointServiceClient, stream_points_request::Amount,
 };
 use tonic::{Code, Request, codec::CompressionEncoding};
 use tonic_types::StatusExt as _;
 
 use crate::{
+    calls::boxed,
     daemon::{Daemon, PROFILE, table, until},
     raw,
 };
@@ -18,11 +18,7 @@ use crate::{
 /// A square at density 1.
 fn square(side: f64) -> StreamPointsRequest {
     StreamPointsRequest {
-        bbox: Some(BoundingBox {
-            max_x: side,
-            max_y: side,
-            ..BoundingBox::default()
-        }),
+        region: boxed([0.0, 0.0, side, side]),
         amount: Some(Amount::Density(1.0)),
         profile: Some(PROFILE.into()),
         ..StreamPointsRequest::default()

@@ -3,11 +3,12 @@
 
 use prost::Message as _;
 use strew::grpc::proto::{
-    BoundingBox, StreamPointsRequest, StreamPointsResponse, stream_points_request::Amount,
+    StreamPointsRequest, StreamPointsResponse, stream_points_request::Amount,
     stream_points_response::Message,
 };
 
 use crate::{
+    calls::boxed,
     daemon::{Daemon, PROFILE},
     raw,
 };
@@ -37,11 +38,7 @@ fn frames(mut body: &[u8]) -> Vec<(u8, &[u8])> {
 
 fn request(density: f64) -> Vec<u8> {
     let request = StreamPointsRequest {
-        bbox: Some(BoundingBox {
-            max_x: 20.0,
-            max_y: 20.0,
-            ..BoundingBox::default()
-        }),
+        region: boxed([0.0, 0.0, 20.0, 20.0]),
         amount: Some(Amount::Density(density)),
         profile: Some(PROFILE.into()),
         ..StreamPointsRequest::default()

@@ -7,14 +7,14 @@ use std::{
 };
 
 use strew::grpc::proto::{
-    BoundingBox, StreamPointsRequest, point_service_client::PointServiceClient,
-    stream_points_request::Amount,
+    StreamPointsRequest, point_service_client::PointServiceClient, stream_points_request::Amount,
 };
 use strew_core::{Placement, Region, Sampler, Seed, Spacing};
 use tonic::Code;
 use tonic_types::StatusExt as _;
 
 use crate::{
+    calls::boxed,
     daemon::{Daemon, PATIENCE, PROFILE, table, until},
     raw,
 };
@@ -51,12 +51,7 @@ async fn too_many_points_are_refused_with_the_exact_count_and_the_limit() {
         assert!(answer.text().contains("\"limit\":1000"));
 
         let request = StreamPointsRequest {
-            bbox: Some(BoundingBox {
-                min_x: -half,
-                min_y: -half,
-                max_x: half,
-                max_y: half,
-            }),
+            region: boxed([-half, -half, half, half]),
             amount: Some(Amount::Spacing(1.0)),
             profile: Some(PROFILE.into()),
             ..StreamPointsRequest::default()

@@ -1,24 +1,35 @@
 //! The daemon from outside: the real program over real sockets, and the real clients.
 
+mod amounts;
 mod caching;
+mod calls;
 mod clients;
 mod coding;
 mod commands;
 mod commands_wrong;
 mod contract;
 mod daemon;
+mod documented;
 mod drain;
 mod forge;
 mod formats;
 mod fresh;
 mod grpc;
 mod grpc_calls;
+mod grpc_queries;
+mod grpc_single;
 mod grpc_web;
+mod grpc_wrong;
 mod http;
+mod layers;
 mod limits;
 mod openapi;
+mod pages;
 mod raw;
 mod readers;
+mod regions;
 mod settings;
+mod singles;
 mod streaming;
+mod table;
 mod wrong;

@@ -157,6 +157,19 @@ pub fn get(address: &str, path: &str, headers: &[(&str, &str)]) -> Answer {
     request(address, "GET", path, headers)
 }
 
+/// A whole answer to a body, complete.
+pub fn posted(address: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Answer {
+    let opened = post(address, path, headers, body);
+    let (status, headers) = (opened.status, opened.headers.clone());
+    let (body, complete) = opened.finish();
+    assert!(complete, "{path} broke off");
+    Answer {
+        status,
+        headers,
+        body,
+    }
+}
+
 /// A whole answer, complete.
 pub fn request(address: &str, method: &str, path: &str, headers: &[(&str, &str)]) -> Answer {
     let opened = open(address, method, path, headers);

@@ -3,11 +3,12 @@
 use std::time::{Duration, Instant};
 
 use strew::grpc::proto::{
-    BoundingBox, Encoding, StreamPointsRequest, point_service_client::PointServiceClient,
+    Encoding, StreamPointsRequest, point_service_client::PointServiceClient,
     stream_points_request::Amount,
 };
 
 use crate::{
+    calls::boxed,
     daemon::{Daemon, PATIENCE, PROFILE, until},
     raw,
 };
@@ -92,12 +93,7 @@ async fn grpc_streams_end_with_their_readers_too() {
     let daemon = Daemon::start(&[]);
     let channel = daemon.channel().await;
     let request = StreamPointsRequest {
-        bbox: Some(BoundingBox {
-            min_x: 0.0,
-            min_y: 0.0,
-            max_x: 31_700.0,
-            max_y: 31_700.0,
-        }),
+        region: boxed([0.0, 0.0, 31_700.0, 31_700.0]),
         amount: Some(Amount::Density(1.0)),
         profile: Some(PROFILE.into()),
         ..StreamPointsRequest::default()

@@ -152,6 +152,24 @@ proptest! {
             prop_assert_eq!(rest.window(1, Some(5)).offset(), end as u128 + 1);
         }
 
+        // So it is from where any block ended.
+        let mut blocks = window.blocks::<F32>();
+        let mut block = vec![[0.0; 2]; 1 + parts as usize * 9];
+        let mut given = offset;
+        while let Some(cursor) = blocks.cursor() {
+            prop_assert_eq!(cursor.offset, given as u128);
+            let selection = Selection::new(placement, area.clone());
+            let rest = sampler.resume(selection, cursor).expect("in range");
+            let near = &points[given..points.len().min(given + 70)];
+            prop_assert_eq!(&all::<Points>(&rest.window(0, Some(70)), 33), near);
+            let filled = blocks.fill(&mut block);
+            given += filled;
+            if filled == 0 {
+                break;
+            }
+        }
+        prop_assert_eq!(given, end);
+
         let split: Vec<Plan> = plan.split(parts).collect();
         prop_assert_eq!(split.len(), parts as usize);
         let sizes: Vec<u128> = split.iter().map(Plan::count).collect();

@@ -45,5 +45,5 @@ pub use judge::{Complaint, Figure};
 pub use optimize::{Progress, Stage, Watch};
 pub use picture::{PictureError, picture};
 pub use profile::{Aim, Profile, Target};
-pub use report::Report;
+pub use report::{Report, Resolution};
 pub use work::{Outcome, forge, resume};

@@ -3,16 +3,36 @@
 use strew_core::table::Figures;
 
 use crate::{
-    judge::{RING_WIDTH, figures_of_spectrum},
+    Target,
+    judge::{RING_WIDTH, curve_figures, figures_of_spectrum},
     measure::{Distances, Rdf, Ring, Spectrum, Torus, Voronoi, Window},
 };
+
+/// How far and how finely a spectrum is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    /// Frequencies are measured up to this ν.
+    pub nu_max: f64,
+    /// The width of rings, in ν; those of 0 are one mode wide.
+    pub ring_width: f64,
+}
+
+impl Default for Resolution {
+    /// To ν = 4, in rings of [`RING_WIDTH`].
+    fn default() -> Self {
+        Self {
+            nu_max: 4.0,
+            ring_width: RING_WIDTH,
+        }
+    }
+}
 
 /// A point set with all its figures and curves, at unit density.
 #[derive(Clone, Debug)]
 pub struct Report {
     /// The named figures, rounded to four significant digits.
     pub figures: Figures,
-    /// Radial power and anisotropy, in rings of [`RING_WIDTH`].
+    /// Radial power and anisotropy, in the rings that the figures were taken on.
     pub rings: Vec<Ring>,
     /// The radial distribution function.
     pub rdf: Rdf,
@@ -23,28 +43,33 @@ pub struct Report {
 }
 
 impl Report {
-    /// Of a periodic set, up to the frequency `nu_max`.
+    /// Of a periodic set, looked at so far and so finely.
     #[must_use]
-    pub fn of_torus(subject: String, seen: bool, set: &Torus, nu_max: f64) -> Self {
-        let spectrum = Spectrum::of_torus(set, nu_max);
-        let named =
-            figures_of_spectrum(&spectrum, Distances::of_torus(set), Voronoi::of_torus(set));
+    pub fn of_torus(subject: String, seen: bool, set: &Torus, at: Resolution) -> Self {
+        let spectrum = Spectrum::of_torus(set, at.nu_max);
+        let named = figures_of_spectrum(
+            &spectrum,
+            at.ring_width,
+            Distances::of_torus(set),
+            Voronoi::of_torus(set),
+        );
         Self::new(
             subject,
             seen,
             named,
-            spectrum,
+            (spectrum, at),
             Rdf::of_torus(set),
             set.points(),
         )
     }
 
-    /// Of a window of an unbounded set, up to the frequency `nu_max`.
+    /// Of a window of an unbounded set, looked at so far and so finely.
     #[must_use]
-    pub fn of_window(subject: String, seen: bool, set: &Window, nu_max: f64) -> Self {
-        let spectrum = Spectrum::of_window(set, nu_max);
+    pub fn of_window(subject: String, seen: bool, set: &Window, at: Resolution) -> Self {
+        let spectrum = Spectrum::of_window(set, at.nu_max);
         let named = figures_of_spectrum(
             &spectrum,
+            at.ring_width,
             Distances::of_window(set),
             Voronoi::of_window(set),
         );
@@ -52,7 +77,7 @@ impl Report {
             subject,
             seen,
             named,
-            spectrum,
+            (spectrum, at),
             Rdf::of_window(set),
             set.points(),
         )
@@ -62,7 +87,7 @@ impl Report {
         subject: String,
         seen: bool,
         values: Vec<(String, f64)>,
-        spectrum: Spectrum,
+        (spectrum, at): (Spectrum, Resolution),
         rdf: Rdf,
         points: &[[f64; 2]],
     ) -> Self {
@@ -74,10 +99,17 @@ impl Report {
         };
         Self {
             figures,
-            rings: spectrum.rings(RING_WIDTH),
+            rings: spectrum.rings(at.ring_width),
             rdf,
             spectrum,
             points: points.to_vec(),
         }
+    }
+    /// With the figures of a curve that the radial power should follow.
+    #[must_use]
+    pub fn compared(mut self, target: &Target) -> Self {
+        let more = curve_figures(&self.spectrum, target);
+        self.figures.values.extend(more);
+        self
     }
 }

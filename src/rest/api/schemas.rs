@@ -91,13 +91,19 @@ pub(super) fn shared() -> Value {
         "PointsQuery": query::schema(),
         "Region": query::region(),
         "Layer": query::layer(),
-        "Table": object(json!({
-            "profile": text(),
-            "alpha": text(),
-            "radius": count(),
-            "digest": reference("Digest"),
-            "algorithm": count(),
-        })),
+        "Table": {
+            "type": "object",
+            "required": ["profile", "alpha", "radius", "digest", "algorithm"],
+            "properties": {
+                "profile": text(),
+                "alpha": text(),
+                "radius": count(),
+                "digest": reference("Digest"),
+                "algorithm": count(),
+                "delta_min": number(),
+                "delta_avg": number(),
+            },
+        },
         "Points": {
             "type": "object",
             "required": ["query", "count", "points"],

@@ -46,6 +46,13 @@ pub(super) struct TableEcho {
     radius: u32,
     pub(super) digest: String,
     algorithm: u32,
+    /// The least nearest-neighbor distance, as measured on a set the table was not made on, in units
+    /// of the hexagonal lattice's at the same density.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    delta_min: Option<f64>,
+    /// The mean one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    delta_avg: Option<f64>,
 }
 
 impl Head {
@@ -109,6 +116,8 @@ impl TableEcho {
             radius: *radius,
             digest: digest.clone(),
             algorithm: ALGORITHM_VERSION,
+            delta_min: entry.measured("delta_min"),
+            delta_avg: entry.measured("delta_avg"),
         }
     }
 }

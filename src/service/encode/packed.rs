@@ -4,7 +4,7 @@ use bytemuck::NoUninit;
 use bytes::Bytes;
 use strew_core::{
     Plan,
-    sample::{self, F32, F64, Format},
+    sample::{self, Cursor, F32, F64, Format},
 };
 
 use super::{Blocks, EncodeError, buffer::Pool};
@@ -46,6 +46,12 @@ impl<F: Scalars> Packed<F> {
             pool: Pool::new(length),
             points: 0,
         }
+    }
+
+    /// The place after the points given so far.
+    #[must_use]
+    pub fn cursor(&self) -> Option<Cursor> {
+        self.blocks.cursor()
     }
 }
 

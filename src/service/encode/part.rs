@@ -45,6 +45,8 @@ impl Part {
 /// The part under way.
 #[derive(Debug)]
 pub(super) struct Current {
+    /// Which of the parts.
+    pub(super) number: usize,
     pub(super) part: Part,
     pub(super) blocks: Blocks<Points>,
     near: Option<Blocks<F32>>,
@@ -86,6 +88,7 @@ impl Current {
         let at_origin =
             matches!(coordinates, Coordinates::Near(origin) if origin == part.plan.origin());
         Self {
+            number,
             sources: layer.chain(own).collect(),
             own: columns.iter().map(|c| Values::of(&c.kind)).collect(),
             blocks: part.plan.blocks(),

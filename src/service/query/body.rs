@@ -8,14 +8,13 @@ mod reader;
 use serde_json::{Map, Value};
 
 use super::{
-    AMOUNT, AmountDraft, AttributesDraft, BOX, Draft, KEEP, LayerDraft, RegionDraft, SetDraft,
-    ShapeDraft, TableDraft, WARP, WindowDraft,
+    AMOUNT, AmountDraft, AttributesDraft, Draft, KEEP, LayerDraft, MOST_LEVELS, RegionDraft,
+    SetDraft, ShapeDraft, TableDraft, WARP, WindowDraft,
     amount::COUNT,
-    attributes::{ATTRIBUTES, SCALE_RANGE, VARIANTS},
+    attributes::ATTRIBUTES,
     faults::Faults,
     geojson::{GEOJSON, polygons},
     parameters::SEED,
-    region::{CHUNK, CIRCLE, REGION},
 };
 use crate::service::{
     Encoding, Error, Fault,
@@ -37,8 +36,16 @@ pub struct Body {
     pub faults: Vec<Fault>,
 }
 
-/// Regions in regions in regions are enough.
-const DEEPEST: usize = 8;
+/// What regions are in JSON.
+const REGION: &str = r#"{"bbox": …}, {"circle": …}, {"polygon": GeoJSON}, {"chunk": …}, or {"include": [regions], "exclude": [regions]}"#;
+const BOX: &str = "[min_x, min_y, max_x, max_y], numbers with min_x < max_x and min_y < max_y";
+const CIRCLE: &str = r#"{"center": [x, y], "radius": r}, numbers with r above 0"#;
+const CHUNK: &str =
+    r#"{"size": s, "x": column, "y": row}, a number above 0 and integers within ±4503599627370496"#;
+/// What the values of points are in JSON.
+const SCALE_RANGE: &str = "[min, max] with 0 <= min <= max <= 1e9";
+const VARIANTS: &str = r#"{"oak": 3, "birch": 1}, or [{"name": "oak", "weight": 3}, …]: 1 to 256 different names of up to 64 characters, weights 1e-9 to 1e9"#;
+
 /// The members of a set of points.
 const SET: [&str; 14] = [
     "density",
@@ -219,7 +226,7 @@ fn layers(reader: &mut Reader<'_>) -> Vec<LayerDraft> {
 }
 
 fn layer(path: &str, members: &Map<String, Value>, outer: &mut Reader<'_>) -> LayerDraft {
-    const CLEAR_OF: &str = "an object of distances by the names of earlier layers";
+    const CLEAR_OF: &str = r#"distances by the names of earlier layers, such as {"trees": 2}"#;
     let mut reader = outer.inner(&format!("{path}."), members);
     let mut known = vec!["name", "region", "clear_of"];
     known.extend(SET);
@@ -280,12 +287,12 @@ fn region(value: &Value, path: &str, depth: usize, outer: &mut Reader<'_>) -> Op
                 [at("x")?, at("y")?],
             ))
         }),
-        _ if depth == DEEPEST => {
+        _ if depth == MOST_LEVELS => {
             reader.fault(
                 "include",
                 "",
                 "lists are nested too deeply",
-                "8 levels at most",
+                &format!("{MOST_LEVELS} levels at most"),
             );
             None
         }

@@ -1,12 +1,12 @@
 //! Cursor tokens: places in an answer, to be handed back.
 //!
 //! A token holds what it takes to go on without counting again (which set, how many points came
-//! before, the lattice address of the next one) and a digest of these with the query it belongs to,
+//! before, the lattice address of the next one, the spacing that a count became) and a digest of these with the query it belongs to,
 //! so that a token of another query, or a damaged one, is refused instead of giving other points.
 
 use std::fmt;
 
-use strew_core::{PointId, sample::Cursor};
+use strew_core::{PointId, Spacing, sample::Cursor};
 
 use crate::service::Fault;
 
@@ -14,7 +14,7 @@ use crate::service::Fault;
 const CURSOR: &str = "the cursor of an earlier answer to the same query";
 
 /// A place in the answer to a query.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Token {
     /// Which of the query's sets.
     pub set: u16,
@@ -22,20 +22,32 @@ pub struct Token {
     pub before: u128,
     /// The place in that set.
     pub cursor: Cursor,
+    /// The spacing, if the amount is a count: to find it again would take counting.
+    pub spacing: Option<Spacing>,
     seal: [u8; SEAL],
 }
 
 const SEAL: usize = 12;
-const VERSION: u8 = 1;
+/// The first byte of a token without a spacing.
+const PLAIN: u8 = 1;
+/// The first byte of one with a spacing.
+const SPACED: u8 = 2;
 
 impl Token {
     /// The token of a place in the answer to the query with this identity.
     #[must_use]
-    pub fn new(identity: &[u8; 32], set: u16, before: u128, cursor: Cursor) -> Self {
+    pub fn new(
+        identity: &[u8; 32],
+        set: u16,
+        before: u128,
+        cursor: Cursor,
+        spacing: Option<Spacing>,
+    ) -> Self {
         let mut token = Self {
             set,
             before,
             cursor,
+            spacing,
             seal: [0; SEAL],
         };
         token.seal = token.sealed(identity);
@@ -50,10 +62,11 @@ impl Token {
         let fault = || Fault::new("cursor", text, "it is not a cursor", CURSOR);
         let bytes = from_hex(text).ok_or_else(fault)?;
         let mut rest = bytes.as_slice();
-        if take::<1>(&mut rest) != Some([VERSION]) {
-            return Err(fault());
-        }
         let mut read = || -> Option<Self> {
+            let [version] = take(&mut rest)?;
+            if !(PLAIN..=SPACED).contains(&version) {
+                return None;
+            }
             Some(Self {
                 set: u16::from_le_bytes(take(&mut rest)?),
                 before: u128::from_le_bytes(take(&mut rest)?),
@@ -64,6 +77,10 @@ impl Token {
                         x: i64::from_le_bytes(take(&mut rest)?),
                         y: i64::from_le_bytes(take(&mut rest)?),
                     },
+                },
+                spacing: match version {
+                    SPACED => Some(Spacing::new(f64::from_le_bytes(take(&mut rest)?)).ok()?),
+                    _ => None,
                 },
                 seal: take(&mut rest)?,
             })
@@ -90,13 +107,18 @@ impl Token {
 
     fn content(&self) -> Vec<u8> {
         let Cursor { offset, total, at } = self.cursor;
-        let mut bytes = vec![VERSION];
+        let mut bytes = vec![if self.spacing.is_some() {
+            SPACED
+        } else {
+            PLAIN
+        }];
         bytes.extend(self.set.to_le_bytes());
         bytes.extend(self.before.to_le_bytes());
         bytes.extend(offset.to_le_bytes());
         bytes.extend(total.to_le_bytes());
         bytes.extend(at.x.to_le_bytes());
         bytes.extend(at.y.to_le_bytes());
+        bytes.extend(self.spacing.iter().flat_map(|s| s.get().to_le_bytes()));
         bytes
     }
 
@@ -148,20 +170,25 @@ mod tests {
             at: PointId { x: -5, y: i64::MAX },
         };
         let identity = [7; 32];
-        let token = Token::new(&identity, 3, 99, cursor);
-        let text = token.to_string();
-        let read = Token::parse(&text).expect("whole");
-        assert_eq!(read, token);
-        assert_eq!(read.check(&identity), Ok(()));
-        assert!(read.check(&[8; 32]).is_err());
-        for i in 0..text.len() {
-            let mut damaged = text.clone().into_bytes();
-            damaged[i] = if damaged[i] == b'0' { b'1' } else { b'0' };
-            let damaged = String::from_utf8(damaged).expect("digits");
-            let refused = Token::parse(&damaged).and_then(|token| token.check(&identity));
-            assert!(refused.is_err(), "{i}");
+        for spacing in [None, Spacing::new(0.25).ok()] {
+            let token = Token::new(&identity, 3, 99, cursor, spacing);
+            let text = token.to_string();
+            let read = Token::parse(&text).expect("whole");
+            assert_eq!(read, token);
+            assert_eq!(read.check(&identity), Ok(()));
+            assert!(read.check(&[8; 32]).is_err());
+            for i in 0..text.len() {
+                let mut damaged = text.clone().into_bytes();
+                damaged[i] = if damaged[i] == b'0' { b'1' } else { b'0' };
+                let damaged = String::from_utf8(damaged).expect("digits");
+                let refused = Token::parse(&damaged).and_then(|token| token.check(&identity));
+                assert!(refused.is_err(), "{i}");
+            }
+            for bad in [&text[2..], &format!("{text}00")] {
+                assert!(Token::parse(bad).is_err(), "{bad}");
+            }
         }
-        for bad in ["", "0", "01", "zz", &text[2..], &format!("{text}00")] {
+        for bad in ["", "0", "01", "02", "03", "zz"] {
             assert!(Token::parse(bad).is_err(), "{bad}");
         }
     }

@@ -136,8 +136,15 @@ impl Draft {
             let earlier: Vec<&str> = self.layers[..i].iter().map(|l| l.name.as_str()).collect();
             let field = |name: &str| format!("{path}{name}");
             if !is_name(&layer.name) || earlier.contains(&layer.name.as_str()) {
-                let detail = "it is not such a name";
-                faults.add(Fault::new(&field("name"), &layer.name, detail, NAME));
+                let detail = if earlier.contains(&layer.name.as_str()) {
+                    "an earlier layer has this name"
+                } else {
+                    "it is not such a name"
+                };
+                faults.add(match layer.name.as_str() {
+                    "" => Fault::missing(&field("name"), NAME),
+                    name => Fault::new(&field("name"), name, detail, NAME),
+                });
             }
             let own = layer.region.as_ref();
             let region = own.map(|region| region.check(budget, faults));
@@ -173,11 +180,12 @@ impl Draft {
 }
 
 impl SetDraft {
-    /// Checks a set without a region.
+    /// Checks a set without a region. `found` are the faults found on the way here.
     ///
     /// # Errors
     /// As [`Draft::check`].
-    pub(super) fn check_alone(&self, catalog: &Catalog, mut faults: Faults) -> Result<Set, Error> {
+    pub fn check_alone(&self, catalog: &Catalog, found: Vec<Fault>) -> Result<Set, Error> {
+        let mut faults = Faults::new(found);
         let set = self.check(catalog, String::new(), &mut faults);
         let (Some(set), true) = (set, faults.is_empty()) else {
             return Err(faults.into_error());

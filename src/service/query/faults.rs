@@ -49,8 +49,8 @@ impl Faults {
 /// Whether two fields are two ways to say how many points there are, or where, in the same layer.
 fn same_matter(a: &Fault, b: &Fault) -> bool {
     const MATTERS: [&[&str]; 2] = [
-        &["density", "spacing", "min_distance", "count"],
-        &["region", "bbox", "circle", "polygon"],
+        &["density", "spacing", "min_distance", "count", "layers"],
+        &["region", "bbox", "circle", "polygon", "chunk"],
     ];
     let split = |fault: &Fault| {
         let (path, name) = fault.field.rsplit_once('.').unwrap_or(("", &fault.field));

@@ -5,6 +5,7 @@
 //! address or a command line, become [`Parameters`] first; bodies are read by [`read_body`].
 
 mod amount;
+mod around;
 mod attributes;
 mod body;
 mod cursor;
@@ -30,6 +31,7 @@ use strew_core::{
 use super::{Error, Fault, Key};
 
 pub use amount::{Amount, AmountDraft};
+pub use around::{Around, AroundDraft};
 pub use attributes::AttributesDraft;
 pub use body::{Body, read_body};
 pub use cursor::Token;
@@ -39,7 +41,7 @@ pub use geojson::read_region;
 pub use parameters::{PARAMETERS, Parameter, Shape};
 pub use region::{Asked, RegionDraft, Rings, ShapeDraft};
 pub use table::TableDraft;
-pub use text::{Around, Parameters, parse_pairs};
+pub use text::{Parameters, parse_pairs};
 pub use values::read_bbox;
 
 /// The profile of a query that names none.
@@ -50,6 +52,9 @@ pub const DEFAULT_ALPHA: &str = "(5-sqrt(3))/2";
 pub const MOST_LAYERS: usize = 16;
 /// The most parts that a query is split into.
 pub const MOST_PARTS: u32 = 10_000;
+
+/// Regions in regions in regions are enough: so many levels of lists.
+pub const MOST_LEVELS: usize = 8;
 
 /// What a box must be.
 const BOX: &str =
@@ -76,7 +81,7 @@ pub struct Query {
 }
 
 /// Which part of the points is asked for, in their order.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Window {
     /// How many are left out at the beginning, or after the cursor.
     pub offset: u64,
@@ -118,6 +123,24 @@ impl Query {
     #[must_use]
     pub fn is_pinned(&self) -> bool {
         self.sets.iter().all(|set| set.is_pinned)
+    }
+
+    /// Whether planning it and making its points takes no longer than handing it to another
+    /// thread: a single set in a box of about 2,000 spacings' area at most, and not long and thin.
+    #[must_use]
+    pub fn is_small(&self) -> bool {
+        let ([set], Area::Region(_)) = (&*self.sets, &self.region.area) else {
+            return false;
+        };
+        let spacing = match set.amount {
+            Amount::Spacing(spacing) => spacing,
+            Amount::Density(density) => density.sqrt().recip(),
+            Amount::MinDistance(_) | Amount::Count(_) => return false,
+        };
+        let [min_x, min_y, max_x, max_y] = self.region.bbox();
+        let [width, height] = [(max_x - min_x) / spacing, (max_y - min_y) / spacing];
+        let is_plain = set.region.is_none() && set.clear_of.is_empty();
+        is_plain && width * height <= 2048.0 && width.max(height) <= 128.0
     }
 }
 
@@ -175,7 +198,19 @@ impl Asked {
     }
 }
 
+/// Checks how many parts a query is to be split into.
+///
+/// # Errors
+/// A [`Fault`] of `parts`.
+pub fn check_parts(parts: u32) -> Result<u32, Fault> {
+    if (1..=MOST_PARTS).contains(&parts) {
+        return Ok(parts);
+    }
+    let detail = "it is out of range";
+    Err(Fault::new("parts", parts, detail, parameters::PARTS))
+}
+
 /// The shortest digits of any number.
-fn number(value: f64) -> String {
+pub(in crate::service) fn number(value: f64) -> String {
     zmij::Buffer::new().format(value).into()
 }

@@ -5,14 +5,13 @@ use std::{collections::BTreeMap, sync::Arc};
 use percent_encoding::percent_decode_str;
 
 use super::{
-    AMOUNT, AmountDraft, AttributesDraft, BOX, Body, Draft, KEEP, Query, RegionDraft, Set,
-    SetDraft, ShapeDraft, TableDraft, WARP, WindowDraft,
+    AMOUNT, AmountDraft, Around, AroundDraft, AttributesDraft, BOX, Body, Draft, KEEP, Query,
+    RegionDraft, Set, SetDraft, ShapeDraft, TableDraft, WARP, WindowDraft,
     amount::COUNT,
     attributes::{SCALE_RANGE, VARIANTS},
+    check_parts,
     faults::{Faults, MOST},
-    parameters::{
-        LIMIT, MOST_NEAREST, NEAREST, OFFSET, PARTS, PLACE, Parameter, RADIUS, SEED, Shape, names,
-    },
+    parameters::{LIMIT, NEAREST, OFFSET, PARTS, PLACE, Parameter, RADIUS, SEED, Shape, names},
     region::{CIRCLE, POLYGON},
     values::{
         finite, integer, no_format, numbers, read_bbox, strength, variants_of, vertices, wrong,
@@ -30,17 +29,6 @@ use crate::service::{
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Parameters {
     values: BTreeMap<&'static str, String>,
-}
-
-/// Which neighbors are asked for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Around {
-    /// The place.
-    pub at: [f64; 2],
-    /// How many at most.
-    pub k: Option<usize>,
-    /// How far away at most.
-    pub radius: Option<f64>,
 }
 
 /// Parameters with the faults found so far.
@@ -215,7 +203,8 @@ impl Parameters {
         let mut faults = Faults::new(found);
         let set: Vec<&str> = SET.into_iter().filter(|name| *name != "count").collect();
         self.only(&[&set[..], others].concat(), &mut faults);
-        self.set(&mut faults).check_alone(catalog, faults)
+        self.set(&mut faults)
+            .check_alone(catalog, faults.into_inner())
     }
 
     /// The place whose neighbors are asked for, how many of them, and how far away they may be.
@@ -224,22 +213,12 @@ impl Parameters {
     /// Every fault.
     pub fn around(&self) -> Result<Around, Vec<Fault>> {
         let mut faults = Faults::default();
-        let at = self.read("at", PLACE, numbers, &mut faults);
-        if self.get("at").is_none() {
-            faults.add(Fault::missing("at", PLACE));
-        }
-        let number = |text: &str| integer(text).filter(|k| (1..=MOST_NEAREST).contains(k));
-        let k = self.read("k", NEAREST, number, &mut faults);
-        let distance = |text: &str| finite(text).filter(|radius| *radius >= 0.0);
-        let radius = self.read("radius", RADIUS, distance, &mut faults);
-        match at {
-            Some(at) if faults.is_empty() => Ok(Around {
-                at,
-                k: k.and_then(|k| k.try_into().ok()),
-                radius,
-            }),
-            _ => Err(faults.into_inner()),
-        }
+        let draft = AroundDraft {
+            at: self.read("at", PLACE, numbers, &mut faults),
+            k: self.read("k", NEAREST, integer, &mut faults),
+            radius: self.read("radius", RADIUS, finite, &mut faults),
+        };
+        draft.check(faults.into_inner())
     }
 
     /// How many parts a query is split into.
@@ -249,11 +228,8 @@ impl Parameters {
     pub fn parts(&self) -> Result<u32, Vec<Fault>> {
         let mut faults = Faults::default();
         self.only(&["parts"], &mut faults);
-        let number = |text: &str| {
-            let parts = text.parse::<u32>().ok();
-            parts.filter(|parts| (1..=super::MOST_PARTS).contains(parts))
-        };
-        let parts = self.read("parts", PARTS, number, &mut faults);
+        let parts = self.read("parts", PARTS, integer, &mut faults);
+        let parts = parts.and_then(|parts| faults.take(check_parts(parts)));
         if self.get("parts").is_none() {
             faults.add(Fault::missing("parts", PARTS));
         }

@@ -17,6 +17,14 @@ pub enum CountError {
     /// Even the least spacing allowed gives fewer points.
     #[error("no spacing gives {0} points here")]
     NotFound(u128),
+    /// The spacing would be less than the caller allows.
+    #[error("{count} points take a spacing below {least} here")]
+    TooDense {
+        /// How many points are asked for.
+        count: u128,
+        /// The least spacing allowed.
+        least: f64,
+    },
 }
 
 /// More steps than a bisection of any bracket takes.
@@ -39,6 +47,20 @@ impl Sampler {
         selection: &Selection,
         count: u128,
     ) -> Result<Plan, CountError> {
+        self.select_count_from(selection, count, 0.0)
+    }
+
+    /// The same without looking at spacings below `least`: where counting takes time in proportion
+    /// to the lattice rows, that bounds it.
+    ///
+    /// # Errors
+    /// As [`select_count`](Self::select_count), and [`CountError::TooDense`].
+    pub fn select_count_from(
+        self: &Arc<Self>,
+        selection: &Selection,
+        count: u128,
+        least: f64,
+    ) -> Result<Plan, CountError> {
         if count == 0 {
             return Err(CountError::Zero);
         }
@@ -51,6 +73,7 @@ impl Sampler {
         // Spacings with too many points, and with too few.
         let (mut low, mut high) = (0.0, f64::INFINITY);
         for _ in 0..MOST_STEPS {
+            guess = guess.max(least);
             let Ok(spacing) = Spacing::new(guess) else {
                 break;
             };
@@ -75,6 +98,8 @@ impl Sampler {
                 if more.as_ref().is_none_or(|more| found < more.total()) {
                     more = Some(plan);
                 }
+            } else if guess <= least {
+                return Err(CountError::TooDense { count, least });
             } else {
                 high = guess;
             }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
-    Frame, Listed, Sampler, fixed,
+    Cursor, Frame, Listed, PointId, Sampler, fixed,
     kernel::{Backend, Format, Row},
     patch::{BAND_WIDTH, Patch},
     plan::Plan,
@@ -199,6 +199,51 @@ impl<F: Format> Blocks<F> {
         filled
     }
 
+    /// The place after the points given so far, found without counting. `None` for a tile, which
+    /// does not know how many points come before it, and for a plan without points, which is
+    /// nowhere.
+    ///
+    /// Its lattice address may lie before that of the next point, but after that of the last one.
+    #[must_use]
+    pub fn cursor(&self) -> Option<Cursor> {
+        if self.plan.count() == 0 {
+            return None;
+        }
+        let given = self.plan.count().checked_sub(self.left)?;
+        let at = if self.at.y == self.rows.end {
+            PointId {
+                x: self.bands.start * BAND_WIDTH,
+                y: self.rows.start,
+            }
+        } else {
+            PointId {
+                x: self.column(),
+                y: self.at.y,
+            }
+        };
+        Some(Cursor {
+            offset: self.plan.offset() + given,
+            total: self.plan.total(),
+            at,
+        })
+    }
+
+    /// The lattice column at which the row under way goes on.
+    fn column(&self) -> i64 {
+        let start = self.band * BAND_WIDTH;
+        if self.at.done == 0 {
+            return self.at.from.unwrap_or(start);
+        }
+        let Plan { sampler, frame, .. } = &self.plan;
+        let column = locate(sampler, frame, self.at.y).and_then(|(class, block)| {
+            let listed = &self.columns[class.ordinal()];
+            let vectors = sampler.row(block);
+            self.templates
+                .column(&self.patch, listed, vectors, self.at.done)
+        });
+        column.unwrap_or(start + BAND_WIDTH)
+    }
+
     /// Moves to the first row of the next band.
     fn next_band(&mut self) -> bool {
         let Some(band) = self.bands.next() else {
@@ -380,7 +425,7 @@ impl<F: Format> Blocks<F> {
 }
 
 /// The class and the block of a row, if it has points.
-fn locate(sampler: &Sampler, frame: &Frame, y: i64) -> Option<(Class, usize)> {
+pub(super) fn locate(sampler: &Sampler, frame: &Frame, y: i64) -> Option<(Class, usize)> {
     let (x_parity, index) = frame.pattern.visit(Axis::Y, y)?;
     let class = Class {
         x: x_parity,

@@ -112,6 +112,25 @@ impl Region {
         self.max
     }
 
+    /// What lies in both boxes; without extent if nothing does.
+    #[must_use]
+    pub fn and(&self, other: Self) -> Self {
+        let [min, max] = [
+            [0, 1].map(|i| self.min[i].max(other.min[i])),
+            [0, 1].map(|i| self.max[i].min(other.max[i])),
+        ];
+        let reversed = (0..2).any(|i| max[i] < min[i]);
+        Self {
+            min,
+            max: if reversed { min } else { max },
+        }
+    }
+
+    /// Whether a strip may have points of it.
+    pub(super) fn meets(&self, [y0, y1]: [f64; 2]) -> bool {
+        self.min[1] <= y1 && self.max[1] >= y0
+    }
+
     /// Whether the box has no extent along an axis.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -13,6 +13,7 @@ use super::{
     clear::{ClearOf, Guard},
     fixed,
     patch::PATCH_HEIGHT,
+    warp::NearShears,
 };
 use crate::{
     pattern::{Axis, Class},
@@ -100,7 +101,8 @@ impl Focus {
             && self.guards.iter().all(|guard| guard.leaves(p))
     }
 
-    /// Those columns of some rows whose points may pass.
+    /// Those columns of some rows whose points may pass in any of the rows; those of a run that
+    /// passes do in all of them.
     pub(super) fn runs(&self, rows: Range<i64>, columns: &Range<i64>, runs: &mut Vec<Run>) {
         runs.clear();
         let steps = match &self.area {
@@ -191,20 +193,31 @@ pub(super) fn count(
             };
             let set = &sets[class.ordinal()];
             let vectors = sampler.row(sampler.map().locate(index));
-            let passes = |x: i64| {
-                let block = frame.pattern.axis_index(Axis::X, x, class.y);
-                let [dx, dy] = vectors[sampler.map().locate(block)];
-                let displaced = [fixed(x) + i128::from(dx), fixed(y) + i128::from(dy)];
-                focused.passes(frame.warped(displaced).map(|k| frame.world(k)))
+            let displacement = |x: i64| {
+                let index = frame.pattern.axis_index(Axis::X, x, class.y);
+                vectors[sampler.map().locate(index)]
             };
             for run in &runs {
-                count += if run.passes {
-                    u128::from(set.count(run.columns.clone()))
-                } else {
-                    set.members(run.columns.clone())
-                        .filter(|&x| passes(x))
-                        .count() as u128
-                };
+                if run.passes {
+                    count += u128::from(set.count(run.columns.clone()));
+                    continue;
+                }
+                // Neighbors are moved alike: what moves one is at hand for the next.
+                let place = [fixed(run.columns.start), fixed(y)];
+                let mut near = frame.shears.as_ref().map(|s| NearShears::new(s, place));
+                for x in set.members(run.columns.clone()) {
+                    let [dx, dy] = displacement(x);
+                    let displaced = [fixed(x) + i128::from(dx), fixed(y) + i128::from(dy)];
+                    let position = match &mut near {
+                        Some((near, origin)) => {
+                            let relative = [0, 1].map(|i| (displaced[i] - origin[i]) as i64);
+                            let moved = near.apply(relative);
+                            [0, 1].map(|i| origin[i] + i128::from(moved[i]))
+                        }
+                        None => displaced,
+                    };
+                    count += u128::from(focused.passes(position.map(|k| frame.world(k))));
+                }
             }
         }
         start = end;

@@ -82,7 +82,7 @@ impl<F: Format> Template<F> {
         self.displaced.clear();
         self.displacements.clear();
         let is_warped = patch.is_warped();
-        let all = is_warped || kept == Kept::All || patch.columns_are_inner;
+        let all = kept.has_all(patch);
         let detailed = is_warped || kept != Kept::Plain;
         let displaced = |&(x, block): &(i64, u32)| {
             let [dx, dy] = vectors[block as usize];
@@ -243,6 +243,13 @@ pub(super) enum Kept {
     All,
 }
 
+impl Kept {
+    /// Whether all columns are kept, whether they are inside the box or not.
+    fn has_all(self, patch: &Patch) -> bool {
+        patch.is_warped() || self == Self::All || patch.columns_are_inner
+    }
+}
+
 /// Templates by class and block of the row: all of a tall band's, or only the last.
 #[derive(Debug)]
 pub(super) struct Templates<F: Format> {
@@ -269,6 +276,22 @@ impl<F: Format> Templates<F> {
 
     pub(super) fn forget(&mut self) {
         self.slots.iter_mut().for_each(|slot| slot.made = false);
+    }
+
+    /// The lattice column of number `n` of the template that is made of these.
+    pub(super) fn column(
+        &self,
+        patch: &Patch,
+        listed: &Listed,
+        vectors: &[[i32; 2]],
+        n: usize,
+    ) -> Option<i64> {
+        let all = self.kept.has_all(patch);
+        let columns = listed.iter().filter(|&&(x, block)| {
+            let displaced = patch.relative(Axis::X, x) + vectors[block as usize][0];
+            all || patch.holds_along(Axis::X, displaced)
+        });
+        columns.map(|column| column.0).nth(n)
     }
 
     /// The template of a row; `same` says that the row is the one asked for last.

@@ -78,15 +78,18 @@ impl Figure {
     }
 }
 
-/// All figures of a set, rounded to four significant digits: far more than they mean, and few
-/// enough that another order of a sum inside an FFT does not show.
+/// All figures of a set, radial ones on rings of width `ring_width`, rounded to four significant
+/// digits: far more than they mean, and few enough that another order of a sum inside an FFT does
+/// not show.
 pub(crate) fn figures_of_spectrum(
     spectrum: &Spectrum,
+    ring_width: f64,
     distances: Distances,
     cells: Voronoi,
 ) -> Vec<(String, f64)> {
-    let summary = spectrum.summary(RING_WIDTH);
-    let crispness = Crispness::of_rings(&spectrum.rings(RING_WIDTH), RING_WIDTH);
+    let ring_width = ring_width.max(spectrum.finest_ring());
+    let summary = spectrum.summary(ring_width);
+    let crispness = Crispness::of_rings(&spectrum.rings(ring_width), ring_width);
     [
         (Figure::LowPower, summary.low_power),
         (Figure::PeakPower, summary.peak_power),
@@ -119,6 +122,7 @@ pub fn figures_of_torus(subject: String, seen: bool, set: &Torus, nu_max: f64) -
         points: set.points().len() as u64,
         values: figures_of_spectrum(
             &Spectrum::of_torus(set, nu_max),
+            RING_WIDTH,
             Distances::of_torus(set),
             Voronoi::of_torus(set),
         ),
@@ -134,6 +138,7 @@ pub fn figures_of_window(subject: String, seen: bool, set: &Window, nu_max: f64)
         points: set.points().len() as u64,
         values: figures_of_spectrum(
             &Spectrum::of_window(set, nu_max),
+            RING_WIDTH,
             Distances::of_window(set),
             Voronoi::of_window(set),
         ),

@@ -91,6 +91,12 @@ impl Spectrum {
         self.modes as f64 / self.side
     }
 
+    /// The least width of a ring: one mode.
+    #[must_use]
+    pub fn finest_ring(&self) -> f64 {
+        1.0 / self.side
+    }
+
     /// The power at k = (`kx`, `ky`) cycles per side, or `None` beyond the largest frequency.
     #[must_use]
     pub fn at(&self, kx: i64, ky: i64) -> Option<f64> {
@@ -124,7 +130,7 @@ impl Spectrum {
     /// whole.
     #[must_use]
     pub fn rings(&self, width: f64) -> Vec<Ring> {
-        let width = width.max(1.0 / self.side);
+        let width = width.max(self.finest_ring());
         let count = (self.nu_max() / width) as usize;
         let mut sums = vec![[0.0f64; 4]; count];
         for (nu, power) in self.half_plane() {

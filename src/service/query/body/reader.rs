@@ -52,8 +52,14 @@ impl<'a> Reader<'a> {
     /// Faults all other members.
     pub(super) fn only(&mut self, known: &[&str]) {
         for (name, value) in self.members {
-            if !known.contains(&name.as_str()) {
-                let detail = "there is no such member";
+            let name = name.as_str();
+            let is_shape = ["bbox", "circle", "polygon", "chunk"].contains(&name);
+            if !known.contains(&name) {
+                let detail = if is_shape && known.contains(&"region") {
+                    "it belongs into the member region"
+                } else {
+                    "there is no such member"
+                };
                 self.fault(name, &value.to_string(), detail, &known.join(", "));
             }
         }
@@ -66,27 +72,41 @@ impl<'a> Reader<'a> {
         allowed: &str,
         read: impl FnOnce(&Value, &mut Self) -> Option<T>,
     ) -> Option<T> {
+        self.member_or(name, "it is not of that form", allowed, read)
+    }
+
+    /// The same with words for what cannot be read.
+    fn member_or<T>(
+        &mut self,
+        name: &str,
+        wrong: &str,
+        allowed: &str,
+        read: impl FnOnce(&Value, &mut Self) -> Option<T>,
+    ) -> Option<T> {
         let value = self.members.get(name).filter(|value| !value.is_null())?;
         let read = read(value, self);
         if read.is_none() {
-            self.fault(name, &value.to_string(), "it is not of that kind", allowed);
+            self.fault(name, &value.to_string(), wrong, allowed);
         }
         read
     }
 
     pub(super) fn number(&mut self, name: &str, allowed: &str) -> Option<f64> {
-        self.member(name, allowed, |value, _| value.as_f64())
+        let wrong = "it is not a number";
+        self.member_or(name, wrong, allowed, |value, _| value.as_f64())
     }
 
     /// An integer from 0 on; large ones may be given as text, since not every client has them.
     pub(super) fn integer(&mut self, name: &str, allowed: &str) -> Option<u64> {
-        self.member(name, allowed, |value, _| match value {
+        let wrong = "it is not such an integer";
+        self.member_or(name, wrong, allowed, |value, _| match value {
             Value::String(digits) => digits.parse().ok(),
             value => value.as_u64(),
         })
     }
 
     pub(super) fn text(&mut self, name: &str, allowed: &str) -> Option<String> {
-        self.member(name, allowed, |value, _| value.as_str().map(Into::into))
+        let read = |value: &Value, _: &mut Self| value.as_str().map(Into::into);
+        self.member_or(name, "it is not text", allowed, read)
     }
 }

@@ -51,6 +51,12 @@ impl Circle {
         Region::new(min, max).ok()
     }
 
+    /// Whether a strip may have points of it.
+    pub(super) fn meets(&self, [y0, y1]: [f64; 2]) -> bool {
+        let reach = self.radius * (1.0 + SLACK);
+        (self.center[1] - reach).next_down() <= y1 && (self.center[1] + reach).next_up() >= y0
+    }
+
     pub(super) fn steps(&self, [y0, y1]: [f64; 2]) -> Steps {
         let [x, y] = self.center;
         let r2 = self.radius * self.radius;

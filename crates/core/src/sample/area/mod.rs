@@ -8,6 +8,7 @@
 //! strip is inside, all is outside, or points have to be asked one by one.
 
 mod circle;
+mod outline;
 mod polygon;
 mod steps;
 
@@ -115,12 +116,14 @@ impl Area {
     /// What lies in both.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
-        match self {
-            Self::AllOf(mut areas) => {
+        match (self, other) {
+            // A box again, and so counted in closed form.
+            (Self::Region(a), Self::Region(b)) => Self::Region(a.and(b)),
+            (Self::AllOf(mut areas), other) => {
                 areas.push(other);
                 Self::AllOf(areas)
             }
-            area => Self::AllOf([area, other].into()),
+            (area, other) => Self::AllOf([area, other].into()),
         }
     }
 
@@ -201,30 +204,59 @@ impl Area {
 
     /// The same area for points whose y lies in `strip`, with less to look at.
     pub(super) fn focus(&self, strip: [f64; 2]) -> Self {
-        let all = |areas: &Vec<Self>| areas.iter().map(|area| area.focus(strip)).collect();
+        let all = |areas: &[Self]| areas.iter().map(|area| area.focus(strip)).collect();
+        let nothing = || Self::AnyOf(Vec::new());
         match self {
-            Self::Polygon(polygon) => Self::Polygon(polygon.focus(strip)),
-            Self::AnyOf(areas) => Self::AnyOf(all(areas)),
-            Self::AllOf(areas) => Self::AllOf(all(areas)),
-            Self::Outside(area) => Self::Outside(Box::new(area.focus(strip))),
+            Self::Region(region) if !region.meets(strip) => nothing(),
+            Self::Circle(circle) if !circle.meets(strip) => nothing(),
             Self::Region(_) | Self::Circle(_) => self.clone(),
+            Self::Polygon(polygon) => match polygon.focus(strip) {
+                near if near.is_nowhere() => nothing(),
+                near => Self::Polygon(near),
+            },
+            Self::AnyOf(areas) => {
+                let mut near: Vec<Self> = all(areas);
+                near.retain(|area| !area.is_nothing());
+                Self::any_of(near)
+            }
+            Self::AllOf(areas) => {
+                let near: Vec<Self> = all(areas);
+                if near.iter().any(Self::is_nothing) {
+                    nothing()
+                } else {
+                    Self::AllOf(near)
+                }
+            }
+            Self::Outside(area) => Self::Outside(Box::new(area.focus(strip))),
         }
+    }
+
+    const fn is_nothing(&self) -> bool {
+        matches!(self, Self::AnyOf(areas) if areas.is_empty())
     }
 
     /// What a strip y₀ ≤ y ≤ y₁ is along x.
     pub(super) fn steps(&self, strip: [f64; 2]) -> Steps {
-        let fold = |areas: &[Self], empty: State, join: fn(State, State) -> State| {
-            let mut all = areas.iter().map(|area| area.steps(strip));
-            let first = all.next().unwrap_or_else(|| Steps::all(empty));
-            all.fold(first, |a, b| a.join(&b, join))
-        };
         match self {
             Self::Region(region) => Steps::of_region(region, strip),
             Self::Circle(circle) => circle.steps(strip),
             Self::Polygon(polygon) => polygon.steps(strip),
-            Self::AnyOf(areas) => fold(areas, State::Out, State::max),
-            Self::AllOf(areas) => fold(areas, State::In, State::min),
+            Self::AnyOf(areas) => joined(areas, strip, State::Out, State::max),
+            Self::AllOf(areas) => joined(areas, strip, State::In, State::min),
             Self::Outside(area) => area.steps(strip).inverted(),
+        }
+    }
+}
+
+/// The steps of several areas together, by halves, so that many take little longer than few.
+fn joined(areas: &[Area], strip: [f64; 2], empty: State, join: fn(State, State) -> State) -> Steps {
+    match areas {
+        [] => Steps::all(empty),
+        [area] => area.steps(strip),
+        areas => {
+            let (first, second) = areas.split_at(areas.len() / 2);
+            let half = |areas| joined(areas, strip, empty, join);
+            half(first).join(&half(second), join)
         }
     }
 }

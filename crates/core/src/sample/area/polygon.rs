@@ -126,6 +126,21 @@ impl Polygon {
         }
     }
 
+    /// Whether nothing is left of it.
+    pub(super) const fn is_nowhere(&self) -> bool {
+        self.edges.is_empty() && self.flat.is_empty()
+    }
+
+    /// The boxes around its edges.
+    pub(super) fn sides(&self) -> impl Iterator<Item = Region> {
+        let side = |edge: &Edge| {
+            let (a, b) = (edge.low, edge.high);
+            let pick = |f: fn(f64, f64) -> f64| [f(a[0], b[0]), f(a[1], b[1])];
+            Region::between(pick(f64::min), pick(f64::max))
+        };
+        self.edges.iter().chain(&self.flat).map(side)
+    }
+
     pub(super) fn steps(&self, strip: [f64; 2]) -> Steps {
         let [y0, _] = strip;
         // Where each edge may be within the strip, and whether it crosses the strip's lower side.

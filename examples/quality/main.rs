@@ -1,8 +1,10 @@
 //! Writes the rows and profiles of `docs/quality.md` from what `strew measure` found.
 //!
 //! It measures nothing itself: `docs/quality/measure` runs the documented commands and then this,
-//! with the folder of their answers and the document, whose parts between `<!-- rows -->` or
-//! `<!-- profiles -->` and `<!-- end -->` are replaced.
+//! with the folder of their answers and the document, whose parts between `<!-- rows -->`,
+//! `<!-- asked -->` or `<!-- profiles -->` and `<!-- end -->` are replaced.
+
+mod asked;
 
 use std::{error::Error, fs, path::Path};
 
@@ -51,6 +53,7 @@ fn main() -> Result<(), Anything> {
     }
     let text = fs::read_to_string(&document)?;
     let text = replaced(&text, "rows", &rows)?;
+    let text = replaced(&text, "asked", &asked::table(Path::new(&answers))?)?;
     let text = replaced(&text, "profiles", &profiles)?;
     Ok(fs::write(document, text)?)
 }

@@ -1,0 +1,224 @@
+//! A planned query as messages: a header, blocks, a summary, made when they are asked for.
+
+use bytes::Bytes;
+use strew_core::{
+    ALGORITHM_VERSION,
+    sample::{Cursor, F32, F64},
+};
+
+use super::{
+    proto::{
+        Column, ColumnHead, Encoding, PointBlock, Position, StreamHeader, StreamPointsRequest,
+        StreamPointsResponse, StreamSummary, stream_points_response::Message,
+    },
+    resolved,
+};
+use crate::service::{
+    Encoding as Format, Error, Output, Planned,
+    encode::{self, Batch, Coordinates, Packed, Rows, Values, id_text, schema::Kind},
+};
+
+/// The messages of an answer.
+#[derive(Debug)]
+pub(super) struct Messages {
+    planned: Planned,
+    header: Option<StreamHeader>,
+    blocks: Blocks,
+    count: u64,
+    over: bool,
+}
+
+#[derive(Debug)]
+enum Blocks {
+    /// Coordinates without anything else, straight from the kernel.
+    F32(Packed<F32>),
+    F64(Packed<F64>),
+    /// All else.
+    Rows(Box<Table>),
+}
+
+impl Messages {
+    /// The messages of a planned query, in blocks of about `block_bytes`.
+    pub(super) fn new(
+        request: &StreamPointsRequest,
+        planned: Planned,
+        encoding: Encoding,
+        block_bytes: usize,
+    ) -> Result<Self, Error> {
+        let count = u64::try_from(planned.count())
+            .map_err(|_| Error::Internal("a count within the limit is too large"))?;
+        let format = match encoding {
+            Encoding::F32Le => Format::F32,
+            Encoding::F64Le | Encoding::Points | Encoding::Unspecified => Format::F64,
+        };
+        let output = Output {
+            relative_to: planned.query.region.corner,
+            ..Output::new(format)
+        };
+        let parts = planned.parts();
+        let coordinates = Coordinates::of(&output, &parts);
+        let rows = Rows::new(parts, coordinates);
+        let heads: Vec<ColumnHead> = own_columns(&rows).iter().map(head).collect();
+        let header = StreamHeader {
+            query: Some(resolved::query(request, &planned, encoding)),
+            count,
+            columns: heads.clone(),
+            algorithm: ALGORITHM_VERSION,
+            origin: coordinates.origin().map(|[x, y]| Position { x, y }),
+        };
+        let blocks = match (encoding, rows.plain_plan()) {
+            (Encoding::F32Le, Some(plan)) => Blocks::F32(Packed::new(plan, block_bytes)),
+            (Encoding::F64Le, Some(plan)) => Blocks::F64(Packed::new(plan, block_bytes)),
+            _ => Blocks::Rows(Box::new(Table::new(rows, heads, encoding, block_bytes))),
+        };
+        Ok(Self {
+            planned,
+            header: Some(header),
+            blocks,
+            count,
+            over: false,
+        })
+    }
+
+    fn block(&mut self) -> Option<PointBlock> {
+        let alone = |data: Bytes, cursor: Option<Cursor>| {
+            let block = PointBlock {
+                data,
+                ..PointBlock::default()
+            };
+            (block, cursor.map(|cursor| (0, cursor)))
+        };
+        let (mut block, place) = match &mut self.blocks {
+            Blocks::F32(packed) => alone(packed.next()?, packed.cursor()),
+            Blocks::F64(packed) => alone(packed.next()?, packed.cursor()),
+            Blocks::Rows(table) => (table.next()?, table.rows.cursor()),
+        };
+        if let Some((set, cursor)) = place {
+            block.layer = u32::try_from(set).unwrap_or(u32::MAX);
+            let token = self.planned.token(set, cursor);
+            block.cursor = token.map(|token| token.to_string()).unwrap_or_default();
+        }
+        Some(block)
+    }
+}
+
+impl Iterator for Messages {
+    type Item = StreamPointsResponse;
+
+    fn next(&mut self) -> Option<StreamPointsResponse> {
+        if self.over {
+            return None;
+        }
+        let message = if let Some(header) = self.header.take() {
+            Message::Header(header)
+        } else if let Some(block) = self.block() {
+            Message::Block(block)
+        } else {
+            self.over = true;
+            let next = self.planned.next();
+            Message::Summary(StreamSummary {
+                count: self.count,
+                next_cursor: next.map(|token| token.to_string()).unwrap_or_default(),
+            })
+        };
+        Some(StreamPointsResponse {
+            message: Some(message),
+        })
+    }
+}
+
+/// The columns besides the layer's, which blocks have as a number of their own.
+fn own_columns(rows: &Rows) -> &[encode::Column] {
+    let schema = rows.schema();
+    &schema.columns()[usize::from(schema.is_layered())..]
+}
+
+fn head(column: &encode::Column) -> ColumnHead {
+    ColumnHead {
+        name: column.name.clone(),
+        names: match &column.kind {
+            Kind::Number => vec![],
+            Kind::Dictionary(names) => names.to_vec(),
+        },
+    }
+}
+
+/// Blocks made of rows.
+#[derive(Debug)]
+struct Table {
+    rows: Rows,
+    heads: Vec<ColumnHead>,
+    encoding: Encoding,
+    /// How many points a block has.
+    length: usize,
+}
+
+impl Table {
+    fn new(rows: Rows, heads: Vec<ColumnHead>, encoding: Encoding, block_bytes: usize) -> Self {
+        let coordinates = match encoding {
+            // A usual id has about 16 bytes; the longest has 36.
+            Encoding::Points | Encoding::Unspecified => 32,
+            Encoding::F64Le => 16,
+            Encoding::F32Le => 8,
+        };
+        // A number, or an index as a varint.
+        let value = |head: &ColumnHead| if head.names.is_empty() { 8 } else { 2 };
+        let columns: usize = heads.iter().map(value).sum();
+        Self {
+            rows,
+            heads,
+            encoding,
+            length: block_bytes / (coordinates + columns),
+        }
+    }
+
+    fn next(&mut self) -> Option<PointBlock> {
+        let layered = usize::from(self.rows.schema().is_layered());
+        let batch = self.rows.next(self.length)?;
+        let mut block = coordinates(batch, self.encoding);
+        let values = self.heads.iter().zip(&batch.columns[layered..]);
+        block.columns = values
+            .filter_map(|(head, values)| column(head, values))
+            .collect();
+        Some(block)
+    }
+}
+
+fn coordinates(batch: Batch<'_>, encoding: Encoding) -> PointBlock {
+    let points = batch.points;
+    let packed = |data: Vec<u8>| PointBlock {
+        data: data.into(),
+        ..PointBlock::default()
+    };
+    match encoding {
+        Encoding::Points | Encoding::Unspecified => PointBlock {
+            x: points.iter().map(|point| point.x).collect(),
+            y: points.iter().map(|point| point.y).collect(),
+            id: points.iter().map(|point| id_text(point.id)).collect(),
+            ..PointBlock::default()
+        },
+        Encoding::F64Le => {
+            let values = points.iter().flat_map(|point| [point.x, point.y]);
+            packed(values.flat_map(f64::to_le_bytes).collect())
+        }
+        Encoding::F32Le => {
+            let values = batch.near.iter().flatten();
+            packed(values.flat_map(|value| value.to_le_bytes()).collect())
+        }
+    }
+}
+
+/// The values of a column, if the points have them.
+fn column(head: &ColumnHead, values: &Values) -> Option<Column> {
+    let (mut numbers, mut indices) = (vec![], vec![]);
+    match values {
+        Values::Numbers(values) => numbers.clone_from(values),
+        Values::Indices(values) => indices.clone_from(values),
+        Values::Missing => return None,
+    }
+    Some(Column {
+        name: head.name.clone(),
+        numbers,
+        indices,
+    })
+}

@@ -1,0 +1,22 @@
+//! Single points as messages.
+
+use super::proto::{Point, Value, value};
+use crate::service::Found;
+
+/// A point that was found.
+pub(super) fn point(found: Found) -> Point {
+    let attribute = |(name, value): (String, serde_json::Value)| Value {
+        name,
+        value: match value {
+            serde_json::Value::String(text) => Some(value::Value::Text(text)),
+            number => number.as_f64().map(value::Value::Number),
+        },
+    };
+    Point {
+        id: found.id,
+        x: found.x,
+        y: found.y,
+        distance: found.distance,
+        attributes: found.attributes.into_iter().map(attribute).collect(),
+    }
+}

@@ -1,0 +1,43 @@
+//! Bodies of requests: read whole, up to a limit, whatever they are said to be.
+//!
+//! The content type is not looked at: a body is read as JSON anyway, and `curl -d` calls everything
+//! a form.
+
+use std::sync::Arc;
+
+use axum::extract::{FromRequest, Request};
+use futures_util::StreamExt as _;
+use http::header;
+
+use crate::service::{Error, Fault, Service};
+
+/// A whole body.
+#[derive(Debug)]
+pub(super) struct Whole(pub(super) Vec<u8>);
+
+impl FromRequest<Arc<Service>> for Whole {
+    type Rejection = Error;
+
+    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Error> {
+        let limit = service.limits().max_body_bytes;
+        let told = request.headers().get(header::CONTENT_LENGTH);
+        let told = told.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
+        // What says that it is too long need not even be sent.
+        if told.is_some_and(|length| usize::try_from(length).is_ok_and(|length| length > limit)) {
+            return Err(Error::BodyTooLarge { limit });
+        }
+        let mut pieces = request.into_body().into_data_stream();
+        let mut whole = Vec::new();
+        while let Some(piece) = pieces.next().await {
+            let piece = piece.map_err(|_| {
+                let detail = "it broke off before its end";
+                Error::Invalid(vec![Fault::new("body", "", detail, "a whole body")])
+            })?;
+            if whole.len() + piece.len() > limit {
+                return Err(Error::BodyTooLarge { limit });
+            }
+            whole.extend_from_slice(&piece);
+        }
+        Ok(Self(whole))
+    }
+}

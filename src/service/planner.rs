@@ -1,0 +1,239 @@
+//! Planning the sets of a query one after another, each knowing the layers before it.
+
+use std::sync::Arc;
+
+use strew_core::{
+    Area, Plan, PointId, Spacing, Warp,
+    sample::{ClearOf, CountError, Cursor, DistanceError, Layer, Selection},
+};
+
+use super::{
+    Error, Limits, PlannedSet,
+    cache::Ready,
+    query::{self, Amount, Query, Set, Token},
+};
+
+/// Plans sets one after another.
+pub(super) struct Planner<'a> {
+    query: &'a Query,
+    limits: &'a Limits,
+    layers: Vec<Arc<Layer>>,
+}
+
+/// About how often an area is counted to find the spacing of a count.
+const COUNTS: f64 = 32.0;
+
+impl<'a> Planner<'a> {
+    pub(super) const fn new(query: &'a Query, limits: &'a Limits) -> Self {
+        Self {
+            query,
+            limits,
+            layers: vec![],
+        }
+    }
+
+    /// Plans set number `i`; those before it are planned.
+    ///
+    /// With a cursor, sets before the cursor's have given all they had, and the cursor's is found
+    /// again without counting.
+    pub(super) fn plan(&mut self, i: usize, set: &Set, ready: &Ready) -> Result<PlannedSet, Error> {
+        let region = &self.query.region;
+        let clear = self.clear_of(set)?;
+        let resolved = resolve(set, ready)?;
+        let cursor = self.query.window.cursor;
+        let here = cursor.filter(|token| i == usize::from(token.set));
+        let is_over = cursor.is_some_and(|token| i < usize::from(token.set));
+        let known = resolved.map(|(spacing, _)| spacing);
+        let known = known.or_else(|| here?.spacing);
+        let unit = Spacing::new(1.0).map_err(|_| Error::Internal("one is not a spacing"))?;
+        let mut selection = Selection {
+            placement: set.placement(known.unwrap_or(unit)),
+            area: set.area(region),
+            clear: clear.into(),
+        };
+        let plan = match (known, here) {
+            (Some(spacing), _) if is_over || here.is_some() => {
+                let cursor = here.map_or_else(nothing, |token| token.cursor);
+                let plan = ready.sampler.resume(selection.clone(), cursor);
+                let plan = plan.map_err(|error| region.too_far(spacing, &error))?;
+                match set.amount {
+                    // The spacing may give a few points more.
+                    Amount::Count(count) => {
+                        let left = u128::from(count).saturating_sub(cursor.offset);
+                        plan.window(0, Some(left))
+                    }
+                    _ => plan,
+                }
+            }
+            (Some(spacing), _) => {
+                self.check_rows(&selection, 1.0)?;
+                self.check_clearing(&selection)?;
+                let plan = ready.sampler.select(selection.clone());
+                plan.map_err(|error| region.too_far(spacing, &error))?
+            }
+            (None, here) => {
+                let plan = self.count(set, ready, &mut selection)?;
+                let start = here.map_or(0, |token: Token| token.cursor.offset);
+                plan.window(start, is_over.then_some(0))
+            }
+        };
+        let spacing = plan.placement().spacing;
+        selection.placement.spacing = spacing;
+        self.layers.push(Arc::new(Layer {
+            sampler: ready.sampler.clone(),
+            placement: selection.placement,
+            area: set.region.as_ref().map(|own| own.area.clone()),
+            clear: selection.clear,
+        }));
+        Ok(PlannedSet::new(
+            ready.entry.clone(),
+            resolved.map_or(spacing.density(), |(_, density)| density),
+            least_distance(set, ready, spacing),
+            plan,
+        ))
+    }
+
+    /// The layers that a set keeps clear of, with the distances.
+    fn clear_of(&self, set: &Set) -> Result<Vec<ClearOf>, Error> {
+        let clear = set.clear_of.iter().map(|&(place, distance)| {
+            let layer = self.layers.get(place).cloned();
+            let layer = layer.ok_or(Error::Internal("a layer is not planned yet"))?;
+            ClearOf::new(layer, distance).map_err(|error| {
+                let allowed = format!("above 0, at most {:e}", error.limit);
+                set.fault(
+                    "clear_of",
+                    distance,
+                    "the distance is out of range",
+                    allowed,
+                )
+            })
+        });
+        clear.collect()
+    }
+
+    /// The plan with exactly as many points as are asked for.
+    fn count(&self, set: &Set, ready: &Ready, selection: &mut Selection) -> Result<Plan, Error> {
+        let Amount::Count(count) = set.amount else {
+            return Err(Error::Internal("an amount is not resolved"));
+        };
+        let limit = self.limits.max_points;
+        if count > limit {
+            let count = count.into();
+            return Err(Error::TooManyPoints { count, limit });
+        }
+        // About what it will be, to know what counting takes.
+        let [min_x, min_y, max_x, max_y] = self.query.region.bbox();
+        let side = (max_x - min_x).sqrt() * (max_y - min_y).sqrt();
+        let guess = side * (set.keep.get() / count as f64).sqrt();
+        if let Ok(spacing) = Spacing::new(guess) {
+            selection.placement.spacing = spacing;
+            self.check_rows(selection, COUNTS)?;
+        }
+        let least = self.looked_at(selection) * COUNTS / self.limits.max_rows as f64;
+        let sampler = &ready.sampler;
+        let plan = sampler.select_count_from(selection, count.into(), least);
+        plan.map_err(|error| match error {
+            CountError::Plan(error) => self
+                .query
+                .region
+                .too_far(selection.placement.spacing, &error),
+            other => set.fault("count", count, other.to_string(), query::AMOUNT),
+        })
+    }
+
+    /// Where points have to be counted row by row, there must not be too many, in so many counts.
+    fn check_rows(&self, selection: &Selection, counts: f64) -> Result<(), Error> {
+        let unit = selection.placement.spacing.get();
+        let rows = self.looked_at(selection) / unit * counts;
+        let limit = self.limits.max_rows;
+        if rows > limit as f64 {
+            return Err(Error::TooManyRows {
+                rows: rows as u128,
+                limit,
+            });
+        }
+        Ok(())
+    }
+
+    /// How many lattice rows have to be counted one by one, times the spacing. Along a border that
+    /// is no row, points are looked at, which takes as long.
+    fn looked_at(&self, selection: &Selection) -> f64 {
+        /// A lattice unit is about a third of the mean spacing.
+        const ROWS: f64 = 3.0;
+        let area = &selection.area;
+        let is_box = matches!(area, Area::Region(_));
+        let is_closed = selection.placement.warp == Warp::OFF && selection.clear.is_empty();
+        let Some(bounds) = area.bounds().filter(|_| !(is_box && is_closed)) else {
+            return 0.0;
+        };
+        let height = bounds.max()[1] - bounds.min()[1];
+        let own = if is_box { 0.0 } else { height };
+        ROWS * (area.outline(bounds) + own)
+    }
+
+    /// What keeps clear of layers is counted point by point: there must not be too many to look at.
+    fn check_clearing(&self, selection: &Selection) -> Result<(), Error> {
+        let limit = self.limits.max_points;
+        if selection.clear.is_empty() {
+            return Ok(());
+        }
+        let Some(bounds) = selection.area.bounds() else {
+            return Ok(());
+        };
+        let [width, height] = [0, 1].map(|i| bounds.max()[i] - bounds.min()[i]);
+        let placement = selection.placement;
+        let about = width * height * placement.spacing.density() * placement.keep.get();
+        if about > limit as f64 {
+            let count = about as u128;
+            return Err(Error::TooManyPoints { count, limit });
+        }
+        Ok(())
+    }
+}
+
+/// The place after the last point.
+const fn nothing() -> Cursor {
+    Cursor {
+        offset: 0,
+        total: 0,
+        at: PointId { x: 0, y: 0 },
+    }
+}
+
+/// What an amount is on its table; `None` for a count, which needs a region.
+pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>, Error> {
+    let fault = |field, value: f64, detail: String| set.fault(field, value, detail, query::AMOUNT);
+    let wrong = |field, value: f64| {
+        move |error: strew_core::sample::SpacingError| fault(field, value, error.to_string())
+    };
+    match set.amount {
+        Amount::Density(density) => {
+            let spacing = Spacing::from_density(density).map_err(wrong("density", density))?;
+            Ok(Some((spacing, density)))
+        }
+        Amount::Spacing(value) => {
+            let spacing = Spacing::new(value).map_err(wrong("spacing", value))?;
+            Ok(Some((spacing, spacing.density())))
+        }
+        Amount::MinDistance(distance) => {
+            let spacing = ready
+                .least
+                .spacing_for(distance, set.warp)
+                .map_err(|error| {
+                    let detail = match error {
+                        DistanceError::NoPromise { .. } => {
+                            format!("profile `{}`: {error}", set.key.profile)
+                        }
+                        other => other.to_string(),
+                    };
+                    fault("min_distance", distance, detail)
+                })?;
+            Ok(Some((spacing, spacing.density())))
+        }
+        Amount::Count(_) => Ok(None),
+    }
+}
+
+pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing) -> f64 {
+    ready.least.with_warp(set.warp) * spacing.get()
+}
