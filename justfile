@@ -22,7 +22,7 @@ lint:
 
 # How fast a box is filled, beside the published row scanner and a plain fill.
 bench:
-    cargo bench -p strew-core --bench kernel
+    cargo bench -p strew-core
 
 # The library without the standard library.
 no-std:

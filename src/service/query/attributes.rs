@@ -78,10 +78,12 @@ impl AttributesDraft {
                 let Some(variants) = &self.variants else {
                     return Err(Fault::missing(&field("variants"), VARIANTS));
                 };
-                let pairs = variants
-                    .iter()
-                    .map(|(name, weight)| (name.as_str(), *weight));
-                Variants::new(pairs)
+                // The order in which they are written does not matter: not every writer of JSON keeps
+                // that of an object's members.
+                let mut sorted: Vec<_> = variants.iter().collect();
+                sorted.sort_by(|a, b| a.0.cmp(&b.0));
+                let pairs = sorted.into_iter();
+                Variants::new(pairs.map(|(name, weight)| (name.as_str(), *weight)))
                     .map(Attribute::Variant)
                     .map_err(|error| {
                         Fault::new(

@@ -10,10 +10,10 @@ use super::twin::MAX_Q;
 use crate::pattern::Alpha;
 
 /// A neighbor shift −(αk + b)/2: the place where a neighbor column enters or leaves.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Label {
-    k: i64,
-    b: u8,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Label {
+    pub(crate) k: i64,
+    pub(crate) b: u8,
 }
 
 /// All shifts that a half-width R knows. Those of e = t coincide with those of e = 0 one step on:
@@ -25,6 +25,17 @@ pub(super) fn labels(radius: u32) -> impl Iterator<Item = Label> {
 }
 
 impl Label {
+    /// 0 itself.
+    pub(super) const ZERO: Self = Self { k: 0, b: 0 };
+    /// t = −(1 − α)/2.
+    pub(super) const SET_SIDE: Self = Self { k: -1, b: 1 };
+
+    /// The integer that (αk + b)/2 is taken from to give the value modulo 1.
+    pub(crate) fn turns(self, alpha: Alpha) -> i64 {
+        let shift = i128::from(alpha.half()) * i128::from(self.k) + (i128::from(self.b) << 63);
+        ((shift + i128::from(self.index(alpha))) >> 64) as i64
+    }
+
     /// The value modulo 1, in units of 2⁻⁶⁴.
     pub(super) fn index(self, alpha: Alpha) -> u64 {
         alpha
@@ -36,10 +47,8 @@ impl Label {
 
     /// The value modulo 1 as a linear function, valid near `alpha`.
     fn linear(self, alpha: Alpha) -> Linear {
-        let shift = i128::from(alpha.half()) * i128::from(self.k) + (i128::from(self.b) << 63);
-        let turns = (shift + i128::from(self.index(alpha))) >> 64;
         Linear {
-            constant: 2 * turns as i64 - i64::from(self.b),
+            constant: 2 * self.turns(alpha) - i64::from(self.b),
             slope: self.k,
         }
     }

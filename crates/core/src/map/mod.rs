@@ -14,6 +14,7 @@ use core::ops::Range;
 
 use crate::pattern::Alpha;
 
+pub(crate) use cell::Label;
 pub use size::{Size, SizeError};
 pub use twin::{Site, Twin};
 
@@ -36,6 +37,8 @@ pub struct Map {
     radius: u32,
     /// Where each interval starts, ascending from 0; one more entry, t, closes the last.
     bounds: Vec<u64>,
+    /// The neighbor shift that each of these is.
+    labels: Vec<Label>,
     /// For each bucket of 2^`shift` units the interval of its first unit: a lookup starts there.
     buckets: Vec<u32>,
     shift: u32,
@@ -51,18 +54,20 @@ impl Map {
             return Err(RadiusError { radius });
         }
         let side = alpha.set_side();
-        let mut bounds: Vec<u64> = cell::labels(radius)
-            .map(|label| label.index(alpha))
-            .filter(|&index| index < side)
-            .chain([0, side])
+        let mut labeled: Vec<(u64, Label)> = cell::labels(radius)
+            .map(|label| (label.index(alpha), label))
+            .filter(|&(index, _)| index < side)
+            .chain([(0, Label::ZERO), (side, Label::SET_SIDE)])
             .collect();
-        bounds.sort_unstable();
-        bounds.dedup();
+        labeled.sort_by_key(|&(index, _)| index);
+        labeled.dedup_by_key(|&mut (index, _)| index);
+        let (bounds, labels): (Vec<u64>, Vec<Label>) = labeled.into_iter().unzip();
         let (buckets, shift) = buckets(&bounds);
         Ok(Self {
             alpha,
             radius,
             bounds,
+            labels,
             buckets,
             shift,
         })
@@ -106,6 +111,11 @@ impl Map {
             Some(ends) => ends[0]..ends[1],
             None => 0..0,
         }
+    }
+
+    /// The neighbor shifts that the ends of the intervals are, one more than intervals.
+    pub(crate) fn labels(&self) -> &[Label] {
+        &self.labels
     }
 
     /// The interval that holds an index, or `None` outside the set region [0, t).

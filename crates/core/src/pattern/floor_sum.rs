@@ -4,7 +4,7 @@
 ///
 /// The Euclid-like recursion on (a, 2⁶⁴) (see e.g. Graham, Knuth, Patashnik, *Concrete
 /// Mathematics*, §3.5); at most about 92 rounds of one division each.
-fn floor_sum(n: u64, a: u64, b: u128) -> u128 {
+pub(super) fn floor_sum(n: u64, a: u64, b: u128) -> u128 {
     let (mut n, mut a, mut b) = (u128::from(n), u128::from(a), b);
     let mut m = 1u128 << 64;
     let mut sum = 0u128;

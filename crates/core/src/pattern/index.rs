@@ -119,7 +119,7 @@ impl Pattern {
     }
 
     /// The indices of a thinned pattern along an axis, by parity of the other coordinate.
-    const fn window(&self, other_parity: u8) -> Range<u64> {
+    pub(crate) const fn window(&self, other_parity: u8) -> Range<u64> {
         let full = self.alpha.set_side();
         if other_parity & 1 == 0 {
             0..self.side

@@ -13,9 +13,11 @@ mod floor_sum;
 mod forward;
 mod index;
 mod quadratic;
+mod turns;
 
 pub use alpha::{Alpha, AlphaError};
 pub use arrangement::arrangement_frequency;
 pub use axis::{Axis, AxisSet, Class};
 pub use forward::{forward_map, is_vacant};
 pub use index::{IndexOrigin, Pattern};
+pub(crate) use turns::Turns;

@@ -5,7 +5,6 @@
 //! block are counted in closed form; likewise margin rows. Only margin × margin is looked at point
 //! by point. So the cost does not grow with the region.
 
-use alloc::{vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
@@ -13,6 +12,7 @@ use super::{
     blocks::{list_columns, locate},
     margins,
     plan::Span,
+    tally::tally,
 };
 use crate::pattern::{Axis, Class};
 
@@ -27,10 +27,13 @@ pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u12
     if width <= FEW && height <= FEW {
         return count_rows(sampler, frame, x, y);
     }
-    Class::ALL
-        .into_iter()
-        .map(|class| count_class(sampler, frame, x, y, class))
-        .sum()
+    let columns = tally(sampler, frame, Axis::X, &x.inner);
+    let rows = tally(sampler, frame, Axis::Y, &y.inner);
+    let count = |class: Class| {
+        let inner = [&columns, &rows].map(|tally| tally[class.ordinal()].as_slice());
+        count_class(sampler, frame, [x, y], inner, class)
+    };
+    Class::ALL.into_iter().map(count).sum()
 }
 
 /// Up to this many lattice units along both axes, looking at each row is faster than closed forms.
@@ -68,14 +71,18 @@ fn count_rows(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u128 {
     count as u128
 }
 
-fn count_class(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span, class: Class) -> u128 {
-    let columns = per_block(sampler, frame, Axis::X, class, &x.inner);
-    let rows = per_block(sampler, frame, Axis::Y, class, &y.inner);
+fn count_class(
+    sampler: &Sampler,
+    frame: &Frame,
+    [x, y]: [&Span; 2],
+    [columns, rows]: [&[u64]; 2],
+    class: Class,
+) -> u128 {
     let margin_columns = listed(sampler, frame, Axis::X, class, x.margins());
     let margin_rows = listed(sampler, frame, Axis::Y, class, y.margins());
     let total = |counts: &[u64]| counts.iter().map(|&c| u128::from(c)).sum::<u128>();
 
-    let mut count = total(&columns) * total(&rows);
+    let mut count = total(columns) * total(rows);
     for (block_y, &rows) in rows.iter().enumerate().filter(|&(_, &rows)| rows > 0) {
         let row = sampler.row(block_y);
         let inside = margin_columns
@@ -102,42 +109,8 @@ fn count_class(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span, class: Clas
     count
 }
 
-/// How many coordinates of a class lie in `range`, per block.
-fn per_block(
-    sampler: &Sampler,
-    frame: &Frame,
-    axis: Axis,
-    class: Class,
-    range: &Range<i64>,
-) -> Vec<u64> {
-    let map = sampler.map();
-    // A floor sum costs about as much as listing this many lattice units.
-    const WORTH: usize = 64;
-    if range.end - range.start < (WORTH * map.intervals()) as i64 {
-        let mut counts = vec![0; map.intervals()];
-        for (_, block) in listed(
-            sampler,
-            frame,
-            axis,
-            class,
-            [range.clone(), range.end..range.end],
-        ) {
-            counts[block as usize] += 1;
-        }
-        return counts;
-    }
-    (0..map.intervals())
-        .map(|i| {
-            frame
-                .pattern
-                .axis_subset(axis, class, map.interval(i))
-                .count(range.clone())
-        })
-        .collect()
-}
-
 /// The coordinates of a class in two stretches, with their blocks.
-fn listed(
+pub(super) fn listed(
     sampler: &Sampler,
     frame: &Frame,
     axis: Axis,

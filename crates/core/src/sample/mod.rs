@@ -29,6 +29,7 @@ mod seek;
 mod sieve;
 mod spacing;
 mod stretch;
+mod tally;
 mod template;
 mod variants;
 mod warp;
@@ -110,14 +111,13 @@ impl Sampler {
     pub fn memory_bytes(&self) -> usize {
         size_of::<Self>()
             + size_of_val(self.table.displacements())
-            + 12 * self.table.map().intervals()
+            + 28 * self.table.map().intervals()
             + 4096
     }
 
     /// What a region holds: the exact count now, the points on demand.
     ///
-    /// Without warp this takes microseconds for small regions and less than a few milliseconds for
-    /// any; with warp time in proportion to the region's circumference.
+    /// Without warp this takes some ten microseconds, whatever the region holds; with warp time in proportion to the region's circumference.
     ///
     /// # Errors
     /// [`PlanError`] if the region reaches beyond ±2⁵² lattice units at this spacing.

@@ -1,0 +1,78 @@
+//! Whole turns of the index along an axis, added up over neighboring coordinates.
+//!
+//! How many indices lie between two thresholds is a difference of such sums. The thresholds of a map
+//! are neighbor shifts, −(αk + b)/2, and shifting the threshold by k is shifting the coordinates by
+//! k: so a few sums in closed form and the coordinates next to both ends give the counts of all
+//! intervals at once.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use super::{Axis, Pattern, floor_sum::floor_sum};
+
+/// For each shift k the sums Σ ⌊(α·v + b)/2 + origin⌋ over a range moved by k, modulo 2⁶⁴, by b and
+/// the parity of v.
+#[derive(Clone, Debug)]
+pub(crate) struct Turns {
+    least: i64,
+    sums: Vec<[[u64; 2]; 2]>,
+}
+
+impl Turns {
+    /// The sums of a range of coordinates for the shifts `shifts`.
+    pub(crate) fn new(
+        pattern: &Pattern,
+        axis: Axis,
+        range: &Range<i64>,
+        shifts: Range<i64>,
+    ) -> Self {
+        let (half, zero) = (pattern.alpha().half(), pattern.axis_index(axis, 0, 0));
+        // ⌊(α·v + b)/2 + origin⌋ as a whole number.
+        let at = |v: i64, b: u8| {
+            let value = i128::from(half) * i128::from(v) + i128::from(zero);
+            value + (i128::from(b) << 63)
+        };
+        let turns = |v: i64, b: u8| (at(v, b) >> 64) as u64;
+        let (mut start, mut end) = (range.start + shifts.start, range.end + shifts.start);
+        let mut now = [[0u64; 2]; 2];
+        for (b, now) in (0u8..).zip(&mut now) {
+            for (parity, now) in now.iter_mut().enumerate() {
+                let first = start + ((start ^ parity as i64) & 1);
+                let n = (end - first).max(0) as u64;
+                let n = n.div_ceil(2);
+                let from = at(first, b);
+                // A step of two coordinates is α: one turn and this.
+                let step = half.wrapping_mul(2);
+                let pairs = if n.is_multiple_of(2) {
+                    (n / 2).wrapping_mul(n.wrapping_sub(1))
+                } else {
+                    n.wrapping_mul((n - 1) / 2)
+                };
+                let whole = n.wrapping_mul((from >> 64) as u64).wrapping_add(pairs);
+                let rest = floor_sum(n, step, u128::from(from as u64)) as u64;
+                *now = whole.wrapping_add(rest);
+            }
+        }
+        let mut sums = Vec::with_capacity((shifts.end - shifts.start).max(0) as usize);
+        for _ in shifts.clone() {
+            sums.push(now);
+            for (b, now) in (0u8..).zip(&mut now) {
+                let (out, into) = ((start & 1) as usize, (end & 1) as usize);
+                now[out] = now[out].wrapping_sub(turns(start, b));
+                now[into] = now[into].wrapping_add(turns(end, b));
+            }
+            start += 1;
+            end += 1;
+        }
+        Self {
+            least: shifts.start,
+            sums,
+        }
+    }
+
+    /// The sum of one shift, for coordinates (before the shift) of one parity.
+    pub(crate) fn sum(&self, shift: i64, b: u8, parity: u8) -> u64 {
+        let sums = &self.sums[(shift - self.least) as usize];
+        sums[usize::from(b & 1)][((i64::from(parity) + shift) & 1) as usize]
+    }
+}
