@@ -27,6 +27,11 @@ pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u12
     if width <= FEW && height <= FEW {
         return count_rows(sampler, frame, x, y);
     }
+    count_blocks(sampler, frame, x, y)
+}
+
+/// The count of any region, in closed forms.
+fn count_blocks(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u128 {
     let columns = tally(sampler, frame, Axis::X, &x.inner);
     let rows = tally(sampler, frame, Axis::Y, &y.inner);
     let count = |class: Class| {
@@ -130,4 +135,36 @@ pub(super) fn listed(
             (v, sampler.map().locate(index) as u32)
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::{sync::Arc, vec::Vec};
+
+    use super::*;
+    use crate::{Placement, Region, Seed, Spacing, Table, map::Map, table::Provenance};
+
+    #[test]
+    fn rows_and_closed_forms_count_alike() {
+        let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 20).expect("small");
+        let blocks = map.intervals() * map.intervals();
+        let vector = |i: usize| [7919, 104_729].map(|f| (i * f % 20_000_000) as i32 - 10_000_000);
+        let vectors = (0..blocks).map(vector).collect::<Vec<_>>();
+        let table = Table::new(map, "test", vectors, Provenance::default()).expect("valid");
+        let sampler = Arc::new(Sampler::new(table));
+        let placement = Placement::new(Spacing::new(1.0).expect("valid"), Seed(0));
+        for (i, size) in [0.5, 3.0, 9.5, 31.6, 64.0, 150.0].into_iter().enumerate() {
+            for [width, height] in [[size, size], [size, 2.0], [1.0, size]] {
+                let min = [i as f64 * 1e6 - 3e6, 17.3 - i as f64 * 977.0];
+                let max = [min[0] + width, min[1] + height];
+                let region = Region::new(min, max).expect("ordered");
+                let plan = sampler.plan(placement, region).expect("in range");
+                let by = |way: fn(&Sampler, &Frame, &Span, &Span) -> u128| {
+                    way(&sampler, &plan.frame, &plan.x, &plan.y)
+                };
+                assert_eq!(by(count_rows), by(count_blocks), "{region:?}");
+                assert_eq!(by(count_rows), plan.count());
+            }
+        }
+    }
 }
