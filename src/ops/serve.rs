@@ -47,6 +47,7 @@ const GRACE: Duration = Duration::from_secs(1);
 pub struct App {
     config: Config,
     service: Arc<Service>,
+    more: Router,
 }
 
 impl App {
@@ -59,7 +60,18 @@ impl App {
         let catalog = Catalog::load(config.tables.embedded, folder)?;
         let workers = Workers::new(config.workers.threads)?;
         let service = Arc::new(Service::new(catalog, config.limits.clone(), workers));
-        Ok(Self { config, service })
+        Ok(Self {
+            config,
+            service,
+            more: Router::new(),
+        })
+    }
+
+    /// Serves further routes on the same port, behind the same layers.
+    #[must_use]
+    pub fn with_routes(mut self, routes: Router) -> Self {
+        self.more = self.more.merge(routes);
+        self
     }
 
     /// What it serves.
@@ -124,6 +136,7 @@ impl App {
         let rest::Door { router, paths } = rest::Door::new(endpoints);
         let router = router
             .merge(calls::routes(grpc.into_axum_router().reset_fallback()))
+            .merge(self.more.clone())
             .fallback(move |request| nothing_here(request, paths));
         let head_bytes = self.config.server.max_header_bytes;
         let workers = self.service.workers().clone();

@@ -1,6 +1,9 @@
 //! Answers with points, whichever path asks for them: checked, planned, streamed.
 
+use std::convert::Infallible;
+
 use axum::{body::Body, response::Response};
+use futures_util::stream;
 use http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
 use serde_json::{Value, json};
 use strew_core::ALGORITHM_VERSION;
@@ -119,6 +122,16 @@ pub(super) async fn stream(
         // Without a body there is nothing to stream, and HTTP wants to hear so at once.
         _ if answer.size() == Some(0) => Body::empty(),
         None => coding::unknown_length(),
+        Some(permit) if planned.query.is_small() && !chosen.encoding.is_picture() => {
+            let is_known = answer.size().is_some();
+            let whole = service.at_once(permit, answer)?;
+            if is_known {
+                Body::from(whole)
+            } else {
+                // As the answer to HEAD says: the size is not known before.
+                Body::from_stream(stream::iter([Ok::<_, Infallible>(whole)]))
+            }
+        }
         Some(permit) => Body::from_stream(service.blocks(permit, answer)),
     };
     let mut response = Response::new(body);

@@ -131,9 +131,14 @@ impl Service {
         for entry in self.entries(&query)? {
             tables.push(self.samplers.get(&entry, &self.workers).await?);
         }
-        let limits = self.limits.clone();
-        let plan = move || Planned::new(query, &tables, &limits);
-        let planned = self.workers.run(plan).await??;
+        let planned = if query.is_small() {
+            // Handing it over would take longer.
+            Planned::new(query, &tables, &self.limits)?
+        } else {
+            let limits = self.limits.clone();
+            let plan = move || Planned::new(query, &tables, &limits);
+            self.workers.run(plan).await??
+        };
         tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
         Ok(planned)
     }
@@ -167,6 +172,27 @@ impl Service {
     /// [`Error::Internal`] if it cannot be measured or drawn.
     pub async fn portrait(&self, entry: &Arc<Entry>) -> Result<Arc<Portrait>, Error> {
         self.portraits.get(entry, &self.workers).await
+    }
+
+    /// All of the answer to a [small](Query::is_small) query: handing it to the workers block by
+    /// block would take longer than making it.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if it cannot be made.
+    pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
+        let mut whole = Bytes::new();
+        for block in answer {
+            let block = block.map_err(|error| {
+                tracing::error!(%error, "an answer cannot be made");
+                Error::Internal("the answer cannot be encoded")
+            })?;
+            whole = match (whole.is_empty(), block.is_empty()) {
+                (true, _) => block,
+                (false, true) => whole,
+                (false, false) => [whole, block].concat().into(),
+            };
+        }
+        Ok(whole)
     }
 
     /// Streams the blocks of an answer. One that cannot be made to its end breaks off.

@@ -1,6 +1,6 @@
 //! Planning: a checked query with its tables becomes plans whose exact counts are known.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use strew_core::{Placement, Plan, Spacing, sample::Cursor};
 
@@ -25,7 +25,8 @@ pub struct Planned {
     count: u128,
     /// Where the points after the window begin.
     next: Option<Token>,
-    identity: [u8; 32],
+    /// What cursors are sealed with, once one is made or read.
+    identity: OnceLock<[u8; 32]>,
 }
 
 /// A planned set of points.
@@ -102,11 +103,12 @@ impl Planned {
     /// [`Error::Invalid`] if the region reaches farther than points can be told apart, or an amount
     /// cannot be had; [`Error::TooManyRows`] if counting would take too long.
     pub fn new(query: Query, tables: &[Ready], limits: &Limits) -> Result<Self, Error> {
-        let digests: Vec<&str> = tables.iter().map(|t| t.entry.digest.as_str()).collect();
-        let identity = query.identity(&digests);
+        let identity = OnceLock::new();
         if let Some(token) = query.window.cursor {
+            let digests: Vec<&str> = tables.iter().map(|t| t.entry.digest.as_str()).collect();
             let fault = |fault| Error::Invalid(vec![fault]);
-            token.check(&identity).map_err(fault)?;
+            let identity = identity.get_or_init(|| query.identity(&digests));
+            token.check(identity).map_err(fault)?;
         }
         let mut planner = Planner::new(&query, limits);
         let mut sets = vec![];
@@ -168,6 +170,11 @@ impl Planned {
         self.next = rest.and_then(|i| self.token(i, self.sets[i].plan.next_cursor()?));
     }
 
+    fn digests(&self) -> Vec<&str> {
+        let digests = self.sets.iter().map(|set| set.entry.digest.as_str());
+        digests.collect()
+    }
+
     /// What to hand back to go on from a place in a set.
     #[must_use]
     pub fn token(&self, i: usize, cursor: Cursor) -> Option<Token> {
@@ -175,7 +182,8 @@ impl Planned {
         let spacing = matches!(asked.amount, Amount::Count(_)).then_some(set.spacing);
         let number = u16::try_from(i).ok()?;
         Some(Token::new(
-            &self.identity,
+            self.identity
+                .get_or_init(|| self.query.identity(&self.digests())),
             number,
             set.before,
             cursor,

@@ -47,7 +47,7 @@ impl Csv {
 }
 
 impl TextFormat for Csv {
-    fn begin(&mut self, out: &mut Vec<u8>) {
+    fn begin(&self, out: &mut Vec<u8>) {
         let (layer, columns) = self.schema.columns().split_at(self.layered);
         for column in layer {
             out.extend_from_slice(field(&column.name).as_bytes());
@@ -61,7 +61,7 @@ impl TextFormat for Csv {
         out.push(b'\n');
     }
 
-    fn row(&mut self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
+    fn row(&self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
         if self.layered > 0 {
             self.value(0, row, out);
             out.push(b',');
@@ -78,7 +78,7 @@ impl TextFormat for Csv {
         out.push(b'\n');
     }
 
-    fn end(&mut self, _points: u64, _out: &mut Vec<u8>) {}
+    fn end(&self, _points: u64, _out: &mut Vec<u8>) {}
 
     fn row_bytes(&self) -> usize {
         let longest = |names: &[String]| names.iter().map(String::len).max().unwrap_or(24);

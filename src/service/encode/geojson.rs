@@ -25,7 +25,7 @@ impl Collection {
 }
 
 impl TextFormat for Collection {
-    fn begin(&mut self, out: &mut Vec<u8>) {
+    fn begin(&self, out: &mut Vec<u8>) {
         out.extend_from_slice(b"{\"type\":\"FeatureCollection\",");
         let head = out.len();
         write_json(&self.head, out);
@@ -35,12 +35,12 @@ impl TextFormat for Collection {
         out.extend_from_slice(b",\"features\":[");
     }
 
-    fn row(&mut self, row: Row<'_>, first: bool, out: &mut Vec<u8>) {
+    fn row(&self, row: Row<'_>, first: bool, out: &mut Vec<u8>) {
         out.extend_from_slice(if first { b"\n" } else { b",\n" });
         write_feature(&self.members, row, out);
     }
 
-    fn end(&mut self, _points: u64, out: &mut Vec<u8>) {
+    fn end(&self, _points: u64, out: &mut Vec<u8>) {
         out.extend_from_slice(b"\n]}\n");
     }
 
@@ -62,15 +62,15 @@ impl Sequence {
 }
 
 impl TextFormat for Sequence {
-    fn begin(&mut self, _out: &mut Vec<u8>) {}
+    fn begin(&self, _out: &mut Vec<u8>) {}
 
-    fn row(&mut self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
+    fn row(&self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
         out.push(0x1e);
         write_feature(&self.members, row, out);
         out.push(b'\n');
     }
 
-    fn end(&mut self, _points: u64, _out: &mut Vec<u8>) {}
+    fn end(&self, _points: u64, _out: &mut Vec<u8>) {}
 
     fn row_bytes(&self) -> usize {
         ROW_BYTES + self.members.bytes()

@@ -20,19 +20,19 @@ impl Json {
 }
 
 impl TextFormat for Json {
-    fn begin(&mut self, out: &mut Vec<u8>) {
+    fn begin(&self, out: &mut Vec<u8>) {
         write_json(&self.head, out);
         // The head's closing brace comes after the points.
         out.pop();
         out.extend_from_slice(b",\"points\":[");
     }
 
-    fn row(&mut self, row: Row<'_>, first: bool, out: &mut Vec<u8>) {
+    fn row(&self, row: Row<'_>, first: bool, out: &mut Vec<u8>) {
         out.extend_from_slice(if first { b"\n" } else { b",\n" });
         self.members.write_point(row, out);
     }
 
-    fn end(&mut self, _points: u64, out: &mut Vec<u8>) {
+    fn end(&self, _points: u64, out: &mut Vec<u8>) {
         out.extend_from_slice(b"\n]}\n");
     }
 

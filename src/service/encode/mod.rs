@@ -116,20 +116,21 @@ impl Answer {
         let coordinates = Coordinates::of(output, &parts);
         let frame = Frame::new(&parts, output.size);
         let rows = Rows::new(parts, coordinates);
-        let head = Head::new(planned, output, rows.count());
+        let count = rows.count();
+        let head = || Head::new(planned, output, count);
         let members = || Members::new(&rows, output);
         let (layout, before) = match output.encoding {
             Encoding::F32 => (Layout::F32, None),
             Encoding::F64 => (Layout::F64, None),
             Encoding::Npy => (Layout::F64, Some(npy::head(&rows))),
-            Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head))),
+            Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head()))),
             Encoding::Png => {
                 return Ok(Self {
                     head: None,
                     size: None,
                     origin: None,
                     plain: None,
-                    blocks: Box::new(png::Png::new(rows, head, frame, block_bytes)),
+                    blocks: Box::new(png::Png::new(rows, head(), frame, block_bytes)),
                 });
             }
             Encoding::Svg => {
@@ -140,23 +141,25 @@ impl Answer {
                     let fault = Fault::new("format", "svg", detail, allowed);
                     return Err(Error::Invalid(vec![fault]));
                 }
-                let format = svg::Svg::new(&rows, head, frame, output.decimals);
+                let format = svg::Svg::new(&rows, head(), frame, output.decimals);
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Arrow => {
-                return Self::of_columns(rows, |rows| arrow::Arrow::new(rows, &head, block_bytes));
+                return Self::of_columns(rows, |rows| {
+                    arrow::Arrow::new(rows, &head(), block_bytes)
+                });
             }
             Encoding::Parquet => {
                 return Self::of_columns(rows, |rows| {
-                    parquet::Parquet::new(rows, &head, block_bytes)
+                    parquet::Parquet::new(rows, &head(), block_bytes)
                 });
             }
             Encoding::Json => {
-                let format = json::Json::new(head, members());
+                let format = json::Json::new(head(), members());
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Ndjson => {
-                let format = ndjson::Ndjson::new(head, members());
+                let format = ndjson::Ndjson::new(head(), members());
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Csv => {
@@ -164,7 +167,7 @@ impl Answer {
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Geojson => {
-                let format = geojson::Collection::new(head, members());
+                let format = geojson::Collection::new(head(), members());
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Geojsonseq => {

@@ -37,14 +37,14 @@ struct Summary<'a> {
 }
 
 impl TextFormat for Ndjson {
-    fn begin(&mut self, _out: &mut Vec<u8>) {}
+    fn begin(&self, _out: &mut Vec<u8>) {}
 
-    fn row(&mut self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
+    fn row(&self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
         self.members.write_point(row, out);
         out.push(b'\n');
     }
 
-    fn end(&mut self, points: u64, out: &mut Vec<u8>) {
+    fn end(&self, points: u64, out: &mut Vec<u8>) {
         let last = Last {
             summary: Summary {
                 count: points,

@@ -35,10 +35,82 @@ impl Digits {
     }
 }
 
-/// A number is m·2^e, so m·10^decimals is an exact integer of at most 53 + 57 bits, and rounding it
-/// by −e bits is all there is to do. Apart, so that the other way stays small where it is inlined.
+/// The powers of ten up to 10^17, all exact.
+const POWERS: [f64; 18] = {
+    let mut powers = [1.0; 18];
+    let mut i = 1;
+    while i < powers.len() {
+        powers[i] = powers[i - 1] * 10.0;
+        i += 1;
+    }
+    powers
+};
+
+/// Multiplied in `f64`, the number is off by half a unit in the last place; unless it is that near
+/// a tie, that decides how it is rounded. Apart, so that the other way stays small where it is
+/// inlined.
 #[inline(never)]
 fn write_fixed(value: f64, decimals: u8, out: &mut Vec<u8>) {
+    const MOST: f64 = (1u64 << 51) as f64;
+    let scaled = value.abs() * POWERS[usize::from(decimals)];
+    if scaled < MOST {
+        let whole = scaled as u64;
+        let rest = scaled - whole as f64;
+        if (rest - 0.5).abs() > scaled * f64::EPSILON {
+            let rounded = whole + u64::from(rest > 0.5);
+            return write_scaled(rounded, value < 0.0, decimals, out);
+        }
+    }
+    write_exactly(value, decimals, out);
+}
+
+/// Three digits of each number below 1,000, and one that keeps entries aligned.
+const TRIPLES: [[u8; 4]; 1000] = {
+    let mut triples = [[b'0'; 4]; 1000];
+    let mut i = 0;
+    while i < triples.len() {
+        triples[i][0] = b'0' + (i / 100) as u8;
+        triples[i][1] = b'0' + (i / 10 % 10) as u8;
+        triples[i][2] = b'0' + (i % 10) as u8;
+        i += 1;
+    }
+    triples
+};
+
+/// Writes an integer below 2^52 divided by 10^decimals.
+fn write_scaled(scaled: u64, is_negative: bool, decimals: u8, out: &mut Vec<u8>) {
+    // 24 digits, 16 at most of which are not leading zeros, and room to copy them at a fixed size.
+    const DIGITS: usize = 24;
+    const COPIED: usize = 24;
+    let decimals = usize::from(decimals);
+    let mut digits = [b'0'; DIGITS + COPIED];
+    let (mut rest, mut at) = (scaled, DIGITS);
+    while rest > 0 {
+        at -= 3;
+        digits[at..at + 3].copy_from_slice(&TRIPLES[(rest % 1000) as usize][..3]);
+        rest /= 1000;
+    }
+    let point = DIGITS - decimals;
+    while at < point - 1 && digits[at] == b'0' {
+        at += 1;
+    }
+    let at = at.min(point - 1);
+    let mut text = [b'-'; 2 * COPIED + 2];
+    let mut end = usize::from(is_negative && scaled > 0);
+    text[end..end + COPIED].copy_from_slice(&digits[at..at + COPIED]);
+    end += point - at;
+    if decimals > 0 {
+        text[end] = b'.';
+        text[end + 1..end + 1 + COPIED].copy_from_slice(&digits[point..point + COPIED]);
+        end += 1 + decimals;
+    }
+    out.extend_from_slice(&text[..end]);
+}
+
+/// A number is m·2^e, so m·10^decimals is an exact integer of at most 53 + 57 bits, and rounding it
+/// by −e bits is all there is to do.
+#[cold]
+fn write_exactly(value: f64, decimals: u8, out: &mut Vec<u8>) {
     let bits = value.to_bits();
     let (exponent, fraction) = ((bits >> 52) & 0x7ff, bits & ((1 << 52) - 1));
     let (mantissa, shift) = match exponent {

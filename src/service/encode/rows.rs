@@ -4,7 +4,7 @@
 //! batches of points with the values of every further column. Formats see nothing else, so that a
 //! new column or a new kind of part shows in all of them at once.
 
-use std::{sync::Arc, vec};
+use std::{ops::Range, sync::Arc, vec};
 
 use strew_core::{Plan, Point, sample::Cursor};
 
@@ -78,14 +78,17 @@ pub struct Row<'a> {
 impl<'a> Batch<'a> {
     /// The rows, one by one.
     pub fn rows(self) -> impl Iterator<Item = Row<'a>> {
-        self.points
-            .iter()
-            .enumerate()
-            .map(move |(index, point)| Row {
-                point,
-                index,
-                columns: self.columns,
-            })
+        self.rows_in(0..self.points.len())
+    }
+
+    /// Some of the rows, one by one.
+    pub fn rows_in(self, part: Range<usize>) -> impl Iterator<Item = Row<'a>> {
+        let points = self.points[part.clone()].iter();
+        points.zip(part).map(move |(point, index)| Row {
+            point,
+            index,
+            columns: self.columns,
+        })
     }
 }
 

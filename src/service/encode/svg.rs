@@ -33,7 +33,7 @@ impl Svg {
 }
 
 impl TextFormat for Svg {
-    fn begin(&mut self, out: &mut Vec<u8>) {
+    fn begin(&self, out: &mut Vec<u8>) {
         let Frame { width, height, .. } = self.frame;
         let start = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
@@ -55,7 +55,7 @@ impl TextFormat for Svg {
         );
     }
 
-    fn row(&mut self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
+    fn row(&self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
         let [x, y] = self.frame.place(row);
         out.extend_from_slice(b"<circle cx=\"");
         self.digits.write(x, out);
@@ -71,7 +71,7 @@ impl TextFormat for Svg {
         out.extend_from_slice(b"\"/>\n");
     }
 
-    fn end(&mut self, _points: u64, out: &mut Vec<u8>) {
+    fn end(&self, _points: u64, out: &mut Vec<u8>) {
         out.extend_from_slice(b"</g>\n</svg>\n");
     }
 

@@ -1,6 +1,11 @@
 //! What the text formats share: blocks of rows, and ids.
 
+use std::{collections::VecDeque, ops::Range};
+
 use bytes::Bytes;
+use rayon::iter::{
+    IndexedParallelIterator as _, IntoParallelRefMutIterator as _, ParallelIterator as _,
+};
 use strew_core::PointId;
 
 use super::{
@@ -9,27 +14,30 @@ use super::{
 };
 
 /// A text format: what stands before, at, and after the rows.
-pub(super) trait TextFormat {
+pub(super) trait TextFormat: Sync {
     /// Writes what comes before the first row.
-    fn begin(&mut self, out: &mut Vec<u8>);
+    fn begin(&self, out: &mut Vec<u8>);
     /// Writes a row; `first` says that none was written before.
-    fn row(&mut self, row: Row<'_>, first: bool, out: &mut Vec<u8>);
+    fn row(&self, row: Row<'_>, first: bool, out: &mut Vec<u8>);
     /// Writes what comes after the last of `points` rows.
-    fn end(&mut self, points: u64, out: &mut Vec<u8>);
+    fn end(&self, points: u64, out: &mut Vec<u8>);
     /// More than is usually written for a row.
     fn row_bytes(&self) -> usize;
 }
 
-/// Points are made so many at a time: few enough to stay in the fastest memory.
-const POINTS_AT_ONCE: usize = 256;
-
 /// The blocks of a text answer.
+///
+/// Digits take ten times as long as points, so that several blocks are written side by side, each
+/// on a thread of its own, and handed out one after another.
 #[derive(Debug)]
 pub(super) struct TextBlocks<T> {
     rows: Rows,
     format: T,
     block_bytes: usize,
     points: u64,
+    /// The bytes of a row, by what the last ones took.
+    row_bytes: usize,
+    ready: VecDeque<Vec<u8>>,
     state: State,
 }
 
@@ -40,24 +48,63 @@ enum State {
     Over,
 }
 
+/// No more blocks than this are written at once: they are all held in memory.
+const SIDE_BY_SIDE: usize = 4;
+
 impl<T: TextFormat> TextBlocks<T> {
-    pub(super) const fn new(rows: Rows, format: T, block_bytes: usize) -> Self {
+    pub(super) fn new(rows: Rows, format: T, block_bytes: usize) -> Self {
         Self {
             rows,
+            row_bytes: format.row_bytes(),
             format,
             block_bytes,
             points: 0,
+            ready: VecDeque::new(),
             state: State::Begin,
         }
     }
 
-    /// What a block may take at most; less when little is left.
-    fn capacity(&self) -> usize {
-        let left = self.rows.count().saturating_sub(self.points.into());
-        let left = usize::try_from(left).unwrap_or(usize::MAX);
-        let row = self.format.row_bytes();
-        let whole = self.block_bytes + POINTS_AT_ONCE * row;
-        whole.min(left.saturating_mul(row).saturating_add(2048))
+    /// Writes some blocks more; the first call writes only one, since it is waited for.
+    fn write_more(&mut self) {
+        let mut before = vec![];
+        let blocks = if self.state == State::Begin {
+            self.format.begin(&mut before);
+            self.state = State::Points;
+            1
+        } else {
+            rayon::current_num_threads().clamp(1, SIDE_BY_SIDE)
+        };
+        let per_block = (self.block_bytes / self.row_bytes).max(1);
+        let Some(batch) = self.rows.next(per_block * blocks) else {
+            self.format.end(self.points, &mut before);
+            self.ready.push_back(before);
+            self.state = State::Over;
+            return;
+        };
+        let (format, is_first, row_bytes) = (&self.format, self.points == 0, self.row_bytes);
+        let count = batch.points.len();
+        let write = |part: Range<usize>, out: &mut Vec<u8>| {
+            out.reserve(part.len() * (row_bytes + row_bytes / 16) + 64);
+            let start = part.start;
+            for (i, row) in batch.rows_in(part).enumerate() {
+                format.row(row, is_first && start + i == 0, out);
+            }
+        };
+        let mut written = vec![vec![]; count.div_ceil(per_block)];
+        written[0] = before;
+        if let [only] = written.as_mut_slice() {
+            write(0..count, only);
+        } else {
+            let parts = written.par_iter_mut().enumerate();
+            parts.for_each(|(i, out)| {
+                let start = i * per_block;
+                write(start..count.min(start + per_block), out);
+            });
+        }
+        self.points += count as u64;
+        let bytes: usize = written.iter().map(Vec::len).sum();
+        self.row_bytes = (bytes / count).max(1);
+        self.ready.extend(written);
     }
 }
 
@@ -67,26 +114,10 @@ impl<T: TextFormat + std::fmt::Debug + Send> Blocks for TextBlocks<T> {
     }
 
     fn next(&mut self) -> Option<Result<Bytes, EncodeError>> {
-        if self.state == State::Over {
-            return None;
+        if self.ready.is_empty() && self.state != State::Over {
+            self.write_more();
         }
-        let mut out = Vec::with_capacity(self.capacity());
-        if self.state == State::Begin {
-            self.format.begin(&mut out);
-            self.state = State::Points;
-        }
-        while out.len() < self.block_bytes {
-            let Some(batch) = self.rows.next(POINTS_AT_ONCE) else {
-                self.format.end(self.points, &mut out);
-                self.state = State::Over;
-                break;
-            };
-            for row in batch.rows() {
-                self.format.row(row, self.points == 0, &mut out);
-                self.points += 1;
-            }
-        }
-        Some(Ok(out.into()))
+        self.ready.pop_front().map(|block| Ok(block.into()))
     }
 }
 

@@ -124,6 +124,24 @@ impl Query {
     pub fn is_pinned(&self) -> bool {
         self.sets.iter().all(|set| set.is_pinned)
     }
+
+    /// Whether planning it and making its points takes no longer than handing it to another
+    /// thread: a single set in a box of about 2,000 spacings' area at most, and not long and thin.
+    #[must_use]
+    pub fn is_small(&self) -> bool {
+        let ([set], Area::Region(_)) = (&*self.sets, &self.region.area) else {
+            return false;
+        };
+        let spacing = match set.amount {
+            Amount::Spacing(spacing) => spacing,
+            Amount::Density(density) => density.sqrt().recip(),
+            Amount::MinDistance(_) | Amount::Count(_) => return false,
+        };
+        let [min_x, min_y, max_x, max_y] = self.region.bbox();
+        let [width, height] = [(max_x - min_x) / spacing, (max_y - min_y) / spacing];
+        let is_plain = set.region.is_none() && set.clear_of.is_empty();
+        is_plain && width * height <= 2048.0 && width.max(height) <= 128.0
+    }
 }
 
 impl Set {

@@ -83,8 +83,6 @@ pub struct Blocks<F: Format> {
     sieve: Option<Focus>,
     /// What the sieve says of the row under way.
     runs: Vec<Run>,
-    /// What it says of all rows of the patch alike, if it does: that all pass, or none.
-    whole: Option<Vec<Run>>,
     columns: [Listed; 4],
     templates: Templates<F>,
     patch: Patch,
@@ -149,7 +147,6 @@ impl<F: Format> Blocks<F> {
             },
             sieve: None,
             runs: Vec::new(),
-            whole: None,
             columns: Default::default(),
             templates: Templates::new(&plan.sampler, tall, kept),
             patch,
@@ -269,17 +266,17 @@ impl<F: Format> Blocks<F> {
         self.patch = Patch::new(frame, self.band, self.at.y, x, y);
         self.base = self.format.base(self.patch.origin());
         let rows = self.at.y..self.patch.end().min(self.rows.end);
+        let end = rows.end;
         self.sieve = self.plan.sieve.as_ref().map(|s| s.focus(rows.clone()));
-        self.whole = None;
         if let Some(sieve) = &self.sieve {
-            let columns = clip(self.band, &self.plan.x.all);
+            let columns = clip(self.band, &x.all);
             sieve.runs(rows, &columns, &mut self.runs);
-            let alike = match self.runs.as_slice() {
-                [] => true,
-                [run] => run.passes && run.columns == columns,
-                _ => false,
-            };
-            self.whole = alike.then(|| self.runs.clone());
+            match self.runs.as_slice() {
+                [] => self.at = Place::row(end),
+                // Such a patch lies inside the plan's box, too: it is filled like one.
+                [run] if run.passes && run.columns == columns => self.sieve = None,
+                _ => {}
+            }
         }
     }
 
@@ -374,10 +371,7 @@ impl<F: Format> Blocks<F> {
             };
             let is_under_way = self.at.done > 0;
             if !is_under_way {
-                match &self.whole {
-                    Some(run) => self.runs.clone_from(run),
-                    None => sieve.runs(y..y + 1, &columns, &mut self.runs),
-                }
+                sieve.runs(y..y + 1, &columns, &mut self.runs);
                 if self.runs.is_empty() {
                     self.at.next_row();
                     continue;
@@ -431,7 +425,7 @@ impl<F: Format> Blocks<F> {
 }
 
 /// The class and the block of a row, if it has points.
-fn locate(sampler: &Sampler, frame: &Frame, y: i64) -> Option<(Class, usize)> {
+pub(super) fn locate(sampler: &Sampler, frame: &Frame, y: i64) -> Option<(Class, usize)> {
     let (x_parity, index) = frame.pattern.visit(Axis::Y, y)?;
     let class = Class {
         x: x_parity,

@@ -7,7 +7,13 @@
 
 use core::ops::Range;
 
-use super::{Frame, Listed, Sampler, margins, plan::Span, tally::tally};
+use super::{
+    Frame, Listed, Sampler,
+    blocks::{list_columns, locate},
+    margins,
+    plan::Span,
+    tally::tally,
+};
 use crate::pattern::{Axis, Class};
 
 pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u128 {
@@ -17,6 +23,15 @@ pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u12
     if frame.shears.is_some() {
         return margins::count(sampler, frame, x, y);
     }
+    let [width, height] = [x, y].map(|span| span.all.end - span.all.start);
+    if width <= FEW && height <= FEW {
+        return count_rows(sampler, frame, x, y);
+    }
+    count_blocks(sampler, frame, x, y)
+}
+
+/// The count of any region, in closed forms.
+fn count_blocks(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u128 {
     let columns = tally(sampler, frame, Axis::X, &x.inner);
     let rows = tally(sampler, frame, Axis::Y, &y.inner);
     let count = |class: Class| {
@@ -24,6 +39,41 @@ pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u12
         count_class(sampler, frame, [x, y], inner, class)
     };
     Class::ALL.into_iter().map(count).sum()
+}
+
+/// Up to this many lattice units along both axes, looking at each row is faster than closed forms.
+const FEW: i64 = 512;
+
+/// The count of a small region, row by row: a row's inner columns need no look.
+fn count_rows(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u128 {
+    let mut columns: [Listed; 4] = Default::default();
+    list_columns(sampler, frame, x.all.clone(), &mut columns);
+    let inner = [0, 1, 2, 3].map(|class: usize| {
+        let listed = &columns[class];
+        let [start, end] =
+            [x.inner.start, x.inner.end].map(|v| listed.partition_point(|&(u, _)| u < v));
+        start..end
+    });
+    let mut count = 0;
+    for v in y.all.clone() {
+        let Some((class, block)) = locate(sampler, frame, v) else {
+            continue;
+        };
+        let (listed, inner) = (&columns[class.ordinal()], &inner[class.ordinal()]);
+        let row = sampler.row(block);
+        if y.inner.contains(&v) {
+            let margins = listed[..inner.start].iter().chain(&listed[inner.end..]);
+            let holds = |&&(u, block): &&(i64, u32)| x.holds(u, row[block as usize][0]);
+            count += inner.len() + margins.filter(holds).count();
+        } else {
+            let holds = |&&(u, block): &&(i64, u32)| {
+                let [dx, dy] = row[block as usize];
+                y.holds(v, dy) && x.holds(u, dx)
+            };
+            count += listed.iter().filter(holds).count();
+        }
+    }
+    count as u128
 }
 
 fn count_class(
@@ -85,4 +135,36 @@ pub(super) fn listed(
             (v, sampler.map().locate(index) as u32)
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::{sync::Arc, vec::Vec};
+
+    use super::*;
+    use crate::{Placement, Region, Seed, Spacing, Table, map::Map, table::Provenance};
+
+    #[test]
+    fn rows_and_closed_forms_count_alike() {
+        let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 20).expect("small");
+        let blocks = map.intervals() * map.intervals();
+        let vector = |i: usize| [7919, 104_729].map(|f| (i * f % 20_000_000) as i32 - 10_000_000);
+        let vectors = (0..blocks).map(vector).collect::<Vec<_>>();
+        let table = Table::new(map, "test", vectors, Provenance::default()).expect("valid");
+        let sampler = Arc::new(Sampler::new(table));
+        let placement = Placement::new(Spacing::new(1.0).expect("valid"), Seed(0));
+        for (i, size) in [0.5, 3.0, 9.5, 31.6, 64.0, 150.0].into_iter().enumerate() {
+            for [width, height] in [[size, size], [size, 2.0], [1.0, size]] {
+                let min = [i as f64 * 1e6 - 3e6, 17.3 - i as f64 * 977.0];
+                let max = [min[0] + width, min[1] + height];
+                let region = Region::new(min, max).expect("ordered");
+                let plan = sampler.plan(placement, region).expect("in range");
+                let by = |way: fn(&Sampler, &Frame, &Span, &Span) -> u128| {
+                    way(&sampler, &plan.frame, &plan.x, &plan.y)
+                };
+                assert_eq!(by(count_rows), by(count_blocks), "{region:?}");
+                assert_eq!(by(count_rows), plan.count());
+            }
+        }
+    }
 }

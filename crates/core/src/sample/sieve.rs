@@ -158,9 +158,10 @@ impl Focus {
 /// Lattice units that a boundary is given as room for rounding.
 const SLACK: f64 = 3.0;
 
-/// The same for a place far out: quotients are off by a few units in the last place.
+/// The same for a place far out: quotients are off by a few units in the last place. (Not without
+/// end: what is asked for stays outermost, ±∞ included.)
 fn room(x: f64) -> f64 {
-    SLACK + 2e-15 * x.abs()
+    SLACK + (2e-15 * x.abs()).min(1e300)
 }
 
 /// How many points of a stretch of the lattice pass.

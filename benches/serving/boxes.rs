@@ -1,0 +1,150 @@
+//! Small boxes, each elsewhere, beside a constant answer of the same size.
+
+use std::{
+    net::SocketAddr,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use tokio::{
+    io::{AsyncReadExt as _, AsyncWriteExt as _},
+    net::TcpStream,
+};
+
+use super::{
+    host::Host,
+    timing::{Effort, median},
+};
+
+/// A connection that asks again and again.
+struct Connection {
+    socket: TcpStream,
+    buffer: Vec<u8>,
+}
+
+impl Connection {
+    /// Asks for a path and reads the answer.
+    async fn get(&mut self, path: &str) {
+        let head = format!("GET {path} HTTP/1.1\r\nhost: bench\r\n\r\n");
+        self.socket.write_all(head.as_bytes()).await.expect("sent");
+        let mut read = 0;
+        let end = loop {
+            read += self.read(read).await;
+            if let Some(at) = self.buffer[..read]
+                .windows(4)
+                .position(|w| w == b"\r\n\r\n")
+            {
+                break at + 4;
+            }
+        };
+        let head = String::from_utf8_lossy(&self.buffer[..end]).to_ascii_lowercase();
+        assert!(head.starts_with("http/1.1 200"), "{head}");
+        let length = head.split("content-length: ").nth(1).expect("a length");
+        let length: usize = length
+            .split("\r\n")
+            .next()
+            .and_then(|digits| digits.parse().ok())
+            .expect("a number");
+        while read < end + length {
+            read += self.read(read).await;
+        }
+    }
+
+    async fn read(&mut self, from: usize) -> usize {
+        let room = &mut self.buffer[from..];
+        let read = self.socket.read(room).await.expect("readable");
+        assert!(read > 0, "the server hung up");
+        read
+    }
+}
+
+/// What one burst gave: answers per second, and the 99th percentile of their times.
+struct Burst {
+    rate: f64,
+    p99: f64,
+}
+
+/// Asks on several connections at once for a while.
+async fn burst(
+    address: SocketAddr,
+    connections: usize,
+    time: Duration,
+    path: impl Fn(u64) -> String + Clone + Send + 'static,
+) -> Burst {
+    let number = Arc::new(AtomicU64::new(0));
+    let start = Instant::now();
+    let tasks: Vec<_> = (0..connections)
+        .map(|_| {
+            let (number, path) = (number.clone(), path.clone());
+            tokio::spawn(async move {
+                let socket = TcpStream::connect(address).await.expect("a listener");
+                socket.set_nodelay(true).expect("a socket");
+                let buffer = vec![0; 64 << 10];
+                let mut connection = Connection { socket, buffer };
+                let mut times = vec![];
+                while start.elapsed() < time {
+                    let asked = Instant::now();
+                    let path = path(number.fetch_add(1, Ordering::Relaxed));
+                    connection.get(&path).await;
+                    times.push(asked.elapsed().as_secs_f64());
+                }
+                times
+            })
+        })
+        .collect();
+    let mut times = vec![];
+    for task in tasks {
+        times.extend(task.await.expect("no panic"));
+    }
+    let rate = times.len() as f64 / start.elapsed().as_secs_f64();
+    times.sort_by(f64::total_cmp);
+    Burst {
+        rate,
+        p99: times[times.len() * 99 / 100],
+    }
+}
+
+/// A box of about 1,000 points, another one each time.
+fn elsewhere(number: u64) -> String {
+    let (x, y) = ((number % 997) * 40, (number / 997) * 40);
+    let (to_x, to_y) = (x as f64 + 31.6, y as f64 + 31.6);
+    format!("/v1/points?bbox={x},{y},{to_x},{to_y}&spacing=1&format=f32")
+}
+
+/// Answers per second on 1, 16 and 64 connections.
+pub fn boxes(host: &Host, effort: Effort) {
+    let time = Duration::from_millis(if effort.quick { 30 } else { 600 });
+    let client = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_all()
+        .build()
+        .expect("a runtime");
+    println!("\nBoxes of 1,000 points as f32 (8 kB), HTTP/1.1, each elsewhere");
+    println!(
+        "{:<14} {:>12} {:>12} {:>8} {:>10} {:>10} {:>8}",
+        "connections", "boxes/s", "constant/s", "ratio", "p99 µs", "const. µs", "ratio"
+    );
+    for connections in [1, 16, 64] {
+        let mut figures: [Vec<f64>; 4] = Default::default();
+        for _ in 0..effort.rounds {
+            let made = client.block_on(burst(host.address, connections, time, elsewhere));
+            let path = |_| "/bench/small/8000".to_owned();
+            let constant = client.block_on(burst(host.address, connections, time, path));
+            let all = [made.rate, constant.rate, made.p99, constant.p99];
+            for (figure, list) in all.into_iter().zip(&mut figures) {
+                list.push(figure);
+            }
+        }
+        let [made, constant, p99, constant_p99] = figures.map(median);
+        println!(
+            "{connections:<14} {made:>12.0} {constant:>12.0} {:>8.2} {:>10.0} {:>10.0} {:>8.2}",
+            made / constant,
+            p99 * 1e6,
+            constant_p99 * 1e6,
+            p99 / constant_p99
+        );
+    }
+}

@@ -1,0 +1,90 @@
+//! The least a client can do over gRPC: call, read frames, give the window back, throw away.
+
+use std::net::SocketAddr;
+
+use bytes::Bytes;
+use http::{Request, header};
+use prost::Message as _;
+use strew::grpc::proto::{
+    BoundingBox, Encoding, Region, StreamPointsRequest, region::Shape,
+    stream_points_request::Amount,
+};
+
+/// What a client allows the server to send.
+#[derive(Clone, Copy, Debug)]
+pub struct Windows {
+    frame: u32,
+    stream: u32,
+    connection: u32,
+}
+
+impl Windows {
+    /// What hyper's and tonic's clients say unasked.
+    pub const DEFAULT: Self = Self {
+        frame: 16 << 10,
+        stream: 2 << 20,
+        connection: 5 << 20,
+    };
+    /// What fast clients say.
+    pub const WIDE: Self = Self {
+        frame: 256 << 10,
+        stream: 8 << 20,
+        connection: 16 << 20,
+    };
+}
+
+/// A request for a square with about so many points as packed `f32`, framed.
+pub fn request(points: u64) -> Bytes {
+    let side = (points as f64).sqrt();
+    let request = StreamPointsRequest {
+        region: Some(Region {
+            shape: Some(Shape::Bbox(BoundingBox {
+                max_x: side,
+                max_y: side,
+                ..BoundingBox::default()
+            })),
+        }),
+        amount: Some(Amount::Spacing(1.0)),
+        encoding: Encoding::F32Le.into(),
+        ..StreamPointsRequest::default()
+    };
+    let message = request.encode_to_vec();
+    let length = u32::try_from(message.len()).expect("small");
+    [&[0], &length.to_be_bytes()[..], &message].concat().into()
+}
+
+/// Calls a method and gives how many bytes came.
+pub fn call(address: SocketAddr, path: &str, request: Bytes, windows: Windows) -> f64 {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .expect("a runtime");
+    runtime.block_on(async {
+        let socket = tokio::net::TcpStream::connect(address).await;
+        let (client, connection) = h2::client::Builder::new()
+            .initial_window_size(windows.stream)
+            .initial_connection_window_size(windows.connection)
+            .max_frame_size(windows.frame)
+            .handshake::<_, Bytes>(socket.expect("a listener"))
+            .await
+            .expect("HTTP/2");
+        tokio::spawn(connection);
+        let mut client = client.ready().await.expect("open");
+        let head = Request::post(format!("http://{address}{path}"))
+            .header(header::CONTENT_TYPE, "application/grpc")
+            .header(header::TE, "trailers")
+            .body(())
+            .expect("a request");
+        let (answer, mut body) = client.send_request(head, false).expect("sent");
+        body.send_data(request, true).expect("sent");
+        let mut answer = answer.await.expect("an answer").into_body();
+        let mut total = 0;
+        while let Some(data) = answer.data().await {
+            let read = data.expect("whole").len();
+            total += read;
+            let flow = answer.flow_control();
+            flow.release_capacity(read).expect("what was taken");
+        }
+        total as f64
+    })
+}

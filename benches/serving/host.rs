@@ -1,0 +1,147 @@
+//! The daemon inside this process, with routes beside its own whose answers cost nothing to make:
+//! a prepared block sent again and again, or copied first.
+
+use std::{
+    convert::Infallible,
+    net::{SocketAddr, TcpListener},
+    sync::Arc,
+};
+
+use axum::{Router, body::Body, extract::Path, response::Response, routing};
+use bytes::Bytes;
+use futures_util::stream;
+use http::header;
+use prost::Message as _;
+use strew::{
+    config::Layers,
+    grpc::proto::{PointBlock, StreamPointsResponse, stream_points_response::Message},
+    ops::App,
+    service::{Service, encode::Pool},
+};
+
+/// A daemon that serves as long as this lives.
+pub struct Host {
+    pub address: SocketAddr,
+    _runtime: tokio::runtime::Runtime,
+}
+
+impl Host {
+    pub fn start() -> Self {
+        let layers = Layers::new().expect("the defaults");
+        let config = layers.finish().expect("valid");
+        let block_bytes = config.limits.block_bytes;
+        let app = App::new(config).expect("tables and threads");
+        let routes = routes(app.service(), block_bytes);
+        let app = app.with_routes(routes);
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
+        let address = listener.local_addr().expect("bound");
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .enable_all()
+            .build()
+            .expect("a runtime");
+        runtime.spawn(app.run(listener, std::future::pending()));
+        Self {
+            address,
+            _runtime: runtime,
+        }
+    }
+}
+
+/// `/bench/constant/{bytes}`, `/bench/copied/{bytes}`, `/bench/small/{bytes}` and the gRPC method
+/// `/bench.Constant/{bytes}`.
+fn routes(service: &Arc<Service>, block_bytes: usize) -> Router {
+    let block = Bytes::from(noise(block_bytes));
+    let framed = framed(&block);
+    let copied = (service.clone(), block.clone());
+    let small = block.clone();
+    Router::new()
+        .route(
+            "/bench/constant/{bytes}",
+            routing::get(move |Path(bytes): Path<usize>| async move {
+                let blocks =
+                    cut(bytes, block.len()).map(move |n| Ok::<_, Infallible>(block.slice(..n)));
+                answer(bytes, stream::iter(blocks))
+            }),
+        )
+        .route(
+            "/bench/copied/{bytes}",
+            routing::get(move |Path(bytes): Path<usize>| async move {
+                let (service, block) = copied;
+                let permit = service.streams().admit().expect("a place");
+                let pool = Pool::<u64>::new(block.len() / size_of::<u64>());
+                let blocks = cut(bytes, block.len()).map(move |n| {
+                    let mut buffer = pool.take();
+                    bytemuck::cast_slice_mut(&mut buffer)[..n].copy_from_slice(&block[..n]);
+                    pool.lend(buffer, n.div_ceil(size_of::<u64>()))
+                });
+                answer(bytes, service.stream(permit, blocks))
+            }),
+        )
+        .route(
+            "/bench/small/{bytes}",
+            routing::get(move |Path(bytes): Path<usize>| async move {
+                octets(Body::from(small.slice(..bytes)))
+            }),
+        )
+        .route(
+            "/bench.Constant/{bytes}",
+            routing::post(move |Path(bytes): Path<usize>| async move {
+                let frames = cut(bytes, framed.len());
+                let frames = frames.map(move |_| Ok::<_, Infallible>(framed.clone()));
+                let mut response = Response::new(Body::from_stream(stream::iter(frames)));
+                let kind = header::HeaderValue::from_static("application/grpc");
+                response.headers_mut().insert(header::CONTENT_TYPE, kind);
+                response
+            }),
+        )
+}
+
+/// The sizes of the blocks of so many bytes.
+fn cut(bytes: usize, block: usize) -> impl Iterator<Item = usize> + Send + Unpin {
+    (0..bytes.div_ceil(block)).map(move |i| block.min(bytes - i * block))
+}
+
+fn answer<S, E>(bytes: usize, blocks: S) -> Response
+where
+    S: futures_util::Stream<Item = Result<Bytes, E>> + Send + 'static,
+    E: Into<axum::BoxError> + 'static,
+{
+    let mut response = octets(Body::from_stream(blocks));
+    let headers = response.headers_mut();
+    headers.insert(header::CONTENT_LENGTH, bytes.into());
+    response
+}
+
+fn octets(body: Body) -> Response {
+    let mut response = Response::new(body);
+    let kind = header::HeaderValue::from_static("application/octet-stream");
+    response.headers_mut().insert(header::CONTENT_TYPE, kind);
+    response
+}
+
+/// A block as a gRPC message with its prefix.
+fn framed(block: &Bytes) -> Bytes {
+    let message = StreamPointsResponse {
+        message: Some(Message::Block(PointBlock {
+            data: block.clone(),
+            ..PointBlock::default()
+        })),
+    };
+    let mut framed = vec![0];
+    let length = u32::try_from(message.encoded_len()).expect("a block");
+    framed.extend_from_slice(&length.to_be_bytes());
+    message.encode(&mut framed).expect("room");
+    framed.into()
+}
+
+/// Bytes that look like points, as far as the wire cares.
+fn noise(bytes: usize) -> Vec<u8> {
+    let mut state = 1u64;
+    let next = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 56) as u8
+    };
+    std::iter::repeat_with(next).take(bytes).collect()
+}

@@ -1,0 +1,74 @@
+//! Long streams: points as they are made, beside a block that is copied and one that is sent as
+//! it is.
+
+use std::net::SocketAddr;
+
+use super::{
+    h2c::{self, Windows},
+    host::Host,
+    http1,
+    timing::{Effort, Way, rates, tell},
+};
+
+/// The bytes of a point.
+const POINT: u64 = 8;
+
+/// The address of a square with about so many points.
+fn square(points: u64, rest: &str) -> String {
+    let side = (points as f64).sqrt();
+    format!("/v1/points?bbox=0,0,{side},{side}&spacing=1&{rest}")
+}
+
+/// HTTP/1.1, and another server that sends a file of the same size, if there is one.
+pub fn http(host: &Host, effort: Effort, other: Option<(SocketAddr, String)>) {
+    let address = host.address;
+    let bytes = effort.points * POINT;
+    let paths = [
+        ("f32 points", square(effort.points, "format=f32")),
+        ("a block copied", format!("/bench/copied/{bytes}")),
+        ("the same block again", format!("/bench/constant/{bytes}")),
+        (
+            "warped f32 points",
+            square(effort.points, "format=f32&seed=1"),
+        ),
+        ("f64 points", square(effort.points / 2, "format=f64")),
+    ];
+    let mut ways: Vec<Way<'_>> = paths
+        .iter()
+        .map(|(name, path)| Way::new(name, move || http1::get(address, path) as f64))
+        .collect();
+    if let Some((address, path)) = &other {
+        let work = move || http1::get(*address, path) as f64;
+        ways.push(Way::new("the other server", work));
+    }
+    let rates = rates(effort.rounds, &mut ways);
+    let title = format!("HTTP/1.1, {} points a stream, one reader", effort.points);
+    tell(&title, "GB/s", 1e-9, &ways, &rates);
+}
+
+/// gRPC with packed blocks.
+pub fn grpc(host: &Host, effort: Effort) {
+    let bytes = effort.points * POINT;
+    let request = h2c::request(effort.points);
+    for (title, windows) in [
+        ("gRPC, a client with default settings", Windows::DEFAULT),
+        (
+            "gRPC, frames of 256 KiB, windows of 8/16 MiB",
+            Windows::WIDE,
+        ),
+    ] {
+        let address = host.address;
+        let constant = format!("/bench.Constant/{bytes}");
+        let points = "/strew.v1.PointService/StreamPoints";
+        let mut ways = [
+            Way::new("packed f32 points", || {
+                h2c::call(address, points, request.clone(), windows)
+            }),
+            Way::new("a framed block again", || {
+                h2c::call(address, &constant, request.clone(), windows)
+            }),
+        ];
+        let rates = rates(effort.rounds, &mut ways);
+        tell(title, "GB/s", 1e-9, &ways, &rates);
+    }
+}

@@ -1,0 +1,87 @@
+//! Fresh memory and two threads: a region into memory that was never touched, beside a plain fill
+//! of it; tiles on two threads, beside one.
+//!
+//! `-- --points N` sets the size; the default takes 2 GB twice over, one after the other.
+
+use std::{hint::black_box, sync::Arc};
+
+use rayon::prelude::*;
+use rounds::{BLOCK, boxed, is_quick, medians, table};
+use strew_core::{Plan, Sampler, sample::F32};
+
+mod rounds;
+
+/// The points of a plan on some threads, each with a block of its own; gives how many.
+fn on_threads(plan: &Plan, pool: &rayon::ThreadPool) -> u64 {
+    pool.install(|| {
+        let tiles: Vec<_> = plan.tiles(BLOCK).collect();
+        let fill = |block: &mut Vec<[f32; 2]>, tile| {
+            let filled = plan.tile_blocks::<F32>(tile).fill(block);
+            black_box(block);
+            filled as u64
+        };
+        let block = || vec![[0f32; 2]; BLOCK];
+        tiles.par_iter().map_init(block, fill).sum()
+    })
+}
+
+fn main() {
+    let argument = std::env::args().skip_while(|arg| arg != "--points").nth(1);
+    let argument = argument.map(|text| text.parse::<f64>().expect("a number"));
+    let quick = is_quick();
+    let points = argument.unwrap_or(if quick { 1e5 } else { 2.5e8 });
+    let rounds = if quick { 1 } else { 5 };
+    let sampler = Arc::new(Sampler::new(table()));
+    let plan = boxed(&sampler, [0.0, 0.0], points.sqrt(), 0);
+    let count = plan.count() as usize;
+    let result = medians(
+        rounds,
+        &mut [
+            &mut || {
+                // Never zero, or the system would be asked for zeroed pages and nothing written.
+                black_box(vec![[black_box(1f32); 2]; count]);
+                count as u64
+            },
+            &mut || {
+                let mut fresh = vec![[0f32; 2]; count];
+                let mut blocks = plan.blocks_f32();
+                for part in fresh.chunks_mut(BLOCK) {
+                    blocks.fill(part);
+                }
+                black_box(fresh);
+                count as u64
+            },
+        ],
+    );
+    println!("{count} points of f32 into fresh memory, one core, median of {rounds}");
+    for (name, seconds) in ["plain fill", "box"].iter().zip(result) {
+        let rate = 1e-9 / seconds;
+        println!(
+            "{name:<26} {rate:>12.3} G points/s {:>8.2} ÷ fill",
+            result[0] / seconds
+        );
+    }
+
+    let plan = boxed(&sampler, [0.0, 0.0], (points / 8.0).sqrt(), 0);
+    let threads = |n| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(n)
+            .build()
+            .expect("threads")
+    };
+    let (one, two) = (threads(1), threads(2));
+    let result = medians(
+        if quick { 1 } else { 15 },
+        &mut [&mut || on_threads(&plan, &one), &mut || {
+            on_threads(&plan, &two)
+        }],
+    );
+    println!("{} points of f32 as tiles into reused blocks", plan.count());
+    for (name, seconds) in ["one thread", "two threads"].iter().zip(result) {
+        let rate = 1e-9 / seconds;
+        println!(
+            "{name:<26} {rate:>12.3} G points/s {:>8.2} ÷ one",
+            result[0] / seconds
+        );
+    }
+}

@@ -1,0 +1,98 @@
+//! Small boxes with a cold plan, and regions that are no boxes, beside the bulk rate of a box.
+
+use std::{hint::black_box, sync::Arc};
+
+use rounds::{BLOCK, boxed, fill_all, is_quick, medians, placement, table};
+use strew_core::{
+    Plan, Sampler,
+    sample::{Area, Circle, F32, Polygon, Selection},
+};
+
+mod rounds;
+
+/// A star of 100 vertices around the origin.
+fn star(radius: f64) -> Polygon {
+    let vertex = |i: i32| {
+        let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 100.0).sin_cos();
+        let radius = if i % 2 == 0 { radius } else { 0.8 * radius };
+        [radius * cos, radius * sin]
+    };
+    Polygon::new(&[(0..100).map(vertex).collect::<Vec<_>>()]).expect("a ring")
+}
+
+fn main() {
+    let quick = is_quick();
+    let points = if quick { 1e4 } else { 1e7f64 };
+    let rounds = if quick { 1 } else { 15 };
+    let sampler = Arc::new(Sampler::new(table()));
+    let mut block = vec![[0f32; 2]; BLOCK];
+
+    // Planning is part of the work: nothing is known before.
+    let bulk = |block: &mut [[f32; 2]]| {
+        let plan = boxed(&sampler, [0.0, 0.0], points.sqrt(), 0);
+        fill_all::<F32>(&plan, block)
+    };
+    let area = |area: Area, block: &mut [[f32; 2]]| {
+        let selection = Selection::new(placement(0), area);
+        let plan: Plan = sampler.select(selection).expect("in range");
+        fill_all::<F32>(&plan, block)
+    };
+    let radius = (points / std::f64::consts::PI).sqrt();
+    let mut number = 0;
+    let mut small = |seed: u64, block: &mut [[f32; 2]]| {
+        let boxes = if quick { 10 } else { 1000 };
+        let mut total = 0;
+        for _ in 0..boxes {
+            number += 1;
+            let at = [
+                f64::from(number % 997) * 40.0,
+                f64::from(number / 997) * 40.0,
+            ];
+            let plan = boxed(&sampler, at, 31.6, seed);
+            let count = plan.count() as usize;
+            let filled = plan.blocks_f32().fill(&mut block[..count]);
+            black_box(&mut *block);
+            total += filled as u64;
+        }
+        total
+    };
+    let mut blocks = [(); 3].map(|()| block.clone());
+    let [one, two, three] = &mut blocks;
+    let mut cold = vec![];
+    let mut warped = vec![];
+    let result = medians(
+        rounds,
+        &mut [
+            &mut || bulk(one),
+            &mut || area(Circle::new([0.0, 0.0], radius).expect("valid").into(), two),
+            &mut || area(star(radius / 0.9).into(), three),
+            &mut || {
+                let start = std::time::Instant::now();
+                let made = small(0, &mut block);
+                cold.push(start.elapsed().as_secs_f64() / made as f64);
+                let start = std::time::Instant::now();
+                let made = small(1, &mut block);
+                warped.push(start.elapsed().as_secs_f64() / made as f64);
+                made
+            },
+        ],
+    );
+    println!("{points:e} points of f32, one core, plans included, median of {rounds}");
+    for (name, seconds) in ["box", "circle", "polygon of 100 vertices"]
+        .iter()
+        .zip(result)
+    {
+        let rate = 1e-9 / seconds;
+        println!(
+            "{name:<26} {rate:>12.3} G points/s {:>8.2} ÷ box",
+            result[0] / seconds
+        );
+    }
+    println!("boxes of 1,000 points, each elsewhere");
+    for (name, mut seconds) in [("plain", cold), ("warped", warped)] {
+        seconds.sort_by(f64::total_cmp);
+        let each = seconds[seconds.len() / 2] * 1e9;
+        let bulk = result[0] * 1e9;
+        println!("{name:<26} {each:>8.2} µs a box; 1,000 points in bulk {bulk:>6.2} µs");
+    }
+}
