@@ -8,6 +8,7 @@
 mod attributes;
 pub mod cache;
 pub mod catalog;
+mod effort;
 pub mod encode;
 pub mod error;
 mod planned;

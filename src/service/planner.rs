@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use strew_core::{
-    Area, Plan, PointId, Region, Spacing, Warp,
+    Plan, PointId, Region, Spacing,
     sample::{ClearOf, CountError, Cursor, DistanceError, Layer, Selection},
 };
 
 use super::{
     Error, Limits, PlannedSet,
     cache::Ready,
+    effort,
     query::{self, Amount, Query, Set, Token},
 };
 
@@ -128,7 +129,7 @@ impl<'a> Planner<'a> {
             selection.placement.spacing = spacing;
             self.check_rows(ready, selection, COUNTS)?;
         }
-        let least = self.looked_at(selection) * COUNTS / self.limits.max_rows as f64;
+        let least = effort::least_spacing(selection, self.limits.max_rows as f64 / COUNTS);
         let sampler = &ready.sampler;
         let plan = sampler.select_count_from(selection, count.into(), least);
         plan.map_err(|error| match error {
@@ -151,48 +152,20 @@ impl<'a> Planner<'a> {
             // There is nothing to count: that it is too far is told when it is planned.
             return Ok(());
         }
-        let unit = selection.placement.spacing.get();
-        let rows = (self.looked_at(selection) / unit + cleared(selection)) * counts;
         let limit = self.limits.max_rows;
-        if rows > limit as f64 {
+        let most = limit as f64 / counts;
+        let mut rows = effort::rows(selection);
+        if rows <= most {
+            rows = effort::rows_and_edges(selection);
+        }
+        if rows > most {
             return Err(Error::TooManyRows {
-                rows: rows as u128,
+                rows: (rows * counts) as u128,
                 limit,
             });
         }
         Ok(())
     }
-
-    /// How many lattice rows have to be counted one by one, times the spacing. Along a border that
-    /// is no row, points are looked at, which takes as long.
-    fn looked_at(&self, selection: &Selection) -> f64 {
-        /// A lattice unit is about a third of the mean spacing.
-        const ROWS: f64 = 3.0;
-        let area = &selection.area;
-        let is_box = matches!(area, Area::Region(_));
-        let is_closed = selection.placement.warp == Warp::OFF && selection.clear.is_empty();
-        let Some(bounds) = area.bounds().filter(|_| !(is_box && is_closed)) else {
-            return 0.0;
-        };
-        let height = bounds.max()[1] - bounds.min()[1];
-        let own = if is_box { 0.0 } else { height };
-        ROWS * (area.outline(bounds) + own)
-    }
-}
-
-/// About how many points are looked at one by one because they keep clear of others: each takes as
-/// long as a row.
-fn cleared(selection: &Selection) -> f64 {
-    let Some(bounds) = selection
-        .area
-        .bounds()
-        .filter(|_| !selection.clear.is_empty())
-    else {
-        return 0.0;
-    };
-    let [width, height] = [0, 1].map(|i| bounds.max()[i] - bounds.min()[i]);
-    let placement = selection.placement;
-    width * height * placement.spacing.density() * placement.keep.get()
 }
 
 /// The place after the last point.

@@ -373,6 +373,13 @@ fn what_would_take_too_long_to_count_is_refused_at_once() {
     ] });
     let answer = daemon.post("/v1/count", &layers);
     assert_eq!(answer.json()["type"], "urn:strew:problem:too-many-rows");
+    // A comb: few rows, but points beside each of its many edges are compared with all of them.
+    let tip = |i: u32| [f64::from(i) * 0.01, f64::from(i % 2) * 0.2];
+    let comb: Vec<[f64; 2]> = (0..3000).map(tip).chain([[15.0, -1.0]]).collect();
+    let other = Daemon::start(&["limits.max_rows=2000"]);
+    let body = json!({ "region": ring(json!(comb)), "spacing": 1 });
+    let answer = other.post("/v1/count", &body);
+    assert_eq!(answer.json()["type"], "urn:strew:problem:too-many-rows");
     // Nothing is in it at any spacing, so the search for one has to end somewhere.
     let line = json!({ "region": ring(json!([[0, 0], [9, 9], [18, 18]])), "count": 10 });
     fault(

@@ -1,6 +1,8 @@
 //! How long an area's outline is: what counting its points costs, since only there points have to be
 //! looked at one by one.
 
+use alloc::vec::Vec;
+
 use super::{Area, Region};
 
 impl Area {
@@ -27,6 +29,65 @@ impl Area {
             Self::Outside(area) => area.outline(within),
         }
     }
+
+    /// Over strips of a height, from the bottom of `within` up: the sum of the products of how long
+    /// the [`outline`](Self::outline) is in a strip and how many edges, boxes and circles reach into
+    /// it. Points beside an outline are compared with all of these.
+    ///
+    /// Takes time and memory in proportion to the edges and to the outline in strips.
+    #[must_use]
+    pub fn comparisons(&self, within: Region, strip: f64) -> f64 {
+        let mut strips = Strips {
+            within,
+            strip,
+            all: Vec::new(),
+        };
+        self.gather(&mut strips);
+        let products = strips.all.iter().map(|[edges, outline]| edges * outline);
+        products.sum()
+    }
+
+    fn gather(&self, strips: &mut Strips) {
+        match self {
+            Self::Region(region) => strips.add(*region, 1.0),
+            Self::Circle(circle) => circle.bounds().into_iter().for_each(|b| strips.add(b, 1.0)),
+            Self::Polygon(polygon) => polygon.sides().for_each(|side| strips.add(side, 0.5)),
+            Self::AnyOf(areas) | Self::AllOf(areas) => {
+                areas.iter().for_each(|area| area.gather(strips));
+            }
+            Self::Outside(area) => area.gather(strips),
+        }
+    }
+}
+
+/// How many edges each strip has, and how much outline.
+struct Strips {
+    within: Region,
+    strip: f64,
+    all: Vec<[f64; 2]>,
+}
+
+impl Strips {
+    /// Adds a part of an outline: `share` of its box's width and height.
+    fn add(&mut self, part: Region, share: f64) {
+        let ([x0, y0], [x1, y1]) = (part.min(), part.max());
+        let (min, max) = (self.within.min(), self.within.max());
+        if x1 < min[0] || x0 > max[0] || y1 < min[1] || y0 > max[1] {
+            return;
+        }
+        let part = part.and(self.within);
+        let ([x0, y0], [x1, y1]) = (part.min(), part.max());
+        // Casts saturate.
+        let [first, last] = [y0, y1].map(|y| ((y - min[1]) / self.strip) as usize);
+        if self.all.len() <= last {
+            self.all.resize(last + 1, [0.0; 2]);
+        }
+        let each = share * ((x1 - x0) + (y1 - y0)) / (last - first + 1) as f64;
+        for [edges, outline] in &mut self.all[first..=last] {
+            *edges += 1.0;
+            *outline += each;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -47,6 +108,11 @@ mod tests {
         assert!(near(circle.outline(all), 20.0));
         let part = Region::new([0.0; 2], [1.0; 2]).expect("ordered");
         assert!(near(square.outline(part), 2.0));
+        // The circle reaches into three strips, the square into the second.
+        let both = circle.clone().without([square.clone()]);
+        let disc = Region::new([-5.0; 2], [5.0; 2]).expect("ordered");
+        let compared = both.comparisons(disc, 4.9);
+        assert!(near(compared, 4.0 * 20.0 / 3.0 + 2.0 * 3.0), "{compared}");
         let both = circle.without([square]);
         assert!(near(both.outline(all), 23.0));
     }
