@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use strew_core::{
-    Area, Plan, PointId, Spacing, Warp,
+    Area, Plan, PointId, Region, Spacing, Warp,
     sample::{ClearOf, CountError, Cursor, DistanceError, Layer, Selection},
 };
 
@@ -66,7 +66,7 @@ impl<'a> Planner<'a> {
                 }
             }
             (Some(spacing), _) => {
-                self.check_rows(&selection, 1.0)?;
+                self.check_rows(ready, &selection, 1.0)?;
                 self.check_clearing(&selection)?;
                 let plan = ready.sampler.select(selection.clone());
                 plan.map_err(|error| region.too_far(spacing, &error))?
@@ -127,7 +127,7 @@ impl<'a> Planner<'a> {
         let guess = side * (set.keep.get() / count as f64).sqrt();
         if let Ok(spacing) = Spacing::new(guess) {
             selection.placement.spacing = spacing;
-            self.check_rows(selection, COUNTS)?;
+            self.check_rows(ready, selection, COUNTS)?;
         }
         let least = self.looked_at(selection) * COUNTS / self.limits.max_rows as f64;
         let sampler = &ready.sampler;
@@ -142,7 +142,16 @@ impl<'a> Planner<'a> {
     }
 
     /// Where points have to be counted row by row, there must not be too many, in so many counts.
-    fn check_rows(&self, selection: &Selection, counts: f64) -> Result<(), Error> {
+    fn check_rows(&self, ready: &Ready, selection: &Selection, counts: f64) -> Result<(), Error> {
+        let limit = ready.sampler.limit(selection.placement);
+        let is_near = |bounds: Region| {
+            let mut corners = bounds.min().into_iter().chain(bounds.max());
+            corners.all(|value| value.abs() <= limit)
+        };
+        if !selection.area.bounds().is_some_and(is_near) {
+            // There is nothing to count: that it is too far is told when it is planned.
+            return Ok(());
+        }
         let unit = selection.placement.spacing.get();
         let rows = self.looked_at(selection) / unit * counts;
         let limit = self.limits.max_rows;

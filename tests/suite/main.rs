@@ -1,6 +1,8 @@
 //! The daemon from outside: the real program over real sockets, and the real clients.
 
+mod addresses;
 mod amounts;
+mod bodies;
 mod caching;
 mod calls;
 mod clients;

@@ -121,14 +121,34 @@ pub(super) fn region() -> Value {
         }),
         &["size", "x", "y"],
     );
+    // A position may have an elevation, which does not matter.
+    let position = json!({ "type": "array", "items": number(), "minItems": 2 });
+    let ring = json!({ "type": "array", "items": position, "minItems": 3 });
+    let rings = json!({ "type": "array", "items": ring, "minItems": 1 });
+    let geometry = |kind: &str, member: &str, schema: Value| {
+        json!({
+            "type": "object",
+            "required": ["type", member],
+            "properties": { "type": { "const": kind }, member: schema },
+        })
+    };
+    let several = |kind: &str, member: &str| {
+        geometry(
+            kind,
+            member,
+            json!({ "type": "array", "items": { "type": "object" } }),
+        )
+    };
     let polygon = json!({
-        "type": "object",
-        "description": "A GeoJSON Polygon or MultiPolygon, holes included.",
-        "required": ["type", "coordinates"],
-        "properties": {
-            "type": { "type": "string", "enum": ["Polygon", "MultiPolygon"] },
-            "coordinates": { "type": "array" },
-        },
+        "description": "GeoJSON: a polygon or several, holes included, bare, in features or in \
+                        collections.",
+        "oneOf": [
+            geometry("Polygon", "coordinates", rings.clone()),
+            geometry("MultiPolygon", "coordinates", json!({ "type": "array", "items": rings })),
+            geometry("Feature", "geometry", json!({ "type": ["object", "null"] })),
+            several("FeatureCollection", "features"),
+            several("GeometryCollection", "geometries"),
+        ],
     });
     let combined = json!({ "include": regions(), "exclude": regions() });
     json!({

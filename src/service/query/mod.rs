@@ -177,7 +177,8 @@ impl Set {
 impl Asked {
     /// The error of a region that reaches too far for a spacing.
     pub(super) fn too_far(&self, spacing: Spacing, error: &PlanError) -> Error {
-        let value = region::listed(&self.bbox());
+        let listed = || region::listed(&self.bbox());
+        let value = self.echo.as_ref().map_or_else(listed, ToString::to_string);
         Error::Invalid(vec![match error {
             PlanError::TooFar {
                 corner,

@@ -149,6 +149,12 @@ impl Sampler {
         Ok(Plan::new(self.clone(), selection, Some(cursor.total))?.from_cursor(cursor))
     }
 
+    /// The largest absolute coordinate that a region may have: ±2⁵² lattice units.
+    #[must_use]
+    pub fn limit(&self, placement: Placement) -> f64 {
+        Frame::new(self, placement).limit()
+    }
+
     /// The point of an id, or `None` if the pattern has no point at that lattice address.
     #[must_use]
     pub fn point(&self, placement: Placement, id: PointId) -> Option<Point> {
