@@ -18,6 +18,11 @@ mod avx2;
 )]
 mod avx512;
 mod backend;
+#[expect(
+    unsafe_code,
+    reason = "a backend is only ever named where the machine has it"
+)]
+pub(super) mod hashed;
 mod shear;
 
 use super::{Point, PointId, fixed, plan::Plan, warp::PatchShears};
