@@ -25,8 +25,8 @@ impl Source {
                  region or fewer points, or raise it by --set limits.max_points={count}"
             ),
             Error::TooManyRows { rows, limit } => format!(
-                "the region spans about {rows} lattice rows that have to be counted one by one, and \
-                 the settings allow {limit}: ask for a smaller region, a wider spacing, or a box \
+                "about {rows} lattice rows, or points that keep clear of others, would have to be \
+                 counted one by one, and the settings allow {limit}: ask for a smaller region, a wider spacing, or a box \
                  with --warp off, or raise it by --set limits.max_rows={rows}"
             ),
             Error::OtherTable { pinned, loaded } => format!(

@@ -93,8 +93,9 @@ pub enum Error {
     },
     /// Counting the region's points would take too long.
     #[error(
-        "the region spans about {rows} lattice rows that have to be counted one by one; this server \
-         counts at most {limit}: ask for a smaller region, a wider spacing, or a box with warp=off"
+        "about {rows} lattice rows, or points that keep clear of others, would have to be counted \
+         one by one; this server counts at most {limit} so: ask for a smaller region, a wider \
+         spacing, or a box with warp=off"
     )]
     TooManyRows {
         /// About how many.

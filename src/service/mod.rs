@@ -45,9 +45,9 @@ pub struct Limits {
     /// The most points of one answer. Keeps a slip of a zero from filling a disk; the refusal says
     /// the exact count.
     pub max_points: u64,
-    /// The most lattice rows that are counted one by one, where a region is not a box or is warped:
-    /// about three for each mean spacing of its outline's width and height, and of its height. They
-    /// take a few microseconds each before the first point.
+    /// The most lattice rows that are counted one by one, where a region is not a box or is warped
+    /// (about three for each mean spacing of its outline's width and height, and of its height), and
+    /// points that keep clear of others. They take about a microsecond each before the first point.
     pub max_rows: u64,
     /// The most vertices that the polygons of a query have in all: bounds its memory.
     pub max_vertices: usize,

@@ -67,7 +67,6 @@ impl<'a> Planner<'a> {
             }
             (Some(spacing), _) => {
                 self.check_rows(ready, &selection, 1.0)?;
-                self.check_clearing(&selection)?;
                 let plan = ready.sampler.select(selection.clone());
                 plan.map_err(|error| region.too_far(spacing, &error))?
             }
@@ -153,7 +152,7 @@ impl<'a> Planner<'a> {
             return Ok(());
         }
         let unit = selection.placement.spacing.get();
-        let rows = self.looked_at(selection) / unit * counts;
+        let rows = (self.looked_at(selection) / unit + cleared(selection)) * counts;
         let limit = self.limits.max_rows;
         if rows > limit as f64 {
             return Err(Error::TooManyRows {
@@ -179,25 +178,21 @@ impl<'a> Planner<'a> {
         let own = if is_box { 0.0 } else { height };
         ROWS * (area.outline(bounds) + own)
     }
+}
 
-    /// What keeps clear of layers is counted point by point: there must not be too many to look at.
-    fn check_clearing(&self, selection: &Selection) -> Result<(), Error> {
-        let limit = self.limits.max_points;
-        if selection.clear.is_empty() {
-            return Ok(());
-        }
-        let Some(bounds) = selection.area.bounds() else {
-            return Ok(());
-        };
-        let [width, height] = [0, 1].map(|i| bounds.max()[i] - bounds.min()[i]);
-        let placement = selection.placement;
-        let about = width * height * placement.spacing.density() * placement.keep.get();
-        if about > limit as f64 {
-            let count = about as u128;
-            return Err(Error::TooManyPoints { count, limit });
-        }
-        Ok(())
-    }
+/// About how many points are looked at one by one because they keep clear of others: each takes as
+/// long as a row.
+fn cleared(selection: &Selection) -> f64 {
+    let Some(bounds) = selection
+        .area
+        .bounds()
+        .filter(|_| !selection.clear.is_empty())
+    else {
+        return 0.0;
+    };
+    let [width, height] = [0, 1].map(|i| bounds.max()[i] - bounds.min()[i]);
+    let placement = selection.placement;
+    width * height * placement.spacing.density() * placement.keep.get()
 }
 
 /// The place after the last point.

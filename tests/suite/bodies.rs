@@ -366,6 +366,13 @@ fn what_would_take_too_long_to_count_is_refused_at_once() {
         let narrow = json!({ "region": region, "spacing": 40 });
         assert_eq!(daemon.post("/v1/count", &narrow).status, 200, "{narrow}");
     }
+    // Points that keep clear of others are looked at one by one.
+    let layers = json!({ "region": { "bbox": [0, 0, 90, 90] }, "layers": [
+        { "name": "a", "spacing": 1 },
+        { "name": "b", "spacing": 1, "seed": 3, "warp": "off", "clear_of": { "a": 0.5 } },
+    ] });
+    let answer = daemon.post("/v1/count", &layers);
+    assert_eq!(answer.json()["type"], "urn:strew:problem:too-many-rows");
     // Nothing is in it at any spacing, so the search for one has to end somewhere.
     let line = json!({ "region": ring(json!([[0, 0], [9, 9], [18, 18]])), "count": 10 });
     fault(
