@@ -11,14 +11,21 @@ use strew_core::{Plan, Sampler, sample::F32};
 
 mod rounds;
 
-/// The points of a plan on some threads, each with a block of its own; gives how many.
+/// The points of a plan on some threads, each with a block of its own; gives how many. Tiles hold
+/// many blocks: what its rows have in common is made once a tile.
 fn on_threads(plan: &Plan, pool: &rayon::ThreadPool) -> u64 {
     pool.install(|| {
-        let tiles: Vec<_> = plan.tiles(BLOCK).collect();
+        let tiles: Vec<_> = plan.tiles(16 * BLOCK).collect();
         let fill = |block: &mut Vec<[f32; 2]>, tile| {
-            let filled = plan.tile_blocks::<F32>(tile).fill(block);
-            black_box(block);
-            filled as u64
+            let (mut blocks, mut total) = (plan.tile_blocks::<F32>(tile), 0);
+            loop {
+                let filled = blocks.fill(block);
+                black_box(&mut *block);
+                total += filled as u64;
+                if filled < block.len() {
+                    return total;
+                }
+            }
         };
         let block = || vec![[0f32; 2]; BLOCK];
         tiles.par_iter().map_init(block, fill).sum()

@@ -12,7 +12,9 @@
 use alloc::{string::String, vec::Vec};
 use core::{f64::consts::TAU, fmt, str::FromStr};
 
-use super::{Placement, Point, PointId, Sampler, Seed, Variants, rank::rank, seed::split_mix};
+use super::{
+    Placement, Point, PointId, Sampler, Seed, Variants, kernel::hashed, rank::rank, seed::split_mix,
+};
 use crate::pattern::Pattern;
 
 /// One value per point.
@@ -81,6 +83,12 @@ pub enum AttributeError {
 }
 
 impl ScaleRange {
+    #[inline]
+    fn pick(self, hash: u64) -> f64 {
+        // Rounding may carry the sum past the end by a unit.
+        (self.min + unit(hash) * (self.max - self.min)).min(self.max)
+    }
+
     /// The greatest scale.
     pub const LIMIT: f64 = 1e9;
 
@@ -328,13 +336,22 @@ impl BoundAttributes {
                 }
                 continue;
             }
-            let numbers = ids.map(|id| self.number(&bound.attribute, key, id));
-            if let Column::Numbers(values) = column {
-                values.clear();
-                values.extend(numbers);
-            } else {
-                *column = Column::Numbers(numbers.collect());
+            let mut values = match core::mem::replace(column, Column::Numbers(Vec::new())) {
+                Column::Numbers(values) => values,
+                Column::Variants(_) => Vec::new(),
+            };
+            values.resize(ids.clone().count(), 0.0);
+            let out = values.as_mut_slice();
+            // The usual ones have loops of their own, without a question at each point.
+            match bound.attribute {
+                Attribute::Angle => hashed::write(ids.map(|id| angle(hash(key, id))), out),
+                Attribute::Scale(range) => {
+                    hashed::write(ids.map(|id| range.pick(hash(key, id))), out);
+                }
+                Attribute::Uniform(_) => hashed::write(ids.map(|id| unit(hash(key, id))), out),
+                ref other => hashed::write(ids.map(|id| self.number(other, key, id)), out),
             }
+            *column = Column::Numbers(values);
         }
     }
 
@@ -345,12 +362,8 @@ impl BoundAttributes {
 
     fn number(&self, attribute: &Attribute, key: u64, id: PointId) -> f64 {
         match attribute {
-            // 2π·(1 − 2⁻⁵³) rounds to the number before 2π.
-            Attribute::Angle => unit(hash(key, id)) * TAU,
-            Attribute::Scale(ScaleRange { min, max }) => {
-                // Rounding may carry the sum past the end by a unit.
-                (min + unit(hash(key, id)) * (max - min)).min(*max)
-            }
+            Attribute::Angle => angle(hash(key, id)),
+            Attribute::Scale(range) => range.pick(hash(key, id)),
             Attribute::Rank => {
                 let depth = self.pattern.depth(id.x, id.y);
                 rank(depth, self.pattern.alpha().set_side())
@@ -372,6 +385,12 @@ fn key(seed: Seed, attribute: &Attribute) -> u64 {
 fn hash(key: u64, id: PointId) -> u64 {
     let x = split_mix(key ^ (id.x as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
     split_mix(x.wrapping_add(key) ^ (id.y as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f))
+}
+
+/// 2π·(1 − 2⁻⁵³) rounds to the number before 2π.
+#[inline]
+fn angle(hash: u64) -> f64 {
+    unit(hash) * TAU
 }
 
 /// The upper 53 bits as a number in [0, 1).

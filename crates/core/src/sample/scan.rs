@@ -99,12 +99,7 @@ impl Field<'_> {
     /// The world coordinate of a position relative to an origin.
     #[inline]
     fn world(&self, origin: i128, relative: i64) -> f64 {
-        let at = origin + i128::from(relative);
-        // Conversions from 64 bits are faster, and round alike.
-        match i64::try_from(at) {
-            Ok(at) => at as f64 * self.frame.step,
-            Err(_) => self.frame.world(at),
-        }
+        self.frame.world(origin + i128::from(relative))
     }
 
     /// How far, in fixed-point units, a point may be from the unwarped place whose reported

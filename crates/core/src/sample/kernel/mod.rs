@@ -18,6 +18,14 @@ mod avx2;
 )]
 mod avx512;
 mod backend;
+#[cfg_attr(
+    all(feature = "std", target_arch = "x86_64"),
+    expect(
+        unsafe_code,
+        reason = "a backend is only ever named where the machine has it"
+    )
+)]
+pub(super) mod hashed;
 mod shear;
 
 use super::{Point, PointId, fixed, plan::Plan, warp::PatchShears};
