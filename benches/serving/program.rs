@@ -1,6 +1,7 @@
 //! The program itself as a process of its own: when it is ready, what it holds.
 
 use std::{
+    env,
     io::{BufRead as _, BufReader},
     net::SocketAddr,
     process::{Child, Command, Stdio},
@@ -16,6 +17,12 @@ impl Program {
     /// Starts one on a free port with further settings (`key=value`); gives it when it listens.
     pub fn start(settings: &[&str]) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_strew"));
+        // Settings of whoever runs the bench are not the bench's.
+        for (name, _) in env::vars_os() {
+            if name.to_string_lossy().starts_with("STREW_") {
+                command.env_remove(name);
+            }
+        }
         command.args([
             "serve",
             "--listen",
