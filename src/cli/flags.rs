@@ -7,7 +7,9 @@ use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches};
 
 use crate::service::{
     Encoding,
-    query::{PARAMETERS, Parameter, Parameters},
+    query::{
+        LOOKS_NAMES, PARAMETERS, Parameter, Parameters, REGION_NAMES, SET_NAMES, WINDOW_NAMES,
+    },
 };
 
 /// Which parameters a command takes.
@@ -16,17 +18,12 @@ pub(super) trait Takes: fmt::Debug + Send + Sync + 'static {
     fn takes(name: &str) -> bool;
 }
 
-const REGION: [&str; 3] = ["bbox", "circle", "polygon"];
-const WINDOW: [&str; 3] = ["offset", "limit", "cursor"];
-/// How an answer is to look.
-pub(super) const LOOKS: [&str; 3] = ["format", "decimals", "size"];
 const NEAR: [&str; 3] = ["at", "k", "radius"];
 const PARTS: &str = "parts";
 
 /// What points there are.
 fn is_of_set(name: &str) -> bool {
-    let others = [&REGION[..], &WINDOW, &LOOKS, &NEAR, &[PARTS]];
-    !others.iter().any(|names| names.contains(&name))
+    SET_NAMES.contains(&name)
 }
 
 /// A query with its looks, as `GET /v1/points` has them.
@@ -50,13 +47,16 @@ pub(super) struct Measured;
 
 impl Takes for Answered {
     fn takes(name: &str) -> bool {
-        is_of_set(name) || [REGION, WINDOW, LOOKS].concat().contains(&name)
+        is_of_set(name)
+            || [REGION_NAMES, WINDOW_NAMES, LOOKS_NAMES]
+                .concat()
+                .contains(&name)
     }
 }
 
 impl Takes for Counted {
     fn takes(name: &str) -> bool {
-        is_of_set(name) || [REGION, WINDOW].concat().contains(&name)
+        is_of_set(name) || [REGION_NAMES, WINDOW_NAMES].concat().contains(&name)
     }
 }
 
@@ -123,11 +123,11 @@ pub(super) fn flag(name: &str) -> String {
 
 /// Under which title `--help` lists it.
 fn heading(name: &str) -> &'static str {
-    if REGION.contains(&name) || NEAR.contains(&name) {
+    if REGION_NAMES.contains(&name) || NEAR.contains(&name) {
         WHERE
-    } else if WINDOW.contains(&name) || name == PARTS {
+    } else if WINDOW_NAMES.contains(&name) || name == PARTS {
         "Which of the points"
-    } else if LOOKS.contains(&name) {
+    } else if LOOKS_NAMES.contains(&name) {
         "How the answer looks"
     } else {
         "Which points there are"
@@ -246,7 +246,7 @@ mod tests {
             assert_eq!(Answered::takes(name), !near && !parts, "{name}");
             assert_eq!(Parted::takes(name), !near, "{name}");
             assert!(!near || Near::takes(name), "{name}");
-            let looks = LOOKS.contains(name);
+            let looks = LOOKS_NAMES.contains(name);
             assert_eq!(
                 Counted::takes(name),
                 Answered::takes(name) && !looks,

@@ -9,7 +9,7 @@ use anyhow::{Context as _, anyhow};
 
 use super::{
     Failure, config,
-    flags::{Flags, LOOKS, Takes, WHERE, flag},
+    flags::{Flags, Takes, WHERE, flag},
     refusal::Source,
 };
 use crate::{
@@ -18,7 +18,10 @@ use crate::{
         Catalog, Encoding, Error, Placed, Planned, PlannedSet, Ready, Set,
         catalog::CatalogError,
         encode::Options,
-        query::{Body, Draft, Parameters, RegionDraft, ShapeDraft, read_body, read_region},
+        query::{
+            Body, Draft, LOOKS_NAMES, Parameters, REGION_NAMES, RegionDraft, ShapeDraft, read_body,
+            read_region,
+        },
     },
 };
 
@@ -87,7 +90,7 @@ impl<T: Takes> Asked<T> {
         };
         let source = Source::File(format!("--query {}", file.display()));
         let others = self.flags.given().map(|(name, _)| name);
-        let others = others.filter(|name| !LOOKS.contains(name) && *name != "parts");
+        let others = others.filter(|name| !LOOKS_NAMES.contains(name) && *name != "parts");
         let places = [
             self.chunk.as_ref().map(|_| "chunk"),
             self.region.as_ref().map(|_| "region"),
@@ -102,7 +105,7 @@ impl<T: Takes> Asked<T> {
                  it: {}",
                 others.join(", "),
                 file.display(),
-                LOOKS.map(flag).join(", ")
+                LOOKS_NAMES.map(flag).join(", ")
             )));
         }
         let bytes = read_file("--query", file)?;
@@ -117,7 +120,7 @@ impl<T: Takes> Asked<T> {
         }
         let parquet = Encoding::Parquet;
         let is_parquet = self.flags.get("format") == Some(parquet.name());
-        let wanted = |name: &str| LOOKS.contains(&name) && !(is_parquet && name == "format");
+        let wanted = |name: &str| LOOKS_NAMES.contains(&name) && !(is_parquet && name == "format");
         let looks = self.flags.parameters(wanted).looks();
         let looks = looks.map_err(|faults| Source::Flags.refused(Error::Invalid(faults)))?;
         let encoding = looks.encoding.or(is_parquet.then_some(parquet));
@@ -130,7 +133,7 @@ impl<T: Takes> Asked<T> {
     /// A region that is no parameter.
     fn region(&self) -> Result<Option<RegionDraft>, Failure> {
         let shapes = self.flags.given().map(|(name, _)| name);
-        let shapes = shapes.filter(|name| ["bbox", "circle", "polygon"].contains(name));
+        let shapes = shapes.filter(|name| REGION_NAMES.contains(name));
         let others = [
             self.chunk.as_ref().map(|_| "chunk"),
             self.region.as_ref().map(|_| "region"),

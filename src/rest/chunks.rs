@@ -13,11 +13,13 @@ use http::{HeaderMap, Method, Uri};
 use super::{
     answer::{self, Asked},
     api::{self, Endpoint, Operation},
-    points::{SET, WINDOW_AND_LOOKS},
 };
 use crate::service::{
     Error, Fault, Service,
-    query::{Parameter, RegionDraft, Shape, ShapeDraft, parse_pairs},
+    query::{
+        LOOKS_NAMES, Parameter, RegionDraft, SET_NAMES, Shape, ShapeDraft, WINDOW_NAMES,
+        parse_pairs,
+    },
 };
 
 /// The path.
@@ -30,7 +32,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
                 Coordinates are relative to its corner, so that f32 is exact enough at any \
                 distance. Neighbors share no point and lose none.",
         path_parameters: ADDRESS,
-        parameters: api::given(&[], &[&SET[..], &WINDOW_AND_LOOKS].concat()),
+        parameters: api::given(&[], &[&SET_NAMES[..], &WINDOW_NAMES, &LOOKS_NAMES].concat()),
         body: None,
         answers: vec![answer::told(), api::Answer::unchanged()],
         problems: answer::problems(),

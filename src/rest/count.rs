@@ -11,11 +11,11 @@ use super::{
     answer::{self, Asked},
     api::{self, Endpoint, Operation, schemas},
     body::Whole,
-    document, points, query,
+    document, query,
 };
 use crate::service::{
     Error, Kind, Query, Service,
-    query::{Resolved, parse_pairs},
+    query::{REGION_NAMES, Resolved, SET_NAMES, WINDOW_NAMES, parse_pairs},
 };
 
 /// The path.
@@ -42,7 +42,6 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
             Kind::TooManyPoints,
         ]
     };
-    let window = ["offset", "limit", "cursor"];
     let given = Operation {
         method: Method::GET,
         id: "getCount",
@@ -51,7 +50,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         path_parameters: &[],
         parameters: api::given(
             &[],
-            &[&["bbox", "circle", "polygon"], &points::SET[..], &window].concat(),
+            &[&REGION_NAMES[..], &SET_NAMES, &WINDOW_NAMES].concat(),
         ),
         body: None,
         answers: vec![answers(), api::Answer::unchanged()],

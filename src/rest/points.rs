@@ -9,28 +9,10 @@ use super::{
     answer::{self, Asked},
     api::{self, Endpoint, Operation},
 };
-use crate::service::{Error, Service, query::parse_pairs};
-
-/// The parameters that say what points there are.
-pub(super) const SET: [&str; 14] = [
-    "density",
-    "spacing",
-    "min_distance",
-    "count",
-    "profile",
-    "alpha",
-    "map",
-    "seed",
-    "warp",
-    "keep",
-    "attributes",
-    "scale_range",
-    "variants",
-    "table",
-];
-/// The parameters that say which of them, and how they look.
-pub(super) const WINDOW_AND_LOOKS: [&str; 6] =
-    ["offset", "limit", "cursor", "format", "decimals", "size"];
+use crate::service::{
+    Error, Service,
+    query::{LOOKS_NAMES, REGION_NAMES, SET_NAMES, WINDOW_NAMES, parse_pairs},
+};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -43,7 +25,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         path_parameters: &[],
         parameters: api::given(
             &[],
-            &[&["bbox", "circle", "polygon"], &SET[..], &WINDOW_AND_LOOKS].concat(),
+            &[&REGION_NAMES[..], &SET_NAMES, &WINDOW_NAMES, &LOOKS_NAMES].concat(),
         ),
         body: None,
         answers: vec![answer::told(), api::Answer::unchanged()],

@@ -18,25 +18,14 @@ use super::{
 };
 use crate::service::{
     Error, Found, Kind, Placed, Service,
-    query::{Parameter, Parameters, ResolvedSet, Shape, parse_pairs},
+    query::{Parameter, Parameters, ResolvedSet, SET_NAMES, Shape, parse_pairs},
 };
 
-/// The parameters that say what points there are.
-const SET: [&str; 13] = [
-    "density",
-    "spacing",
-    "min_distance",
-    "profile",
-    "alpha",
-    "map",
-    "seed",
-    "warp",
-    "keep",
-    "attributes",
-    "scale_range",
-    "variants",
-    "table",
-];
+/// The parameters that say what points there are: without a region there is nothing to count.
+fn set_names() -> Vec<&'static str> {
+    let names = SET_NAMES.into_iter();
+    names.filter(|name| *name != "count").collect()
+}
 
 const ID: &[Parameter] = &[Parameter {
     name: "id",
@@ -55,7 +44,7 @@ pub(super) fn by_id(service: Arc<Service>) -> Endpoint {
         summary: "A point by its id",
         about: "The same parameters that gave the id find the point again.",
         path_parameters: ID,
-        parameters: api::given(&[], &SET),
+        parameters: api::given(&[], &set_names()),
         body: None,
         answers: vec![
             told(
@@ -81,7 +70,7 @@ pub(super) fn nearest(service: Arc<Service>) -> Endpoint {
         about: "Exact, nearest first; of equally near ones the smaller id first. With k and radius \
                 both must hold; at most 10000 points.",
         path_parameters: &[],
-        parameters: api::given(&["at"], &[&["k", "radius"], &SET[..]].concat()),
+        parameters: api::given(&["at"], &[&["k", "radius"], &set_names()[..]].concat()),
         body: None,
         answers: vec![
             told(

@@ -6,25 +6,10 @@
 
 use std::{hint::black_box, sync::Arc, time::Instant};
 
-use strew_core::{
-    Alpha, Circle, Map, Placement, PointId, Region, Sampler, Seed, Spacing, Table,
-    sample::Selection, table::Provenance,
-};
+use rounds::{boxed, is_quick, placement, table};
+use strew_core::{Circle, PointId, Sampler, sample::Selection};
 
-/// A table of the default map with vectors of the usual length.
-fn table() -> Table {
-    let map = Map::new("(5-sqrt(3))/2".parse::<Alpha>().expect("valid"), 49).expect("small");
-    let blocks = map.intervals() * map.intervals();
-    let mut state = 1u64;
-    let mut next = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 41) as i32 - (1 << 22)
-    };
-    let vectors = (0..blocks).map(|_| [next(), next()]).collect();
-    Table::new(map, "bench", vectors, Provenance::default()).expect("valid")
-}
+mod rounds;
 
 struct Subject {
     sampler: Arc<Sampler>,
@@ -40,15 +25,12 @@ impl Subject {
 
     fn count(&mut self, seed: u64, side: f64) -> u128 {
         let [x, y] = [self.corner() - side / 2.0, self.corner() - side / 3.0];
-        let region = Region::new([x, y], [x + side, y + side]).expect("ordered");
-        let plan = self.sampler.plan(placement(seed), region).expect("near");
-        plan.count()
+        boxed(&self.sampler, [x, y], side, seed).count()
     }
 
     fn offset(&mut self, side: f64, share: f64) -> u128 {
         let [x, y] = [self.corner() - side / 2.0, self.corner() - side / 3.0];
-        let region = Region::new([x, y], [x + side, y + side]).expect("ordered");
-        let plan = self.sampler.plan(placement(0), region).expect("near");
+        let plan = boxed(&self.sampler, [x, y], side, 0);
         let offset = (plan.count() as f64 * share) as u128;
         plan.window(offset, Some(10)).offset()
     }
@@ -75,10 +57,6 @@ impl Subject {
     }
 }
 
-fn placement(seed: u64) -> Placement {
-    Placement::new(Spacing::new(1.0).expect("valid"), Seed(seed))
-}
-
 type Job = (&'static str, fn(&mut Subject) -> u128);
 
 const JOBS: [Job; 11] = [
@@ -96,8 +74,7 @@ const JOBS: [Job; 11] = [
 ];
 
 fn main() {
-    let quick = std::env::args().any(|arg| arg == "--quick" || arg == "--test");
-    let (rounds, seconds) = if quick { (1, 0.0) } else { (25, 0.004) };
+    let (rounds, seconds) = if is_quick() { (1, 0.0) } else { (25, 0.004) };
     let sampler = Arc::new(Sampler::new(table()));
     let mut subject = Subject { sampler, at: 0.5 };
     let mut times = JOBS.map(|_| vec![]);

@@ -1,35 +1,22 @@
 //! Nearest points and discs against brute force over boxes.
 
+mod subject;
+
 use std::{path::Path, sync::Arc};
 
 use proptest::prelude::*;
 use strew_core::{
-    Alpha, Map, Placement, Point, Region, Sampler, Seed, Spacing, Table, Warp,
+    Placement, Point, Region, Sampler, Seed, Spacing, Table, Warp,
     pattern::Pattern,
     sample::{FindError, Finder, Keep, Neighbor, rank},
-    table::{FRACTION_BITS, Provenance},
 };
-
-/// Arbitrary vectors of up to ±13 grid units.
-fn wild(alpha: &str) -> Table {
-    let map = Map::new(alpha.parse::<Alpha>().expect("valid"), 20).expect("small");
-    let blocks = map.intervals() * map.intervals();
-    let mut state = 77u64;
-    let mut next = || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state % (26 << FRACTION_BITS)) as i32 - (13 << FRACTION_BITS)
-    };
-    let vectors = (0..blocks).map(|_| [next(), next()]).collect();
-    Table::new(map, "wild", vectors, Provenance::default()).expect("valid")
-}
+use subject::table;
 
 fn samplers() -> &'static [Arc<Sampler>] {
     static ONCE: std::sync::OnceLock<Vec<Arc<Sampler>>> = std::sync::OnceLock::new();
     ONCE.get_or_init(|| {
         let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tables");
-        let mut tables = vec![wild("sqrt(3)"), wild("(1+sqrt(5))/2")];
+        let mut tables = vec![table("sqrt(3)", 20), table("(1+sqrt(5))/2", 20)];
         for name in ["blue-5-sqrt3-over-2-s", "pink-5-sqrt3-over-2-s"] {
             let bytes = std::fs::read(shipped.join(name).with_extension("strew")).expect("there");
             tables.push(Table::from_bytes(&bytes).expect("valid"));

@@ -3,22 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::{document, schemas::reference};
-use crate::service::query::Parameter;
-
-/// The members that say what the points of a set are, by the parameters of the same name.
-const SET: [&str; 11] = [
-    "density",
-    "spacing",
-    "min_distance",
-    "count",
-    "profile",
-    "alpha",
-    "map",
-    "table",
-    "seed",
-    "warp",
-    "keep",
-];
+use crate::service::query::{LOOKS_NAMES, Parameter, SET_NAMES, WINDOW_NAMES};
 
 fn members(names: &[&str]) -> Map<String, Value> {
     let member = |name: &&str| {
@@ -31,7 +16,8 @@ fn members(names: &[&str]) -> Map<String, Value> {
 }
 
 fn set() -> Map<String, Value> {
-    let mut set = members(&SET);
+    // The members of these names that JSON has more to say of replace those of addresses.
+    let mut set = members(&SET_NAMES);
     let text = json!({ "type": "string" });
     let about = |name| Parameter::named(name).map_or("", |parameter| parameter.about);
     let others = json!({
@@ -54,9 +40,8 @@ fn set() -> Map<String, Value> {
 /// A whole query.
 pub(super) fn schema() -> Value {
     let mut properties = set();
-    properties.extend(members(&[
-        "offset", "limit", "cursor", "format", "decimals", "size",
-    ]));
+    properties.extend(members(&WINDOW_NAMES));
+    properties.extend(members(&LOOKS_NAMES));
     properties.insert("region".into(), reference("Region"));
     let layers = json!({
         "type": "array", "minItems": 1, "maxItems": 16, "items": reference("Layer"),

@@ -14,7 +14,7 @@ use super::{
     attributes::ATTRIBUTES,
     faults::Faults,
     geojson::{GEOJSON, polygons},
-    parameters::SEED,
+    parameters::{LOOKS_NAMES, SEED, SET_NAMES, WINDOW_NAMES},
 };
 use crate::service::{
     Encoding, Error, Fault,
@@ -46,24 +46,6 @@ const CHUNK: &str =
 const SCALE_RANGE: &str = "[min, max] with 0 <= min <= max <= 1e9";
 const VARIANTS: &str = r#"{"oak": 3, "birch": 1}, or [{"name": "oak", "weight": 3}, …]: 1 to 256 different names of up to 64 characters, weights 1e-9 to 1e9"#;
 
-/// The members of a set of points.
-const SET: [&str; 14] = [
-    "density",
-    "spacing",
-    "min_distance",
-    "count",
-    "profile",
-    "alpha",
-    "map",
-    "table",
-    "seed",
-    "warp",
-    "keep",
-    "attributes",
-    "scale_range",
-    "variants",
-];
-
 /// Reads a body.
 ///
 /// # Errors
@@ -82,10 +64,10 @@ pub fn read_body(bytes: &[u8]) -> Result<Body, Error> {
     };
     let mut faults = Faults::default();
     let mut reader = Reader::new("", &members, &mut faults);
-    let mut known = vec![
-        "region", "layers", "offset", "limit", "cursor", "format", "decimals", "size",
-    ];
-    known.extend(SET);
+    let mut known = vec!["region", "layers"];
+    known.extend(WINDOW_NAMES);
+    known.extend(LOOKS_NAMES);
+    known.extend(SET_NAMES);
     reader.only(&known);
     let draft = Draft {
         region: reader.member("region", REGION, |value, reader| {
@@ -229,7 +211,7 @@ fn layer(path: &str, members: &Map<String, Value>, outer: &mut Reader<'_>) -> La
     const CLEAR_OF: &str = r#"distances by the names of earlier layers, such as {"trees": 2}"#;
     let mut reader = outer.inner(&format!("{path}."), members);
     let mut known = vec!["name", "region", "clear_of"];
-    known.extend(SET);
+    known.extend(SET_NAMES);
     reader.only(&known);
     let region_path = format!("{path}.region");
     let clear_of = reader.member("clear_of", CLEAR_OF, |value, _| {

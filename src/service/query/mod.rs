@@ -38,7 +38,9 @@ pub use cursor::Token;
 pub use draft::{Draft, LayerDraft, SetDraft, WindowDraft};
 pub use echo::{Resolved, ResolvedSet};
 pub use geojson::read_region;
-pub use parameters::{PARAMETERS, Parameter, Shape};
+pub use parameters::{
+    LOOKS_NAMES, PARAMETERS, Parameter, REGION_NAMES, SET_NAMES, Shape, WINDOW_NAMES,
+};
 pub use region::{Asked, RegionDraft, Rings, ShapeDraft};
 pub use table::TableDraft;
 pub use text::{Parameters, parse_pairs};

@@ -349,6 +349,30 @@ pub const PARAMETERS: &[Parameter] = &[
     },
 ];
 
+/// The parameters that say what the points of a set are: also the members of one in JSON.
+pub const SET_NAMES: [&str; 14] = [
+    "density",
+    "spacing",
+    "min_distance",
+    "count",
+    "profile",
+    "alpha",
+    "map",
+    "table",
+    "seed",
+    "warp",
+    "keep",
+    "attributes",
+    "scale_range",
+    "variants",
+];
+/// The parameters that say where; one of them.
+pub const REGION_NAMES: [&str; 3] = ["bbox", "circle", "polygon"];
+/// The parameters that say which of the points.
+pub const WINDOW_NAMES: [&str; 3] = ["offset", "limit", "cursor"];
+/// The parameters that say how the answer looks.
+pub const LOOKS_NAMES: [&str; 3] = ["format", "decimals", "size"];
+
 /// What a seed may be.
 pub(super) const SEED: &str = "an integer from 0 to 18446744073709551615";
 

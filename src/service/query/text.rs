@@ -11,7 +11,10 @@ use super::{
     attributes::{SCALE_RANGE, VARIANTS},
     check_parts,
     faults::{Faults, MOST},
-    parameters::{LIMIT, NEAREST, OFFSET, PARTS, PLACE, Parameter, RADIUS, SEED, Shape, names},
+    parameters::{
+        LIMIT, LOOKS_NAMES, NEAREST, OFFSET, PARTS, PLACE, Parameter, RADIUS, REGION_NAMES, SEED,
+        SET_NAMES, Shape, WINDOW_NAMES, names,
+    },
     region::{CIRCLE, POLYGON},
     values::{
         finite, integer, no_format, numbers, read_bbox, strength, variants_of, vertices, wrong,
@@ -149,9 +152,9 @@ impl Parameters {
     #[must_use]
     pub fn draft(&self, region: Option<RegionDraft>, found: Vec<Fault>) -> Body {
         let mut faults = Faults::new(found);
-        let mut allowed: Vec<&str> = [&SET[..], &OUTPUT, &WINDOW].concat();
+        let mut allowed: Vec<&str> = [&SET_NAMES[..], &LOOKS_NAMES, &WINDOW_NAMES].concat();
         if region.is_none() {
-            allowed.extend(REGION);
+            allowed.extend(REGION_NAMES);
         }
         self.only(&allowed, &mut faults);
         let draft = Draft {
@@ -201,7 +204,10 @@ impl Parameters {
         found: Vec<Fault>,
     ) -> Result<Set, Error> {
         let mut faults = Faults::new(found);
-        let set: Vec<&str> = SET.into_iter().filter(|name| *name != "count").collect();
+        let set: Vec<&str> = SET_NAMES
+            .into_iter()
+            .filter(|name| *name != "count")
+            .collect();
         self.only(&[&set[..], others].concat(), &mut faults);
         self.set(&mut faults)
             .check_alone(catalog, faults.into_inner())
@@ -262,7 +268,7 @@ impl Parameters {
     }
 
     fn region(&self, faults: &mut Faults) -> Option<RegionDraft> {
-        let given: Vec<&str> = REGION
+        let given: Vec<&str> = REGION_NAMES
             .into_iter()
             .filter(|name| self.get(name).is_some())
             .collect();
@@ -342,30 +348,6 @@ impl Parameters {
     }
 }
 
-/// The parameters that say what the points of a set are.
-const SET: [&str; 14] = [
-    "density",
-    "spacing",
-    "min_distance",
-    "count",
-    "profile",
-    "alpha",
-    "map",
-    "table",
-    "seed",
-    "warp",
-    "keep",
-    "attributes",
-    "scale_range",
-    "variants",
-];
-/// The parameters that say where.
-const REGION: [&str; 3] = ["bbox", "circle", "polygon"];
-/// The parameters that say which of the points.
-const WINDOW: [&str; 3] = ["offset", "limit", "cursor"];
-/// The parameters that say how the answer looks.
-const OUTPUT: [&str; 3] = ["format", "decimals", "size"];
-
 #[cfg(test)]
 mod tests {
     use super::{super::PARAMETERS, *};
@@ -393,7 +375,7 @@ mod tests {
                 // Its example is an answer's.
                 continue;
             }
-            if !is_in(&REGION) {
+            if !is_in(&REGION_NAMES) {
                 text += "&bbox=0,0,10,10";
             }
             if !is_in(&["density", "spacing", "min_distance", "count"]) {

@@ -1,5 +1,7 @@
 //! What the tests of the sampler ask: tables of arbitrary vectors, seeds, and all points of a plan.
 
+#![allow(dead_code, reason = "each test takes what it needs")]
+
 use std::sync::Arc;
 
 use proptest::prelude::*;
@@ -12,7 +14,7 @@ use strew_core::{
 const ALPHAS: [&str; 3] = ["(5-sqrt(3))/2", "sqrt(3)", "(1+sqrt(5))/2"];
 
 /// A table with arbitrary vectors up to about ±13 grid units, as long as any published one's.
-fn table(alpha: &str, radius: u32) -> Table {
+pub fn table(alpha: &str, radius: u32) -> Table {
     let map = Map::new(alpha.parse::<Alpha>().expect("valid"), radius).expect("small");
     let blocks = map.intervals() * map.intervals();
     let mut state = 0x1234_5678_9abc_def0u64;
