@@ -13,6 +13,7 @@ mod finish;
 mod freshness;
 mod negotiate;
 mod openapi;
+mod page;
 mod points;
 mod portrait;
 mod problem;
@@ -60,6 +61,7 @@ impl Door {
     /// A door of these endpoints and their description.
     #[must_use]
     pub fn new(mut endpoints: Vec<Endpoint>) -> Self {
+        endpoints.extend(page::endpoints());
         endpoints.extend(docs::endpoints());
         endpoints.push(openapi::endpoint(&endpoints));
         let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
