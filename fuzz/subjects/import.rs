@@ -6,7 +6,7 @@ use strew_core::{Alpha, Map, Table};
 
 static MAPS: LazyLock<[Map; 2]> = LazyLock::new(|| {
     let alpha: Alpha = "(5-sqrt(3))/2".parse().expect("valid");
-    [1, 49].map(|radius| Map::new(alpha.clone(), radius).expect("small"))
+    [1, 49].map(|radius| Map::new(alpha, radius).expect("small"))
 });
 
 pub fn run(data: &[u8]) {
