@@ -8,7 +8,7 @@ use std::{
 use anyhow::{Context as _, anyhow};
 
 use super::{Failure, config};
-use crate::ops::{App, ServeError, shutdown, telemetry};
+use crate::ops::{App, ServeError, reload, shutdown, telemetry};
 
 /// Flags of `strew serve`.
 #[derive(Debug, clap::Args)]
@@ -52,8 +52,10 @@ async fn serve(app: App, listener: TcpListener) -> anyhow::Result<()> {
     let address = listener.local_addr().context("no address")?;
     // Listen for signals before saying that we are ready.
     let stop = shutdown::Signals::new().context("cannot listen for signals")?;
+    let hangups = reload::Hangups::new().context("cannot listen for signals")?;
     announce(address).context("cannot write to standard output")?;
     tracing::info!(%address, tables = app.service().catalog().entries().len(), "serving");
+    let app = app.with_hangups(hangups);
     let broken = app.run(listener, stop.first_then_exit()).await?;
     if broken > 0 {
         tracing::warn!(broken, "stopped; some streams were broken off");

@@ -10,10 +10,12 @@ use std::{
 use axum::{Router, body::Body, extract::Request, response::Response};
 use axum_server::Handle;
 use hyper_util::rt::TokioTimer;
+use tokio_util::task::AbortOnDropHandle;
 
 use super::{
     calls,
     health::{self, Readiness},
+    reload::{Hangups, Reloader},
 };
 use crate::{
     config::{self, Config},
@@ -47,6 +49,8 @@ const GRACE: Duration = Duration::from_secs(1);
 pub struct App {
     config: Config,
     service: Arc<Service>,
+    reloader: Arc<Reloader>,
+    hangups: Hangups,
     more: Router,
 }
 
@@ -56,11 +60,13 @@ impl App {
     /// # Errors
     /// If a table is not valid or the system gives no threads.
     pub fn new(config: Config) -> Result<Self, ServeError> {
-        let folder = Some(config.tables.folder.as_path()).filter(|f| !f.as_os_str().is_empty());
+        let folder = config.tables.folder();
         let catalog = Catalog::load(config.tables.embedded, folder)?;
         let workers = Workers::new(config.workers.threads)?;
         let service = Arc::new(Service::new(catalog, config.limits.clone(), workers));
         Ok(Self {
+            reloader: Arc::new(Reloader::new(service.clone(), folder.map(Into::into))),
+            hangups: Hangups::none(),
             config,
             service,
             more: Router::new(),
@@ -71,6 +77,13 @@ impl App {
     #[must_use]
     pub fn with_routes(mut self, routes: Router) -> Self {
         self.more = self.more.merge(routes);
+        self
+    }
+
+    /// Reads its tables again whenever these come.
+    #[must_use]
+    pub fn with_hangups(mut self, hangups: Hangups) -> Self {
+        self.hangups = hangups;
         self
     }
 
@@ -86,10 +99,11 @@ impl App {
     /// # Errors
     /// If the socket does not work.
     pub async fn run(
-        self,
+        mut self,
         listener: TcpListener,
         shutdown: impl Future<Output = ()>,
     ) -> Result<usize, ServeError> {
+        let _watch = self.watch();
         let readiness = Readiness::default();
         let (router, grpc_health) = self.router(readiness.clone()).await?;
         listener.set_nonblocking(true)?;
@@ -126,6 +140,18 @@ impl App {
             }
         }
         Ok(broken)
+    }
+
+    /// Looks for changes of the tables for as long as the handle is held.
+    fn watch(&mut self) -> AbortOnDropHandle<()> {
+        let seconds = self.config.tables.watch_seconds;
+        let is_looked_for = seconds > 0.0 && self.config.tables.folder().is_some();
+        let every = is_looked_for.then(|| config::seconds(seconds));
+        let hangups = std::mem::replace(&mut self.hangups, Hangups::none());
+        let reloader = self.reloader.clone();
+        AbortOnDropHandle::new(tokio::spawn(async move {
+            reloader.watch(hangups, every).await;
+        }))
     }
 
     /// Both doors, health, and one fallback for all.
