@@ -8,10 +8,11 @@
 
 mod look;
 
-use std::{io, path::PathBuf, sync::Arc, time::Duration};
+use std::{path::PathBuf, sync::Arc, time::Duration};
 
 use tokio::sync::Mutex;
 
+use super::shutdown::Hangups;
 use crate::service::{Error, Reload, Service};
 use look::Look;
 
@@ -73,11 +74,11 @@ impl Reloader {
     }
 
     /// Reloads on signals and changes until it is dropped. Without `every` nobody looks for changes.
-    pub async fn watch(&self, mut hangups: Hangups, every: Option<Duration>) {
+    pub async fn watch(&self, mut hangups: Option<Hangups>, every: Option<Duration>) {
         let mut seen = self.look().await;
         loop {
             let cause = tokio::select! {
-                () = hangups.next() => Cause::Signal,
+                () = heard(&mut hangups) => Cause::Signal,
                 () = wait(every) => Cause::Change,
             };
             let now = self.look().await;
@@ -95,6 +96,13 @@ impl Reloader {
         let folder = self.folder.clone();
         let look = tokio::task::spawn_blocking(move || Look::at(folder.as_deref()));
         look.await.unwrap_or_default()
+    }
+}
+
+async fn heard(hangups: &mut Option<Hangups>) {
+    match hangups {
+        Some(hangups) => hangups.next().await,
+        None => std::future::pending().await,
     }
 }
 
@@ -151,46 +159,4 @@ fn tell(cause: Cause, reload: &Reload) {
         refused = reload.refused.len(),
         "tables read again"
     );
-}
-
-/// The signal that asks to read everything again, listened for from the moment this is made: without
-/// a listener it would end the process.
-#[derive(Debug)]
-pub struct Hangups {
-    #[cfg(unix)]
-    signal: Option<tokio::signal::unix::Signal>,
-}
-
-impl Hangups {
-    /// Starts to listen for SIGHUP, where there is one. Needs a tokio runtime.
-    ///
-    /// # Errors
-    /// If the system does not let us.
-    pub fn new() -> io::Result<Self> {
-        Ok(Self {
-            #[cfg(unix)]
-            signal: Some(tokio::signal::unix::signal(
-                tokio::signal::unix::SignalKind::hangup(),
-            )?),
-        })
-    }
-
-    /// No signal: for a daemon inside another program.
-    #[must_use]
-    pub const fn none() -> Self {
-        Self {
-            #[cfg(unix)]
-            signal: None,
-        }
-    }
-
-    async fn next(&mut self) {
-        #[cfg(unix)]
-        if let Some(signal) = &mut self.signal
-            && signal.recv().await.is_some()
-        {
-            return;
-        }
-        std::future::pending().await
-    }
 }
