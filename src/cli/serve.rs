@@ -20,7 +20,7 @@ pub(super) struct Args {
 /// Serves until a signal comes.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged()?;
-    telemetry::start(&config.log.filter).context("log.filter")?;
+    telemetry::start(&config.log.filter, config.log.format).context("log.filter")?;
     let listen = config.server.listen;
     let app = App::new(config).map_err(|error| match error {
         ServeError::Catalog(_) => Failure::Usage(error.into()),

@@ -12,6 +12,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         shutdown,
         log,
         tables: _,
+        metrics: _,
     } = config;
     let mut faults = vec![];
     let mut within = |key: &str, value: f64, min: f64, max: f64| {

@@ -2,6 +2,9 @@
 
 mod calls;
 pub mod health;
+mod identity;
+mod metrics;
+mod observe;
 pub mod serve;
 pub mod shutdown;
 pub mod telemetry;

@@ -14,6 +14,8 @@ use hyper_util::rt::TokioTimer;
 use super::{
     calls,
     health::{self, Readiness},
+    metrics::{self, Metrics},
+    observe,
 };
 use crate::{
     config::{self, Config},
@@ -98,7 +100,7 @@ impl App {
             .acceptor(axum_server::accept::NoDelayAcceptor::new())
             .handle(handle.clone());
         self.limit_connections(&mut server);
-        let served = server.serve(router.into_make_service());
+        let served = server.serve(router.into_make_service_with_connect_info::<SocketAddr>());
         tokio::pin!(served);
         tokio::select! {
             () = shutdown => {}
@@ -133,6 +135,11 @@ impl App {
         let (grpc, grpc_health) = grpc::routes(self.service.clone()).await?;
         let mut endpoints = rest::endpoints(&self.service);
         endpoints.extend(health::endpoints(readiness, self.service.clone()));
+        let metrics = Metrics::default();
+        if self.config.metrics.enabled {
+            endpoints.push(metrics::endpoint(metrics.clone(), self.service.clone()));
+            tokio::spawn(metrics.keep_up());
+        }
         let rest::Door { router, paths } = rest::Door::new(endpoints);
         let router = router
             .merge(calls::routes(grpc.into_axum_router().reset_fallback()))
@@ -141,7 +148,7 @@ impl App {
         let head_bytes = self.config.server.max_header_bytes;
         let workers = self.service.workers().clone();
         let router = rest::finished(router, &self.config.http, head_bytes, workers);
-        Ok((router, grpc_health))
+        Ok((observe::observed(router, metrics), grpc_health))
     }
 
     /// What one connection may ask of us. (The bound on heads also bounds what HTTP/1.1 gathers
