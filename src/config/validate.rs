@@ -6,6 +6,7 @@ use super::{Config, ConfigError};
 pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     let Config {
         server,
+        tls,
         http,
         limits,
         workers,
@@ -21,6 +22,12 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         }
     };
     let (second, hour, day) = (1.0, 3600.0, 86400.0);
+    within(
+        "server.max_connections",
+        server.max_connections as f64,
+        1.0,
+        1e6,
+    );
     within(
         "server.header_read_timeout_seconds",
         server.header_read_timeout_seconds,
@@ -46,6 +53,19 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         second,
         hour,
     );
+    within(
+        "server.idle_connection_seconds",
+        server.idle_connection_seconds,
+        0.1 * second,
+        day,
+    );
+    within(
+        "server.stalled_reader_seconds",
+        server.stalled_reader_seconds,
+        0.1 * second,
+        day,
+    );
+    within("tls.watch_seconds", tls.watch_seconds, 0.0, day);
     within(
         "http.cache_seconds",
         f64::from(http.cache_seconds),
@@ -73,6 +93,17 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     within("workers.threads", workers.threads as f64, 0.0, 1024.0);
     within("shutdown.notice_seconds", shutdown.notice_seconds, 0.0, day);
     within("shutdown.drain_seconds", shutdown.drain_seconds, 0.0, day);
+    let is_set = |path: &std::path::Path| !path.as_os_str().is_empty();
+    let of_tls = [&tls.certificate, &tls.key, &tls.client_ca].map(|path| is_set(path));
+    if let [certificate, key, client_ca] = of_tls
+        && (certificate != key || client_ca && !key)
+    {
+        faults.push(format!(
+            "tls.certificate = {:?}, tls.key = {:?}, tls.client_ca = {:?}; allowed: none of them, the \
+             first two, or all",
+            tls.certificate, tls.key, tls.client_ca
+        ));
+    }
     if let Err(error) = log.filter.parse::<tracing_subscriber::EnvFilter>() {
         faults.push(format!(
             "log.filter = {:?}; allowed: a level (error, warn, info, debug, trace) or levels by \

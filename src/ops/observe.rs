@@ -15,7 +15,7 @@ use std::{
 use axum::{
     Router,
     body::Body,
-    extract::{ConnectInfo, MatchedPath, Request, State},
+    extract::{MatchedPath, Request, State},
     middleware::{self, Next},
     response::Response,
 };
@@ -26,6 +26,7 @@ use tracing::{Instrument as _, Span};
 
 use super::{
     calls,
+    connections::Peer,
     identity::{Identity, REQUEST_ID},
     metrics::{Broken, Door, Metrics, NO_FORMAT, since},
 };
@@ -117,10 +118,7 @@ impl Watch {
             route: route(request),
             method: request.method().clone(),
             address: asked.chars().take(LONGEST).collect(),
-            client: request
-                .extensions()
-                .get::<ConnectInfo<SocketAddr>>()
-                .map(|info| info.0),
+            client: request.extensions().get::<Peer>().map(|peer| peer.0),
             status: None,
             stand: Stand::Open,
             expected: None,

@@ -104,7 +104,8 @@ impl Daemon {
             .expect("readable");
         let address = line
             .trim()
-            .strip_prefix("listening on http://")
+            .strip_prefix("listening on http")
+            .map(|rest| rest.trim_start_matches('s').trim_start_matches("://"))
             .unwrap_or_else(|| panic!("not ready: {line}"))
             .to_owned();
         Self {
