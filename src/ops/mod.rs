@@ -1,5 +1,5 @@
 //! Running the daemon: one port for both doors, connections and their limits, TLS, health,
-//! a bounded stop, the log.
+//! a bounded stop, the log, tables read again.
 
 mod activity;
 mod calls;
@@ -12,6 +12,7 @@ mod identity;
 mod metrics;
 mod observe;
 mod often;
+pub mod reload;
 pub mod serve;
 pub mod shutdown;
 pub mod telemetry;

@@ -3,6 +3,7 @@
 use std::{io, net::TcpListener, sync::Arc, time::Duration};
 
 use axum::{Router, body::Body, extract::Request, response::Response};
+use tokio_util::task::AbortOnDropHandle;
 
 use super::{
     calls,
@@ -10,6 +11,7 @@ use super::{
     health::{self, Readiness},
     metrics::{self, Metrics},
     observe,
+    reload::Reloader,
     shutdown::Hangups,
     tls::{Tls, TlsError},
 };
@@ -48,7 +50,10 @@ const GRACE: Duration = Duration::from_secs(1);
 pub struct App {
     config: Config,
     service: Arc<Service>,
+    reloader: Arc<Reloader>,
+    hangups: Option<Hangups>,
     tls: Option<Tls>,
+    metrics: Metrics,
     more: Router,
 }
 
@@ -59,14 +64,17 @@ impl App {
     /// If a certificate or table is not valid or the system gives no threads.
     pub fn new(config: Config) -> Result<Self, ServeError> {
         let tls = Tls::new(&config.tls)?;
-        let folder = Some(config.tables.folder.as_path()).filter(|f| !f.as_os_str().is_empty());
+        let folder = config.tables.folder();
         let catalog = Catalog::load(config.tables.embedded, folder)?;
         let workers = Workers::new(config.workers.threads)?;
         let service = Arc::new(Service::new(catalog, config.limits.clone(), workers));
         Ok(Self {
+            reloader: Arc::new(Reloader::new(service.clone(), folder.map(Into::into))),
+            hangups: None,
             config,
             service,
             tls,
+            metrics: Metrics::default(),
             more: Router::new(),
         })
     }
@@ -75,6 +83,20 @@ impl App {
     #[must_use]
     pub fn with_routes(mut self, routes: Router) -> Self {
         self.more = self.more.merge(routes);
+        self
+    }
+
+    /// Reads its tables again whenever these come.
+    #[must_use]
+    pub fn with_hangups(mut self, hangups: Hangups) -> Self {
+        self.hangups = Some(hangups);
+        self
+    }
+
+    /// Shows also what the process counts without saying for which daemon: for a process of one.
+    #[must_use]
+    pub fn with_all_metrics(self) -> Self {
+        self.metrics.take_all();
         self
     }
 
@@ -90,10 +112,11 @@ impl App {
     /// # Errors
     /// If the socket does not work.
     pub async fn run(
-        self,
+        mut self,
         listener: TcpListener,
         shutdown: impl Future<Output = ()>,
     ) -> Result<usize, ServeError> {
+        let _watch = self.watch();
         let readiness = Readiness::default();
         let (router, grpc_health) = self.router(readiness.clone()).await?;
         listener.set_nonblocking(true)?;
@@ -135,12 +158,24 @@ impl App {
         Ok(broken)
     }
 
+    /// Looks for changes of the tables for as long as the handle is held.
+    fn watch(&mut self) -> AbortOnDropHandle<()> {
+        let seconds = self.config.tables.watch_seconds;
+        let is_looked_for = seconds > 0.0 && self.config.tables.folder().is_some();
+        let every = is_looked_for.then(|| config::seconds(seconds));
+        let hangups = self.hangups.take();
+        let reloader = self.reloader.clone();
+        AbortOnDropHandle::new(tokio::spawn(async move {
+            reloader.watch(hangups, every).await;
+        }))
+    }
+
     /// Both doors, health, and one fallback for all.
     async fn router(&self, readiness: Readiness) -> Result<(Router, grpc::Health), ServeError> {
         let (grpc, grpc_health) = grpc::routes(self.service.clone()).await?;
         let mut endpoints = rest::endpoints(&self.service);
         endpoints.extend(health::endpoints(readiness, self.service.clone()));
-        let metrics = Metrics::default();
+        let metrics = self.metrics.clone();
         if self.config.metrics.enabled {
             endpoints.push(metrics::endpoint(metrics.clone(), self.service.clone()));
             tokio::spawn(metrics.keep_up());

@@ -34,6 +34,7 @@ mod probe;
 mod raw;
 mod readers;
 mod regions;
+mod reload;
 mod settings;
 mod singles;
 mod streaming;

@@ -251,3 +251,14 @@ fn the_dashboard_asks_for_metrics_that_there_are() {
         assert!(some, "{expression} asks for nothing");
     }
 }
+
+#[test]
+fn tables_read_again_are_counted() {
+    let daemon = Daemon::start(&[]);
+    daemon.signal("-HUP");
+    until("the signal is counted", || {
+        let labels = ["cause=\"signal\""];
+        let reloads = sum(&samples(&daemon), "strew_tables_reloads_total", &labels);
+        (reloads == 1.0).then_some(())
+    });
+}

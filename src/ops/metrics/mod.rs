@@ -124,7 +124,7 @@ pub struct Metrics {
 }
 
 struct Inner {
-    recorder: PrometheusRecorder,
+    recorder: Arc<PrometheusRecorder>,
     handle: PrometheusHandle,
     started: SystemTime,
     doors: OnceLock<[OfDoor; 2]>,
@@ -147,7 +147,7 @@ impl Default for Metrics {
         let metrics = Self {
             inner: Arc::new(Inner {
                 handle: recorder.handle(),
-                recorder,
+                recorder: Arc::new(recorder),
                 started: SystemTime::now(),
                 doors: OnceLock::new(),
                 formats: RwLock::default(),
@@ -263,6 +263,12 @@ impl Metrics {
         requests.entry(outcome).or_insert(made).clone()
     }
 
+    /// Takes in what the process counts without saying for which daemon. There is one such place in
+    /// a process; the first to ask has it.
+    pub(super) fn take_all(&self) {
+        let _ = metrics::set_global_recorder(self.inner.recorder.clone());
+    }
+
     /// Folds up what histograms gather, as long as the daemon runs.
     pub(super) fn keep_up(&self) -> impl Future<Output = ()> + Send + use<> {
         let inner = Arc::downgrade(&self.inner);
@@ -331,7 +337,7 @@ const THREADS: &str = "process_threads";
 const FIRST_BYTE: &str = "strew_time_to_first_byte_seconds";
 const WHOLE: &str = "strew_request_duration_seconds";
 
-const COUNTERS: [(&str, &str); 7] = [
+const COUNTERS: [(&str, &str); 9] = [
     (
         REQUESTS,
         "Requests that were answered, by route and how they ended: a class of HTTP or a gRPC code",
@@ -342,6 +348,14 @@ const COUNTERS: [(&str, &str); 7] = [
     (
         BROKEN,
         "Answers that ended before they were whole, by who broke them off",
+    ),
+    (
+        "strew_tables_reloads_total",
+        "How often tables were read again, by cause",
+    ),
+    (
+        "strew_tables_refused_total",
+        "Files of tables that were refused when they were read again",
     ),
     (CACHE_HITS, "Tables asked for that were ready"),
     (CACHE_MISSES, "Tables asked for that had to be made ready"),
