@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use robust::{Coord, orient2d};
 
-use super::{AreaError, Region, State, Steps};
+use super::{AreaError, Region, State, Stepper};
 
 /// A polygon: one ring or several; a point is inside if a ray from it crosses the rings an odd
 /// number of times, so rings within rings are holes.
@@ -19,6 +19,9 @@ pub struct Polygon {
     edges: Vec<Edge>,
     /// The horizontal ones: rays along them cross nothing, but strips end there.
     flat: Vec<Edge>,
+    /// Of edges that have been left out because they lie beyond greater x: from which y on rays
+    /// cross one more or one fewer of them. Ascending.
+    turns: Vec<f64>,
     vertices: usize,
     min: [f64; 2],
     max: [f64; 2],
@@ -29,6 +32,8 @@ pub struct Polygon {
 struct Edge {
     low: [f64; 2],
     high: [f64; 2],
+    /// x per y; infinite if that is more than can be reckoned with.
+    slope: f64,
 }
 
 impl Polygon {
@@ -44,6 +49,7 @@ impl Polygon {
         let mut polygon = Self {
             edges: Vec::new(),
             flat: Vec::new(),
+            turns: Vec::new(),
             vertices: 0,
             min: [f64::INFINITY; 2],
             max: [f64::NEG_INFINITY; 2],
@@ -89,7 +95,7 @@ impl Polygon {
             } else {
                 &mut self.edges
             };
-            edges.push(Edge { low, high });
+            edges.push(Edge::new(low, high));
         }
         Ok(())
     }
@@ -110,25 +116,55 @@ impl Polygon {
     /// Whether a point lies inside.
     #[must_use]
     pub fn contains(&self, p: [f64; 2]) -> bool {
-        self.edges.iter().filter(|edge| edge.is_right_of(p)).count() % 2 == 1
+        let crossed = self.edges.iter().filter(|edge| edge.is_right_of(p));
+        self.is_in_beyond(p[1]) ^ (crossed.count() % 2 == 1)
     }
 
-    /// The same polygon for points with y in the strip.
-    pub(super) fn focus(&self, strip: [f64; 2]) -> Self {
-        let near = |edges: &[Edge]| {
-            let near = edges.iter().filter(|edge| edge.touches(strip));
-            near.copied().collect()
-        };
-        Self {
-            edges: near(&self.edges),
-            flat: near(&self.flat),
+    /// Whether rays of this y cross an odd number of the edges left out.
+    fn is_in_beyond(&self, y: f64) -> bool {
+        self.turns.partition_point(|&turn| turn <= y) % 2 == 1
+    }
+
+    /// The same polygon for points within a box, its upper sides included; `Ok` if all of them are
+    /// inside or all outside.
+    pub(super) fn focus(&self, within: &Region) -> Result<bool, Self> {
+        let ([x0, y0], [x1, y1]) = (within.min(), within.max());
+        let mut near = Self {
+            edges: Vec::new(),
+            flat: Vec::new(),
+            turns: self.turns.clone(),
             ..*self
+        };
+        for edge in self.edges.iter().filter(|edge| edge.touches([y0, y1])) {
+            let [left, right] = edge.ends();
+            if left > x1 {
+                near.turns.extend([edge.low[1], edge.high[1]]);
+            } else if right >= x0 {
+                near.edges.push(*edge);
+            }
         }
-    }
-
-    /// Whether nothing is left of it.
-    pub(super) const fn is_nowhere(&self) -> bool {
-        self.edges.is_empty() && self.flat.is_empty()
+        let meets = |edge: &&Edge| {
+            let [left, right] = edge.ends();
+            edge.touches([y0, y1]) && left <= x1 && right >= x0
+        };
+        near.flat.extend(self.flat.iter().filter(meets));
+        near.turns.sort_unstable_by(f64::total_cmp);
+        // Where one edge ends and the next begins nothing changes.
+        let mut turns: Vec<f64> = Vec::with_capacity(near.turns.len());
+        for &turn in near.turns.iter().filter(|&&turn| turn <= y1) {
+            // Those that all rays of the box are above count by their parity.
+            let turn = if turn <= y0 { f64::NEG_INFINITY } else { turn };
+            if turns.last() == Some(&turn) {
+                turns.pop();
+            } else {
+                turns.push(turn);
+            }
+        }
+        near.turns = turns;
+        if near.edges.is_empty() && near.flat.is_empty() && near.turns.iter().all(|&t| t <= y0) {
+            return Ok(near.is_in_beyond(y0));
+        }
+        Err(near)
     }
 
     /// The boxes around its edges.
@@ -141,24 +177,29 @@ impl Polygon {
         self.edges.iter().chain(&self.flat).map(side)
     }
 
-    pub(super) fn steps(&self, strip: [f64; 2]) -> Steps {
+    /// What a strip is along x, within what has been focused on.
+    pub(super) fn steps(&self, strip: [f64; 2], stepper: &mut Stepper) {
+        let Stepper { steps, spans } = stepper;
         let [y0, _] = strip;
         // Where each edge may be within the strip, and whether it crosses the strip's lower side.
-        let mut spans: Vec<([f64; 2], bool)> = self
-            .edges
-            .iter()
-            .chain(&self.flat)
-            .filter(|edge| edge.touches(strip))
-            .map(|edge| (edge.extent(strip), edge.low[1] <= y0 && y0 < edge.high[1]))
-            .collect();
+        spans.clear();
+        let beyond = self.is_in_beyond(y0);
+        let mut inside = beyond;
+        for edge in self.edges.iter().chain(&self.flat) {
+            if edge.touches(strip) {
+                let crosses = edge.low[1] <= y0 && y0 < edge.high[1];
+                inside ^= crosses;
+                spans.push((edge.extent(strip), crosses));
+            }
+        }
         spans.sort_unstable_by(|a, b| a.0[0].total_cmp(&b.0[0]));
-        let mut steps = Steps::all(State::Out);
-        let mut inside = false;
+        let state = |inside| if inside { State::In } else { State::Out };
+        steps.restart(state(inside));
         let mut end = f64::NEG_INFINITY;
-        for ([from, to], crosses) in spans {
+        for &([from, to], crosses) in spans.iter() {
             if from > end {
                 if end > f64::NEG_INFINITY {
-                    steps.push(end, if inside { State::In } else { State::Out });
+                    steps.push(end, state(inside));
                 }
                 steps.push(from, State::Test);
             }
@@ -166,13 +207,29 @@ impl Polygon {
             inside ^= crosses;
         }
         if end > f64::NEG_INFINITY {
-            steps.push(end, State::Out);
+            steps.push(end, state(beyond));
         }
-        steps
     }
 }
 
 impl Edge {
+    fn new(low: [f64; 2], high: [f64; 2]) -> Self {
+        let [width, height] = [high[0] - low[0], high[1] - low[1]];
+        // Far from where products overflow.
+        let slope = if width.abs() < 1e300 && height > 0.0 && height < 1e300 {
+            width / height
+        } else {
+            f64::INFINITY
+        };
+        Self { low, high, slope }
+    }
+
+    /// Its least and its greatest x.
+    const fn ends(&self) -> [f64; 2] {
+        let (a, b) = (self.low[0], self.high[0]);
+        if a < b { [a, b] } else { [b, a] }
+    }
+
     /// Whether a ray from `p` toward greater x crosses the edge.
     fn is_right_of(&self, p: [f64; 2]) -> bool {
         let coord = |[x, y]: [f64; 2]| Coord { x, y };
@@ -187,15 +244,14 @@ impl Edge {
         self.low[1] <= y1 && self.high[1] >= y0
     }
 
-    /// The x that the edge may have between two y, a little wider than need be.
+    /// The x that the edge may have between two y that it touches, a little wider than need be.
     fn extent(&self, [y0, y1]: [f64; 2]) -> [f64; 2] {
         let ([x0, low], [x1, high]) = (self.low, self.high);
-        let at = |y: f64| x0 + ((y - low) / (high - low)).clamp(0.0, 1.0) * (x1 - x0);
         let slack = 4e-15 * (x0.abs() + x1.abs());
-        let (a, b) = if low < high {
-            (at(y0), at(y1))
+        let [a, b] = if self.slope.is_finite() {
+            [y0, y1].map(|y| x0 + (y.clamp(low, high) - low) * self.slope)
         } else {
-            (x0, x1)
+            [x0, x1]
         };
         [a.min(b) - slack, a.max(b) + slack]
     }

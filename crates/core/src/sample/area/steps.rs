@@ -28,6 +28,20 @@ struct Step {
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::sample) struct Steps(Vec<Step>);
 
+/// Steps of one strip after another, in the same memory.
+#[derive(Clone, Debug, Default)]
+pub(in crate::sample) struct Stepper {
+    pub(in crate::sample) steps: Steps,
+    /// For polygons: where their edges may be, and whether they cross the strip's lower side.
+    pub(super) spans: Vec<([f64; 2], bool)>,
+}
+
+impl Default for Steps {
+    fn default() -> Self {
+        Self::all(State::Out)
+    }
+}
+
 impl Steps {
     /// One state everywhere.
     pub(in crate::sample) fn all(state: State) -> Self {
@@ -37,6 +51,12 @@ impl Steps {
         }])
     }
 
+    /// One state everywhere again.
+    pub(in crate::sample) fn restart(&mut self, state: State) {
+        self.0.clear();
+        self.push(f64::NEG_INFINITY, state);
+    }
+
     /// Adds a step, not below the last one.
     pub(super) fn push(&mut self, from: f64, state: State) {
         if self.0.last().is_none_or(|last| last.state != state) {
@@ -44,16 +64,15 @@ impl Steps {
         }
     }
 
-    pub(super) fn of_region(region: &Region, [y0, y1]: [f64; 2]) -> Self {
+    pub(super) fn set_region(&mut self, region: &Region, [y0, y1]: [f64; 2]) {
         let (min, max) = (region.min(), region.max());
-        let mut steps = Self::all(State::Out);
+        self.restart(State::Out);
         if region.is_empty() || y1 < min[1] || y0 >= max[1] {
-            return steps;
+            return;
         }
         let within = min[1] <= y0 && y1 < max[1];
-        steps.push(min[0], if within { State::In } else { State::Test });
-        steps.push(max[0], State::Out);
-        steps
+        self.push(min[0], if within { State::In } else { State::Test });
+        self.push(max[0], State::Out);
     }
 
     /// The states of a combination of two areas.
@@ -80,7 +99,7 @@ impl Steps {
     }
 
     /// The states of everything outside.
-    pub(super) fn inverted(mut self) -> Self {
+    pub(super) fn invert(&mut self) {
         for step in &mut self.0 {
             step.state = match step.state {
                 State::Out => State::In,
@@ -88,7 +107,6 @@ impl Steps {
                 State::In => State::Out,
             };
         }
-        self
     }
 
     /// The stretches: from where to where which state holds.
