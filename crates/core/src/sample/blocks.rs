@@ -9,8 +9,8 @@ use super::{
     kernel::{Backend, Format, Row},
     patch::{BAND_WIDTH, Patch},
     plan::Plan,
-    sieve::{Focus, Run, World},
-    template::{Check, Kept, Stretch, Templates},
+    sieve::{Focus, Run, TOGETHER, World},
+    template::{Check, Kept, Stretch, Templates, displaced, sift},
 };
 use crate::pattern::{Axis, Class};
 
@@ -84,8 +84,9 @@ pub struct Blocks<F: Format> {
     sieve: Option<[Focus; 2]>,
     /// Whether the patch under way is cut by what the sieve leaves out.
     is_sifted: bool,
-    /// What the sieve says of the row under way.
+    /// What the sieve says of the row under way and those after it, up to `runs_end`.
     runs: Vec<Run>,
+    runs_end: i64,
     columns: [Listed; 4],
     /// Where they are, if there is a sieve.
     before: Before,
@@ -153,6 +154,7 @@ impl<F: Format> Blocks<F> {
             sieve: plan.sieve.as_ref().map(|s| [s.focus(), s.focus()]),
             is_sifted: false,
             runs: Vec::new(),
+            runs_end: i64::MIN,
             columns: Default::default(),
             before: Before::default(),
             templates: Templates::new(&plan.sampler, tall, kept),
@@ -277,6 +279,7 @@ impl<F: Format> Blocks<F> {
         self.base = self.format.base(self.patch.origin());
         let rows = self.at.y..self.patch.end().min(self.rows.end);
         self.is_sifted = false;
+        self.runs_end = rows.start;
         if let Some([band, patch]) = &mut self.sieve {
             let columns = clip(self.band, &x.all);
             patch.aim(band.area(), &rows, &columns);
@@ -378,29 +381,31 @@ impl<F: Format> Blocks<F> {
                 self.at.next_row();
                 continue;
             };
-            let is_under_way = self.at.done > 0;
-            if !is_under_way {
-                sieve.runs(y..y + 1, &columns, &mut self.runs);
-                if self.runs.is_empty() {
-                    self.at.next_row();
-                    continue;
-                }
+            if y >= self.runs_end {
+                self.runs_end = end.min(y + TOGETHER);
+                sieve.runs(y..self.runs_end, &columns, &mut self.runs);
             }
+            if self.runs.is_empty() {
+                self.at = Place::row(self.runs_end);
+                continue;
+            }
+            let (listed, vectors) = (&self.columns[class.ordinal()], sampler.row(block));
+            let is_under_way = self.at.done > 0;
             let template = self
                 .templates
                 .get(class, block, is_under_way, |template, kept| {
-                    let listed = &self.columns[class.ordinal()];
-                    template.make(format, base, patch, listed, sampler.row(block), kept);
+                    template.make(format, base, patch, listed, vectors, kept);
                 });
             if let Some(from) = self.at.from.take() {
-                self.at.done = template.columns_before(from);
+                self.at.done = self
+                    .before
+                    .count(class, from.clamp(columns.start, columns.end));
             }
             let row = Row {
                 base,
                 y: patch.relative(Axis::Y, y),
                 lattice: y,
             };
-            let passes = |position: [i32; 2]| sieve.passes(world.place(position));
             for run in &self.runs {
                 let ends = [run.columns.start, run.columns.end];
                 let ends = ends.map(|v| self.before.count(class, v));
@@ -408,21 +413,16 @@ impl<F: Format> Blocks<F> {
                 if columns.is_empty() {
                     continue;
                 }
-                let check = if run.passes {
-                    Check::Nothing
+                let (start, out) = (columns.start, &mut out[filled..]);
+                let (written, done) = if run.passes {
+                    let check = Check::Nothing;
+                    let stretch = Stretch { columns, check };
+                    template.fill(format, patch, row, stretch, self.backend, out)
                 } else {
-                    Check::Each(&passes)
+                    let columns = displaced(patch, &listed[columns], vectors);
+                    let passes = |position| sieve.passes(run, world.place(position));
+                    sift(format, patch, row, columns, passes, out)
                 };
-                let stretch = Stretch { columns, check };
-                let start = stretch.columns.start;
-                let (written, done) = template.fill(
-                    format,
-                    patch,
-                    row,
-                    stretch,
-                    self.backend,
-                    &mut out[filled..],
-                );
                 filled += written;
                 self.at.done = start + done;
                 if self.at.done < ends[1] {

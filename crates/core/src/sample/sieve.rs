@@ -4,12 +4,12 @@
 //! becomes runs of lattice columns: those whose points are all inside, which are copied or counted
 //! at full speed, and those to be asked one by one, in exact terms.
 
-use alloc::{sync::Arc, vec::Vec};
+use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
     Area, Frame, Listed, Region, Sampler,
-    area::{State, Stepper},
+    area::{Near, State, Stepper},
     before::Before,
     blocks::{list_columns, locate},
     clear::{ClearOf, Guard},
@@ -40,6 +40,8 @@ pub(super) struct Focus {
     guards: Vec<Guard>,
     reach: [[f64; 2]; 2],
     unit: f64,
+    /// Lattice units per world unit.
+    per_unit: f64,
     stepper: Stepper,
 }
 
@@ -49,6 +51,8 @@ pub(super) struct Run {
     pub(super) columns: Range<i64>,
     /// Whether all of their points pass; otherwise each is to be asked.
     pub(super) passes: bool,
+    /// What they have to be compared with, if not with all of the area.
+    near: Option<Near>,
 }
 
 impl Sieve {
@@ -79,6 +83,7 @@ impl Sieve {
             guards: self.clear.iter().map(ClearOf::guard).collect(),
             reach: self.reach,
             unit: self.unit,
+            per_unit: 1.0 / self.unit,
             stepper: Stepper::default(),
         }
     }
@@ -113,11 +118,15 @@ impl Focus {
         ]
     }
 
-    /// Whether a point passes.
+    /// Whether a point of a run passes: one of the last that were asked for.
     #[inline]
-    pub(super) fn passes(&self, p: [f64; 2]) -> bool {
-        self.area.as_ref().is_none_or(|area| area.contains(p))
-            && self.guards.iter().all(|guard| guard.leaves(p))
+    pub(super) fn passes(&self, run: &Run, p: [f64; 2]) -> bool {
+        let inside = match (run.near, &self.area) {
+            (Some(near), _) => self.stepper.contains(near, p),
+            (None, Some(area)) => area.contains(p),
+            (None, None) => true,
+        };
+        inside && self.guards.iter().all(|guard| guard.leaves(p))
     }
 
     /// Those columns of some rows whose points may pass in any of the rows; those of a run that
@@ -130,22 +139,28 @@ impl Focus {
             None => self.stepper.steps.restart(State::In),
         }
         let is_guarded = !self.guards.is_empty();
-        let mut push = |run: Range<i64>, passes: bool| {
+        let mut push = |run: Range<i64>, passes: bool, near: Option<Near>| {
             let passes = passes && !is_guarded;
             match runs.last_mut() {
                 _ if run.is_empty() => {}
                 Some(last) if last.passes == passes && last.columns.end == run.start => {
                     last.columns.end = run.end;
+                    last.near = None;
                 }
                 _ => runs.push(Run {
                     columns: run,
                     passes,
+                    near,
                 }),
             }
         };
         let mut next = columns.start;
-        for (from, to, state) in self.stepper.steps.stretches() {
+        // What points have to be compared with since the last sure stretch that has columns.
+        let (mut near, mut unsure) = (None, 0);
+        for (from, to, state, compared) in self.stepper.steps.stretches() {
             if state == State::Test {
+                unsure += 1;
+                near = compared.filter(|_| unsure == 1);
                 continue;
             }
             let start = self.first_beyond(from).clamp(next, columns.end);
@@ -153,24 +168,25 @@ impl Focus {
             if start == end {
                 continue;
             }
-            push(next..start, false);
+            push(next..start, false, near);
             if state == State::In {
-                push(start..end, true);
+                push(start..end, true, None);
             }
             next = end;
+            (near, unsure) = (None, 0);
         }
-        push(next..columns.end, false);
+        push(next..columns.end, false, near);
     }
 
     /// The first column whose points all lie above a world x, wherever they are moved.
     fn first_beyond(&self, x: f64) -> i64 {
-        let x = x / self.unit;
+        let x = x * self.per_unit;
         at_or_above(x - self.reach[0][0] + room(x))
     }
 
     /// The end of the columns whose points all lie below a world x.
     fn last_before(&self, x: f64) -> i64 {
-        let x = x / self.unit;
+        let x = x * self.per_unit;
         at_or_above(x - self.reach[0][1] - room(x))
     }
 }
@@ -180,6 +196,10 @@ fn at_or_above(x: f64) -> i64 {
     let whole = x as i64;
     whole.saturating_add(i64::from((whole as f64) < x))
 }
+
+/// Lattice rows for which an area is asked at once: more rows leave more points to be asked one by
+/// one, fewer cost more questions.
+pub(super) const TOGETHER: i64 = 4;
 
 /// Lattice units that a boundary is given as room for rounding: sums, quotients and conversions are
 /// off by a few units in the last place. (Not without end: what is asked for stays outermost, ±∞
@@ -201,8 +221,7 @@ pub(super) fn count(sampler: &Sampler, frame: &Frame, sieve: &Sieve, x: &Span, y
         sampler,
         frame,
         focus: sieve.focus(),
-        columns: [const { Vec::new() }; 4],
-        before: Before::default(),
+        bands: vec![Band::default(); BANDS],
         runs: Vec::new(),
     };
     let mut runs = Vec::new();
@@ -223,7 +242,7 @@ pub(super) fn count(sampler: &Sampler, frame: &Frame, sieve: &Sieve, x: &Span, y
                 let band = from.div_euclid(BAND_WIDTH);
                 let to = run.columns.end.min((band + 1) * BAND_WIDTH);
                 let patch = Patch::new(frame, band, rows.start, x, y);
-                count += piece.count(strip.area(), &patch, rows.clone(), from..to);
+                count += piece.count(strip.area(), band, &patch, rows.clone(), from..to);
                 from = to;
             }
         }
@@ -236,44 +255,64 @@ struct Piece<'a> {
     sampler: &'a Sampler,
     frame: &'a Frame,
     focus: Focus,
+    /// By number, the lowest bits of it.
+    bands: Vec<Band>,
+    runs: Vec<Run>,
+}
+
+/// Columns of so many bands are kept: an outline comes back to a band from strip to strip.
+const BANDS: usize = 16;
+
+/// The columns of a band.
+#[derive(Clone, Default)]
+struct Band {
+    number: Option<i64>,
     columns: [Listed; 4],
     before: Before,
-    runs: Vec<Run>,
 }
 
 impl Piece<'_> {
     fn count(
         &mut self,
         area: Option<&Area>,
+        band: i64,
         patch: &Patch,
         rows: Range<i64>,
         columns: Range<i64>,
     ) -> u128 {
         let (sampler, frame) = (self.sampler, self.frame);
         self.focus.aim(area, &rows, &columns);
-        list_columns(sampler, frame, columns.clone(), &mut self.columns);
-        self.before.note(&columns, &self.columns);
+        let kept = &mut self.bands[band.rem_euclid(BANDS as i64) as usize];
+        if kept.number != Some(band) {
+            let all = band * BAND_WIDTH..(band + 1) * BAND_WIDTH;
+            list_columns(sampler, frame, all.clone(), &mut kept.columns);
+            kept.before.note(&all, &kept.columns);
+            kept.number = Some(band);
+        }
         let world = World::new(frame, patch);
         let mut count = 0;
-        for y in rows {
+        let mut known = rows.start;
+        for y in rows.clone() {
             let Some((class, block)) = locate(sampler, frame, y) else {
                 continue;
             };
-            self.focus.runs(y..y + 1, &columns, &mut self.runs);
-            let (listed, vectors) = (&self.columns[class.ordinal()], sampler.row(block));
+            if y >= known {
+                known = rows.end.min(y + TOGETHER);
+                self.focus.runs(y..known, &columns, &mut self.runs);
+            }
+            let (listed, vectors) = (&kept.columns[class.ordinal()], sampler.row(block));
             let row = patch.relative(Axis::Y, y);
             for run in &self.runs {
                 let ends = [run.columns.start, run.columns.end];
-                let [start, end] = ends.map(|v| self.before.count(class, v));
+                let [start, end] = ends.map(|v| kept.before.count(class, v));
                 if run.passes {
                     count += end - start;
                     continue;
                 }
                 for &(x, block) in &listed[start..end] {
                     let [dx, dy] = vectors[block as usize];
-                    let [x, y] = [patch.relative(Axis::X, x) + dx, row + dy];
-                    let place = patch.shears().map_or([x, y], |shears| shears.apply(x, y));
-                    count += usize::from(self.focus.passes(world.place(place)));
+                    let place = patch.place([patch.relative(Axis::X, x) + dx, row + dy]);
+                    count += usize::from(self.focus.passes(run, world.place(place)));
                 }
             }
         }

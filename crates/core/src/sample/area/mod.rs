@@ -19,7 +19,7 @@ use super::Region;
 pub use circle::Circle;
 pub use polygon::Polygon;
 use steps::Steps;
-pub(super) use steps::{State, Stepper};
+pub(super) use steps::{Near, State, Stepper};
 
 /// Why numbers are not an area.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
