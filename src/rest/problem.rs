@@ -40,9 +40,9 @@ impl<'a> Problem<'a> {
         let (count, limit) = match error {
             Error::TooManyPoints { count, limit } => (Some(*count), Some(*limit)),
             Error::TooManyRows { limit, .. } => (None, Some(*limit)),
-            Error::BodyTooLarge { limit } | Error::Busy { limit } => {
-                (None, u64::try_from(*limit).ok())
-            }
+            Error::BodyTooLarge { limit }
+            | Error::Busy { limit }
+            | Error::TooManyConnections { limit } => (None, u64::try_from(*limit).ok()),
             _ => (None, None),
         };
         let digests = match error {
@@ -86,6 +86,23 @@ impl<'a> Problem<'a> {
             loaded: None,
         };
         problem.into_response()
+    }
+
+    /// An error as the bytes of a whole HTTP/1.1 response, after which the connection closes: for
+    /// clients that are not even heard.
+    pub(super) fn last_words(error: &'a Error) -> Vec<u8> {
+        let problem = Self::new(error);
+        let body = serde_json::to_string(&problem).unwrap_or_default();
+        let status = StatusCode::from_u16(problem.status).unwrap_or_default();
+        let (length, reason) = (body.len() + 1, status.canonical_reason());
+        let head = format!(
+            "HTTP/1.1 {} {}\r\ncontent-type: application/problem+json\r\ncontent-length: \
+             {length}\r\ncache-control: no-store\r\nretry-after: {RETRY_AFTER}\r\nconnection: \
+             close\r\n\r\n{body}\n",
+            problem.status,
+            reason.unwrap_or_default()
+        );
+        head.into_bytes()
     }
 
     fn into_response(self) -> Response {
