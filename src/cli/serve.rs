@@ -8,7 +8,7 @@ use std::{
 use anyhow::{Context as _, anyhow};
 
 use super::{Failure, config};
-use crate::ops::{App, ServeError, shutdown, telemetry};
+use crate::ops::{App, ServeError, exposure, files, shutdown, telemetry};
 
 /// Flags of `strew serve`.
 #[derive(Debug, clap::Args)]
@@ -20,12 +20,25 @@ pub(super) struct Args {
 /// Serves until a signal comes.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged()?;
-    telemetry::start(&config.log.filter).context("log.filter")?;
+    telemetry::start(&config.log.filter, config.log.format).context("log.filter")?;
     let listen = config.server.listen;
+    if let Some(warning) = exposure::warning(&config) {
+        tracing::warn!("{warning}");
+    }
+    let wanted = config.server.max_connections;
+    if let Some(room) = files::make_room(wanted) {
+        tracing::warn!(
+            wanted,
+            room,
+            "the system's limit on open files has no room for server.max_connections"
+        );
+    }
+    let scheme = if config.tls.is_on() { "https" } else { "http" };
     let app = App::new(config).map_err(|error| match error {
-        ServeError::Catalog(_) => Failure::Usage(error.into()),
+        ServeError::Catalog(_) | ServeError::Tls(_) => Failure::Usage(error.into()),
         _ => Failure::Other(error.into()),
     })?;
+    let app = app.with_all_metrics();
     if app.service().catalog().entries().len() == 0 {
         tracing::warn!("no table is loaded: every query will be refused");
     }
@@ -34,7 +47,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         .enable_all()
         .build()
         .context("cannot start the runtime")?;
-    runtime.block_on(serve(app, listener))?;
+    runtime.block_on(serve(app, listener, scheme))?;
     Ok(())
 }
 
@@ -48,12 +61,14 @@ fn bind(listen: SocketAddr) -> anyhow::Result<TcpListener> {
     })
 }
 
-async fn serve(app: App, listener: TcpListener) -> anyhow::Result<()> {
+async fn serve(app: App, listener: TcpListener, scheme: &str) -> anyhow::Result<()> {
     let address = listener.local_addr().context("no address")?;
     // Listen for signals before saying that we are ready.
     let stop = shutdown::Signals::new().context("cannot listen for signals")?;
-    announce(address).context("cannot write to standard output")?;
+    let hangups = shutdown::Hangups::new().context("cannot listen for signals")?;
+    announce(scheme, address).context("cannot write to standard output")?;
     tracing::info!(%address, tables = app.service().catalog().entries().len(), "serving");
+    let app = app.with_hangups(hangups);
     let broken = app.run(listener, stop.first_then_exit()).await?;
     if broken > 0 {
         tracing::warn!(broken, "stopped; some streams were broken off");
@@ -63,8 +78,8 @@ async fn serve(app: App, listener: TcpListener) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn announce(address: SocketAddr) -> std::io::Result<()> {
+fn announce(scheme: &str, address: SocketAddr) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
-    writeln!(out, "listening on http://{address}")?;
+    writeln!(out, "listening on {scheme}://{address}")?;
     out.flush()
 }

@@ -7,11 +7,19 @@
 mod layers;
 mod validate;
 
-use std::{net::SocketAddr, path::PathBuf, time::Duration};
+use std::{
+    net::SocketAddr,
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{rest, service::Limits};
+use crate::{
+    ops::{telemetry, tls},
+    rest,
+    service::Limits,
+};
 
 pub use layers::{ConfigError, Layers};
 
@@ -24,6 +32,8 @@ pub const DEFAULTS: &str = include_str!("../../config/strew.toml");
 pub struct Config {
     /// Where and how to serve.
     pub server: Server,
+    /// How to prove who serves and who asks.
+    pub tls: tls::Settings,
     /// How HTTP answers.
     pub http: rest::Settings,
     /// Which tables to load.
@@ -36,6 +46,8 @@ pub struct Config {
     pub shutdown: Shutdown,
     /// What to log.
     pub log: Log,
+    /// What to count.
+    pub metrics: Metrics,
 }
 
 /// Where and how to serve.
@@ -44,6 +56,8 @@ pub struct Config {
 pub struct Server {
     /// Address and port.
     pub listen: SocketAddr,
+    /// The most connections at once.
+    pub max_connections: usize,
     /// How long the head of an HTTP/1.1 request may take, in seconds.
     pub header_read_timeout_seconds: f64,
     /// The most bytes of a request's head.
@@ -53,6 +67,10 @@ pub struct Server {
     /// How often a quiet HTTP/2 client is asked for a sign of life, and how long it may take, in
     /// seconds.
     pub http2_keepalive_seconds: f64,
+    /// How long an HTTP/2 connection may be without a request, in seconds.
+    pub idle_connection_seconds: f64,
+    /// How long a reader may take nothing of what waits for it, in seconds.
+    pub stalled_reader_seconds: f64,
 }
 
 /// Which tables to load.
@@ -63,6 +81,16 @@ pub struct Tables {
     pub embedded: bool,
     /// A folder with more; empty for none.
     pub folder: PathBuf,
+    /// How often the folder is looked at for changes, in seconds; 0 for never.
+    pub watch_seconds: f64,
+}
+
+impl Tables {
+    /// The folder, if there is one.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        Some(self.folder.as_path()).filter(|folder| !folder.as_os_str().is_empty())
+    }
 }
 
 /// Who makes points.
@@ -89,6 +117,16 @@ pub struct Shutdown {
 pub struct Log {
     /// A level, or levels by module.
     pub filter: String,
+    /// How a line looks.
+    pub format: telemetry::Format,
+}
+
+/// What to count.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Metrics {
+    /// Whether `/metrics` is served.
+    pub enabled: bool,
 }
 
 impl Config {

@@ -6,12 +6,14 @@ use super::{Config, ConfigError};
 pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     let Config {
         server,
+        tls,
         http,
         limits,
         workers,
         shutdown,
         log,
-        tables: _,
+        metrics: _,
+        tables,
     } = config;
     let mut faults = vec![];
     let mut within = |key: &str, value: f64, min: f64, max: f64| {
@@ -20,6 +22,12 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         }
     };
     let (second, hour, day) = (1.0, 3600.0, 86400.0);
+    within(
+        "server.max_connections",
+        server.max_connections as f64,
+        1.0,
+        1e6,
+    );
     within(
         "server.header_read_timeout_seconds",
         server.header_read_timeout_seconds,
@@ -46,11 +54,25 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         hour,
     );
     within(
+        "server.idle_connection_seconds",
+        server.idle_connection_seconds,
+        0.1 * second,
+        day,
+    );
+    within(
+        "server.stalled_reader_seconds",
+        server.stalled_reader_seconds,
+        0.1 * second,
+        day,
+    );
+    within("tls.watch_seconds", tls.watch_seconds, 0.0, day);
+    within(
         "http.cache_seconds",
         f64::from(http.cache_seconds),
         0.0,
         365.0 * day,
     );
+    within("tables.watch_seconds", tables.watch_seconds, 0.0, day);
     within("limits.max_points", limits.max_points as f64, 1.0, 1e15);
     within("limits.max_rows", limits.max_rows as f64, 1.0, 1e12);
     within("limits.max_vertices", limits.max_vertices as f64, 3.0, 1e8);
@@ -72,6 +94,17 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     within("workers.threads", workers.threads as f64, 0.0, 1024.0);
     within("shutdown.notice_seconds", shutdown.notice_seconds, 0.0, day);
     within("shutdown.drain_seconds", shutdown.drain_seconds, 0.0, day);
+    let is_set = |path: &std::path::Path| !path.as_os_str().is_empty();
+    let of_tls = [&tls.certificate, &tls.key, &tls.client_ca].map(|path| is_set(path));
+    if let [certificate, key, client_ca] = of_tls
+        && (certificate != key || client_ca && !key)
+    {
+        faults.push(format!(
+            "tls.certificate = {:?}, tls.key = {:?}, tls.client_ca = {:?}; allowed: none of them, the \
+             first two, or all",
+            tls.certificate, tls.key, tls.client_ca
+        ));
+    }
     if let Err(error) = log.filter.parse::<tracing_subscriber::EnvFilter>() {
         faults.push(format!(
             "log.filter = {:?}; allowed: a level (error, warn, info, debug, trace) or levels by \

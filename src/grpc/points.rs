@@ -7,18 +7,18 @@ use strew_core::ALGORITHM_VERSION;
 use tonic::{Request, Response, Status};
 
 use super::{
-    messages::Messages,
+    messages::{self, Messages},
     profile,
     proto::{
-        CountPointsRequest, CountPointsResponse, FindNearestRequest, FindNearestResponse,
+        CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
         GetPointRequest, GetPointResponse, ListProfilesRequest, ListProfilesResponse,
         SplitPointsRequest, SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
-        point_service_server::PointService,
+        point_service_server::PointService, stream_points_response::Message,
     },
     query, resolved, single, split, status,
 };
 use crate::service::{
-    Error, Fault, Service,
+    Error, Fault, Record, Service,
     query::{SetDraft, check_parts},
 };
 
@@ -39,8 +39,19 @@ impl Points {
         let planned = self.service.plan(query).await?;
         let block_bytes = self.service.limits().block_bytes;
         let messages = Messages::new(request, planned, encoding, block_bytes)?;
+        Record::in_format(match encoding {
+            Encoding::F32Le => "f32",
+            Encoding::F64Le => "f64",
+            Encoding::Points | Encoding::Unspecified => "points",
+        });
+        let record = Record::current();
         let stream = self.service.stream(permit, messages);
-        Ok(Box::pin(stream.map_err(status::interrupted)))
+        let noted = stream.inspect_ok(move |response| {
+            if let (Some(record), Some(Message::Block(block))) = (&record, &response.message) {
+                record.made(messages::points(block, encoding));
+            }
+        });
+        Ok(Box::pin(noted.map_err(status::interrupted)))
     }
 
     async fn count(&self, request: &StreamPointsRequest) -> Result<CountPointsResponse, Error> {
@@ -71,7 +82,7 @@ impl Points {
     }
 
     async fn point(&self, request: &GetPointRequest) -> Result<GetPointResponse, Error> {
-        let set = SetDraft::from(request).check_alone(self.service.catalog(), vec![])?;
+        let set = SetDraft::from(request).check_alone(&self.service.catalog(), vec![])?;
         let placed = self.service.place(set).await?;
         Ok(GetPointResponse {
             point: Some(single::point(placed.point(&request.id)?)),
@@ -83,7 +94,7 @@ impl Points {
         let mut faults = vec![];
         let around = query::around(request).check(vec![]);
         let around = around.map_err(|more| faults.extend(more));
-        let set = SetDraft::from(request).check_alone(self.service.catalog(), faults)?;
+        let set = SetDraft::from(request).check_alone(&self.service.catalog(), faults)?;
         let around = around.map_err(|()| Error::Internal("a fault is lost"))?;
         let placed = self.service.place(set).await?;
         let set = Some(resolved::placed(&placed));
@@ -164,7 +175,8 @@ impl PointService for Points {
         &self,
         _request: Request<ListProfilesRequest>,
     ) -> Result<Response<ListProfilesResponse>, Status> {
-        let entries = self.service.catalog().entries();
+        let catalog = self.service.catalog();
+        let entries = catalog.entries();
         Ok(Response::new(ListProfilesResponse {
             profiles: entries.map(|entry| profile::profile(entry)).collect(),
             algorithm: ALGORITHM_VERSION,

@@ -1,9 +1,22 @@
-//! Running the daemon: one port for both doors, health, a bounded stop, the log.
+//! Running the daemon: one port for both doors, connections and their limits, TLS, health,
+//! a bounded stop, the log, tables read again.
 
+mod activity;
 mod calls;
+pub mod connections;
+pub mod exposure;
+pub mod files;
+mod guarded;
 pub mod health;
+mod identity;
+mod metrics;
+mod observe;
+mod often;
+pub mod reload;
 pub mod serve;
 pub mod shutdown;
 pub mod telemetry;
+pub mod tls;
 
+pub use connections::Peer;
 pub use serve::{App, ServeError};

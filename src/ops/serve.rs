@@ -1,19 +1,19 @@
 //! Serving: both doors on one port, until asked to stop, and then not much longer.
 
-use std::{
-    io,
-    net::{SocketAddr, TcpListener},
-    sync::Arc,
-    time::Duration,
-};
+use std::{io, net::TcpListener, sync::Arc, time::Duration};
 
 use axum::{Router, body::Body, extract::Request, response::Response};
-use axum_server::Handle;
-use hyper_util::rt::TokioTimer;
+use tokio_util::task::AbortOnDropHandle;
 
 use super::{
     calls,
+    connections::Connections,
     health::{self, Readiness},
+    metrics::{self, Metrics},
+    observe,
+    reload::Reloader,
+    shutdown::Hangups,
+    tls::{Tls, TlsError},
 };
 use crate::{
     config::{self, Config},
@@ -34,6 +34,9 @@ pub enum ServeError {
     /// The program was built wrongly.
     #[error("cannot open the gRPC door: {0}")]
     Grpc(#[from] grpc::BuildError),
+    /// The certificates cannot be used.
+    #[error(transparent)]
+    Tls(#[from] TlsError),
     /// The socket does not work.
     #[error("cannot serve: {0}")]
     Socket(#[from] io::Error),
@@ -47,22 +50,31 @@ const GRACE: Duration = Duration::from_secs(1);
 pub struct App {
     config: Config,
     service: Arc<Service>,
+    reloader: Arc<Reloader>,
+    hangups: Option<Hangups>,
+    tls: Option<Tls>,
+    metrics: Metrics,
     more: Router,
 }
 
 impl App {
-    /// Loads the tables and starts the workers.
+    /// Reads the certificates, loads the tables and starts the workers.
     ///
     /// # Errors
-    /// If a table is not valid or the system gives no threads.
+    /// If a certificate or table is not valid or the system gives no threads.
     pub fn new(config: Config) -> Result<Self, ServeError> {
-        let folder = Some(config.tables.folder.as_path()).filter(|f| !f.as_os_str().is_empty());
+        let tls = Tls::new(&config.tls)?;
+        let folder = config.tables.folder();
         let catalog = Catalog::load(config.tables.embedded, folder)?;
         let workers = Workers::new(config.workers.threads)?;
         let service = Arc::new(Service::new(catalog, config.limits.clone(), workers));
         Ok(Self {
+            reloader: Arc::new(Reloader::new(service.clone(), folder.map(Into::into))),
+            hangups: None,
             config,
             service,
+            tls,
+            metrics: Metrics::default(),
             more: Router::new(),
         })
     }
@@ -71,6 +83,20 @@ impl App {
     #[must_use]
     pub fn with_routes(mut self, routes: Router) -> Self {
         self.more = self.more.merge(routes);
+        self
+    }
+
+    /// Reads its tables again whenever these come.
+    #[must_use]
+    pub fn with_hangups(mut self, hangups: Hangups) -> Self {
+        self.hangups = Some(hangups);
+        self
+    }
+
+    /// Shows also what the process counts without saying for which daemon: for a process of one.
+    #[must_use]
+    pub fn with_all_metrics(self) -> Self {
+        self.metrics.take_all();
         self
     }
 
@@ -86,46 +112,62 @@ impl App {
     /// # Errors
     /// If the socket does not work.
     pub async fn run(
-        self,
+        mut self,
         listener: TcpListener,
         shutdown: impl Future<Output = ()>,
     ) -> Result<usize, ServeError> {
+        let _watch = self.watch();
         let readiness = Readiness::default();
         let (router, grpc_health) = self.router(readiness.clone()).await?;
         listener.set_nonblocking(true)?;
-        let handle = Handle::<SocketAddr>::new();
-        let mut server = axum_server::from_tcp(listener)?
-            .acceptor(axum_server::accept::NoDelayAcceptor::new())
-            .handle(handle.clone());
-        self.limit_connections(&mut server);
-        let served = server.serve(router.into_make_service());
-        tokio::pin!(served);
-        tokio::select! {
-            () = shutdown => {}
-            ended = &mut served => return Ok(ended.map(|()| 0)?),
+        let listener = tokio::net::TcpListener::from_std(listener)?;
+        if let Some(tls) = self.tls.clone() {
+            tokio::spawn(tls.keep_fresh(Hangups::new()?));
         }
+        let connections = Connections::new(&self.config.server, self.tls.clone());
+        let taking = tokio::spawn({
+            let connections = connections.clone();
+            async move { connections.take(listener, router).await }
+        });
+        shutdown.await;
         readiness.close();
         grpc_health.close().await;
-        let notice = config::seconds(self.config.shutdown.notice_seconds);
-        tokio::select! {
-            () = tokio::time::sleep(notice) => {}
-            ended = &mut served => return Ok(ended.map(|()| 0)?),
-        }
-        let drain = config::seconds(self.config.shutdown.drain_seconds);
-        handle.graceful_shutdown(Some(drain.saturating_add(GRACE)));
+        tokio::time::sleep(config::seconds(self.config.shutdown.notice_seconds)).await;
+        connections.close();
+        // From here on the port is free for another.
+        let _ = taking.await;
 
-        // The server ends when the last connection does; if that takes too long, streams are
-        // broken off so that readers see it, and then so are connections.
-        let mut broken = 0;
-        tokio::select! {
-            ended = &mut served => ended?,
-            () = tokio::time::sleep(drain) => {
-                broken = self.service.streams().open();
-                self.service.streams().stop();
-                served.await?;
-            }
+        // The last connection ends it; if that takes too long, streams are broken off so that
+        // readers see it, and then so are connections.
+        let drain = config::seconds(self.config.shutdown.drain_seconds);
+        if tokio::time::timeout(drain, connections.closed())
+            .await
+            .is_ok()
+        {
+            return Ok(0);
+        }
+        let broken = self.service.streams().open();
+        self.service.streams().stop();
+        if tokio::time::timeout(GRACE, connections.closed())
+            .await
+            .is_err()
+        {
+            connections.end();
+            connections.closed().await;
         }
         Ok(broken)
+    }
+
+    /// Looks for changes of the tables for as long as the handle is held.
+    fn watch(&mut self) -> AbortOnDropHandle<()> {
+        let seconds = self.config.tables.watch_seconds;
+        let is_looked_for = seconds > 0.0 && self.config.tables.folder().is_some();
+        let every = is_looked_for.then(|| config::seconds(seconds));
+        let hangups = self.hangups.take();
+        let reloader = self.reloader.clone();
+        AbortOnDropHandle::new(tokio::spawn(async move {
+            reloader.watch(hangups, every).await;
+        }))
     }
 
     /// Both doors, health, and one fallback for all.
@@ -133,6 +175,11 @@ impl App {
         let (grpc, grpc_health) = grpc::routes(self.service.clone()).await?;
         let mut endpoints = rest::endpoints(&self.service);
         endpoints.extend(health::endpoints(readiness, self.service.clone()));
+        let metrics = self.metrics.clone();
+        if self.config.metrics.enabled {
+            endpoints.push(metrics::endpoint(metrics.clone(), self.service.clone()));
+            tokio::spawn(metrics.keep_up());
+        }
         let rest::Door { router, paths } = rest::Door::new(endpoints);
         let router = router
             .merge(calls::routes(grpc.into_axum_router().reset_fallback()))
@@ -141,29 +188,7 @@ impl App {
         let head_bytes = self.config.server.max_header_bytes;
         let workers = self.service.workers().clone();
         let router = rest::finished(router, &self.config.http, head_bytes, workers);
-        Ok((router, grpc_health))
-    }
-
-    /// What one connection may ask of us. (The bound on heads also bounds what HTTP/1.1 gathers
-    /// before it writes; blocks are larger than that and go out as they are.)
-    fn limit_connections<A>(&self, server: &mut axum_server::Server<SocketAddr, A>) {
-        let settings = &self.config.server;
-        let keepalive = config::seconds(settings.http2_keepalive_seconds);
-        // A head that is only a little too long is refused in words, by `rest::finished`.
-        let most = settings.max_header_bytes.saturating_mul(2);
-        let builder = server.http_builder();
-        builder
-            .http1()
-            .timer(TokioTimer::new())
-            .header_read_timeout(config::seconds(settings.header_read_timeout_seconds))
-            .max_buf_size(usize::try_from(most).unwrap_or(usize::MAX));
-        builder
-            .http2()
-            .timer(TokioTimer::new())
-            .max_header_list_size(most)
-            .max_concurrent_streams(settings.max_requests_per_connection)
-            .keep_alive_interval(keepalive)
-            .keep_alive_timeout(keepalive);
+        Ok((observe::observed(router, metrics), grpc_health))
     }
 }
 

@@ -1,4 +1,5 @@
-//! The signals that ask a daemon to stop: the first drains, the second ends at once.
+//! The signals that a daemon hears: those that ask it to stop, of which the first drains and the second
+//! ends at once, and SIGHUP, which asks it to read files again.
 
 use std::io;
 
@@ -53,5 +54,36 @@ impl Signals {
             tracing::warn!("stopped before the drain was over");
             std::process::exit(CUT_SHORT);
         });
+    }
+}
+
+/// SIGHUP, listened for from the moment this is made; it never comes where there is none.
+#[derive(Debug)]
+pub struct Hangups {
+    #[cfg(unix)]
+    signal: tokio::signal::unix::Signal,
+}
+
+impl Hangups {
+    /// Starts to listen. Needs a tokio runtime.
+    ///
+    /// # Errors
+    /// If the system does not let us.
+    pub fn new() -> io::Result<Self> {
+        #[cfg(unix)]
+        use tokio::signal::unix::{SignalKind, signal};
+        Ok(Self {
+            #[cfg(unix)]
+            signal: signal(SignalKind::hangup())?,
+        })
+    }
+
+    /// Waits for the next one.
+    pub async fn next(&mut self) {
+        #[cfg(unix)]
+        if self.signal.recv().await.is_some() {
+            return;
+        }
+        std::future::pending().await
     }
 }

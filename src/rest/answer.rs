@@ -15,7 +15,7 @@ use super::{
     negotiate::{self, Chosen},
 };
 use crate::service::{
-    Answer, Error, Kind, Planned, Query, Service,
+    Answer, Error, Kind, Planned, Query, Record, Service,
     encode::{Options, write_number},
 };
 
@@ -102,6 +102,7 @@ pub(super) async fn stream(
         Some(encoding) => Chosen::named(encoding),
         None => negotiate::accepted(headers)?,
     };
+    Record::in_format(chosen.encoding.name());
     let mut output = options.output(chosen.encoding)?;
     output.relative_to = query.region.corner;
     let freshness = freshness(service, asked, &query, chosen.content_type)?;
@@ -149,8 +150,8 @@ pub(super) fn freshness(
     query: &Query,
     content_type: &'static str,
 ) -> Result<Freshness, Error> {
-    let entries = service.entries(query)?;
-    let digests: Vec<&str> = entries.iter().map(|entry| entry.digest.as_str()).collect();
+    let sets = query.sets.iter();
+    let digests: Vec<&str> = sets.map(|set| set.entry.digest.as_str()).collect();
     let window = &query.window;
     let made_of = (
         query.identity(&digests),

@@ -84,6 +84,12 @@ pub fn not_found(request: &Request, paths: &str) -> Response {
     Problem::response(&error)
 }
 
+/// What a client hears, as bytes, for whose connection there is no place.
+#[must_use]
+pub fn no_place(limit: usize) -> Vec<u8> {
+    Problem::last_words(&Error::TooManyConnections { limit })
+}
+
 /// The answer to what asks for a gRPC method, but not as a call.
 #[must_use]
 pub fn not_a_call(request: &Request) -> Response {

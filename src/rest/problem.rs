@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::{
     error_map,
-    service::{Error, Fault, Kind},
+    service::{Error, Fault, Kind, Record},
 };
 
 /// How long a client should wait before it asks a busy server again, in seconds.
@@ -32,6 +32,13 @@ pub(super) struct Problem<'a> {
     pinned: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     loaded: Option<&'a str>,
+    /// What the request is called in the log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    request_id: Option<String>,
+}
+
+fn request_id() -> Option<String> {
+    Record::current().map(|record| record.id().to_owned())
 }
 
 impl<'a> Problem<'a> {
@@ -40,9 +47,9 @@ impl<'a> Problem<'a> {
         let (count, limit) = match error {
             Error::TooManyPoints { count, limit } => (Some(*count), Some(*limit)),
             Error::TooManyRows { limit, .. } => (None, Some(*limit)),
-            Error::BodyTooLarge { limit } | Error::Busy { limit } => {
-                (None, u64::try_from(*limit).ok())
-            }
+            Error::BodyTooLarge { limit }
+            | Error::Busy { limit }
+            | Error::TooManyConnections { limit } => (None, u64::try_from(*limit).ok()),
             _ => (None, None),
         };
         let digests = match error {
@@ -59,11 +66,13 @@ impl<'a> Problem<'a> {
             limit,
             pinned: digests.map(|(pinned, _)| pinned),
             loaded: digests.map(|(_, loaded)| loaded),
+            request_id: request_id(),
         }
     }
 
     /// An error as a whole response.
     pub(super) fn response(error: &'a Error) -> Response {
+        Record::refuse(error.kind());
         let mut response = Self::new(error).into_response();
         if matches!(error.kind(), Kind::Busy | Kind::ShuttingDown) {
             let seconds = HeaderValue::from_static(RETRY_AFTER);
@@ -84,8 +93,26 @@ impl<'a> Problem<'a> {
             limit: None,
             pinned: None,
             loaded: None,
+            request_id: request_id(),
         };
         problem.into_response()
+    }
+
+    /// An error as the bytes of a whole HTTP/1.1 response, after which the connection closes: for
+    /// clients that are not even heard.
+    pub(super) fn last_words(error: &'a Error) -> Vec<u8> {
+        let problem = Self::new(error);
+        let body = serde_json::to_string(&problem).unwrap_or_default();
+        let status = StatusCode::from_u16(problem.status).unwrap_or_default();
+        let (length, reason) = (body.len() + 1, status.canonical_reason());
+        let head = format!(
+            "HTTP/1.1 {} {}\r\ncontent-type: application/problem+json\r\ncontent-length: \
+             {length}\r\ncache-control: no-store\r\nretry-after: {RETRY_AFTER}\r\nconnection: \
+             close\r\n\r\n{body}\n",
+            problem.status,
+            reason.unwrap_or_default()
+        );
+        head.into_bytes()
     }
 
     fn into_response(self) -> Response {

@@ -1,19 +1,36 @@
-//! Samplers ready to answer, by profile, α and map size.
+//! Samplers ready to answer, by the digest of their table: a table that replaces another never gets
+//! the other's sampler.
 //!
 //! Bounded by what they hold in memory. A sampler is built once however many queries wait for it,
 //! and on the workers, not where sockets are served.
 
-use std::sync::Arc;
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
 
 use moka::future::Cache;
 use strew_core::{Sampler, sample::LeastDistance};
 
-use super::{Entry, Error, Key, Workers};
+use super::{Entry, Error, Workers};
 
 /// The cache.
 #[derive(Clone)]
 pub(super) struct Samplers {
-    ready: Cache<Key, Ready>,
+    ready: Cache<String, Ready>,
+    asked: Arc<AtomicU64>,
+    made: Arc<AtomicU64>,
+}
+
+/// How a cache stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CacheState {
+    /// How often what was asked for was there, or about to be.
+    pub hits: u64,
+    /// How often it had to be made.
+    pub misses: u64,
+    /// What is held, in bytes.
+    pub bytes: u64,
 }
 
 /// A table ready to answer.
@@ -53,7 +70,7 @@ impl std::fmt::Debug for Samplers {
 impl Samplers {
     /// An empty cache that holds at most this many bytes.
     pub(super) fn new(bytes: u64) -> Self {
-        let weight = |_: &Key, ready: &Ready| {
+        let weight = |_: &String, ready: &Ready| {
             u32::try_from(ready.sampler.memory_bytes()).unwrap_or(u32::MAX)
         };
         let ready = Cache::builder()
@@ -61,19 +78,44 @@ impl Samplers {
             .max_capacity(bytes)
             .weigher(weight)
             .build();
-        Self { ready }
+        Self {
+            ready,
+            asked: Arc::default(),
+            made: Arc::default(),
+        }
+    }
+
+    /// How it stands.
+    pub(super) async fn state(&self) -> CacheState {
+        // What it holds is only reckoned now and then.
+        self.ready.run_pending_tasks().await;
+        // In this order, so that there are never more misses than questions.
+        let misses = self.made.load(Ordering::Relaxed);
+        CacheState {
+            hits: self.asked.load(Ordering::Relaxed).saturating_sub(misses),
+            misses,
+            bytes: self.ready.weighted_size(),
+        }
     }
 
     /// A table, ready.
     pub(super) async fn get(&self, entry: &Arc<Entry>, workers: &Workers) -> Result<Ready, Error> {
+        self.asked.fetch_add(1, Ordering::Relaxed);
         let build = async {
+            self.made.fetch_add(1, Ordering::Relaxed);
             let entry = entry.clone();
             workers.run(move || Ready::load(&entry)).await?
         };
         self.ready
-            .try_get_with_by_ref(&entry.key, build)
+            .try_get_with_by_ref(&entry.digest, build)
             .await
             .map_err(|error| (*error).clone())
+    }
+
+    /// Makes room: the table of this digest is not loaded any more. Answers under way keep what they
+    /// have.
+    pub(super) async fn forget(&self, digest: &str) {
+        self.ready.invalidate(digest).await;
     }
 }
 

@@ -160,6 +160,12 @@ pub enum Error {
         /// The limit.
         limit: usize,
     },
+    /// As many connections are open as the server takes.
+    #[error("{limit} connections are open, the most at once: try again later")]
+    TooManyConnections {
+        /// The limit.
+        limit: usize,
+    },
     /// The server is about to stop.
     #[error("the server is shutting down: try again later, or elsewhere")]
     ShuttingDown,
@@ -194,7 +200,7 @@ pub enum Kind {
     NoSuchPath,
     /// [`Error::NoSuchMethod`].
     NoSuchMethod,
-    /// [`Error::Busy`].
+    /// [`Error::Busy`], [`Error::TooManyConnections`].
     Busy,
     /// [`Error::ShuttingDown`].
     ShuttingDown,
@@ -234,7 +240,7 @@ impl Error {
             Self::NoSuchPoint { .. } => Kind::NoSuchPoint,
             Self::NoSuchPath { .. } => Kind::NoSuchPath,
             Self::NoSuchMethod { .. } => Kind::NoSuchMethod,
-            Self::Busy { .. } => Kind::Busy,
+            Self::Busy { .. } | Self::TooManyConnections { .. } => Kind::Busy,
             Self::ShuttingDown => Kind::ShuttingDown,
             Self::Internal(_) => Kind::Internal,
         }
@@ -247,10 +253,5 @@ impl Error {
             Self::Invalid(faults) => faults,
             _ => &[],
         }
-    }
-
-    /// The table of a checked query is gone: a bug, since catalogs do not shrink.
-    pub(crate) const fn lost_table() -> Self {
-        Self::Internal("the table of a checked query is not loaded")
     }
 }

@@ -15,29 +15,34 @@ mod planned;
 mod planner;
 mod portrait;
 pub mod query;
+pub mod record;
 mod single;
 pub mod stream;
 pub mod workers;
 
-use std::sync::Arc;
+use std::{path::PathBuf, sync::Arc};
 
+use arc_swap::ArcSwap;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
 use serde::{Deserialize, Serialize};
+use tokio::sync::Mutex;
 
 pub use cache::Ready;
-pub use catalog::{Catalog, Entry, Key};
+pub use catalog::{Catalog, Entry, Key, Reload};
 pub use encode::{Answer, Encoding, Output};
 pub use error::{Error, Fault, Kind};
 pub use planned::{Placed, Planned, PlannedSet};
 pub use portrait::Portrait;
 pub use query::{Draft, Query, Set};
+pub use record::Record;
 pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::Workers;
 
-use cache::Samplers;
+use cache::{CacheState, Samplers};
 use portrait::Portraits;
+use record::Recorded;
 
 /// What a query may ask for, and what answering may hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,7 +72,9 @@ pub struct Limits {
 /// Everything a front end needs. Cheap to share behind an [`Arc`].
 #[derive(Debug)]
 pub struct Service {
-    catalog: Catalog,
+    catalog: ArcSwap<Catalog>,
+    /// Held while tables are read again, so that reloads come one after another.
+    reload: Mutex<()>,
     limits: Limits,
     samplers: Samplers,
     portraits: Portraits,
@@ -83,16 +90,36 @@ impl Service {
             samplers: Samplers::new(limits.cache_bytes),
             portraits: Portraits::new(),
             streams: Arc::new(Streams::new(limits.max_streams)),
-            catalog,
+            catalog: ArcSwap::from_pointee(catalog),
+            reload: Mutex::new(()),
             limits,
             workers,
         }
     }
 
-    /// The tables that are loaded.
+    /// The tables that are loaded now. A query holds on to those that it was checked against.
     #[must_use]
-    pub const fn catalog(&self) -> &Catalog {
-        &self.catalog
+    pub fn catalog(&self) -> Arc<Catalog> {
+        self.catalog.load_full()
+    }
+
+    /// Reads the folder of tables again and serves what is good in it from then on, all at once. A
+    /// file that is not good is refused, and the table that it held so far serves on.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if reading panicked; then nothing has changed.
+    pub async fn reload(&self, folder: Option<PathBuf>) -> Result<Reload, Error> {
+        let _one_at_a_time = self.reload.lock().await;
+        let before = self.catalog.load_full();
+        let read = move || before.again(folder.as_deref());
+        let (after, reload) = tokio::task::spawn_blocking(read)
+            .await
+            .map_err(|_| Error::Internal("the tables cannot be read again"))?;
+        self.catalog.store(Arc::new(after));
+        for digest in reload.gone() {
+            self.samplers.forget(digest).await;
+        }
+        Ok(reload)
     }
 
     /// The limits.
@@ -107,19 +134,15 @@ impl Service {
         &self.workers
     }
 
+    /// How the cache of samplers stands.
+    pub async fn cache(&self) -> CacheState {
+        self.samplers.state().await
+    }
+
     /// The streams under way.
     #[must_use]
     pub const fn streams(&self) -> &Arc<Streams> {
         &self.streams
-    }
-
-    /// The tables of a query's sets, in their order.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if one is not loaded any more.
-    pub fn entries(&self, query: &Query) -> Result<Vec<Arc<Entry>>, Error> {
-        let entry = |set: &Set| self.catalog.entry(&set.key).ok_or_else(Error::lost_table);
-        query.sets.iter().map(entry).collect()
     }
 
     /// Plans a query on the workers, whatever it counts.
@@ -129,8 +152,8 @@ impl Service {
     /// [`Error::TooManyRows`] if counting would take too long.
     pub async fn count(&self, query: Query) -> Result<Planned, Error> {
         let mut tables = vec![];
-        for entry in self.entries(&query)? {
-            tables.push(self.samplers.get(&entry, &self.workers).await?);
+        for set in &*query.sets {
+            tables.push(self.samplers.get(&set.entry, &self.workers).await?);
         }
         let planned = if query.is_small() {
             // Handing it over would take longer.
@@ -162,8 +185,7 @@ impl Service {
     /// # Errors
     /// [`Error::Invalid`] for an amount that cannot be had.
     pub async fn place(&self, set: Set) -> Result<Placed, Error> {
-        let entry = self.catalog.entry(&set.key).ok_or_else(Error::lost_table)?;
-        let ready = self.samplers.get(&entry, &self.workers).await?;
+        let ready = self.samplers.get(&set.entry, &self.workers).await?;
         Placed::new(set, ready)
     }
 
@@ -182,7 +204,7 @@ impl Service {
     /// [`Error::Internal`] if it cannot be made.
     pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
         let mut whole = Bytes::new();
-        for block in answer {
+        for block in Recorded::new(answer) {
             let block = block.map_err(|error| {
                 tracing::error!(%error, "an answer cannot be made");
                 Error::Internal("the answer cannot be encoded")
@@ -202,7 +224,7 @@ impl Service {
         permit: Permit,
         answer: Answer,
     ) -> impl Stream<Item = Result<Bytes, Interrupted>> + use<> {
-        let blocks = self.stream(permit, answer).map(|made| {
+        let blocks = self.stream(permit, Recorded::new(answer)).map(|made| {
             made?.map_err(|error| {
                 tracing::error!(%error, "an answer broke off");
                 Interrupted::Failed

@@ -75,7 +75,7 @@ pub fn write(folder: &Path, name: &str, table: &Table) {
 pub struct Daemon {
     child: Child,
     address: String,
-    _tables: tempfile::TempDir,
+    tables: tempfile::TempDir,
 }
 
 impl Daemon {
@@ -104,13 +104,14 @@ impl Daemon {
             .expect("readable");
         let address = line
             .trim()
-            .strip_prefix("listening on http://")
+            .strip_prefix("listening on http")
+            .map(|rest| rest.trim_start_matches('s').trim_start_matches("://"))
             .unwrap_or_else(|| panic!("not ready: {line}"))
             .to_owned();
         Self {
             child,
             address,
-            _tables: tables,
+            tables,
         }
     }
 
@@ -180,10 +181,20 @@ impl Daemon {
             .sum()
     }
 
+    /// The folder of its tables.
+    pub fn folder(&self) -> &Path {
+        self.tables.path()
+    }
+
     /// Sends SIGTERM.
     pub fn terminate(&self) {
+        self.signal("-TERM");
+    }
+
+    /// Sends a signal.
+    pub fn signal(&self, signal: &str) {
         let sent = Command::new("kill")
-            .args(["-TERM", &self.pid().to_string()])
+            .args([signal, &self.pid().to_string()])
             .status()
             .expect("kill runs");
         assert!(sent.success());

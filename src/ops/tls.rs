@@ -1,0 +1,249 @@
+//! TLS: who serves is proven by a certificate, and if asked for, who asks by one of theirs.
+//!
+//! Certificates are read again on SIGHUP and when a file changes. What is read anew serves the next
+//! connections; those that are open stay as they are. Files that cannot be used change nothing but
+//! the log.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::{Arc, PoisonError, RwLock},
+    time::Duration,
+};
+
+use rustls::{
+    RootCertStore, ServerConfig,
+    crypto::ring::default_provider,
+    pki_types::{CertificateDer, PrivateKeyDer, pem::PemObject as _},
+    server::{WebPkiClientVerifier, danger::ClientCertVerifier},
+};
+use serde::{Deserialize, Serialize};
+use tokio_rustls::TlsAcceptor;
+
+use super::shutdown::Hangups;
+
+/// Which certificates, if any.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// A PEM file with the server's certificate and those that vouch for it; empty for no TLS.
+    pub certificate: PathBuf,
+    /// A PEM file with the certificate's private key.
+    pub key: PathBuf,
+    /// A PEM file with the authorities that vouch for clients; empty if clients need not prove who
+    /// they are.
+    pub client_ca: PathBuf,
+    /// How often the files are looked at for changes, in seconds; 0 for never.
+    pub watch_seconds: f64,
+}
+
+impl Settings {
+    /// Whether TLS is spoken.
+    #[must_use]
+    pub fn is_on(&self) -> bool {
+        !self.certificate.as_os_str().is_empty()
+    }
+
+    /// Whether clients have to show a certificate.
+    #[must_use]
+    pub fn proves_clients(&self) -> bool {
+        self.is_on() && !self.client_ca.as_os_str().is_empty()
+    }
+}
+
+/// What is wrong with a certificate, or a file of them.
+#[derive(Debug, thiserror::Error)]
+#[error("{setting} = {path:?}: {problem}")]
+pub struct TlsError {
+    setting: &'static str,
+    path: PathBuf,
+    problem: String,
+}
+
+/// Speaks TLS with what was read last.
+#[derive(Clone)]
+pub(super) struct Tls {
+    settings: Settings,
+    current: Arc<RwLock<Current>>,
+}
+
+struct Current {
+    /// A hash of all files.
+    content: blake3::Hash,
+    config: Arc<ServerConfig>,
+}
+
+impl std::fmt::Debug for Tls {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Tls")
+            .field("settings", &self.settings)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Tls {
+    /// Reads the files; `None` without TLS.
+    pub(super) fn new(settings: &Settings) -> Result<Option<Self>, TlsError> {
+        if !settings.is_on() {
+            return Ok(None);
+        }
+        let files = Files::read(settings)?;
+        let current = Current {
+            content: files.hash(),
+            config: files.config(settings)?,
+        };
+        Ok(Some(Self {
+            settings: settings.clone(),
+            current: Arc::new(RwLock::new(current)),
+        }))
+    }
+
+    /// Takes part in a handshake with the certificate of now.
+    pub(super) fn acceptor(&self) -> TlsAcceptor {
+        let current = self.current.read().unwrap_or_else(PoisonError::into_inner);
+        TlsAcceptor::from(current.config.clone())
+    }
+
+    /// Reads the files again; whether they were other ones.
+    fn reload(&self) -> Result<bool, TlsError> {
+        let files = Files::read(&self.settings)?;
+        let content = files.hash();
+        let known = self.current.read().unwrap_or_else(PoisonError::into_inner);
+        if known.content == content {
+            return Ok(false);
+        }
+        drop(known);
+        let config = files.config(&self.settings)?;
+        let mut current = self.current.write().unwrap_or_else(PoisonError::into_inner);
+        *current = Current { content, config };
+        Ok(true)
+    }
+
+    /// Reads the files again at every SIGHUP, and when they change; never ends.
+    pub(super) async fn keep_fresh(self, mut hangups: Hangups) {
+        let watch = Duration::try_from_secs_f64(self.settings.watch_seconds);
+        let watch = watch.ok().filter(|every| !every.is_zero());
+        // What was said last about files that cannot be used: once is enough.
+        let mut told = String::new();
+        loop {
+            let look = async {
+                match watch {
+                    Some(every) => tokio::time::sleep(every).await,
+                    None => std::future::pending().await,
+                }
+            };
+            let is_asked = tokio::select! {
+                () = look => false,
+                () = hangups.next() => true,
+            };
+            let tls = self.clone();
+            let read = tokio::task::spawn_blocking(move || tls.reload()).await;
+            match read {
+                Ok(Ok(true)) => {
+                    told.clear();
+                    tracing::info!("the certificates were read anew");
+                }
+                Ok(Ok(false)) => {
+                    told.clear();
+                    if is_asked {
+                        tracing::info!("the certificates are still the same");
+                    }
+                }
+                Ok(Err(error)) => {
+                    let error = error.to_string();
+                    if is_asked || told != error {
+                        tracing::error!(%error, "new certificates are refused; the old ones serve on");
+                    }
+                    told = error;
+                }
+                Err(error) => tracing::error!(%error, "reading certificates failed"),
+            }
+        }
+    }
+}
+
+/// The contents of all files.
+struct Files {
+    certificate: Vec<u8>,
+    key: Vec<u8>,
+    client_ca: Option<Vec<u8>>,
+}
+
+impl Files {
+    fn read(settings: &Settings) -> Result<Self, TlsError> {
+        let read = |setting, path: &Path| {
+            let failed = |error: std::io::Error| TlsError {
+                setting,
+                path: path.into(),
+                problem: format!("it cannot be read: {error}"),
+            };
+            std::fs::read(path).map_err(failed)
+        };
+        let client_ca = settings.proves_clients();
+        let client_ca = client_ca.then(|| read("tls.client_ca", &settings.client_ca));
+        Ok(Self {
+            certificate: read("tls.certificate", &settings.certificate)?,
+            key: read("tls.key", &settings.key)?,
+            client_ca: client_ca.transpose()?,
+        })
+    }
+
+    fn hash(&self) -> blake3::Hash {
+        let mut hasher = blake3::Hasher::new();
+        let client_ca = self.client_ca.as_deref().unwrap_or_default();
+        for content in [&self.certificate, &self.key, client_ca] {
+            hasher.update(&(content.len() as u64).to_le_bytes());
+            hasher.update(content);
+        }
+        hasher.finalize()
+    }
+
+    fn config(&self, settings: &Settings) -> Result<Arc<ServerConfig>, TlsError> {
+        let wrong = |setting, path: &Path, problem: String| TlsError {
+            setting,
+            path: path.into(),
+            problem,
+        };
+        let of_certificate = |problem| wrong("tls.certificate", &settings.certificate, problem);
+        let of_key = |problem| wrong("tls.key", &settings.key, problem);
+        let of_clients = |problem| wrong("tls.client_ca", &settings.client_ca, problem);
+
+        // Named, lest a second provider somewhere in the program make the choice ambiguous.
+        let provider = Arc::new(default_provider());
+        let chain = certificates(&self.certificate).map_err(of_certificate)?;
+        let key = PrivateKeyDer::from_pem_slice(&self.key)
+            .map_err(|error| of_key(format!("it holds no private key in PEM: {error}")))?;
+        let builder = ServerConfig::builder_with_provider(provider.clone())
+            .with_safe_default_protocol_versions()
+            .map_err(|error| of_certificate(error.to_string()))?;
+        let builder = match &self.client_ca {
+            None => builder.with_no_client_auth(),
+            Some(pem) => {
+                let mut roots = RootCertStore::empty();
+                for authority in certificates(pem).map_err(of_clients)? {
+                    let added = roots.add(authority);
+                    added.map_err(|error| of_clients(error.to_string()))?;
+                }
+                let verifier: Arc<dyn ClientCertVerifier> =
+                    WebPkiClientVerifier::builder_with_provider(Arc::new(roots), provider)
+                        .build()
+                        .map_err(|error| of_clients(error.to_string()))?;
+                builder.with_client_cert_verifier(verifier)
+            }
+        };
+        let mut config = builder
+            .with_single_cert(chain, key)
+            .map_err(|error| of_key(format!("it does not go with tls.certificate: {error}")))?;
+        config.alpn_protocols = vec![b"h2".to_vec(), b"http/1.1".to_vec()];
+        Ok(Arc::new(config))
+    }
+}
+
+/// The certificates of a PEM file: at least one.
+fn certificates(pem: &[u8]) -> Result<Vec<CertificateDer<'static>>, String> {
+    let read: Result<Vec<_>, _> = CertificateDer::pem_slice_iter(pem).collect();
+    let read = read.map_err(|error| format!("it is not PEM: {error}"))?;
+    if read.is_empty() {
+        return Err("it holds no certificate in PEM".into());
+    }
+    Ok(read)
+}
