@@ -40,6 +40,7 @@ const PARTS: &[(&str, &str)] = parts![
     "commands.js",
     "controls.js",
     "dom.js",
+    "dots.js",
     "download.js",
     "fft.js",
     "gallery.css",

@@ -66,6 +66,17 @@ pub fn tables() -> tempfile::TempDir {
     folder
 }
 
+/// A folder with the tables that the program has built in.
+pub fn built_in_tables() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tables");
+    for entry in std::fs::read_dir(from).expect("readable") {
+        let entry = entry.expect("readable");
+        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).expect("copied");
+    }
+    folder
+}
+
 /// Writes a table file.
 pub fn write(folder: &Path, name: &str, table: &Table) {
     std::fs::write(folder.join(name), table.to_bytes()).expect("writable");
@@ -86,9 +97,14 @@ impl Daemon {
 
     /// Starts one on a free port with a folder of tables and further settings.
     pub fn with_tables(tables: tempfile::TempDir, settings: &[&str]) -> Self {
+        Self::at("127.0.0.1:0", tables, settings)
+    }
+
+    /// Starts one on an address with a folder of tables and further settings.
+    pub fn at(listen: &str, tables: tempfile::TempDir, settings: &[&str]) -> Self {
         let mut command = strew();
         command
-            .args(["serve", "--listen", "127.0.0.1:0", "--tables"])
+            .args(["serve", "--listen", listen, "--tables"])
             .arg(tables.path());
         for setting in settings {
             command.args(["--set", setting]);

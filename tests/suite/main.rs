@@ -3,6 +3,7 @@
 mod addresses;
 mod amounts;
 mod bodies;
+mod browser;
 mod caching;
 mod calls;
 mod clients;
@@ -29,6 +30,9 @@ mod limits;
 mod logs;
 mod metrics;
 mod openapi;
+mod page;
+mod page_controls;
+mod page_taking;
 mod pages;
 mod probe;
 mod raw;

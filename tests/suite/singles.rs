@@ -29,6 +29,10 @@ fn every_id_finds_its_point() {
                     (&found["x"], &found["y"]),
                     (&json!(point.x), &json!(point.y))
                 );
+                // The map of the test table has 27 intervals.
+                let block = found["block"].as_array().expect("a column and a row");
+                assert!(block.iter().all(|i| i.as_u64().is_some_and(|i| i < 27)));
+                assert_eq!(block.len(), 2);
             }
         }
         // Most lattice addresses have no point.

@@ -10,7 +10,7 @@ import { parsePlace, place } from "./place.js";
 import { Plane } from "./plane.js";
 import { Session } from "./session.js";
 import { Status } from "./status.js";
-import { initial } from "./state.js";
+import { LAYER, initial } from "./state.js";
 import { Take } from "./take.js";
 import { palette, watchTheme } from "./theme.js";
 import { Understand } from "./understand.js";
@@ -180,7 +180,8 @@ function showTab() {
 
 let controls = null;
 
-parts.push(new Card(session, plane), new Understand(session, plane), new Take(session, plane));
+const [understand, take] = [new Understand(session, plane), new Take(session, plane)];
+parts.push(new Card(session, plane), understand, take);
 tools();
 tabs();
 showTab();
@@ -195,10 +196,18 @@ session.on((changed) => {
   if (changed.has("tab")) showTab();
 });
 
+/** A server without the profile that everybody begins with shows its first one. */
+function settle(profiles) {
+  const isLoaded = profiles.some((table) => table.profile === LAYER.profile);
+  if (isLoaded || location.hash.includes("profile=") || profiles.length === 0) return;
+  session.state.layers[0].profile = profiles[0].profile;
+}
+
 /** Begins as soon as the server has told which profiles it has. */
 async function begin() {
   try {
     const { profiles } = await askJson("/v1/profiles");
+    settle(profiles);
     controls = new Controls(session, profiles);
     const gallery = new Gallery(session, profiles);
     parts.push(gallery);
@@ -211,5 +220,5 @@ async function begin() {
 }
 
 // For the curious, and for tests.
-globalThis.strew = { plane, session, status };
+globalThis.strew = { plane, session, status, understand, take };
 begin();

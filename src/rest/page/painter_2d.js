@@ -1,6 +1,7 @@
-// Points by a plain canvas, where there is no WebGL2: the same sheets, the same marks, fewer points a
-// frame.
+// Points by a plain canvas, where there is no WebGL2 or nothing but a processor to do it: the same
+// sheets, the same marks. Sheets of mere dots are set pixel by pixel.
 
+import { masksOf, packed, setDots } from "./dots.js";
 import { ARROW, SHAPES, isMarked, slotsOf } from "./marks.js";
 
 /** The outline of each shape around 0 with radius 1, direction to the right. */
@@ -41,15 +42,19 @@ class PlainPainter {
     this.context = context;
     this.canvas = canvas;
     this.name = "2d";
-    this.budget = 15_000;
+    /** Points painted at once between looks at the clock. */
+    this.slice = 4000;
+    this.budget = 250_000;
     this.most = 8192;
-    this.stamps = new Map();
+    this.masks = new Map();
   }
 
   sheet(width, height) {
     const canvas = document.createElement("canvas");
     Object.assign(canvas, { width, height });
-    return { width, height, canvas, context: canvas.getContext("2d", { alpha: false }) };
+    const context = canvas.getContext("2d", { alpha: false });
+    const image = context.createImageData(width, height);
+    return { width, height, canvas, context, image, pixels: new Uint32Array(image.data.buffer) };
   }
 
   drop(sheet) {
@@ -57,45 +62,48 @@ class PlainPainter {
     Object.assign(sheet.canvas, { width: 0, height: 0 });
   }
 
-  clear(sheet, ground) {
-    sheet.context.setTransform(1, 0, 0, 1, 0, 0);
-    sheet.context.fillStyle = css(ground);
-    sheet.context.fillRect(0, 0, sheet.width, sheet.height);
+  clear(sheet, ground, layers) {
+    sheet.isDots = layers.every((layer) => !isMarked(layer) && !layer.scale);
+    sheet.isTouched = sheet.isDots;
+    if (sheet.isDots) sheet.pixels.fill(packed(ground));
+    else {
+      sheet.context.setTransform(1, 0, 0, 1, 0, 0);
+      sheet.context.fillStyle = css(ground);
+      sheet.context.fillRect(0, 0, sheet.width, sheet.height);
+    }
   }
 
-  /** A dot that is drawn once and then stamped. */
-  stamp(size, color) {
-    const key = `${size.toFixed(2)} ${color}`;
-    let stamp = this.stamps.get(key);
-    if (!stamp) {
-      stamp = document.createElement("canvas");
-      stamp.width = stamp.height = Math.ceil(size) + 2;
-      const context = stamp.getContext("2d");
-      context.fillStyle = css(color);
-      context.arc(stamp.width / 2, stamp.width / 2, size / 2, 0, 2 * Math.PI);
-      context.fill();
-      if (this.stamps.size > 64) this.stamps.clear();
-      this.stamps.set(key, stamp);
+  masksFor(size) {
+    const key = size.toFixed(1);
+    if (!this.masks.has(key)) {
+      if (this.masks.size > 64) this.masks.clear();
+      this.masks.set(key, masksOf(Number(key)));
     }
-    return stamp;
+    return this.masks.get(key);
   }
 
   paint(sheet, chunk, { layer, first, count, corner, zoom, size, color }) {
+    const [left, top] = [sheet.width / 2 + corner[0], sheet.height / 2 - corner[1]];
+    if (sheet.isDots) {
+      sheet.isTouched = true;
+      setDots(sheet, chunk, { first, count, left, top, zoom, masks: this.masksFor(size), color: packed(color) });
+      return;
+    }
     const { context } = sheet;
     const { data, stride } = chunk;
     const slots = slotsOf(layer, chunk.columns);
-    const [left, top] = [sheet.width / 2 + corner[0], sheet.height / 2 - corner[1]];
-    const isPlain = !isMarked(layer) && slots.scale < 0;
-    context.setTransform(1, 0, 0, 1, 0, 0);
     context.fillStyle = css(color);
-    const stamp = isPlain && size > 1.8 ? this.stamp(size, color) : null;
     for (let k = first; k < first + count; k += 1) {
       const [x, y] = [left + data[k * stride] * zoom, top - data[k * stride + 1] * zoom];
-      if (stamp) context.drawImage(stamp, x - stamp.width / 2, y - stamp.width / 2);
-      else if (isPlain) context.fillRect(x - size / 2, y - size / 2, size, size);
-      else this.mark(context, layer, [x, y], size, slots, data.subarray(k * stride, (k + 1) * stride));
+      this.mark(context, layer, [x, y], size, slots, data.subarray(k * stride, (k + 1) * stride));
     }
     context.setTransform(1, 0, 0, 1, 0, 0);
+  }
+
+  /** Ends the painting of a frame. */
+  flush(sheet) {
+    if (sheet.isTouched) sheet.context.putImageData(sheet.image, 0, 0);
+    sheet.isTouched = false;
   }
 
   mark(context, layer, [x, y], size, slots, record) {

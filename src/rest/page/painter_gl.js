@@ -60,11 +60,27 @@ void main() {
   result = vec4(color * cover, cover);
 }`;
 
-/** A painter, or `null` where there is no WebGL2. */
-export function glPainter(canvas) {
-  const gl = canvas.getContext("webgl2", {
-    alpha: false, antialias: false, depth: false, stencil: false, powerPreference: "high-performance",
-  });
+const OPTIONS = { alpha: false, antialias: false, depth: false, stencil: false, powerPreference: "high-performance" };
+/** What renderers are called that have no graphics hardware. */
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+/** Whether WebGL2 is there and is done by hardware; looked at on a canvas that is thrown away. */
+function isFast() {
+  const gl = document.createElement("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
+  if (!gl) return false;
+  const told = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return !SOFTWARE.test(String(name));
+}
+
+/**
+ * A painter, or `null` where there is no WebGL2; also where a processor would have to do it, which is
+ * slower than a plain canvas, unless it is `wanted`.
+ */
+export function glPainter(canvas, wanted) {
+  if (!wanted && !isFast()) return null;
+  const gl = canvas.getContext("webgl2", OPTIONS);
   return gl && !gl.isContextLost() ? new GlPainter(gl, canvas) : null;
 }
 
@@ -74,7 +90,8 @@ class GlPainter {
     this.canvas = canvas;
     this.name = "webgl2";
     /** Points painted in a frame at most: what a renderer without graphics hardware can do. */
-    this.budget = 120_000;
+    this.budget = 200_000;
+    this.slice = 50_000;
     this.dots = this.program(VERTEX, DOT);
     this.marks = this.program(VERTEX, MARK);
     gl.enable(gl.BLEND);
@@ -125,6 +142,9 @@ class GlPainter {
     gl.clearColor(...ground, 1);
     gl.clear(gl.COLOR_BUFFER_BIT);
   }
+
+  /** Ends the painting of a frame: nothing is held back here. */
+  flush() {}
 
   /** Sends what has arrived of a chunk and was not sent yet. */
   upload(chunk) {

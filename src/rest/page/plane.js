@@ -21,7 +21,7 @@ const REST = 140;
 export class Plane {
   constructor(canvas, renderer, events) {
     this.events = events;
-    this.painter = (renderer === "2d" ? null : glPainter(canvas)) ?? plainPainter(canvas);
+    this.painter = (renderer === "2d" ? null : glPainter(canvas, renderer === "webgl2")) ?? plainPainter(canvas);
     this.canvas = canvas;
     this.chunks = new Chunks(() => this.draw(), events.failed);
     this.sheets = new Sheets(this.painter, this.chunks);
@@ -32,7 +32,7 @@ export class Plane {
     this.zoomedAt = -Infinity;
     new ResizeObserver(() => this.resize()).observe(canvas);
     canvas.addEventListener("webglcontextlost", () => events.failed(new Error(
-      "The graphics driver gave up. Load the page again, or add renderer=2d to its address.",
+      "The graphics driver gave up. Load the page again, or add &renderer=2d to its address.",
     )));
   }
 

@@ -8,6 +8,8 @@ import { distance } from "./place.js";
 
 /** How much larger than the canvas a sheet is, on each side, as a share of the canvas. */
 const MARGIN = 0.2;
+/** Painting points may take so many milliseconds of a frame. */
+const PATIENCE = 6;
 /** How far a zoom may stretch a sheet while it goes on. */
 const STRETCH = 1.6;
 
@@ -17,6 +19,7 @@ export class Sheets {
     this.chunks = chunks;
     this.front = null;
     this.back = null;
+    this.spare = null;
   }
 
   /** Forgets what is painted: the next frame begins anew, with the old underneath if it still fits. */
@@ -76,8 +79,8 @@ export class Sheets {
       const wanted = Math.ceil(side * (1 + 2 * MARGIN));
       return Math.min(painter.most, wanted + (wanted % 2));
     });
-    const surface = painter.sheet(width, height);
-    painter.clear(surface, look.ground);
+    const surface = this.surface(width, height);
+    painter.clear(surface, look.ground, look.layers);
     const { x, y, unit, ratio } = view;
     const wide = { x, y, unit, width: width / ratio, height: height / ratio };
     const size = chunkSize(view, look.spacing);
@@ -93,18 +96,20 @@ export class Sheets {
   /** Paints arrived points, up to a frame's budget; gives the parts that are not whole. */
   fill(look) {
     const { front, painter } = this;
+    const end = performance.now() + PATIENCE;
     let budget = painter.budget;
     for (const part of front.parts) {
       const { chunk } = part;
       if (part.done > chunk.count) part.done = 0;
-      if (part.done < chunk.count && budget > 0) {
-        const until = Math.min(chunk.count, part.done + budget);
+      while (part.done < chunk.count && budget > 0 && performance.now() < end) {
+        const until = Math.min(chunk.count, part.done + painter.slice);
         budget -= until - part.done;
         this.paint(part, until, look);
         part.done = until;
       }
       part.isWhole = chunk.state === "done" && part.done === chunk.count;
     }
+    painter.flush(front.surface);
     const missing = front.parts.filter((part) => !part.isWhole);
     front.isFull = missing.length === 0;
     return missing;
@@ -142,8 +147,19 @@ export class Sheets {
     }
   }
 
+  /** A surface, the one that was used last if it fits. */
+  surface(width, height) {
+    const { spare } = this;
+    this.spare = null;
+    if (spare && spare.width === width && spare.height === height) return spare;
+    if (spare) this.painter.drop(spare);
+    return this.painter.sheet(width, height);
+  }
+
   drop(name) {
-    if (this[name]) this.painter.drop(this[name].surface);
+    if (!this[name]) return;
+    if (this.spare) this.painter.drop(this.spare);
+    this.spare = this[name].surface;
     this[name] = null;
   }
 }

@@ -71,7 +71,7 @@ export function fromHash(hash) {
   const span = Number(given.get("span"));
   if (Number.isFinite(span) && span > 0) state.span = span;
   if (["choose", "understand", "take", "gallery"].includes(given.get("tab"))) state.tab = given.get("tab");
-  if (given.get("renderer") === "2d") state.renderer = "2d";
+  if (["2d", "webgl2"].includes(given.get("renderer"))) state.renderer = given.get("renderer");
   const layers = Math.min(MOST_LAYERS, Math.max(1, Number(given.get("layers")) || 1));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
   return state;
