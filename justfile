@@ -24,6 +24,10 @@ lint:
 bench:
     cargo bench -p strew-core
 
+# Mixed questions by all doors with faults injected, every answer checked: `just soak 1800`.
+soak seconds="300" *args:
+    cargo test --release --test soak -- --seconds {{seconds}} {{args}}
+
 # The library without the standard library.
 no-std:
     cargo build -p strew-core --no-default-features
