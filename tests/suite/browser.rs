@@ -116,12 +116,14 @@ impl Browser {
     }
 
     fn send(&self, method: &str, path: &str, body: &Value) -> Value {
-        let answer = match method {
-            "POST" => raw::posted(&self.address, path, &[], body.to_string().as_bytes()),
-            _ => raw::request(&self.address, method, path, &[]),
+        let opened = match method {
+            "POST" => raw::post(&self.address, path, &[], body.to_string().as_bytes()),
+            _ => raw::open(&self.address, method, path, &[]),
         };
-        let value = answer.json()["value"].clone();
-        assert_eq!(answer.status, 200, "{method} {path}: {value}");
+        let status = opened.status;
+        let mut answer: Value = serde_json::from_slice(&opened.body()).expect("JSON");
+        let value = answer["value"].take();
+        assert_eq!(status, 200, "{method} {path} {body}: {value}");
         value
     }
 

@@ -29,10 +29,6 @@ fn the_page_shows_its_points_and_complains_of_nothing() {
     let count = browser.ready();
     assert!((800..1300).contains(&count), "{count}");
     assert_eq!(in_view(&browser).len() as u64, count);
-    assert_eq!(
-        browser.value("document.documentElement.dataset.renderer"),
-        "webgl2"
-    );
     assert!(browser.text("#tally").contains("points in view"));
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
@@ -49,12 +45,12 @@ fn dragging_zooming_and_keys_move_the_view_and_its_address() {
     browser.ready();
     let before = browser.ready();
     browser.wheel([816, 400], 300);
-    browser.until("strew.plane.span > 70");
+    browser.until("strew.plane.span > 60");
     let after = browser.ready();
-    assert!(after > 2 * before, "{before} {after}");
+    assert!(2 * after > 3 * before, "{before} {after}");
     browser.click("#plane");
     browser.keys(&["\u{E014}", "\u{E013}", "+"]);
-    browser.until("strew.plane.span < 70 && strew.plane.view.x.i > 25");
+    browser.until("strew.plane.span < 60 && strew.plane.view.x.i > 25");
     browser.ready();
     // What lies in view is what the server counts, after all of that.
     let count = browser.ready();
@@ -68,7 +64,7 @@ fn a_jump_to_1e12_is_as_sharp_as_home_and_back_goes_home() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
     };
-    for renderer in ["", "&renderer=2d"] {
+    for renderer in ["&renderer=webgl2", "&renderer=2d"] {
         browser.look(&daemon, &format!("#at=0,0&span=8{renderer}"));
         browser.click("#jump-at");
         browser.keys(
@@ -118,27 +114,31 @@ fn chunk_points(daemon: &Daemon) -> Vec<[f64; 2]> {
     for (dx, dy) in [(0, 0), (-1, 0), (0, -1), (-1, -1)] {
         let cell = 125_000_000_000i64;
         let path = format!(
-            "/v1/chunks/8/{}/{}?spacing=1&seed=1&format=csv",
+            "/v1/chunks/8/{}/{}?spacing=1&seed=1&format=f32",
             cell + dx,
             -cell + dy
         );
         let answer = daemon.get(&path);
-        for line in answer.text().lines().skip(1) {
-            let mut fields = line.split(',').skip(1).map(|v| v.parse::<f64>());
-            let mut next = || fields.next().expect("a field").expect("a number");
-            all.push([next() + 8.0 * dx as f64, next() + 8.0 * dy as f64]);
+        for bytes in answer.body.chunks_exact(8) {
+            let read = |bytes: &[u8]| f32::from_le_bytes(bytes.try_into().expect("four"));
+            let [x, y] = [read(&bytes[..4]), read(&bytes[4..])].map(f64::from);
+            all.push([x + 8.0 * dx as f64, y + 8.0 * dy as f64]);
         }
     }
     all
 }
 
 #[test]
-fn the_plain_canvas_shows_the_same_points() {
+fn webgl2_and_the_plain_canvas_show_the_same_points() {
     let Some((daemon, browser)) = looking(1000, 700) else {
         return;
     };
     let hash = "#at=-77,4.5&span=25&seed=9&variant=1&angle=1&layers=2&2.amount=3&2.scale=1";
-    browser.look(&daemon, hash);
+    browser.look(&daemon, &format!("{hash}&renderer=webgl2"));
+    assert_eq!(
+        browser.value("document.documentElement.dataset.renderer"),
+        "webgl2"
+    );
     let (count, mut shown) = (browser.ready(), in_view(&browser));
     browser.look(&daemon, &format!("{hash}&renderer=2d"));
     assert_eq!(
@@ -180,7 +180,7 @@ fn a_server_that_goes_away_is_waited_for() {
     browser.look(&daemon, "#at=0,0&span=30");
     let address = daemon.address().to_owned();
     drop(daemon);
-    browser.drag([700, 350], [-900, 0]);
+    browser.drag([950, 350], [-580, 0]);
     browser.until("document.documentElement.dataset.presence === 'gone'");
     assert!(
         browser
@@ -236,7 +236,7 @@ fn frames_of_a_drag_over_100_000_points() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
     };
-    for renderer in ["", "&renderer=2d"] {
+    for renderer in ["&renderer=webgl2", "&renderer=2d"] {
         browser.look(&daemon, &format!("#at=0,0&span=293&renderer={renderer}"));
         let count = browser.ready();
         let script = "new Promise((resolve) => { const costs = [], gaps = []; let last = 0, n = 0; \
@@ -259,7 +259,7 @@ fn frames_of_a_drag_over_100_000_points() {
              (95 %), {most:.1} ms (most); frames are {:.1} ms apart, {:.1} ms (95 %)",
             gaps.0, gaps.1
         );
-        if renderer.is_empty() {
+        if renderer.ends_with("2d") {
             assert!(median < 16.0 && p95 < 16.0, "{median} {p95}");
         }
     }
