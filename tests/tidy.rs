@@ -87,8 +87,29 @@ fn the_service_knows_no_door_and_the_doors_not_each_other() {
         "src/service",
         &["axum", "tonic", "http::", "crate::rest", "crate::grpc"],
     );
+    never_names(
+        "src/access",
+        &[
+            "axum",
+            "tonic",
+            "http::",
+            "crate::rest",
+            "crate::grpc",
+            "crate::service",
+        ],
+    );
     never_names("src/rest", &["crate::grpc", "tonic"]);
     never_names("src/grpc", &["crate::rest", "axum"]);
+}
+
+#[test]
+fn nothing_that_a_client_sends_reaches_the_file_system() {
+    for room in ["src/rest", "src/grpc", "src/service/query"] {
+        never_names(
+            room,
+            &["std::fs", "fs::", "std::path", "PathBuf", "std::process"],
+        );
+    }
 }
 
 #[test]

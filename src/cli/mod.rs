@@ -4,6 +4,7 @@ mod config;
 mod count;
 mod flags;
 mod forge;
+mod key;
 mod measure;
 mod output;
 mod point;
@@ -49,6 +50,9 @@ enum Command {
     /// Look at tables.
     #[command(subcommand)]
     Table(table::Command),
+    /// Make keys for clients.
+    #[command(subcommand)]
+    Key(key::Command),
     /// Print the merged settings.
     Config(config::Args),
 }
@@ -86,6 +90,7 @@ pub fn main() -> ExitCode {
         Command::Forge(args) => forge::run(&args),
         Command::Measure(args) => measure::run(&args),
         Command::Table(command) => table::run(&command),
+        Command::Key(command) => key::run(&command),
         Command::Config(args) => config::run(&args),
     };
     let (error, code) = match done {

@@ -17,6 +17,7 @@ use super::{
     },
     query, resolved, single, split, status,
 };
+use crate::access::Caller;
 use crate::service::{
     Error, Fault, Service,
     query::{SetDraft, check_parts},
@@ -33,10 +34,15 @@ impl Points {
         Self { service }
     }
 
-    async fn stream(&self, request: &StreamPointsRequest) -> Result<MessageStream, Error> {
+    async fn stream(
+        &self,
+        caller: &Caller,
+        request: &StreamPointsRequest,
+    ) -> Result<MessageStream, Error> {
         let (query, encoding) = query::query(request, &self.service)?;
-        let permit = self.service.streams().admit()?;
-        let planned = self.service.plan(query).await?;
+        let permit = self.service.admit(caller)?;
+        let planned = self.service.plan(caller, query).await?;
+        caller.charge(planned.count())?;
         let block_bytes = self.service.limits().block_bytes;
         let messages = Messages::new(request, planned, encoding, block_bytes)?;
         let stream = self.service.stream(permit, messages);
@@ -79,7 +85,11 @@ impl Points {
         })
     }
 
-    async fn nearest(&self, request: &FindNearestRequest) -> Result<FindNearestResponse, Error> {
+    async fn nearest(
+        &self,
+        caller: &Caller,
+        request: &FindNearestRequest,
+    ) -> Result<FindNearestResponse, Error> {
         let mut faults = vec![];
         let around = query::around(request).check(vec![]);
         let around = around.map_err(|more| faults.extend(more));
@@ -89,11 +99,18 @@ impl Points {
         let set = Some(resolved::placed(&placed));
         let search = move || placed.nearest(around);
         let found = self.service.workers().run(search).await??;
+        caller.charge(found.len() as u128)?;
         Ok(FindNearestResponse {
             neighbors: found.into_iter().map(single::point).collect(),
             set,
         })
     }
+}
+
+/// Who asks: every request that has been let in says so.
+fn caller<T>(request: &Request<T>) -> Result<Caller, Status> {
+    let caller = request.extensions().get::<Caller>().cloned();
+    caller.ok_or_else(|| status::status(&Error::Internal("nobody has been let in")))
 }
 
 /// The query of a request, which must be there.
@@ -119,7 +136,8 @@ impl PointService for Points {
         &self,
         request: Request<StreamPointsRequest>,
     ) -> Result<Response<MessageStream>, Status> {
-        answered(self.stream(request.get_ref()).await)
+        let caller = caller(&request)?;
+        answered(self.stream(&caller, request.get_ref()).await)
     }
 
     async fn count_points(
@@ -157,7 +175,8 @@ impl PointService for Points {
         &self,
         request: Request<FindNearestRequest>,
     ) -> Result<Response<FindNearestResponse>, Status> {
-        answered(self.nearest(request.get_ref()).await)
+        let caller = caller(&request)?;
+        answered(self.nearest(&caller, request.get_ref()).await)
     }
 
     async fn list_profiles(

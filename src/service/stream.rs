@@ -20,6 +20,7 @@ use tokio::sync::oneshot;
 use tokio_util::sync::{CancellationToken, WaitForCancellationFutureOwned};
 
 use super::{Error, Workers};
+use crate::access::Place;
 
 /// Why a stream broke off: its reader must see that it is not complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -72,6 +73,7 @@ impl Streams {
             .map_err(|_| Error::Busy { limit: self.limit })?;
         Ok(Permit {
             streams: self.clone(),
+            _place: None,
         })
     }
 
@@ -85,6 +87,16 @@ impl Streams {
 #[derive(Debug)]
 pub struct Permit {
     streams: Arc<Streams>,
+    /// The caller's own place, where it has not any number.
+    _place: Option<Place>,
+}
+
+impl Permit {
+    /// With a place of the caller's that is given back with it.
+    pub(super) fn with(mut self, place: Option<Place>) -> Self {
+        self._place = place;
+        self
+    }
 }
 
 impl Drop for Permit {

@@ -3,7 +3,7 @@
 use std::{
     io::{BufRead as _, BufReader},
     path::{Path, PathBuf},
-    process::{Child, Command, ExitStatus, Stdio},
+    process::{Child, ChildStdout, Command, ExitStatus, Stdio},
     time::{Duration, Instant},
 };
 
@@ -74,6 +74,7 @@ pub fn write(folder: &Path, name: &str, table: &Table) {
 /// A running daemon; killed when dropped.
 pub struct Daemon {
     child: Child,
+    output: BufReader<ChildStdout>,
     address: String,
     tables: tempfile::TempDir,
 }
@@ -99,9 +100,8 @@ impl Daemon {
             .spawn()
             .expect("the program runs");
         let mut line = String::new();
-        BufReader::new(child.stdout.take().expect("piped"))
-            .read_line(&mut line)
-            .expect("readable");
+        let mut output = BufReader::new(child.stdout.take().expect("piped"));
+        output.read_line(&mut line).expect("readable");
         let address = line
             .trim()
             .strip_prefix("listening on http")
@@ -110,9 +110,17 @@ impl Daemon {
             .to_owned();
         Self {
             child,
+            output,
             address,
             tables,
         }
+    }
+
+    /// The next line on its standard output.
+    pub fn line(&mut self) -> String {
+        let mut line = String::new();
+        self.output.read_line(&mut line).expect("readable");
+        line.trim().to_owned()
     }
 
     /// `host:port`.

@@ -1,6 +1,7 @@
 //! The daemon from outside: the real program over real sockets, and the real clients.
 
 mod addresses;
+mod admin;
 mod amounts;
 mod bodies;
 mod caching;
@@ -23,11 +24,14 @@ mod grpc_queries;
 mod grpc_single;
 mod grpc_web;
 mod grpc_wrong;
+mod hardening;
 mod http;
+mod keys;
 mod layers;
 mod limits;
 mod openapi;
 mod pages;
+mod rates;
 mod raw;
 mod readers;
 mod regions;
