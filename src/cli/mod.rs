@@ -8,6 +8,7 @@ mod key;
 mod measure;
 mod output;
 mod point;
+mod probe;
 mod progress;
 mod query;
 mod refusal;
@@ -53,6 +54,8 @@ enum Command {
     /// Make keys for clients.
     #[command(subcommand)]
     Key(key::Command),
+    /// Ask a running daemon whether it is ready: exit code 0 if so, 1 if not.
+    Probe(probe::Args),
     /// Print the merged settings.
     Config(config::Args),
 }
@@ -91,6 +94,7 @@ pub fn main() -> ExitCode {
         Command::Measure(args) => measure::run(&args),
         Command::Table(command) => table::run(&command),
         Command::Key(command) => key::run(&command),
+        Command::Probe(args) => probe::run(&args),
         Command::Config(args) => config::run(&args),
     };
     let (error, code) = match done {

@@ -20,7 +20,7 @@ pub(super) struct Args {
 /// Serves until a signal comes.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged()?;
-    telemetry::start(&config.log.filter).context("log.filter")?;
+    telemetry::start(&config.log.filter, config.log.format).context("log.filter")?;
     let listen = config.server.listen;
     let admin = config.admin.address().context("admin.listen")?;
     if let Some(warning) = exposure::warning(&config) {
@@ -41,6 +41,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         }
         _ => Failure::Other(error.into()),
     })?;
+    let app = app.with_all_metrics();
     if app.service().catalog().entries().len() == 0 {
         tracing::warn!("no table is loaded: every query will be refused");
     }

@@ -15,7 +15,12 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use crate::{access, ops::tls, rest, service::Limits};
+use crate::{
+    access,
+    ops::{telemetry, tls},
+    rest,
+    service::Limits,
+};
 
 pub use layers::{ConfigError, Layers};
 
@@ -48,6 +53,8 @@ pub struct Config {
     pub shutdown: Shutdown,
     /// What to log.
     pub log: Log,
+    /// What to count.
+    pub metrics: Metrics,
 }
 
 /// Where and how to serve.
@@ -136,6 +143,16 @@ pub struct Shutdown {
 pub struct Log {
     /// A level, or levels by module.
     pub filter: String,
+    /// How a line looks.
+    pub format: telemetry::Format,
+}
+
+/// What to count.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Metrics {
+    /// Whether `/metrics` is served.
+    pub enabled: bool,
 }
 
 impl Config {

@@ -12,7 +12,7 @@ use axum::{
 use http::{HeaderMap, Version, header};
 use tonic_web::GrpcWebLayer;
 
-use super::gate;
+use super::{gate, observe};
 use crate::{access::Gate, grpc, rest};
 
 /// The routes of gRPC, for all who can call them and are let in. (The last layer is the first to see a
@@ -49,9 +49,10 @@ async fn only_calls(request: Request, next: Next) -> Response {
 
 /// Calls are answered as compressed as they ask, and in time.
 async fn on_terms(mut request: Request, next: Next) -> Response {
-    match grpc::terms(request.headers_mut()) {
+    let answered = match grpc::terms(request.headers_mut()) {
         Err(refusal) => refusal.into_http::<Body>(),
         Ok(None) => next.run(request).await,
         Ok(Some(deadline)) => deadline.answer(next.run(request)).await.map(Body::new),
-    }
+    };
+    observe::coded(answered)
 }

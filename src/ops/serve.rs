@@ -10,7 +10,8 @@ use super::{
     connections::Connections,
     gate,
     health::{self, Readiness},
-    panics,
+    metrics::{self, Metrics},
+    observe, panics,
     reload::Reloader,
     shutdown::Hangups,
     tls::{Tls, TlsError},
@@ -59,6 +60,7 @@ pub struct App {
     admin: Option<TcpListener>,
     hangups: Option<Hangups>,
     tls: Option<Tls>,
+    metrics: Metrics,
     more: Router,
 }
 
@@ -83,6 +85,7 @@ impl App {
             config,
             service,
             tls,
+            metrics: Metrics::default(),
             more: Router::new(),
         })
     }
@@ -112,6 +115,13 @@ impl App {
     #[must_use]
     pub fn admin_address(&self) -> Option<std::net::SocketAddr> {
         self.admin.as_ref()?.local_addr().ok()
+    }
+
+    /// Shows also what the process counts without saying for which daemon: for a process of one.
+    #[must_use]
+    pub fn with_all_metrics(self) -> Self {
+        self.metrics.take_all();
+        self
     }
 
     /// What it serves.
@@ -199,6 +209,10 @@ impl App {
         let mut endpoints = rest::endpoints(&self.service);
         endpoints.extend(health::endpoints(readiness, self.service.clone()));
         endpoints.push(admin::endpoint(self.reloader.clone()));
+        if self.config.metrics.enabled {
+            endpoints.push(self.metrics_endpoint());
+            tokio::spawn(self.metrics.clone().keep_up());
+        }
         let gate = self.gate.clone();
         let behind_gate =
             move |router: Router| router.layer(middleware::from_fn_with_state(gate, gate::of_rest));
@@ -215,6 +229,9 @@ impl App {
     fn admin_router(&self, readiness: Readiness) -> Router {
         let mut endpoints = health::endpoints(readiness, self.service.clone());
         endpoints.push(admin::endpoint(self.reloader.clone()));
+        if self.config.metrics.enabled {
+            endpoints.push(self.metrics_endpoint());
+        }
         let of_admins = |router: Router| router.layer(middleware::from_fn(gate::of_admins));
         let rest::Door { router, paths } = rest::Door::new(endpoints, of_admins);
         self.finished(router.fallback(move |request| nothing_here(request, paths)))
@@ -223,13 +240,18 @@ impl App {
     /// What every answer goes through.
     fn finished(&self, router: Router) -> Router {
         let router = router.layer(middleware::from_fn(panics::answered));
-        rest::finished(
+        let router = rest::finished(
             router,
             &self.config.http,
             self.config.server.max_header_bytes,
             self.gate.settings().needs_key(),
             self.service.workers().clone(),
-        )
+        );
+        observe::observed(router, self.metrics.clone())
+    }
+
+    fn metrics_endpoint(&self) -> rest::api::Endpoint {
+        metrics::endpoint(self.metrics.clone(), self.service.clone())
     }
 }
 

@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::{
     access::{Denied, Short},
     error_map,
-    service::{Error, Fault},
+    service::{Error, Fault, Record},
 };
 
 /// The document.
@@ -32,6 +32,9 @@ pub(super) struct Problem<'a> {
     loaded: Option<&'a str>,
     #[serde(flatten)]
     rate: Option<Rate>,
+    /// What the request is called in the log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    request_id: Option<String>,
 }
 
 /// What a caller who is too fast has to know.
@@ -54,6 +57,10 @@ impl Rate {
             retry_after_seconds: short.wait.as_secs_f64(),
         }
     }
+}
+
+fn request_id() -> Option<String> {
+    Record::current().map(|record| record.id().to_owned())
 }
 
 impl<'a> Problem<'a> {
@@ -87,11 +94,13 @@ impl<'a> Problem<'a> {
             pinned: digests.map(|(pinned, _)| pinned),
             loaded: digests.map(|(_, loaded)| loaded),
             rate,
+            request_id: request_id(),
         }
     }
 
     /// An error as a whole response.
     pub(super) fn response(error: &'a Error) -> Response {
+        Record::refuse(error.kind());
         let mut response = Self::new(error).into_response();
         let headers = response.headers_mut();
         if let Some(seconds) = error.retry_seconds() {
@@ -121,6 +130,7 @@ impl<'a> Problem<'a> {
             pinned: None,
             loaded: None,
             rate: None,
+            request_id: request_id(),
         };
         problem.into_response()
     }

@@ -15,6 +15,7 @@ mod planned;
 mod planner;
 mod portrait;
 pub mod query;
+pub mod record;
 mod single;
 pub mod stream;
 pub mod workers;
@@ -34,13 +35,15 @@ pub use error::{Error, Fault, Kind};
 pub use planned::{Placed, Planned, PlannedSet};
 pub use portrait::Portrait;
 pub use query::{Draft, Query, Set};
+pub use record::Record;
 pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::Workers;
 
 use crate::access::Caller;
-use cache::Samplers;
+use cache::{CacheState, Samplers};
 use portrait::Portraits;
+use record::Recorded;
 
 /// What a query may ask for, and what answering may hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -132,6 +135,11 @@ impl Service {
         &self.workers
     }
 
+    /// How the cache of samplers stands.
+    pub async fn cache(&self) -> CacheState {
+        self.samplers.state().await
+    }
+
     /// The streams under way.
     #[must_use]
     pub const fn streams(&self) -> &Arc<Streams> {
@@ -207,7 +215,7 @@ impl Service {
     /// [`Error::Internal`] if it cannot be made.
     pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
         let mut whole = Bytes::new();
-        for block in answer {
+        for block in Recorded::new(answer) {
             let block = block.map_err(|error| {
                 tracing::error!(%error, "an answer cannot be made");
                 Error::Internal("the answer cannot be encoded")
@@ -227,7 +235,7 @@ impl Service {
         permit: Permit,
         answer: Answer,
     ) -> impl Stream<Item = Result<Bytes, Interrupted>> + use<> {
-        let blocks = self.stream(permit, answer).map(|made| {
+        let blocks = self.stream(permit, Recorded::new(answer)).map(|made| {
             made?.map_err(|error| {
                 tracing::error!(%error, "an answer broke off");
                 Interrupted::Failed

@@ -45,6 +45,11 @@ pub(super) fn shared() -> Value {
                 "points_per_second": number(),
                 "burst_points": number(),
                 "retry_after_seconds": number(),
+                "request_id": {
+                    "type": "string",
+                    "description": "What the request is called in the server's log; also the header \
+                                    x-request-id of every answer.",
+                },
             },
         },
         "Fault": {

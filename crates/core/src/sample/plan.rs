@@ -208,7 +208,7 @@ impl Plan {
     pub(super) fn count_within(&self, columns: &Range<i64>, rows: &Range<i64>) -> u128 {
         let (x, y) = (self.x.within(columns), self.y.within(rows));
         match &self.sieve {
-            Some(sieve) => sieve::count(&self.sampler, &self.frame, sieve, &x.all, &y.all),
+            Some(sieve) => sieve::count(&self.sampler, &self.frame, sieve, &x, &y),
             None => count::count(&self.sampler, &self.frame, &x, &y),
         }
     }
