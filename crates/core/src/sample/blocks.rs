@@ -337,7 +337,7 @@ impl<F: Format> Blocks<F> {
             let template = self
                 .templates
                 .get(class, block, self.at.done > 0, |template, kept| {
-                    template.make(format, base, patch, listed, inner, vectors, kept);
+                    template.make(format, base, patch, (listed, inner), vectors, kept);
                 });
             if let Some(from) = self.at.from.take() {
                 self.at.done = template.columns_before(from);
@@ -404,7 +404,7 @@ impl<F: Format> Blocks<F> {
                 .templates
                 .get(class, block, is_under_way, |template, kept| {
                     let all = 0..listed.len();
-                    template.make(format, base, patch, listed, all, vectors, kept);
+                    template.make(format, base, patch, (listed, all), vectors, kept);
                 });
             if let Some(from) = self.at.from.take() {
                 self.at.done = self

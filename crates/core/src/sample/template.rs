@@ -98,8 +98,7 @@ impl<F: Format> Template<F> {
         format: &F,
         base: [f64; 2],
         patch: &Patch,
-        listed: &[(i64, u32)],
-        inner: Range<usize>,
+        (listed, inner): (&[(i64, u32)], Range<usize>),
         vectors: &[[i32; 2]],
         kept: Kept,
     ) {

@@ -228,7 +228,12 @@ pub struct F32 {
 impl F32 {
     #[inline(always)]
     fn place(&self, axis: usize, base: f64, offset: i32) -> f32 {
-        (((base + f64::from(offset)) * self.step) as f32).min(self.last[axis])
+        let (place, last) = (
+            ((base + f64::from(offset)) * self.step) as f32,
+            self.last[axis],
+        );
+        // Neither is NaN: `min` would ask.
+        if place < last { place } else { last }
     }
 }
 
