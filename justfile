@@ -32,6 +32,18 @@ sanitize:
     CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="valgrind -q --error-exitcode=9" \
         cargo test -p strew-core --lib kernel::
 
+# Mixed questions by all doors with faults injected, every answer checked: `just soak 1800`.
+soak seconds="300" *args:
+    cargo test --release --test soak -- --seconds {{seconds}} {{args}}
+
+# Fuzz one subject of fuzz/subjects for some seconds (needs `cargo install cargo-fuzz` and a C++
+# compiler; the switch lets a stable toolchain instrument). What it finds is in fuzz/artifacts: make
+# it smaller with `cargo fuzz tmin`, and keep it in fuzz/regressions, where the tests run it.
+fuzz subject seconds="3600":
+    mkdir -p fuzz/corpus/{{subject}}
+    cd fuzz && RUSTC_BOOTSTRAP=1 cargo fuzz run -O {{subject}} corpus/{{subject}} seeds/{{subject}} \
+        -- -max_total_time={{seconds}} -timeout=20 -max_len=2048
+
 # The library without the standard library.
 no-std:
     cargo build -p strew-core --no-default-features

@@ -9,6 +9,8 @@ use super::{
     calls,
     connections::Connections,
     health::{self, Readiness},
+    metrics::{self, Metrics},
+    observe,
     reload::Reloader,
     shutdown::Hangups,
     tls::{Tls, TlsError},
@@ -51,6 +53,7 @@ pub struct App {
     reloader: Arc<Reloader>,
     hangups: Option<Hangups>,
     tls: Option<Tls>,
+    metrics: Metrics,
     more: Router,
 }
 
@@ -71,6 +74,7 @@ impl App {
             config,
             service,
             tls,
+            metrics: Metrics::default(),
             more: Router::new(),
         })
     }
@@ -86,6 +90,13 @@ impl App {
     #[must_use]
     pub fn with_hangups(mut self, hangups: Hangups) -> Self {
         self.hangups = Some(hangups);
+        self
+    }
+
+    /// Shows also what the process counts without saying for which daemon: for a process of one.
+    #[must_use]
+    pub fn with_all_metrics(self) -> Self {
+        self.metrics.take_all();
         self
     }
 
@@ -164,6 +175,11 @@ impl App {
         let (grpc, grpc_health) = grpc::routes(self.service.clone()).await?;
         let mut endpoints = rest::endpoints(&self.service);
         endpoints.extend(health::endpoints(readiness, self.service.clone()));
+        let metrics = self.metrics.clone();
+        if self.config.metrics.enabled {
+            endpoints.push(metrics::endpoint(metrics.clone(), self.service.clone()));
+            tokio::spawn(metrics.keep_up());
+        }
         let rest::Door { router, paths } = rest::Door::new(endpoints);
         let router = router
             .merge(calls::routes(grpc.into_axum_router().reset_fallback()))
@@ -172,7 +188,7 @@ impl App {
         let head_bytes = self.config.server.max_header_bytes;
         let workers = self.service.workers().clone();
         let router = rest::finished(router, &self.config.http, head_bytes, workers);
-        Ok((router, grpc_health))
+        Ok((observe::observed(router, metrics), grpc_health))
     }
 }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::{
     error_map,
-    service::{Error, Fault, Kind},
+    service::{Error, Fault, Kind, Record},
 };
 
 /// How long a client should wait before it asks a busy server again, in seconds.
@@ -32,6 +32,13 @@ pub(super) struct Problem<'a> {
     pinned: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     loaded: Option<&'a str>,
+    /// What the request is called in the log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    request_id: Option<String>,
+}
+
+fn request_id() -> Option<String> {
+    Record::current().map(|record| record.id().to_owned())
 }
 
 impl<'a> Problem<'a> {
@@ -59,11 +66,13 @@ impl<'a> Problem<'a> {
             limit,
             pinned: digests.map(|(pinned, _)| pinned),
             loaded: digests.map(|(_, loaded)| loaded),
+            request_id: request_id(),
         }
     }
 
     /// An error as a whole response.
     pub(super) fn response(error: &'a Error) -> Response {
+        Record::refuse(error.kind());
         let mut response = Self::new(error).into_response();
         if matches!(error.kind(), Kind::Busy | Kind::ShuttingDown) {
             let seconds = HeaderValue::from_static(RETRY_AFTER);
@@ -84,6 +93,7 @@ impl<'a> Problem<'a> {
             limit: None,
             pinned: None,
             loaded: None,
+            request_id: request_id(),
         };
         problem.into_response()
     }

@@ -15,6 +15,7 @@ mod planned;
 mod planner;
 mod portrait;
 pub mod query;
+pub mod record;
 mod single;
 pub mod stream;
 pub mod workers;
@@ -34,12 +35,14 @@ pub use error::{Error, Fault, Kind};
 pub use planned::{Placed, Planned, PlannedSet};
 pub use portrait::Portrait;
 pub use query::{Draft, Query, Set};
+pub use record::Record;
 pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::Workers;
 
-use cache::Samplers;
+use cache::{CacheState, Samplers};
 use portrait::Portraits;
+use record::Recorded;
 
 /// What a query may ask for, and what answering may hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,8 +60,8 @@ pub struct Limits {
     /// The most bytes of a query that comes as a body or a message: bounds what is held of each before it is
     /// read.
     pub max_body_bytes: usize,
-    /// The most answers under way at once. Bounds memory: an answer holds 1 to 2 MB,
-    /// two blocks and the rows it is made of, and a picture up to 16 MB more.
+    /// The most answers under way at once. Bounds memory: an answer holds 1 to 3 MB,
+    /// some blocks and the rows they are made of, and a picture up to 16 MB more.
     pub max_streams: usize,
     /// The size of a block before it is encoded, in bytes.
     pub block_bytes: usize,
@@ -131,6 +134,11 @@ impl Service {
         &self.workers
     }
 
+    /// How the cache of samplers stands.
+    pub async fn cache(&self) -> CacheState {
+        self.samplers.state().await
+    }
+
     /// The streams under way.
     #[must_use]
     pub const fn streams(&self) -> &Arc<Streams> {
@@ -196,7 +204,7 @@ impl Service {
     /// [`Error::Internal`] if it cannot be made.
     pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
         let mut whole = Bytes::new();
-        for block in answer {
+        for block in Recorded::new(answer) {
             let block = block.map_err(|error| {
                 tracing::error!(%error, "an answer cannot be made");
                 Error::Internal("the answer cannot be encoded")
@@ -216,7 +224,7 @@ impl Service {
         permit: Permit,
         answer: Answer,
     ) -> impl Stream<Item = Result<Bytes, Interrupted>> + use<> {
-        let blocks = self.stream(permit, answer).map(|made| {
+        let blocks = self.stream(permit, Recorded::new(answer)).map(|made| {
             made?.map_err(|error| {
                 tracing::error!(%error, "an answer broke off");
                 Interrupted::Failed

@@ -465,7 +465,7 @@ pub(super) fn list_columns(
     for list in &mut *lists {
         list.clear();
         // A quarter of all columns at most, where α is largest.
-        list.reserve((range.end - range.start) as usize / 4 + 4);
+        list.reserve(usize::try_from(range.end.saturating_sub(range.start)).unwrap_or(0) / 4 + 4);
     }
     for x in range {
         if let Some((y_parity, index)) = frame.pattern.visit(Axis::X, x) {
