@@ -60,8 +60,8 @@ pub struct Limits {
     /// The most bytes of a query that comes as a body or a message: bounds what is held of each before it is
     /// read.
     pub max_body_bytes: usize,
-    /// The most answers under way at once. Bounds memory: an answer holds 1 to 2 MB,
-    /// two blocks and the rows it is made of, and a picture up to 16 MB more.
+    /// The most answers under way at once. Bounds memory: an answer holds 1 to 3 MB,
+    /// some blocks and the rows they are made of, and a picture up to 16 MB more.
     pub max_streams: usize,
     /// The size of a block before it is encoded, in bytes.
     pub block_bytes: usize,
