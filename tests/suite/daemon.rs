@@ -87,9 +87,20 @@ impl Daemon {
 
     /// Starts one on a free port with a folder of tables and further settings.
     pub fn with_tables(tables: tempfile::TempDir, settings: &[&str]) -> Self {
+        Self::launch("127.0.0.1:0", tables, settings)
+            .unwrap_or_else(|line| panic!("not ready: {line}"))
+    }
+
+    /// Starts one with the test tables at an address, if that is free.
+    pub fn at(address: &str) -> Option<Self> {
+        Self::launch(address, tables(), &[]).ok()
+    }
+
+    /// Starts one; gives what it said instead if it is not ready.
+    fn launch(listen: &str, tables: tempfile::TempDir, settings: &[&str]) -> Result<Self, String> {
         let mut command = strew();
         command
-            .args(["serve", "--listen", "127.0.0.1:0", "--tables"])
+            .args(["serve", "--listen", listen, "--tables"])
             .arg(tables.path());
         for setting in settings {
             command.args(["--set", setting]);
@@ -105,15 +116,17 @@ impl Daemon {
         let address = line
             .trim()
             .strip_prefix("listening on http")
-            .map(|rest| rest.trim_start_matches('s').trim_start_matches("://"))
-            .unwrap_or_else(|| panic!("not ready: {line}"))
-            .to_owned();
-        Self {
+            .map(|rest| rest.trim_start_matches('s').trim_start_matches("://"));
+        let Some(address) = address.map(ToOwned::to_owned) else {
+            let _ = child.wait();
+            return Err(line);
+        };
+        Ok(Self {
             child,
             output,
             address,
             tables,
-        }
+        })
     }
 
     /// The next line on its standard output.
