@@ -2,6 +2,7 @@
 
 mod compression;
 mod deadline;
+mod frames;
 mod messages;
 mod points;
 mod profile;
@@ -17,8 +18,9 @@ use std::sync::Arc;
 use tonic::service::Routes;
 use tonic_health::server::HealthReporter;
 
-use crate::service::Service;
+use crate::service::{Error, Service};
 pub use deadline::Deadline;
+use frames::Direct;
 use points::Points;
 use proto::point_service_server::PointServiceServer;
 
@@ -88,7 +90,7 @@ pub async fn routes(service: Arc<Service>) -> Result<(Routes, Health), BuildErro
         PointServiceServer::new(Points::new(service)).max_decoding_message_size(most),
         |server, coding| server.accept_compressed(coding).send_compressed(coding),
     );
-    let routes = Routes::new(points)
+    let routes = Routes::new(Direct(points))
         .add_service(health)
         .add_service(reflection().build_v1()?)
         .add_service(reflection().build_v1alpha()?);
@@ -120,6 +122,12 @@ impl Health {
 pub fn terms(headers: &mut http::HeaderMap) -> Result<Option<Deadline>, tonic::Status> {
     compression::settle(headers);
     Deadline::of(headers)
+}
+
+/// The answer to a call that is not let in, or that cannot be answered at all.
+#[must_use]
+pub fn refusal(error: &Error) -> http::Response<tonic::body::Body> {
+    status::status(error).into_http()
 }
 
 /// The answer to a method that does not exist.

@@ -2,21 +2,24 @@
 
 use std::{pin::Pin, sync::Arc};
 
-use futures_util::{Stream, TryStreamExt as _};
+use futures_util::{Stream, TryStreamExt as _, stream};
 use strew_core::ALGORITHM_VERSION;
 use tonic::{Request, Response, Status};
 
 use super::{
-    messages::{self, Messages},
+    compression,
+    frames::Frames,
+    messages::{Framed, Messages},
     profile,
     proto::{
         CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
         GetPointRequest, GetPointResponse, ListProfilesRequest, ListProfilesResponse,
         SplitPointsRequest, SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
-        point_service_server::PointService, stream_points_response::Message,
+        point_service_server::PointService,
     },
     query, resolved, single, split, status,
 };
+use crate::access::Caller;
 use crate::service::{
     Error, Fault, Record, Service,
     query::{SetDraft, check_parts},
@@ -33,10 +36,17 @@ impl Points {
         Self { service }
     }
 
-    async fn stream(&self, request: &StreamPointsRequest) -> Result<MessageStream, Error> {
+    /// The answer of messages, which tonic has to compress, or of frames that are sent as they are.
+    async fn stream(
+        &self,
+        caller: &Caller,
+        request: &StreamPointsRequest,
+        is_compressed: bool,
+    ) -> Result<Response<MessageStream>, Error> {
         let (query, encoding) = query::query(request, &self.service)?;
-        let permit = self.service.streams().admit()?;
-        let planned = self.service.plan(query).await?;
+        let permit = self.service.admit(caller)?;
+        let planned = self.service.plan(caller, query).await?;
+        caller.charge(planned.count())?;
         let block_bytes = self.service.limits().block_bytes;
         let messages = Messages::new(request, planned, encoding, block_bytes)?;
         Record::in_format(match encoding {
@@ -44,14 +54,16 @@ impl Points {
             Encoding::F64Le => "f64",
             Encoding::Points | Encoding::Unspecified => "points",
         });
-        let record = Record::current();
-        let stream = self.service.stream(permit, messages);
-        let noted = stream.inspect_ok(move |response| {
-            if let (Some(record), Some(Message::Block(block))) = (&record, &response.message) {
-                record.made(messages::points(block, encoding));
-            }
-        });
-        Ok(Box::pin(noted.map_err(status::interrupted)))
+        if is_compressed {
+            let stream = self.service.stream(permit, messages);
+            let stream = stream.map_err(status::interrupted);
+            return Ok(Response::new(Box::pin(stream)));
+        }
+        let frames = self.service.stream(permit, Framed(messages));
+        let frames = Frames::new(frames.map_err(status::interrupted));
+        let mut response = Response::new(Box::pin(stream::empty()) as MessageStream);
+        response.extensions_mut().insert(frames);
+        Ok(response)
     }
 
     async fn count(&self, request: &StreamPointsRequest) -> Result<CountPointsResponse, Error> {
@@ -90,7 +102,11 @@ impl Points {
         })
     }
 
-    async fn nearest(&self, request: &FindNearestRequest) -> Result<FindNearestResponse, Error> {
+    async fn nearest(
+        &self,
+        caller: &Caller,
+        request: &FindNearestRequest,
+    ) -> Result<FindNearestResponse, Error> {
         let mut faults = vec![];
         let around = query::around(request).check(vec![]);
         let around = around.map_err(|more| faults.extend(more));
@@ -100,11 +116,18 @@ impl Points {
         let set = Some(resolved::placed(&placed));
         let search = move || placed.nearest(around);
         let found = self.service.workers().run(search).await??;
+        caller.charge(found.len() as u128)?;
         Ok(FindNearestResponse {
             neighbors: found.into_iter().map(single::point).collect(),
             set,
         })
     }
+}
+
+/// Who asks: every request that has been let in says so.
+fn caller<T>(request: &Request<T>) -> Result<Caller, Status> {
+    let caller = request.extensions().get::<Caller>().cloned();
+    caller.ok_or_else(|| status::status(&Error::Internal("nobody has been let in")))
 }
 
 /// The query of a request, which must be there.
@@ -130,7 +153,10 @@ impl PointService for Points {
         &self,
         request: Request<StreamPointsRequest>,
     ) -> Result<Response<MessageStream>, Status> {
-        answered(self.stream(request.get_ref()).await)
+        let caller = caller(&request)?;
+        let is_compressed = compression::is_asked(request.metadata());
+        let answer = self.stream(&caller, request.get_ref(), is_compressed).await;
+        answer.map_err(|error| status::status(&error))
     }
 
     async fn count_points(
@@ -168,7 +194,8 @@ impl PointService for Points {
         &self,
         request: Request<FindNearestRequest>,
     ) -> Result<Response<FindNearestResponse>, Status> {
-        answered(self.nearest(request.get_ref()).await)
+        let caller = caller(&request)?;
+        answered(self.nearest(&caller, request.get_ref()).await)
     }
 
     async fn list_profiles(

@@ -24,11 +24,11 @@ pub(super) struct Freshness {
 pub(super) struct Pinned;
 
 impl Freshness {
-    /// The freshness of an answer to a request for `uri`, in a content type, `made_of` all else
-    /// that decides its bytes: the query as it was understood, digests of tables, settings.
+    /// The freshness of an answer to a request for `uri`, in a content type, `made_of` all that
+    /// decides its bytes besides the address: digests of tables, settings.
     ///
-    /// The address as it was written goes into the tag, too: a parameter that somebody forgets to
-    /// put into `made_of` cannot make two different answers look the same.
+    /// The address goes in as it was written, which is quicker than what was understood by it and
+    /// tells at least as much apart.
     pub(super) fn of(
         uri: &Uri,
         headers: &HeaderMap,
@@ -44,10 +44,10 @@ impl Freshness {
             content_type,
             made_of,
         );
-        let mut hasher = blake3::Hasher::new();
+        let mut written = Vec::with_capacity(512);
         // What goes in are numbers and texts, which always can be written.
-        let _ = serde_json::to_writer(&mut hasher, &identity);
-        let hash = hasher.finalize().to_hex();
+        let _ = serde_json::to_writer(&mut written, &identity);
+        let hash = blake3::hash(&written).to_hex();
         let suffix = coding.map_or("", Coding::suffix);
         let tag = format!("\"{}{suffix}\"", &hash[..32]);
         Self {
@@ -114,17 +114,19 @@ impl Freshness {
 }
 
 /// Says how long an answer may be kept, where nobody has said so yet.
-pub(super) fn keep(response: &mut Response, seconds: u32) {
+pub(super) fn keep(response: &mut Response, seconds: u32, is_private: bool) {
     let pinned = response.extensions().get::<Pinned>().is_some();
     let headers = response.headers_mut();
     if headers.contains_key(header::CACHE_CONTROL) {
         return;
     }
+    let who = if is_private { "private" } else { "public" };
+    let timed =
+        |text: String| HeaderValue::from_str(&text).unwrap_or(HeaderValue::from_static("no-cache"));
     let value = if pinned {
-        HeaderValue::from_static("public, max-age=31536000, immutable")
+        timed(format!("{who}, max-age=31536000, immutable"))
     } else if headers.contains_key(header::ETAG) {
-        let text = format!("public, max-age={seconds}");
-        HeaderValue::from_str(&text).unwrap_or(HeaderValue::from_static("no-cache"))
+        timed(format!("{who}, max-age={seconds}"))
     } else {
         HeaderValue::from_static("no-store")
     };

@@ -103,8 +103,8 @@ pub(super) fn endpoints() -> Vec<Endpoint> {
     );
     let parts_handler = routing::get(one);
     vec![
-        Endpoint::new("/", (), vec![(page, page_handler)]),
-        Endpoint::new("/page/{file}", (), vec![(parts, parts_handler)]),
+        Endpoint::new("/", (), vec![(page, page_handler)]).open(),
+        Endpoint::new("/page/{file}", (), vec![(parts, parts_handler)]).open(),
     ]
 }
 

@@ -40,6 +40,7 @@ pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::Workers;
 
+use crate::access::Caller;
 use cache::{CacheState, Samplers};
 use portrait::Portraits;
 use record::Recorded;
@@ -60,8 +61,8 @@ pub struct Limits {
     /// The most bytes of a query that comes as a body or a message: bounds what is held of each before it is
     /// read.
     pub max_body_bytes: usize,
-    /// The most answers under way at once. Bounds memory: an answer holds 1 to 2 MB,
-    /// two blocks and the rows it is made of, and a picture up to 16 MB more.
+    /// The most answers under way at once. Bounds memory: an answer holds 1 to 3 MB,
+    /// some blocks and the rows they are made of, and a picture up to 16 MB more.
     pub max_streams: usize,
     /// The size of a block before it is encoded, in bytes.
     pub block_bytes: usize,
@@ -167,13 +168,23 @@ impl Service {
         Ok(planned)
     }
 
+    /// The right of a caller to start one more stream.
+    ///
+    /// # Errors
+    /// As [`Streams::admit`], and [`Error::Denied`] if the caller has as many as it may have.
+    pub fn admit(&self, caller: &Caller) -> Result<Permit, Error> {
+        let place = caller.place()?;
+        Ok(self.streams.admit()?.with(place))
+    }
+
     /// Plans a query that is to be answered with its points.
     ///
     /// # Errors
     /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
-    pub async fn plan(&self, query: Query) -> Result<Planned, Error> {
+    pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
         let planned = self.count(query).await?;
-        let (count, limit) = (planned.count(), self.limits.max_points);
+        let limit = caller.max_points(self.limits.max_points);
+        let count = planned.count();
         if count > u128::from(limit) {
             return Err(Error::TooManyPoints { count, limit });
         }

@@ -1,25 +1,28 @@
-//! Streams of blocks: made on demand, one ahead, and dropped with their reader.
+//! Streams of blocks: made on demand, a few ahead, and dropped with their reader.
 //!
-//! The reader asks for a block; the iterator that makes blocks moves to a worker, makes one, and
-//! moves back. While the reader takes a block the next one is made, and then nothing happens until
-//! the reader comes back. So a stream holds the same few blocks whatever its length, a slow reader
-//! blocks no thread, and a reader that goes away leaves at most one block to be finished and thrown
-//! away.
+//! The reader asks for a block; the iterator that makes blocks moves to a worker, makes some, and
+//! moves back. A reader that takes its time has one block ready, and nothing happens until it comes
+//! back. A fast one has up to [`MOST_AHEAD`]: making goes on while blocks are sent, which is what text
+//! needs, several blocks of which are written at once, and workers are woken for every other block at
+//! most. So a stream holds the same few blocks whatever its length, a slow reader blocks no thread,
+//! and a reader that goes away leaves at most one block to be finished and thrown away.
 
 use std::{
+    collections::VecDeque,
     pin::Pin,
     sync::{
-        Arc,
+        Arc, Mutex, MutexGuard, PoisonError, Weak,
         atomic::{AtomicUsize, Ordering},
     },
-    task::{Context, Poll},
+    task::{Context, Poll, Waker},
+    time::{Duration, Instant},
 };
 
 use futures_util::{FutureExt as _, Stream};
-use tokio::sync::oneshot;
 use tokio_util::sync::{CancellationToken, WaitForCancellationFutureOwned};
 
 use super::{Error, Workers};
+use crate::access::Place;
 
 /// Why a stream broke off: its reader must see that it is not complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -72,6 +75,7 @@ impl Streams {
             .map_err(|_| Error::Busy { limit: self.limit })?;
         Ok(Permit {
             streams: self.clone(),
+            _place: None,
         })
     }
 
@@ -85,6 +89,16 @@ impl Streams {
 #[derive(Debug)]
 pub struct Permit {
     streams: Arc<Streams>,
+    /// The caller's own place, where it has not any number.
+    _place: Option<Place>,
+}
+
+impl Permit {
+    /// With a place of the caller's that is given back with it.
+    pub(super) fn with(mut self, place: Option<Place>) -> Self {
+        self._place = place;
+        self
+    }
 }
 
 impl Drop for Permit {
@@ -99,23 +113,42 @@ struct Maker<I> {
     _permit: Permit,
 }
 
-/// What a worker hands back: the maker, unless it is done, and what it made.
-type Made<I> = (Maker<I>, Option<<I as Iterator>::Item>);
+/// At most so many blocks are made ahead of a reader.
+const MOST_AHEAD: usize = 4;
 
-enum State<I: Iterator> {
-    /// Nobody has asked yet.
-    Idle(Maker<I>),
-    /// A block is being made, or waits to be taken.
-    Making(oneshot::Receiver<Made<I>>),
-    /// All is said.
-    Over,
+/// A reader that comes back within this time is fast: blocks are made ahead of it.
+const FAST: Duration = Duration::from_millis(10);
+
+/// What the reader and the worker that makes blocks for it share.
+struct Shared<I: Iterator> {
+    /// Blocks that wait to be taken.
+    ready: VecDeque<I::Item>,
+    /// How many may wait.
+    ahead: usize,
+    /// The maker, while no worker has it.
+    maker: Option<Maker<I>>,
+    /// How it ended, if it has.
+    end: Option<Result<(), Interrupted>>,
+    /// The reader, while it waits.
+    reader: Option<Waker>,
+}
+
+impl<I: Iterator> Shared<I> {
+    fn wake(&mut self) {
+        if let Some(reader) = self.reader.take() {
+            reader.wake();
+        }
+    }
 }
 
 /// A stream of what an iterator makes.
 pub struct BlockStream<I: Iterator> {
-    state: State<I>,
+    /// Nothing once all is said.
+    shared: Option<Arc<Mutex<Shared<I>>>>,
     workers: Workers,
     stop: Pin<Box<WaitForCancellationFutureOwned>>,
+    /// When the last block was taken.
+    taken: Instant,
 }
 
 impl<I> BlockStream<I>
@@ -125,27 +158,82 @@ where
 {
     pub(super) fn new(items: I, permit: Permit, workers: Workers) -> Self {
         let stop = Box::pin(permit.streams.stop.clone().cancelled_owned());
-        Self {
-            state: State::Idle(Maker {
+        let shared = Shared {
+            ready: VecDeque::new(),
+            ahead: 1,
+            maker: Some(Maker {
                 items,
                 _permit: permit,
             }),
+            end: None,
+            reader: None,
+        };
+        Self {
+            shared: Some(Arc::new(Mutex::new(shared))),
             workers,
             stop,
+            taken: Instant::now(),
         }
     }
+}
 
-    /// Sends the maker off to make one block.
-    fn make(&self, mut maker: Maker<I>) -> State<I> {
-        let (back, made) = oneshot::channel();
-        self.workers.spawn(move || {
-            if back.is_closed() {
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A maker under way on a worker. If it is dropped there, making a block has failed.
+struct Turn<I: Iterator> {
+    maker: Option<Maker<I>>,
+    shared: Weak<Mutex<Shared<I>>>,
+}
+
+impl<I: Iterator> Turn<I> {
+    /// Makes blocks until enough are ready. No more than that in one turn, however fast they are
+    /// taken: other streams want to go on, too.
+    fn run(mut self) {
+        for made in 1.. {
+            let (Some(maker), true) = (&mut self.maker, self.shared.strong_count() > 0) else {
+                return;
+            };
+            let item = maker.items.next();
+            let Some(shared) = self.shared.upgrade() else {
+                return;
+            };
+            // What is dropped late is dropped unlocked.
+            let mut over = None;
+            let mut shared = lock(&shared);
+            match item {
+                Some(item) => shared.ready.push_back(item),
+                None => {
+                    shared.end = Some(Ok(()));
+                    over = self.maker.take();
+                }
+            }
+            let is_enough = shared.ready.len() >= shared.ahead || made >= MOST_AHEAD;
+            if is_enough {
+                shared.maker = self.maker.take();
+            }
+            shared.wake();
+            drop(shared);
+            drop(over);
+            if is_enough {
                 return;
             }
-            let item = maker.items.next();
-            let _ = back.send((maker, item));
-        });
-        State::Making(made)
+        }
+    }
+}
+
+impl<I: Iterator> Drop for Turn<I> {
+    fn drop(&mut self) {
+        let Some(maker) = self.maker.take() else {
+            return;
+        };
+        drop(maker);
+        if let Some(shared) = self.shared.upgrade() {
+            let mut shared = lock(&shared);
+            shared.end = Some(Err(Interrupted::Failed));
+            shared.wake();
+        }
     }
 }
 
@@ -157,43 +245,47 @@ where
     type Item = Result<I::Item, Interrupted>;
 
     fn poll_next(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<Option<Self::Item>> {
-        if matches!(self.state, State::Over) {
+        let Some(all) = self.shared.clone() else {
             return Poll::Ready(None);
-        }
+        };
         if self.stop.poll_unpin(cx).is_ready() {
-            self.state = State::Over;
+            self.shared = None;
             return Poll::Ready(Some(Err(Interrupted::Shutdown)));
         }
-        loop {
-            match std::mem::replace(&mut self.state, State::Over) {
-                State::Idle(maker) => self.state = self.make(maker),
-                State::Making(mut made) => {
-                    let Poll::Ready(answer) = made.poll_unpin(cx) else {
-                        self.state = State::Making(made);
-                        return Poll::Pending;
-                    };
-                    return Poll::Ready(match answer {
-                        Ok((maker, Some(item))) => {
-                            self.state = self.make(maker);
-                            Some(Ok(item))
-                        }
-                        Ok((_, None)) => None,
-                        Err(_) => Some(Err(Interrupted::Failed)),
-                    });
-                }
-                State::Over => return Poll::Ready(None),
+        let mut shared = lock(&all);
+        let item = shared.ready.pop_front();
+        if item.is_none() {
+            if let Some(end) = shared.end {
+                self.shared = None;
+                return Poll::Ready(end.err().map(Err));
             }
+            shared.reader = Some(cx.waker().clone());
+        } else {
+            let now = Instant::now();
+            let is_fast = now - self.taken < FAST;
+            shared.ahead = if is_fast { MOST_AHEAD } else { 1 };
+            self.taken = now;
+        }
+        // Workers are not woken for each block: that takes about as long as making one.
+        if shared.ready.len() <= shared.ahead / 2
+            && let Some(maker) = shared.maker.take()
+        {
+            let turn = Turn {
+                maker: Some(maker),
+                shared: Arc::downgrade(&all),
+            };
+            drop(shared);
+            self.workers.spawn(|| turn.run());
+        }
+        match item {
+            Some(item) => Poll::Ready(Some(Ok(item))),
+            None => Poll::Pending,
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::{
-        task::Waker,
-        time::{Duration, Instant},
-    };
-
     use futures_util::StreamExt as _;
 
     use super::*;
@@ -252,17 +344,37 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn nothing_is_made_before_it_is_asked_for_and_then_one_ahead() {
+    async fn nothing_is_made_before_it_is_asked_for_and_then_a_few_ahead() {
         let (numbers, made) = numbers(usize::MAX, 100);
         let (mut stream, streams) = stream(numbers);
         assert_eq!(made.load(Ordering::SeqCst), 0);
         for taken in 1..=10 {
             stream.next().await.expect("more").expect("whole");
-            until(|| made.load(Ordering::SeqCst) == taken + 1);
+            until(|| made.load(Ordering::SeqCst) > taken);
+            assert!(made.load(Ordering::SeqCst) <= taken + MOST_AHEAD);
         }
         drop(stream);
         until(|| streams.open() == 0);
-        assert_eq!(made.load(Ordering::SeqCst), 11);
+        assert!(made.load(Ordering::SeqCst) <= 10 + MOST_AHEAD);
+    }
+
+    #[tokio::test]
+    async fn a_fast_reader_has_more_ahead_than_one_that_takes_its_time() {
+        let (numbers, made) = numbers(usize::MAX, 1000);
+        let (mut stream, streams) = stream(numbers);
+        let minute = Duration::from_secs(60);
+        for taken in 1..50 {
+            let now = Instant::now();
+            let is_fast = taken <= 20;
+            stream.taken = if is_fast { now + minute } else { now - minute };
+            stream.next().await.expect("more").expect("whole");
+            let least = if is_fast { MOST_AHEAD - 1 } else { 1 };
+            until(|| made.load(Ordering::SeqCst) >= taken + least);
+            let ahead = made.load(Ordering::SeqCst) - taken;
+            assert!(ahead <= MOST_AHEAD && (taken < 25 || ahead == 1), "{ahead}");
+        }
+        drop(stream);
+        until(|| streams.open() == 0);
     }
 
     #[tokio::test]

@@ -1,6 +1,7 @@
 //! The daemon from outside: the real program over real sockets, and the real clients.
 
 mod addresses;
+mod admin;
 mod amounts;
 mod bodies;
 mod browser;
@@ -13,6 +14,7 @@ mod commands_wrong;
 mod connections;
 mod contract;
 mod daemon;
+mod deploy;
 mod documented;
 mod drain;
 mod forge;
@@ -24,7 +26,9 @@ mod grpc_queries;
 mod grpc_single;
 mod grpc_web;
 mod grpc_wrong;
+mod hardening;
 mod http;
+mod keys;
 mod layers;
 mod limits;
 mod logs;
@@ -35,10 +39,12 @@ mod page_controls;
 mod page_taking;
 mod pages;
 mod probe;
+mod rates;
 mod raw;
 mod readers;
 mod regions;
 mod reload;
+mod replicas;
 mod settings;
 mod singles;
 mod streaming;

@@ -82,7 +82,8 @@ fn a_jump_to_1e12_is_as_sharp_as_home_and_back_goes_home() {
         let far = in_view(&browser);
         assert_eq!(far.len() as u64, count);
         // Points of seed 1 are at least 0.57 apart, and the server says where each is; doubles are
-        // a ten-thousandth apart here, the page's own coordinates a ten-millionth.
+        // a ten-thousandth apart here, the page's own coordinates a ten-millionth. The server takes
+        // the corner of a chunk as a double, so neighbors agree within two ten-thousandths.
         for (i, a) in far.iter().enumerate() {
             for b in &far[..i] {
                 assert!((a[0] - b[0]).hypot(a[1] - b[1]) > 0.57, "{a:?} {b:?}");
@@ -98,7 +99,7 @@ fn a_jump_to_1e12_is_as_sharp_as_home_and_back_goes_home() {
                 .filter(|p| p[0].abs() < 3.9 && p[1].abs() < 3.9)
                 .all(|p| {
                     far.iter()
-                        .any(|q| (p[0] - q[0]).abs() < 1e-6 && (p[1] - q[1]).abs() < 1e-6)
+                        .any(|q| (p[0] - q[0]).abs() < 2e-4 && (p[1] - q[1]).abs() < 2e-4)
                 }),
             "{exact:?} {far:?}"
         );
@@ -192,8 +193,7 @@ fn a_server_that_goes_away_is_waited_for() {
         false
     );
     let again = until("the port is free", || {
-        let free = std::net::TcpListener::bind(&address).is_ok();
-        free.then(|| Daemon::at(&address, daemon::built_in_tables(), &[]))
+        Daemon::launch(&address, daemon::built_in_tables(), &[]).ok()
     });
     browser.until("document.documentElement.dataset.presence === 'here'");
     let count = browser.ready();

@@ -8,6 +8,11 @@ export class Problem extends Error {
     this.retryAfter = retryAfter;
   }
 
+  /** Whether a key is needed, or another one. */
+  get isLocked() {
+    return this.status === 401;
+  }
+
   /** Whether the same request may well be answered a little later. */
   get isPassing() {
     return this.status === 429 || this.status === 503;
@@ -16,6 +21,24 @@ export class Problem extends Error {
 
 /** The server cannot be reached, or went away in the middle. */
 export class Gone extends Error {}
+
+const KEY = "strew-key";
+
+/** Keeps a key for as long as this tab is open. */
+export function useKey(key) {
+  sessionStorage.setItem(KEY, key);
+}
+
+/** Whether there is a key to ask with. */
+export function hasKey() {
+  return Boolean(sessionStorage.getItem(KEY));
+}
+
+function headersFor(body) {
+  const headers = body === undefined ? {} : { "content-type": "application/json" };
+  if (hasKey()) headers.authorization = `Bearer ${sessionStorage.getItem(KEY)}`;
+  return headers;
+}
 
 const listeners = new Set();
 let isGone = false;
@@ -65,7 +88,7 @@ export async function ask(path, { body, signal, method } = {}) {
   try {
     answer = await fetch(path, {
       method: method ?? (body === undefined ? "GET" : "POST"),
-      headers: body === undefined ? {} : { "content-type": "application/json" },
+      headers: headersFor(body),
       body,
       signal,
     });

@@ -1,6 +1,6 @@
 // Downloads: how many points and bytes first, then the file.
 
-import { ask, brokeOff } from "./api.js";
+import { ask, brokeOff, hasKey } from "./api.js";
 
 /** So many points are fetched to estimate what text will weigh. */
 const SAMPLE = 2000;
@@ -26,7 +26,8 @@ export async function sizeOf({ path, body }, format, count, signal) {
   const part = Math.min(SAMPLE, count);
   if (part === 0 || format === "png") return { bytes: NaN, isExact: false };
   const sample = body
-    ? await ask(path, { body: JSON.stringify({ ...JSON.parse(body), limit: part }), signal })
+    // As text: JSON.parse would round long seeds.
+    ? await ask(path, { body: body.replace("{", `{"limit":${part},`), signal })
     : await ask(`${path}&limit=${part}`, { signal });
   const { byteLength } = await sample.arrayBuffer();
   const isExact = part === count || ["f32", "f64"].includes(format);
@@ -35,7 +36,8 @@ export async function sizeOf({ path, body }, format, count, signal) {
 
 /** Saves an answer under a name; `progress(bytes)` hears how much has come where that can be told. */
 export async function save({ path, body }, name, progress, signal) {
-  if (!body) return click(path, name);
+  // A link cannot carry a key.
+  if (!body && !hasKey()) return click(path, name);
   const answer = await ask(path, { body, signal });
   const pieces = [];
   let bytes = 0;

@@ -1,6 +1,6 @@
 // The page: puts its parts together.
 
-import { Gone, askJson, onPresence } from "./api.js";
+import { Gone, askJson, onPresence, useKey } from "./api.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
 import { byId, icon, make, settled } from "./dom.js";
@@ -203,6 +203,17 @@ function settle(profiles) {
   session.state.layers[0].profile = profiles[0].profile;
 }
 
+/** A server that wants keys is given one. */
+function askForKey(words) {
+  const field = make("input", { type: "password", id: "key", "aria-label": "Key", autocomplete: "off" });
+  banner(words, [["Use this key", () => {
+    useKey(field.value);
+    begin();
+  }]]);
+  byId("banner").lastElementChild.prepend(field);
+  field.focus();
+}
+
 /** Begins as soon as the server has told which profiles it has. */
 async function begin() {
   try {
@@ -212,8 +223,10 @@ async function begin() {
     const gallery = new Gallery(session, profiles);
     parts.push(gallery);
     gallery.opened(session.state.tab);
+    banner(null);
     await refresh();
   } catch (error) {
+    if (error.isLocked) return askForKey(error.message);
     if (!(error instanceof Gone)) return banner(error.message, [["Try again", begin]]);
     onPresence((gone) => gone || controls || begin());
   }

@@ -40,8 +40,8 @@ export class Status {
     const most = 100 * unit;
     const ten = 10 ** Math.floor(Math.log10(most));
     const length = [5, 2, 1].find((n) => n * ten <= most) * ten;
-    byId("scale").firstElementChild.style.width = `${length / unit}px`;
-    byId("scale").lastElementChild.textContent = spoken(length, 1);
+    byId("ruler").firstElementChild.style.width = `${length / unit}px`;
+    byId("ruler").lastElementChild.textContent = spoken(length, 1);
   }
 
   async tally() {

@@ -1,5 +1,6 @@
 // The tab Take away: the view's request to paste, and its points as a file.
 
+import { hasKey } from "./api.js";
 import { FORMATS, curl, grpcurl, python, requestOf } from "./commands.js";
 import { byId, bytes, counted, make, settled } from "./dom.js";
 import { MOST_HELD, save, sizeOf } from "./download.js";
@@ -98,6 +99,7 @@ export class Take {
       python: this.format === "npy" ? "For Python 3 with numpy." : "For Python 3, with nothing installed.",
       url: request.body ? "Several layers need a body, which an address cannot hold." : "For a browser, or anything else that reads addresses.",
     }[this.way];
+    if (hasKey()) this.what.textContent += " Add your key, as the header “Authorization: Bearer …”.";
     this.copyButton.textContent = "Copy";
   }
 

@@ -69,6 +69,7 @@ export class Understand {
   }
 
   shown(layers) {
+    this.moved();
     this.layer = Math.min(this.layer, layers.length - 1);
     this.picker.hidden = layers.length < 2;
     this.picker.replaceChildren(...layers.map((layer, i) => make("button", {
@@ -95,7 +96,8 @@ export class Understand {
   }
 
   async measure() {
-    if (!this.isOpen || !this.plane.look) return;
+    // What is only partly there is not measured: this is called again when all is.
+    if (!this.isOpen || !this.plane.sheets.front?.isFull) return;
     const mine = (this.turn = (this.turn ?? 0) + 1);
     const layer = this.plane.look.layers[this.layer];
     let count = 0;
