@@ -64,7 +64,17 @@ pub const fn http(kind: Kind) -> Problem {
         Kind::Busy => (
             StatusCode::SERVICE_UNAVAILABLE,
             "busy",
-            "Too many answers are under way",
+            "The server has as much to do as it takes on",
+        ),
+        Kind::BodyTooSlow => (
+            StatusCode::REQUEST_TIMEOUT,
+            "body-too-slow",
+            "The query took too long to come",
+        ),
+        Kind::TimeOver => (
+            StatusCode::SERVICE_UNAVAILABLE,
+            "time-over",
+            "The answer took too long",
         ),
         Kind::ShuttingDown => (
             StatusCode::SERVICE_UNAVAILABLE,
@@ -84,6 +94,17 @@ pub const fn http(kind: Kind) -> Problem {
     }
 }
 
+/// How long a client should wait before it asks again, in seconds; `None` if asking again is of no use.
+#[must_use]
+pub const fn retry_after(kind: Kind) -> Option<u64> {
+    match kind {
+        Kind::Busy | Kind::ShuttingDown => Some(1),
+        // It was slow because others ask, too: soon it may be fast.
+        Kind::TimeOver => Some(5),
+        _ => None,
+    }
+}
+
 /// The problem type of a kind of error.
 #[must_use]
 pub fn urn(kind: Kind) -> String {
@@ -95,9 +116,12 @@ pub fn urn(kind: Kind) -> String {
 pub const fn grpc(kind: Kind) -> Code {
     match kind {
         Kind::Invalid | Kind::NotAcceptable => Code::InvalidArgument,
-        Kind::TooManyPoints | Kind::TooManyRows | Kind::BodyTooLarge | Kind::Busy => {
-            Code::ResourceExhausted
-        }
+        Kind::TooManyPoints
+        | Kind::TooManyRows
+        | Kind::BodyTooLarge
+        | Kind::Busy
+        | Kind::TimeOver => Code::ResourceExhausted,
+        Kind::BodyTooSlow => Code::DeadlineExceeded,
         Kind::OtherTable => Code::FailedPrecondition,
         Kind::NoSuchPoint => Code::NotFound,
         Kind::NoSuchPath | Kind::NoSuchMethod => Code::Unimplemented,

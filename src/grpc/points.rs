@@ -35,7 +35,7 @@ impl Points {
 
     async fn stream(&self, request: &StreamPointsRequest) -> Result<MessageStream, Error> {
         let (query, encoding) = query::query(request, &self.service)?;
-        let permit = self.service.streams().admit()?;
+        let permit = self.service.admit(None)?;
         let planned = self.service.plan(query).await?;
         let block_bytes = self.service.limits().block_bytes;
         let messages = Messages::new(request, planned, encoding, block_bytes)?;
@@ -61,8 +61,7 @@ impl Points {
         let (query, _) = query::query(request, &self.service)?;
         let planned = self.service.count(query).await?;
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
-        let places = move || planned.split(parts);
-        let places = self.service.workers().run(places).await??;
+        let places = self.service.split(planned, parts).await?;
         let part = |place| split::part(request, place);
         Ok(SplitPointsResponse {
             count,

@@ -10,9 +10,6 @@ use crate::{
     service::{Error, Fault, Interrupted, Kind},
 };
 
-/// How long a client should wait before it asks a busy server again.
-const RETRY: Duration = Duration::from_secs(1);
-
 /// An error as a status.
 pub(super) fn status(error: &Error) -> Status {
     let mut details = ErrorDetails::new();
@@ -34,8 +31,8 @@ pub(super) fn status(error: &Error) -> Status {
     if let Error::OtherTable { pinned, .. } = error {
         details.add_precondition_failure_violation("TABLE", pinned, error.to_string());
     }
-    if matches!(error.kind(), Kind::Busy | Kind::ShuttingDown) {
-        details.set_retry_info(Some(RETRY));
+    if let Some(seconds) = error_map::retry_after(error.kind()) {
+        details.set_retry_info(Some(Duration::from_secs(seconds)));
     }
     Status::with_error_details(error_map::grpc(error.kind()), error.to_string(), details)
 }
@@ -57,11 +54,12 @@ pub(super) fn interrupted(why: Interrupted) -> Status {
     let kind = match why {
         Interrupted::Shutdown => Kind::ShuttingDown,
         Interrupted::Failed => Kind::Internal,
+        Interrupted::Stalled | Interrupted::TimeOver => Kind::TimeOver,
     };
     let mut details = ErrorDetails::new();
     details.set_error_info(reason(kind), DOMAIN, HashMap::new());
-    if kind == Kind::ShuttingDown {
-        details.set_retry_info(Some(RETRY));
+    if let Some(seconds) = error_map::retry_after(kind) {
+        details.set_retry_info(Some(Duration::from_secs(seconds)));
     }
     Status::with_error_details(error_map::grpc(kind), why.to_string(), details)
 }
@@ -100,7 +98,9 @@ fn facts(error: &Error) -> HashMap<String, String> {
         Error::TooManyRows { rows, limit } => {
             vec![("rows", rows.to_string()), ("limit", limit.to_string())]
         }
-        Error::Busy { limit } => vec![("limit", limit.to_string())],
+        Error::Busy { limit }
+        | Error::TooManyRequests { limit }
+        | Error::TooManyBytes { limit } => vec![("limit", limit.to_string())],
         Error::OtherTable { pinned, loaded } => {
             vec![("pinned", pinned.clone()), ("loaded", loaded.clone())]
         }

@@ -10,11 +10,18 @@ use axum::{
 use http::{HeaderMap, Version, header};
 use tonic_web::GrpcWebLayer;
 
+use super::gate::{Gate, Words};
 use crate::{grpc, rest};
 
 /// The routes of gRPC, for all who can call them. (The last layer is the first to see a request.)
-pub(super) fn routes(grpc: Router) -> Router {
-    grpc.layer(middleware::from_fn(on_terms))
+pub(super) fn routes(grpc: Router, gate: &Gate) -> Router {
+    let words = Words {
+        refusal: |error| grpc::refusal(error).into_http(),
+        broken: |error| grpc::refusal(&error).into(),
+        ending: |why| Some(Ok(grpc::ending(why)?)),
+    };
+    gate.before(grpc, words)
+        .layer(middleware::from_fn(on_terms))
         .layer(GrpcWebLayer::new())
         .layer(middleware::from_fn(only_calls))
 }

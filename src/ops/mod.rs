@@ -6,12 +6,14 @@ mod calls;
 pub mod connections;
 pub mod exposure;
 pub mod files;
+mod gate;
 mod guarded;
 pub mod health;
 mod often;
 pub mod serve;
 pub mod shutdown;
 pub mod telemetry;
+mod timed;
 pub mod tls;
 
 pub use connections::Peer;

@@ -2,11 +2,17 @@
 
 use std::{io, net::TcpListener, sync::Arc, time::Duration};
 
-use axum::{Router, body::Body, extract::Request, response::Response};
+use axum::{
+    Router,
+    body::Body,
+    extract::Request,
+    response::{IntoResponse as _, Response},
+};
 
 use super::{
     calls,
     connections::Connections,
+    gate::{Gate, Words},
     health::{self, Readiness},
     shutdown::Hangups,
     tls::{Tls, TlsError},
@@ -139,9 +145,19 @@ impl App {
         let mut endpoints = rest::endpoints(&self.service);
         endpoints.extend(health::endpoints(readiness, self.service.clone()));
         let rest::Door { router, paths } = rest::Door::new(endpoints);
-        let router = router
-            .merge(calls::routes(grpc.into_axum_router().reset_fallback()))
-            .merge(self.more.clone())
+        let router = router.merge(self.more.clone());
+        let gate = Gate::new(&self.config, &self.service);
+        let words = Words {
+            refusal: |error| error.clone().into_response(),
+            broken: |error| Box::new(error),
+            ending: |why| Some(Err(axum::Error::new(why))),
+        };
+        let router = gate
+            .before(router, words)
+            .merge(calls::routes(
+                grpc.into_axum_router().reset_fallback(),
+                &gate,
+            ))
             .fallback(move |request| nothing_here(request, paths));
         let head_bytes = self.config.server.max_header_bytes;
         let workers = self.service.workers().clone();

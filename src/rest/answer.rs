@@ -73,7 +73,6 @@ pub(super) fn problems() -> Vec<Kind> {
         Kind::OtherTable,
         Kind::TooManyPoints,
         Kind::TooManyRows,
-        Kind::Busy,
         Kind::ShuttingDown,
     ]
 }
@@ -111,7 +110,8 @@ pub(super) async fn stream(
         return Ok(unchanged);
     }
     let is_head = *method == Method::HEAD;
-    let permit = (!is_head).then(|| service.streams().admit()).transpose()?;
+    let picture = chosen.encoding.is_picture().then_some(output.size);
+    let permit = (!is_head).then(|| service.admit(picture)).transpose()?;
     let planned = service.plan(query).await?;
     if let Some(unwanted) = freshness.unwanted(headers).filter(|_| can_be_kept) {
         return Ok(unwanted);

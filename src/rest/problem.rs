@@ -9,11 +9,8 @@ use serde::Serialize;
 
 use crate::{
     error_map,
-    service::{Error, Fault, Kind},
+    service::{Error, Fault},
 };
-
-/// How long a client should wait before it asks a busy server again, in seconds.
-const RETRY_AFTER: &str = "1";
 
 /// The document.
 #[derive(Debug, Serialize)]
@@ -42,7 +39,9 @@ impl<'a> Problem<'a> {
             Error::TooManyRows { limit, .. } => (None, Some(*limit)),
             Error::BodyTooLarge { limit }
             | Error::Busy { limit }
-            | Error::TooManyConnections { limit } => (None, u64::try_from(*limit).ok()),
+            | Error::TooManyConnections { limit }
+            | Error::TooManyRequests { limit }
+            | Error::TooManyBytes { limit } => (None, u64::try_from(*limit).ok()),
             _ => (None, None),
         };
         let digests = match error {
@@ -65,9 +64,9 @@ impl<'a> Problem<'a> {
     /// An error as a whole response.
     pub(super) fn response(error: &'a Error) -> Response {
         let mut response = Self::new(error).into_response();
-        if matches!(error.kind(), Kind::Busy | Kind::ShuttingDown) {
-            let seconds = HeaderValue::from_static(RETRY_AFTER);
-            response.headers_mut().insert(header::RETRY_AFTER, seconds);
+        if let Some(seconds) = error_map::retry_after(error.kind()) {
+            let headers = response.headers_mut();
+            headers.insert(header::RETRY_AFTER, HeaderValue::from(seconds));
         }
         response
     }
@@ -95,9 +94,10 @@ impl<'a> Problem<'a> {
         let body = serde_json::to_string(&problem).unwrap_or_default();
         let status = StatusCode::from_u16(problem.status).unwrap_or_default();
         let (length, reason) = (body.len() + 1, status.canonical_reason());
+        let retry_after = error_map::retry_after(error.kind()).unwrap_or_default();
         let head = format!(
             "HTTP/1.1 {} {}\r\ncontent-type: application/problem+json\r\ncontent-length: \
-             {length}\r\ncache-control: no-store\r\nretry-after: {RETRY_AFTER}\r\nconnection: \
+             {length}\r\ncache-control: no-store\r\nretry-after: {retry_after}\r\nconnection: \
              close\r\n\r\n{body}\n",
             problem.status,
             reason.unwrap_or_default()

@@ -166,6 +166,32 @@ pub enum Error {
         /// The limit.
         limit: usize,
     },
+    /// As many requests are being answered as the server takes on at once.
+    #[error("{limit} requests are being answered, the most at once: try again later")]
+    TooManyRequests {
+        /// The limit.
+        limit: usize,
+    },
+    /// Requests and answers hold as much memory as they may.
+    #[error("requests and answers hold {limit} bytes, the most at once: try again later")]
+    TooManyBytes {
+        /// The limit.
+        limit: usize,
+    },
+    /// The body took longer to come than it may.
+    #[error("the body did not come within {seconds} seconds")]
+    BodyTooSlow {
+        /// The limit.
+        seconds: String,
+    },
+    /// The answer took longer than it may.
+    #[error(
+        "no answer was found within {seconds} seconds: try again later, or ask for a smaller region"
+    )]
+    TimeOver {
+        /// The limit.
+        seconds: String,
+    },
     /// The server is about to stop.
     #[error("the server is shutting down: try again later, or elsewhere")]
     ShuttingDown,
@@ -200,8 +226,13 @@ pub enum Kind {
     NoSuchPath,
     /// [`Error::NoSuchMethod`].
     NoSuchMethod,
-    /// [`Error::Busy`], [`Error::TooManyConnections`].
+    /// [`Error::Busy`], [`Error::TooManyConnections`], [`Error::TooManyRequests`],
+    /// [`Error::TooManyBytes`].
     Busy,
+    /// [`Error::BodyTooSlow`].
+    BodyTooSlow,
+    /// [`Error::TimeOver`].
+    TimeOver,
     /// [`Error::ShuttingDown`].
     ShuttingDown,
     /// [`Error::Internal`].
@@ -210,7 +241,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Invalid,
         Self::TooManyPoints,
         Self::TooManyRows,
@@ -221,6 +252,8 @@ impl Kind {
         Self::NoSuchPath,
         Self::NoSuchMethod,
         Self::Busy,
+        Self::BodyTooSlow,
+        Self::TimeOver,
         Self::ShuttingDown,
         Self::Internal,
     ];
@@ -240,7 +273,12 @@ impl Error {
             Self::NoSuchPoint { .. } => Kind::NoSuchPoint,
             Self::NoSuchPath { .. } => Kind::NoSuchPath,
             Self::NoSuchMethod { .. } => Kind::NoSuchMethod,
-            Self::Busy { .. } | Self::TooManyConnections { .. } => Kind::Busy,
+            Self::Busy { .. }
+            | Self::TooManyConnections { .. }
+            | Self::TooManyRequests { .. }
+            | Self::TooManyBytes { .. } => Kind::Busy,
+            Self::BodyTooSlow { .. } => Kind::BodyTooSlow,
+            Self::TimeOver { .. } => Kind::TimeOver,
             Self::ShuttingDown => Kind::ShuttingDown,
             Self::Internal(_) => Kind::Internal,
         }

@@ -19,7 +19,7 @@ use futures_util::{FutureExt as _, Stream};
 use tokio::sync::oneshot;
 use tokio_util::sync::{CancellationToken, WaitForCancellationFutureOwned};
 
-use super::{Error, Workers};
+use super::{Error, Held, Workers};
 
 /// Why a stream broke off: its reader must see that it is not complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -27,6 +27,12 @@ pub enum Interrupted {
     /// The server stops and will not wait longer.
     #[error("the server is shutting down; the stream is not complete")]
     Shutdown,
+    /// The reader took nothing for too long.
+    #[error("nothing was taken of it for too long; the stream is not complete")]
+    Stalled,
+    /// It took longer than streams may.
+    #[error("the time for it is over; the stream is not complete: go on with a cursor")]
+    TimeOver,
     /// Making a block failed.
     #[error("an internal error; the stream is not complete")]
     Failed,
@@ -57,12 +63,12 @@ impl Streams {
         self.open.load(Ordering::Acquire)
     }
 
-    /// The right to start one more.
+    /// The right to start one more, which holds so much memory.
     ///
     /// # Errors
     /// [`Error::Busy`] if as many as allowed are under way, [`Error::ShuttingDown`] after
     /// [`stop`](Self::stop).
-    pub fn admit(self: &Arc<Self>) -> Result<Permit, Error> {
+    pub fn admit(self: &Arc<Self>, held: Held) -> Result<Permit, Error> {
         if self.stop.is_cancelled() {
             return Err(Error::ShuttingDown);
         }
@@ -72,6 +78,7 @@ impl Streams {
             .map_err(|_| Error::Busy { limit: self.limit })?;
         Ok(Permit {
             streams: self.clone(),
+            _held: held,
         })
     }
 
@@ -85,6 +92,7 @@ impl Streams {
 #[derive(Debug)]
 pub struct Permit {
     streams: Arc<Streams>,
+    _held: Held,
 }
 
 impl Drop for Permit {
@@ -227,9 +235,15 @@ mod tests {
 
     fn stream(numbers: Numbers) -> (BlockStream<Numbers>, Arc<Streams>) {
         let streams = Arc::new(Streams::new(1));
-        let permit = streams.admit().expect("the first");
+        let permit = streams.admit(nothing()).expect("the first");
         let workers = Workers::new(1).expect("threads");
         (BlockStream::new(numbers, permit, workers), streams)
+    }
+
+    fn nothing() -> Held {
+        Arc::new(crate::service::Budget::new(0))
+            .hold(0)
+            .expect("room")
     }
 
     fn until(what: impl Fn() -> bool) {
@@ -245,7 +259,10 @@ mod tests {
         let (numbers, _) = numbers(usize::MAX, 100);
         let (stream, streams) = stream(numbers);
         assert_eq!(streams.open(), 1);
-        assert!(matches!(streams.admit(), Err(Error::Busy { limit: 1 })));
+        assert!(matches!(
+            streams.admit(nothing()),
+            Err(Error::Busy { limit: 1 })
+        ));
         let items: Vec<_> = stream.collect().await;
         assert_eq!(items, (0..100).map(Ok).collect::<Vec<_>>());
         until(|| streams.open() == 0);
@@ -283,7 +300,7 @@ mod tests {
         let rest: Vec<_> = stream.collect().await;
         assert_eq!(rest, [Err(Interrupted::Shutdown)]);
         until(|| streams.open() == 0);
-        assert!(matches!(streams.admit(), Err(Error::ShuttingDown)));
+        assert!(matches!(streams.admit(nothing()), Err(Error::ShuttingDown)));
     }
 
     #[tokio::test]

@@ -36,4 +36,5 @@ mod singles;
 mod streaming;
 mod table;
 mod tls;
+mod waits;
 mod wrong;

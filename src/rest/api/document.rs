@@ -17,7 +17,12 @@ const ABOUT: &str = "Strew scatters points: any region of an unbounded plane, at
                      if the client accepts it.";
 
 /// The problems that any request can have.
-const EVERYWHERE: [Kind; 2] = [Kind::NoSuchMethod, Kind::Internal];
+const EVERYWHERE: [Kind; 4] = [
+    Kind::NoSuchMethod,
+    Kind::Busy,
+    Kind::TimeOver,
+    Kind::Internal,
+];
 
 /// The document.
 pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
@@ -59,6 +64,7 @@ fn described(operation: &Operation) -> Value {
     }
     let mut problems: Vec<Kind> = operation.problems.clone();
     problems.extend(EVERYWHERE);
+    problems.extend(operation.body.is_some().then_some(Kind::BodyTooSlow));
     for (status, response) in refused(&problems) {
         // A status may be shared with an answer that is not a problem; that one is told.
         responses.entry(status).or_insert(response);

@@ -8,7 +8,7 @@ use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    Area, Frame, Sampler,
+    Area, Frame, Sampler, Stop,
     area::{State, Steps},
     clear::{ClearOf, Guard},
     fixed,
@@ -164,13 +164,13 @@ fn room(x: f64) -> f64 {
     SLACK + (2e-15 * x.abs()).min(1e300)
 }
 
-/// How many points of a stretch of the lattice pass.
+/// How many points of a stretch of the lattice pass, unless it is stopped before it is through.
 pub(super) fn count(
     sampler: &Sampler,
     frame: &Frame,
     sieve: &Sieve,
-    columns: &Range<i64>,
-    rows: &Range<i64>,
+    [columns, rows]: [&Range<i64>; 2],
+    stop: &Stop,
 ) -> u128 {
     let sets = Class::ALL.map(|class| frame.pattern.axis_set(Axis::X, class));
     let mut count = 0;
@@ -183,6 +183,10 @@ pub(super) fn count(
             let Some((x_parity, index)) = frame.pattern.visit(Axis::Y, y) else {
                 continue;
             };
+            // A row along an edge, or with other layers near, takes long.
+            if stop.is_raised() {
+                return count;
+            }
             focused.runs(y..y + 1, columns, &mut runs);
             if runs.is_empty() {
                 continue;
