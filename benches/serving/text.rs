@@ -124,7 +124,7 @@ pub fn text(host: &Host, effort: Effort) {
     let limits = limits();
     let count = if effort.quick { 20_000 } else { 4_000_000 };
     let query = query(&catalog, count);
-    let planned = Planned::from_catalog(&catalog, query, &limits).expect("within reach");
+    let planned = Planned::at_once(query, &limits).expect("within reach");
     let side = (count as f64).sqrt();
     let mut points = vec![Point::default(); PREPARED];
     planned.sets[0].plan.blocks_points().fill(&mut points);

@@ -225,8 +225,7 @@ fn of_query(args: &Args) -> Result<(Report, Option<Target>), Failure> {
     let catalog = config.tables()?;
     let parameters = args.flags.parameters(|_| true);
     let checked = parameters.check(&catalog, 0, None, vec![]);
-    let planned =
-        checked.and_then(|(query, _)| Planned::from_catalog(&catalog, query, &config.limits));
+    let planned = checked.and_then(|(query, _)| Planned::at_once(query, &config.limits));
     let planned = planned.map_err(|error| Source::Flags.refused(error))?;
     let (corner, side) = square(planned.query.region.bbox()).map_err(Failure::Usage)?;
     if planned.count() > MAX_POINTS || planned.count() < 100 {

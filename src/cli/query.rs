@@ -73,7 +73,7 @@ impl<T: Takes> Asked<T> {
         let catalog = config.tables()?;
         let limits = &config.limits;
         let query = body.draft.check(&catalog, limits.max_vertices, faults);
-        let planned = query.and_then(|query| Planned::from_catalog(&catalog, query, limits));
+        let planned = query.and_then(|query| Planned::at_once(query, limits));
         Ok(Ask {
             draft: body.draft,
             options,
@@ -200,8 +200,8 @@ pub(super) fn placed(
 ) -> Result<Placed, Failure> {
     let catalog = config.tables()?;
     let place = |set: Set| {
-        let entry = catalog.entry(&set.key).ok_or_else(Error::lost_table)?;
-        Placed::new(set, Ready::load(&entry)?)
+        let ready = Ready::load(&set.entry)?;
+        Placed::new(set, ready)
     };
     let set = parameters.check_set(&catalog, others, vec![]);
     set.and_then(place)
@@ -219,9 +219,9 @@ pub(super) fn described(planned: &Planned) -> String {
         };
         format!(
             "{name}profile {}, alpha {}, map {}, spacing {}, seed {}, warp {}, table {}",
-            set.key.profile,
-            set.key.alpha,
-            set.key.size,
+            set.entry.key.profile,
+            set.entry.key.alpha,
+            set.entry.key.size,
             planned.spacing.get(),
             set.seed.0,
             set.warp.strength(),
@@ -234,8 +234,7 @@ pub(super) fn described(planned: &Planned) -> String {
 impl Config {
     /// The tables that the settings ask for.
     pub(super) fn catalog(&self) -> Result<Catalog, CatalogError> {
-        let folder = (!self.tables.folder.as_os_str().is_empty()).then_some(&*self.tables.folder);
-        Catalog::load(self.tables.embedded, folder)
+        Catalog::load(self.tables.embedded, self.tables.folder())
     }
 
     /// The same; settings that lead to none are wrong usage.

@@ -64,8 +64,10 @@ async fn serve(app: App, listener: TcpListener, scheme: &str) -> anyhow::Result<
     let address = listener.local_addr().context("no address")?;
     // Listen for signals before saying that we are ready.
     let stop = shutdown::Signals::new().context("cannot listen for signals")?;
+    let hangups = shutdown::Hangups::new().context("cannot listen for signals")?;
     announce(scheme, address).context("cannot write to standard output")?;
     tracing::info!(%address, tables = app.service().catalog().entries().len(), "serving");
+    let app = app.with_hangups(hangups);
     let broken = app.run(listener, stop.first_then_exit()).await?;
     if broken > 0 {
         tracing::warn!(broken, "stopped; some streams were broken off");

@@ -7,7 +7,11 @@
 mod layers;
 mod validate;
 
-use std::{net::SocketAddr, path::PathBuf, time::Duration};
+use std::{
+    net::SocketAddr,
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -77,6 +81,16 @@ pub struct Tables {
     pub embedded: bool,
     /// A folder with more; empty for none.
     pub folder: PathBuf,
+    /// How often the folder is looked at for changes, in seconds; 0 for never.
+    pub watch_seconds: f64,
+}
+
+impl Tables {
+    /// The folder, if there is one.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        Some(self.folder.as_path()).filter(|folder| !folder.as_os_str().is_empty())
+    }
 }
 
 /// Who makes points.

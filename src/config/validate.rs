@@ -12,7 +12,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         workers,
         shutdown,
         log,
-        tables: _,
+        tables,
     } = config;
     let mut faults = vec![];
     let mut within = |key: &str, value: f64, min: f64, max: f64| {
@@ -89,6 +89,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         0.0,
         365.0 * day,
     );
+    within("tables.watch_seconds", tables.watch_seconds, 0.0, day);
     within("limits.max_points", limits.max_points as f64, 1.0, 1e15);
     within("limits.max_rows", limits.max_rows as f64, 1.0, 1e12);
     within("limits.max_vertices", limits.max_vertices as f64, 3.0, 1e8);

@@ -70,7 +70,7 @@ impl Points {
     }
 
     async fn point(&self, request: &GetPointRequest) -> Result<GetPointResponse, Error> {
-        let set = SetDraft::from(request).check_alone(self.service.catalog(), vec![])?;
+        let set = SetDraft::from(request).check_alone(&self.service.catalog(), vec![])?;
         let placed = self.service.place(set).await?;
         Ok(GetPointResponse {
             point: Some(single::point(placed.point(&request.id)?)),
@@ -82,7 +82,7 @@ impl Points {
         let mut faults = vec![];
         let around = query::around(request).check(vec![]);
         let around = around.map_err(|more| faults.extend(more));
-        let set = SetDraft::from(request).check_alone(self.service.catalog(), faults)?;
+        let set = SetDraft::from(request).check_alone(&self.service.catalog(), faults)?;
         let around = around.map_err(|()| Error::Internal("a fault is lost"))?;
         let placed = self.service.place(set).await?;
         let set = Some(resolved::placed(&placed));
@@ -163,7 +163,8 @@ impl PointService for Points {
         &self,
         _request: Request<ListProfilesRequest>,
     ) -> Result<Response<ListProfilesResponse>, Status> {
-        let entries = self.service.catalog().entries();
+        let catalog = self.service.catalog();
+        let entries = catalog.entries();
         Ok(Response::new(ListProfilesResponse {
             profiles: entries.map(|entry| profile::profile(entry)).collect(),
             algorithm: ALGORITHM_VERSION,

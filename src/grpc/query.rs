@@ -125,7 +125,7 @@ pub(super) fn query(
             cursor: (!request.cursor.is_empty()).then(|| request.cursor.clone()),
         },
     };
-    let query = draft.check(service.catalog(), service.limits().max_vertices, faults)?;
+    let query = draft.check(&service.catalog(), service.limits().max_vertices, faults)?;
     let encoding = encoding.map_err(|()| Error::Internal("a fault is lost"))?;
     Ok((query, encoding))
 }

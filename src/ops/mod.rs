@@ -1,5 +1,5 @@
 //! Running the daemon: one port for both doors, connections and their limits, TLS, health,
-//! a bounded stop, the log.
+//! a bounded stop, the log, tables read again.
 
 mod activity;
 mod calls;
@@ -10,6 +10,7 @@ mod gate;
 mod guarded;
 pub mod health;
 mod often;
+pub mod reload;
 pub mod serve;
 pub mod shutdown;
 pub mod telemetry;

@@ -8,12 +8,14 @@ use axum::{
     extract::Request,
     response::{IntoResponse as _, Response},
 };
+use tokio_util::task::AbortOnDropHandle;
 
 use super::{
     calls,
     connections::Connections,
     gate::{Gate, Words},
     health::{self, Readiness},
+    reload::Reloader,
     shutdown::Hangups,
     tls::{Tls, TlsError},
 };
@@ -52,6 +54,8 @@ const GRACE: Duration = Duration::from_secs(1);
 pub struct App {
     config: Config,
     service: Arc<Service>,
+    reloader: Arc<Reloader>,
+    hangups: Option<Hangups>,
     tls: Option<Tls>,
     more: Router,
 }
@@ -63,11 +67,13 @@ impl App {
     /// If a certificate or table is not valid or the system gives no threads.
     pub fn new(config: Config) -> Result<Self, ServeError> {
         let tls = Tls::new(&config.tls)?;
-        let folder = Some(config.tables.folder.as_path()).filter(|f| !f.as_os_str().is_empty());
+        let folder = config.tables.folder();
         let catalog = Catalog::load(config.tables.embedded, folder)?;
         let workers = Workers::new(config.workers.threads)?;
         let service = Arc::new(Service::new(catalog, config.limits.clone(), workers));
         Ok(Self {
+            reloader: Arc::new(Reloader::new(service.clone(), folder.map(Into::into))),
+            hangups: None,
             config,
             service,
             tls,
@@ -79,6 +85,13 @@ impl App {
     #[must_use]
     pub fn with_routes(mut self, routes: Router) -> Self {
         self.more = self.more.merge(routes);
+        self
+    }
+
+    /// Reads its tables again whenever these come.
+    #[must_use]
+    pub fn with_hangups(mut self, hangups: Hangups) -> Self {
+        self.hangups = Some(hangups);
         self
     }
 
@@ -94,17 +107,24 @@ impl App {
     /// # Errors
     /// If the socket does not work.
     pub async fn run(
-        self,
+        mut self,
         listener: TcpListener,
         shutdown: impl Future<Output = ()>,
     ) -> Result<usize, ServeError> {
+        let _watch = self.watch();
         let readiness = Readiness::default();
         let (router, grpc_health) = self.router(readiness.clone()).await?;
         listener.set_nonblocking(true)?;
         let listener = tokio::net::TcpListener::from_std(listener)?;
-        if let Some(tls) = self.tls.clone() {
-            tokio::spawn(tls.keep_fresh(Hangups::new()?));
-        }
+        let _fresh = match self.tls.clone() {
+            Some(tls) => {
+                let hangups = Hangups::new()?;
+                Some(AbortOnDropHandle::new(tokio::spawn(
+                    tls.keep_fresh(hangups),
+                )))
+            }
+            None => None,
+        };
         let connections = Connections::new(&self.config.server, self.tls.clone());
         let taking = tokio::spawn({
             let connections = connections.clone();
@@ -137,6 +157,18 @@ impl App {
             connections.closed().await;
         }
         Ok(broken)
+    }
+
+    /// Looks for changes of the tables for as long as the handle is held.
+    fn watch(&mut self) -> AbortOnDropHandle<()> {
+        let seconds = self.config.tables.watch_seconds;
+        let is_looked_for = seconds > 0.0 && self.config.tables.folder().is_some();
+        let every = is_looked_for.then(|| config::seconds(seconds));
+        let hangups = self.hangups.take();
+        let reloader = self.reloader.clone();
+        AbortOnDropHandle::new(tokio::spawn(async move {
+            reloader.watch(hangups, every).await;
+        }))
     }
 
     /// Both doors, health, and one fallback for all.

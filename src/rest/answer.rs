@@ -149,8 +149,8 @@ pub(super) fn freshness(
     query: &Query,
     content_type: &'static str,
 ) -> Result<Freshness, Error> {
-    let entries = service.entries(query)?;
-    let digests: Vec<&str> = entries.iter().map(|entry| entry.digest.as_str()).collect();
+    let sets = query.sets.iter();
+    let digests: Vec<&str> = sets.map(|set| set.entry.digest.as_str()).collect();
     let window = &query.window;
     let made_of = (
         query.identity(&digests),

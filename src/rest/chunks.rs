@@ -105,8 +105,8 @@ async fn get(
         shape,
     };
     let most_vertices = service.limits().max_vertices;
-    let catalog = service.catalog();
-    let (query, options) = parameters.check(catalog, most_vertices, Some(region), faults)?;
+    let (query, options) =
+        parameters.check(&service.catalog(), most_vertices, Some(region), faults)?;
     let asked = Asked {
         method,
         uri,

@@ -88,7 +88,7 @@ async fn get(
 ) -> Result<Response, Error> {
     let (parameters, faults) = parse_pairs(uri.query().unwrap_or_default());
     let most_vertices = service.limits().max_vertices;
-    let (query, options) = parameters.check(service.catalog(), most_vertices, None, faults)?;
+    let (query, options) = parameters.check(&service.catalog(), most_vertices, None, faults)?;
     document::no_looks(options)?;
     let asked = Asked {
         method,

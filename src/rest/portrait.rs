@@ -192,11 +192,11 @@ fn asked(
     headers: &HeaderMap,
     content_type: &'static str,
 ) -> Result<(Arc<Entry>, Freshness), Error> {
-    if service.catalog().alphas(name).is_empty() {
+    let catalog = service.catalog();
+    if catalog.alphas(name).is_empty() {
         return Err(Error::NoSuchPath {
             path: uri.path().into(),
-            available: service
-                .catalog()
+            available: catalog
                 .profiles()
                 .iter()
                 .map(|profile| format!("/v1/profiles/{profile}"))
@@ -205,7 +205,7 @@ fn asked(
         });
     }
     let (parameters, faults) = parse_pairs(uri.query().unwrap_or_default());
-    let entry = parameters.entry(service.catalog(), name, faults)?;
+    let entry = parameters.entry(&catalog, name, faults)?;
     let freshness = Freshness::of(uri, headers, content_type, &entry.digest);
     Ok((entry, freshness.pinned(parameters.get("table").is_some())))
 }

@@ -88,7 +88,8 @@ async fn get(
             "query", text, detail, "none",
         )]));
     }
-    let made_of: Vec<&str> = (service.catalog().entries())
+    let catalog = service.catalog();
+    let made_of: Vec<&str> = (catalog.entries())
         .map(|entry| entry.digest.as_str())
         .collect();
     let freshness = Freshness::of(&uri, &headers, "application/json", &made_of);
@@ -98,11 +99,7 @@ async fn get(
     }
     let document = Profiles {
         algorithm: ALGORITHM_VERSION,
-        profiles: service
-            .catalog()
-            .entries()
-            .map(|entry| Profile::new(entry))
-            .collect(),
+        profiles: catalog.entries().map(|entry| Profile::new(entry)).collect(),
     };
     let mut body = serde_json::to_vec(&document)
         .map_err(|_| Error::Internal("the list of profiles cannot be written"))?;

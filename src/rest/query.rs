@@ -75,7 +75,7 @@ pub(super) fn read(service: &Service, body: &[u8]) -> Result<(Query, Options), E
     let most_vertices = service.limits().max_vertices;
     let query = body
         .draft
-        .check(service.catalog(), most_vertices, body.faults)?;
+        .check(&service.catalog(), most_vertices, body.faults)?;
     Ok((query, body.options))
 }
 

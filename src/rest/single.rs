@@ -118,7 +118,7 @@ async fn point(
     headers: HeaderMap,
 ) -> Result<Response, Error> {
     let (parameters, faults) = parse_pairs(uri.query().unwrap_or_default());
-    let set = parameters.check_set(service.catalog(), &[], faults)?;
+    let set = parameters.check_set(&service.catalog(), &[], faults)?;
     let placed = service.place(set).await?;
     let one = One {
         point: placed.point(&id)?,
@@ -134,7 +134,7 @@ async fn around(
 ) -> Result<Response, Error> {
     let (parameters, mut faults) = parse_pairs(uri.query().unwrap_or_default());
     let around = parameters.around().map_err(|more| faults.extend(more));
-    let set = parameters.check_set(service.catalog(), &["at", "k", "radius"], faults)?;
+    let set = parameters.check_set(&service.catalog(), &["at", "k", "radius"], faults)?;
     let around = around.map_err(|()| Error::Internal("a fault is lost"))?;
     let placed = service.place(set).await?;
     let finder = placed.clone();

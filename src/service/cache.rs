@@ -1,4 +1,5 @@
-//! Samplers ready to answer, by profile, α and map size.
+//! Samplers ready to answer, by the digest of their table: a table that replaces another never gets
+//! the other's sampler.
 //!
 //! Bounded by what they hold in memory. A sampler is built once however many queries wait for it,
 //! and on the workers, not where sockets are served.
@@ -8,12 +9,12 @@ use std::sync::Arc;
 use moka::future::Cache;
 use strew_core::{Sampler, sample::LeastDistance};
 
-use super::{Entry, Error, Key, Workers};
+use super::{Entry, Error, Workers};
 
 /// The cache.
 #[derive(Clone)]
 pub(super) struct Samplers {
-    ready: Cache<Key, Ready>,
+    ready: Cache<String, Ready>,
 }
 
 /// A table ready to answer.
@@ -53,7 +54,7 @@ impl std::fmt::Debug for Samplers {
 impl Samplers {
     /// An empty cache that holds at most this many bytes.
     pub(super) fn new(bytes: u64) -> Self {
-        let weight = |_: &Key, ready: &Ready| {
+        let weight = |_: &String, ready: &Ready| {
             u32::try_from(ready.sampler.memory_bytes()).unwrap_or(u32::MAX)
         };
         let ready = Cache::builder()
@@ -71,9 +72,15 @@ impl Samplers {
             workers.run(move || Ready::load(&entry)).await?
         };
         self.ready
-            .try_get_with_by_ref(&entry.key, build)
+            .try_get_with_by_ref(&entry.digest, build)
             .await
             .map_err(|error| (*error).clone())
+    }
+
+    /// Makes room: the table of this digest is not loaded any more. Answers under way keep what they
+    /// have.
+    pub(super) async fn forget(&self, digest: &str) {
+        self.ready.invalidate(digest).await;
     }
 }
 

@@ -1,9 +1,11 @@
 //! The tables that are loaded: the built-in ones and those of a folder.
 //!
-//! Every table is read and checked once, at the start, so that a damaged file is an error then and
-//! not during a query. What stays is the file's bytes, a few kilobytes each, and what is to be said
-//! about it; a ready sampler is made from the bytes when a query needs one. Answers never depend
-//! on what happens to the folder later.
+//! Every table is read and checked once, at the start or when the folder is read again ([`reload`]), so
+//! that a damaged file is an error then and not during a query. What stays is the file's bytes, a few
+//! kilobytes each, and what is to be said about it; a ready sampler is made from the bytes when a
+//! query needs one.
+
+mod reload;
 
 use std::{
     cmp::Ordering,
@@ -23,6 +25,7 @@ use strew_core::{
 use strew_forge::Aim;
 
 use super::Error;
+pub use reload::{Refusal, Reload};
 
 /// The tables that are built into the program: (file name, content).
 static EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));
@@ -81,7 +84,7 @@ impl fmt::Display for Source {
 }
 
 /// A loaded table.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// What it is found by.
     pub key: Key,
@@ -238,6 +241,8 @@ pub enum CatalogError {
 #[derive(Clone, Debug, Default)]
 pub struct Catalog {
     entries: BTreeMap<Key, Arc<Entry>>,
+    /// The built-in ones, also where a file's table stands in the place of one.
+    built_in: BTreeMap<Key, Arc<Entry>>,
 }
 
 impl Catalog {
@@ -252,6 +257,7 @@ impl Catalog {
             catalog.add(EMBEDDED.iter().map(|&(name, bytes)| {
                 Entry::read(Bytes::from_static(bytes), Source::Embedded(name))
             }))?;
+            catalog.built_in.clone_from(&catalog.entries);
         }
         if let Some(folder) = folder {
             let files = table_files(folder)?;

@@ -292,9 +292,4 @@ impl Error {
             _ => &[],
         }
     }
-
-    /// The table of a checked query is gone: a bug, since catalogs do not shrink.
-    pub(crate) const fn lost_table() -> Self {
-        Self::Internal("the table of a checked query is not loaded")
-    }
 }

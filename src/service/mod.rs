@@ -20,16 +20,18 @@ mod single;
 pub mod stream;
 pub mod workers;
 
-use std::sync::Arc;
+use std::{path::PathBuf, sync::Arc};
 
+use arc_swap::ArcSwap;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
 use serde::{Deserialize, Serialize};
 use strew_core::sample::Stop;
+use tokio::sync::Mutex;
 
 pub use budget::{Budget, Held};
 pub use cache::Ready;
-pub use catalog::{Catalog, Entry, Key};
+pub use catalog::{Catalog, Entry, Key, Reload};
 pub use encode::{Answer, Encoding, Output};
 pub use error::{Error, Fault, Kind};
 pub use planned::{Placed, Planned, PlannedSet};
@@ -76,7 +78,9 @@ pub struct Limits {
 /// Everything a front end needs. Cheap to share behind an [`Arc`].
 #[derive(Debug)]
 pub struct Service {
-    catalog: Catalog,
+    catalog: ArcSwap<Catalog>,
+    /// Held while tables are read again, so that reloads come one after another.
+    reload: Mutex<()>,
     limits: Limits,
     samplers: Samplers,
     portraits: Portraits,
@@ -94,16 +98,36 @@ impl Service {
             portraits: Portraits::new(),
             streams: Arc::new(Streams::new(limits.max_streams)),
             budget: Arc::new(Budget::new(limits.max_bytes_in_flight)),
-            catalog,
+            catalog: ArcSwap::from_pointee(catalog),
+            reload: Mutex::new(()),
             limits,
             workers,
         }
     }
 
-    /// The tables that are loaded.
+    /// The tables that are loaded now. A query holds on to those that it was checked against.
     #[must_use]
-    pub const fn catalog(&self) -> &Catalog {
-        &self.catalog
+    pub fn catalog(&self) -> Arc<Catalog> {
+        self.catalog.load_full()
+    }
+
+    /// Reads the folder of tables again and serves what is good in it from then on, all at once. A
+    /// file that is not good is refused, and the table that it held so far serves on.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if reading panicked; then nothing has changed.
+    pub async fn reload(&self, folder: Option<PathBuf>) -> Result<Reload, Error> {
+        let _one_at_a_time = self.reload.lock().await;
+        let before = self.catalog.load_full();
+        let read = move || before.again(folder.as_deref());
+        let (after, reload) = tokio::task::spawn_blocking(read)
+            .await
+            .map_err(|_| Error::Internal("the tables cannot be read again"))?;
+        self.catalog.store(Arc::new(after));
+        for digest in reload.gone() {
+            self.samplers.forget(digest).await;
+        }
+        Ok(reload)
     }
 
     /// The limits.
@@ -145,15 +169,6 @@ impl Service {
         self.streams.admit(self.budget.hold(held)?)
     }
 
-    /// The tables of a query's sets, in their order.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if one is not loaded any more.
-    pub fn entries(&self, query: &Query) -> Result<Vec<Arc<Entry>>, Error> {
-        let entry = |set: &Set| self.catalog.entry(&set.key).ok_or_else(Error::lost_table);
-        query.sets.iter().map(entry).collect()
-    }
-
     /// Plans a query on the workers, whatever it counts.
     ///
     /// # Errors
@@ -161,8 +176,8 @@ impl Service {
     /// [`Error::TooManyRows`] if counting would take too long.
     pub async fn count(&self, query: Query) -> Result<Planned, Error> {
         let mut tables = vec![];
-        for entry in self.entries(&query)? {
-            tables.push(self.samplers.get(&entry, &self.workers).await?);
+        for set in &*query.sets {
+            tables.push(self.samplers.get(&set.entry, &self.workers).await?);
         }
         let planned = if query.is_small() {
             // Handing it over would take longer.
@@ -203,8 +218,7 @@ impl Service {
     /// # Errors
     /// [`Error::Invalid`] for an amount that cannot be had.
     pub async fn place(&self, set: Set) -> Result<Placed, Error> {
-        let entry = self.catalog.entry(&set.key).ok_or_else(Error::lost_table)?;
-        let ready = self.samplers.get(&entry, &self.workers).await?;
+        let ready = self.samplers.get(&set.entry, &self.workers).await?;
         Placed::new(set, ready)
     }
 

@@ -8,7 +8,7 @@ use strew_core::{
 };
 
 use super::{
-    Catalog, Entry, Error, Limits,
+    Entry, Error, Limits,
     attributes::PointAttributes,
     cache::Ready,
     encode::{Attributes, Part},
@@ -155,11 +155,8 @@ impl Planned {
     ///
     /// # Errors
     /// As [`new`](Self::new), or [`Error::Internal`] if a table cannot be read any more.
-    pub fn from_catalog(catalog: &Catalog, query: Query, limits: &Limits) -> Result<Self, Error> {
-        let ready = |set: &Set| {
-            let entry = catalog.entry(&set.key).ok_or_else(Error::lost_table)?;
-            Ready::load(&entry)
-        };
+    pub fn at_once(query: Query, limits: &Limits) -> Result<Self, Error> {
+        let ready = |set: &Set| Ready::load(&set.entry);
         let tables: Vec<Ready> = query.sets.iter().map(ready).collect::<Result<_, _>>()?;
         Self::new(query, &tables, limits)
     }

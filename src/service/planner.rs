@@ -203,7 +203,7 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>
                 .map_err(|error| {
                     let detail = match error {
                         DistanceError::NoPromise { .. } => {
-                            format!("profile `{}`: {error}", set.key.profile)
+                            format!("profile `{}`: {error}", set.entry.key.profile)
                         }
                         other => other.to_string(),
                     };

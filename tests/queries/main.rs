@@ -57,7 +57,7 @@ impl World {
 
     fn planned(&self, body: &Value) -> Result<Planned, Error> {
         let query = self.query(body)?;
-        let of = |set: &strew::service::Set| self.ready[&set.key.to_string()].clone();
+        let of = |set: &strew::service::Set| self.ready[&set.entry.key.to_string()].clone();
         let tables: Vec<Ready> = query.sets.iter().map(of).collect();
         Planned::new(query, &tables, &self.limits)
     }

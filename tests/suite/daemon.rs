@@ -75,7 +75,7 @@ pub fn write(folder: &Path, name: &str, table: &Table) {
 pub struct Daemon {
     child: Child,
     address: String,
-    _tables: tempfile::TempDir,
+    tables: tempfile::TempDir,
 }
 
 impl Daemon {
@@ -111,7 +111,7 @@ impl Daemon {
         Self {
             child,
             address,
-            _tables: tables,
+            tables,
         }
     }
 
@@ -181,10 +181,20 @@ impl Daemon {
             .sum()
     }
 
+    /// The folder of its tables.
+    pub fn folder(&self) -> &Path {
+        self.tables.path()
+    }
+
     /// Sends SIGTERM.
     pub fn terminate(&self) {
+        self.signal("-TERM");
+    }
+
+    /// Sends a signal.
+    pub fn signal(&self, signal: &str) {
         let sent = Command::new("kill")
-            .args(["-TERM", &self.pid().to_string()])
+            .args([signal, &self.pid().to_string()])
             .status()
             .expect("kill runs");
         assert!(sent.success());

@@ -31,6 +31,7 @@ mod pages;
 mod raw;
 mod readers;
 mod regions;
+mod reload;
 mod settings;
 mod singles;
 mod streaming;

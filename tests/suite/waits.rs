@@ -260,7 +260,7 @@ async fn a_stream_that_nobody_takes_ends_although_its_connection_lives() {
     // One stream cannot fill what the connection may hold.
     let (client, connection) = h2::client::Builder::new()
         .initial_connection_window_size(1 << 20)
-        .handshake(stream.expect("connected"))
+        .handshake::<_, bytes::Bytes>(stream.expect("connected"))
         .await
         .expect("HTTP/2");
     tokio::spawn(connection);

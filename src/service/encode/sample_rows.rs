@@ -79,7 +79,7 @@ pub(super) fn planned(bbox: [f64; 4], spacing: f64, seed: u64) -> Planned {
         block_bytes: 4096,
         cache_bytes: 0,
     };
-    Planned::from_catalog(&CATALOG, query, &limits).expect("a plan")
+    Planned::at_once(query, &limits).expect("a plan")
 }
 
 /// The whole answer of both layers, and its size as said before.

@@ -109,7 +109,7 @@ impl Draft {
         let drafts = self.layers.iter().map(|layer| &layer.set);
         let drafts = drafts.chain((!is_layered).then_some(&self.set));
         for (set, draft) in sets.iter().zip(drafts) {
-            draft.table.hold(catalog, &set.key)?;
+            draft.table.hold(&set.entry)?;
         }
         Ok(Query {
             region,
@@ -190,7 +190,7 @@ impl SetDraft {
         let (Some(set), true) = (set, faults.is_empty()) else {
             return Err(faults.into_error());
         };
-        self.table.hold(catalog, &set.key)?;
+        self.table.hold(&set.entry)?;
         Ok(set)
     }
 
@@ -211,14 +211,14 @@ impl SetDraft {
         });
         let keep = faults.take(keep.transpose());
         let attributes = faults.take(self.attributes.check(&path));
-        let key = faults.take_all(self.table.check(catalog, &path));
+        let entry = faults.take_all(self.table.check(catalog, &path));
         let by_default = || Spacing::new(1.0).map_or(Warp::OFF, |s| Placement::new(s, seed).warp);
         Some(Set {
             amount: amount?,
             warp: warp?.unwrap_or_else(by_default),
             keep: keep?.unwrap_or(Keep::ALL),
             attributes: attributes?,
-            key: key?,
+            entry: entry?,
             is_pinned: self.table.table.is_some(),
             path,
             name: String::new(),

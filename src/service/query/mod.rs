@@ -28,7 +28,7 @@ use strew_core::{
     sample::{Attributes, Keep, PlanError},
 };
 
-use super::{Error, Fault, Key};
+use super::{Entry, Error, Fault};
 
 pub use amount::{Amount, AmountDraft};
 pub use around::{Around, AroundDraft};
@@ -100,8 +100,9 @@ pub struct Set {
     pub path: String,
     /// The name of the layer.
     pub name: String,
-    /// The table.
-    pub key: Key,
+    /// The table. It is found once, when the query is checked, and answers to the end, whatever is
+    /// loaded in its place meanwhile.
+    pub entry: Arc<Entry>,
     /// Whether the query names its digest.
     pub is_pinned: bool,
     /// How many points.

@@ -1,7 +1,7 @@
 //! Pinning a table: a query that names the digest of its table is answered by that one or not at
 //! all, so that its answer never changes.
 
-use crate::service::{Catalog, Error, Fault, Key};
+use crate::service::{Entry, Error, Fault};
 
 /// What a digest looks like.
 pub(super) const DIGEST: &str = "64 hexadecimal digits, as in the header strew-table";
@@ -25,13 +25,12 @@ pub(super) fn read(pin: Option<&str>, path: &str) -> Result<(), Fault> {
     }
 }
 
-/// Checks that the table of `key` is the pinned one.
+/// Checks that a table is the pinned one.
 ///
 /// # Errors
 /// [`Error::OtherTable`] if it is not.
-pub(super) fn compare(pin: Option<&str>, catalog: &Catalog, key: &Key) -> Result<(), Error> {
+pub(super) fn compare(pin: Option<&str>, entry: &Entry) -> Result<(), Error> {
     let Some(pin) = pin else { return Ok(()) };
-    let entry = catalog.entry(key).ok_or_else(Error::lost_table)?;
     if pin.eq_ignore_ascii_case(&entry.digest) {
         return Ok(());
     }

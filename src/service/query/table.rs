@@ -1,9 +1,11 @@
 //! Which table answers: by profile, α and map size, and by a pinned digest.
 
+use std::sync::Arc;
+
 use strew_core::{Alpha, map::Size};
 
 use super::{DEFAULT_ALPHA, DEFAULT_PROFILE, pin};
-use crate::service::{Catalog, Error, Fault, Key};
+use crate::service::{Catalog, Entry, Error, Fault, Key};
 
 /// The table as it was asked for, not checked. What is absent takes its default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -20,8 +22,8 @@ pub struct TableDraft {
 }
 
 impl TableDraft {
-    /// The key of the table that is asked for; `path` is put before the names of fields.
-    pub(super) fn check(&self, catalog: &Catalog, path: &str) -> Result<Key, Vec<Fault>> {
+    /// The table that is asked for; `path` is put before the names of fields.
+    pub(super) fn check(&self, catalog: &Catalog, path: &str) -> Result<Arc<Entry>, Vec<Fault>> {
         let fault = |name: &str, value: &str, detail: String, allowed: String| {
             Fault::new(&format!("{path}{name}"), value, detail, allowed)
         };
@@ -71,15 +73,15 @@ impl TableDraft {
             alpha,
             size,
         });
-        entry.map(|entry| entry.key.clone()).ok_or_else(Vec::new)
+        entry.ok_or_else(Vec::new)
     }
 
-    /// Checks that the table of the key is the pinned one.
+    /// Checks that a table is the pinned one.
     ///
     /// # Errors
     /// [`Error::OtherTable`] if it is not.
-    pub(super) fn hold(&self, catalog: &Catalog, key: &Key) -> Result<(), Error> {
-        pin::compare(self.table.as_deref(), catalog, key)
+    pub(super) fn hold(&self, entry: &Entry) -> Result<(), Error> {
+        pin::compare(self.table.as_deref(), entry)
     }
 }
 

@@ -123,12 +123,12 @@ impl Parameters {
             profile: Some(profile.into()),
             ..self.table()
         };
-        let key = faults.take_all(table.check(catalog, ""));
-        let (Some(key), true) = (key, faults.is_empty()) else {
+        let entry = faults.take_all(table.check(catalog, ""));
+        let (Some(entry), true) = (entry, faults.is_empty()) else {
             return Err(faults.into_error());
         };
-        table.hold(catalog, &key)?;
-        catalog.entry(&key).ok_or_else(Error::lost_table)
+        table.hold(&entry)?;
+        Ok(entry)
     }
 
     /// The query, and the options of the output; `found` are the faults found before. `region` is

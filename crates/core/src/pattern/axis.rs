@@ -172,16 +172,6 @@ impl AxisSet {
         Some(high - 1)
     }
 
-    /// The members in `range`, ascending, by looking at every coordinate of the parity: for short
-    /// ranges.
-    pub(crate) fn members(&self, range: Range<i64>) -> impl Iterator<Item = i64> + use<> {
-        let set = *self;
-        let first = set.align(range.start).unwrap_or(range.end);
-        (first..range.end)
-            .step_by(2)
-            .filter(move |&v| set.index(v) < set.width)
-    }
-
     /// The members in `range`, ascending. Each step costs one comparison: a rotation returns to an
     /// interval after one of at most three gaps (the three-gap theorem).
     pub fn iter(&self, range: Range<i64>) -> impl Iterator<Item = i64> + use<> {
@@ -273,7 +263,6 @@ mod tests {
             let to = from.saturating_add(length);
             let members: Vec<i64> = (from..to).filter(|&v| set.contains(v)).collect();
             prop_assert_eq!(set.iter(from..to).collect::<Vec<_>>(), members.clone());
-            prop_assert_eq!(set.members(from..to).collect::<Vec<_>>(), members.clone());
             prop_assert_eq!(set.count(from..to), members.len() as u64);
             for (k, &v) in members.iter().enumerate() {
                 prop_assert_eq!(set.select(from, k as u64), Some(v));

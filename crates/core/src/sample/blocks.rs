@@ -4,12 +4,13 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
-    Cursor, Frame, Listed, PointId, Sampler, fixed,
+    Cursor, Frame, Listed, PointId, Sampler,
+    before::Before,
     kernel::{Backend, Format, Row},
     patch::{BAND_WIDTH, Patch},
     plan::Plan,
-    sieve::{Focus, Run},
-    template::{Check, Kept, Stretch, Templates},
+    sieve::{Focus, Run, TOGETHER, World},
+    template::{Check, Kept, Stretch, Templates, displaced, sift},
 };
 use crate::pattern::{Axis, Class};
 
@@ -79,11 +80,16 @@ pub struct Blocks<F: Format> {
     at: Place,
     /// How many points are still to come.
     left: u128,
-    /// The plan's sieve, for the patch under way.
-    sieve: Option<Focus>,
-    /// What the sieve says of the row under way.
+    /// The plan's sieve, for the band and for the patch under way.
+    sieve: Option<[Focus; 2]>,
+    /// Whether the patch under way is cut by what the sieve leaves out.
+    is_sifted: bool,
+    /// What the sieve says of the row under way and those after it, up to `runs_end`.
     runs: Vec<Run>,
+    runs_end: i64,
     columns: [Listed; 4],
+    /// Where they are, if there is a sieve.
+    before: Before,
     templates: Templates<F>,
     patch: Patch,
     base: [f64; 2],
@@ -145,9 +151,12 @@ impl<F: Format> Blocks<F> {
             } else {
                 plan.count()
             },
-            sieve: None,
+            sieve: plan.sieve.as_ref().map(|s| [s.focus(), s.focus()]),
+            is_sifted: false,
             runs: Vec::new(),
+            runs_end: i64::MIN,
             columns: Default::default(),
+            before: Before::default(),
             templates: Templates::new(&plan.sampler, tall, kept),
             patch,
             backend: Backend::best(),
@@ -186,13 +195,11 @@ impl<F: Format> Blocks<F> {
                 self.next_patch();
             }
             let end = self.rows.end.min(self.patch.end());
-            filled += match self.sieve.take() {
-                Some(sieve) => {
-                    let filled = self.fill_sifted(&sieve, end, &mut out[filled..]);
-                    self.sieve.get_or_insert(sieve);
-                    filled
-                }
-                None => self.fill_rows(end, &mut out[filled..]),
+            let out = &mut out[filled..];
+            filled += if self.is_sifted {
+                self.fill_sifted(end, out)
+            } else {
+                self.fill_rows(end, out)
             };
         }
         self.left -= filled as u128;
@@ -252,7 +259,12 @@ impl<F: Format> Blocks<F> {
         let Plan {
             sampler, frame, x, ..
         } = &self.plan;
-        list_columns(sampler, frame, clip(band, &x.all), &mut self.columns);
+        let columns = clip(band, &x.all);
+        list_columns(sampler, frame, columns.clone(), &mut self.columns);
+        if let (Some(sieve), Some([focus, _])) = (&self.plan.sieve, &mut self.sieve) {
+            focus.aim(sieve.area(), &self.rows, &columns);
+            self.before.note(&columns, &self.columns);
+        }
         self.templates.forget();
         self.band = band;
         self.at = Place::row(self.rows.start);
@@ -266,16 +278,17 @@ impl<F: Format> Blocks<F> {
         self.patch = Patch::new(frame, self.band, self.at.y, x, y);
         self.base = self.format.base(self.patch.origin());
         let rows = self.at.y..self.patch.end().min(self.rows.end);
-        let end = rows.end;
-        self.sieve = self.plan.sieve.as_ref().map(|s| s.focus(rows.clone()));
-        if let Some(sieve) = &self.sieve {
+        self.is_sifted = false;
+        self.runs_end = rows.start;
+        if let Some([band, patch]) = &mut self.sieve {
             let columns = clip(self.band, &x.all);
-            sieve.runs(rows, &columns, &mut self.runs);
+            patch.aim(band.area(), &rows, &columns);
+            patch.runs(rows.clone(), &columns, &mut self.runs);
             match self.runs.as_slice() {
-                [] => self.at = Place::row(end),
+                [] => self.at = Place::row(rows.end),
                 // Such a patch lies inside the plan's box, too: it is filled like one.
-                [run] if run.passes && run.columns == columns => self.sieve = None,
-                _ => {}
+                [run] if run.passes && run.columns == columns => {}
+                _ => self.is_sifted = true,
             }
         }
     }
@@ -351,17 +364,16 @@ impl<F: Format> Blocks<F> {
     }
 
     /// The same through a sieve.
-    fn fill_sifted(&mut self, sieve: &Focus, end: i64, out: &mut [F::Item]) -> usize {
+    fn fill_sifted(&mut self, end: i64, out: &mut [F::Item]) -> usize {
         let Plan {
             sampler, frame, x, ..
         } = &self.plan;
+        let Some([_, sieve]) = &mut self.sieve else {
+            return 0;
+        };
         let (format, patch, base) = (&self.format, &self.patch, self.base);
         let columns = clip(self.band, &x.all);
-        let passes = |position: [i32; 2]| {
-            let origin = patch.origin().map(fixed);
-            let place = |axis: usize| frame.world(origin[axis] + i128::from(position[axis]));
-            sieve.passes([place(0), place(1)])
-        };
+        let world = World::new(frame, patch);
         let mut filled = 0;
         while self.at.y < end && filled < out.len() {
             let y = self.at.y;
@@ -369,22 +381,25 @@ impl<F: Format> Blocks<F> {
                 self.at.next_row();
                 continue;
             };
-            let is_under_way = self.at.done > 0;
-            if !is_under_way {
-                sieve.runs(y..y + 1, &columns, &mut self.runs);
-                if self.runs.is_empty() {
-                    self.at.next_row();
-                    continue;
-                }
+            if y >= self.runs_end {
+                self.runs_end = end.min(y + TOGETHER);
+                sieve.runs(y..self.runs_end, &columns, &mut self.runs);
             }
+            if self.runs.is_empty() {
+                self.at = Place::row(self.runs_end);
+                continue;
+            }
+            let (listed, vectors) = (&self.columns[class.ordinal()], sampler.row(block));
+            let is_under_way = self.at.done > 0;
             let template = self
                 .templates
                 .get(class, block, is_under_way, |template, kept| {
-                    let listed = &self.columns[class.ordinal()];
-                    template.make(format, base, patch, listed, sampler.row(block), kept);
+                    template.make(format, base, patch, listed, vectors, kept);
                 });
             if let Some(from) = self.at.from.take() {
-                self.at.done = template.columns_before(from);
+                self.at.done = self
+                    .before
+                    .count(class, from.clamp(columns.start, columns.end));
             }
             let row = Row {
                 base,
@@ -392,26 +407,22 @@ impl<F: Format> Blocks<F> {
                 lattice: y,
             };
             for run in &self.runs {
-                let ends = [run.columns.start, run.columns.end].map(|v| template.columns_before(v));
+                let ends = [run.columns.start, run.columns.end];
+                let ends = ends.map(|v| self.before.count(class, v));
                 let columns = ends[0].max(self.at.done)..ends[1];
                 if columns.is_empty() {
                     continue;
                 }
-                let check = if run.passes {
-                    Check::Nothing
+                let (start, out) = (columns.start, &mut out[filled..]);
+                let (written, done) = if run.passes {
+                    let check = Check::Nothing;
+                    let stretch = Stretch { columns, check };
+                    template.fill(format, patch, row, stretch, self.backend, out)
                 } else {
-                    Check::Each(&passes)
+                    let columns = displaced(patch, &listed[columns], vectors);
+                    let passes = |position| sieve.passes(run, world.place(position));
+                    sift(format, patch, row, columns, passes, out)
                 };
-                let stretch = Stretch { columns, check };
-                let start = stretch.columns.start;
-                let (written, done) = template.fill(
-                    format,
-                    patch,
-                    row,
-                    stretch,
-                    self.backend,
-                    &mut out[filled..],
-                );
                 filled += written;
                 self.at.done = start + done;
                 if self.at.done < ends[1] {

@@ -9,6 +9,7 @@
 mod amount;
 mod area;
 mod attribute;
+mod before;
 mod blocks;
 mod clear;
 mod count;

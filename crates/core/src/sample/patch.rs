@@ -66,6 +66,13 @@ impl Patch {
         self.shears.as_deref()
     }
 
+    /// Where a displaced position, relative to the origin, ends up.
+    #[inline(always)]
+    pub(super) fn place(&self, displaced: [i32; 2]) -> [i32; 2] {
+        let [x, y] = displaced;
+        self.shears().map_or(displaced, |shears| shears.apply(x, y))
+    }
+
     /// A lattice row or column of the patch, relative to the origin.
     pub(super) const fn relative(&self, axis: Axis, v: i64) -> i32 {
         ((v - self.origin[axis as usize]) << FRACTION_BITS) as i32

@@ -220,10 +220,7 @@ impl Plan {
     pub(super) fn count_within(&self, columns: &Range<i64>, rows: &Range<i64>) -> u128 {
         let (x, y) = (self.x.within(columns), self.y.within(rows));
         match &self.sieve {
-            Some(sieve) => {
-                let stretch = [&x.all, &y.all];
-                sieve::count(&self.sampler, &self.frame, sieve, stretch, &self.stop)
-            }
+            Some(sieve) => sieve::count(&self.sampler, &self.frame, sieve, [&x, &y], &self.stop),
             None => count::count(&self.sampler, &self.frame, &x, &y, &self.stop),
         }
     }

@@ -126,9 +126,14 @@ impl Region {
         }
     }
 
-    /// Whether a strip may have points of it.
-    pub(super) fn meets(&self, [y0, y1]: [f64; 2]) -> bool {
-        self.min[1] <= y1 && self.max[1] >= y0
+    /// Whether all points of another box, its upper sides included, are inside or none.
+    pub(super) fn within(&self, other: &Self) -> Option<bool> {
+        let (min, max) = (other.min, other.max);
+        if (0..2).any(|i| max[i] < self.min[i] || self.max[i] <= min[i]) || self.is_empty() {
+            Some(false)
+        } else {
+            (self.contains(min) && self.contains(max)).then_some(true)
+        }
     }
 
     /// Whether the box has no extent along an axis.

@@ -30,20 +30,45 @@ pub(super) struct Template<F: Format> {
 
 /// Some columns of a template and what their points must satisfy.
 #[derive(Debug)]
-pub(super) struct Stretch<'a> {
+pub(super) struct Stretch {
     pub(super) columns: Range<usize>,
-    pub(super) check: Check<'a>,
+    pub(super) check: Check,
 }
 
 /// What points must satisfy.
-#[derive(Clone, Copy)]
-pub(super) enum Check<'a> {
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Check {
     /// Nothing: all of them are asked for.
     Nothing,
     /// The patch's bounds.
     Bounds,
-    /// A test of their place, relative to the patch's origin.
-    Each(&'a dyn Fn([i32; 2]) -> bool),
+}
+
+/// A column of a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Displaced {
+    /// Where it is in the lattice.
+    lattice: i64,
+    /// Its point's x, relative to the patch's origin.
+    x: i32,
+    /// Its point's vertical displacement.
+    dy: i32,
+}
+
+/// Listed columns with the vectors of a row's block.
+pub(super) fn displaced(
+    patch: &Patch,
+    listed: &[(i64, u32)],
+    vectors: &[[i32; 2]],
+) -> impl Iterator<Item = Displaced> {
+    listed.iter().map(|&(lattice, block)| {
+        let [dx, dy] = vectors[block as usize];
+        Displaced {
+            lattice,
+            x: patch.relative(Axis::X, lattice) + dx,
+            dy,
+        }
+    })
 }
 
 impl<F: Format> Template<F> {
@@ -83,30 +108,26 @@ impl<F: Format> Template<F> {
         self.displacements.clear();
         let is_warped = patch.is_warped();
         let all = kept.has_all(patch);
-        let detailed = is_warped || kept != Kept::Plain;
-        let displaced = |&(x, block): &(i64, u32)| {
-            let [dx, dy] = vectors[block as usize];
-            (x, patch.relative(Axis::X, x) + dx, dy)
-        };
+        let columns = || displaced(patch, listed, vectors);
+        if is_warped {
+            self.displaced.extend(columns().map(|column| column.x));
+        }
         if all {
-            let displaced = || listed.iter().map(displaced);
             if !is_warped {
-                let columns = displaced().map(|(x, at, _)| format.column(base, at, x));
-                self.columns.extend(columns);
+                let column = |column: Displaced| format.column(base, column.x, column.lattice);
+                self.columns.extend(columns().map(column));
             }
-            if detailed {
+            if is_warped || kept != Kept::Plain {
                 self.lattice.extend(listed.iter().map(|&(x, _)| x));
-                self.displaced.extend(displaced().map(|(_, at, _)| at));
             }
-            self.displacements.extend(displaced().map(|(_, _, dy)| dy));
+            self.displacements.extend(columns().map(|column| column.dy));
         } else {
-            for (x, at, dy) in listed.iter().map(displaced) {
-                if patch.holds_along(Axis::X, at) {
-                    self.columns.push(format.column(base, at, x));
+            for Displaced { lattice, x, dy } in columns() {
+                if patch.holds_along(Axis::X, x) {
+                    self.columns.push(format.column(base, x, lattice));
                     self.displacements.push(dy);
-                    if detailed {
-                        self.lattice.push(x);
-                        self.displaced.push(at);
+                    if kept == Kept::Places {
+                        self.lattice.push(lattice);
                     }
                 }
             }
@@ -121,7 +142,7 @@ impl<F: Format> Template<F> {
         format: &F,
         patch: &Patch,
         row: Row,
-        stretch: Stretch<'_>,
+        stretch: Stretch,
         backend: Backend,
         out: &mut [F::Item],
     ) -> (usize, usize) {
@@ -145,16 +166,11 @@ impl<F: Format> Template<F> {
                 }
                 (written, written)
             }
-            (Check::Bounds, Some(shears)) => {
-                let place = |x, y| shears.apply(x, y);
-                self.sift(format, row, columns, place, |p| patch.holds(p), out)
-            }
-            (Check::Each(passes), Some(shears)) => {
-                let place = |x, y| shears.apply(x, y);
-                self.sift(format, row, columns, place, passes, out)
-            }
-            (Check::Each(passes), None) => {
-                self.sift(format, row, columns, |x, y| [x, y], passes, out)
+            (Check::Bounds, Some(_)) => {
+                let (details, dys) = (self.details(columns.clone()), &self.displacements[columns]);
+                let columns = details.lattice.iter().zip(details.displaced).zip(dys);
+                let columns = columns.map(|((&lattice, &x), &dy)| Displaced { lattice, x, dy });
+                sift(format, patch, row, columns, |p| patch.holds(p), out)
             }
             // Columns outside have no place in the template.
             (Check::Bounds, None) => self.clip(format, patch, row, columns, out),
@@ -193,43 +209,32 @@ impl<F: Format> Template<F> {
         }
         (written, done)
     }
-
-    /// Points whose place passes.
-    fn sift(
-        &self,
-        format: &F,
-        row: Row,
-        part: Range<usize>,
-        place: impl Fn(i32, i32) -> [i32; 2],
-        passes: impl Fn([i32; 2]) -> bool,
-        out: &mut [F::Item],
-    ) -> (usize, usize) {
-        let (mut written, mut done) = (0, 0);
-        let columns = self.details(part);
-        for (i, &lattice) in columns.lattice.iter().enumerate() {
-            let position = place(columns.displaced[i], row.y + columns.displacements[i]);
-            if passes(position) {
-                let Some(out) = out.get_mut(written) else {
-                    break;
-                };
-                let column = format.column(row.base, position[0], lattice);
-                *out = format.item(row.base, column, position[1], row.lattice);
-                written += 1;
-            }
-            done += 1;
-        }
-        (written, done)
-    }
 }
 
-impl core::fmt::Debug for Check<'_> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Nothing => "Nothing",
-            Self::Bounds => "Bounds",
-            Self::Each(_) => "Each",
-        })
+/// Writes those points of some columns of a row whose place, relative to the patch's origin, passes;
+/// gives how many, and how many columns are done with: all of them, unless `out` was full before.
+pub(super) fn sift<F: Format>(
+    format: &F,
+    patch: &Patch,
+    row: Row,
+    columns: impl Iterator<Item = Displaced>,
+    passes: impl Fn([i32; 2]) -> bool,
+    out: &mut [F::Item],
+) -> (usize, usize) {
+    let (mut written, mut done) = (0, 0);
+    for Displaced { lattice, x, dy } in columns {
+        let position = patch.place([x, row.y + dy]);
+        if passes(position) {
+            let Some(out) = out.get_mut(written) else {
+                break;
+            };
+            let column = format.column(row.base, position[0], lattice);
+            *out = format.item(row.base, column, position[1], row.lattice);
+            written += 1;
+        }
+        done += 1;
     }
+    (written, done)
 }
 
 /// What templates keep of their columns.

@@ -51,13 +51,26 @@ impl Circle {
         Region::new(min, max).ok()
     }
 
-    /// Whether a strip may have points of it.
-    pub(super) fn meets(&self, [y0, y1]: [f64; 2]) -> bool {
-        let reach = self.radius * (1.0 + SLACK);
-        (self.center[1] - reach).next_down() <= y1 && (self.center[1] + reach).next_up() >= y0
+    /// Whether all points of a box, its upper sides included, are inside or none: rounded
+    /// differences, squares and sums grow with what they are made of, so its nearest and its
+    /// farthest place decide.
+    pub(super) fn within(&self, within: &Region) -> Option<bool> {
+        let (min, max) = (within.min(), within.max());
+        let nearest = [0, 1].map(|i| self.center[i].max(min[i]).min(max[i]));
+        let farthest = [0, 1].map(|i| {
+            let [a, b] = [min[i], max[i]].map(|v| (v - self.center[i]).abs());
+            if a > b { min[i] } else { max[i] }
+        });
+        if !self.contains(nearest) {
+            Some(false)
+        } else if self.contains(farthest) {
+            Some(true)
+        } else {
+            None
+        }
     }
 
-    pub(super) fn steps(&self, [y0, y1]: [f64; 2]) -> Steps {
+    pub(super) fn steps(&self, [y0, y1]: [f64; 2], steps: &mut Steps) {
         let [x, y] = self.center;
         let r2 = self.radius * self.radius;
         let far = (y0 - y).abs().max((y1 - y).abs());
@@ -73,20 +86,19 @@ impl Circle {
         };
         let slack = SLACK * (self.radius + x.abs());
         let outer = libm::sqrt((r2 - near * near + 2.0 * SLACK * r2).max(0.0)) + slack;
+        steps.restart(State::Out);
         if near > self.radius * (1.0 + SLACK) {
-            return Steps::all(State::Out);
+            return;
         }
         let inner = half_width(far * (1.0 + SLACK))
             .map(|w| w * (1.0 - SLACK) - slack)
             .filter(|w| *w > 0.0 && far < self.radius * (1.0 - SLACK));
-        let mut steps = Steps::all(State::Out);
         steps.push(x - outer, State::Test);
         if let Some(inner) = inner {
             steps.push(x - inner, State::In);
             steps.push(x + inner, State::Test);
         }
         steps.push(x + outer, State::Out);
-        steps
     }
 }
 

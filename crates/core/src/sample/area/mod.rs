@@ -18,7 +18,8 @@ use super::Region;
 
 pub use circle::Circle;
 pub use polygon::Polygon;
-pub(super) use steps::{State, Steps};
+use steps::Steps;
+pub(super) use steps::{Near, State, Stepper};
 
 /// Why numbers are not an area.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -202,61 +203,109 @@ impl Area {
         }
     }
 
-    /// The same area for points whose y lies in `strip`, with less to look at.
-    pub(super) fn focus(&self, strip: [f64; 2]) -> Self {
-        let all = |areas: &[Self]| areas.iter().map(|area| area.focus(strip)).collect();
-        let nothing = || Self::AnyOf(Vec::new());
+    /// The same area for points within a box, its upper sides included, with less to look at.
+    pub(super) fn focus(&self, within: &Region) -> Self {
+        let near =
+            |areas: &[Self]| -> Vec<Self> { areas.iter().map(|area| area.focus(within)).collect() };
         match self {
-            Self::Region(region) if !region.meets(strip) => nothing(),
-            Self::Circle(circle) if !circle.meets(strip) => nothing(),
-            Self::Region(_) | Self::Circle(_) => self.clone(),
-            Self::Polygon(polygon) => match polygon.focus(strip) {
-                near if near.is_nowhere() => nothing(),
-                near => Self::Polygon(near),
+            Self::Region(region) => match region.within(within) {
+                Some(state) => Self::constant(state),
+                None => Self::Region(*region),
+            },
+            Self::Circle(circle) => match circle.within(within) {
+                Some(state) => Self::constant(state),
+                None => Self::Circle(*circle),
+            },
+            Self::Polygon(polygon) => match polygon.focus(within) {
+                Ok(state) => Self::constant(state),
+                Err(near) => Self::Polygon(near),
             },
             Self::AnyOf(areas) => {
-                let mut near: Vec<Self> = all(areas);
-                near.retain(|area| !area.is_nothing());
+                let mut near = near(areas);
+                if near.iter().any(|area| area.is_constant(true)) {
+                    return Self::constant(true);
+                }
+                near.retain(|area| !area.is_constant(false));
                 Self::any_of(near)
             }
             Self::AllOf(areas) => {
-                let near: Vec<Self> = all(areas);
-                if near.iter().any(Self::is_nothing) {
-                    nothing()
+                let mut near = near(areas);
+                if near.iter().any(|area| area.is_constant(false)) {
+                    return Self::constant(false);
+                }
+                near.retain(|area| !area.is_constant(true));
+                if near.len() == 1 {
+                    near.remove(0)
                 } else {
                     Self::AllOf(near)
                 }
             }
-            Self::Outside(area) => Self::Outside(Box::new(area.focus(strip))),
+            Self::Outside(area) => match area.focus(within) {
+                Self::AllOf(all) if all.is_empty() => Self::constant(false),
+                Self::AnyOf(none) if none.is_empty() => Self::constant(true),
+                near => Self::Outside(Box::new(near)),
+            },
         }
     }
 
-    const fn is_nothing(&self) -> bool {
-        matches!(self, Self::AnyOf(areas) if areas.is_empty())
+    /// All of the plane or nothing.
+    const fn constant(state: bool) -> Self {
+        if state {
+            Self::AllOf(Vec::new())
+        } else {
+            Self::AnyOf(Vec::new())
+        }
     }
 
-    /// What a strip y₀ ≤ y ≤ y₁ is along x.
-    pub(super) fn steps(&self, strip: [f64; 2]) -> Steps {
+    /// Whether it is plainly all of the plane, or plainly nothing.
+    const fn is_constant(&self, state: bool) -> bool {
         match self {
-            Self::Region(region) => Steps::of_region(region, strip),
-            Self::Circle(circle) => circle.steps(strip),
-            Self::Polygon(polygon) => polygon.steps(strip),
-            Self::AnyOf(areas) => joined(areas, strip, State::Out, State::max),
-            Self::AllOf(areas) => joined(areas, strip, State::In, State::min),
-            Self::Outside(area) => area.steps(strip).inverted(),
+            Self::AllOf(areas) => state && areas.is_empty(),
+            Self::AnyOf(areas) => !state && areas.is_empty(),
+            _ => false,
+        }
+    }
+
+    /// What a strip y₀ ≤ y ≤ y₁ is along x. If the area has been focused on a box, that holds
+    /// within it.
+    pub(super) fn steps(&self, strip: [f64; 2], stepper: &mut Stepper) {
+        match self {
+            Self::Region(region) => stepper.steps.set_region(region, strip),
+            Self::Circle(circle) => circle.steps(strip, &mut stepper.steps),
+            Self::Polygon(polygon) => polygon.steps(strip, stepper),
+            Self::AnyOf(areas) => {
+                stepper.steps = joined(areas, strip, stepper, State::Out, State::max);
+            }
+            Self::AllOf(areas) => {
+                stepper.steps = joined(areas, strip, stepper, State::In, State::min);
+            }
+            Self::Outside(area) => {
+                area.steps(strip, stepper);
+                stepper.steps.invert();
+            }
         }
     }
 }
 
 /// The steps of several areas together, by halves, so that many take little longer than few.
-fn joined(areas: &[Area], strip: [f64; 2], empty: State, join: fn(State, State) -> State) -> Steps {
+fn joined(
+    areas: &[Area],
+    strip: [f64; 2],
+    stepper: &mut Stepper,
+    empty: State,
+    join: fn(State, State) -> State,
+) -> Steps {
     match areas {
         [] => Steps::all(empty),
-        [area] => area.steps(strip),
+        [area] => {
+            area.steps(strip, stepper);
+            core::mem::take(&mut stepper.steps)
+        }
         areas => {
             let (first, second) = areas.split_at(areas.len() / 2);
-            let half = |areas| joined(areas, strip, empty, join);
-            half(first).join(&half(second), join)
+            let [first, second] =
+                [first, second].map(|half| joined(half, strip, stepper, empty, join));
+            first.join(&second, join)
         }
     }
 }
@@ -303,22 +352,34 @@ mod tests {
         #[test]
         fn steps_and_focus_never_contradict_membership(
             area in any_area(), y0 in coordinate(), height in 0.0..2.0f64,
+            ends in (coordinate(), coordinate()),
             probes in prop::collection::vec((-5.0..5.0f64, 0.0..=1.0f64), 40),
             exact in prop::collection::vec((coordinate(), 0.0..=1.0f64), 20),
         ) {
-            let strip = [y0, y0 + height];
-            let steps = area.steps(strip);
-            let focused = area.focus(strip);
-            for (x, part) in probes.into_iter().chain(exact) {
-                let p = [x, (y0 + part * height).min(strip[1])];
-                let inside = area.contains(p);
-                prop_assert_eq!(focused.contains(p), inside);
-                // At a step itself both sides count as undecided.
-                let nearby = [x - 1e-9, x + 1e-9].map(|x| steps.at(x));
-                if nearby == [State::In; 2] {
-                    prop_assert!(inside, "{p:?} {area:?}");
-                } else if nearby == [State::Out; 2] {
-                    prop_assert!(!inside, "{p:?} {area:?}");
+            let (strip, original) = ([y0, y0 + height], area.clone());
+            let (left, right) = (ends.0.min(ends.1), ends.0.max(ends.1));
+            // First on a part of the plane, then on a part of that.
+            let wide = Region::between([left - 1.0, y0 - 0.5], [right, strip[1]]);
+            let within = Region::between([left, y0], [right, strip[1]]);
+            let focused = area.focus(&wide).focus(&within);
+            let everywhere = Region::between([f64::NEG_INFINITY, y0], [f64::INFINITY, strip[1]]);
+            let whole = area.focus(&everywhere);
+            let mut stepper = Stepper::default();
+            for (area, looked_at) in [(&area, [-9.0, 9.0]), (&focused, [left, right]), (&whole, [-9.0, 9.0])] {
+                area.steps(strip, &mut stepper);
+                let steps = &stepper.steps;
+                for &(x, part) in probes.iter().chain(&exact) {
+                    let x = x.clamp(looked_at[0], looked_at[1]);
+                    let p = [x, (y0 + part * height).min(strip[1])];
+                    let inside = original.contains(p);
+                    prop_assert_eq!(area.contains(p), inside, "{:?} {:?}", p, area);
+                    // At a step itself both sides count as undecided.
+                    let nearby = [x - 1e-9, x + 1e-9].map(|x| steps.at(x));
+                    if nearby == [State::In; 2] {
+                        prop_assert!(inside, "{p:?} {area:?}");
+                    } else if nearby == [State::Out; 2] {
+                        prop_assert!(!inside, "{p:?} {area:?}");
+                    }
                 }
             }
             if let Some(bounds) = area.bounds() {

@@ -4,7 +4,10 @@ use alloc::vec::Vec;
 
 use robust::{Coord, orient2d};
 
-use super::{AreaError, Region, State, Steps};
+use super::{
+    AreaError, Region, State,
+    steps::{Reach, Stepper},
+};
 
 /// A polygon: one ring or several; a point is inside if a ray from it crosses the rings an odd
 /// number of times, so rings within rings are holes.
@@ -19,6 +22,11 @@ pub struct Polygon {
     edges: Vec<Edge>,
     /// The horizontal ones: rays along them cross nothing, but strips end there.
     flat: Vec<Edge>,
+    /// Of edges that have been left out because they lie beyond greater x: from which y on rays
+    /// cross one more or one fewer of them. Ascending.
+    turns: Vec<f64>,
+    /// The greatest x of the box that has been focused on.
+    right: f64,
     vertices: usize,
     min: [f64; 2],
     max: [f64; 2],
@@ -26,9 +34,13 @@ pub struct Polygon {
 
 /// An edge, upward.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Edge {
+pub(super) struct Edge {
     low: [f64; 2],
     high: [f64; 2],
+    /// x per y; infinite if that is more than can be reckoned with.
+    slope: f64,
+    /// How far from the edge its x by the slope may be.
+    slack: f64,
 }
 
 impl Polygon {
@@ -44,6 +56,8 @@ impl Polygon {
         let mut polygon = Self {
             edges: Vec::new(),
             flat: Vec::new(),
+            turns: Vec::new(),
+            right: f64::INFINITY,
             vertices: 0,
             min: [f64::INFINITY; 2],
             max: [f64::NEG_INFINITY; 2],
@@ -89,7 +103,7 @@ impl Polygon {
             } else {
                 &mut self.edges
             };
-            edges.push(Edge { low, high });
+            edges.push(Edge::new(low, high));
         }
         Ok(())
     }
@@ -110,25 +124,55 @@ impl Polygon {
     /// Whether a point lies inside.
     #[must_use]
     pub fn contains(&self, p: [f64; 2]) -> bool {
-        self.edges.iter().filter(|edge| edge.is_right_of(p)).count() % 2 == 1
+        self.is_in_beyond(p[1]) ^ is_odd(self.edges.iter(), p)
     }
 
-    /// The same polygon for points with y in the strip.
-    pub(super) fn focus(&self, strip: [f64; 2]) -> Self {
-        let near = |edges: &[Edge]| {
-            let near = edges.iter().filter(|edge| edge.touches(strip));
-            near.copied().collect()
-        };
-        Self {
-            edges: near(&self.edges),
-            flat: near(&self.flat),
+    /// Whether rays of this y cross an odd number of the edges left out.
+    fn is_in_beyond(&self, y: f64) -> bool {
+        self.turns.partition_point(|&turn| turn <= y) % 2 == 1
+    }
+
+    /// The same polygon for points within a box, its upper sides included; `Ok` if all of them are
+    /// inside or all outside.
+    pub(super) fn focus(&self, within: &Region) -> Result<bool, Self> {
+        let ([x0, y0], [x1, y1]) = (within.min(), within.max());
+        let mut near = Self {
+            edges: Vec::new(),
+            flat: Vec::new(),
+            turns: self.turns.clone(),
+            right: x1,
             ..*self
+        };
+        for edge in self.edges.iter().filter(|edge| edge.touches([y0, y1])) {
+            let [left, right] = edge.ends();
+            if left > x1 {
+                near.turns.extend([edge.low[1], edge.high[1]]);
+            } else if right >= x0 {
+                near.edges.push(*edge);
+            }
         }
-    }
-
-    /// Whether nothing is left of it.
-    pub(super) const fn is_nowhere(&self) -> bool {
-        self.edges.is_empty() && self.flat.is_empty()
+        let meets = |edge: &&Edge| {
+            let [left, right] = edge.ends();
+            edge.touches([y0, y1]) && left <= x1 && right >= x0
+        };
+        near.flat.extend(self.flat.iter().filter(meets));
+        near.turns.sort_unstable_by(f64::total_cmp);
+        // Where one edge ends and the next begins nothing changes.
+        let mut turns: Vec<f64> = Vec::with_capacity(near.turns.len());
+        for &turn in near.turns.iter().filter(|&&turn| turn <= y1) {
+            // Those that all rays of the box are above count by their parity.
+            let turn = if turn <= y0 { f64::NEG_INFINITY } else { turn };
+            if turns.last() == Some(&turn) {
+                turns.pop();
+            } else {
+                turns.push(turn);
+            }
+        }
+        near.turns = turns;
+        if near.edges.is_empty() && near.flat.is_empty() && near.turns.iter().all(|&t| t <= y0) {
+            return Ok(near.is_in_beyond(y0));
+        }
+        Err(near)
     }
 
     /// The boxes around its edges.
@@ -141,38 +185,101 @@ impl Polygon {
         self.edges.iter().chain(&self.flat).map(side)
     }
 
-    pub(super) fn steps(&self, strip: [f64; 2]) -> Steps {
+    /// What a strip is along x, within what has been focused on.
+    pub(super) fn steps(&self, strip: [f64; 2], stepper: &mut Stepper) {
+        let Stepper { steps, edges } = stepper;
         let [y0, _] = strip;
-        // Where each edge may be within the strip, and whether it crosses the strip's lower side.
-        let mut spans: Vec<([f64; 2], bool)> = self
-            .edges
-            .iter()
-            .chain(&self.flat)
-            .filter(|edge| edge.touches(strip))
-            .map(|edge| (edge.extent(strip), edge.low[1] <= y0 && y0 < edge.high[1]))
-            .collect();
-        spans.sort_unstable_by(|a, b| a.0[0].total_cmp(&b.0[0]));
-        let mut steps = Steps::all(State::Out);
-        let mut inside = false;
-        let mut end = f64::NEG_INFINITY;
-        for ([from, to], crosses) in spans {
-            if from > end {
-                if end > f64::NEG_INFINITY {
-                    steps.push(end, if inside { State::In } else { State::Out });
-                }
-                steps.push(from, State::Test);
+        edges.clear();
+        let beyond = self.is_in_beyond(y0);
+        let mut inside = beyond;
+        for edge in self.edges.iter().chain(&self.flat) {
+            if edge.touches(strip) {
+                let crosses = edge.low[1] <= y0 && y0 < edge.high[1];
+                inside ^= crosses;
+                let reach = Reach {
+                    extent: edge.extent(strip),
+                    crosses,
+                    edge: *edge,
+                };
+                // They are few, and come in order more often than not.
+                let is_after = |other: &&Reach| other.extent[0] > reach.extent[0];
+                let after = edges.iter().rev().take_while(is_after).count();
+                edges.insert(edges.len() - after, reach);
             }
-            end = end.max(to);
-            inside ^= crosses;
         }
-        if end > f64::NEG_INFINITY {
-            steps.push(end, State::Out);
+        let state = |inside| if inside { State::In } else { State::Out };
+        steps.restart(state(inside));
+        // Edges whose extents meet are asked together. What is beyond them is another part of the
+        // outline, which crosses all levels of the strip an even number of times, or all an odd.
+        let mut next = 0;
+        while let Some(first) = edges.get(next) {
+            steps.push(first.extent[0], State::Test);
+            let start = next;
+            let mut end = first.extent[1];
+            while let Some(reach) = edges.get(next)
+                && reach.extent[0] <= end
+            {
+                end = end.max(reach.extent[1]);
+                inside ^= reach.crosses;
+                next += 1;
+            }
+            // Edges that go on beyond the box may end in the strip, where those that have been left
+            // out begin.
+            if end <= self.right {
+                steps.note(start..next, inside);
+            }
+            steps.push(end, state(inside));
         }
-        steps
+        debug_assert_eq!(inside, beyond, "rings are closed");
     }
 }
 
+/// Whether a point is left of an odd number of edges, on a level with them.
+#[inline(always)]
+pub(super) fn is_odd<'a>(edges: impl Iterator<Item = &'a Edge> + Clone, p: [f64; 2]) -> bool {
+    let mut odd = false;
+    let mut doubtful = false;
+    for edge in edges.clone() {
+        let [crosses, unsure] = edge.nearly_is_right_of(p);
+        odd ^= crosses;
+        doubtful |= unsure;
+    }
+    if doubtful {
+        odd = is_odd_exactly(edges, p);
+    }
+    odd
+}
+
+#[cold]
+#[inline(never)]
+fn is_odd_exactly<'a>(edges: impl Iterator<Item = &'a Edge>, p: [f64; 2]) -> bool {
+    edges.filter(|edge| edge.is_right_of(p)).count() % 2 == 1
+}
+
 impl Edge {
+    fn new(low: [f64; 2], high: [f64; 2]) -> Self {
+        let [width, height] = [high[0] - low[0], high[1] - low[1]];
+        // Far from where products overflow.
+        let slope = if width.abs() < 1e300 && height > 0.0 && height < 1e300 {
+            width / height
+        } else {
+            f64::INFINITY
+        };
+        let slack = 4e-15 * (low[0].abs() + high[0].abs());
+        Self {
+            low,
+            high,
+            slope,
+            slack,
+        }
+    }
+
+    /// Its least and its greatest x.
+    const fn ends(&self) -> [f64; 2] {
+        let (a, b) = (self.low[0], self.high[0]);
+        if a < b { [a, b] } else { [b, a] }
+    }
+
     /// Whether a ray from `p` toward greater x crosses the edge.
     fn is_right_of(&self, p: [f64; 2]) -> bool {
         let coord = |[x, y]: [f64; 2]| Coord { x, y };
@@ -183,21 +290,29 @@ impl Edge {
                     && orient2d(coord(self.low), coord(self.high), coord(p)) > 0.0)
     }
 
+    /// [`is_right_of`](Self::is_right_of) by the slope, and whether that may be wrong.
+    #[inline(always)]
+    fn nearly_is_right_of(&self, p: [f64; 2]) -> [bool; 2] {
+        let level = (self.low[1] <= p[1]) & (p[1] < self.high[1]);
+        let ahead = self.low[0] + (p[1] - self.low[1]) * self.slope - p[0];
+        // Not a number nor infinite where the slope is too steep.
+        let sure = (ahead.abs() > self.slack) & (ahead.abs() < f64::INFINITY);
+        [level & (ahead > 0.0), level & !sure]
+    }
+
     fn touches(&self, [y0, y1]: [f64; 2]) -> bool {
         self.low[1] <= y1 && self.high[1] >= y0
     }
 
-    /// The x that the edge may have between two y, a little wider than need be.
+    /// The x that the edge may have between two y that it touches, a little wider than need be.
     fn extent(&self, [y0, y1]: [f64; 2]) -> [f64; 2] {
         let ([x0, low], [x1, high]) = (self.low, self.high);
-        let at = |y: f64| x0 + ((y - low) / (high - low)).clamp(0.0, 1.0) * (x1 - x0);
-        let slack = 4e-15 * (x0.abs() + x1.abs());
-        let (a, b) = if low < high {
-            (at(y0), at(y1))
+        let [a, b] = if self.slope.is_finite() {
+            [y0, y1].map(|y| x0 + (y.clamp(low, high) - low) * self.slope)
         } else {
-            (x0, x1)
+            [x0, x1]
         };
-        [a.min(b) - slack, a.max(b) + slack]
+        [a.min(b) - self.slack, a.max(b) + self.slack]
     }
 }
 

@@ -1,0 +1,167 @@
+//! Reading the folder again while the daemon serves.
+//!
+//! What is good is taken, each bad file is refused by itself, and the table that it held so far
+//! serves on: a folder that is half copied, or one damaged file in it, must not take down tables
+//! that work. A new [`Catalog`] comes out, which is put in the place of the old one in one step.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use serde::Serialize;
+
+use super::{Catalog, CatalogError, Entry, Key, Source, table_files};
+
+/// What reading the folder again gave.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Reload {
+    /// Tables that were not there before, or not with this content.
+    pub loaded: Vec<Serving>,
+    /// Tables that answer as before, those among them whose files were refused.
+    pub kept: Vec<Serving>,
+    /// Tables that answer no more: their files are gone.
+    pub removed: Vec<Serving>,
+    /// Files that were not taken, and why.
+    pub refused: Vec<Refusal>,
+}
+
+/// A table, as told to who runs the daemon.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Serving {
+    /// The noise profile.
+    pub profile: String,
+    /// The number α.
+    pub alpha: String,
+    /// The size of its map.
+    pub map: String,
+    /// Its digest.
+    pub digest: String,
+    /// Where it comes from.
+    pub source: String,
+    /// The digest of the table in whose place it stands now.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub replaces: Option<String>,
+}
+
+/// A file that was not taken.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Refusal {
+    /// The file, or the folder.
+    pub source: String,
+    /// Why.
+    pub detail: String,
+    /// The digest of the table from this file that serves on, if there is one.
+    pub serving: Option<String>,
+}
+
+impl Serving {
+    fn new(entry: &Entry, replaces: Option<&Entry>) -> Self {
+        Self {
+            profile: entry.key.profile.as_ref().into(),
+            alpha: entry.key.alpha.to_string(),
+            map: entry.key.size.to_string(),
+            digest: entry.digest.clone(),
+            source: entry.source.to_string(),
+            replaces: replaces.map(|other| other.digest.clone()),
+        }
+    }
+}
+
+impl Reload {
+    /// The digests of tables that are not loaded any more.
+    pub(in crate::service) fn gone(&self) -> impl Iterator<Item = &str> {
+        let replaced = self.loaded.iter().filter_map(|new| new.replaces.as_deref());
+        replaced.chain(self.removed.iter().map(|old| old.digest.as_str()))
+    }
+}
+
+impl Catalog {
+    /// The catalog after reading the folder again, and what came of it.
+    pub(in crate::service) fn again(&self, folder: Option<&Path>) -> (Self, Reload) {
+        let mut reload = Reload::default();
+        let files = folder.map_or(Ok(vec![]), table_files);
+        let files = match files {
+            Ok(files) => files,
+            Err(error) => {
+                reload.refused.push(Refusal {
+                    source: folder.unwrap_or(Path::new("")).display().to_string(),
+                    detail: error.to_string(),
+                    serving: None,
+                });
+                reload.kept = self.entries().map(|old| Serving::new(old, None)).collect();
+                return (self.clone(), reload);
+            }
+        };
+        let mut after = self.clone();
+        after.entries.clone_from(&self.built_in);
+        after.entries.extend(self.read(files, &mut reload.refused));
+        for (key, new) in &after.entries {
+            match self.entries.get(key) {
+                Some(old) if old.digest == new.digest => {
+                    reload.kept.push(Serving::new(new, None));
+                }
+                old => reload.loaded.push(Serving::new(new, old.map(|old| &**old))),
+            }
+        }
+        let gone = |(key, _): &(&Key, &Arc<Entry>)| !after.entries.contains_key(*key);
+        let removed = self.entries.iter().filter(gone);
+        reload.removed = removed.map(|(_, old)| Serving::new(old, None)).collect();
+        (after, reload)
+    }
+
+    /// Reads files. Of two for one key that one is taken which has served so far, else the first.
+    fn read(
+        &self,
+        mut files: Vec<PathBuf>,
+        refused: &mut Vec<Refusal>,
+    ) -> BTreeMap<Key, Arc<Entry>> {
+        let served: BTreeMap<&Path, &Arc<Entry>> = self
+            .entries
+            .values()
+            .filter_map(|entry| match &entry.source {
+                Source::File(path) => Some((path.as_path(), entry)),
+                Source::Embedded(_) => None,
+            })
+            .collect();
+        files.sort_by_key(|file| !served.contains_key(file.as_path()));
+        let mut taken: BTreeMap<Key, Arc<Entry>> = BTreeMap::new();
+        let mut bad: Vec<(PathBuf, CatalogError)> = vec![];
+        for file in files {
+            match Entry::from_file(file.clone()) {
+                Ok(entry) => match taken.get(&entry.key) {
+                    Some(first) => {
+                        let twice = CatalogError::Twice {
+                            key: entry.key.clone(),
+                            first: first.source.clone(),
+                            second: entry.source.clone(),
+                        };
+                        bad.push((file, twice));
+                    }
+                    None => {
+                        // The same table stays the same entry, so that it is not held twice.
+                        let old = served.get(file.as_path()).map(|old| Arc::clone(old));
+                        let same = old.filter(|old| old.digest == entry.digest);
+                        let entry = same.unwrap_or_else(|| Arc::new(entry));
+                        taken.insert(entry.key.clone(), entry);
+                    }
+                },
+                Err(error) => bad.push((file, error)),
+            }
+        }
+        for (file, error) in bad {
+            let old = served.get(file.as_path());
+            let serves_on = old.filter(|old| !taken.contains_key(&old.key)).copied();
+            refused.push(Refusal {
+                source: file.display().to_string(),
+                detail: error.to_string(),
+                serving: serves_on.map(|old| old.digest.clone()),
+            });
+            if let Some(old) = serves_on {
+                taken.insert(old.key.clone(), old.clone());
+            }
+        }
+        taken
+    }
+}
