@@ -24,6 +24,14 @@ lint:
 bench:
     cargo bench -p strew-core
 
+# Fuzz one subject of fuzz/subjects for some seconds (needs `cargo install cargo-fuzz` and a C++
+# compiler; the switch lets a stable toolchain instrument). What it finds is in fuzz/artifacts: make
+# it smaller with `cargo fuzz tmin`, and keep it in fuzz/regressions, where the tests run it.
+fuzz subject seconds="3600":
+    mkdir -p fuzz/corpus/{{subject}}
+    cd fuzz && RUSTC_BOOTSTRAP=1 cargo fuzz run -O {{subject}} corpus/{{subject}} seeds/{{subject}} \
+        -- -max_total_time={{seconds}} -timeout=20 -max_len=2048
+
 # The library without the standard library.
 no-std:
     cargo build -p strew-core --no-default-features

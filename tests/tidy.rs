@@ -8,9 +8,18 @@ use std::{
 /// Every source file of the workspace, as (path from the root, text).
 fn sources() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut open: Vec<PathBuf> = ["src", "crates", "tests", "benches", "examples", "build.rs"]
-        .map(|d| root.join(d))
-        .to_vec();
+    let mut open: Vec<PathBuf> = [
+        "src",
+        "crates",
+        "tests",
+        "benches",
+        "examples",
+        "fuzz/subjects",
+        "fuzz/fuzz_targets",
+        "build.rs",
+    ]
+    .map(|d| root.join(d))
+    .to_vec();
     let mut found = Vec::new();
     while let Some(path) = open.pop() {
         if path.is_dir() {

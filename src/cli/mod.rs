@@ -7,6 +7,7 @@ mod forge;
 mod measure;
 mod output;
 mod point;
+mod probe;
 mod progress;
 mod query;
 mod refusal;
@@ -49,6 +50,8 @@ enum Command {
     /// Look at tables.
     #[command(subcommand)]
     Table(table::Command),
+    /// Ask a running daemon whether it is ready: exit code 0 if so, 1 if not.
+    Probe(probe::Args),
     /// Print the merged settings.
     Config(config::Args),
 }
@@ -86,6 +89,7 @@ pub fn main() -> ExitCode {
         Command::Forge(args) => forge::run(&args),
         Command::Measure(args) => measure::run(&args),
         Command::Table(command) => table::run(&command),
+        Command::Probe(args) => probe::run(&args),
         Command::Config(args) => config::run(&args),
     };
     let (error, code) = match done {

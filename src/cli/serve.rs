@@ -20,7 +20,7 @@ pub(super) struct Args {
 /// Serves until a signal comes.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged()?;
-    telemetry::start(&config.log.filter).context("log.filter")?;
+    telemetry::start(&config.log.filter, config.log.format).context("log.filter")?;
     let listen = config.server.listen;
     if let Some(warning) = exposure::warning(&config) {
         tracing::warn!("{warning}");
@@ -38,6 +38,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         ServeError::Catalog(_) | ServeError::Tls(_) => Failure::Usage(error.into()),
         _ => Failure::Other(error.into()),
     })?;
+    let app = app.with_all_metrics();
     if app.service().catalog().entries().len() == 0 {
         tracing::warn!("no table is loaded: every query will be refused");
     }

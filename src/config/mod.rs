@@ -15,7 +15,11 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ops::tls, rest, service::Limits};
+use crate::{
+    ops::{telemetry, tls},
+    rest,
+    service::Limits,
+};
 
 pub use layers::{ConfigError, Layers};
 
@@ -42,6 +46,8 @@ pub struct Config {
     pub shutdown: Shutdown,
     /// What to log.
     pub log: Log,
+    /// What to count.
+    pub metrics: Metrics,
 }
 
 /// Where and how to serve.
@@ -117,6 +123,16 @@ pub struct Shutdown {
 pub struct Log {
     /// A level, or levels by module.
     pub filter: String,
+    /// How a line looks.
+    pub format: telemetry::Format,
+}
+
+/// What to count.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Metrics {
+    /// Whether `/metrics` is served.
+    pub enabled: bool,
 }
 
 impl Config {

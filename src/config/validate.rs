@@ -12,6 +12,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         workers,
         shutdown,
         log,
+        metrics: _,
         tables,
     } = config;
     let mut faults = vec![];

@@ -35,6 +35,40 @@ pub mod proto {
 /// The contract as reflection serves it.
 const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
 
+/// The methods of the contract, by their paths.
+pub const METHODS: [&str; 6] = [
+    "/strew.v1.PointService/StreamPoints",
+    "/strew.v1.PointService/CountPoints",
+    "/strew.v1.PointService/SplitPoints",
+    "/strew.v1.PointService/GetPoint",
+    "/strew.v1.PointService/FindNearest",
+    "/strew.v1.PointService/ListProfiles",
+];
+
+/// The name of a code, as the protocol writes it.
+#[must_use]
+pub const fn code_name(code: u32) -> &'static str {
+    match code {
+        0 => "OK",
+        1 => "CANCELLED",
+        3 => "INVALID_ARGUMENT",
+        4 => "DEADLINE_EXCEEDED",
+        5 => "NOT_FOUND",
+        6 => "ALREADY_EXISTS",
+        7 => "PERMISSION_DENIED",
+        8 => "RESOURCE_EXHAUSTED",
+        9 => "FAILED_PRECONDITION",
+        10 => "ABORTED",
+        11 => "OUT_OF_RANGE",
+        12 => "UNIMPLEMENTED",
+        13 => "INTERNAL",
+        14 => "UNAVAILABLE",
+        15 => "DATA_LOSS",
+        16 => "UNAUTHENTICATED",
+        _ => "UNKNOWN",
+    }
+}
+
 /// Why the gRPC door cannot be built: the contract's descriptors do not read.
 pub type BuildError = tonic_reflection::server::Error;
 

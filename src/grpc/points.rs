@@ -7,18 +7,18 @@ use strew_core::ALGORITHM_VERSION;
 use tonic::{Request, Response, Status};
 
 use super::{
-    messages::Messages,
+    messages::{self, Messages},
     profile,
     proto::{
-        CountPointsRequest, CountPointsResponse, FindNearestRequest, FindNearestResponse,
+        CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
         GetPointRequest, GetPointResponse, ListProfilesRequest, ListProfilesResponse,
         SplitPointsRequest, SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
-        point_service_server::PointService,
+        point_service_server::PointService, stream_points_response::Message,
     },
     query, resolved, single, split, status,
 };
 use crate::service::{
-    Error, Fault, Service,
+    Error, Fault, Record, Service,
     query::{SetDraft, check_parts},
 };
 
@@ -39,8 +39,19 @@ impl Points {
         let planned = self.service.plan(query).await?;
         let block_bytes = self.service.limits().block_bytes;
         let messages = Messages::new(request, planned, encoding, block_bytes)?;
+        Record::in_format(match encoding {
+            Encoding::F32Le => "f32",
+            Encoding::F64Le => "f64",
+            Encoding::Points | Encoding::Unspecified => "points",
+        });
+        let record = Record::current();
         let stream = self.service.stream(permit, messages);
-        Ok(Box::pin(stream.map_err(status::interrupted)))
+        let noted = stream.inspect_ok(move |response| {
+            if let (Some(record), Some(Message::Block(block))) = (&record, &response.message) {
+                record.made(messages::points(block, encoding));
+            }
+        });
+        Ok(Box::pin(noted.map_err(status::interrupted)))
     }
 
     async fn count(&self, request: &StreamPointsRequest) -> Result<CountPointsResponse, Error> {

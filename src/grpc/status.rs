@@ -7,13 +7,17 @@ use tonic_types::{ErrorDetails, StatusExt as _};
 
 use crate::{
     error_map,
-    service::{Error, Fault, Interrupted, Kind},
+    service::{Error, Fault, Interrupted, Kind, Record},
 };
 
 /// An error as a status.
 pub(super) fn status(error: &Error) -> Status {
+    Record::refuse(error.kind());
     let mut details = ErrorDetails::new();
     details.set_error_info(reason(error.kind()), DOMAIN, facts(error));
+    if let Some(record) = Record::current() {
+        details.set_request_info(record.id(), "");
+    }
     for fault in error.faults() {
         let value = fault.value.as_ref();
         let value = value.map_or_else(String::new, |value| format!("`{value}`: "));

@@ -10,7 +10,10 @@ use axum::{
 use http::{HeaderMap, Version, header};
 use tonic_web::GrpcWebLayer;
 
-use super::gate::{Gate, Words};
+use super::{
+    gate::{Gate, Words},
+    observe,
+};
 use crate::{grpc, rest};
 
 /// The routes of gRPC, for all who can call them. (The last layer is the first to see a request.)
@@ -51,9 +54,10 @@ async fn only_calls(request: Request, next: Next) -> Response {
 
 /// Calls are answered as compressed as they ask, and in time.
 async fn on_terms(mut request: Request, next: Next) -> Response {
-    match grpc::terms(request.headers_mut()) {
+    let answered = match grpc::terms(request.headers_mut()) {
         Err(refusal) => refusal.into_http::<Body>(),
         Ok(None) => next.run(request).await,
         Ok(Some(deadline)) => deadline.answer(next.run(request)).await.map(Body::new),
-    }
+    };
+    observe::coded(answered)
 }

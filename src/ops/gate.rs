@@ -65,8 +65,8 @@ pub(super) struct Words {
 
 pub(super) type BoxError = Box<dyn StdError + Send + Sync>;
 
-/// The paths of probes.
-const PROBES: [&str; 3] = ["/livez", "/readyz", "/grpc.health.v1.Health/"];
+/// The paths of those who watch over us: they are to hear from us when others cannot.
+const PROBES: [&str; 4] = ["/livez", "/readyz", "/metrics", "/grpc.health.v1.Health/"];
 
 impl Gate {
     pub(super) fn new(config: &Config, service: &Service) -> Self {

@@ -15,6 +15,8 @@ use super::{
     connections::Connections,
     gate::{Gate, Words},
     health::{self, Readiness},
+    metrics::{self, Metrics},
+    observe,
     reload::Reloader,
     shutdown::Hangups,
     tls::{Tls, TlsError},
@@ -57,6 +59,7 @@ pub struct App {
     reloader: Arc<Reloader>,
     hangups: Option<Hangups>,
     tls: Option<Tls>,
+    metrics: Metrics,
     more: Router,
 }
 
@@ -77,6 +80,7 @@ impl App {
             config,
             service,
             tls,
+            metrics: Metrics::default(),
             more: Router::new(),
         })
     }
@@ -92,6 +96,13 @@ impl App {
     #[must_use]
     pub fn with_hangups(mut self, hangups: Hangups) -> Self {
         self.hangups = Some(hangups);
+        self
+    }
+
+    /// Shows also what the process counts without saying for which daemon: for a process of one.
+    #[must_use]
+    pub fn with_all_metrics(self) -> Self {
+        self.metrics.take_all();
         self
     }
 
@@ -176,6 +187,11 @@ impl App {
         let (grpc, grpc_health) = grpc::routes(self.service.clone()).await?;
         let mut endpoints = rest::endpoints(&self.service);
         endpoints.extend(health::endpoints(readiness, self.service.clone()));
+        let metrics = self.metrics.clone();
+        if self.config.metrics.enabled {
+            endpoints.push(metrics::endpoint(metrics.clone(), self.service.clone()));
+            tokio::spawn(metrics.keep_up());
+        }
         let rest::Door { router, paths } = rest::Door::new(endpoints);
         let router = router.merge(self.more.clone());
         let gate = Gate::new(&self.config, &self.service);
@@ -194,7 +210,7 @@ impl App {
         let head_bytes = self.config.server.max_header_bytes;
         let workers = self.service.workers().clone();
         let router = rest::finished(router, &self.config.http, head_bytes, workers);
-        Ok((router, grpc_health))
+        Ok((observe::observed(router, metrics), grpc_health))
     }
 }
 

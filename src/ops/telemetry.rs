@@ -1,19 +1,38 @@
 //! The log: on standard error, so that standard output stays for answers.
+//!
+//! As text for people or as JSON, an object a line, for programs that gather logs.
 
 use std::io::IsTerminal as _;
 
+use serde::{Deserialize, Serialize};
 use tracing_subscriber::EnvFilter;
+
+/// How a line of the log looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// For people.
+    Text,
+    /// An object a line.
+    Json,
+}
 
 /// Starts logging. The filter is a level or levels by module; a second call changes nothing.
 ///
 /// # Errors
 /// If the filter does not read.
-pub fn start(filter: &str) -> Result<(), tracing_subscriber::filter::ParseError> {
+pub fn start(filter: &str, format: Format) -> Result<(), tracing_subscriber::filter::ParseError> {
     let filter: EnvFilter = filter.parse()?;
-    let _ = tracing_subscriber::fmt()
+    let lines = tracing_subscriber::fmt()
         .with_env_filter(filter)
-        .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal())
-        .try_init();
+        .with_writer(std::io::stderr);
+    let _ = match format {
+        Format::Text => lines.with_ansi(std::io::stderr().is_terminal()).try_init(),
+        Format::Json => lines
+            .json()
+            .flatten_event(true)
+            .with_span_list(false)
+            .try_init(),
+    };
     Ok(())
 }

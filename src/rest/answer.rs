@@ -15,7 +15,7 @@ use super::{
     negotiate::{self, Chosen},
 };
 use crate::service::{
-    Answer, Error, Kind, Planned, Query, Service,
+    Answer, Error, Kind, Planned, Query, Record, Service,
     encode::{Options, write_number},
 };
 
@@ -101,6 +101,7 @@ pub(super) async fn stream(
         Some(encoding) => Chosen::named(encoding),
         None => negotiate::accepted(headers)?,
     };
+    Record::in_format(chosen.encoding.name());
     let mut output = options.output(chosen.encoding)?;
     output.relative_to = query.region.corner;
     let freshness = freshness(service, asked, &query, chosen.content_type)?;

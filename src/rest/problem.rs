@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::{
     error_map,
-    service::{Error, Fault},
+    service::{Error, Fault, Record},
 };
 
 /// The document.
@@ -29,6 +29,13 @@ pub(super) struct Problem<'a> {
     pinned: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     loaded: Option<&'a str>,
+    /// What the request is called in the log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    request_id: Option<String>,
+}
+
+fn request_id() -> Option<String> {
+    Record::current().map(|record| record.id().to_owned())
 }
 
 impl<'a> Problem<'a> {
@@ -58,11 +65,13 @@ impl<'a> Problem<'a> {
             limit,
             pinned: digests.map(|(pinned, _)| pinned),
             loaded: digests.map(|(_, loaded)| loaded),
+            request_id: request_id(),
         }
     }
 
     /// An error as a whole response.
     pub(super) fn response(error: &'a Error) -> Response {
+        Record::refuse(error.kind());
         let mut response = Self::new(error).into_response();
         if let Some(seconds) = error_map::retry_after(error.kind()) {
             let headers = response.headers_mut();
@@ -83,6 +92,7 @@ impl<'a> Problem<'a> {
             limit: None,
             pinned: None,
             loaded: None,
+            request_id: request_id(),
         };
         problem.into_response()
     }

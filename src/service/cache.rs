@@ -4,7 +4,10 @@
 //! Bounded by what they hold in memory. A sampler is built once however many queries wait for it,
 //! and on the workers, not where sockets are served.
 
-use std::sync::Arc;
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
 
 use moka::future::Cache;
 use strew_core::{Sampler, sample::LeastDistance};
@@ -15,6 +18,19 @@ use super::{Entry, Error, Workers};
 #[derive(Clone)]
 pub(super) struct Samplers {
     ready: Cache<String, Ready>,
+    asked: Arc<AtomicU64>,
+    made: Arc<AtomicU64>,
+}
+
+/// How a cache stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CacheState {
+    /// How often what was asked for was there, or about to be.
+    pub hits: u64,
+    /// How often it had to be made.
+    pub misses: u64,
+    /// What is held, in bytes.
+    pub bytes: u64,
 }
 
 /// A table ready to answer.
@@ -62,12 +78,31 @@ impl Samplers {
             .max_capacity(bytes)
             .weigher(weight)
             .build();
-        Self { ready }
+        Self {
+            ready,
+            asked: Arc::default(),
+            made: Arc::default(),
+        }
+    }
+
+    /// How it stands.
+    pub(super) async fn state(&self) -> CacheState {
+        // What it holds is only reckoned now and then.
+        self.ready.run_pending_tasks().await;
+        // In this order, so that there are never more misses than questions.
+        let misses = self.made.load(Ordering::Relaxed);
+        CacheState {
+            hits: self.asked.load(Ordering::Relaxed).saturating_sub(misses),
+            misses,
+            bytes: self.ready.weighted_size(),
+        }
     }
 
     /// A table, ready.
     pub(super) async fn get(&self, entry: &Arc<Entry>, workers: &Workers) -> Result<Ready, Error> {
+        self.asked.fetch_add(1, Ordering::Relaxed);
         let build = async {
+            self.made.fetch_add(1, Ordering::Relaxed);
             let entry = entry.clone();
             workers.run(move || Ready::load(&entry)).await?
         };

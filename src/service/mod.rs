@@ -16,6 +16,7 @@ mod planned;
 mod planner;
 mod portrait;
 pub mod query;
+pub mod record;
 mod single;
 pub mod stream;
 pub mod workers;
@@ -37,12 +38,14 @@ pub use error::{Error, Fault, Kind};
 pub use planned::{Placed, Planned, PlannedSet};
 pub use portrait::Portrait;
 pub use query::{Draft, Query, Set, Token};
+pub use record::Record;
 pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::Workers;
 
-use cache::Samplers;
+use cache::{CacheState, Samplers};
 use portrait::Portraits;
+use record::Recorded;
 
 /// What a query may ask for, and what answering may hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -142,6 +145,11 @@ impl Service {
         &self.workers
     }
 
+    /// How the cache of samplers stands.
+    pub async fn cache(&self) -> CacheState {
+        self.samplers.state().await
+    }
+
     /// The streams under way.
     #[must_use]
     pub const fn streams(&self) -> &Arc<Streams> {
@@ -237,7 +245,7 @@ impl Service {
     /// [`Error::Internal`] if it cannot be made.
     pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
         let mut whole = Bytes::new();
-        for block in answer {
+        for block in Recorded::new(answer) {
             let block = block.map_err(|error| {
                 tracing::error!(%error, "an answer cannot be made");
                 Error::Internal("the answer cannot be encoded")
@@ -257,7 +265,7 @@ impl Service {
         permit: Permit,
         answer: Answer,
     ) -> impl Stream<Item = Result<Bytes, Interrupted>> + use<> {
-        let blocks = self.stream(permit, answer).map(|made| {
+        let blocks = self.stream(permit, Recorded::new(answer)).map(|made| {
             made?.map_err(|error| {
                 tracing::error!(%error, "an answer broke off");
                 Interrupted::Failed

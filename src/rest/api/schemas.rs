@@ -40,6 +40,11 @@ pub(super) fn shared() -> Value {
                 "limit": count(),
                 "pinned": reference("Digest"),
                 "loaded": reference("Digest"),
+                "request_id": {
+                    "type": "string",
+                    "description": "What the request is called in the server's log; also the header \
+                                    x-request-id of every answer.",
+                },
             },
         },
         "Fault": {

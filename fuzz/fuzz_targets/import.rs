@@ -1,0 +1,7 @@
+//! Fuzzes `subjects::import`.
+#![no_main]
+
+#[path = "../subjects/mod.rs"]
+mod subjects;
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| subjects::import::run(data));

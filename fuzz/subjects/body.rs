@@ -1,0 +1,24 @@
+//! Queries as JSON: a line with the path, then the body.
+
+use axum::body::Body;
+use http::Request;
+
+use super::doors;
+
+pub fn run(data: &[u8]) {
+    let mut lines = data.splitn(2, |&b| b == b'\n');
+    let (Some(path), Some(body)) = (lines.next(), lines.next()) else {
+        return;
+    };
+    let Ok(path) = std::str::from_utf8(path) else {
+        return;
+    };
+    let request = Request::post(path)
+        .header("content-type", "application/json")
+        .body(Body::from(body.to_vec()));
+    if let Ok(request) = request
+        && request.uri().path().starts_with('/')
+    {
+        doors::ask(request);
+    }
+}

@@ -1,0 +1,55 @@
+//! The table reader: any file, as it is and with a right digest and length put into it.
+
+use std::sync::Arc;
+
+use strew_core::{Placement, Region, Sampler, Seed, Spacing, Table, Warp, table::Digest};
+
+const DIGEST_BYTES: usize = 32;
+/// Where the header has the size of the whole file.
+const SIZE_AT: std::ops::Range<usize> = 16..24;
+
+pub fn run(data: &[u8]) {
+    read(data);
+    read(&sealed(data));
+}
+
+/// The bytes with the size and the digest that a file of them has: the reader goes on to the
+/// sections.
+fn sealed(data: &[u8]) -> Vec<u8> {
+    let mut bytes = data[..data.len().saturating_sub(DIGEST_BYTES)].to_vec();
+    let size = (bytes.len() + DIGEST_BYTES) as u64;
+    if let Some(place) = bytes.get_mut(SIZE_AT) {
+        place.copy_from_slice(&size.to_le_bytes());
+    }
+    let digest = Digest::of(&bytes);
+    bytes.extend(digest.as_bytes());
+    bytes
+}
+
+fn read(bytes: &[u8]) {
+    let Ok(table) = Table::from_bytes(bytes) else {
+        return;
+    };
+    // What is read is written again so that it reads the same.
+    let written = table.to_bytes();
+    let again = Table::from_bytes(&written).expect("written by ourselves");
+    assert_eq!(again.to_bytes(), written);
+    assert_eq!(again.displacements(), table.displacements());
+    if table.displacements().len() > 1 << 14 {
+        return;
+    }
+    // It can be sampled, whatever its vectors.
+    let sampler = Arc::new(Sampler::new(table));
+    let spacing = Spacing::new(1.0).expect("valid");
+    let region = Region::new([-3.0, -2.0], [5.0, 6.0]).expect("ordered");
+    for warp in [Warp::OFF, Warp::ON] {
+        let placement = Placement::new(spacing, Seed(3)).with_warp(warp);
+        let Ok(plan) = sampler.plan(placement, region) else {
+            continue;
+        };
+        let mut points = vec![[0.0; 2]; usize::try_from(plan.count()).expect("few") + 1];
+        let filled = plan.blocks_f64().fill(&mut points);
+        assert_eq!(filled as u128, plan.count());
+        assert!(points[..filled].iter().all(|&p| region.contains(p)));
+    }
+}

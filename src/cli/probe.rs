@@ -1,0 +1,189 @@
+//! `strew probe`: asks a daemon whether it lives or takes requests, for health checks of containers
+//! that have no other program in them.
+//!
+//! A few lines of HTTP/1.1 by hand: the whole exchange has one deadline, whatever the other side does.
+
+use std::{
+    io::{self, Read as _, Write as _},
+    net::{SocketAddr, TcpStream, ToSocketAddrs as _},
+    time::{Duration, Instant},
+};
+
+use anyhow::{Context as _, anyhow, bail};
+
+use super::{Failure, config};
+
+/// Flags of `strew probe`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// Where the daemon is, such as http://127.0.0.1:8080. Default: where the settings say that it
+    /// listens.
+    #[arg(long, value_name = "URL")]
+    url: Option<String>,
+    /// Ask whether it takes requests (/readyz). This is the default.
+    #[arg(long, conflicts_with = "live")]
+    ready: bool,
+    /// Ask only whether it lives (/livez).
+    #[arg(long)]
+    live: bool,
+    /// How long the answer may take, in seconds.
+    #[arg(long, value_name = "SECONDS", default_value = "2")]
+    timeout: f64,
+    #[command(flatten)]
+    settings: config::Args,
+}
+
+/// More than any answer to a probe.
+const MOST_BYTES: usize = 64 << 10;
+
+/// Ends well if the daemon says yes.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let timeout = Duration::try_from_secs_f64(args.timeout)
+        .ok()
+        .filter(|timeout| (Duration::from_millis(1)..=HOUR).contains(timeout));
+    let timeout = timeout.ok_or_else(|| {
+        let value = args.timeout;
+        usage(anyhow!("--timeout {value}: allowed: 0.001 to 3600 seconds"))
+    })?;
+    let host = match &args.url {
+        Some(url) => host(url).map_err(usage)?,
+        None => local(args.settings.merged()?.server.listen).map_err(usage)?,
+    };
+    let path = if args.live { "/livez" } else { "/readyz" };
+    let status = ask(&host, path, timeout).with_context(|| format!("http://{host}{path}"))?;
+    if status == 200 {
+        return Ok(());
+    }
+    let what = if args.live { "alive" } else { "ready" };
+    Err(anyhow!("http://{host}{path}: not {what}: status {status}").into())
+}
+
+const HOUR: Duration = Duration::from_secs(3600);
+
+fn usage(error: anyhow::Error) -> Failure {
+    Failure::Usage(error)
+}
+
+/// The host and port of a URL.
+fn host(url: &str) -> anyhow::Result<String> {
+    let wrong = || anyhow!("--url {url}: allowed: http://host:port");
+    let (scheme, rest) = url.split_once("://").ok_or_else(wrong)?;
+    let host = rest.strip_suffix('/').unwrap_or(rest);
+    let is_odd = |c: char| c.is_whitespace() || c.is_control() || "/?#@".contains(c);
+    if scheme != "http" || host.is_empty() || host.contains(is_odd) {
+        return Err(wrong());
+    }
+    let has_port = host
+        .rsplit_once(':')
+        .is_some_and(|(_, port)| port.parse::<u16>().is_ok());
+    Ok(if has_port {
+        host.into()
+    } else {
+        format!("{host}:80")
+    })
+}
+
+/// Where a daemon of this machine is reached that listens there.
+fn local(mut listen: SocketAddr) -> anyhow::Result<String> {
+    if listen.port() == 0 {
+        bail!("server.listen = {listen}: the port is only known to the daemon; name it with --url");
+    }
+    if listen.ip().is_unspecified() {
+        listen.set_ip(match listen {
+            SocketAddr::V4(_) => std::net::Ipv4Addr::LOCALHOST.into(),
+            SocketAddr::V6(_) => std::net::Ipv6Addr::LOCALHOST.into(),
+        });
+    }
+    Ok(listen.to_string())
+}
+
+/// The status of an answer.
+fn ask(host: &str, path: &str, timeout: Duration) -> anyhow::Result<u16> {
+    let end = Instant::now() + timeout;
+    let left = || {
+        let left = end.saturating_duration_since(Instant::now());
+        let is_over = left.is_zero();
+        (!is_over)
+            .then_some(left)
+            .ok_or_else(|| anyhow!("no answer within {timeout:?}"))
+    };
+    let mut stream = connect(host, left)?;
+    stream.set_write_timeout(Some(left()?))?;
+    let request = format!("GET {path} HTTP/1.1\r\nhost: {host}\r\nconnection: close\r\n\r\n");
+    stream.write_all(request.as_bytes())?;
+    let (mut head, mut part) = (vec![], [0; 4096]);
+    while !head.contains(&b'\n') {
+        stream.set_read_timeout(Some(left()?))?;
+        match stream.read(&mut part) {
+            Ok(0) => bail!("the connection ended without an answer"),
+            Ok(read) => head.extend_from_slice(&part[..read]),
+            Err(error) if is_late(&error) => {}
+            Err(error) => return Err(error.into()),
+        }
+        if head.len() > MOST_BYTES {
+            bail!("the answer is no HTTP");
+        }
+    }
+    let line = String::from_utf8_lossy(&head);
+    let status = line
+        .strip_prefix("HTTP/1.")
+        .and_then(|rest| rest.split_whitespace().nth(1)?.parse().ok());
+    status.context("the answer is no HTTP")
+}
+
+fn is_late(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
+    )
+}
+
+/// A connection to the first address of a host that takes one.
+fn connect(host: &str, left: impl Fn() -> anyhow::Result<Duration>) -> anyhow::Result<TcpStream> {
+    let mut last = anyhow!("the name has no address");
+    for address in host.to_socket_addrs()? {
+        match TcpStream::connect_timeout(&address, left()?) {
+            Ok(stream) => return Ok(stream),
+            Err(error) => last = error.into(),
+        }
+    }
+    Err(last)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_url_is_a_scheme_a_host_and_a_port() {
+        for (url, expected) in [
+            ("http://127.0.0.1:8080", "127.0.0.1:8080"),
+            ("http://127.0.0.1:8080/", "127.0.0.1:8080"),
+            ("http://[::1]:8080", "[::1]:8080"),
+            ("http://strew", "strew:80"),
+        ] {
+            assert_eq!(host(url).expect(url), expected);
+        }
+        for url in [
+            "",
+            "strew",
+            "ftp://a:1",
+            "http://",
+            "http://a/readyz",
+            "http://u@a",
+            "http://a b",
+        ] {
+            let error = host(url).expect_err(url).to_string();
+            assert!(error.contains("allowed: http://host:port"), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_daemon_that_listens_everywhere_is_reached_here() {
+        let of = |text: &str| local(text.parse().expect("an address"));
+        assert_eq!(of("0.0.0.0:80").expect("a port"), "127.0.0.1:80");
+        assert_eq!(of("[::]:80").expect("a port"), "[::1]:80");
+        assert_eq!(of("10.1.2.3:80").expect("a port"), "10.1.2.3:80");
+        assert!(of("127.0.0.1:0").is_err());
+    }
+}

@@ -1,0 +1,153 @@
+//! What a request is called: its id (`x-request-id`) and its place in a trace (W3C Trace Context).
+//!
+//! An id that a client or proxy sends is kept if it is short and plain, so that one name runs through
+//! all logs; anything else is replaced, so that nobody writes into our log.
+
+use std::{
+    hash::{BuildHasher as _, RandomState},
+    sync::{
+        LazyLock,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+
+use http::{HeaderMap, HeaderName};
+
+/// The header of the id, in requests and answers.
+pub(super) const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
+const TRACEPARENT: HeaderName = HeaderName::from_static("traceparent");
+
+/// The longest id that is taken over.
+const LONGEST: usize = 128;
+
+/// What one request is called.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Identity {
+    /// Its id: visible ASCII without quotes.
+    pub(super) id: String,
+    /// Its place in a trace, if the client has one.
+    pub(super) trace: Option<Trace>,
+}
+
+/// A place in a trace: the client's span and ours below it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Trace {
+    /// The trace, 32 hexadecimal digits.
+    pub(super) trace: String,
+    /// The client's span, 16 digits.
+    pub(super) parent: String,
+    /// Our span, 16 digits.
+    pub(super) span: String,
+}
+
+impl Identity {
+    /// That of a request with these headers.
+    pub(super) fn of(headers: &HeaderMap) -> Self {
+        let text = |name| headers.get(name)?.to_str().ok();
+        let id = text(REQUEST_ID).filter(|id| is_sane(id));
+        Self {
+            id: id.map_or_else(|| format!("{:016x}", next()), Into::into),
+            trace: text(TRACEPARENT).and_then(Trace::read),
+        }
+    }
+}
+
+fn is_sane(id: &str) -> bool {
+    let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.:/+=~@".contains(&byte);
+    (1..=LONGEST).contains(&id.len()) && id.bytes().all(is_plain)
+}
+
+impl Trace {
+    /// Reads `00-<trace>-<span>-<flags>`; later versions may have more behind it.
+    fn read(text: &str) -> Option<Self> {
+        let mut parts = text.splitn(5, '-');
+        let (version, trace, parent, flags) =
+            (parts.next()?, parts.next()?, parts.next()?, parts.next()?);
+        let more = parts.next();
+        let is_hex = |text: &str, length| {
+            let is_digit = |b: u8| b.is_ascii_digit() || (b'a'..=b'f').contains(&b);
+            text.len() == length && text.bytes().all(is_digit)
+        };
+        let is_named = |text: &str, length| is_hex(text, length) && text.bytes().any(|b| b != b'0');
+        let is_in_order = is_hex(version, 2)
+            && version != "ff"
+            && (version != "00" || more.is_none())
+            && is_named(trace, 32)
+            && is_named(parent, 16)
+            && is_hex(flags, 2);
+        is_in_order.then(|| Self {
+            trace: trace.into(),
+            parent: parent.into(),
+            span: format!("{:016x}", next()),
+        })
+    }
+}
+
+/// A number that no other process and no other request has, as good as surely: where the counter
+/// begins is random, and what follows is mixed (splitmix64, a bijection).
+fn next() -> u64 {
+    static NEXT: LazyLock<AtomicU64> =
+        LazyLock::new(|| AtomicU64::new(RandomState::new().hash_one("request")));
+    const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+    let mut z = NEXT.fetch_add(STEP, Ordering::Relaxed);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    // Zero is no name of a span.
+    (z ^ (z >> 31)).max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use http::HeaderValue;
+
+    use super::*;
+
+    #[test]
+    fn ids_are_kept_if_they_are_plain() {
+        let of = |text: &str| {
+            let mut headers = HeaderMap::new();
+            headers.insert(REQUEST_ID, HeaderValue::from_str(text).expect("a header"));
+            Identity::of(&headers).id
+        };
+        for kept in ["a", "3f1c-77", "Root=1-67891233-abcdef", &"x".repeat(128)] {
+            assert_eq!(of(kept), kept);
+        }
+        for replaced in ["", "a b", "a\"b", "a,b", "é", "{}", &"x".repeat(129)] {
+            let made = of(replaced);
+            assert!(made.len() == 16 && made != replaced, "{replaced}: {made}");
+        }
+    }
+
+    #[test]
+    fn made_ids_differ() {
+        let ids: BTreeSet<_> = (0..10_000).map(|_| next()).collect();
+        assert_eq!(ids.len(), 10_000);
+    }
+
+    #[test]
+    fn traces_are_continued_if_they_are_in_order() {
+        let (trace, parent) = ("4bf92f3577b34da6a3ce929d0e0e4736", "00f067aa0ba902b7");
+        let good = format!("00-{trace}-{parent}-01");
+        for text in [good.clone(), format!("cc-{trace}-{parent}-00-what-else")] {
+            let read = Trace::read(&text).unwrap_or_else(|| panic!("{text}"));
+            assert_eq!((&*read.trace, &*read.parent), (trace, parent));
+            assert!(read.span.len() == 16 && read.span != parent);
+        }
+        for bad in [
+            "",
+            "00",
+            &format!("ff-{trace}-{parent}-01"),
+            &format!("{good}-more"),
+            &format!("00-{trace}-{parent}"),
+            &format!("00-{}-{parent}-01", trace.to_uppercase()),
+            &format!("00-{}-{parent}-01", "0".repeat(32)),
+            &format!("00-{trace}-{}-01", "0".repeat(16)),
+            &format!("00-{trace}0-{parent}-01"),
+            &format!("00-{trace}-{parent}-1"),
+        ] {
+            assert_eq!(Trace::read(bad), None, "{bad}");
+        }
+    }
+}

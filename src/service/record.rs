@@ -1,0 +1,162 @@
+//! What is learned of an answer while it is made, for the log and the metrics.
+//!
+//! Whoever serves requests makes a [`Record`] for each and answers within its scope; the code that
+//! answers writes down what only it knows: the format, the points, why it refused. Doors stay free of
+//! counters this way, and what a door forgets to say shows as missing, not as wrong.
+
+use std::sync::{
+    Arc, OnceLock,
+    atomic::{AtomicU32, AtomicU64, Ordering},
+};
+
+use super::{Answer, Kind, encode::EncodeError};
+
+tokio::task_local! {
+    static CURRENT: Arc<Record>;
+}
+
+/// What is known of one request and its answer.
+#[derive(Debug)]
+pub struct Record {
+    id: Box<str>,
+    format: OnceLock<&'static str>,
+    refused: OnceLock<Kind>,
+    points: AtomicU64,
+    code: AtomicU32,
+}
+
+/// No code yet.
+const NONE: u32 = u32::MAX;
+
+impl Record {
+    /// Of a request that goes by this name.
+    #[must_use]
+    pub fn new(id: &str) -> Arc<Self> {
+        Arc::new(Self {
+            id: id.into(),
+            format: OnceLock::new(),
+            refused: OnceLock::new(),
+            points: AtomicU64::new(0),
+            code: AtomicU32::new(NONE),
+        })
+    }
+
+    /// Runs a future in which [`current`](Self::current) is this record.
+    pub async fn scope<F: Future>(self: Arc<Self>, future: F) -> F::Output {
+        CURRENT.scope(self, future).await
+    }
+
+    /// The record of the request that is being answered, if it has one: a command line's has none.
+    #[must_use]
+    pub fn current() -> Option<Arc<Self>> {
+        CURRENT.try_with(Arc::clone).ok()
+    }
+
+    /// Notes why the request that is being answered was refused.
+    pub fn refuse(kind: Kind) {
+        let _ = CURRENT.try_with(|record| record.refused.set(kind));
+    }
+
+    /// Notes in which format the request is answered.
+    pub fn in_format(name: &'static str) {
+        let _ = CURRENT.try_with(|record| record.format.set(name));
+    }
+
+    /// The name of the request.
+    #[must_use]
+    pub fn id(&self) -> &str {
+        &self.id
+    }
+
+    /// The format of the answer, if it has points.
+    #[must_use]
+    pub fn format(&self) -> Option<&'static str> {
+        self.format.get().copied()
+    }
+
+    /// Why it was refused, if it was.
+    #[must_use]
+    pub fn refused(&self) -> Option<Kind> {
+        self.refused.get().copied()
+    }
+
+    /// How many points were made for it so far.
+    #[must_use]
+    pub fn points(&self) -> u64 {
+        self.points.load(Ordering::Relaxed)
+    }
+
+    /// Notes that more points were made.
+    pub fn made(&self, points: u64) {
+        self.points.fetch_add(points, Ordering::Relaxed);
+    }
+
+    /// The code with which a call ended, where the protocol says so after the answer.
+    #[must_use]
+    pub fn code(&self) -> Option<u32> {
+        Some(self.code.load(Ordering::Relaxed)).filter(|&code| code != NONE)
+    }
+
+    /// Notes with which code a call ended.
+    pub fn ended(&self, code: u32) {
+        self.code.store(code, Ordering::Relaxed);
+    }
+}
+
+/// An answer whose points are noted as they are made, wherever that is.
+#[derive(Debug)]
+pub(super) struct Recorded {
+    answer: Answer,
+    noted: u64,
+    record: Option<Arc<Record>>,
+}
+
+impl Recorded {
+    /// For the request that is being answered.
+    pub(super) fn new(answer: Answer) -> Self {
+        Self {
+            answer,
+            noted: 0,
+            record: Record::current(),
+        }
+    }
+}
+
+impl Iterator for Recorded {
+    type Item = Result<bytes::Bytes, EncodeError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let block = self.answer.next();
+        if let Some(record) = &self.record {
+            let points = self.answer.points();
+            record.made(points.saturating_sub(self.noted));
+            self.noted = points;
+        }
+        block
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn notes_go_to_the_record_of_the_task_and_nowhere_else() {
+        Record::refuse(Kind::Busy);
+        assert!(Record::current().is_none());
+        let (a, b) = (Record::new("a"), Record::new("b"));
+        let noted = |kind| async move {
+            tokio::task::yield_now().await;
+            Record::refuse(kind);
+            Record::in_format("csv");
+        };
+        tokio::join!(
+            a.clone().scope(noted(Kind::Busy)),
+            b.clone().scope(noted(Kind::Internal))
+        );
+        assert_eq!(a.refused(), Some(Kind::Busy));
+        assert_eq!(b.refused(), Some(Kind::Internal));
+        assert_eq!((a.format(), a.id(), b.id()), (Some("csv"), "a", "b"));
+        assert_eq!(a.code(), None);
+    }
+}
