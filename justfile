@@ -24,6 +24,10 @@ lint:
 bench:
     cargo bench -p strew-core
 
+# Mixed questions by all doors with faults injected, every answer checked: `just soak 1800`.
+soak seconds="300" *args:
+    cargo test --release --test soak -- --seconds {{seconds}} {{args}}
+
 # Fuzz one subject of fuzz/subjects for some seconds (needs `cargo install cargo-fuzz` and a C++
 # compiler; the switch lets a stable toolchain instrument). What it finds is in fuzz/artifacts: make
 # it smaller with `cargo fuzz tmin`, and keep it in fuzz/regressions, where the tests run it.

@@ -102,7 +102,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     );
     within("limits.max_requests", limits.max_requests as f64, 1.0, 1e6);
     // At least one answer and one query of the largest size fit.
-    let one = 2 * limits.block_bytes + (18 << 20) + limits.max_body_bytes;
+    let one = 4 * limits.block_bytes + (19 << 20) + limits.max_body_bytes;
     within(
         "limits.max_bytes_in_flight",
         limits.max_bytes_in_flight as f64,

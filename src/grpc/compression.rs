@@ -6,7 +6,7 @@
 //! and zstd, which nobody lists unasked, to all who accept it.
 
 use http::{HeaderMap, HeaderValue};
-use tonic::codec::CompressionEncoding;
+use tonic::{codec::CompressionEncoding, metadata::MetadataMap};
 
 /// What is read and written.
 pub(super) const COMPRESSIONS: [CompressionEncoding; 2] =
@@ -29,6 +29,11 @@ pub(super) fn settle(headers: &mut HeaderMap) {
         Ok(value) if !asked.is_empty() => headers.insert(ACCEPTED, value),
         _ => headers.remove(ACCEPTED),
     };
+}
+
+/// Whether a settled call is answered compressed.
+pub(super) fn is_asked(metadata: &MetadataMap) -> bool {
+    metadata.contains_key(ACCEPTED)
 }
 
 #[cfg(test)]

@@ -1,12 +1,19 @@
 //! A planned query as messages: a header, blocks, a summary, made when they are asked for.
 
+use std::sync::Arc;
+
 use bytes::Bytes;
+use prost::{
+    Message as _,
+    encoding::{WireType, encode_key, encode_varint},
+};
 use strew_core::{
     ALGORITHM_VERSION,
     sample::{Cursor, F32, F64},
 };
 
 use super::{
+    frames,
     proto::{
         Column, ColumnHead, Encoding, PointBlock, Position, StreamHeader, StreamPointsRequest,
         StreamPointsResponse, StreamSummary, stream_points_response::Message,
@@ -14,7 +21,7 @@ use super::{
     resolved,
 };
 use crate::service::{
-    Encoding as Format, Error, Output, Planned,
+    Encoding as Format, Error, Output, Planned, Record,
     encode::{self, Batch, Coordinates, Packed, Rows, Values, id_text, schema::Kind},
 };
 
@@ -26,6 +33,8 @@ pub(super) struct Messages {
     blocks: Blocks,
     count: u64,
     over: bool,
+    /// Where points are noted as they are made.
+    record: Option<Arc<Record>>,
 }
 
 #[derive(Debug)]
@@ -67,8 +76,12 @@ impl Messages {
             origin: coordinates.origin().map(|[x, y]| Position { x, y }),
         };
         let blocks = match (encoding, rows.plain_plan()) {
-            (Encoding::F32Le, Some(plan)) => Blocks::F32(Packed::new(plan, block_bytes)),
-            (Encoding::F64Le, Some(plan)) => Blocks::F64(Packed::new(plan, block_bytes)),
+            (Encoding::F32Le, Some(plan)) => {
+                Blocks::F32(Packed::with_room(plan, block_bytes, ROOM))
+            }
+            (Encoding::F64Le, Some(plan)) => {
+                Blocks::F64(Packed::with_room(plan, block_bytes, ROOM))
+            }
             _ => Blocks::Rows(Box::new(Table::new(rows, heads, encoding, block_bytes))),
         };
         Ok(Self {
@@ -77,35 +90,11 @@ impl Messages {
             blocks,
             count,
             over: false,
+            record: Record::current(),
         })
     }
 
-    fn block(&mut self) -> Option<PointBlock> {
-        let alone = |data: Bytes, cursor: Option<Cursor>| {
-            let block = PointBlock {
-                data,
-                ..PointBlock::default()
-            };
-            (block, cursor.map(|cursor| (0, cursor)))
-        };
-        let (mut block, place) = match &mut self.blocks {
-            Blocks::F32(packed) => alone(packed.next()?, packed.cursor()),
-            Blocks::F64(packed) => alone(packed.next()?, packed.cursor()),
-            Blocks::Rows(table) => (table.next()?, table.rows.cursor()),
-        };
-        if let Some((set, cursor)) = place {
-            block.layer = u32::try_from(set).unwrap_or(u32::MAX);
-            let token = self.planned.token(set, cursor);
-            block.cursor = token.map(|token| token.to_string()).unwrap_or_default();
-        }
-        Some(block)
-    }
-}
-
-impl Iterator for Messages {
-    type Item = StreamPointsResponse;
-
-    fn next(&mut self) -> Option<StreamPointsResponse> {
+    fn message(&mut self) -> Option<StreamPointsResponse> {
         if self.over {
             return None;
         }
@@ -124,6 +113,117 @@ impl Iterator for Messages {
         Some(StreamPointsResponse {
             message: Some(message),
         })
+    }
+
+    fn block(&mut self) -> Option<PointBlock> {
+        let mut rest = PointBlock::default();
+        let (planned, made) = (&self.planned, noting(&self.record));
+        let data = match &mut self.blocks {
+            Blocks::F32(packed) => packed.next_between(|bytes, blocks| {
+                made(bytes / 8);
+                rest = after(planned, 0, blocks.cursor());
+                Default::default()
+            })?,
+            Blocks::F64(packed) => packed.next_between(|bytes, blocks| {
+                made(bytes / 16);
+                rest = after(planned, 0, blocks.cursor());
+                Default::default()
+            })?,
+            Blocks::Rows(table) => {
+                let (points, block) = table.next()?;
+                made(points);
+                let (set, cursor) = table.rows.cursor().unzip();
+                let PointBlock { layer, cursor, .. } =
+                    after(planned, set.unwrap_or_default(), cursor);
+                return Some(PointBlock {
+                    layer,
+                    cursor,
+                    ..block
+                });
+            }
+        };
+        Some(PointBlock { data, ..rest })
+    }
+
+    /// The next message framed: a block of packed coordinates in the buffer that it was made in.
+    fn frame(&mut self) -> Option<Bytes> {
+        let (planned, made) = (&self.planned, noting(&self.record));
+        let framed = match &mut self.blocks {
+            _ if self.header.is_some() || self.over => None,
+            Blocks::F32(packed) => packed.next_between(|bytes, blocks| {
+                made(bytes / 8);
+                around(bytes, &after(planned, 0, blocks.cursor()))
+            }),
+            Blocks::F64(packed) => packed.next_between(|bytes, blocks| {
+                made(bytes / 16);
+                around(bytes, &after(planned, 0, blocks.cursor()))
+            }),
+            Blocks::Rows(_) => None,
+        };
+        drop(made);
+        framed.or_else(|| Some(frames::framed(&self.message()?)))
+    }
+}
+
+/// Notes how many points were made.
+fn noting(record: &Option<Arc<Record>>) -> impl Fn(usize) + use<'_> {
+    move |points| {
+        if let Some(record) = record {
+            record.made(points as u64);
+        }
+    }
+}
+
+/// What stands in a block besides its points: its layer and the place after it.
+fn after(planned: &Planned, set: usize, cursor: Option<Cursor>) -> PointBlock {
+    let token = cursor.and_then(|cursor| planned.token(set, cursor));
+    PointBlock {
+        layer: u32::try_from(set).unwrap_or(u32::MAX),
+        cursor: token.map(|token| token.to_string()).unwrap_or_default(),
+        ..PointBlock::default()
+    }
+}
+
+/// Room before and after the points of a block: for its prefix, two tags with their lengths; for the
+/// longest cursor, 174 digits.
+const ROOM: [usize; 2] = [32, 192];
+
+/// What stands around the data of a block in a message of its own: prefix and tags, and the rest of
+/// its fields, all of which come after the data.
+fn around(data: usize, rest: &PointBlock) -> [Vec<u8>; 2] {
+    const BLOCK: u32 = 2;
+    const DATA: u32 = 4;
+    let tagged = |tag: u32, length: usize| {
+        let mut field = vec![];
+        encode_key(tag, WireType::LengthDelimited, &mut field);
+        encode_varint(length as u64, &mut field);
+        field
+    };
+    let after = rest.encode_to_vec();
+    let data_tag = tagged(DATA, data);
+    let block = data_tag.len() + data + after.len();
+    let block_tag = tagged(BLOCK, block);
+    let prefix = frames::prefix(block_tag.len() + block);
+    [[&prefix[..], &block_tag, &data_tag].concat(), after]
+}
+
+impl Iterator for Messages {
+    type Item = StreamPointsResponse;
+
+    fn next(&mut self) -> Option<StreamPointsResponse> {
+        self.message()
+    }
+}
+
+/// The same messages, framed.
+#[derive(Debug)]
+pub(super) struct Framed(pub(super) Messages);
+
+impl Iterator for Framed {
+    type Item = Bytes;
+
+    fn next(&mut self) -> Option<Bytes> {
+        self.0.frame()
     }
 }
 
@@ -172,7 +272,8 @@ impl Table {
         }
     }
 
-    fn next(&mut self) -> Option<PointBlock> {
+    /// The next block, and how many points it has.
+    fn next(&mut self) -> Option<(usize, PointBlock)> {
         let layered = usize::from(self.rows.schema().is_layered());
         let batch = self.rows.next(self.length)?;
         let mut block = coordinates(batch, self.encoding);
@@ -180,7 +281,7 @@ impl Table {
         block.columns = values
             .filter_map(|(head, values)| column(head, values))
             .collect();
-        Some(block)
+        Some((batch.points.len(), block))
     }
 }
 
@@ -231,4 +332,33 @@ fn column(head: &ColumnHead, values: &Values) -> Option<Column> {
         numbers,
         indices,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn framed_by_hand_a_block_is_what_prost_writes() {
+        for (bytes, layer, cursor) in [(1, 0, ""), (127, 0, "c"), (128, 3, "01"), (300_000, 0, "f")]
+        {
+            let data = Bytes::from(vec![7; bytes]);
+            let rest = PointBlock {
+                layer,
+                cursor: cursor.into(),
+                ..PointBlock::default()
+            };
+            let [before, after] = around(bytes, &rest);
+            let message = StreamPointsResponse {
+                message: Some(Message::Block(PointBlock {
+                    data: data.clone(),
+                    ..rest
+                })),
+            };
+            assert_eq!(
+                [&before, &data[..], &after].concat(),
+                frames::framed(&message)
+            );
+        }
+    }
 }

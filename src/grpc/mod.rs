@@ -2,6 +2,7 @@
 
 mod compression;
 mod deadline;
+mod frames;
 mod messages;
 mod points;
 mod profile;
@@ -21,6 +22,7 @@ use tonic_health::server::HealthReporter;
 
 use crate::service::{Error, Interrupted, Service};
 pub use deadline::Deadline;
+use frames::Direct;
 use points::Points;
 use proto::point_service_server::PointServiceServer;
 
@@ -90,7 +92,7 @@ pub async fn routes(service: Arc<Service>) -> Result<(Routes, Health), BuildErro
         PointServiceServer::new(Points::new(service)).max_decoding_message_size(most),
         |server, coding| server.accept_compressed(coding).send_compressed(coding),
     );
-    let routes = Routes::new(points)
+    let routes = Routes::new(Direct(points))
         .add_service(health)
         .add_service(reflection().build_v1()?)
         .add_service(reflection().build_v1alpha()?);

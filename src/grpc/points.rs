@@ -2,12 +2,14 @@
 
 use std::{pin::Pin, sync::Arc};
 
-use futures_util::{Stream, TryStreamExt as _};
+use futures_util::{Stream, TryStreamExt as _, stream};
 use strew_core::ALGORITHM_VERSION;
 use tonic::{Request, Response, Status};
 
 use super::{
-    messages::{self, Messages},
+    compression,
+    frames::Frames,
+    messages::{Framed, Messages},
     profile,
     proto::{
         CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
@@ -33,7 +35,12 @@ impl Points {
         Self { service }
     }
 
-    async fn stream(&self, request: &StreamPointsRequest) -> Result<MessageStream, Error> {
+    /// The answer of messages, which tonic has to compress, or of frames that are sent as they are.
+    async fn stream(
+        &self,
+        request: &StreamPointsRequest,
+        is_compressed: bool,
+    ) -> Result<Response<MessageStream>, Error> {
         let (query, encoding) = query::query(request, &self.service)?;
         let permit = self.service.admit(None)?;
         let planned = self.service.plan(query).await?;
@@ -44,14 +51,16 @@ impl Points {
             Encoding::F64Le => "f64",
             Encoding::Points | Encoding::Unspecified => "points",
         });
-        let record = Record::current();
-        let stream = self.service.stream(permit, messages);
-        let noted = stream.inspect_ok(move |response| {
-            if let (Some(record), Some(Message::Block(block))) = (&record, &response.message) {
-                record.made(messages::points(block, encoding));
-            }
-        });
-        Ok(Box::pin(noted.map_err(status::interrupted)))
+        if is_compressed {
+            let stream = self.service.stream(permit, messages);
+            let stream = stream.map_err(status::interrupted);
+            return Ok(Response::new(Box::pin(stream)));
+        }
+        let frames = self.service.stream(permit, Framed(messages));
+        let frames = Frames::new(frames.map_err(status::interrupted));
+        let mut response = Response::new(Box::pin(stream::empty()) as MessageStream);
+        response.extensions_mut().insert(frames);
+        Ok(response)
     }
 
     async fn count(&self, request: &StreamPointsRequest) -> Result<CountPointsResponse, Error> {
@@ -129,7 +138,9 @@ impl PointService for Points {
         &self,
         request: Request<StreamPointsRequest>,
     ) -> Result<Response<MessageStream>, Status> {
-        answered(self.stream(request.get_ref()).await)
+        let is_compressed = compression::is_asked(request.metadata());
+        let answer = self.stream(request.get_ref(), is_compressed).await;
+        answer.map_err(|error| status::status(&error))
     }
 
     async fn count_points(

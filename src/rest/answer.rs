@@ -104,17 +104,19 @@ pub(super) async fn stream(
     Record::in_format(chosen.encoding.name());
     let mut output = options.output(chosen.encoding)?;
     output.relative_to = query.region.corner;
-    let freshness = freshness(service, asked, &query, chosen.content_type)?;
     // A body is not part of the address, so what it asks for is not kept by caches.
     let can_be_kept = *method != Method::POST;
-    if let Some(unchanged) = freshness.unchanged(headers).filter(|_| can_be_kept) {
+    let freshness = can_be_kept
+        .then(|| freshness(service, asked, &query, chosen.content_type))
+        .transpose()?;
+    if let Some(unchanged) = freshness.as_ref().and_then(|it| it.unchanged(headers)) {
         return Ok(unchanged);
     }
     let is_head = *method == Method::HEAD;
     let picture = chosen.encoding.is_picture().then_some(output.size);
     let permit = (!is_head).then(|| service.admit(picture)).transpose()?;
     let planned = service.plan(query).await?;
-    if let Some(unwanted) = freshness.unwanted(headers).filter(|_| can_be_kept) {
+    if let Some(unwanted) = freshness.as_ref().and_then(|it| it.unwanted(headers)) {
         return Ok(unwanted);
     }
     let answer = Answer::new(&planned, &output, service.limits().block_bytes)?;
@@ -137,13 +139,14 @@ pub(super) async fn stream(
     };
     let mut response = Response::new(body);
     std::mem::swap(response.headers_mut(), &mut response_headers);
-    if can_be_kept {
+    if let Some(freshness) = freshness {
         freshness.stamp(&mut response);
     }
     Ok(response)
 }
 
-/// How fresh the answer to a query is, whatever part of it is asked for.
+/// How fresh the answer to the query of an address is: besides the address, which says all of the
+/// query, it depends on the tables and on a limit.
 pub(super) fn freshness(
     service: &Service,
     asked: &Asked,
@@ -152,13 +155,7 @@ pub(super) fn freshness(
 ) -> Result<Freshness, Error> {
     let sets = query.sets.iter();
     let digests: Vec<&str> = sets.map(|set| set.entry.digest.as_str()).collect();
-    let window = &query.window;
-    let made_of = (
-        query.identity(&digests),
-        (window.offset, window.limit),
-        window.cursor.map(|token| token.to_string()),
-        service.limits().max_points,
-    );
+    let made_of = (digests, service.limits().max_points);
     let freshness = Freshness::of(&asked.uri, &asked.headers, content_type, &made_of);
     Ok(freshness.negotiated().pinned(query.is_pinned()))
 }
@@ -170,7 +167,8 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
     };
     let count = u64::try_from(planned.count())
         .map_err(|_| Error::Internal("a count within the limit is too large"))?;
-    let mut headers = HeaderMap::new();
+    // With what is put onto it later there are a dozen: a map that grows is filled anew.
+    let mut headers = HeaderMap::with_capacity(16);
     headers.insert(
         header::CONTENT_TYPE,
         HeaderValue::from_static(chosen.content_type),

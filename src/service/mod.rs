@@ -69,8 +69,8 @@ pub struct Limits {
     /// The most bytes that requests and answers hold at once: bodies that have come, answers that have
     /// not left, and what streams are made in.
     pub max_bytes_in_flight: usize,
-    /// The most answers under way at once. Bounds memory: an answer holds 1 to 2 MB,
-    /// two blocks and the rows it is made of, and a picture up to 16 MB more.
+    /// The most answers under way at once. Bounds memory: an answer holds 1 to 3 MB,
+    /// some blocks and the rows they are made of, and a picture up to 16 MB more.
     pub max_streams: usize,
     /// The size of a block before it is encoded, in bytes.
     pub block_bytes: usize,
@@ -168,9 +168,9 @@ impl Service {
     /// As [`Streams::admit`], and [`Error::TooManyBytes`] if there is no room for it.
     pub fn admit(&self, picture: Option<u32>) -> Result<Permit, Error> {
         /// Rows and text are made in so much, besides blocks.
-        const ROWS: usize = 1 << 20;
+        const ROWS: usize = 2 << 20;
         let side = picture.map_or(0, |side| usize::try_from(side).unwrap_or(usize::MAX));
-        let blocks = self.limits.block_bytes.saturating_mul(2);
+        let blocks = self.limits.block_bytes.saturating_mul(4);
         let held = blocks
             .saturating_add(ROWS)
             .saturating_add(side.saturating_mul(side));

@@ -1,22 +1,23 @@
-//! Streams of blocks: made on demand, one ahead, and dropped with their reader.
+//! Streams of blocks: made on demand, a few ahead, and dropped with their reader.
 //!
-//! The reader asks for a block; the iterator that makes blocks moves to a worker, makes one, and
-//! moves back. While the reader takes a block the next one is made, and then nothing happens until
-//! the reader comes back. So a stream holds the same few blocks whatever its length, a slow reader
-//! blocks no thread, and a reader that goes away leaves at most one block to be finished and thrown
-//! away.
+//! The reader asks for a block; the iterator that makes blocks moves to a worker, makes some, and
+//! moves back. A reader that takes its time has one block ready, and nothing happens until it comes
+//! back. One that had to wait gets up to [`MOST_AHEAD`], so that making goes on while blocks are sent,
+//! which is what text needs, several blocks of which are written at once. So a stream holds the same
+//! few blocks whatever its length, a slow reader blocks no thread, and a reader that goes away leaves
+//! at most one block to be finished and thrown away.
 
 use std::{
+    collections::VecDeque,
     pin::Pin,
     sync::{
-        Arc,
+        Arc, Mutex, MutexGuard, PoisonError, Weak,
         atomic::{AtomicUsize, Ordering},
     },
-    task::{Context, Poll},
+    task::{Context, Poll, Waker},
 };
 
 use futures_util::{FutureExt as _, Stream};
-use tokio::sync::oneshot;
 use tokio_util::sync::{CancellationToken, WaitForCancellationFutureOwned};
 
 use super::{Error, Held, Workers};
@@ -107,21 +108,35 @@ struct Maker<I> {
     _permit: Permit,
 }
 
-/// What a worker hands back: the maker, unless it is done, and what it made.
-type Made<I> = (Maker<I>, Option<<I as Iterator>::Item>);
+/// At most so many blocks are made ahead of a reader.
+const MOST_AHEAD: usize = 4;
 
-enum State<I: Iterator> {
-    /// Nobody has asked yet.
-    Idle(Maker<I>),
-    /// A block is being made, or waits to be taken.
-    Making(oneshot::Receiver<Made<I>>),
-    /// All is said.
-    Over,
+/// What the reader and the worker that makes blocks for it share.
+struct Shared<I: Iterator> {
+    /// Blocks that wait to be taken.
+    ready: VecDeque<I::Item>,
+    /// How many may wait: more for a reader that had to wait, fewer for one that lets them wait.
+    ahead: usize,
+    /// The maker, while no worker has it.
+    maker: Option<Maker<I>>,
+    /// How it ended, if it has.
+    end: Option<Result<(), Interrupted>>,
+    /// The reader, while it waits.
+    reader: Option<Waker>,
+}
+
+impl<I: Iterator> Shared<I> {
+    fn wake(&mut self) {
+        if let Some(reader) = self.reader.take() {
+            reader.wake();
+        }
+    }
 }
 
 /// A stream of what an iterator makes.
 pub struct BlockStream<I: Iterator> {
-    state: State<I>,
+    /// Nothing once all is said.
+    shared: Option<Arc<Mutex<Shared<I>>>>,
     workers: Workers,
     stop: Pin<Box<WaitForCancellationFutureOwned>>,
 }
@@ -133,27 +148,81 @@ where
 {
     pub(super) fn new(items: I, permit: Permit, workers: Workers) -> Self {
         let stop = Box::pin(permit.streams.stop.clone().cancelled_owned());
-        Self {
-            state: State::Idle(Maker {
+        let shared = Shared {
+            ready: VecDeque::new(),
+            ahead: 0,
+            maker: Some(Maker {
                 items,
                 _permit: permit,
             }),
+            end: None,
+            reader: None,
+        };
+        Self {
+            shared: Some(Arc::new(Mutex::new(shared))),
             workers,
             stop,
         }
     }
+}
 
-    /// Sends the maker off to make one block.
-    fn make(&self, mut maker: Maker<I>) -> State<I> {
-        let (back, made) = oneshot::channel();
-        self.workers.spawn(move || {
-            if back.is_closed() {
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A maker under way on a worker. If it is dropped there, making a block has failed.
+struct Turn<I: Iterator> {
+    maker: Option<Maker<I>>,
+    shared: Weak<Mutex<Shared<I>>>,
+}
+
+impl<I: Iterator> Turn<I> {
+    /// Makes blocks until enough are ready. No more than that in one turn, however fast they are
+    /// taken: other streams want to go on, too.
+    fn run(mut self) {
+        for made in 1.. {
+            let (Some(maker), true) = (&mut self.maker, self.shared.strong_count() > 0) else {
+                return;
+            };
+            let item = maker.items.next();
+            let Some(shared) = self.shared.upgrade() else {
+                return;
+            };
+            // What is dropped late is dropped unlocked.
+            let mut over = None;
+            let mut shared = lock(&shared);
+            match item {
+                Some(item) => shared.ready.push_back(item),
+                None => {
+                    shared.end = Some(Ok(()));
+                    over = self.maker.take();
+                }
+            }
+            let is_enough = shared.ready.len() >= shared.ahead || made >= MOST_AHEAD;
+            if is_enough {
+                shared.maker = self.maker.take();
+            }
+            shared.wake();
+            drop(shared);
+            drop(over);
+            if is_enough {
                 return;
             }
-            let item = maker.items.next();
-            let _ = back.send((maker, item));
-        });
-        State::Making(made)
+        }
+    }
+}
+
+impl<I: Iterator> Drop for Turn<I> {
+    fn drop(&mut self) {
+        let Some(maker) = self.maker.take() else {
+            return;
+        };
+        drop(maker);
+        if let Some(shared) = self.shared.upgrade() {
+            let mut shared = lock(&shared);
+            shared.end = Some(Err(Interrupted::Failed));
+            shared.wake();
+        }
     }
 }
 
@@ -165,32 +234,39 @@ where
     type Item = Result<I::Item, Interrupted>;
 
     fn poll_next(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<Option<Self::Item>> {
-        if matches!(self.state, State::Over) {
+        let Some(all) = self.shared.clone() else {
             return Poll::Ready(None);
-        }
+        };
         if self.stop.poll_unpin(cx).is_ready() {
-            self.state = State::Over;
+            self.shared = None;
             return Poll::Ready(Some(Err(Interrupted::Shutdown)));
         }
-        loop {
-            match std::mem::replace(&mut self.state, State::Over) {
-                State::Idle(maker) => self.state = self.make(maker),
-                State::Making(mut made) => {
-                    let Poll::Ready(answer) = made.poll_unpin(cx) else {
-                        self.state = State::Making(made);
-                        return Poll::Pending;
-                    };
-                    return Poll::Ready(match answer {
-                        Ok((maker, Some(item))) => {
-                            self.state = self.make(maker);
-                            Some(Ok(item))
-                        }
-                        Ok((_, None)) => None,
-                        Err(_) => Some(Err(Interrupted::Failed)),
-                    });
-                }
-                State::Over => return Poll::Ready(None),
+        let mut shared = lock(&all);
+        let item = shared.ready.pop_front();
+        if item.is_none() {
+            if let Some(end) = shared.end {
+                self.shared = None;
+                return Poll::Ready(end.err().map(Err));
             }
+            shared.reader = Some(cx.waker().clone());
+            shared.ahead = MOST_AHEAD.min(shared.ahead + 1);
+        } else if shared.maker.is_some() {
+            // All that were wanted have been made already.
+            shared.ahead = 1.max(shared.ahead - 1);
+        }
+        if shared.ready.len() < shared.ahead
+            && let Some(maker) = shared.maker.take()
+        {
+            let turn = Turn {
+                maker: Some(maker),
+                shared: Arc::downgrade(&all),
+            };
+            drop(shared);
+            self.workers.spawn(|| turn.run());
+        }
+        match item {
+            Some(item) => Poll::Ready(Some(Ok(item))),
+            None => Poll::Pending,
         }
     }
 }
@@ -269,17 +345,54 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn nothing_is_made_before_it_is_asked_for_and_then_one_ahead() {
+    async fn nothing_is_made_before_it_is_asked_for_and_then_a_few_ahead() {
         let (numbers, made) = numbers(usize::MAX, 100);
         let (mut stream, streams) = stream(numbers);
         assert_eq!(made.load(Ordering::SeqCst), 0);
         for taken in 1..=10 {
             stream.next().await.expect("more").expect("whole");
-            until(|| made.load(Ordering::SeqCst) == taken + 1);
+            until(|| made.load(Ordering::SeqCst) > taken);
+            assert!(made.load(Ordering::SeqCst) <= taken + MOST_AHEAD);
         }
         drop(stream);
         until(|| streams.open() == 0);
-        assert_eq!(made.load(Ordering::SeqCst), 11);
+        assert!(made.load(Ordering::SeqCst) <= 10 + MOST_AHEAD);
+    }
+
+    #[tokio::test]
+    async fn a_reader_that_had_to_wait_gets_more_ahead_but_not_without_end() {
+        let (numbers, made) = numbers(usize::MAX, 1000);
+        let (mut stream, streams) = stream(numbers);
+        let mut context = Context::from_waker(Waker::noop());
+        // Polls in vain: the only worker is busy.
+        let (hold, held) = std::sync::mpsc::channel::<()>();
+        stream.workers.spawn(move || {
+            let _ = held.recv();
+        });
+        for _ in 0..100 {
+            assert!(stream.poll_next_unpin(&mut context).is_pending());
+        }
+        assert_eq!(made.load(Ordering::SeqCst), 0);
+        drop(hold);
+        until(|| made.load(Ordering::SeqCst) == MOST_AHEAD);
+        // All that may wait does: one that lets them wait has fewer ahead, in the end one.
+        for taken in 1..20 {
+            stream.next().await.expect("more").expect("whole");
+            until(|| made.load(Ordering::SeqCst) > taken);
+            until(|| {
+                stream
+                    .shared
+                    .as_ref()
+                    .is_some_and(|all| lock(all).maker.is_some())
+            });
+            let ahead = made.load(Ordering::SeqCst) - taken;
+            assert!(
+                ahead <= 1.max(MOST_AHEAD.saturating_sub(taken)),
+                "{ahead} after {taken}"
+            );
+        }
+        drop(stream);
+        until(|| streams.open() == 0);
     }
 
     #[tokio::test]

@@ -4,64 +4,17 @@
 //! Queries go in as JSON, as a client sends them, and answers are compared as CSV with ids.
 
 mod any;
+mod world;
 
-use std::{
-    collections::BTreeMap,
-    sync::{
-        OnceLock,
-        atomic::{AtomicUsize, Ordering},
-    },
-};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use any::Dice;
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use strew::{
-    config::Layers,
-    service::{
-        Answer, Catalog, Encoding, Error, Limits, Output, Planned, Query, Ready, query::read_body,
-    },
-};
+use strew::service::{Answer, Encoding, Error, Output, Planned};
+use world::{World, world};
 
 const QUERIES: u64 = 10_000;
-
-/// The built-in tables, ready, by their digests.
-struct World {
-    catalog: Catalog,
-    ready: BTreeMap<String, Ready>,
-    limits: Limits,
-}
-
-fn world() -> &'static World {
-    static ONCE: OnceLock<World> = OnceLock::new();
-    ONCE.get_or_init(|| {
-        let catalog = Catalog::load(true, None).expect("built in");
-        let ready = catalog.entries().map(|entry| {
-            let ready = Ready::load(entry).expect("in order");
-            (entry.key.to_string(), ready)
-        });
-        let settings = Layers::new().and_then(Layers::finish).expect("in order");
-        World {
-            ready: ready.collect(),
-            limits: settings.limits,
-            catalog,
-        }
-    })
-}
-
-impl World {
-    fn query(&self, body: &Value) -> Result<Query, Error> {
-        let body = read_body(body.to_string().as_bytes())?;
-        body.draft.check(&self.catalog, 10_000, body.faults)
-    }
-
-    fn planned(&self, body: &Value) -> Result<Planned, Error> {
-        let query = self.query(body)?;
-        let of = |set: &strew::service::Set| self.ready[&set.entry.key.to_string()].clone();
-        let tables: Vec<Ready> = query.sets.iter().map(of).collect();
-        Planned::new(query, &tables, &self.limits)
-    }
-}
 
 /// The lines of an answer without the first.
 fn lines(planned: &Planned, block_bytes: usize) -> Vec<String> {
@@ -189,12 +142,7 @@ fn check_split(world: &World, dice: &mut Dice, planned: &Planned, body: &Value, 
 #[test]
 fn counts_windows_cursors_and_splits_agree_with_streams() {
     let world = world();
-    let keys: Vec<_> = world.ready.values().map(|r| r.entry.key.clone()).collect();
-    let promising: Vec<bool> = world
-        .ready
-        .values()
-        .map(|r| r.least.with_warp(strew_core::Warp::OFF) > 0.1)
-        .collect();
+    let (keys, promising) = world.keys();
     let (points, refused) = (AtomicUsize::new(0), AtomicUsize::new(0));
     (0..QUERIES).into_par_iter().for_each(|number| {
         let mut dice = Dice::new(number);

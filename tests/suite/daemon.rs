@@ -86,7 +86,18 @@ impl Daemon {
 
     /// Starts one on a free port with a folder of tables and further settings.
     pub fn with_tables(tables: tempfile::TempDir, settings: &[&str]) -> Self {
+        let settings = [&["log.filter=warn"], settings].concat();
+        Self::spawn(strew(), tables, &settings)
+    }
+
+    /// Starts one that logs to a file, or what goes by as one.
+    pub fn logging_to(log: Stdio, settings: &[&str]) -> Self {
         let mut command = strew();
+        command.stderr(log);
+        Self::spawn(command, tables(), settings)
+    }
+
+    fn spawn(mut command: Command, tables: tempfile::TempDir, settings: &[&str]) -> Self {
         command
             .args(["serve", "--listen", "127.0.0.1:0", "--tables"])
             .arg(tables.path());
@@ -94,7 +105,6 @@ impl Daemon {
             command.args(["--set", setting]);
         }
         let mut child = command
-            .args(["--set", "log.filter=warn"])
             .stdout(Stdio::piped())
             .spawn()
             .expect("the program runs");

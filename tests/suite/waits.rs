@@ -145,9 +145,11 @@ fn a_plan_stops_when_its_client_leaves() {
 #[test]
 fn more_requests_than_allowed_are_asked_to_wait_and_probes_are_not() {
     let daemon = patient(&["server.first_byte_seconds=3600", "limits.max_requests=2"]);
-    let slow = [(); 2].map(|()| send(&daemon, "/v1/count", SLOW.len(), SLOW.as_bytes()));
+    let mut slow = vec![];
     let small = "/v1/points?bbox=0,0,5,5&density=1&profile=test";
-    let refused = until("both are under way", || {
+    let refused = until("two are under way", || {
+        // The small one may have had the place that this one needed.
+        slow.push(send(&daemon, "/v1/count", SLOW.len(), SLOW.as_bytes()));
         let answer = daemon.get(small);
         (answer.status != 200).then_some(answer)
     });
@@ -164,8 +166,8 @@ fn more_requests_than_allowed_are_asked_to_wait_and_probes_are_not() {
 
 #[test]
 fn what_bodies_and_streams_hold_is_bounded() {
-    // Room for what one request may need: 24 MB, of which a stream takes 1.5.
-    let daemon = Daemon::start(&["limits.max_bytes_in_flight=24000000"]);
+    // Room for what one request may need: 28 MB, of which a stream takes 3.
+    let daemon = Daemon::start(&["limits.max_bytes_in_flight=28000000"]);
     let length = 4_000_000;
     let body = vec![b' '; length - 1];
     let waiting: Vec<TcpStream> = (0..5)
@@ -188,7 +190,7 @@ fn what_bodies_and_streams_hold_is_bounded() {
     assert_eq!(refused.headers["retry-after"], "1");
     let (body, _) = refused.finish();
     let problem: serde_json::Value = serde_json::from_slice(&body).expect("JSON");
-    assert_eq!(problem["limit"], 24_000_000);
+    assert_eq!(problem["limit"], 28_000_000);
     // A sixth body has no room either.
     let said = heard(send(
         &daemon,
@@ -205,7 +207,7 @@ fn what_bodies_and_streams_hold_is_bounded() {
     }
     drop((waiting, streams));
     until("there is room for many", || {
-        let all: Vec<_> = (0..10).map(|_| open()).collect();
+        let all: Vec<_> = (0..6).map(|_| open()).collect();
         all.iter().all(|opened| opened.status == 200).then_some(())
     });
 }

@@ -3,7 +3,10 @@
 //! Fresh memory for every block would be cleared and mapped in again and again, which costs more
 //! than making the points. A buffer returns when the network is done with its block.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::{
+    ops::Range,
+    sync::{Arc, Mutex, PoisonError},
+};
 
 use bytemuck::NoUninit;
 use bytes::Bytes;
@@ -15,8 +18,8 @@ pub struct Pool<T> {
     length: usize,
 }
 
-/// More free buffers than this are not kept: one is being filled, one waits, one is being sent.
-const KEPT: usize = 3;
+/// More free buffers than this are not kept: one is being filled, some wait, some are being sent.
+const KEPT: usize = 6;
 
 impl<T: Default + Clone + NoUninit + Send + 'static> Pool<T> {
     /// A pool of buffers of `length` items.
@@ -36,12 +39,26 @@ impl<T: Default + Clone + NoUninit + Send + 'static> Pool<T> {
             .unwrap_or_else(|| vec![T::default(); self.length])
     }
 
+    /// A buffer without content, but with room for as much as one of this pool has had.
+    #[must_use]
+    pub(super) fn take_empty(&self) -> Vec<T> {
+        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut buffer = free.pop().unwrap_or_default();
+        buffer.clear();
+        buffer
+    }
+
     /// The first `used` items of a buffer as bytes, in memory order. The buffer comes back when
     /// they are dropped.
     #[must_use]
     pub fn lend(&self, buffer: Vec<T>, used: usize) -> Bytes {
+        self.lend_part(buffer, 0..used * size_of::<T>())
+    }
+
+    /// The same of some of a buffer's bytes; nothing if it has no such bytes.
+    pub(super) fn lend_part(&self, buffer: Vec<T>, part: Range<usize>) -> Bytes {
         Bytes::from_owner(Lent {
-            used: used.min(buffer.len()),
+            part,
             buffer,
             pool: self.clone(),
         })
@@ -58,13 +75,14 @@ impl<T: Default + Clone + NoUninit + Send + 'static> Pool<T> {
 /// A buffer that finds its way home.
 struct Lent<T: Default + Clone + NoUninit + Send + 'static> {
     buffer: Vec<T>,
-    used: usize,
+    part: Range<usize>,
     pool: Pool<T>,
 }
 
 impl<T: Default + Clone + NoUninit + Send + 'static> AsRef<[u8]> for Lent<T> {
     fn as_ref(&self) -> &[u8] {
-        bytemuck::cast_slice(&self.buffer[..self.used])
+        let bytes: &[u8] = bytemuck::cast_slice(&self.buffer);
+        bytes.get(self.part.clone()).unwrap_or_default()
     }
 }
 

@@ -7,7 +7,8 @@ use super::{
     number::Digits,
     rows::{Row, Rows},
     schema::{Kind, Schema, Values},
-    text::{TextFormat, write_id},
+    text::TextFormat,
+    writer::Writer,
 };
 
 #[derive(Debug)]
@@ -35,13 +36,13 @@ impl Csv {
         }
     }
 
-    fn value(&self, column: usize, row: Row<'_>, out: &mut Vec<u8>) {
+    fn value(&self, column: usize, row: Row<'_>, out: &mut Writer<'_>) {
         let values = row.columns.get(column).unwrap_or(&Values::Missing);
         if let Some(name) = values.index(row.index) {
             let name = self.names[column].get(name as usize);
-            out.extend_from_slice(name.map_or(b"", |name| name.as_bytes()));
+            out.text(name.map_or(b"", |name| name.as_bytes()));
         } else if let Some(number) = values.number(row.index) {
-            self.digits.write(number, out);
+            out.number(self.digits, number);
         }
     }
 }
@@ -61,16 +62,16 @@ impl TextFormat for Csv {
         out.push(b'\n');
     }
 
-    fn row(&self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
+    fn row(&self, row: Row<'_>, _first: bool, out: &mut Writer<'_>) {
         if self.layered > 0 {
             self.value(0, row, out);
             out.push(b',');
         }
-        write_id(row.point.id, out);
+        out.id(row.point.id);
         out.push(b',');
-        self.digits.write(row.point.x, out);
+        out.number(self.digits, row.point.x);
         out.push(b',');
-        self.digits.write(row.point.y, out);
+        out.number(self.digits, row.point.y);
         for column in self.layered..self.names.len() {
             out.push(b',');
             self.value(column, row, out);

@@ -8,7 +8,8 @@ use super::{
     head::Head,
     members::{Members, write_json},
     rows::Row,
-    text::{TextFormat, write_id},
+    text::TextFormat,
+    writer::Writer,
 };
 
 /// A collection: the head's members, then a feature a line.
@@ -35,8 +36,8 @@ impl TextFormat for Collection {
         out.extend_from_slice(b",\"features\":[");
     }
 
-    fn row(&self, row: Row<'_>, first: bool, out: &mut Vec<u8>) {
-        out.extend_from_slice(if first { b"\n" } else { b",\n" });
+    fn row(&self, row: Row<'_>, first: bool, out: &mut Writer<'_>) {
+        out.text(if first { b"\n" } else { b",\n" });
         write_feature(&self.members, row, out);
     }
 
@@ -64,7 +65,7 @@ impl Sequence {
 impl TextFormat for Sequence {
     fn begin(&self, _out: &mut Vec<u8>) {}
 
-    fn row(&self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
+    fn row(&self, row: Row<'_>, _first: bool, out: &mut Writer<'_>) {
         out.push(0x1e);
         write_feature(&self.members, row, out);
         out.push(b'\n');
@@ -80,14 +81,15 @@ impl TextFormat for Sequence {
 /// More than a feature without columns takes.
 const ROW_BYTES: usize = 240;
 
-fn write_feature(members: &Members, row: Row<'_>, out: &mut Vec<u8>) {
-    out.extend_from_slice(b"{\"type\":\"Feature\",\"id\":\"");
-    write_id(row.point.id, out);
-    out.extend_from_slice(b"\",\"geometry\":{\"type\":\"Point\",\"coordinates\":[");
-    members.digits().write(row.point.x, out);
+fn write_feature(members: &Members, row: Row<'_>, out: &mut Writer<'_>) {
+    out.constant(b"{\"type\":\"Feature\",\"id\":\"");
+    out.id(row.point.id);
+    out.constant(b"\",\"geometry\":{\"type\":\"Point\",");
+    out.constant(b"\"coordinates\":[");
+    out.number(members.digits(), row.point.x);
     out.push(b',');
-    members.digits().write(row.point.y, out);
-    out.extend_from_slice(b"]},\"properties\":");
+    out.number(members.digits(), row.point.y);
+    out.constant(b"]},\"properties\":");
     members.write_object(row, out);
     out.push(b'}');
 }

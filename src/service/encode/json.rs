@@ -5,6 +5,7 @@ use super::{
     members::{Members, write_json},
     rows::Row,
     text::TextFormat,
+    writer::Writer,
 };
 
 #[derive(Debug)]
@@ -27,8 +28,8 @@ impl TextFormat for Json {
         out.extend_from_slice(b",\"points\":[");
     }
 
-    fn row(&self, row: Row<'_>, first: bool, out: &mut Vec<u8>) {
-        out.extend_from_slice(if first { b"\n" } else { b",\n" });
+    fn row(&self, row: Row<'_>, first: bool, out: &mut Writer<'_>) {
+        out.text(if first { b"\n" } else { b",\n" });
         self.members.write_point(row, out);
     }
 

@@ -5,7 +5,7 @@ use super::{
     number::Digits,
     rows::{Row, Rows},
     schema::{Kind, Values},
-    text::write_id,
+    writer::Writer,
 };
 
 /// Writes a value as JSON. What is written here has no maps with strange keys, so it cannot fail.
@@ -62,14 +62,17 @@ impl Members {
     }
 
     /// Writes `{"id":"…","x":…,"y":…}` with the columns as further members.
-    pub(super) fn write_point(&self, row: Row<'_>, out: &mut Vec<u8>) {
-        out.extend_from_slice(b"{\"id\":\"");
-        write_id(row.point.id, out);
-        out.extend_from_slice(b"\",\"x\":");
-        self.digits.write(row.point.x, out);
-        out.extend_from_slice(b",\"y\":");
-        self.digits.write(row.point.y, out);
-        self.write_columns(row, b',', out);
+    #[inline(always)]
+    pub(super) fn write_point(&self, row: Row<'_>, out: &mut Writer<'_>) {
+        out.constant(b"{\"id\":\"");
+        out.id(row.point.id);
+        out.constant(b"\",\"x\":");
+        out.number(self.digits, row.point.x);
+        out.constant(b",\"y\":");
+        out.number(self.digits, row.point.y);
+        if !self.columns.is_empty() {
+            self.write_columns(row, b',', out);
+        }
         out.push(b'}');
     }
 
@@ -79,37 +82,36 @@ impl Members {
     }
 
     /// Writes an object of the columns.
-    pub(super) fn write_object(&self, row: Row<'_>, out: &mut Vec<u8>) {
-        let start = out.len();
-        self.write_columns(row, b'{', out);
-        if out.len() == start {
+    pub(super) fn write_object(&self, row: Row<'_>, out: &mut Writer<'_>) {
+        if !self.write_columns(row, b'{', out) {
             out.push(b'{');
         }
         out.push(b'}');
     }
 
     /// Writes the columns as members, those that the row lacks left out: `before` the first, commas
-    /// between them.
-    fn write_columns(&self, row: Row<'_>, before: u8, out: &mut Vec<u8>) {
-        let mut separator = before;
+    /// between them; tells whether there were any.
+    fn write_columns(&self, row: Row<'_>, before: u8, out: &mut Writer<'_>) -> bool {
+        let (mut separator, mut has_some) = (before, false);
         for (member, values) in self.columns.iter().zip(row.columns) {
             if *values == Values::Missing {
                 continue;
             }
             out.push(separator);
-            separator = b',';
-            out.extend_from_slice(&member.key);
+            (separator, has_some) = (b',', true);
+            out.text(&member.key);
             if let Some(name) = values.index(row.index) {
                 let name = member
                     .names
                     .get(name as usize)
                     .map_or(&b"null"[..], |name| name);
-                out.extend_from_slice(name);
+                out.text(name);
             } else if let Some(number) = values.number(row.index) {
-                self.digits.write(number, out);
+                out.number(self.digits, number);
             } else {
-                out.extend_from_slice(b"null");
+                out.constant(b"null");
             }
         }
+        has_some
     }
 }

@@ -33,6 +33,7 @@ pub mod schema;
 mod shift;
 mod svg;
 mod text;
+mod writer;
 
 use std::fmt;
 
@@ -54,7 +55,7 @@ pub use packed::{Packed, Scalars};
 pub use part::{Attributes, Part};
 pub use rows::{Batch, Coordinates, Row, Rows};
 pub use schema::{Column, LAYER, Schema, Values};
-pub use text::{id_text, write_id};
+pub use text::id_text;
 
 /// An answer that could not be made to its end: a bug, for what can be refused is refused before.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

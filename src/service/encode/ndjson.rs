@@ -7,6 +7,7 @@ use super::{
     members::{Members, write_json},
     rows::Row,
     text::TextFormat,
+    writer::Writer,
 };
 
 #[derive(Debug)]
@@ -39,7 +40,7 @@ struct Summary<'a> {
 impl TextFormat for Ndjson {
     fn begin(&self, _out: &mut Vec<u8>) {}
 
-    fn row(&self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
+    fn row(&self, row: Row<'_>, _first: bool, out: &mut Writer<'_>) {
         self.members.write_point(row, out);
         out.push(b'\n');
     }

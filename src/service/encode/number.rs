@@ -30,7 +30,13 @@ impl Digits {
     pub fn write(self, value: f64, out: &mut Vec<u8>) {
         match self {
             Self::Shortest => write_number(value, out),
-            Self::Fixed(decimals) => write_fixed(value, decimals, out),
+            Self::Fixed(decimals) => {
+                let mut room = Room::default();
+                match fixed(value, decimals, &mut room) {
+                    Some(length) => out.extend_from_slice(&room[..length]),
+                    None => write_exactly(value, decimals, out),
+                }
+            }
         }
     }
 }
@@ -46,71 +52,142 @@ const POWERS: [f64; 18] = {
     powers
 };
 
-/// Multiplied in `f64`, the number is off by half a unit in the last place; unless it is that near
-/// a tie, that decides how it is rounded. Apart, so that the other way stays small where it is
-/// inlined.
-#[inline(never)]
-fn write_fixed(value: f64, decimals: u8, out: &mut Vec<u8>) {
+/// Room for the digits of a number: they are written at fixed sizes, the last ones of which may be
+/// filler.
+pub(super) type Room = [u8; 32];
+
+/// Writes a number with fixed decimals and gives how many bytes it takes, unless that needs exact
+/// arithmetic: multiplied in `f64`, it is off by half a unit in the last place; unless it is that
+/// near a tie, that decides how it is rounded.
+#[inline(always)]
+pub(super) fn fixed(value: f64, decimals: u8, room: &mut Room) -> Option<usize> {
     const MOST: f64 = (1u64 << 51) as f64;
-    let scaled = value.abs() * POWERS[usize::from(decimals)];
-    if scaled < MOST {
-        let whole = scaled as u64;
-        let rest = scaled - whole as f64;
-        if (rest - 0.5).abs() > scaled * f64::EPSILON {
-            let rounded = whole + u64::from(rest > 0.5);
-            return write_scaled(rounded, value < 0.0, decimals, out);
-        }
+    let power = POWERS[usize::from(decimals)];
+    let scaled = value.abs() * power;
+    if scaled >= MOST {
+        return None;
     }
-    write_exactly(value, decimals, out);
+    // As signed integers, which processors convert by one instruction.
+    let below = scaled as i64;
+    let rest = scaled - below as f64;
+    if (rest - 0.5).abs() <= scaled * f64::EPSILON {
+        return None;
+    }
+    let rounded = below + i64::from(rest > 0.5);
+    let (whole, mut part) = match decimals {
+        // What is asked for most is divided by a constant.
+        3 => (rounded / 1000, rounded % 1000),
+        6 => (rounded / 1_000_000, rounded % 1_000_000),
+        _ => {
+            // Both are integers below 2^53: the quotient is never rounded up to the next integer.
+            let whole = (rounded as f64 / power) as i64;
+            (whole, rounded - whole * power as i64)
+        }
+    };
+    room[0] = b'-';
+    let mut at = whole_number(
+        whole.unsigned_abs(),
+        room,
+        usize::from(value < 0.0 && rounded > 0),
+    );
+    if decimals > 0 {
+        room[at] = b'.';
+        at += 1;
+        let mut group = |number: usize, part: i64| {
+            let place = at + 3 * number;
+            room[place..place + 3].copy_from_slice(&TRIPLES[(part % 1000) as usize][..3]);
+        };
+        if decimals == 6 {
+            group(0, part / 1000);
+            group(1, part);
+        } else {
+            // Zeros behind fill the last group of three; they are not counted.
+            part *= [1, 100, 10][usize::from(decimals % 3)];
+            for number in (0..usize::from(decimals).div_ceil(3)).rev() {
+                group(number, part);
+                part /= 1000;
+            }
+        }
+        at += usize::from(decimals);
+    }
+    Some(at)
 }
 
-/// Three digits of each number below 1,000, and one that keeps entries aligned.
-const TRIPLES: [[u8; 4]; 1000] = {
+/// Writes an integer and gives how many bytes it takes.
+#[inline(always)]
+pub(super) fn integer(value: i64, room: &mut Room) -> usize {
+    room[0] = b'-';
+    whole_number(value.unsigned_abs(), room, usize::from(value < 0))
+}
+
+/// Writes digits from a place on and gives the place after them.
+#[inline(always)]
+fn whole_number(value: u64, room: &mut Room, at: usize) -> usize {
+    let first = |group: u64, room: &mut Room| {
+        let group = SHORT[group as usize];
+        room[at..at + 4].copy_from_slice(&group);
+        at + usize::from(group[3])
+    };
+    if value < 1000 {
+        return first(value, room);
+    }
+    if value < 1_000_000 {
+        let at = first(value / 1000, room);
+        room[at..at + 4].copy_from_slice(&TRIPLES[(value % 1000) as usize]);
+        return at + 3;
+    }
+    large_number(value, room, at)
+}
+
+/// The same of a number of seven digits or more.
+#[inline(never)]
+fn large_number(value: u64, room: &mut Room, mut at: usize) -> usize {
+    let mut divisor = 1_000_000;
+    while value / 1000 >= divisor {
+        divisor *= 1000;
+    }
+    let (first, mut rest) = (SHORT[(value / divisor) as usize], value);
+    room[at..at + 4].copy_from_slice(&first);
+    at += usize::from(first[3]);
+    while divisor > 1 {
+        rest %= divisor;
+        divisor /= 1000;
+        room[at..at + 4].copy_from_slice(&TRIPLES[(rest / divisor) as usize]);
+        at += 3;
+    }
+    at
+}
+
+/// The digits of each number below 1,000, three of them, and a byte that keeps entries aligned.
+const TRIPLES: [[u8; 4]; 1000] = triples(false);
+
+/// The same without zeros in front; the last byte is how many there are.
+const SHORT: [[u8; 4]; 1000] = triples(true);
+
+const fn triples(is_short: bool) -> [[u8; 4]; 1000] {
     let mut triples = [[b'0'; 4]; 1000];
     let mut i = 0;
     while i < triples.len() {
-        triples[i][0] = b'0' + (i / 100) as u8;
-        triples[i][1] = b'0' + (i / 10 % 10) as u8;
-        triples[i][2] = b'0' + (i % 10) as u8;
+        let digits = [i / 100, i / 10 % 10, i % 10];
+        let mut skipped = 0;
+        while is_short && skipped < 2 && digits[skipped] == 0 {
+            skipped += 1;
+        }
+        let mut at = skipped;
+        while at < 3 {
+            triples[i][at - skipped] = b'0' + digits[at] as u8;
+            at += 1;
+        }
+        triples[i][3] = (3 - skipped) as u8;
         i += 1;
     }
     triples
-};
-
-/// Writes an integer below 2^52 divided by 10^decimals.
-fn write_scaled(scaled: u64, is_negative: bool, decimals: u8, out: &mut Vec<u8>) {
-    // 24 digits, 16 at most of which are not leading zeros, and room to copy them at a fixed size.
-    const DIGITS: usize = 24;
-    const COPIED: usize = 24;
-    let decimals = usize::from(decimals);
-    let mut digits = [b'0'; DIGITS + COPIED];
-    let (mut rest, mut at) = (scaled, DIGITS);
-    while rest > 0 {
-        at -= 3;
-        digits[at..at + 3].copy_from_slice(&TRIPLES[(rest % 1000) as usize][..3]);
-        rest /= 1000;
-    }
-    let point = DIGITS - decimals;
-    while at < point - 1 && digits[at] == b'0' {
-        at += 1;
-    }
-    let at = at.min(point - 1);
-    let mut text = [b'-'; 2 * COPIED + 2];
-    let mut end = usize::from(is_negative && scaled > 0);
-    text[end..end + COPIED].copy_from_slice(&digits[at..at + COPIED]);
-    end += point - at;
-    if decimals > 0 {
-        text[end] = b'.';
-        text[end + 1..end + 1 + COPIED].copy_from_slice(&digits[point..point + COPIED]);
-        end += 1 + decimals;
-    }
-    out.extend_from_slice(&text[..end]);
 }
 
 /// A number is m·2^e, so m·10^decimals is an exact integer of at most 53 + 57 bits, and rounding it
 /// by −e bits is all there is to do.
 #[cold]
-fn write_exactly(value: f64, decimals: u8, out: &mut Vec<u8>) {
+pub(super) fn write_exactly(value: f64, decimals: u8, out: &mut Vec<u8>) {
     let bits = value.to_bits();
     let (exponent, fraction) = ((bits >> 52) & 0x7ff, bits & ((1 << 52) - 1));
     let (mantissa, shift) = match exponent {

@@ -1,16 +1,16 @@
 //! Packed coordinates: x and y by turns, little-endian, nothing else.
 
-use bytemuck::NoUninit;
+use bytemuck::Pod;
 use bytes::Bytes;
 use strew_core::{
     Plan,
-    sample::{self, Cursor, F32, F64, Format},
+    sample::{self, F32, F64, Format},
 };
 
 use super::{Blocks, EncodeError, buffer::Pool};
 
 /// A point format whose items are pairs of plain numbers.
-pub trait Scalars: Format<Item: NoUninit + std::fmt::Debug> {
+pub trait Scalars: Format<Item: Pod + std::fmt::Debug> {
     /// Turns an item around where memory order is not little-endian.
     fn to_little_endian(item: Self::Item) -> Self::Item;
 }
@@ -32,6 +32,8 @@ impl Scalars for F64 {
 pub struct Packed<F: Scalars> {
     blocks: sample::Blocks<F>,
     pool: Pool<F::Item>,
+    /// How many items of room a buffer has before and after its points.
+    room: [usize; 2],
     points: u64,
 }
 
@@ -39,44 +41,58 @@ impl<F: Scalars> Packed<F> {
     /// The points of a plan, in blocks of at most `block_bytes` (and at least one point).
     #[must_use]
     pub fn new(plan: &Plan, block_bytes: usize) -> Self {
+        Self::with_room(plan, block_bytes, [0; 2])
+    }
+
+    /// The same with room for so many bytes before and after each block's points.
+    #[must_use]
+    pub fn with_room(plan: &Plan, block_bytes: usize, room: [usize; 2]) -> Self {
         let most = usize::try_from(plan.count()).unwrap_or(usize::MAX);
         let length = (block_bytes / size_of::<F::Item>()).min(most).max(1);
+        let room = room.map(|bytes| bytes.div_ceil(size_of::<F::Item>()));
         Self {
             blocks: plan.blocks(),
-            pool: Pool::new(length),
+            pool: Pool::new(room[0] + length + room[1]),
+            room,
             points: 0,
         }
     }
 
-    /// The place after the points given so far.
-    #[must_use]
-    pub fn cursor(&self) -> Option<Cursor> {
-        self.blocks.cursor()
-    }
-}
-
-impl<F: Scalars> Iterator for Packed<F> {
-    type Item = Bytes;
-
-    fn next(&mut self) -> Option<Bytes> {
+    /// The next block between what `around` gives for it, which is told the block's size in bytes and
+    /// where the blocks stand after it. What there is room for is not copied.
+    pub fn next_between(
+        &mut self,
+        around: impl FnOnce(usize, &sample::Blocks<F>) -> [Vec<u8>; 2],
+    ) -> Option<Bytes> {
         let mut buffer = self.pool.take();
-        let filled = self.blocks.fill(&mut buffer);
+        let end = buffer.len() - self.room[1];
+        let filled = self.blocks.fill(&mut buffer[self.room[0]..end]);
         if filled == 0 {
             return None;
         }
+        let items = self.room[0]..self.room[0] + filled;
         if cfg!(target_endian = "big") {
-            for item in &mut buffer[..filled] {
+            for item in &mut buffer[items.clone()] {
                 *item = F::to_little_endian(*item);
             }
         }
         self.points += filled as u64;
-        Some(self.pool.lend(buffer, filled))
+        let [start, end] = [items.start, items.end].map(|item| item * size_of::<F::Item>());
+        let [before, after] = around(end - start, &self.blocks);
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut buffer);
+        if before.len() > start || after.len() > bytes.len() - end {
+            return Some([&before, &bytes[start..end], &after].concat().into());
+        }
+        let part = start - before.len()..end + after.len();
+        bytes[part.start..start].copy_from_slice(&before);
+        bytes[end..part.end].copy_from_slice(&after);
+        Some(self.pool.lend_part(buffer, part))
     }
 }
 
 impl<F: Scalars> Blocks for Packed<F> {
     fn next(&mut self) -> Option<Result<Bytes, EncodeError>> {
-        Iterator::next(self).map(Ok)
+        self.next_between(|_, _| [vec![], vec![]]).map(Ok)
     }
 
     fn points(&self) -> u64 {

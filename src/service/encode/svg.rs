@@ -7,6 +7,7 @@ use super::{
     preview::{COLORS, Coloring, Frame},
     rows::{Row, Rows},
     text::TextFormat,
+    writer::Writer,
 };
 
 /// More circles than this are more than viewers and editors bear.
@@ -55,20 +56,20 @@ impl TextFormat for Svg {
         );
     }
 
-    fn row(&self, row: Row<'_>, _first: bool, out: &mut Vec<u8>) {
+    fn row(&self, row: Row<'_>, _first: bool, out: &mut Writer<'_>) {
         let [x, y] = self.frame.place(row);
-        out.extend_from_slice(b"<circle cx=\"");
-        self.digits.write(x, out);
-        out.extend_from_slice(b"\" cy=\"");
-        self.digits.write(y, out);
-        out.extend_from_slice(b"\" r=\"");
-        Digits::Fixed(2).write(self.frame.radius, out);
+        out.constant(b"<circle cx=\"");
+        out.number(self.digits, x);
+        out.constant(b"\" cy=\"");
+        out.number(self.digits, y);
+        out.constant(b"\" r=\"");
+        out.number(Digits::Fixed(2), self.frame.radius);
         if self.coloring.colors > 1 {
             let [red, green, blue] = COLORS[self.coloring.of(row)];
             let fill = format!("\" fill=\"#{red:02x}{green:02x}{blue:02x}");
-            out.extend_from_slice(fill.as_bytes());
+            out.text(fill.as_bytes());
         }
-        out.extend_from_slice(b"\"/>\n");
+        out.constant(b"\"/>\n");
     }
 
     fn end(&self, _points: u64, out: &mut Vec<u8>) {

@@ -10,7 +10,9 @@ use strew_core::PointId;
 
 use super::{
     Blocks, EncodeError,
+    buffer::Pool,
     rows::{Row, Rows},
+    writer::Writer,
 };
 
 /// A text format: what stands before, at, and after the rows.
@@ -18,7 +20,7 @@ pub(super) trait TextFormat: Sync {
     /// Writes what comes before the first row.
     fn begin(&self, out: &mut Vec<u8>);
     /// Writes a row; `first` says that none was written before.
-    fn row(&self, row: Row<'_>, first: bool, out: &mut Vec<u8>);
+    fn row(&self, row: Row<'_>, first: bool, out: &mut Writer<'_>);
     /// Writes what comes after the last of `points` rows.
     fn end(&self, points: u64, out: &mut Vec<u8>);
     /// More than is usually written for a row.
@@ -37,7 +39,8 @@ pub(super) struct TextBlocks<T> {
     points: u64,
     /// The bytes of a row, by what the last ones took.
     row_bytes: usize,
-    ready: VecDeque<Vec<u8>>,
+    ready: VecDeque<Bytes>,
+    pool: Pool<u8>,
     state: State,
 }
 
@@ -60,13 +63,14 @@ impl<T: TextFormat> TextBlocks<T> {
             block_bytes,
             points: 0,
             ready: VecDeque::new(),
+            pool: Pool::new(0),
             state: State::Begin,
         }
     }
 
     /// Writes some blocks more; the first call writes only one, since it is waited for.
     fn write_more(&mut self) {
-        let mut before = vec![];
+        let mut before = self.pool.take_empty();
         let blocks = if self.state == State::Begin {
             self.format.begin(&mut before);
             self.state = State::Points;
@@ -77,7 +81,7 @@ impl<T: TextFormat> TextBlocks<T> {
         let per_block = (self.block_bytes / self.row_bytes).max(1);
         let Some(batch) = self.rows.next(per_block * blocks) else {
             self.format.end(self.points, &mut before);
-            self.ready.push_back(before);
+            self.ready.push_back(before.into());
             self.state = State::Over;
             return;
         };
@@ -86,12 +90,14 @@ impl<T: TextFormat> TextBlocks<T> {
         let write = |part: Range<usize>, out: &mut Vec<u8>| {
             out.reserve(part.len() * (row_bytes + row_bytes / 16) + 64);
             let start = part.start;
+            let mut writer = Writer::new(out);
             for (i, row) in batch.rows_in(part).enumerate() {
-                format.row(row, is_first && start + i == 0, out);
+                format.row(row, is_first && start + i == 0, &mut writer);
             }
+            writer.finish();
         };
-        let mut written = vec![vec![]; count.div_ceil(per_block)];
-        written[0] = before;
+        let mut written = vec![before];
+        written.resize_with(count.div_ceil(per_block), || self.pool.take_empty());
         if let [only] = written.as_mut_slice() {
             write(0..count, only);
         } else {
@@ -104,7 +110,11 @@ impl<T: TextFormat> TextBlocks<T> {
         self.points += count as u64;
         let bytes: usize = written.iter().map(Vec::len).sum();
         self.row_bytes = (bytes / count).max(1);
-        self.ready.extend(written);
+        let pool = &self.pool;
+        self.ready.extend(written.into_iter().map(|block| {
+            let length = block.len();
+            pool.lend(block, length)
+        }));
     }
 }
 
@@ -117,16 +127,8 @@ impl<T: TextFormat + std::fmt::Debug + Send> Blocks for TextBlocks<T> {
         if self.ready.is_empty() && self.state != State::Over {
             self.write_more();
         }
-        self.ready.pop_front().map(|block| Ok(block.into()))
+        self.ready.pop_front().map(Ok)
     }
-}
-
-/// Writes an id: `column:row`.
-pub fn write_id(id: PointId, out: &mut Vec<u8>) {
-    let mut digits = itoa::Buffer::new();
-    out.extend_from_slice(digits.format(id.x).as_bytes());
-    out.push(b':');
-    out.extend_from_slice(digits.format(id.y).as_bytes());
 }
 
 /// An id as a text of its own.
@@ -201,9 +203,6 @@ mod tests {
         #[test]
         fn ids_are_written_as_the_library_writes_them(x: i64, y: i64) {
             let id = PointId { x, y };
-            let mut out = vec![];
-            write_id(id, &mut out);
-            prop_assert_eq!(String::from_utf8(out).expect("digits"), id.to_string());
             prop_assert_eq!(id_text(id), id.to_string());
         }
     }

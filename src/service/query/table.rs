@@ -1,8 +1,8 @@
 //! Which table answers: by profile, α and map size, and by a pinned digest.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
-use strew_core::{Alpha, map::Size};
+use strew_core::{Alpha, map::Size, pattern::AlphaError};
 
 use super::{DEFAULT_ALPHA, DEFAULT_PROFILE, pin};
 use crate::service::{Catalog, Entry, Error, Fault, Key};
@@ -29,8 +29,9 @@ impl TableDraft {
         };
         let profile = self.profile.as_deref().unwrap_or(DEFAULT_PROFILE);
         let text = self.alpha.as_deref().unwrap_or(DEFAULT_ALPHA);
-        let alphas = catalog.alphas(profile);
-        let is_loaded = !alphas.is_empty();
+        let is_loaded = catalog
+            .entries()
+            .any(|entry| *entry.key.profile == *profile);
         let mut faults = vec![];
         faults.extend(pin::read(self.table.as_deref(), path).err());
         if !is_loaded {
@@ -39,12 +40,12 @@ impl TableDraft {
         }
         let allowed = || {
             if is_loaded {
-                some(alphas.iter().map(ToString::to_string))
+                some(catalog.alphas(profile).iter().map(ToString::to_string))
             } else {
                 loaded(catalog)
             }
         };
-        let alpha = text.parse::<Alpha>().map_err(|error| {
+        let alpha = parse(text).map_err(|error| {
             faults.push(fault("alpha", text, error.to_string(), allowed()));
         });
         let (Ok(alpha), true) = (alpha, faults.is_empty()) else {
@@ -82,6 +83,15 @@ impl TableDraft {
     /// [`Error::OtherTable`] if it is not.
     pub(super) fn hold(&self, entry: &Entry) -> Result<(), Error> {
         pin::compare(self.table.as_deref(), entry)
+    }
+}
+
+/// The number of a text; that of most queries has been read before.
+fn parse(text: &str) -> Result<Alpha, AlphaError> {
+    static DEFAULT: LazyLock<Option<Alpha>> = LazyLock::new(|| DEFAULT_ALPHA.parse().ok());
+    match *DEFAULT {
+        Some(alpha) if text == DEFAULT_ALPHA => Ok(alpha),
+        _ => text.parse(),
     }
 }
 

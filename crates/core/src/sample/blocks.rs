@@ -452,7 +452,12 @@ pub(super) fn list_columns(
     range: Range<i64>,
     lists: &mut [Listed; 4],
 ) {
-    lists.iter_mut().for_each(Vec::clear);
+    // About as many as there can be in a class: growing bit by bit takes longer than a small box.
+    let length = usize::try_from(range.end.saturating_sub(range.start)).unwrap_or(0);
+    for list in lists.iter_mut() {
+        list.clear();
+        list.reserve(length / 4);
+    }
     for x in range {
         if let Some((y_parity, index)) = frame.pattern.visit(Axis::X, x) {
             let class = Class {

@@ -122,6 +122,8 @@ impl<F: Format> Template<F> {
             }
             self.displacements.extend(columns().map(|column| column.dy));
         } else {
+            self.columns.reserve(listed.len());
+            self.displacements.reserve(listed.len());
             for Displaced { lattice, x, dy } in columns() {
                 if patch.holds_along(Axis::X, x) {
                     self.columns.push(format.column(base, x, lattice));
