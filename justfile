@@ -24,6 +24,14 @@ lint:
 bench:
     cargo bench -p strew-core
 
+# The unsafe code of the kernel under a memory checker, with every instruction set of this machine, and
+# once more under valgrind, which knows AVX2. (Miri needs a nightly toolchain and knows no vectors.)
+sanitize:
+    RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Zsanitizer=address CARGO_TARGET_DIR=target/sanitize \
+        cargo test -p strew-core --lib --target x86_64-unknown-linux-gnu sample::
+    CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="valgrind -q --error-exitcode=9" \
+        cargo test -p strew-core --lib kernel::
+
 # Mixed questions by all doors with faults injected, every answer checked: `just soak 1800`.
 soak seconds="300" *args:
     cargo test --release --test soak -- --seconds {{seconds}} {{args}}

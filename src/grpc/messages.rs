@@ -309,16 +309,6 @@ fn coordinates(batch: Batch<'_>, encoding: Encoding) -> PointBlock {
     }
 }
 
-/// How many points a block has.
-pub(super) fn points(block: &PointBlock, encoding: Encoding) -> u64 {
-    let points = match encoding {
-        Encoding::F32Le => block.data.len() / 8,
-        Encoding::F64Le => block.data.len() / 16,
-        Encoding::Points | Encoding::Unspecified => block.x.len(),
-    };
-    points as u64
-}
-
 /// The values of a column, if the points have them.
 fn column(head: &ColumnHead, values: &Values) -> Option<Column> {
     let (mut numbers, mut indices) = (vec![], vec![]);

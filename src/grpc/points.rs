@@ -15,7 +15,7 @@ use super::{
         CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
         GetPointRequest, GetPointResponse, ListProfilesRequest, ListProfilesResponse,
         SplitPointsRequest, SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
-        point_service_server::PointService, stream_points_response::Message,
+        point_service_server::PointService,
     },
     query, resolved, single, split, status,
 };

@@ -71,6 +71,11 @@ pub fn write(folder: &Path, name: &str, table: &Table) {
     std::fs::write(folder.join(name), table.to_bytes()).expect("writable");
 }
 
+/// Settings of a daemon that logs no more than it must.
+fn warnings<'a>(settings: &[&'a str]) -> Vec<&'a str> {
+    [settings, &["log.filter=warn"]].concat()
+}
+
 /// A running daemon; killed when dropped.
 pub struct Daemon {
     child: Child,
@@ -86,20 +91,32 @@ impl Daemon {
 
     /// Starts one on a free port with a folder of tables and further settings.
     pub fn with_tables(tables: tempfile::TempDir, settings: &[&str]) -> Self {
-        let settings = [&["log.filter=warn"], settings].concat();
-        Self::spawn(strew(), tables, &settings)
+        Self::launch(strew(), "127.0.0.1:0", tables, &warnings(settings))
+            .unwrap_or_else(|line| panic!("not ready: {line}"))
+    }
+
+    /// Starts one with the test tables at an address, if that is free.
+    pub fn at(address: &str) -> Option<Self> {
+        Self::launch(strew(), address, tables(), &warnings(&[])).ok()
     }
 
     /// Starts one that logs to a file, or what goes by as one.
     pub fn logging_to(log: Stdio, settings: &[&str]) -> Self {
         let mut command = strew();
         command.stderr(log);
-        Self::spawn(command, tables(), settings)
+        Self::launch(command, "127.0.0.1:0", tables(), settings)
+            .unwrap_or_else(|line| panic!("not ready: {line}"))
     }
 
-    fn spawn(mut command: Command, tables: tempfile::TempDir, settings: &[&str]) -> Self {
+    /// Starts one; gives what it said instead if it is not ready.
+    fn launch(
+        mut command: Command,
+        listen: &str,
+        tables: tempfile::TempDir,
+        settings: &[&str],
+    ) -> Result<Self, String> {
         command
-            .args(["serve", "--listen", "127.0.0.1:0", "--tables"])
+            .args(["serve", "--listen", listen, "--tables"])
             .arg(tables.path());
         for setting in settings {
             command.args(["--set", setting]);
@@ -115,14 +132,16 @@ impl Daemon {
         let address = line
             .trim()
             .strip_prefix("listening on http")
-            .map(|rest| rest.trim_start_matches('s').trim_start_matches("://"))
-            .unwrap_or_else(|| panic!("not ready: {line}"))
-            .to_owned();
-        Self {
+            .map(|rest| rest.trim_start_matches('s').trim_start_matches("://"));
+        let Some(address) = address.map(ToOwned::to_owned) else {
+            let _ = child.wait();
+            return Err(line);
+        };
+        Ok(Self {
             child,
             address,
             tables,
-        }
+        })
     }
 
     /// `host:port`.

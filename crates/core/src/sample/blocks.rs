@@ -10,7 +10,7 @@ use super::{
     patch::{BAND_WIDTH, Patch},
     plan::Plan,
     sieve::{Focus, Run, TOGETHER, World},
-    template::{Check, Kept, Stretch, Templates, displaced, sift},
+    template::{Check, Kept, Stretch, Templates, displaced, sift, write_row},
 };
 use crate::pattern::{Axis, Class};
 
@@ -88,6 +88,8 @@ pub struct Blocks<F: Format> {
     runs: Vec<Run>,
     runs_end: i64,
     columns: [Listed; 4],
+    /// Which of them lie inside whatever their displacement.
+    inner: [Range<usize>; 4],
     /// Where they are, if there is a sieve.
     before: Before,
     templates: Templates<F>,
@@ -156,6 +158,7 @@ impl<F: Format> Blocks<F> {
             runs: Vec::new(),
             runs_end: i64::MIN,
             columns: Default::default(),
+            inner: [const { 0..0 }; 4],
             before: Before::default(),
             templates: Templates::new(&plan.sampler, tall, kept),
             patch,
@@ -261,6 +264,10 @@ impl<F: Format> Blocks<F> {
         } = &self.plan;
         let columns = clip(band, &x.all);
         list_columns(sampler, frame, columns.clone(), &mut self.columns);
+        for (inner, listed) in self.inner.iter_mut().zip(&self.columns) {
+            let before = |v: i64| listed.partition_point(|&(u, _)| u < v);
+            *inner = before(x.inner.start)..before(x.inner.end);
+        }
         if let (Some(sieve), Some([focus, _])) = (&self.plan.sieve, &mut self.sieve) {
             focus.aim(sieve.area(), &self.rows, &columns);
             self.before.note(&columns, &self.columns);
@@ -304,6 +311,7 @@ impl<F: Format> Blocks<F> {
         } = &self.plan;
         let (format, patch, base) = (&self.format, &self.patch, self.base);
         let is_split = patch.is_warped() && !patch.columns_are_inner;
+        let is_direct = self.templates.are_plain() && !patch.is_warped();
         let mut filled = 0;
         while self.at.y < end && filled < out.len() {
             let y = self.at.y;
@@ -311,22 +319,30 @@ impl<F: Format> Blocks<F> {
                 self.at.next_row();
                 continue;
             };
-            let template = self
-                .templates
-                .get(class, block, self.at.done > 0, |template, kept| {
-                    let listed = &self.columns[class.ordinal()];
-                    template.make(format, base, patch, listed, sampler.row(block), kept);
-                });
-            if let Some(from) = self.at.from.take() {
-                self.at.done = template.columns_before(from);
-            }
             let row = Row {
                 base,
                 y: patch.relative(Axis::Y, y),
                 lattice: y,
             };
-            let done = self.at.done;
             let is_inner = span.inner.contains(&y);
+            let (listed, vectors) = (&self.columns[class.ordinal()], sampler.row(block));
+            let inner = self.inner[class.ordinal()].clone();
+            let out = &mut out[filled..];
+            if is_direct && self.at.done == 0 && listed.len() <= out.len() {
+                let columns = (listed.as_slice(), inner);
+                filled += write_row(format, patch, row, columns, (vectors, is_inner), out);
+                self.at.next_row();
+                continue;
+            }
+            let template = self
+                .templates
+                .get(class, block, self.at.done > 0, |template, kept| {
+                    template.make(format, base, patch, (listed, inner), vectors, kept);
+                });
+            if let Some(from) = self.at.from.take() {
+                self.at.done = template.columns_before(from);
+            }
+            let done = self.at.done;
             // Where columns are not all inner ones, those that are need no checks.
             let (end, check) = if !is_inner {
                 (template.len(), Check::Bounds)
@@ -346,14 +362,7 @@ impl<F: Format> Blocks<F> {
                 columns: done..end,
                 check,
             };
-            let (written, done) = template.fill(
-                format,
-                patch,
-                row,
-                stretch,
-                self.backend,
-                &mut out[filled..],
-            );
+            let (written, done) = template.fill(format, patch, row, stretch, self.backend, out);
             filled += written;
             self.at.done += done;
             if self.at.done == template.len() {
@@ -394,7 +403,8 @@ impl<F: Format> Blocks<F> {
             let template = self
                 .templates
                 .get(class, block, is_under_way, |template, kept| {
-                    template.make(format, base, patch, listed, vectors, kept);
+                    let all = 0..listed.len();
+                    template.make(format, base, patch, (listed, all), vectors, kept);
                 });
             if let Some(from) = self.at.from.take() {
                 self.at.done = self
@@ -452,11 +462,10 @@ pub(super) fn list_columns(
     range: Range<i64>,
     lists: &mut [Listed; 4],
 ) {
-    // About as many as there can be in a class: growing bit by bit takes longer than a small box.
-    let length = usize::try_from(range.end.saturating_sub(range.start)).unwrap_or(0);
-    for list in lists.iter_mut() {
+    for list in &mut *lists {
         list.clear();
-        list.reserve(length / 4);
+        // A quarter of all columns at most, where α is largest.
+        list.reserve(usize::try_from(range.end.saturating_sub(range.start)).unwrap_or(0) / 4 + 4);
     }
     for x in range {
         if let Some((y_parity, index)) = frame.pattern.visit(Axis::X, x) {

@@ -5,6 +5,7 @@ use core::{fmt, str::FromStr};
 /// The stable id of a point: its lattice address under the query's parameters. As text `x:y`, two
 /// decimal integers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(C)]
 pub struct PointId {
     /// The lattice column.
     pub x: i64,

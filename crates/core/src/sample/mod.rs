@@ -73,6 +73,7 @@ pub const LATTICE_LIMIT: i64 = 1 << 52;
 
 /// A point in world coordinates with its id.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
 pub struct Point {
     /// The stable id.
     pub id: PointId,

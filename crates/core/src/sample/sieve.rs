@@ -199,7 +199,7 @@ fn at_or_above(x: f64) -> i64 {
 
 /// Lattice rows for which an area is asked at once: more rows leave more points to be asked one by
 /// one, fewer cost more questions.
-pub(super) const TOGETHER: i64 = 4;
+pub(super) const TOGETHER: i64 = 8;
 
 /// Lattice units that a boundary is given as room for rounding: sums, quotients and conversions are
 /// off by a few units in the last place. (Not without end: what is asked for stays outermost, ±∞

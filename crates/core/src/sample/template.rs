@@ -5,7 +5,7 @@
 //! rows share one, each row makes its own.
 
 use alloc::{vec, vec::Vec};
-use core::ops::Range;
+use core::{mem::take, ops::Range};
 
 use super::{
     Listed, Sampler,
@@ -98,7 +98,7 @@ impl<F: Format> Template<F> {
         format: &F,
         base: [f64; 2],
         patch: &Patch,
-        listed: &Listed,
+        (listed, inner): (&[(i64, u32)], Range<usize>),
         vectors: &[[i32; 2]],
         kept: Kept,
     ) {
@@ -108,30 +108,39 @@ impl<F: Format> Template<F> {
         self.displacements.clear();
         let is_warped = patch.is_warped();
         let all = kept.has_all(patch);
-        let columns = || displaced(patch, listed, vectors);
         if is_warped {
-            self.displaced.extend(columns().map(|column| column.x));
-        }
-        if all {
-            if !is_warped {
-                let column = |column: Displaced| format.column(base, column.x, column.lattice);
-                self.columns.extend(columns().map(column));
-            }
-            if is_warped || kept != Kept::Plain {
-                self.lattice.extend(listed.iter().map(|&(x, _)| x));
-            }
-            self.displacements.extend(columns().map(|column| column.dy));
+            let columns = displaced(patch, listed, vectors);
+            self.displaced.extend(columns.map(|column| column.x));
+            let columns = displaced(patch, listed, vectors);
+            self.displacements.extend(columns.map(|column| column.dy));
+            self.lattice.extend(listed.iter().map(|&(x, _)| x));
         } else {
-            self.columns.reserve(listed.len());
-            self.displacements.reserve(listed.len());
-            for Displaced { lattice, x, dy } in columns() {
-                if patch.holds_along(Axis::X, x) {
-                    self.columns.push(format.column(base, x, lattice));
-                    self.displacements.push(dy);
-                    if kept == Kept::Places {
-                        self.lattice.push(lattice);
-                    }
-                }
+            let inner = if all { 0..listed.len() } else { inner };
+            let room = listed.len();
+            let mut made = (take(&mut self.columns), take(&mut self.displacements));
+            made.0.reserve(room);
+            made.1.reserve(room);
+            let column = |column: Displaced| {
+                let Displaced { lattice, x, dy } = column;
+                (format.column(base, x, lattice), dy)
+            };
+            let holds = |column: &Displaced| patch.holds_along(Axis::X, column.x);
+            let [left, middle, right] = [0..inner.start, inner.clone(), inner.end..room]
+                .map(|part| displaced(patch, &listed[part], vectors));
+            for (x, dy) in left.filter(holds).map(column) {
+                made.0.push(x);
+                made.1.push(dy);
+            }
+            made.extend(middle.map(column));
+            for (x, dy) in right.filter(holds).map(column) {
+                made.0.push(x);
+                made.1.push(dy);
+            }
+            (self.columns, self.displacements) = made;
+            if kept != Kept::Plain {
+                let columns = displaced(patch, listed, vectors);
+                let held = columns.filter(|column| all || holds(column));
+                self.lattice.extend(held.map(|column| column.lattice));
             }
         }
         self.made = true;
@@ -211,6 +220,41 @@ impl<F: Format> Template<F> {
         }
         (written, done)
     }
+}
+
+/// Writes a row of a box without a template, for rows that share theirs with few others: there is
+/// room for all of its columns. Those within `inner` are inside along x; `is_inner` rows are along y.
+/// Gives how many points were written.
+pub(super) fn write_row<F: Format>(
+    format: &F,
+    patch: &Patch,
+    row: Row,
+    (listed, inner): (&[(i64, u32)], Range<usize>),
+    (vectors, is_inner): (&[[i32; 2]], bool),
+    out: &mut [F::Item],
+) -> usize {
+    let item = |Displaced { lattice, x, dy }: Displaced| {
+        let column = format.column(row.base, x, lattice);
+        format.item(row.base, column, row.y + dy, row.lattice)
+    };
+    let inner = if is_inner { inner } else { 0..0 };
+    let parts = [0..inner.start, inner.clone(), inner.end..listed.len()];
+    let [left, middle, right] = parts.map(|part| displaced(patch, &listed[part], vectors));
+    let holds = |column: &Displaced| patch.holds([column.x, row.y + column.dy]);
+    let mut written = 0;
+    for (out, column) in out.iter_mut().zip(left.filter(holds)) {
+        *out = item(column);
+        written += 1;
+    }
+    for (out, column) in out[written..].iter_mut().zip(middle) {
+        *out = item(column);
+    }
+    written += inner.len();
+    for (out, column) in out[written..].iter_mut().zip(right.filter(holds)) {
+        *out = item(column);
+        written += 1;
+    }
+    written
 }
 
 /// Writes those points of some columns of a row whose place, relative to the patch's origin, passes;
@@ -299,6 +343,11 @@ impl<F: Format> Templates<F> {
             all || patch.holds_along(Axis::X, displaced)
         });
         columns.map(|column| column.0).nth(n)
+    }
+
+    /// Whether each row makes a template of its own, and only for what it writes.
+    pub(super) fn are_plain(&self) -> bool {
+        !self.tall && self.kept == Kept::Plain
     }
 
     /// The template of a row; `same` says that the row is the one asked for last.

@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::{Format, Row, shear::Columns};
+use super::{Format, Point, Row, shear::Columns};
 use crate::sample::warp::{CELL_BITS, PATCH_CELL_MASK, PATCH_CELLS, PatchShears};
 
 /// Sixteen entries of a table, by the lowest four bits of their index.
@@ -276,4 +276,59 @@ pub(super) fn f64_row(
         }
         i += 8;
     }
+}
+
+/// A row of points, unless there are too few to fill a vector; gives how many. All three slices have
+/// the same length.
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+pub(super) fn points_row(
+    step: f64,
+    row: Row,
+    columns: &[[u64; 2]],
+    displacements: &[i32],
+    out: &mut [Point],
+) -> usize {
+    // A point is written as these four, in this order.
+    const {
+        assert!(size_of::<Point>() == 32);
+        assert!(core::mem::offset_of!(Point, id.x) == 0);
+        assert!(core::mem::offset_of!(Point, id.y) == 8);
+        assert!(core::mem::offset_of!(Point, x) == 16);
+        assert!(core::mem::offset_of!(Point, y) == 24);
+    }
+    let length = out.len().min(columns.len()).min(displacements.len());
+    if length < 8 {
+        return 0;
+    }
+    let (bases, steps) = (_mm512_set1_pd(row.base[1]), _mm512_set1_pd(step));
+    let ys = _mm256_set1_epi32(row.y);
+    let lattice = _mm512_set1_pd(f64::from_bits(row.lattice as u64));
+    // Two points each: column, (row), x, y.
+    let pairs = [
+        _mm512_setr_epi64(0, 0, 1, 8, 2, 0, 3, 9),
+        _mm512_setr_epi64(4, 0, 5, 10, 6, 0, 7, 11),
+        _mm512_setr_epi64(0, 0, 1, 12, 2, 0, 3, 13),
+        _mm512_setr_epi64(4, 0, 5, 14, 6, 0, 7, 15),
+    ];
+    let mut next = 0;
+    while next < length {
+        // The last vector goes back over points that are made already.
+        let i = next.min(length - 8);
+        next += 8;
+        // SAFETY: eight values from `i` on lie within the three slices.
+        unsafe {
+            let displacement = _mm256_loadu_si256(displacements.as_ptr().add(i).cast());
+            let offset = _mm512_cvtepi32_pd(_mm256_add_epi32(displacement, ys));
+            let places = _mm512_mul_pd(_mm512_add_pd(bases, offset), steps);
+            let from: *const f64 = columns.as_ptr().add(i).cast();
+            let halves = [_mm512_loadu_pd(from), _mm512_loadu_pd(from.add(8))];
+            let to: *mut f64 = out.as_mut_ptr().add(i).cast();
+            for (k, pair) in pairs.into_iter().enumerate() {
+                let points = _mm512_permutex2var_pd(halves[k / 2], pair, places);
+                let points = _mm512_mask_mov_pd(points, 0b0010_0010, lattice);
+                _mm512_storeu_pd(to.add(8 * k), points);
+            }
+        }
+    }
+    length
 }

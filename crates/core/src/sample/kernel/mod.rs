@@ -27,6 +27,8 @@ mod backend;
 )]
 pub(super) mod hashed;
 mod shear;
+#[cfg(test)]
+mod tests;
 
 use super::{Point, PointId, fixed, plan::Plan, warp::PatchShears};
 
@@ -186,7 +188,8 @@ pub struct Points(F64);
 
 impl Format for Points {
     type Item = Point;
-    type Column = (i64, f64);
+    /// The lattice column, and the bits of x.
+    type Column = [u64; 2];
 
     fn new(plan: &Plan) -> Self {
         Self(F64::new(plan))
@@ -197,17 +200,45 @@ impl Format for Points {
     }
 
     #[inline(always)]
-    fn column(&self, base: [f64; 2], x: i32, column: i64) -> (i64, f64) {
-        (column, self.0.place(base[0], x))
+    fn column(&self, base: [f64; 2], x: i32, column: i64) -> [u64; 2] {
+        [column as u64, self.0.place(base[0], x).to_bits()]
     }
 
     #[inline(always)]
-    fn item(&self, base: [f64; 2], (column, x): (i64, f64), y: i32, row: i64) -> Point {
+    fn item(&self, base: [f64; 2], [column, x]: [u64; 2], y: i32, row: i64) -> Point {
         Point {
-            id: PointId { x: column, y: row },
-            x,
+            id: PointId {
+                x: column as i64,
+                y: row,
+            },
+            x: f64::from_bits(x),
             y: self.0.place(base[1], y),
         }
+    }
+
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    #[expect(
+        unsafe_code,
+        reason = "a backend is only ever made where the machine has it"
+    )]
+    fn fill_row(
+        &self,
+        backend: Backend,
+        row: Row,
+        columns: &[Self::Column],
+        displacements: &[i32],
+        out: &mut [Self::Item],
+    ) {
+        let done = match backend {
+            // SAFETY: `Backend::available` has found the instructions.
+            Backend::Avx512 => unsafe {
+                avx512::points_row(self.0.step, row, columns, displacements, out)
+            },
+            _ => 0,
+        };
+        let rest = columns.get(done..).unwrap_or_default();
+        let displacements = displacements.get(done..).unwrap_or_default();
+        emit(self, row, rest, displacements, &mut out[done..]);
     }
 }
 
@@ -228,7 +259,12 @@ pub struct F32 {
 impl F32 {
     #[inline(always)]
     fn place(&self, axis: usize, base: f64, offset: i32) -> f32 {
-        (((base + f64::from(offset)) * self.step) as f32).min(self.last[axis])
+        let (place, last) = (
+            ((base + f64::from(offset)) * self.step) as f32,
+            self.last[axis],
+        );
+        // Neither is NaN: `min` would ask.
+        if place < last { place } else { last }
     }
 }
 

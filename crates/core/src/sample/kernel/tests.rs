@@ -1,0 +1,216 @@
+//! Every vectorized row beside plain code, bit for bit: all lengths around the widths of vectors,
+//! slices that begin anywhere, and memory before and after them that has to stay as it is. Under a
+//! memory checker (`just sanitize`) the same tests show that nothing beyond a slice is read.
+
+use alloc::{vec, vec::Vec};
+
+use super::*;
+use crate::sample::{Seed, Warp, warp::Shears};
+
+/// Lengths up to here: four vectors of 16 and a rest.
+const LONGEST: usize = 70;
+/// Slices begin so many items into their memory, or fewer.
+const SHIFTS: usize = 4;
+
+/// Numbers that look random.
+fn numbers(seed: u64) -> impl Iterator<Item = u64> {
+    let mut state = seed;
+    core::iter::from_fn(move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        Some(state >> 20)
+    })
+}
+
+/// A row of a patch: columns in their lattice order, each displaced by some units.
+struct Example {
+    lattice: Vec<i64>,
+    displaced: Vec<i32>,
+    displacements: Vec<i32>,
+    row: Row,
+}
+
+fn examples() -> impl Iterator<Item = Example> {
+    let length = LONGEST + SHIFTS + 8;
+    // The lowest and the highest row of a patch, and some between.
+    [(0, 0), (255, 1), (17, 2), (128, 3)]
+        .map(|(y, seed)| {
+            let vector = |n: u64| (n % (20 << 20)) as i32 - (10 << 20);
+            let places = numbers(seed).map(vector).take(length).enumerate();
+            Example {
+                lattice: (0..length as i64).map(|i| i * 14 - 3_000_000_000).collect(),
+                displaced: places.map(|(i, dx)| ((i as i32 * 12) << 20) + dx).collect(),
+                displacements: numbers(seed + 9).map(vector).take(length).collect(),
+                row: Row {
+                    base: [(1i64 << 40) as f64 + 0.25, -(3i64 << 50) as f64],
+                    y: y << 20,
+                    lattice: -77 + i64::from(y),
+                },
+            }
+        })
+        .into_iter()
+}
+
+/// Runs `make` into every place of some memory and compares with `expected`, also around it. It gives
+/// how many items it has made.
+fn assert_written<I: Copy, B: PartialEq + core::fmt::Debug>(
+    canary: I,
+    bits: impl Fn(I) -> B,
+    expected: &[I],
+    make: impl Fn(&mut [I]) -> usize,
+    note: &str,
+) {
+    for shift in 0..SHIFTS {
+        let mut memory = vec![canary; expected.len() + 2 * SHIFTS];
+        let made = make(&mut memory[shift..shift + expected.len()]);
+        assert!(made <= expected.len(), "{note}");
+        let (before, rest) = memory.split_at(shift);
+        let (written, after) = rest.split_at(made);
+        for (i, (&is, &should)) in written.iter().zip(expected).enumerate() {
+            assert_eq!(bits(is), bits(should), "{note}: item {i}, shift {shift}");
+        }
+        for &untouched in before.iter().chain(after) {
+            assert_eq!(bits(untouched), bits(canary), "{note}: shift {shift}");
+        }
+    }
+}
+
+/// Plain and warped rows of a format by all backends.
+fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
+    format: F,
+    canary: F::Item,
+    bits: impl Fn(F::Item) -> B + Copy,
+) {
+    let warp = Warp::new(1.0).expect("in range");
+    let shears = Shears::new(warp, Seed(5), 0.317).expect("on");
+    let shears = PatchShears::new(&shears, [1024 * 7, -256 * 3]);
+    for example in examples() {
+        let Example {
+            lattice,
+            displaced,
+            displacements,
+            row,
+        } = &example;
+        let places = displaced.iter().zip(lattice);
+        let columns: Vec<F::Column> = places
+            .map(|(&x, &column)| format.column(row.base, x, column))
+            .collect();
+        for length in 0..=LONGEST {
+            for from in 0..SHIFTS {
+                // Copies that end where the slices end: a checker sees what is read beyond.
+                let part = from..from + length;
+                let columns = columns[..part.end].to_vec();
+                let [displaced, displacements] =
+                    [displaced, displacements].map(|all| all[..part.end].to_vec());
+                let lattice = lattice[..part.end].to_vec();
+                let (own, dys) = (&columns[from..], &displacements[from..]);
+                let mut plain = vec![canary; length];
+                emit(&format, *row, own, dys, &mut plain);
+                let moved: Vec<F::Item> = part
+                    .map(|i| {
+                        let [x, y] = shears.apply(displaced[i], row.y + displacements[i]);
+                        let column = format.column(row.base, x, lattice[i]);
+                        format.item(row.base, column, y, row.lattice)
+                    })
+                    .collect();
+                let warped = Columns {
+                    displaced: &displaced[from..],
+                    displacements: dys,
+                    lattice: &lattice[from..],
+                };
+                for backend in Backend::available() {
+                    let note = alloc::format!("{format:?} {backend:?} {length} from {from}");
+                    let fill = |out: &mut [F::Item]| {
+                        format.fill_row(backend, *row, own, dys, out);
+                        out.len()
+                    };
+                    assert_written(canary, bits, &plain, fill, &note);
+                    let whole =
+                        |out: &mut [F::Item]| format.warp_row(backend, &shears, *row, warped, out);
+                    assert_written(canary, bits, &moved, whole, &note);
+                    let all = |out: &mut [F::Item]| {
+                        warped_row(&format, backend, &shears, *row, warped, out);
+                        out.len()
+                    };
+                    assert_written(canary, bits, &moved, all, &note);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn rows_of_f32_pairs_have_the_same_bits_by_all_backends() {
+    let format = F32 {
+        step: 3.7e-7,
+        first: [0, 0],
+        // Some places are cut to these, some are not.
+        last: [410_000.0, -1.249_4e9],
+    };
+    all_rows(format, [-1.5; 2], |item| item.map(f32::to_bits));
+}
+
+#[test]
+fn rows_of_f64_pairs_have_the_same_bits_by_all_backends() {
+    let format = F64 { step: 3.7e-7 };
+    all_rows(format, [-1.5; 2], |item| item.map(f64::to_bits));
+}
+
+#[test]
+fn rows_of_points_have_the_same_bits_by_all_backends() {
+    let canary = Point {
+        id: PointId { x: -1, y: -2 },
+        x: -1.5,
+        y: -2.5,
+    };
+    let bits = |p: Point| (p.id, p.x.to_bits(), p.y.to_bits());
+    all_rows(Points(F64 { step: 3.7e-7 }), canary, bits);
+}
+
+/// Slices of different lengths: only what all of them have is written.
+#[test]
+fn rows_end_where_the_shortest_slice_ends() {
+    let format = F32 {
+        step: 3.7e-7,
+        first: [0, 0],
+        last: [1e30; 2],
+    };
+    let example = examples().next().expect("some");
+    let all: Vec<f32> = numbers(3).map(|n| n as f32).take(LONGEST).collect();
+    for backend in Backend::available() {
+        for [columns, displacements, room] in [[5, 40, 70], [70, 33, 8], [40, 70, 17], [16, 15, 32]]
+        {
+            let (columns, dys) = (&all[..columns], &example.displacements[..displacements]);
+            let least = columns.len().min(dys.len()).min(room);
+            let mut expected = vec![[-1.5; 2]; room];
+            emit(&format, example.row, columns, dys, &mut expected);
+            assert!(expected[least..].iter().all(|item| *item == [-1.5; 2]));
+            let mut out = vec![[-1.5; 2]; room];
+            format.fill_row(backend, example.row, columns, dys, &mut out);
+            assert_eq!(out, expected, "{backend:?}");
+        }
+    }
+}
+
+#[test]
+fn hashed_numbers_have_the_same_bits_as_plain_ones() {
+    for length in 0..=LONGEST {
+        let number = |n: u64| (n.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11) as f64;
+        let expected: Vec<f64> = numbers(4).map(number).take(length).collect();
+        let make = |out: &mut [f64]| {
+            hashed::write(numbers(4).map(number), out);
+            out.len()
+        };
+        let note = alloc::format!("{length}");
+        assert_written(-1.5, f64::to_bits, &expected, make, &note);
+        // As attributes are: from an exact-size iterator, which compilers can make vectors of.
+        let keys: Vec<u64> = numbers(5).take(length).collect();
+        let expected: Vec<f64> = keys.iter().copied().map(number).collect();
+        let make = |out: &mut [f64]| {
+            hashed::write(keys.iter().copied().map(number), out);
+            out.len()
+        };
+        assert_written(-1.5, f64::to_bits, &expected, make, &note);
+    }
+}
