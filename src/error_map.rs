@@ -61,6 +61,26 @@ pub const fn http(kind: Kind) -> Problem {
             "no-such-method",
             "The path does not take this method",
         ),
+        Kind::Unauthenticated => (
+            StatusCode::UNAUTHORIZED,
+            "unauthenticated",
+            "A key is needed",
+        ),
+        Kind::NotAllowed => (
+            StatusCode::FORBIDDEN,
+            "not-allowed",
+            "The caller may not do this",
+        ),
+        Kind::TooManyStreams => (
+            StatusCode::TOO_MANY_REQUESTS,
+            "too-many-streams",
+            "Too many answers to this key are under way",
+        ),
+        Kind::TooFast => (
+            StatusCode::TOO_MANY_REQUESTS,
+            "too-fast",
+            "Points are taken too fast",
+        ),
         Kind::Busy => (
             StatusCode::SERVICE_UNAVAILABLE,
             "busy",
@@ -94,17 +114,6 @@ pub const fn http(kind: Kind) -> Problem {
     }
 }
 
-/// How long a client should wait before it asks again, in seconds; `None` if asking again is of no use.
-#[must_use]
-pub const fn retry_after(kind: Kind) -> Option<u64> {
-    match kind {
-        Kind::Busy | Kind::ShuttingDown => Some(1),
-        // It was slow because others ask, too: soon it may be fast.
-        Kind::TimeOver => Some(5),
-        _ => None,
-    }
-}
-
 /// The problem type of a kind of error.
 #[must_use]
 pub fn urn(kind: Kind) -> String {
@@ -119,9 +128,13 @@ pub const fn grpc(kind: Kind) -> Code {
         Kind::TooManyPoints
         | Kind::TooManyRows
         | Kind::BodyTooLarge
+        | Kind::TooManyStreams
+        | Kind::TooFast
         | Kind::Busy
         | Kind::TimeOver => Code::ResourceExhausted,
         Kind::BodyTooSlow => Code::DeadlineExceeded,
+        Kind::Unauthenticated => Code::Unauthenticated,
+        Kind::NotAllowed => Code::PermissionDenied,
         Kind::OtherTable => Code::FailedPrecondition,
         Kind::NoSuchPoint => Code::NotFound,
         Kind::NoSuchPath | Kind::NoSuchMethod => Code::Unimplemented,

@@ -67,7 +67,7 @@ fn routes(service: &Arc<Service>, block_bytes: usize) -> Router {
             "/bench/copied/{bytes}",
             routing::get(move |Path(bytes): Path<usize>| async move {
                 let (service, block) = copied;
-                let permit = service.admit(None).expect("a place");
+                let permit = service.streams().admit().expect("a place");
                 let pool = Pool::<u64>::new(block.len() / size_of::<u64>());
                 let blocks = cut(bytes, block.len()).map(move |n| {
                     let mut buffer = pool.take();

@@ -126,9 +126,15 @@ pub fn terms(headers: &mut http::HeaderMap) -> Result<Option<Deadline>, tonic::S
     Deadline::of(headers)
 }
 
+/// The answer to a call that is not let in, or that cannot be answered at all.
+#[must_use]
+pub fn refusal(error: &Error) -> http::Response<tonic::body::Body> {
+    broken(error).into_http()
+}
+
 /// An error as what a call ends with.
 #[must_use]
-pub fn refusal(error: &Error) -> tonic::Status {
+pub fn broken(error: &Error) -> tonic::Status {
     status::status(error)
 }
 

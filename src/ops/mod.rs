@@ -2,6 +2,7 @@
 //! a bounded stop, the log, tables read again.
 
 mod activity;
+mod admin;
 mod calls;
 pub mod connections;
 pub mod exposure;
@@ -10,9 +11,11 @@ mod gate;
 mod guarded;
 pub mod health;
 mod identity;
+mod load;
 mod metrics;
 mod observe;
 mod often;
+mod panics;
 pub mod reload;
 pub mod serve;
 pub mod shutdown;

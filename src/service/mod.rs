@@ -43,6 +43,7 @@ pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::Workers;
 
+use crate::access::Caller;
 use cache::{CacheState, Samplers};
 use portrait::Portraits;
 use record::Recorded;
@@ -162,21 +163,6 @@ impl Service {
         &self.budget
     }
 
-    /// The right to stream one more answer; a picture is held whole.
-    ///
-    /// # Errors
-    /// As [`Streams::admit`], and [`Error::TooManyBytes`] if there is no room for it.
-    pub fn admit(&self, picture: Option<u32>) -> Result<Permit, Error> {
-        /// Rows and text are made in so much, besides blocks.
-        const ROWS: usize = 2 << 20;
-        let side = picture.map_or(0, |side| usize::try_from(side).unwrap_or(usize::MAX));
-        let blocks = self.limits.block_bytes.saturating_mul(4);
-        let held = blocks
-            .saturating_add(ROWS)
-            .saturating_add(side.saturating_mul(side));
-        self.streams.admit(self.budget.hold(held)?)
-    }
-
     /// Plans a query on the workers, whatever it counts.
     ///
     /// # Errors
@@ -199,13 +185,32 @@ impl Service {
         Ok(planned)
     }
 
+    /// The right of a caller to start one more stream; a picture of that size is held whole.
+    ///
+    /// # Errors
+    /// As [`Streams::admit`], [`Error::Denied`] if the caller has as many as it may have, and
+    /// [`Error::TooManyBytes`] if there is no room.
+    pub fn admit(&self, caller: &Caller, picture: Option<u32>) -> Result<Permit, Error> {
+        /// Rows and text are made in so much, besides blocks.
+        const ROWS: usize = 2 << 20;
+        let side = picture.map_or(0, |side| usize::try_from(side).unwrap_or(usize::MAX));
+        let blocks = self.limits.block_bytes.saturating_mul(4);
+        let held = blocks
+            .saturating_add(ROWS)
+            .saturating_add(side.saturating_mul(side));
+        let place = caller.place()?;
+        let permit = self.streams.admit()?;
+        Ok(permit.with(place, self.budget.hold(held)?))
+    }
+
     /// Plans a query that is to be answered with its points.
     ///
     /// # Errors
     /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
-    pub async fn plan(&self, query: Query) -> Result<Planned, Error> {
+    pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
         let planned = self.count(query).await?;
-        let (count, limit) = (planned.count(), self.limits.max_points);
+        let limit = caller.max_points(self.limits.max_points);
+        let count = planned.count();
         if count > u128::from(limit) {
             return Err(Error::TooManyPoints { count, limit });
         }

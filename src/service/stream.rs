@@ -2,10 +2,10 @@
 //!
 //! The reader asks for a block; the iterator that makes blocks moves to a worker, makes some, and
 //! moves back. A reader that takes its time has one block ready, and nothing happens until it comes
-//! back. One that had to wait gets up to [`MOST_AHEAD`], so that making goes on while blocks are sent,
-//! which is what text needs, several blocks of which are written at once. So a stream holds the same
-//! few blocks whatever its length, a slow reader blocks no thread, and a reader that goes away leaves
-//! at most one block to be finished and thrown away.
+//! back. A fast one has up to [`MOST_AHEAD`]: making goes on while blocks are sent, which is what text
+//! needs, several blocks of which are written at once, and workers are woken for every other block at
+//! most. So a stream holds the same few blocks whatever its length, a slow reader blocks no thread,
+//! and a reader that goes away leaves at most one block to be finished and thrown away.
 
 use std::{
     collections::VecDeque,
@@ -15,12 +15,14 @@ use std::{
         atomic::{AtomicUsize, Ordering},
     },
     task::{Context, Poll, Waker},
+    time::{Duration, Instant},
 };
 
 use futures_util::{FutureExt as _, Stream};
 use tokio_util::sync::{CancellationToken, WaitForCancellationFutureOwned};
 
 use super::{Error, Held, Workers};
+use crate::access::Place;
 
 /// Why a stream broke off: its reader must see that it is not complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -64,12 +66,12 @@ impl Streams {
         self.open.load(Ordering::Acquire)
     }
 
-    /// The right to start one more, which holds so much memory.
+    /// The right to start one more.
     ///
     /// # Errors
     /// [`Error::Busy`] if as many as allowed are under way, [`Error::ShuttingDown`] after
     /// [`stop`](Self::stop).
-    pub fn admit(self: &Arc<Self>, held: Held) -> Result<Permit, Error> {
+    pub fn admit(self: &Arc<Self>) -> Result<Permit, Error> {
         if self.stop.is_cancelled() {
             return Err(Error::ShuttingDown);
         }
@@ -79,7 +81,8 @@ impl Streams {
             .map_err(|_| Error::Busy { limit: self.limit })?;
         Ok(Permit {
             streams: self.clone(),
-            _held: held,
+            _place: None,
+            _held: None,
         })
     }
 
@@ -93,7 +96,19 @@ impl Streams {
 #[derive(Debug)]
 pub struct Permit {
     streams: Arc<Streams>,
-    _held: Held,
+    /// The caller's own place, where it has not any number.
+    _place: Option<Place>,
+    /// What it may hold.
+    _held: Option<Held>,
+}
+
+impl Permit {
+    /// With a place of the caller's and memory that are given back with it.
+    pub(super) fn with(mut self, place: Option<Place>, held: Held) -> Self {
+        self._place = place;
+        self._held = Some(held);
+        self
+    }
 }
 
 impl Drop for Permit {
@@ -111,11 +126,14 @@ struct Maker<I> {
 /// At most so many blocks are made ahead of a reader.
 const MOST_AHEAD: usize = 4;
 
+/// A reader that comes back within this time is fast: blocks are made ahead of it.
+const FAST: Duration = Duration::from_millis(10);
+
 /// What the reader and the worker that makes blocks for it share.
 struct Shared<I: Iterator> {
     /// Blocks that wait to be taken.
     ready: VecDeque<I::Item>,
-    /// How many may wait: more for a reader that had to wait, fewer for one that lets them wait.
+    /// How many may wait.
     ahead: usize,
     /// The maker, while no worker has it.
     maker: Option<Maker<I>>,
@@ -139,6 +157,8 @@ pub struct BlockStream<I: Iterator> {
     shared: Option<Arc<Mutex<Shared<I>>>>,
     workers: Workers,
     stop: Pin<Box<WaitForCancellationFutureOwned>>,
+    /// When the last block was taken.
+    taken: Instant,
 }
 
 impl<I> BlockStream<I>
@@ -150,7 +170,7 @@ where
         let stop = Box::pin(permit.streams.stop.clone().cancelled_owned());
         let shared = Shared {
             ready: VecDeque::new(),
-            ahead: 0,
+            ahead: 1,
             maker: Some(Maker {
                 items,
                 _permit: permit,
@@ -162,6 +182,7 @@ where
             shared: Some(Arc::new(Mutex::new(shared))),
             workers,
             stop,
+            taken: Instant::now(),
         }
     }
 }
@@ -249,12 +270,14 @@ where
                 return Poll::Ready(end.err().map(Err));
             }
             shared.reader = Some(cx.waker().clone());
-            shared.ahead = MOST_AHEAD.min(shared.ahead + 1);
-        } else if shared.maker.is_some() {
-            // All that were wanted have been made already.
-            shared.ahead = 1.max(shared.ahead - 1);
+        } else {
+            let now = Instant::now();
+            let is_fast = now - self.taken < FAST;
+            shared.ahead = if is_fast { MOST_AHEAD } else { 1 };
+            self.taken = now;
         }
-        if shared.ready.len() < shared.ahead
+        // Workers are not woken for each block: that takes about as long as making one.
+        if shared.ready.len() <= shared.ahead / 2
             && let Some(maker) = shared.maker.take()
         {
             let turn = Turn {
@@ -273,11 +296,6 @@ where
 
 #[cfg(test)]
 mod tests {
-    use std::{
-        task::Waker,
-        time::{Duration, Instant},
-    };
-
     use futures_util::StreamExt as _;
 
     use super::*;
@@ -311,15 +329,9 @@ mod tests {
 
     fn stream(numbers: Numbers) -> (BlockStream<Numbers>, Arc<Streams>) {
         let streams = Arc::new(Streams::new(1));
-        let permit = streams.admit(nothing()).expect("the first");
+        let permit = streams.admit().expect("the first");
         let workers = Workers::new(1).expect("threads");
         (BlockStream::new(numbers, permit, workers), streams)
-    }
-
-    fn nothing() -> Held {
-        Arc::new(crate::service::Budget::new(0))
-            .hold(0)
-            .expect("room")
     }
 
     fn until(what: impl Fn() -> bool) {
@@ -335,10 +347,7 @@ mod tests {
         let (numbers, _) = numbers(usize::MAX, 100);
         let (stream, streams) = stream(numbers);
         assert_eq!(streams.open(), 1);
-        assert!(matches!(
-            streams.admit(nothing()),
-            Err(Error::Busy { limit: 1 })
-        ));
+        assert!(matches!(streams.admit(), Err(Error::Busy { limit: 1 })));
         let items: Vec<_> = stream.collect().await;
         assert_eq!(items, (0..100).map(Ok).collect::<Vec<_>>());
         until(|| streams.open() == 0);
@@ -360,36 +369,19 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_reader_that_had_to_wait_gets_more_ahead_but_not_without_end() {
+    async fn a_fast_reader_has_more_ahead_than_one_that_takes_its_time() {
         let (numbers, made) = numbers(usize::MAX, 1000);
         let (mut stream, streams) = stream(numbers);
-        let mut context = Context::from_waker(Waker::noop());
-        // Polls in vain: the only worker is busy.
-        let (hold, held) = std::sync::mpsc::channel::<()>();
-        stream.workers.spawn(move || {
-            let _ = held.recv();
-        });
-        for _ in 0..100 {
-            assert!(stream.poll_next_unpin(&mut context).is_pending());
-        }
-        assert_eq!(made.load(Ordering::SeqCst), 0);
-        drop(hold);
-        until(|| made.load(Ordering::SeqCst) == MOST_AHEAD);
-        // All that may wait does: one that lets them wait has fewer ahead, in the end one.
-        for taken in 1..20 {
+        let minute = Duration::from_secs(60);
+        for taken in 1..50 {
+            let now = Instant::now();
+            let is_fast = taken <= 20;
+            stream.taken = if is_fast { now + minute } else { now - minute };
             stream.next().await.expect("more").expect("whole");
-            until(|| made.load(Ordering::SeqCst) > taken);
-            until(|| {
-                stream
-                    .shared
-                    .as_ref()
-                    .is_some_and(|all| lock(all).maker.is_some())
-            });
+            let least = if is_fast { MOST_AHEAD - 1 } else { 1 };
+            until(|| made.load(Ordering::SeqCst) >= taken + least);
             let ahead = made.load(Ordering::SeqCst) - taken;
-            assert!(
-                ahead <= 1.max(MOST_AHEAD.saturating_sub(taken)),
-                "{ahead} after {taken}"
-            );
+            assert!(ahead <= MOST_AHEAD && (taken < 25 || ahead == 1), "{ahead}");
         }
         drop(stream);
         until(|| streams.open() == 0);
@@ -413,7 +405,7 @@ mod tests {
         let rest: Vec<_> = stream.collect().await;
         assert_eq!(rest, [Err(Interrupted::Shutdown)]);
         until(|| streams.open() == 0);
-        assert!(matches!(streams.admit(nothing()), Err(Error::ShuttingDown)));
+        assert!(matches!(streams.admit(), Err(Error::ShuttingDown)));
     }
 
     #[tokio::test]

@@ -3,7 +3,7 @@
 use std::{
     io::{BufRead as _, BufReader},
     path::{Path, PathBuf},
-    process::{Child, Command, ExitStatus, Stdio},
+    process::{Child, ChildStdout, Command, ExitStatus, Stdio},
     time::{Duration, Instant},
 };
 
@@ -79,6 +79,7 @@ fn warnings<'a>(settings: &[&'a str]) -> Vec<&'a str> {
 /// A running daemon; killed when dropped.
 pub struct Daemon {
     child: Child,
+    output: BufReader<ChildStdout>,
     address: String,
     tables: tempfile::TempDir,
 }
@@ -126,9 +127,8 @@ impl Daemon {
             .spawn()
             .expect("the program runs");
         let mut line = String::new();
-        BufReader::new(child.stdout.take().expect("piped"))
-            .read_line(&mut line)
-            .expect("readable");
+        let mut output = BufReader::new(child.stdout.take().expect("piped"));
+        output.read_line(&mut line).expect("readable");
         let address = line
             .trim()
             .strip_prefix("listening on http")
@@ -139,9 +139,17 @@ impl Daemon {
         };
         Ok(Self {
             child,
+            output,
             address,
             tables,
         })
+    }
+
+    /// The next line on its standard output.
+    pub fn line(&mut self) -> String {
+        let mut line = String::new();
+        self.output.read_line(&mut line).expect("readable");
+        line.trim().to_owned()
     }
 
     /// `host:port`.

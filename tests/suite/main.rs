@@ -1,6 +1,7 @@
 //! The daemon from outside: the real program over real sockets, and the real clients.
 
 mod addresses;
+mod admin;
 mod amounts;
 mod bodies;
 mod caching;
@@ -26,7 +27,9 @@ mod grpc_queries;
 mod grpc_single;
 mod grpc_web;
 mod grpc_wrong;
+mod hardening;
 mod http;
+mod keys;
 mod layers;
 mod limits;
 mod logs;
@@ -34,6 +37,7 @@ mod metrics;
 mod openapi;
 mod pages;
 mod probe;
+mod rates;
 mod raw;
 mod readers;
 mod regions;
