@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::{
     browser::{Browser, looking},
-    daemon::{self, Daemon, until},
+    daemon::{Daemon, until},
 };
 
 /// The points in view, x and y from its middle.
@@ -192,9 +192,7 @@ fn a_server_that_goes_away_is_waited_for() {
         browser.value("document.querySelector('#banner').hidden"),
         false
     );
-    let again = until("the port is free", || {
-        Daemon::launch(&address, daemon::built_in_tables(), &[]).ok()
-    });
+    let again = until("the port is free", || Daemon::built_in_at(&address));
     browser.until("document.documentElement.dataset.presence === 'here'");
     let count = browser.ready();
     assert_eq!(in_view(&browser).len() as u64, count);
