@@ -1,7 +1,7 @@
 //! `/`: the daemon's own page for people, a view of the plane. Its parts are embedded and served
 //! under `/page/`; it loads nothing from elsewhere and asks only what anybody can ask.
 //!
-//! The list of parts stands in [`PARTS`]; a test holds it against the folder.
+//! The list of parts stands in [`PARTS`]; tests/tidy.rs holds it against the folder.
 
 use axum::{extract::Path, response::Response, routing};
 use bytes::Bytes;
@@ -186,31 +186,6 @@ const CROSS_ORIGIN_OPENER_POLICY: HeaderName =
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeSet;
-
-    #[test]
-    fn every_file_of_the_folder_is_a_part_and_every_import_leads_to_one() {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/src/rest/page");
-        let entries = std::fs::read_dir(folder).expect("readable");
-        let files: BTreeSet<String> = entries
-            .map(|entry| entry.expect("readable").file_name())
-            .map(|name| name.to_string_lossy().into_owned())
-            .filter(|name| name != "index.html")
-            .collect();
-        let parts: BTreeSet<String> = PARTS.iter().map(|(name, _)| (*name).into()).collect();
-        assert_eq!(files, parts);
-        for (name, text) in PARTS {
-            assert!(text.lines().count() <= 500, "{name} is too long");
-            for piece in text.split("from \"./").skip(1) {
-                let import = piece.split('"').next().unwrap_or_default();
-                assert!(parts.contains(import), "{name} imports {import}");
-            }
-        }
-        for piece in PAGE.split("\"/page/").skip(1) {
-            let part = piece.split('"').next().unwrap_or_default();
-            assert!(parts.contains(part), "the page names {part}");
-        }
-    }
 
     #[test]
     fn nothing_is_inline_and_nothing_comes_from_elsewhere() {
