@@ -61,6 +61,26 @@ pub const fn http(kind: Kind) -> Problem {
             "no-such-method",
             "The path does not take this method",
         ),
+        Kind::Unauthenticated => (
+            StatusCode::UNAUTHORIZED,
+            "unauthenticated",
+            "A key is needed",
+        ),
+        Kind::NotAllowed => (
+            StatusCode::FORBIDDEN,
+            "not-allowed",
+            "The caller may not do this",
+        ),
+        Kind::TooManyStreams => (
+            StatusCode::TOO_MANY_REQUESTS,
+            "too-many-streams",
+            "Too many answers to this key are under way",
+        ),
+        Kind::TooFast => (
+            StatusCode::TOO_MANY_REQUESTS,
+            "too-fast",
+            "Points are taken too fast",
+        ),
         Kind::Busy => (
             StatusCode::SERVICE_UNAVAILABLE,
             "busy",
@@ -95,9 +115,14 @@ pub fn urn(kind: Kind) -> String {
 pub const fn grpc(kind: Kind) -> Code {
     match kind {
         Kind::Invalid | Kind::NotAcceptable => Code::InvalidArgument,
-        Kind::TooManyPoints | Kind::TooManyRows | Kind::BodyTooLarge | Kind::Busy => {
-            Code::ResourceExhausted
-        }
+        Kind::TooManyPoints
+        | Kind::TooManyRows
+        | Kind::BodyTooLarge
+        | Kind::TooManyStreams
+        | Kind::TooFast
+        | Kind::Busy => Code::ResourceExhausted,
+        Kind::Unauthenticated => Code::Unauthenticated,
+        Kind::NotAllowed => Code::PermissionDenied,
         Kind::OtherTable => Code::FailedPrecondition,
         Kind::NoSuchPoint => Code::NotFound,
         Kind::NoSuchPath | Kind::NoSuchMethod => Code::Unimplemented,

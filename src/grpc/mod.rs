@@ -18,7 +18,7 @@ use std::sync::Arc;
 use tonic::service::Routes;
 use tonic_health::server::HealthReporter;
 
-use crate::service::Service;
+use crate::service::{Error, Service};
 pub use deadline::Deadline;
 use frames::Direct;
 use points::Points;
@@ -122,6 +122,12 @@ impl Health {
 pub fn terms(headers: &mut http::HeaderMap) -> Result<Option<Deadline>, tonic::Status> {
     compression::settle(headers);
     Deadline::of(headers)
+}
+
+/// The answer to a call that is not let in, or that cannot be answered at all.
+#[must_use]
+pub fn refusal(error: &Error) -> http::Response<tonic::body::Body> {
+    status::status(error).into_http()
 }
 
 /// The answer to a method that does not exist.

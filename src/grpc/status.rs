@@ -6,11 +6,12 @@ use tonic::{Code, Status};
 use tonic_types::{ErrorDetails, StatusExt as _};
 
 use crate::{
+    access::Denied,
     error_map,
     service::{Error, Fault, Interrupted, Kind, Record},
 };
 
-/// How long a client should wait before it asks a busy server again.
+/// How long a client should wait before it goes on with a stream that a stopping server broke off.
 const RETRY: Duration = Duration::from_secs(1);
 
 /// An error as a status.
@@ -30,6 +31,7 @@ pub(super) fn status(error: &Error) -> Status {
     let quota = match error {
         Error::TooManyPoints { .. } => Some("limits.max_points"),
         Error::TooManyRows { .. } => Some("limits.max_rows"),
+        Error::Denied(Denied::TooFast { .. }) => Some("rate.points_per_second"),
         _ => None,
     };
     if let Some(subject) = quota {
@@ -38,8 +40,8 @@ pub(super) fn status(error: &Error) -> Status {
     if let Error::OtherTable { pinned, .. } = error {
         details.add_precondition_failure_violation("TABLE", pinned, error.to_string());
     }
-    if matches!(error.kind(), Kind::Busy | Kind::ShuttingDown) {
-        details.set_retry_info(Some(RETRY));
+    if let Some(seconds) = error.retry_seconds() {
+        details.set_retry_info(Some(Duration::from_secs(seconds)));
     }
     Status::with_error_details(error_map::grpc(error.kind()), error.to_string(), details)
 }
@@ -105,6 +107,16 @@ fn facts(error: &Error) -> HashMap<String, String> {
             vec![("rows", rows.to_string()), ("limit", limit.to_string())]
         }
         Error::Busy { limit } => vec![("limit", limit.to_string())],
+        Error::Denied(Denied::TooManyStreams { limit }) => vec![("limit", limit.to_string())],
+        Error::Denied(Denied::TooFast { points, short }) => vec![
+            ("points", points.to_string()),
+            ("left", short.level.left.to_string()),
+            (
+                "points_per_second",
+                short.level.rate.points_per_second.to_string(),
+            ),
+            ("burst_points", short.level.rate.burst_points.to_string()),
+        ],
         Error::OtherTable { pinned, loaded } => {
             vec![("pinned", pinned.clone()), ("loaded", loaded.clone())]
         }

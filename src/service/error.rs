@@ -8,6 +8,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::access::Denied;
+
 /// One thing that is wrong with a query.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fault {
@@ -74,7 +76,7 @@ fn cut(text: &str, most: usize) -> String {
 }
 
 /// Why a question has no answer.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The query is not valid; every fault that was found.
@@ -154,6 +156,9 @@ pub enum Error {
         /// What the path takes.
         allowed: String,
     },
+    /// The caller is not let in, or not now.
+    #[error(transparent)]
+    Denied(#[from] Denied),
     /// As many answers are under way as the server takes on at once.
     #[error("{limit} answers are under way, the most at once: try again later")]
     Busy {
@@ -200,6 +205,14 @@ pub enum Kind {
     NoSuchPath,
     /// [`Error::NoSuchMethod`].
     NoSuchMethod,
+    /// [`Denied::NoKey`], [`Denied::WrongKey`].
+    Unauthenticated,
+    /// [`Denied::NotAdmin`].
+    NotAllowed,
+    /// [`Denied::TooManyStreams`].
+    TooManyStreams,
+    /// [`Denied::TooFast`].
+    TooFast,
     /// [`Error::Busy`], [`Error::TooManyConnections`].
     Busy,
     /// [`Error::ShuttingDown`].
@@ -210,7 +223,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 16] = [
         Self::Invalid,
         Self::TooManyPoints,
         Self::TooManyRows,
@@ -220,6 +233,10 @@ impl Kind {
         Self::NoSuchPoint,
         Self::NoSuchPath,
         Self::NoSuchMethod,
+        Self::Unauthenticated,
+        Self::NotAllowed,
+        Self::TooManyStreams,
+        Self::TooFast,
         Self::Busy,
         Self::ShuttingDown,
         Self::Internal,
@@ -240,9 +257,23 @@ impl Error {
             Self::NoSuchPoint { .. } => Kind::NoSuchPoint,
             Self::NoSuchPath { .. } => Kind::NoSuchPath,
             Self::NoSuchMethod { .. } => Kind::NoSuchMethod,
+            Self::Denied(Denied::NoKey | Denied::WrongKey) => Kind::Unauthenticated,
+            Self::Denied(Denied::NotAdmin { .. }) => Kind::NotAllowed,
+            Self::Denied(Denied::TooManyStreams { .. }) => Kind::TooManyStreams,
+            Self::Denied(Denied::TooFast { .. }) => Kind::TooFast,
             Self::Busy { .. } | Self::TooManyConnections { .. } => Kind::Busy,
             Self::ShuttingDown => Kind::ShuttingDown,
             Self::Internal(_) => Kind::Internal,
+        }
+    }
+
+    /// After how many seconds the same request is worth another try, where that helps.
+    #[must_use]
+    pub fn retry_seconds(&self) -> Option<u64> {
+        match self {
+            Self::Busy { .. } | Self::TooManyConnections { .. } | Self::ShuttingDown => Some(1),
+            Self::Denied(denied) => denied.wait_seconds(),
+            _ => None,
         }
     }
 

@@ -40,6 +40,7 @@ pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::Workers;
 
+use crate::access::Caller;
 use cache::{CacheState, Samplers};
 use portrait::Portraits;
 use record::Recorded;
@@ -167,13 +168,23 @@ impl Service {
         Ok(planned)
     }
 
+    /// The right of a caller to start one more stream.
+    ///
+    /// # Errors
+    /// As [`Streams::admit`], and [`Error::Denied`] if the caller has as many as it may have.
+    pub fn admit(&self, caller: &Caller) -> Result<Permit, Error> {
+        let place = caller.place()?;
+        Ok(self.streams.admit()?.with(place))
+    }
+
     /// Plans a query that is to be answered with its points.
     ///
     /// # Errors
     /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
-    pub async fn plan(&self, query: Query) -> Result<Planned, Error> {
+    pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
         let planned = self.count(query).await?;
-        let (count, limit) = (planned.count(), self.limits.max_points);
+        let limit = caller.max_points(self.limits.max_points);
+        let count = planned.count();
         if count > u128::from(limit) {
             return Err(Error::TooManyPoints { count, limit });
         }

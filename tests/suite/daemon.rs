@@ -3,7 +3,7 @@
 use std::{
     io::{BufRead as _, BufReader},
     path::{Path, PathBuf},
-    process::{Child, Command, ExitStatus, Stdio},
+    process::{Child, ChildStdout, Command, ExitStatus, Stdio},
     time::{Duration, Instant},
 };
 
@@ -74,6 +74,7 @@ pub fn write(folder: &Path, name: &str, table: &Table) {
 /// A running daemon; killed when dropped.
 pub struct Daemon {
     child: Child,
+    output: BufReader<ChildStdout>,
     address: String,
     tables: tempfile::TempDir,
 }
@@ -86,9 +87,20 @@ impl Daemon {
 
     /// Starts one on a free port with a folder of tables and further settings.
     pub fn with_tables(tables: tempfile::TempDir, settings: &[&str]) -> Self {
+        Self::launch("127.0.0.1:0", tables, settings)
+            .unwrap_or_else(|line| panic!("not ready: {line}"))
+    }
+
+    /// Starts one with the test tables at an address, if that is free.
+    pub fn at(address: &str) -> Option<Self> {
+        Self::launch(address, tables(), &[]).ok()
+    }
+
+    /// Starts one; gives what it said instead if it is not ready.
+    fn launch(listen: &str, tables: tempfile::TempDir, settings: &[&str]) -> Result<Self, String> {
         let mut command = strew();
         command
-            .args(["serve", "--listen", "127.0.0.1:0", "--tables"])
+            .args(["serve", "--listen", listen, "--tables"])
             .arg(tables.path());
         for setting in settings {
             command.args(["--set", setting]);
@@ -99,20 +111,29 @@ impl Daemon {
             .spawn()
             .expect("the program runs");
         let mut line = String::new();
-        BufReader::new(child.stdout.take().expect("piped"))
-            .read_line(&mut line)
-            .expect("readable");
+        let mut output = BufReader::new(child.stdout.take().expect("piped"));
+        output.read_line(&mut line).expect("readable");
         let address = line
             .trim()
             .strip_prefix("listening on http")
-            .map(|rest| rest.trim_start_matches('s').trim_start_matches("://"))
-            .unwrap_or_else(|| panic!("not ready: {line}"))
-            .to_owned();
-        Self {
+            .map(|rest| rest.trim_start_matches('s').trim_start_matches("://"));
+        let Some(address) = address.map(ToOwned::to_owned) else {
+            let _ = child.wait();
+            return Err(line);
+        };
+        Ok(Self {
             child,
+            output,
             address,
             tables,
-        }
+        })
+    }
+
+    /// The next line on its standard output.
+    pub fn line(&mut self) -> String {
+        let mut line = String::new();
+        self.output.read_line(&mut line).expect("readable");
+        line.trim().to_owned()
     }
 
     /// `host:port`.

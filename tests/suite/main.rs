@@ -1,6 +1,7 @@
 //! The daemon from outside: the real program over real sockets, and the real clients.
 
 mod addresses;
+mod admin;
 mod amounts;
 mod bodies;
 mod caching;
@@ -12,6 +13,7 @@ mod commands_wrong;
 mod connections;
 mod contract;
 mod daemon;
+mod deploy;
 mod documented;
 mod drain;
 mod forge;
@@ -23,7 +25,9 @@ mod grpc_queries;
 mod grpc_single;
 mod grpc_web;
 mod grpc_wrong;
+mod hardening;
 mod http;
+mod keys;
 mod layers;
 mod limits;
 mod logs;
@@ -31,10 +35,12 @@ mod metrics;
 mod openapi;
 mod pages;
 mod probe;
+mod rates;
 mod raw;
 mod readers;
 mod regions;
 mod reload;
+mod replicas;
 mod settings;
 mod singles;
 mod streaming;

@@ -19,6 +19,9 @@ const ABOUT: &str = "Strew scatters points: any region of an unbounded plane, at
 /// The problems that any request can have.
 const EVERYWHERE: [Kind; 2] = [Kind::NoSuchMethod, Kind::Internal];
 
+/// Those of a request that is not let in.
+const AT_THE_GATE: [Kind; 2] = [Kind::Unauthenticated, Kind::TooFast];
+
 /// The document.
 pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
     let mut paths = Map::new();
@@ -26,7 +29,7 @@ pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
         let mut item = Map::new();
         for operation in endpoint.operations() {
             let method = operation.method.as_str().to_lowercase();
-            item.insert(method, described(operation));
+            item.insert(method, described(operation, endpoint.is_open()));
         }
         paths.insert(endpoint.path().into(), Value::Object(item));
     }
@@ -40,11 +43,19 @@ pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
         },
         "servers": [{ "url": "/" }],
         "paths": paths,
-        "components": { "schemas": schemas::shared() },
+        // Whether a key is needed is a setting of the server.
+        "security": [{}, { "bearer": [] }, { "header": [] }],
+        "components": {
+            "schemas": schemas::shared(),
+            "securitySchemes": {
+                "bearer": { "type": "http", "scheme": "bearer" },
+                "header": { "type": "apiKey", "in": "header", "name": "x-api-key" },
+            },
+        },
     })
 }
 
-fn described(operation: &Operation) -> Value {
+fn described(operation: &Operation, is_open: bool) -> Value {
     let in_path = operation.path_parameters.iter().map(|parameter| Given {
         parameter,
         required: true,
@@ -59,6 +70,9 @@ fn described(operation: &Operation) -> Value {
     }
     let mut problems: Vec<Kind> = operation.problems.clone();
     problems.extend(EVERYWHERE);
+    if !is_open {
+        problems.extend(AT_THE_GATE);
+    }
     for (status, response) in refused(&problems) {
         // A status may be shared with an answer that is not a problem; that one is told.
         responses.entry(status).or_insert(response);
@@ -71,6 +85,9 @@ fn described(operation: &Operation) -> Value {
         "responses": responses,
         "x-curl": operation.example,
     });
+    if is_open {
+        told["security"] = json!([]);
+    }
     if let Some(body) = &operation.body {
         told["requestBody"] = json!({
             "required": true,
