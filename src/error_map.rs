@@ -84,7 +84,17 @@ pub const fn http(kind: Kind) -> Problem {
         Kind::Busy => (
             StatusCode::SERVICE_UNAVAILABLE,
             "busy",
-            "Too many answers are under way",
+            "The server has as much to do as it takes on",
+        ),
+        Kind::BodyTooSlow => (
+            StatusCode::REQUEST_TIMEOUT,
+            "body-too-slow",
+            "The query took too long to come",
+        ),
+        Kind::TimeOver => (
+            StatusCode::SERVICE_UNAVAILABLE,
+            "time-over",
+            "The answer took too long",
         ),
         Kind::ShuttingDown => (
             StatusCode::SERVICE_UNAVAILABLE,
@@ -120,7 +130,9 @@ pub const fn grpc(kind: Kind) -> Code {
         | Kind::BodyTooLarge
         | Kind::TooManyStreams
         | Kind::TooFast
-        | Kind::Busy => Code::ResourceExhausted,
+        | Kind::Busy
+        | Kind::TimeOver => Code::ResourceExhausted,
+        Kind::BodyTooSlow => Code::DeadlineExceeded,
         Kind::Unauthenticated => Code::Unauthenticated,
         Kind::NotAllowed => Code::PermissionDenied,
         Kind::OtherTable => Code::FailedPrecondition,

@@ -76,6 +76,12 @@ pub struct Server {
     pub http2_keepalive_seconds: f64,
     /// How long an HTTP/2 connection may be without a request, in seconds.
     pub idle_connection_seconds: f64,
+    /// How long the body of a request may take, in seconds.
+    pub body_read_timeout_seconds: f64,
+    /// How long the head of an answer may take once its request is there, in seconds.
+    pub first_byte_seconds: f64,
+    /// How long an answer may take in all, in seconds.
+    pub max_stream_seconds: f64,
     /// How long a reader may take nothing of what waits for it, in seconds.
     pub stalled_reader_seconds: f64,
 }

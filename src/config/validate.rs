@@ -69,6 +69,24 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         0.1 * second,
         day,
     );
+    within(
+        "server.body_read_timeout_seconds",
+        server.body_read_timeout_seconds,
+        0.1 * second,
+        hour,
+    );
+    within(
+        "server.first_byte_seconds",
+        server.first_byte_seconds,
+        0.1 * second,
+        hour,
+    );
+    within(
+        "server.max_stream_seconds",
+        server.max_stream_seconds,
+        0.1 * second,
+        365.0 * day,
+    );
     within("tls.watch_seconds", tls.watch_seconds, 0.0, day);
     within(
         "http.cache_seconds",
@@ -88,6 +106,15 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         limits.max_body_bytes as f64,
         1024.0,
         f64::from(1 << 30),
+    );
+    within("limits.max_requests", limits.max_requests as f64, 1.0, 1e6);
+    // At least one answer and one query of the largest size fit.
+    let one = 4 * limits.block_bytes + (19 << 20) + limits.max_body_bytes;
+    within(
+        "limits.max_bytes_in_flight",
+        limits.max_bytes_in_flight as f64,
+        one as f64,
+        1e15,
     );
     within("limits.max_streams", limits.max_streams as f64, 1.0, 1e6);
     // gRPC clients refuse messages above 4 MiB, and ours stay below 1 MiB.

@@ -44,7 +44,7 @@ impl Points {
         is_compressed: bool,
     ) -> Result<Response<MessageStream>, Error> {
         let (query, encoding) = query::query(request, &self.service)?;
-        let permit = self.service.admit(caller)?;
+        let permit = self.service.admit(caller, None)?;
         let planned = self.service.plan(caller, query).await?;
         caller.charge(planned.count())?;
         let block_bytes = self.service.limits().block_bytes;
@@ -84,8 +84,7 @@ impl Points {
         let (query, _) = query::query(request, &self.service)?;
         let planned = self.service.count(query).await?;
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
-        let places = move || planned.split(parts);
-        let places = self.service.workers().run(places).await??;
+        let places = self.service.split(planned, parts).await?;
         let part = |place| split::part(request, place);
         Ok(SplitPointsResponse {
             count,

@@ -11,7 +11,7 @@ use crate::{
     service::{Error, Fault, Interrupted, Kind, Record},
 };
 
-/// How long a client should wait before it goes on with a stream that a stopping server broke off.
+/// How long a client should wait before it goes on with a stream that the server broke off.
 const RETRY: Duration = Duration::from_secs(1);
 
 /// An error as a status.
@@ -63,10 +63,11 @@ pub(super) fn interrupted(why: Interrupted) -> Status {
     let kind = match why {
         Interrupted::Shutdown => Kind::ShuttingDown,
         Interrupted::Failed => Kind::Internal,
+        Interrupted::Stalled | Interrupted::TimeOver => Kind::TimeOver,
     };
     let mut details = ErrorDetails::new();
     details.set_error_info(reason(kind), DOMAIN, HashMap::new());
-    if kind == Kind::ShuttingDown {
+    if kind != Kind::Internal {
         details.set_retry_info(Some(RETRY));
     }
     Status::with_error_details(error_map::grpc(kind), why.to_string(), details)
@@ -106,8 +107,10 @@ fn facts(error: &Error) -> HashMap<String, String> {
         Error::TooManyRows { rows, limit } => {
             vec![("rows", rows.to_string()), ("limit", limit.to_string())]
         }
-        Error::Busy { limit } => vec![("limit", limit.to_string())],
-        Error::Denied(Denied::TooManyStreams { limit }) => vec![("limit", limit.to_string())],
+        Error::Busy { limit }
+        | Error::TooManyRequests { limit }
+        | Error::TooManyBytes { limit }
+        | Error::Denied(Denied::TooManyStreams { limit }) => vec![("limit", limit.to_string())],
         Error::Denied(Denied::TooFast { points, short }) => vec![
             ("points", points.to_string()),
             ("left", short.level.left.to_string()),

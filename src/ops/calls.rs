@@ -12,13 +12,23 @@ use axum::{
 use http::{HeaderMap, Version, header};
 use tonic_web::GrpcWebLayer;
 
-use super::{gate, observe};
+use super::{
+    gate,
+    load::{Load, Words},
+    observe,
+};
 use crate::{access::Gate, grpc, rest};
 
 /// The routes of gRPC, for all who can call them and are let in. (The last layer is the first to see a
 /// request.)
-pub(super) fn routes(grpc: Router, gate: Arc<Gate>) -> Router {
-    grpc.layer(middleware::from_fn_with_state(gate, gate::of_calls))
+pub(super) fn routes(grpc: Router, gate: Arc<Gate>, load: &Load) -> Router {
+    let words = Words {
+        refusal: |error| grpc::refusal(error).map(Body::new),
+        broken: |error| grpc::broken(&error).into(),
+        ending: |why| Some(Ok(grpc::ending(why)?)),
+    };
+    load.before(grpc, words)
+        .layer(middleware::from_fn_with_state(gate, gate::of_calls))
         .layer(middleware::from_fn(on_terms))
         .layer(GrpcWebLayer::new())
         .layer(middleware::from_fn(only_calls))

@@ -11,6 +11,7 @@ mod gate;
 mod guarded;
 pub mod health;
 mod identity;
+mod load;
 mod metrics;
 mod observe;
 mod often;
@@ -19,6 +20,7 @@ pub mod reload;
 pub mod serve;
 pub mod shutdown;
 pub mod telemetry;
+mod timed;
 pub mod tls;
 
 pub use connections::Peer;

@@ -2,7 +2,13 @@
 
 use std::{io, net::TcpListener, sync::Arc, time::Duration};
 
-use axum::{Router, body::Body, extract::Request, middleware, response::Response};
+use axum::{
+    Router,
+    body::Body,
+    extract::Request,
+    middleware,
+    response::{IntoResponse as _, Response},
+};
 use tokio_util::task::AbortOnDropHandle;
 
 use super::{
@@ -10,6 +16,7 @@ use super::{
     connections::Connections,
     gate,
     health::{self, Readiness},
+    load::{Load, Words},
     metrics::{self, Metrics},
     observe, panics,
     reload::Reloader,
@@ -144,9 +151,15 @@ impl App {
         let readiness = Readiness::default();
         let (router, grpc_health) = self.router(readiness.clone()).await?;
         let listener = asynchronous(listener)?;
-        if let Some(tls) = self.tls.clone() {
-            tokio::spawn(tls.keep_fresh(Hangups::new()?));
-        }
+        let _fresh = match self.tls.clone() {
+            Some(tls) => {
+                let hangups = Hangups::new()?;
+                Some(AbortOnDropHandle::new(tokio::spawn(
+                    tls.keep_fresh(hangups),
+                )))
+            }
+            None => None,
+        };
         let admins = Connections::new(&self.config.server, self.tls.clone());
         if let Some(listener) = self.admin.take() {
             let (listener, router) = (
@@ -213,14 +226,23 @@ impl App {
             endpoints.push(self.metrics_endpoint());
             tokio::spawn(self.metrics.clone().keep_up());
         }
-        let gate = self.gate.clone();
-        let behind_gate =
-            move |router: Router| router.layer(middleware::from_fn_with_state(gate, gate::of_rest));
+        let load = Load::new(&self.config, &self.service);
+        let words = Words {
+            refusal: |error| error.clone().into_response(),
+            broken: |error| Box::new(error),
+            ending: |why| Some(Err(axum::Error::new(why))),
+        };
+        // Who may not ask at all takes nobody's place.
+        let (gate, bounds) = (self.gate.clone(), load.clone());
+        let behind_gate = move |router: Router| {
+            let router = bounds.before(router, words);
+            router.layer(middleware::from_fn_with_state(gate, gate::of_rest))
+        };
         let rest::Door { router, paths } = rest::Door::new(endpoints, behind_gate);
         let calls = grpc.into_axum_router().reset_fallback();
         let router = router
-            .merge(calls::routes(calls, self.gate.clone()))
-            .merge(self.more.clone())
+            .merge(calls::routes(calls, self.gate.clone(), &load))
+            .merge(load.before(self.more.clone(), words))
             .fallback(move |request| nothing_here(request, paths));
         Ok((self.finished(router), grpc_health))
     }

@@ -78,7 +78,6 @@ pub(super) fn problems() -> Vec<Kind> {
         Kind::TooManyPoints,
         Kind::TooManyRows,
         Kind::TooManyStreams,
-        Kind::Busy,
         Kind::ShuttingDown,
     ]
 }
@@ -122,7 +121,9 @@ pub(super) async fn stream(
         return Ok(unchanged);
     }
     let is_head = *method == Method::HEAD;
-    let permit = (!is_head).then(|| service.admit(caller)).transpose()?;
+    let picture = chosen.encoding.is_picture().then_some(output.size);
+    let permit = (!is_head).then(|| service.admit(caller, picture));
+    let permit = permit.transpose()?;
     let planned = service.plan(caller, query).await?;
     if let Some(unwanted) = freshness.as_ref().and_then(|it| it.unwanted(headers)) {
         return Ok(unwanted);

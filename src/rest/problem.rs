@@ -72,6 +72,8 @@ impl<'a> Problem<'a> {
             Error::BodyTooLarge { limit }
             | Error::Busy { limit }
             | Error::TooManyConnections { limit }
+            | Error::TooManyRequests { limit }
+            | Error::TooManyBytes { limit }
             | Error::Denied(Denied::TooManyStreams { limit }) => (None, u64::try_from(*limit).ok()),
             _ => (None, None),
         };

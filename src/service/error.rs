@@ -171,6 +171,32 @@ pub enum Error {
         /// The limit.
         limit: usize,
     },
+    /// As many requests are being answered as the server takes on at once.
+    #[error("{limit} requests are being answered, the most at once: try again later")]
+    TooManyRequests {
+        /// The limit.
+        limit: usize,
+    },
+    /// Requests and answers hold as much memory as they may.
+    #[error("requests and answers hold {limit} bytes, the most at once: try again later")]
+    TooManyBytes {
+        /// The limit.
+        limit: usize,
+    },
+    /// The body took longer to come than it may.
+    #[error("the body did not come within {seconds} seconds")]
+    BodyTooSlow {
+        /// The limit.
+        seconds: String,
+    },
+    /// The answer took longer than it may.
+    #[error(
+        "no answer was found within {seconds} seconds: try again later, or ask for a smaller region"
+    )]
+    TimeOver {
+        /// The limit.
+        seconds: String,
+    },
     /// The server is about to stop.
     #[error("the server is shutting down: try again later, or elsewhere")]
     ShuttingDown,
@@ -213,8 +239,13 @@ pub enum Kind {
     TooManyStreams,
     /// [`Denied::TooFast`].
     TooFast,
-    /// [`Error::Busy`], [`Error::TooManyConnections`].
+    /// [`Error::Busy`], [`Error::TooManyConnections`], [`Error::TooManyRequests`],
+    /// [`Error::TooManyBytes`].
     Busy,
+    /// [`Error::BodyTooSlow`].
+    BodyTooSlow,
+    /// [`Error::TimeOver`].
+    TimeOver,
     /// [`Error::ShuttingDown`].
     ShuttingDown,
     /// [`Error::Internal`].
@@ -223,7 +254,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 18] = [
         Self::Invalid,
         Self::TooManyPoints,
         Self::TooManyRows,
@@ -238,6 +269,8 @@ impl Kind {
         Self::TooManyStreams,
         Self::TooFast,
         Self::Busy,
+        Self::BodyTooSlow,
+        Self::TimeOver,
         Self::ShuttingDown,
         Self::Internal,
     ];
@@ -261,7 +294,12 @@ impl Error {
             Self::Denied(Denied::NotAdmin { .. }) => Kind::NotAllowed,
             Self::Denied(Denied::TooManyStreams { .. }) => Kind::TooManyStreams,
             Self::Denied(Denied::TooFast { .. }) => Kind::TooFast,
-            Self::Busy { .. } | Self::TooManyConnections { .. } => Kind::Busy,
+            Self::Busy { .. }
+            | Self::TooManyConnections { .. }
+            | Self::TooManyRequests { .. }
+            | Self::TooManyBytes { .. } => Kind::Busy,
+            Self::BodyTooSlow { .. } => Kind::BodyTooSlow,
+            Self::TimeOver { .. } => Kind::TimeOver,
             Self::ShuttingDown => Kind::ShuttingDown,
             Self::Internal(_) => Kind::Internal,
         }
@@ -271,9 +309,11 @@ impl Error {
     #[must_use]
     pub fn retry_seconds(&self) -> Option<u64> {
         match self {
-            Self::Busy { .. } | Self::TooManyConnections { .. } | Self::ShuttingDown => Some(1),
+            Self::ShuttingDown => Some(1),
+            // It was slow because others ask, too: soon it may be fast.
+            Self::TimeOver { .. } => Some(5),
             Self::Denied(denied) => denied.wait_seconds(),
-            _ => None,
+            _ => (self.kind() == Kind::Busy).then_some(1),
         }
     }
 

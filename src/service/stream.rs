@@ -21,7 +21,7 @@ use std::{
 use futures_util::{FutureExt as _, Stream};
 use tokio_util::sync::{CancellationToken, WaitForCancellationFutureOwned};
 
-use super::{Error, Workers};
+use super::{Error, Held, Workers};
 use crate::access::Place;
 
 /// Why a stream broke off: its reader must see that it is not complete.
@@ -30,6 +30,12 @@ pub enum Interrupted {
     /// The server stops and will not wait longer.
     #[error("the server is shutting down; the stream is not complete")]
     Shutdown,
+    /// The reader took nothing for too long.
+    #[error("nothing was taken of it for too long; the stream is not complete")]
+    Stalled,
+    /// It took longer than streams may.
+    #[error("the time for it is over; the stream is not complete: go on with a cursor")]
+    TimeOver,
     /// Making a block failed.
     #[error("an internal error; the stream is not complete")]
     Failed,
@@ -76,6 +82,7 @@ impl Streams {
         Ok(Permit {
             streams: self.clone(),
             _place: None,
+            _held: None,
         })
     }
 
@@ -91,12 +98,15 @@ pub struct Permit {
     streams: Arc<Streams>,
     /// The caller's own place, where it has not any number.
     _place: Option<Place>,
+    /// What it may hold.
+    _held: Option<Held>,
 }
 
 impl Permit {
-    /// With a place of the caller's that is given back with it.
-    pub(super) fn with(mut self, place: Option<Place>) -> Self {
+    /// With a place of the caller's and memory that are given back with it.
+    pub(super) fn with(mut self, place: Option<Place>, held: Held) -> Self {
         self._place = place;
+        self._held = Some(held);
         self
     }
 }
@@ -116,8 +126,12 @@ struct Maker<I> {
 /// At most so many blocks are made ahead of a reader.
 const MOST_AHEAD: usize = 4;
 
-/// A reader that comes back within this time is fast: blocks are made ahead of it.
-const FAST: Duration = Duration::from_millis(10);
+/// A reader that comes back within this time is quick.
+const QUICK: Duration = Duration::from_millis(10);
+
+/// A reader is fast once it was quick so often: not yet while it fills the buffers of its socket, a
+/// few megabytes, nor when a slow one empties a part of them at once.
+const OFTEN: u32 = 32;
 
 /// What the reader and the worker that makes blocks for it share.
 struct Shared<I: Iterator> {
@@ -149,6 +163,8 @@ pub struct BlockStream<I: Iterator> {
     stop: Pin<Box<WaitForCancellationFutureOwned>>,
     /// When the last block was taken.
     taken: Instant,
+    /// How often the reader was quick; halved when it was not.
+    quick: u32,
 }
 
 impl<I> BlockStream<I>
@@ -173,6 +189,7 @@ where
             workers,
             stop,
             taken: Instant::now(),
+            quick: 0,
         }
     }
 }
@@ -262,7 +279,12 @@ where
             shared.reader = Some(cx.waker().clone());
         } else {
             let now = Instant::now();
-            let is_fast = now - self.taken < FAST;
+            self.quick = if now - self.taken < QUICK {
+                (self.quick + 1).min(2 * OFTEN)
+            } else {
+                self.quick / 2
+            };
+            let is_fast = self.quick >= OFTEN;
             shared.ahead = if is_fast { MOST_AHEAD } else { 1 };
             self.taken = now;
         }
@@ -363,15 +385,24 @@ mod tests {
         let (numbers, made) = numbers(usize::MAX, 1000);
         let (mut stream, streams) = stream(numbers);
         let minute = Duration::from_secs(60);
-        for taken in 1..50 {
+        for taken in 1..100 {
             let now = Instant::now();
-            let is_fast = taken <= 20;
-            stream.taken = if is_fast { now + minute } else { now - minute };
+            stream.taken = if taken <= 70 {
+                now + minute
+            } else {
+                now - minute
+            };
             stream.next().await.expect("more").expect("whole");
+            let is_fast = (OFTEN as usize..=70).contains(&taken);
             let least = if is_fast { MOST_AHEAD - 1 } else { 1 };
             until(|| made.load(Ordering::SeqCst) >= taken + least);
             let ahead = made.load(Ordering::SeqCst) - taken;
-            assert!(ahead <= MOST_AHEAD && (taken < 25 || ahead == 1), "{ahead}");
+            let most = if (OFTEN as usize..80).contains(&taken) {
+                MOST_AHEAD
+            } else {
+                1
+            };
+            assert!(ahead <= most, "{ahead} after {taken}");
         }
         drop(stream);
         until(|| streams.open() == 0);

@@ -17,7 +17,12 @@ const ABOUT: &str = "Strew scatters points: any region of an unbounded plane, at
                      if the client accepts it.";
 
 /// The problems that any request can have.
-const EVERYWHERE: [Kind; 2] = [Kind::NoSuchMethod, Kind::Internal];
+const EVERYWHERE: [Kind; 4] = [
+    Kind::NoSuchMethod,
+    Kind::Busy,
+    Kind::TimeOver,
+    Kind::Internal,
+];
 
 /// Those of a request that is not let in.
 const AT_THE_GATE: [Kind; 2] = [Kind::Unauthenticated, Kind::TooFast];
@@ -70,6 +75,7 @@ fn described(operation: &Operation, is_open: bool) -> Value {
     }
     let mut problems: Vec<Kind> = operation.problems.clone();
     problems.extend(EVERYWHERE);
+    problems.extend(operation.body.is_some().then_some(Kind::BodyTooSlow));
     if !is_open {
         problems.extend(AT_THE_GATE);
     }
