@@ -23,7 +23,7 @@ const SLOW: &[u8] =
     br#"{"region": {"circle": {"center": [0, 0], "radius": 1e8}}, "spacing": 1, "profile": "test"}"#;
 
 /// How many files the daemon has open.
-fn files(daemon: &Daemon) -> usize {
+pub fn files(daemon: &Daemon) -> usize {
     let folder = format!("/proc/{}/fd", daemon.pid());
     std::fs::read_dir(Path::new(&folder))
         .expect("Linux")
