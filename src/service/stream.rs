@@ -2,10 +2,10 @@
 //!
 //! The reader asks for a block; the iterator that makes blocks moves to a worker, makes some, and
 //! moves back. A reader that takes its time has one block ready, and nothing happens until it comes
-//! back. One that had to wait gets up to [`MOST_AHEAD`], so that making goes on while blocks are sent,
-//! which is what text needs, several blocks of which are written at once. So a stream holds the same
-//! few blocks whatever its length, a slow reader blocks no thread, and a reader that goes away leaves
-//! at most one block to be finished and thrown away.
+//! back. A fast one has up to [`MOST_AHEAD`]: making goes on while blocks are sent, which is what text
+//! needs, several blocks of which are written at once, and workers are woken for every other block at
+//! most. So a stream holds the same few blocks whatever its length, a slow reader blocks no thread,
+//! and a reader that goes away leaves at most one block to be finished and thrown away.
 
 use std::{
     collections::VecDeque,
@@ -15,6 +15,7 @@ use std::{
         atomic::{AtomicUsize, Ordering},
     },
     task::{Context, Poll, Waker},
+    time::{Duration, Instant},
 };
 
 use futures_util::{FutureExt as _, Stream};
@@ -103,11 +104,14 @@ struct Maker<I> {
 /// At most so many blocks are made ahead of a reader.
 const MOST_AHEAD: usize = 4;
 
+/// A reader that comes back within this time is fast: blocks are made ahead of it.
+const FAST: Duration = Duration::from_millis(10);
+
 /// What the reader and the worker that makes blocks for it share.
 struct Shared<I: Iterator> {
     /// Blocks that wait to be taken.
     ready: VecDeque<I::Item>,
-    /// How many may wait: more for a reader that had to wait, fewer for one that lets them wait.
+    /// How many may wait.
     ahead: usize,
     /// The maker, while no worker has it.
     maker: Option<Maker<I>>,
@@ -131,6 +135,8 @@ pub struct BlockStream<I: Iterator> {
     shared: Option<Arc<Mutex<Shared<I>>>>,
     workers: Workers,
     stop: Pin<Box<WaitForCancellationFutureOwned>>,
+    /// When the last block was taken.
+    taken: Instant,
 }
 
 impl<I> BlockStream<I>
@@ -142,7 +148,7 @@ where
         let stop = Box::pin(permit.streams.stop.clone().cancelled_owned());
         let shared = Shared {
             ready: VecDeque::new(),
-            ahead: 0,
+            ahead: 1,
             maker: Some(Maker {
                 items,
                 _permit: permit,
@@ -154,6 +160,7 @@ where
             shared: Some(Arc::new(Mutex::new(shared))),
             workers,
             stop,
+            taken: Instant::now(),
         }
     }
 }
@@ -241,12 +248,14 @@ where
                 return Poll::Ready(end.err().map(Err));
             }
             shared.reader = Some(cx.waker().clone());
-            shared.ahead = MOST_AHEAD.min(shared.ahead + 1);
-        } else if shared.maker.is_some() {
-            // All that were wanted have been made already.
-            shared.ahead = 1.max(shared.ahead - 1);
+        } else {
+            let now = Instant::now();
+            let is_fast = now - self.taken < FAST;
+            shared.ahead = if is_fast { MOST_AHEAD } else { 1 };
+            self.taken = now;
         }
-        if shared.ready.len() < shared.ahead
+        // Workers are not woken for each block: that takes about as long as making one.
+        if shared.ready.len() <= shared.ahead / 2
             && let Some(maker) = shared.maker.take()
         {
             let turn = Turn {
@@ -265,11 +274,6 @@ where
 
 #[cfg(test)]
 mod tests {
-    use std::{
-        task::Waker,
-        time::{Duration, Instant},
-    };
-
     use futures_util::StreamExt as _;
 
     use super::*;
@@ -343,36 +347,19 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_reader_that_had_to_wait_gets_more_ahead_but_not_without_end() {
+    async fn a_fast_reader_has_more_ahead_than_one_that_takes_its_time() {
         let (numbers, made) = numbers(usize::MAX, 1000);
         let (mut stream, streams) = stream(numbers);
-        let mut context = Context::from_waker(Waker::noop());
-        // Polls in vain: the only worker is busy.
-        let (hold, held) = std::sync::mpsc::channel::<()>();
-        stream.workers.spawn(move || {
-            let _ = held.recv();
-        });
-        for _ in 0..100 {
-            assert!(stream.poll_next_unpin(&mut context).is_pending());
-        }
-        assert_eq!(made.load(Ordering::SeqCst), 0);
-        drop(hold);
-        until(|| made.load(Ordering::SeqCst) == MOST_AHEAD);
-        // All that may wait does: one that lets them wait has fewer ahead, in the end one.
-        for taken in 1..20 {
+        let minute = Duration::from_secs(60);
+        for taken in 1..50 {
+            let now = Instant::now();
+            let is_fast = taken <= 20;
+            stream.taken = if is_fast { now + minute } else { now - minute };
             stream.next().await.expect("more").expect("whole");
-            until(|| made.load(Ordering::SeqCst) > taken);
-            until(|| {
-                stream
-                    .shared
-                    .as_ref()
-                    .is_some_and(|all| lock(all).maker.is_some())
-            });
+            let least = if is_fast { MOST_AHEAD - 1 } else { 1 };
+            until(|| made.load(Ordering::SeqCst) >= taken + least);
             let ahead = made.load(Ordering::SeqCst) - taken;
-            assert!(
-                ahead <= 1.max(MOST_AHEAD.saturating_sub(taken)),
-                "{ahead} after {taken}"
-            );
+            assert!(ahead <= MOST_AHEAD && (taken < 25 || ahead == 1), "{ahead}");
         }
         drop(stream);
         until(|| streams.open() == 0);

@@ -18,8 +18,8 @@ pub struct Pool<T> {
     length: usize,
 }
 
-/// More free buffers than this are not kept: one is being filled, some wait, some are being sent.
-const KEPT: usize = 6;
+/// More free buffers than this are not kept: so many come back between two turns of making.
+const KEPT: usize = 3;
 
 impl<T: Default + Clone + NoUninit + Send + 'static> Pool<T> {
     /// A pool of buffers of `length` items.
