@@ -61,10 +61,40 @@ pub const fn http(kind: Kind) -> Problem {
             "no-such-method",
             "The path does not take this method",
         ),
+        Kind::Unauthenticated => (
+            StatusCode::UNAUTHORIZED,
+            "unauthenticated",
+            "A key is needed",
+        ),
+        Kind::NotAllowed => (
+            StatusCode::FORBIDDEN,
+            "not-allowed",
+            "The caller may not do this",
+        ),
+        Kind::TooManyStreams => (
+            StatusCode::TOO_MANY_REQUESTS,
+            "too-many-streams",
+            "Too many answers to this key are under way",
+        ),
+        Kind::TooFast => (
+            StatusCode::TOO_MANY_REQUESTS,
+            "too-fast",
+            "Points are taken too fast",
+        ),
         Kind::Busy => (
             StatusCode::SERVICE_UNAVAILABLE,
             "busy",
-            "Too many answers are under way",
+            "The server has as much to do as it takes on",
+        ),
+        Kind::BodyTooSlow => (
+            StatusCode::REQUEST_TIMEOUT,
+            "body-too-slow",
+            "The query took too long to come",
+        ),
+        Kind::TimeOver => (
+            StatusCode::SERVICE_UNAVAILABLE,
+            "time-over",
+            "The answer took too long",
         ),
         Kind::ShuttingDown => (
             StatusCode::SERVICE_UNAVAILABLE,
@@ -95,9 +125,16 @@ pub fn urn(kind: Kind) -> String {
 pub const fn grpc(kind: Kind) -> Code {
     match kind {
         Kind::Invalid | Kind::NotAcceptable => Code::InvalidArgument,
-        Kind::TooManyPoints | Kind::TooManyRows | Kind::BodyTooLarge | Kind::Busy => {
-            Code::ResourceExhausted
-        }
+        Kind::TooManyPoints
+        | Kind::TooManyRows
+        | Kind::BodyTooLarge
+        | Kind::TooManyStreams
+        | Kind::TooFast
+        | Kind::Busy
+        | Kind::TimeOver => Code::ResourceExhausted,
+        Kind::BodyTooSlow => Code::DeadlineExceeded,
+        Kind::Unauthenticated => Code::Unauthenticated,
+        Kind::NotAllowed => Code::PermissionDenied,
         Kind::OtherTable => Code::FailedPrecondition,
         Kind::NoSuchPoint => Code::NotFound,
         Kind::NoSuchPath | Kind::NoSuchMethod => Code::Unimplemented,

@@ -2,9 +2,10 @@
 
 use std::sync::{Arc, LazyLock};
 
-use axum::{Router, body::Body, response::Response};
+use axum::{Extension, Router, body::Body, response::Response};
 use http::{Request, StatusCode, header};
 use strew::{
+    access::Caller,
     config::Layers,
     grpc, rest,
     service::{Catalog, Limits, Service, Workers},
@@ -41,10 +42,12 @@ static DOORS: LazyLock<Doors> = LazyLock::new(|| {
     let (grpc, _) = runtime
         .block_on(grpc::routes(service.clone()))
         .expect("built rightly");
-    let rest::Door { router, paths } = rest::Door::new(rest::endpoints(&service));
+    // There is no gate: everyone is let in.
+    let open = |router: Router| router.layer(Extension(Caller::default()));
+    let rest::Door { router, paths } = rest::Door::new(rest::endpoints(&service), open);
     Doors {
         rest: router.fallback(async move |request| rest::not_found(&request, &paths)),
-        grpc: grpc.into_axum_router(),
+        grpc: open(grpc.into_axum_router()),
         runtime,
     }
 });

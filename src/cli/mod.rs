@@ -4,6 +4,7 @@ mod config;
 mod count;
 mod flags;
 mod forge;
+mod key;
 mod measure;
 mod output;
 mod point;
@@ -50,6 +51,9 @@ enum Command {
     /// Look at tables.
     #[command(subcommand)]
     Table(table::Command),
+    /// Make keys for clients.
+    #[command(subcommand)]
+    Key(key::Command),
     /// Ask a running daemon whether it is ready: exit code 0 if so, 1 if not.
     Probe(probe::Args),
     /// Print the merged settings.
@@ -89,6 +93,7 @@ pub fn main() -> ExitCode {
         Command::Forge(args) => forge::run(&args),
         Command::Measure(args) => measure::run(&args),
         Command::Table(command) => table::run(&command),
+        Command::Key(command) => key::run(&command),
         Command::Probe(args) => probe::run(&args),
         Command::Config(args) => config::run(&args),
     };

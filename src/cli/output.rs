@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::Failure;
 
 /// An open output. Until [`finish`](Self::finish) a regular file goes by its name with `.partial`
-/// behind it, so that what an interrupted command leaves never looks complete.
+/// behind it, so that what a killed command leaves never looks complete; one that fails leaves nothing.
 pub(super) struct Output {
     writer: Box<dyn Write + Send>,
     /// The partial file and what it will be called.
@@ -77,7 +77,17 @@ impl Output {
                 format!("cannot rename {} to {}", partial.display(), path.display())
             })?;
         }
+        self.pending = None;
         Ok(())
+    }
+}
+
+impl Drop for Output {
+    /// What was not finished serves nobody, and may be what fills the disk.
+    fn drop(&mut self) {
+        if let Some((partial, _)) = self.pending.take() {
+            let _ = fs::remove_file(partial);
+        }
     }
 }
 

@@ -22,6 +22,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged()?;
     telemetry::start(&config.log.filter, config.log.format).context("log.filter")?;
     let listen = config.server.listen;
+    let admin = config.admin.address().context("admin.listen")?;
     if let Some(warning) = exposure::warning(&config) {
         tracing::warn!("{warning}");
     }
@@ -35,7 +36,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let scheme = if config.tls.is_on() { "https" } else { "http" };
     let app = App::new(config).map_err(|error| match error {
-        ServeError::Catalog(_) | ServeError::Tls(_) => Failure::Usage(error.into()),
+        ServeError::Catalog(_) | ServeError::Tls(_) | ServeError::Keys(_) => {
+            Failure::Usage(error.into())
+        }
         _ => Failure::Other(error.into()),
     })?;
     let app = app.with_all_metrics();
@@ -43,6 +46,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         tracing::warn!("no table is loaded: every query will be refused");
     }
     let listener = bind(listen)?;
+    let app = match admin {
+        Some(address) => app.with_admin(bind(address)?),
+        None => app,
+    };
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .build()
@@ -66,7 +73,7 @@ async fn serve(app: App, listener: TcpListener, scheme: &str) -> anyhow::Result<
     // Listen for signals before saying that we are ready.
     let stop = shutdown::Signals::new().context("cannot listen for signals")?;
     let hangups = shutdown::Hangups::new().context("cannot listen for signals")?;
-    announce(scheme, address).context("cannot write to standard output")?;
+    announce(scheme, address, app.admin_address()).context("cannot write to standard output")?;
     tracing::info!(%address, tables = app.service().catalog().entries().len(), "serving");
     let app = app.with_hangups(hangups);
     let broken = app.run(listener, stop.first_then_exit()).await?;
@@ -78,8 +85,13 @@ async fn serve(app: App, listener: TcpListener, scheme: &str) -> anyhow::Result<
     Ok(())
 }
 
-fn announce(scheme: &str, address: SocketAddr) -> std::io::Result<()> {
+fn announce(scheme: &str, address: SocketAddr, admin: Option<SocketAddr>) -> std::io::Result<()> {
+    let mut text = format!("listening on {scheme}://{address}\n");
+    if let Some(admin) = admin {
+        text += &format!("administrators on {scheme}://{admin}\n");
+    }
+    // In one piece, for readers that only take the first line.
     let mut out = std::io::stdout().lock();
-    writeln!(out, "listening on {scheme}://{address}")?;
+    out.write_all(text.as_bytes())?;
     out.flush()
 }

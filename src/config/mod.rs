@@ -16,6 +16,7 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    access,
     ops::{telemetry, tls},
     rest,
     service::Limits,
@@ -34,6 +35,12 @@ pub struct Config {
     pub server: Server,
     /// How to prove who serves and who asks.
     pub tls: tls::Settings,
+    /// Who is let in.
+    pub access: access::Settings,
+    /// How fast points may be taken.
+    pub rate: access::RateSettings,
+    /// Where administrators are let in.
+    pub admin: Admin,
     /// How HTTP answers.
     pub http: rest::Settings,
     /// Which tables to load.
@@ -69,8 +76,33 @@ pub struct Server {
     pub http2_keepalive_seconds: f64,
     /// How long an HTTP/2 connection may be without a request, in seconds.
     pub idle_connection_seconds: f64,
+    /// How long the body of a request may take, in seconds.
+    pub body_read_timeout_seconds: f64,
+    /// How long the head of an answer may take once its request is there, in seconds.
+    pub first_byte_seconds: f64,
+    /// How long an answer may take in all, in seconds.
+    pub max_stream_seconds: f64,
     /// How long a reader may take nothing of what waits for it, in seconds.
     pub stalled_reader_seconds: f64,
+}
+
+/// Where administrators are let in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Admin {
+    /// Address and port; empty for none.
+    pub listen: String,
+}
+
+impl Admin {
+    /// The address, if there is one.
+    ///
+    /// # Errors
+    /// If it does not read as one.
+    pub fn address(&self) -> Result<Option<SocketAddr>, std::net::AddrParseError> {
+        let text = Some(self.listen.as_str()).filter(|text| !text.is_empty());
+        text.map(str::parse).transpose()
+    }
 }
 
 /// Which tables to load.

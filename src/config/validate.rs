@@ -1,12 +1,16 @@
 //! The ranges of settings.
 
 use super::{Config, ConfigError};
+use crate::access::{NETWORKS, Networks};
 
 /// Checks every setting; reports all that are out of range.
 pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     let Config {
         server,
         tls,
+        access,
+        rate,
+        admin,
         http,
         limits,
         workers,
@@ -65,6 +69,24 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         0.1 * second,
         day,
     );
+    within(
+        "server.body_read_timeout_seconds",
+        server.body_read_timeout_seconds,
+        0.1 * second,
+        hour,
+    );
+    within(
+        "server.first_byte_seconds",
+        server.first_byte_seconds,
+        0.1 * second,
+        hour,
+    );
+    within(
+        "server.max_stream_seconds",
+        server.max_stream_seconds,
+        0.1 * second,
+        365.0 * day,
+    );
     within("tls.watch_seconds", tls.watch_seconds, 0.0, day);
     within(
         "http.cache_seconds",
@@ -73,6 +95,9 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         365.0 * day,
     );
     within("tables.watch_seconds", tables.watch_seconds, 0.0, day);
+    within("rate.points_per_second", rate.points_per_second, 0.0, 1e15);
+    within("rate.burst_points", rate.burst_points, 0.0, 1e15);
+    within("rate.max_clients", rate.max_clients as f64, 64.0, 1e7);
     within("limits.max_points", limits.max_points as f64, 1.0, 1e15);
     within("limits.max_rows", limits.max_rows as f64, 1.0, 1e12);
     within("limits.max_vertices", limits.max_vertices as f64, 3.0, 1e8);
@@ -81,6 +106,15 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         limits.max_body_bytes as f64,
         1024.0,
         f64::from(1 << 30),
+    );
+    within("limits.max_requests", limits.max_requests as f64, 1.0, 1e6);
+    // At least one answer and one query of the largest size fit.
+    let one = 4 * limits.block_bytes + (19 << 20) + limits.max_body_bytes;
+    within(
+        "limits.max_bytes_in_flight",
+        limits.max_bytes_in_flight as f64,
+        one as f64,
+        1e15,
     );
     within("limits.max_streams", limits.max_streams as f64, 1.0, 1e6);
     // gRPC clients refuse messages above 4 MiB, and ours stay below 1 MiB.
@@ -94,6 +128,19 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     within("workers.threads", workers.threads as f64, 0.0, 1024.0);
     within("shutdown.notice_seconds", shutdown.notice_seconds, 0.0, day);
     within("shutdown.drain_seconds", shutdown.drain_seconds, 0.0, day);
+    if let Err(part) = Networks::read(&access.trusted_proxies) {
+        faults.push(format!(
+            "access.trusted_proxies = {:?}: {part:?} is not one; allowed: {NETWORKS}",
+            access.trusted_proxies
+        ));
+    }
+    if let Err(error) = admin.address() {
+        faults.push(format!(
+            "admin.listen = {:?}: {error}; allowed: an address and a port, such as 127.0.0.1:8081, or \
+             nothing",
+            admin.listen
+        ));
+    }
     let is_set = |path: &std::path::Path| !path.as_os_str().is_empty();
     let of_tls = [&tls.certificate, &tls.key, &tls.client_ca].map(|path| is_set(path));
     if let [certificate, key, client_ca] = of_tls

@@ -15,10 +15,12 @@ mod status;
 
 use std::sync::Arc;
 
+use bytes::Bytes;
+use http_body::Frame;
 use tonic::service::Routes;
 use tonic_health::server::HealthReporter;
 
-use crate::service::Service;
+use crate::service::{Error, Interrupted, Service};
 pub use deadline::Deadline;
 use frames::Direct;
 use points::Points;
@@ -122,6 +124,26 @@ impl Health {
 pub fn terms(headers: &mut http::HeaderMap) -> Result<Option<Deadline>, tonic::Status> {
     compression::settle(headers);
     Deadline::of(headers)
+}
+
+/// The answer to a call that is not let in, or that cannot be answered at all.
+#[must_use]
+pub fn refusal(error: &Error) -> http::Response<tonic::body::Body> {
+    broken(error).into_http()
+}
+
+/// An error as what a call ends with.
+#[must_use]
+pub fn broken(error: &Error) -> tonic::Status {
+    status::status(error)
+}
+
+/// The last of a stream that is not complete.
+#[must_use]
+pub fn ending(why: Interrupted) -> Option<Frame<Bytes>> {
+    let mut trailers = http::HeaderMap::new();
+    let told = status::interrupted(why).add_header(&mut trailers);
+    told.ok().map(|()| Frame::trailers(trailers))
 }
 
 /// The answer to a method that does not exist.

@@ -19,6 +19,7 @@ use super::{
     },
     query, resolved, single, split, status,
 };
+use crate::access::Caller;
 use crate::service::{
     Error, Fault, Record, Service,
     query::{SetDraft, check_parts},
@@ -38,12 +39,14 @@ impl Points {
     /// The answer of messages, which tonic has to compress, or of frames that are sent as they are.
     async fn stream(
         &self,
+        caller: &Caller,
         request: &StreamPointsRequest,
         is_compressed: bool,
     ) -> Result<Response<MessageStream>, Error> {
         let (query, encoding) = query::query(request, &self.service)?;
-        let permit = self.service.streams().admit()?;
-        let planned = self.service.plan(query).await?;
+        let permit = self.service.admit(caller, None)?;
+        let planned = self.service.plan(caller, query).await?;
+        caller.charge(planned.count())?;
         let block_bytes = self.service.limits().block_bytes;
         let messages = Messages::new(request, planned, encoding, block_bytes)?;
         Record::in_format(match encoding {
@@ -81,8 +84,7 @@ impl Points {
         let (query, _) = query::query(request, &self.service)?;
         let planned = self.service.count(query).await?;
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
-        let places = move || planned.split(parts);
-        let places = self.service.workers().run(places).await??;
+        let places = self.service.split(planned, parts).await?;
         let part = |place| split::part(request, place);
         Ok(SplitPointsResponse {
             count,
@@ -99,7 +101,11 @@ impl Points {
         })
     }
 
-    async fn nearest(&self, request: &FindNearestRequest) -> Result<FindNearestResponse, Error> {
+    async fn nearest(
+        &self,
+        caller: &Caller,
+        request: &FindNearestRequest,
+    ) -> Result<FindNearestResponse, Error> {
         let mut faults = vec![];
         let around = query::around(request).check(vec![]);
         let around = around.map_err(|more| faults.extend(more));
@@ -109,11 +115,18 @@ impl Points {
         let set = Some(resolved::placed(&placed));
         let search = move || placed.nearest(around);
         let found = self.service.workers().run(search).await??;
+        caller.charge(found.len() as u128)?;
         Ok(FindNearestResponse {
             neighbors: found.into_iter().map(single::point).collect(),
             set,
         })
     }
+}
+
+/// Who asks: every request that has been let in says so.
+fn caller<T>(request: &Request<T>) -> Result<Caller, Status> {
+    let caller = request.extensions().get::<Caller>().cloned();
+    caller.ok_or_else(|| status::status(&Error::Internal("nobody has been let in")))
 }
 
 /// The query of a request, which must be there.
@@ -139,8 +152,9 @@ impl PointService for Points {
         &self,
         request: Request<StreamPointsRequest>,
     ) -> Result<Response<MessageStream>, Status> {
+        let caller = caller(&request)?;
         let is_compressed = compression::is_asked(request.metadata());
-        let answer = self.stream(request.get_ref(), is_compressed).await;
+        let answer = self.stream(&caller, request.get_ref(), is_compressed).await;
         answer.map_err(|error| status::status(&error))
     }
 
@@ -179,7 +193,8 @@ impl PointService for Points {
         &self,
         request: Request<FindNearestRequest>,
     ) -> Result<Response<FindNearestResponse>, Status> {
-        answered(self.nearest(request.get_ref()).await)
+        let caller = caller(&request)?;
+        answered(self.nearest(&caller, request.get_ref()).await)
     }
 
     async fn list_profiles(

@@ -6,11 +6,12 @@ use tonic::{Code, Status};
 use tonic_types::{ErrorDetails, StatusExt as _};
 
 use crate::{
+    access::Denied,
     error_map,
     service::{Error, Fault, Interrupted, Kind, Record},
 };
 
-/// How long a client should wait before it asks a busy server again.
+/// How long a client should wait before it goes on with a stream that the server broke off.
 const RETRY: Duration = Duration::from_secs(1);
 
 /// An error as a status.
@@ -30,6 +31,7 @@ pub(super) fn status(error: &Error) -> Status {
     let quota = match error {
         Error::TooManyPoints { .. } => Some("limits.max_points"),
         Error::TooManyRows { .. } => Some("limits.max_rows"),
+        Error::Denied(Denied::TooFast { .. }) => Some("rate.points_per_second"),
         _ => None,
     };
     if let Some(subject) = quota {
@@ -38,8 +40,8 @@ pub(super) fn status(error: &Error) -> Status {
     if let Error::OtherTable { pinned, .. } = error {
         details.add_precondition_failure_violation("TABLE", pinned, error.to_string());
     }
-    if matches!(error.kind(), Kind::Busy | Kind::ShuttingDown) {
-        details.set_retry_info(Some(RETRY));
+    if let Some(seconds) = error.retry_seconds() {
+        details.set_retry_info(Some(Duration::from_secs(seconds)));
     }
     Status::with_error_details(error_map::grpc(error.kind()), error.to_string(), details)
 }
@@ -61,10 +63,11 @@ pub(super) fn interrupted(why: Interrupted) -> Status {
     let kind = match why {
         Interrupted::Shutdown => Kind::ShuttingDown,
         Interrupted::Failed => Kind::Internal,
+        Interrupted::Stalled | Interrupted::TimeOver => Kind::TimeOver,
     };
     let mut details = ErrorDetails::new();
     details.set_error_info(reason(kind), DOMAIN, HashMap::new());
-    if kind == Kind::ShuttingDown {
+    if kind != Kind::Internal {
         details.set_retry_info(Some(RETRY));
     }
     Status::with_error_details(error_map::grpc(kind), why.to_string(), details)
@@ -104,7 +107,19 @@ fn facts(error: &Error) -> HashMap<String, String> {
         Error::TooManyRows { rows, limit } => {
             vec![("rows", rows.to_string()), ("limit", limit.to_string())]
         }
-        Error::Busy { limit } => vec![("limit", limit.to_string())],
+        Error::Busy { limit }
+        | Error::TooManyRequests { limit }
+        | Error::TooManyBytes { limit }
+        | Error::Denied(Denied::TooManyStreams { limit }) => vec![("limit", limit.to_string())],
+        Error::Denied(Denied::TooFast { points, short }) => vec![
+            ("points", points.to_string()),
+            ("left", short.level.left.to_string()),
+            (
+                "points_per_second",
+                short.level.rate.points_per_second.to_string(),
+            ),
+            ("burst_points", short.level.rate.burst_points.to_string()),
+        ],
         Error::OtherTable { pinned, loaded } => {
             vec![("pinned", pinned.clone()), ("loaded", loaded.clone())]
         }

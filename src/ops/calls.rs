@@ -1,5 +1,7 @@
 //! gRPC calls on the common port: native ones, those of web pages (gRPC-Web), and what is none.
 
+use std::sync::Arc;
+
 use axum::{
     Router,
     body::Body,
@@ -10,12 +12,24 @@ use axum::{
 use http::{HeaderMap, Version, header};
 use tonic_web::GrpcWebLayer;
 
-use super::observe;
-use crate::{grpc, rest};
+use super::{
+    gate,
+    load::{Load, Words},
+    observe,
+};
+use crate::{access::Gate, grpc, rest};
 
-/// The routes of gRPC, for all who can call them. (The last layer is the first to see a request.)
-pub(super) fn routes(grpc: Router) -> Router {
-    grpc.layer(middleware::from_fn(on_terms))
+/// The routes of gRPC, for all who can call them and are let in. (The last layer is the first to see a
+/// request.)
+pub(super) fn routes(grpc: Router, gate: Arc<Gate>, load: &Load) -> Router {
+    let words = Words {
+        refusal: |error| grpc::refusal(error).map(Body::new),
+        broken: |error| grpc::broken(&error).into(),
+        ending: |why| Some(Ok(grpc::ending(why)?)),
+    };
+    load.before(grpc, words)
+        .layer(middleware::from_fn_with_state(gate, gate::of_calls))
+        .layer(middleware::from_fn(on_terms))
         .layer(GrpcWebLayer::new())
         .layer(middleware::from_fn(only_calls))
 }

@@ -23,7 +23,7 @@ use tokio::{
 use tokio_util::{sync::CancellationToken, task::TaskTracker};
 
 use super::{
-    activity::{Activity, Answering},
+    activity::{Activity, Answering, Still},
     guarded::{Moving, Opening},
     often::Often,
     tls::Tls,
@@ -213,8 +213,8 @@ impl Shared {
         };
         let stream = TokioIo::new(Opening::new(stream, self.patience.opening));
         let connection = self.http.serve_connection(stream, service);
-        let idle = activity.idle(self.patience.idle);
-        tokio::pin!(connection, idle);
+        let still = activity.still(self.patience.idle, self.patience.stalled);
+        tokio::pin!(connection, still);
         let mut is_closing = false;
         loop {
             tokio::select! {
@@ -226,7 +226,11 @@ impl Shared {
                 }
                 () = self.ended.cancelled() => return,
                 () = self.closing.cancelled(), if !is_closing => {}
-                () = &mut idle, if !is_closing => {}
+                still = &mut still, if !is_closing => if still == Still::Stalled {
+                    // A goodbye would wait for the answers that nobody takes.
+                    tracing::debug!(%peer, "nothing is taken of any answer");
+                    return;
+                },
             }
             is_closing = true;
             connection.as_mut().graceful_shutdown();

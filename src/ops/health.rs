@@ -64,12 +64,13 @@ pub fn endpoints(readiness: Readiness, service: Arc<Service>) -> Vec<Endpoint> {
     );
     let live = get(|| async { typed(StatusCode::OK, &Alive { alive: true }) });
     vec![
-        Endpoint::new("/livez", (), vec![(alive, live)]),
+        Endpoint::new("/livez", (), vec![(alive, live)]).open(),
         Endpoint::new(
             "/readyz",
             (readiness, service),
             vec![(is_ready, get(ready))],
-        ),
+        )
+        .open(),
     ]
 }
 

@@ -1,4 +1,5 @@
-//! Reading tables again while the daemon serves: on SIGHUP, when the folder changes, when asked.
+//! Reading tables and keys again while the daemon serves: on SIGHUP, when files change,
+//! when asked.
 //!
 //! The folder is looked at every few seconds rather than listened to: notices of changes do not come
 //! through network volumes and the folders that orchestrators mount, and a look costs microseconds.
@@ -10,10 +11,14 @@ mod look;
 
 use std::{path::PathBuf, sync::Arc, time::Duration};
 
+use serde::Serialize;
 use tokio::sync::Mutex;
 
 use super::shutdown::Hangups;
-use crate::service::{Error, Reload, Service};
+use crate::{
+    access::Gate,
+    service::{Error, Reload, Service, catalog::Refusal},
+};
 use look::Look;
 
 /// Why tables are read again.
@@ -37,21 +42,33 @@ impl Cause {
     }
 }
 
-/// Reads tables again.
+/// What came of reading everything again.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Done {
+    /// The tables; files of keys are among what was refused.
+    #[serde(flatten)]
+    pub tables: Reload,
+    /// How many keys are let in, where they were read.
+    pub keys: Option<usize>,
+}
+
+/// Reads tables and keys again.
 #[derive(Debug)]
 pub struct Reloader {
     service: Arc<Service>,
+    gate: Arc<Gate>,
     folder: Option<PathBuf>,
     /// What came of it the last time.
-    last: Mutex<Reload>,
+    last: Mutex<Done>,
 }
 
 impl Reloader {
-    /// For a service and its folder of tables.
+    /// For a service and its folder of tables, and a gate with its keys.
     #[must_use]
-    pub fn new(service: Arc<Service>, folder: Option<PathBuf>) -> Self {
+    pub fn new(service: Arc<Service>, gate: Arc<Gate>, folder: Option<PathBuf>) -> Self {
         Self {
             service,
+            gate,
             folder,
             last: Mutex::default(),
         }
@@ -61,16 +78,43 @@ impl Reloader {
     ///
     /// # Errors
     /// [`Error::Internal`] if that panicked; then nothing has changed.
-    pub async fn reload(&self, cause: Cause) -> Result<Reload, Error> {
+    pub async fn reload(&self, cause: Cause) -> Result<Done, Error> {
         let mut last = self.last.lock().await;
-        let reload = self.service.reload(self.folder.clone()).await?;
+        let tables = self.service.reload(self.folder.clone()).await?;
+        let done = self.keys(tables).await?;
         // A look that finds the same damaged file again has nothing to tell.
-        let is_news = cause != Cause::Change || differs(&last, &reload);
+        let is_news = cause != Cause::Change || differs(&last, &done);
         if is_news {
-            tell(cause, &reload);
+            tell(cause, &done);
         }
-        *last = reload.clone();
-        Ok(reload)
+        *last = done.clone();
+        Ok(done)
+    }
+
+    /// Reads the keys again; a refusal goes to the others.
+    async fn keys(&self, mut tables: Reload) -> Result<Done, Error> {
+        if !self.gate.settings().has_keys() {
+            return Ok(Done { tables, keys: None });
+        }
+        let gate = self.gate.clone();
+        let read = tokio::task::spawn_blocking(move || gate.reload());
+        let read = read
+            .await
+            .map_err(|_| Error::Internal("the keys cannot be read again"))?;
+        let keys = match read {
+            Ok(count) => Some(count),
+            Err(error) => {
+                let file = self.gate.settings().keys_file();
+                let source = file.map_or("access.keys".into(), |file| file.display().to_string());
+                tables.refused.push(Refusal {
+                    source,
+                    detail: error.to_string(),
+                    serving: None,
+                });
+                None
+            }
+        };
+        Ok(Done { tables, keys })
     }
 
     /// Reloads on signals and changes until it is dropped. Without `every` nobody looks for changes.
@@ -94,7 +138,11 @@ impl Reloader {
 
     async fn look(&self) -> Look {
         let folder = self.folder.clone();
-        let look = tokio::task::spawn_blocking(move || Look::at(folder.as_deref()));
+        let keys = self.gate.settings().keys_file().map(Into::into);
+        let look = tokio::task::spawn_blocking(move || {
+            let keys: Option<PathBuf> = keys;
+            Look::at(folder.as_deref(), keys.as_deref())
+        });
         look.await.unwrap_or_default()
     }
 }
@@ -114,11 +162,14 @@ async fn wait(every: Option<Duration>) {
 }
 
 /// Whether a reload did or found anything that the one before did not.
-fn differs(before: &Reload, now: &Reload) -> bool {
-    !now.loaded.is_empty() || !now.removed.is_empty() || now.refused != before.refused
+fn differs(before: &Done, now: &Done) -> bool {
+    let tables = &now.tables;
+    let has_changed = !tables.loaded.is_empty() || !tables.removed.is_empty();
+    has_changed || tables.refused != before.tables.refused || now.keys != before.keys
 }
 
-fn tell(cause: Cause, reload: &Reload) {
+fn tell(cause: Cause, done: &Done) {
+    let reload = &done.tables;
     let cause = cause.name();
     metrics::counter!("strew_tables_reloads_total", "cause" => cause).increment(1);
     for table in &reload.loaded {
@@ -147,7 +198,7 @@ fn tell(cause: Cause, reload: &Reload) {
             cause,
             source = refusal.source,
             serving = refusal.serving,
-            "table refused, what was loaded serves on: {}",
+            "refused, what was loaded serves on: {}",
             refusal.detail
         );
     }
@@ -157,6 +208,7 @@ fn tell(cause: Cause, reload: &Reload) {
         kept = reload.kept.len(),
         removed = reload.removed.len(),
         refused = reload.refused.len(),
+        keys = done.keys,
         "tables read again"
     );
 }

@@ -2,20 +2,29 @@
 
 use std::{io, net::TcpListener, sync::Arc, time::Duration};
 
-use axum::{Router, body::Body, extract::Request, response::Response};
+use axum::{
+    Router,
+    body::Body,
+    extract::Request,
+    middleware,
+    response::{IntoResponse as _, Response},
+};
 use tokio_util::task::AbortOnDropHandle;
 
 use super::{
-    calls,
+    admin, calls,
     connections::Connections,
+    gate,
     health::{self, Readiness},
+    load::{Load, Words},
     metrics::{self, Metrics},
-    observe,
+    observe, panics,
     reload::Reloader,
     shutdown::Hangups,
     tls::{Tls, TlsError},
 };
 use crate::{
+    access::{Gate, KeysError},
     config::{self, Config},
     grpc, rest,
     service::{Catalog, Service, Workers, catalog::CatalogError},
@@ -37,6 +46,9 @@ pub enum ServeError {
     /// The certificates cannot be used.
     #[error(transparent)]
     Tls(#[from] TlsError),
+    /// The keys cannot be used.
+    #[error(transparent)]
+    Keys(#[from] KeysError),
     /// The socket does not work.
     #[error("cannot serve: {0}")]
     Socket(#[from] io::Error),
@@ -50,7 +62,9 @@ const GRACE: Duration = Duration::from_secs(1);
 pub struct App {
     config: Config,
     service: Arc<Service>,
+    gate: Arc<Gate>,
     reloader: Arc<Reloader>,
+    admin: Option<TcpListener>,
     hangups: Option<Hangups>,
     tls: Option<Tls>,
     metrics: Metrics,
@@ -58,18 +72,22 @@ pub struct App {
 }
 
 impl App {
-    /// Reads the certificates, loads the tables and starts the workers.
+    /// Reads the certificates and keys, loads the tables and starts the workers.
     ///
     /// # Errors
-    /// If a certificate or table is not valid or the system gives no threads.
+    /// If a certificate, key or table is not valid or the system gives no threads.
     pub fn new(config: Config) -> Result<Self, ServeError> {
         let tls = Tls::new(&config.tls)?;
         let folder = config.tables.folder();
         let catalog = Catalog::load(config.tables.embedded, folder)?;
         let workers = Workers::new(config.workers.threads)?;
         let service = Arc::new(Service::new(catalog, config.limits.clone(), workers));
+        let gate = Arc::new(Gate::new(config.access.clone(), &config.rate)?);
+        let reloader = Reloader::new(service.clone(), gate.clone(), folder.map(Into::into));
         Ok(Self {
-            reloader: Arc::new(Reloader::new(service.clone(), folder.map(Into::into))),
+            gate,
+            reloader: Arc::new(reloader),
+            admin: None,
             hangups: None,
             config,
             service,
@@ -86,11 +104,24 @@ impl App {
         self
     }
 
+    /// Lets administrators in on a socket of their own.
+    #[must_use]
+    pub fn with_admin(mut self, listener: TcpListener) -> Self {
+        self.admin = Some(listener);
+        self
+    }
+
     /// Reads its tables again whenever these come.
     #[must_use]
     pub fn with_hangups(mut self, hangups: Hangups) -> Self {
         self.hangups = Some(hangups);
         self
+    }
+
+    /// Where administrators are let in.
+    #[must_use]
+    pub fn admin_address(&self) -> Option<std::net::SocketAddr> {
+        self.admin.as_ref()?.local_addr().ok()
     }
 
     /// Shows also what the process counts without saying for which daemon: for a process of one.
@@ -119,11 +150,26 @@ impl App {
         let _watch = self.watch();
         let readiness = Readiness::default();
         let (router, grpc_health) = self.router(readiness.clone()).await?;
-        listener.set_nonblocking(true)?;
-        let listener = tokio::net::TcpListener::from_std(listener)?;
-        if let Some(tls) = self.tls.clone() {
-            tokio::spawn(tls.keep_fresh(Hangups::new()?));
+        let listener = asynchronous(listener)?;
+        let _fresh = match self.tls.clone() {
+            Some(tls) => {
+                let hangups = Hangups::new()?;
+                Some(AbortOnDropHandle::new(tokio::spawn(
+                    tls.keep_fresh(hangups),
+                )))
+            }
+            None => None,
+        };
+        let admins = Connections::new(&self.config.server, self.tls.clone());
+        if let Some(listener) = self.admin.take() {
+            let (listener, router) = (
+                asynchronous(listener)?,
+                self.admin_router(readiness.clone()),
+            );
+            let admins = admins.clone();
+            tokio::spawn(async move { admins.take(listener, router).await });
         }
+        let _admins = EndOnDrop(admins);
         let connections = Connections::new(&self.config.server, self.tls.clone());
         let taking = tokio::spawn({
             let connections = connections.clone();
@@ -175,21 +221,75 @@ impl App {
         let (grpc, grpc_health) = grpc::routes(self.service.clone()).await?;
         let mut endpoints = rest::endpoints(&self.service);
         endpoints.extend(health::endpoints(readiness, self.service.clone()));
-        let metrics = self.metrics.clone();
+        endpoints.push(admin::endpoint(self.reloader.clone()));
         if self.config.metrics.enabled {
-            endpoints.push(metrics::endpoint(metrics.clone(), self.service.clone()));
-            tokio::spawn(metrics.keep_up());
+            endpoints.push(self.metrics_endpoint());
+            tokio::spawn(self.metrics.clone().keep_up());
         }
-        let rest::Door { router, paths } = rest::Door::new(endpoints);
+        let load = Load::new(&self.config, &self.service);
+        let words = Words {
+            refusal: |error| error.clone().into_response(),
+            broken: |error| Box::new(error),
+            ending: |why| Some(Err(axum::Error::new(why))),
+        };
+        // Who may not ask at all takes nobody's place.
+        let (gate, bounds) = (self.gate.clone(), load.clone());
+        let behind_gate = move |router: Router| {
+            let router = bounds.before(router, words);
+            router.layer(middleware::from_fn_with_state(gate, gate::of_rest))
+        };
+        let rest::Door { router, paths } = rest::Door::new(endpoints, behind_gate);
+        let calls = grpc.into_axum_router().reset_fallback();
         let router = router
-            .merge(calls::routes(grpc.into_axum_router().reset_fallback()))
-            .merge(self.more.clone())
+            .merge(calls::routes(calls, self.gate.clone(), &load))
+            .merge(load.before(self.more.clone(), words))
             .fallback(move |request| nothing_here(request, paths));
-        let head_bytes = self.config.server.max_header_bytes;
-        let workers = self.service.workers().clone();
-        let router = rest::finished(router, &self.config.http, head_bytes, workers);
-        Ok((observe::observed(router, metrics), grpc_health))
+        Ok((self.finished(router), grpc_health))
     }
+
+    /// What administrators reach on their own address.
+    fn admin_router(&self, readiness: Readiness) -> Router {
+        let mut endpoints = health::endpoints(readiness, self.service.clone());
+        endpoints.push(admin::endpoint(self.reloader.clone()));
+        if self.config.metrics.enabled {
+            endpoints.push(self.metrics_endpoint());
+        }
+        let of_admins = |router: Router| router.layer(middleware::from_fn(gate::of_admins));
+        let rest::Door { router, paths } = rest::Door::new(endpoints, of_admins);
+        self.finished(router.fallback(move |request| nothing_here(request, paths)))
+    }
+
+    /// What every answer goes through.
+    fn finished(&self, router: Router) -> Router {
+        let router = router.layer(middleware::from_fn(panics::answered));
+        let router = rest::finished(
+            router,
+            &self.config.http,
+            self.config.server.max_header_bytes,
+            self.gate.settings().needs_key(),
+            self.service.workers().clone(),
+        );
+        observe::observed(router, self.metrics.clone())
+    }
+
+    fn metrics_endpoint(&self) -> rest::api::Endpoint {
+        metrics::endpoint(self.metrics.clone(), self.service.clone())
+    }
+}
+
+/// Connections that end with the daemon.
+struct EndOnDrop(Connections);
+
+impl Drop for EndOnDrop {
+    fn drop(&mut self) {
+        self.0.close();
+        self.0.end();
+    }
+}
+
+fn asynchronous(listener: TcpListener) -> io::Result<tokio::net::TcpListener> {
+    listener.set_nonblocking(true)?;
+    tokio::net::TcpListener::from_std(listener)
 }
 
 /// Where no door is: each kind of client hears it in its own language.

@@ -25,7 +25,9 @@ pub fn start(filter: &str, format: Format) -> Result<(), tracing_subscriber::fil
     let filter: EnvFilter = filter.parse()?;
     let lines = tracing_subscriber::fmt()
         .with_env_filter(filter)
-        .with_writer(std::io::stderr);
+        .with_writer(std::io::stderr)
+        // What cannot be logged is lost: telling so on the same stream would fail, too, and panic.
+        .log_internal_errors(false);
     let _ = match format {
         Format::Text => lines.with_ansi(std::io::stderr().is_terminal()).try_init(),
         Format::Json => lines

@@ -14,9 +14,12 @@ use super::{
     freshness::Freshness,
     negotiate::{self, Chosen},
 };
-use crate::service::{
-    Answer, Error, Kind, Planned, Query, Record, Service,
-    encode::{Options, write_number},
+use crate::{
+    access::Caller,
+    service::{
+        Answer, Error, Kind, Planned, Query, Record, Service,
+        encode::{Options, write_number},
+    },
 };
 
 const COUNT: HeaderName = HeaderName::from_static("strew-count");
@@ -29,6 +32,7 @@ const NEXT: HeaderName = HeaderName::from_static("strew-next");
 /// A request, as far as it decides how an answer is sent.
 #[derive(Debug)]
 pub(super) struct Asked {
+    pub(super) caller: Caller,
     pub(super) method: Method,
     pub(super) uri: Uri,
     pub(super) headers: HeaderMap,
@@ -73,7 +77,7 @@ pub(super) fn problems() -> Vec<Kind> {
         Kind::OtherTable,
         Kind::TooManyPoints,
         Kind::TooManyRows,
-        Kind::Busy,
+        Kind::TooManyStreams,
         Kind::ShuttingDown,
     ]
 }
@@ -96,7 +100,10 @@ pub(super) async fn stream(
     options: Options,
 ) -> Result<Response, Error> {
     let Asked {
-        method, headers, ..
+        caller,
+        method,
+        headers,
+        ..
     } = asked;
     let chosen = match options.encoding {
         Some(encoding) => Chosen::named(encoding),
@@ -114,10 +121,15 @@ pub(super) async fn stream(
         return Ok(unchanged);
     }
     let is_head = *method == Method::HEAD;
-    let permit = (!is_head).then(|| service.streams().admit()).transpose()?;
-    let planned = service.plan(query).await?;
+    let picture = chosen.encoding.is_picture().then_some(output.size);
+    let permit = (!is_head).then(|| service.admit(caller, picture));
+    let permit = permit.transpose()?;
+    let planned = service.plan(caller, query).await?;
     if let Some(unwanted) = freshness.as_ref().and_then(|it| it.unwanted(headers)) {
         return Ok(unwanted);
+    }
+    if !is_head {
+        caller.charge(planned.count())?;
     }
     let answer = Answer::new(&planned, &output, service.limits().block_bytes)?;
     let mut response_headers = describe(&planned, &answer, chosen)?;

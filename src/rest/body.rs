@@ -3,7 +3,7 @@
 //! The content type is not looked at: a body is read as JSON anyway, and `curl -d` calls everything
 //! a form.
 
-use std::sync::Arc;
+use std::{error::Error as _, sync::Arc};
 
 use axum::extract::{FromRequest, Request};
 use futures_util::StreamExt as _;
@@ -29,10 +29,7 @@ impl FromRequest<Arc<Service>> for Whole {
         let mut pieces = request.into_body().into_data_stream();
         let mut whole = Vec::new();
         while let Some(piece) = pieces.next().await {
-            let piece = piece.map_err(|_| {
-                let detail = "it broke off before its end";
-                Error::Invalid(vec![Fault::new("body", "", detail, "a whole body")])
-            })?;
+            let piece = piece.map_err(|error| why(&error))?;
             if whole.len() + piece.len() > limit {
                 return Err(Error::BodyTooLarge { limit });
             }
@@ -40,4 +37,17 @@ impl FromRequest<Arc<Service>> for Whole {
         }
         Ok(Self(whole))
     }
+}
+
+/// Why a body broke off: as the gate says, or because the client stopped.
+fn why(error: &axum::Error) -> Error {
+    let mut cause = error.source();
+    while let Some(inner) = cause {
+        if let Some(told) = inner.downcast_ref::<Error>() {
+            return told.clone();
+        }
+        cause = inner.source();
+    }
+    let detail = "it broke off before its end";
+    Error::Invalid(vec![Fault::new("body", "", detail, "a whole body")])
 }

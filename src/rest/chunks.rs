@@ -14,6 +14,7 @@ use super::{
     answer::{self, Asked},
     api::{self, Endpoint, Operation},
 };
+use crate::access::Caller;
 use crate::service::{
     Error, Fault, Service,
     query::{
@@ -86,6 +87,7 @@ const ADDRESS: &[Parameter] = &[
 
 async fn get(
     State(service): State<Arc<Service>>,
+    caller: Caller,
     Path(address): Path<[String; 3]>,
     method: Method,
     uri: Uri,
@@ -108,6 +110,7 @@ async fn get(
     let (query, options) =
         parameters.check(&service.catalog(), most_vertices, Some(region), faults)?;
     let asked = Asked {
+        caller,
         method,
         uri,
         headers,

@@ -1,5 +1,5 @@
-//! Pages of other origins as clients (the Fetch standard's CORS protocol), without credentials:
-//! there are none.
+//! Pages of other origins as clients (the Fetch standard's CORS protocol), without credentials that
+//! browsers add by themselves: keys are headers that a page has to know.
 
 use axum::{body::Body, response::Response};
 use http::{HeaderMap, HeaderValue, Method, StatusCode, header};
@@ -59,8 +59,8 @@ pub(super) fn preflight(
     let answer = response.headers_mut();
     for (name, value) in [
         (header::ACCESS_CONTROL_ALLOW_METHODS, "GET, HEAD, POST"),
-        // All of them: without credentials a star is one.
-        (header::ACCESS_CONTROL_ALLOW_HEADERS, "*"),
+        // All of them; a star leaves out the one for keys.
+        (header::ACCESS_CONTROL_ALLOW_HEADERS, "*, authorization"),
         (header::ACCESS_CONTROL_MAX_AGE, REMEMBER),
         (
             header::VARY,

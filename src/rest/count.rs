@@ -13,6 +13,7 @@ use super::{
     body::Whole,
     document, query,
 };
+use crate::access::Caller;
 use crate::service::{
     Error, Kind, Query, Service,
     query::{REGION_NAMES, Resolved, SET_NAMES, WINDOW_NAMES, parse_pairs},
@@ -82,6 +83,7 @@ struct Count {
 
 async fn get(
     State(service): State<Arc<Service>>,
+    caller: Caller,
     method: Method,
     uri: Uri,
     headers: HeaderMap,
@@ -91,6 +93,7 @@ async fn get(
     let (query, options) = parameters.check(&service.catalog(), most_vertices, None, faults)?;
     document::no_looks(options)?;
     let asked = Asked {
+        caller,
         method,
         uri,
         headers,

@@ -76,7 +76,7 @@ fn endpoint((path, id, summary, content_type, content): Part) -> Endpoint {
     let handler = routing::get(move |uri: Uri, headers: HeaderMap| async move {
         part(&uri, &headers, content_type, content)
     });
-    Endpoint::new(path, (), vec![(operation, handler)])
+    Endpoint::new(path, (), vec![(operation, handler)]).open()
 }
 
 fn part(
@@ -88,12 +88,7 @@ fn part(
     let content = Bytes::from_static(text.as_bytes());
     let mut response = fixed(uri, headers, content_type, content);
     let headers = response.headers_mut();
-    for (name, value) in [
-        (header::CONTENT_SECURITY_POLICY, POLICY),
-        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
-        (header::REFERRER_POLICY, "no-referrer"),
-    ] {
-        headers.insert(name, HeaderValue::from_static(value));
-    }
+    let policy = HeaderValue::from_static(POLICY);
+    headers.insert(header::CONTENT_SECURITY_POLICY, policy);
     response
 }

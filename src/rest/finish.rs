@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     coding,
     cors::{self, Origins},
-    freshness,
+    freshness, harden,
     problem::{self, Problem},
 };
 use crate::service::Workers;
@@ -34,15 +34,25 @@ pub struct Settings {
 struct Finish {
     origins: Origins,
     cache_seconds: u32,
+    /// Answers are for one client, not for those who share a cache with it.
+    is_private: bool,
     head_bytes: usize,
     workers: Workers,
 }
 
-/// Finishes the answers of a router; heads of requests longer than `head_bytes` are refused.
-pub fn finished(router: Router, settings: &Settings, head_bytes: u32, workers: Workers) -> Router {
+/// Finishes the answers of a router; heads of requests longer than `head_bytes` are refused. Answers
+/// that are private are not kept by caches that several clients share.
+pub fn finished(
+    router: Router,
+    settings: &Settings,
+    head_bytes: u32,
+    is_private: bool,
+    workers: Workers,
+) -> Router {
     let finish = Finish {
         origins: Origins::read(&settings.cors_origins),
         cache_seconds: settings.cache_seconds,
+        is_private,
         head_bytes: usize::try_from(head_bytes).unwrap_or(usize::MAX),
         workers,
     };
@@ -66,7 +76,8 @@ async fn finish_answer(State(finish): State<Finish>, request: Request, next: Nex
         return response;
     }
     let mut response = problem::instead_of_bare(response).await;
-    freshness::keep(&mut response, finish.cache_seconds);
+    freshness::keep(&mut response, finish.cache_seconds, finish.is_private);
+    harden::guard(response.headers_mut(), finish.origins == Origins::All);
     coding::apply(&accept, is_head, &finish.workers, response)
 }
 

@@ -114,17 +114,19 @@ impl Freshness {
 }
 
 /// Says how long an answer may be kept, where nobody has said so yet.
-pub(super) fn keep(response: &mut Response, seconds: u32) {
+pub(super) fn keep(response: &mut Response, seconds: u32, is_private: bool) {
     let pinned = response.extensions().get::<Pinned>().is_some();
     let headers = response.headers_mut();
     if headers.contains_key(header::CACHE_CONTROL) {
         return;
     }
+    let who = if is_private { "private" } else { "public" };
+    let timed =
+        |text: String| HeaderValue::from_str(&text).unwrap_or(HeaderValue::from_static("no-cache"));
     let value = if pinned {
-        HeaderValue::from_static("public, max-age=31536000, immutable")
+        timed(format!("{who}, max-age=31536000, immutable"))
     } else if headers.contains_key(header::ETAG) {
-        let text = format!("public, max-age={seconds}");
-        HeaderValue::from_str(&text).unwrap_or(HeaderValue::from_static("no-cache"))
+        timed(format!("{who}, max-age={seconds}"))
     } else {
         HeaderValue::from_static("no-store")
     };

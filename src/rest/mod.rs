@@ -3,6 +3,7 @@
 mod answer;
 pub mod api;
 mod body;
+mod caller;
 mod chunks;
 mod coding;
 mod cors;
@@ -11,6 +12,7 @@ mod docs;
 mod document;
 mod finish;
 mod freshness;
+mod harden;
 mod negotiate;
 mod openapi;
 mod points;
@@ -57,17 +59,20 @@ pub struct Door {
 }
 
 impl Door {
-    /// A door of these endpoints and their description.
+    /// A door of these endpoints and their description. All but the open ones are put behind a
+    /// gate.
     #[must_use]
-    pub fn new(mut endpoints: Vec<Endpoint>) -> Self {
+    pub fn new(mut endpoints: Vec<Endpoint>, gate: impl FnOnce(Router) -> Router) -> Self {
         endpoints.extend(docs::endpoints());
         endpoints.push(openapi::endpoint(&endpoints));
         let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
         let paths = paths.join(", ");
-        let router = endpoints
-            .into_iter()
-            .map(Endpoint::into_router)
-            .fold(Router::new(), Router::merge);
+        let (open, closed): (Vec<_>, Vec<_>) = endpoints.into_iter().partition(Endpoint::is_open);
+        let joined = |endpoints: Vec<Endpoint>| {
+            let routers = endpoints.into_iter().map(Endpoint::into_router);
+            routers.fold(Router::new(), Router::merge)
+        };
+        let router = joined(open).merge(gate(joined(closed)));
         Self { router, paths }
     }
 }

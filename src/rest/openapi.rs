@@ -14,7 +14,7 @@ const PATH: &str = "/openapi.json";
 
 /// The path, with the description of these endpoints and itself.
 pub(super) fn endpoint(endpoints: &[Endpoint]) -> Endpoint {
-    let alone = || Endpoint::new(PATH, (), vec![(operation(), routing::get(|| async {}))]);
+    let alone = || Endpoint::new(PATH, (), vec![(operation(), routing::get(|| async {}))]).open();
     let mut document = api::document(endpoints);
     let own = api::document(&[alone()]);
     document["paths"][PATH] = own["paths"][PATH].clone();
@@ -25,7 +25,7 @@ pub(super) fn endpoint(endpoints: &[Endpoint]) -> Endpoint {
         let text = text.clone();
         async move { fixed(&uri, &headers, "application/json", text) }
     });
-    Endpoint::new(PATH, (), vec![(operation(), handler)])
+    Endpoint::new(PATH, (), vec![(operation(), handler)]).open()
 }
 
 /// An answer that is always the same.

@@ -9,6 +9,7 @@ use super::{
     answer::{self, Asked},
     api::{self, Endpoint, Operation},
 };
+use crate::access::Caller;
 use crate::service::{
     Error, Service,
     query::{LOOKS_NAMES, REGION_NAMES, SET_NAMES, WINDOW_NAMES, parse_pairs},
@@ -38,6 +39,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 /// Answers a query.
 async fn get(
     State(service): State<Arc<Service>>,
+    caller: Caller,
     method: Method,
     uri: Uri,
     headers: HeaderMap,
@@ -46,6 +48,7 @@ async fn get(
     let most_vertices = service.limits().max_vertices;
     let (query, options) = parameters.check(&service.catalog(), most_vertices, None, faults)?;
     let asked = Asked {
+        caller,
         method,
         uri,
         headers,

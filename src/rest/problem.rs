@@ -8,12 +8,10 @@ use http::{HeaderValue, StatusCode, header};
 use serde::Serialize;
 
 use crate::{
+    access::{Denied, Short},
     error_map,
-    service::{Error, Fault, Kind, Record},
+    service::{Error, Fault, Record},
 };
-
-/// How long a client should wait before it asks a busy server again, in seconds.
-const RETRY_AFTER: &str = "1";
 
 /// The document.
 #[derive(Debug, Serialize)]
@@ -32,9 +30,33 @@ pub(super) struct Problem<'a> {
     pinned: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     loaded: Option<&'a str>,
+    #[serde(flatten)]
+    rate: Option<Rate>,
     /// What the request is called in the log.
     #[serde(skip_serializing_if = "Option::is_none")]
     request_id: Option<String>,
+}
+
+/// What a caller who is too fast has to know.
+#[derive(Debug, Serialize)]
+struct Rate {
+    points: u128,
+    left: u64,
+    points_per_second: f64,
+    burst_points: f64,
+    retry_after_seconds: f64,
+}
+
+impl Rate {
+    fn new(points: u128, short: &Short) -> Self {
+        Self {
+            points,
+            left: short.level.left,
+            points_per_second: short.level.rate.points_per_second,
+            burst_points: short.level.rate.burst_points,
+            retry_after_seconds: short.wait.as_secs_f64(),
+        }
+    }
 }
 
 fn request_id() -> Option<String> {
@@ -49,11 +71,18 @@ impl<'a> Problem<'a> {
             Error::TooManyRows { limit, .. } => (None, Some(*limit)),
             Error::BodyTooLarge { limit }
             | Error::Busy { limit }
-            | Error::TooManyConnections { limit } => (None, u64::try_from(*limit).ok()),
+            | Error::TooManyConnections { limit }
+            | Error::TooManyRequests { limit }
+            | Error::TooManyBytes { limit }
+            | Error::Denied(Denied::TooManyStreams { limit }) => (None, u64::try_from(*limit).ok()),
             _ => (None, None),
         };
         let digests = match error {
             Error::OtherTable { pinned, loaded } => Some((pinned.as_str(), loaded.as_str())),
+            _ => None,
+        };
+        let rate = match error {
+            Error::Denied(Denied::TooFast { points, short }) => Some(Rate::new(*points, short)),
             _ => None,
         };
         Self {
@@ -66,6 +95,7 @@ impl<'a> Problem<'a> {
             limit,
             pinned: digests.map(|(pinned, _)| pinned),
             loaded: digests.map(|(_, loaded)| loaded),
+            rate,
             request_id: request_id(),
         }
     }
@@ -74,10 +104,18 @@ impl<'a> Problem<'a> {
     pub(super) fn response(error: &'a Error) -> Response {
         Record::refuse(error.kind());
         let mut response = Self::new(error).into_response();
-        if matches!(error.kind(), Kind::Busy | Kind::ShuttingDown) {
-            let seconds = HeaderValue::from_static(RETRY_AFTER);
-            response.headers_mut().insert(header::RETRY_AFTER, seconds);
+        let headers = response.headers_mut();
+        if let Some(seconds) = error.retry_seconds() {
+            headers.insert(header::RETRY_AFTER, seconds.into());
         }
+        // RFC 6750, 3: what was wrong is only told to those who showed something.
+        let challenge = match error {
+            Error::Denied(Denied::NoKey) => "Bearer realm=\"strew\"",
+            Error::Denied(Denied::WrongKey) => "Bearer realm=\"strew\", error=\"invalid_token\"",
+            _ => return response,
+        };
+        let challenge = HeaderValue::from_static(challenge);
+        headers.insert(header::WWW_AUTHENTICATE, challenge);
         response
     }
 
@@ -93,6 +131,7 @@ impl<'a> Problem<'a> {
             limit: None,
             pinned: None,
             loaded: None,
+            rate: None,
             request_id: request_id(),
         };
         problem.into_response()
@@ -107,10 +146,11 @@ impl<'a> Problem<'a> {
         let (length, reason) = (body.len() + 1, status.canonical_reason());
         let head = format!(
             "HTTP/1.1 {} {}\r\ncontent-type: application/problem+json\r\ncontent-length: \
-             {length}\r\ncache-control: no-store\r\nretry-after: {RETRY_AFTER}\r\nconnection: \
+             {length}\r\ncache-control: no-store\r\nretry-after: {}\r\nconnection: \
              close\r\n\r\n{body}\n",
             problem.status,
-            reason.unwrap_or_default()
+            reason.unwrap_or_default(),
+            error.retry_seconds().unwrap_or(1)
         );
         head.into_bytes()
     }

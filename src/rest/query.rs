@@ -11,6 +11,7 @@ use super::{
     api::{Body, Endpoint, Operation, schemas},
     body::Whole,
 };
+use crate::access::Caller;
 use crate::service::{Error, Fault, Kind, Query, Service, encode::Options, query::read_body};
 
 /// The path.
@@ -54,6 +55,7 @@ fn example() -> serde_json::Value {
 
 async fn post(
     State(service): State<Arc<Service>>,
+    caller: Caller,
     method: Method,
     uri: Uri,
     headers: HeaderMap,
@@ -62,6 +64,7 @@ async fn post(
     no_parameters(&uri)?;
     let (query, options) = read(&service, &body)?;
     let asked = Asked {
+        caller,
         method,
         uri,
         headers,

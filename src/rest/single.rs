@@ -16,6 +16,7 @@ use super::{
     document,
     freshness::Freshness,
 };
+use crate::access::Caller;
 use crate::service::{
     Error, Found, Kind, Placed, Service,
     query::{Parameter, Parameters, ResolvedSet, SET_NAMES, Shape, parse_pairs},
@@ -129,6 +130,7 @@ async fn point(
 
 async fn around(
     State(service): State<Arc<Service>>,
+    caller: Caller,
     uri: Uri,
     headers: HeaderMap,
 ) -> Result<Response, Error> {
@@ -139,8 +141,10 @@ async fn around(
     let placed = service.place(set).await?;
     let finder = placed.clone();
     let search = move || finder.nearest(around);
+    let neighbors = service.workers().run(search).await??;
+    caller.charge(neighbors.len() as u128)?;
     let several = Several {
-        neighbors: service.workers().run(search).await??,
+        neighbors,
         query: placed.resolved.clone(),
     };
     finished(&uri, &headers, &parameters, &placed, &several)

@@ -83,11 +83,8 @@ async fn post(
     asked.remove("offset");
     let planned = service.count(query).await?;
     let count = planned.count();
-    let places = service
-        .workers()
-        .run(move || planned.split(parts))
-        .await??;
-    let part = |(token, count): (crate::service::query::Token, u64)| {
+    let places = service.split(planned, parts).await?;
+    let part = |(token, count): (crate::service::Token, u64)| {
         let mut query = asked.clone();
         query.insert("cursor".into(), token.to_string().into());
         query.insert("limit".into(), count.into());

@@ -8,6 +8,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::access::Denied;
+
 /// One thing that is wrong with a query.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fault {
@@ -74,7 +76,7 @@ fn cut(text: &str, most: usize) -> String {
 }
 
 /// Why a question has no answer.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The query is not valid; every fault that was found.
@@ -154,6 +156,9 @@ pub enum Error {
         /// What the path takes.
         allowed: String,
     },
+    /// The caller is not let in, or not now.
+    #[error(transparent)]
+    Denied(#[from] Denied),
     /// As many answers are under way as the server takes on at once.
     #[error("{limit} answers are under way, the most at once: try again later")]
     Busy {
@@ -165,6 +170,32 @@ pub enum Error {
     TooManyConnections {
         /// The limit.
         limit: usize,
+    },
+    /// As many requests are being answered as the server takes on at once.
+    #[error("{limit} requests are being answered, the most at once: try again later")]
+    TooManyRequests {
+        /// The limit.
+        limit: usize,
+    },
+    /// Requests and answers hold as much memory as they may.
+    #[error("requests and answers hold {limit} bytes, the most at once: try again later")]
+    TooManyBytes {
+        /// The limit.
+        limit: usize,
+    },
+    /// The body took longer to come than it may.
+    #[error("the body did not come within {seconds} seconds")]
+    BodyTooSlow {
+        /// The limit.
+        seconds: String,
+    },
+    /// The answer took longer than it may.
+    #[error(
+        "no answer was found within {seconds} seconds: try again later, or ask for a smaller region"
+    )]
+    TimeOver {
+        /// The limit.
+        seconds: String,
     },
     /// The server is about to stop.
     #[error("the server is shutting down: try again later, or elsewhere")]
@@ -200,8 +231,21 @@ pub enum Kind {
     NoSuchPath,
     /// [`Error::NoSuchMethod`].
     NoSuchMethod,
-    /// [`Error::Busy`], [`Error::TooManyConnections`].
+    /// [`Denied::NoKey`], [`Denied::WrongKey`].
+    Unauthenticated,
+    /// [`Denied::NotAdmin`].
+    NotAllowed,
+    /// [`Denied::TooManyStreams`].
+    TooManyStreams,
+    /// [`Denied::TooFast`].
+    TooFast,
+    /// [`Error::Busy`], [`Error::TooManyConnections`], [`Error::TooManyRequests`],
+    /// [`Error::TooManyBytes`].
     Busy,
+    /// [`Error::BodyTooSlow`].
+    BodyTooSlow,
+    /// [`Error::TimeOver`].
+    TimeOver,
     /// [`Error::ShuttingDown`].
     ShuttingDown,
     /// [`Error::Internal`].
@@ -210,7 +254,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 18] = [
         Self::Invalid,
         Self::TooManyPoints,
         Self::TooManyRows,
@@ -220,7 +264,13 @@ impl Kind {
         Self::NoSuchPoint,
         Self::NoSuchPath,
         Self::NoSuchMethod,
+        Self::Unauthenticated,
+        Self::NotAllowed,
+        Self::TooManyStreams,
+        Self::TooFast,
         Self::Busy,
+        Self::BodyTooSlow,
+        Self::TimeOver,
         Self::ShuttingDown,
         Self::Internal,
     ];
@@ -240,9 +290,30 @@ impl Error {
             Self::NoSuchPoint { .. } => Kind::NoSuchPoint,
             Self::NoSuchPath { .. } => Kind::NoSuchPath,
             Self::NoSuchMethod { .. } => Kind::NoSuchMethod,
-            Self::Busy { .. } | Self::TooManyConnections { .. } => Kind::Busy,
+            Self::Denied(Denied::NoKey | Denied::WrongKey) => Kind::Unauthenticated,
+            Self::Denied(Denied::NotAdmin { .. }) => Kind::NotAllowed,
+            Self::Denied(Denied::TooManyStreams { .. }) => Kind::TooManyStreams,
+            Self::Denied(Denied::TooFast { .. }) => Kind::TooFast,
+            Self::Busy { .. }
+            | Self::TooManyConnections { .. }
+            | Self::TooManyRequests { .. }
+            | Self::TooManyBytes { .. } => Kind::Busy,
+            Self::BodyTooSlow { .. } => Kind::BodyTooSlow,
+            Self::TimeOver { .. } => Kind::TimeOver,
             Self::ShuttingDown => Kind::ShuttingDown,
             Self::Internal(_) => Kind::Internal,
+        }
+    }
+
+    /// After how many seconds the same request is worth another try, where that helps.
+    #[must_use]
+    pub fn retry_seconds(&self) -> Option<u64> {
+        match self {
+            Self::ShuttingDown => Some(1),
+            // It was slow because others ask, too: soon it may be fast.
+            Self::TimeOver { .. } => Some(5),
+            Self::Denied(denied) => denied.wait_seconds(),
+            _ => (self.kind() == Kind::Busy).then_some(1),
         }
     }
 

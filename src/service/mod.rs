@@ -6,6 +6,7 @@
 //! Encoders ([`encode`]) are plain iterators: a command line can run them without any of the rest.
 
 mod attributes;
+pub mod budget;
 pub mod cache;
 pub mod catalog;
 mod effort;
@@ -26,20 +27,23 @@ use arc_swap::ArcSwap;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
 use serde::{Deserialize, Serialize};
+use strew_core::sample::Stop;
 use tokio::sync::Mutex;
 
+pub use budget::{Budget, Held};
 pub use cache::Ready;
 pub use catalog::{Catalog, Entry, Key, Reload};
 pub use encode::{Answer, Encoding, Output};
 pub use error::{Error, Fault, Kind};
 pub use planned::{Placed, Planned, PlannedSet};
 pub use portrait::Portrait;
-pub use query::{Draft, Query, Set};
+pub use query::{Draft, Query, Set, Token};
 pub use record::Record;
 pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::Workers;
 
+use crate::access::Caller;
 use cache::{CacheState, Samplers};
 use portrait::Portraits;
 use record::Recorded;
@@ -60,6 +64,12 @@ pub struct Limits {
     /// The most bytes of a query that comes as a body or a message: bounds what is held of each before it is
     /// read.
     pub max_body_bytes: usize,
+    /// The most requests that are being answered at once: read, counted, planned. Bounds what waits
+    /// for the workers.
+    pub max_requests: usize,
+    /// The most bytes that requests and answers hold at once: bodies that have come, answers that have
+    /// not left, and what streams are made in.
+    pub max_bytes_in_flight: usize,
     /// The most answers under way at once. Bounds memory: an answer holds 1 to 3 MB,
     /// some blocks and the rows they are made of, and a picture up to 16 MB more.
     pub max_streams: usize,
@@ -79,6 +89,7 @@ pub struct Service {
     samplers: Samplers,
     portraits: Portraits,
     streams: Arc<Streams>,
+    budget: Arc<Budget>,
     workers: Workers,
 }
 
@@ -90,6 +101,7 @@ impl Service {
             samplers: Samplers::new(limits.cache_bytes),
             portraits: Portraits::new(),
             streams: Arc::new(Streams::new(limits.max_streams)),
+            budget: Arc::new(Budget::new(limits.max_bytes_in_flight)),
             catalog: ArcSwap::from_pointee(catalog),
             reload: Mutex::new(()),
             limits,
@@ -145,6 +157,12 @@ impl Service {
         &self.streams
     }
 
+    /// What requests and answers hold.
+    #[must_use]
+    pub const fn budget(&self) -> &Arc<Budget> {
+        &self.budget
+    }
+
     /// Plans a query on the workers, whatever it counts.
     ///
     /// # Errors
@@ -160,24 +178,52 @@ impl Service {
             Planned::new(query, &tables, &self.limits)?
         } else {
             let limits = self.limits.clone();
-            let plan = move || Planned::new(query, &tables, &limits);
-            self.workers.run(plan).await??
+            let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
+            self.workers.run_while_wanted(plan).await??
         };
         tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
         Ok(planned)
+    }
+
+    /// The right of a caller to start one more stream; a picture of that size is held whole.
+    ///
+    /// # Errors
+    /// As [`Streams::admit`], [`Error::Denied`] if the caller has as many as it may have, and
+    /// [`Error::TooManyBytes`] if there is no room.
+    pub fn admit(&self, caller: &Caller, picture: Option<u32>) -> Result<Permit, Error> {
+        /// Rows and text are made in so much, besides blocks.
+        const ROWS: usize = 2 << 20;
+        let side = picture.map_or(0, |side| usize::try_from(side).unwrap_or(usize::MAX));
+        let blocks = self.limits.block_bytes.saturating_mul(4);
+        let held = blocks
+            .saturating_add(ROWS)
+            .saturating_add(side.saturating_mul(side));
+        let place = caller.place()?;
+        let permit = self.streams.admit()?;
+        Ok(permit.with(place, self.budget.hold(held)?))
     }
 
     /// Plans a query that is to be answered with its points.
     ///
     /// # Errors
     /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
-    pub async fn plan(&self, query: Query) -> Result<Planned, Error> {
+    pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
         let planned = self.count(query).await?;
-        let (count, limit) = (planned.count(), self.limits.max_points);
+        let limit = caller.max_points(self.limits.max_points);
+        let count = planned.count();
         if count > u128::from(limit) {
             return Err(Error::TooManyPoints { count, limit });
         }
         Ok(planned)
+    }
+
+    /// The query in parts; see [`Planned::split`].
+    ///
+    /// # Errors
+    /// As [`Planned::split`].
+    pub async fn split(&self, planned: Planned, parts: u32) -> Result<Vec<(Token, u64)>, Error> {
+        let split = move |stop: &Stop| planned.stopped_by(stop).split(parts);
+        self.workers.run_while_wanted(split).await?
     }
 
     /// Lays a set into the world, to ask for single points.

@@ -2,7 +2,10 @@
 
 use std::sync::{Arc, OnceLock};
 
-use strew_core::{Placement, Plan, Spacing, sample::Cursor};
+use strew_core::{
+    Placement, Plan, Spacing,
+    sample::{Cursor, Stop},
+};
 
 use super::{
     Entry, Error, Limits,
@@ -103,6 +106,27 @@ impl Planned {
     /// [`Error::Invalid`] if the region reaches farther than points can be told apart, or an amount
     /// cannot be had; [`Error::TooManyRows`] if counting would take too long.
     pub fn new(query: Query, tables: &[Ready], limits: &Limits) -> Result<Self, Error> {
+        Self::unless_stopped(query, tables, limits, &Stop::default())
+    }
+
+    /// The same, as long as it is wanted.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and [`Error::Internal`] once it is stopped, which nobody should hear.
+    pub fn unless_stopped(
+        query: Query,
+        tables: &[Ready],
+        limits: &Limits,
+        stop: &Stop,
+    ) -> Result<Self, Error> {
+        let planned = Self::plan(query, tables, limits, stop);
+        if stop.is_raised() {
+            return Err(Error::Internal("a plan was stopped that is still wanted"));
+        }
+        planned
+    }
+
+    fn plan(query: Query, tables: &[Ready], limits: &Limits, stop: &Stop) -> Result<Self, Error> {
         let identity = OnceLock::new();
         if let Some(token) = query.window.cursor {
             let digests: Vec<&str> = tables.iter().map(|t| t.entry.digest.as_str()).collect();
@@ -110,7 +134,7 @@ impl Planned {
             let identity = identity.get_or_init(|| query.identity(&digests));
             token.check(identity).map_err(fault)?;
         }
-        let mut planner = Planner::new(&query, limits);
+        let mut planner = Planner::new(&query, limits, stop);
         let mut sets = vec![];
         for (i, (set, ready)) in query.sets.iter().zip(tables).enumerate() {
             sets.push(planner.plan(i, set, ready)?);
@@ -228,6 +252,15 @@ impl Planned {
         let size = |i: u128| u64::try_from(bound(i + 1) - bound(i)).unwrap_or(u64::MAX);
         let places = (0..parts).filter_map(|i| Some((self.place(bound(i))?, size(i))));
         Ok(places.collect())
+    }
+
+    /// What is asked of the plans from here on stops with this flag.
+    #[must_use]
+    pub fn stopped_by(mut self, stop: &Stop) -> Self {
+        for set in &mut self.sets {
+            set.plan = set.plan.clone().stopped_by(stop.clone());
+        }
+        self
     }
 
     /// The place of point number `k` of the answer.

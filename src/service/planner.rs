@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use strew_core::{
     Plan, PointId, Region, Spacing,
-    sample::{ClearOf, CountError, Cursor, DistanceError, Layer, Selection},
+    sample::{ClearOf, CountError, Cursor, DistanceError, Layer, Selection, Stop},
 };
 
 use super::{
@@ -18,6 +18,7 @@ use super::{
 pub(super) struct Planner<'a> {
     query: &'a Query,
     limits: &'a Limits,
+    stop: &'a Stop,
     layers: Vec<Arc<Layer>>,
 }
 
@@ -25,10 +26,12 @@ pub(super) struct Planner<'a> {
 const COUNTS: f64 = 32.0;
 
 impl<'a> Planner<'a> {
-    pub(super) const fn new(query: &'a Query, limits: &'a Limits) -> Self {
+    /// `stop` ends the counting early; what is planned then means nothing.
+    pub(super) const fn new(query: &'a Query, limits: &'a Limits, stop: &'a Stop) -> Self {
         Self {
             query,
             limits,
+            stop,
             layers: vec![],
         }
     }
@@ -51,6 +54,7 @@ impl<'a> Planner<'a> {
             placement: set.placement(known.unwrap_or(unit)),
             area: set.area(region),
             clear: clear.into(),
+            stop: self.stop.clone(),
         };
         let plan = match (known, here) {
             (Some(spacing), _) if is_over || here.is_some() => {

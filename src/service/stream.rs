@@ -21,7 +21,8 @@ use std::{
 use futures_util::{FutureExt as _, Stream};
 use tokio_util::sync::{CancellationToken, WaitForCancellationFutureOwned};
 
-use super::{Error, Workers};
+use super::{Error, Held, Workers};
+use crate::access::Place;
 
 /// Why a stream broke off: its reader must see that it is not complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -29,6 +30,12 @@ pub enum Interrupted {
     /// The server stops and will not wait longer.
     #[error("the server is shutting down; the stream is not complete")]
     Shutdown,
+    /// The reader took nothing for too long.
+    #[error("nothing was taken of it for too long; the stream is not complete")]
+    Stalled,
+    /// It took longer than streams may.
+    #[error("the time for it is over; the stream is not complete: go on with a cursor")]
+    TimeOver,
     /// Making a block failed.
     #[error("an internal error; the stream is not complete")]
     Failed,
@@ -74,6 +81,8 @@ impl Streams {
             .map_err(|_| Error::Busy { limit: self.limit })?;
         Ok(Permit {
             streams: self.clone(),
+            _place: None,
+            _held: None,
         })
     }
 
@@ -87,6 +96,19 @@ impl Streams {
 #[derive(Debug)]
 pub struct Permit {
     streams: Arc<Streams>,
+    /// The caller's own place, where it has not any number.
+    _place: Option<Place>,
+    /// What it may hold.
+    _held: Option<Held>,
+}
+
+impl Permit {
+    /// With a place of the caller's and memory that are given back with it.
+    pub(super) fn with(mut self, place: Option<Place>, held: Held) -> Self {
+        self._place = place;
+        self._held = Some(held);
+        self
+    }
 }
 
 impl Drop for Permit {

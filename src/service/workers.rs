@@ -5,6 +5,8 @@
 
 use std::{fmt, sync::Arc};
 
+use strew_core::sample::Stop;
+
 use super::Error;
 
 /// A handle of the pool.
@@ -43,6 +45,21 @@ impl Workers {
         self.pool.spawn(job);
     }
 
+    /// Runs a job that stops early when nobody waits for it any more.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if the job panicked.
+    pub async fn run_while_wanted<T: Send + 'static>(
+        &self,
+        job: impl FnOnce(&Stop) -> T + Send + 'static,
+    ) -> Result<T, Error> {
+        let stop = Stop::new();
+        let waiting = Waiting(Some(stop.clone()));
+        let answer = self.run(move || job(&stop)).await;
+        waiting.over();
+        answer
+    }
+
     /// Runs a job and waits for what it gives.
     ///
     /// # Errors
@@ -60,5 +77,23 @@ impl Workers {
         answered
             .await
             .map_err(|_| Error::Internal("a computation failed"))
+    }
+}
+
+/// Raises a flag if it is dropped before the wait is over.
+struct Waiting(Option<Stop>);
+
+impl Waiting {
+    /// What was waited for is there, and may be used on.
+    fn over(mut self) {
+        self.0 = None;
+    }
+}
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        if let Some(stop) = &self.0 {
+            stop.raise();
+        }
     }
 }

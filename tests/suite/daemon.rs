@@ -3,7 +3,7 @@
 use std::{
     io::{BufRead as _, BufReader},
     path::{Path, PathBuf},
-    process::{Child, Command, ExitStatus, Stdio},
+    process::{Child, ChildStdout, Command, ExitStatus, Stdio},
     time::{Duration, Instant},
 };
 
@@ -71,9 +71,15 @@ pub fn write(folder: &Path, name: &str, table: &Table) {
     std::fs::write(folder.join(name), table.to_bytes()).expect("writable");
 }
 
+/// Settings of a daemon that logs no more than it must.
+fn warnings<'a>(settings: &[&'a str]) -> Vec<&'a str> {
+    [settings, &["log.filter=warn"]].concat()
+}
+
 /// A running daemon; killed when dropped.
 pub struct Daemon {
     child: Child,
+    output: BufReader<ChildStdout>,
     address: String,
     tables: tempfile::TempDir,
 }
@@ -86,18 +92,30 @@ impl Daemon {
 
     /// Starts one on a free port with a folder of tables and further settings.
     pub fn with_tables(tables: tempfile::TempDir, settings: &[&str]) -> Self {
-        Self::launch("127.0.0.1:0", tables, settings)
+        Self::launch(strew(), "127.0.0.1:0", tables, &warnings(settings))
             .unwrap_or_else(|line| panic!("not ready: {line}"))
     }
 
     /// Starts one with the test tables at an address, if that is free.
     pub fn at(address: &str) -> Option<Self> {
-        Self::launch(address, tables(), &[]).ok()
+        Self::launch(strew(), address, tables(), &warnings(&[])).ok()
+    }
+
+    /// Starts one that logs to a file, or what goes by as one.
+    pub fn logging_to(log: Stdio, settings: &[&str]) -> Self {
+        let mut command = strew();
+        command.stderr(log);
+        Self::launch(command, "127.0.0.1:0", tables(), settings)
+            .unwrap_or_else(|line| panic!("not ready: {line}"))
     }
 
     /// Starts one; gives what it said instead if it is not ready.
-    fn launch(listen: &str, tables: tempfile::TempDir, settings: &[&str]) -> Result<Self, String> {
-        let mut command = strew();
+    fn launch(
+        mut command: Command,
+        listen: &str,
+        tables: tempfile::TempDir,
+        settings: &[&str],
+    ) -> Result<Self, String> {
         command
             .args(["serve", "--listen", listen, "--tables"])
             .arg(tables.path());
@@ -105,14 +123,12 @@ impl Daemon {
             command.args(["--set", setting]);
         }
         let mut child = command
-            .args(["--set", "log.filter=warn"])
             .stdout(Stdio::piped())
             .spawn()
             .expect("the program runs");
         let mut line = String::new();
-        BufReader::new(child.stdout.take().expect("piped"))
-            .read_line(&mut line)
-            .expect("readable");
+        let mut output = BufReader::new(child.stdout.take().expect("piped"));
+        output.read_line(&mut line).expect("readable");
         let address = line
             .trim()
             .strip_prefix("listening on http")
@@ -123,9 +139,17 @@ impl Daemon {
         };
         Ok(Self {
             child,
+            output,
             address,
             tables,
         })
+    }
+
+    /// The next line on its standard output.
+    pub fn line(&mut self) -> String {
+        let mut line = String::new();
+        self.output.read_line(&mut line).expect("readable");
+        line.trim().to_owned()
     }
 
     /// `host:port`.

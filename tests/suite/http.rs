@@ -66,7 +66,10 @@ fn pages_of_any_origin_may_ask_and_read_all_headers() {
         assert_eq!(allowed.header("access-control-allow-origin"), "*");
         let methods = allowed.header("access-control-allow-methods");
         assert!(methods.contains("GET") && methods.contains("POST"));
-        assert_eq!(allowed.header("access-control-allow-headers"), "*");
+        assert_eq!(
+            allowed.header("access-control-allow-headers"),
+            "*, authorization"
+        );
     }
     // No page asks: nobody is told.
     let plain = daemon.get("/livez");

@@ -201,7 +201,7 @@ proptest! {
         let placement = Placement { seed, ..unit(0).with_warp(warp) };
         let clear: Arc<[ClearOf]> =
             Arc::new([ClearOf::new(Arc::new(rocks), distance).expect("valid")]);
-        let selection = |area: Area| Selection { placement, area, clear: clear.clone() };
+        let selection = |area: Area| Selection { placement, area, clear: clear.clone(), stop: strew_core::sample::Stop::default() };
         let plan = sampler.select(selection(bounds.into())).expect("in range");
         let points = all::<Points>(&plan, 50);
         prop_assert_eq!(plan.count(), points.len() as u128);

@@ -10,7 +10,7 @@ use std::{
 /// ago can be changed again without looking different.
 const YOUNG: Duration = Duration::from_secs(3);
 
-/// How a folder of tables looked at some moment.
+/// How a folder of tables and a file of keys looked at some moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Look {
     /// Each file with its length and time of change, as far as the system tells.
@@ -20,8 +20,8 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// Looks at the tables of a folder.
-    pub(super) fn at(folder: Option<&Path>) -> Self {
+    /// Looks at the tables of a folder, and at a file.
+    pub(super) fn at(folder: Option<&Path>, file: Option<&Path>) -> Self {
         let listed = folder.and_then(|folder| fs::read_dir(folder).ok());
         let names = listed.into_iter().flatten().filter_map(|file| {
             let path = file.ok()?.path();
@@ -32,12 +32,13 @@ impl Look {
         let now = SystemTime::now();
         let mut is_young = false;
         let mut files: Vec<_> = names
+            .chain(file.map(Into::into))
             .map(|path| {
                 // Follows links: orchestrators change what a link points to.
                 let state = fs::metadata(&path).and_then(|data| Ok((data.len(), data.modified()?)));
                 let state = state.ok();
                 // A time in the future, after a clock was set back, counts as young, too.
-                is_young |= state.is_none_or(|(_, changed)| {
+                is_young |= state.is_some_and(|(_, changed)| {
                     now.duration_since(changed).is_ok_and(|age| age < YOUNG)
                         || now.duration_since(changed).is_err()
                 });
@@ -67,7 +68,7 @@ mod tests {
             let then = SystemTime::now() - Duration::from_secs(60);
             file.set_modified(then).expect("settable");
         };
-        let look = || Look::at(Some(folder.path()));
+        let look = || Look::at(Some(folder.path()), Some(&folder.path().join("keys.toml")));
         let none = look();
         assert!(look().is_surely(&none));
         fs::write(&path, "one").expect("writable");

@@ -17,7 +17,15 @@ const ABOUT: &str = "Strew scatters points: any region of an unbounded plane, at
                      if the client accepts it.";
 
 /// The problems that any request can have.
-const EVERYWHERE: [Kind; 2] = [Kind::NoSuchMethod, Kind::Internal];
+const EVERYWHERE: [Kind; 4] = [
+    Kind::NoSuchMethod,
+    Kind::Busy,
+    Kind::TimeOver,
+    Kind::Internal,
+];
+
+/// Those of a request that is not let in.
+const AT_THE_GATE: [Kind; 2] = [Kind::Unauthenticated, Kind::TooFast];
 
 /// The document.
 pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
@@ -26,7 +34,7 @@ pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
         let mut item = Map::new();
         for operation in endpoint.operations() {
             let method = operation.method.as_str().to_lowercase();
-            item.insert(method, described(operation));
+            item.insert(method, described(operation, endpoint.is_open()));
         }
         paths.insert(endpoint.path().into(), Value::Object(item));
     }
@@ -40,11 +48,19 @@ pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
         },
         "servers": [{ "url": "/" }],
         "paths": paths,
-        "components": { "schemas": schemas::shared() },
+        // Whether a key is needed is a setting of the server.
+        "security": [{}, { "bearer": [] }, { "header": [] }],
+        "components": {
+            "schemas": schemas::shared(),
+            "securitySchemes": {
+                "bearer": { "type": "http", "scheme": "bearer" },
+                "header": { "type": "apiKey", "in": "header", "name": "x-api-key" },
+            },
+        },
     })
 }
 
-fn described(operation: &Operation) -> Value {
+fn described(operation: &Operation, is_open: bool) -> Value {
     let in_path = operation.path_parameters.iter().map(|parameter| Given {
         parameter,
         required: true,
@@ -59,6 +75,10 @@ fn described(operation: &Operation) -> Value {
     }
     let mut problems: Vec<Kind> = operation.problems.clone();
     problems.extend(EVERYWHERE);
+    problems.extend(operation.body.is_some().then_some(Kind::BodyTooSlow));
+    if !is_open {
+        problems.extend(AT_THE_GATE);
+    }
     for (status, response) in refused(&problems) {
         // A status may be shared with an answer that is not a problem; that one is told.
         responses.entry(status).or_insert(response);
@@ -71,6 +91,9 @@ fn described(operation: &Operation) -> Value {
         "responses": responses,
         "x-curl": operation.example,
     });
+    if is_open {
+        told["security"] = json!([]);
+    }
     if let Some(body) = &operation.body {
         told["requestBody"] = json!({
             "required": true,

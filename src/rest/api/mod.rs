@@ -22,6 +22,7 @@ pub(super) use document::document;
 pub struct Endpoint {
     path: &'static str,
     operations: Vec<Operation>,
+    is_open: bool,
     router: Router,
 }
 
@@ -148,10 +149,24 @@ impl Endpoint {
         Self {
             path,
             operations: told,
+            is_open: false,
             router: Router::new()
                 .route(path, methods.fallback(fallback))
                 .with_state(state),
         }
+    }
+
+    /// Lets everyone in, with a key or without.
+    #[must_use]
+    pub fn open(mut self) -> Self {
+        self.is_open = true;
+        self
+    }
+
+    /// Whether everyone is let in.
+    #[must_use]
+    pub const fn is_open(&self) -> bool {
+        self.is_open
     }
 
     /// The path, with its parameters in braces.

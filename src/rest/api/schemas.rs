@@ -40,6 +40,11 @@ pub(super) fn shared() -> Value {
                 "limit": count(),
                 "pinned": reference("Digest"),
                 "loaded": reference("Digest"),
+                "points": count(),
+                "left": count(),
+                "points_per_second": number(),
+                "burst_points": number(),
+                "retry_after_seconds": number(),
                 "request_id": {
                     "type": "string",
                     "description": "What the request is called in the server's log; also the header \

@@ -73,6 +73,8 @@ pub(super) fn planned(bbox: [f64; 4], spacing: f64, seed: u64) -> Planned {
         max_rows: 1_000_000,
         max_vertices: 100,
         max_body_bytes: 1 << 20,
+        max_requests: 1,
+        max_bytes_in_flight: 1 << 30,
         max_streams: 1,
         block_bytes: 4096,
         cache_bytes: 0,

@@ -8,7 +8,7 @@
 use core::ops::Range;
 
 use super::{
-    Frame, Listed, Sampler,
+    Frame, Listed, Sampler, Stop,
     blocks::{list_columns, locate},
     margins,
     plan::Span,
@@ -16,12 +16,12 @@ use super::{
 };
 use crate::pattern::{Axis, Class};
 
-pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u128 {
+pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span, stop: &Stop) -> u128 {
     if x.bounds.is_empty() || y.bounds.is_empty() {
         return 0;
     }
     if frame.shears.is_some() {
-        return margins::count(sampler, frame, x, y);
+        return margins::count(sampler, frame, x, y, stop);
     }
     let [width, height] = [x, y].map(|span| span.all.end - span.all.start);
     if width <= FEW && height <= FEW {

@@ -5,14 +5,14 @@
 use core::ops::Range;
 
 use super::{
-    Frame, Listed, Sampler,
+    Frame, Listed, Sampler, Stop,
     blocks::list_columns,
     patch::{BAND_WIDTH, Patch},
     plan::Span,
 };
 use crate::pattern::{Axis, Class};
 
-pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u128 {
+pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span, stop: &Stop) -> u128 {
     let inner = |class: Class| {
         let columns = frame
             .pattern
@@ -29,6 +29,7 @@ pub(super) fn count(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u12
         frame,
         x,
         y,
+        stop,
         columns: Default::default(),
     };
     let [left, right] = x.margins();
@@ -45,6 +46,7 @@ struct Margins<'a> {
     frame: &'a Frame,
     x: &'a Span,
     y: &'a Span,
+    stop: &'a Stop,
     columns: [Listed; 4],
 }
 
@@ -53,12 +55,12 @@ impl Margins<'_> {
     fn count(&mut self, columns: &Range<i64>, rows: &Range<i64>) -> u128 {
         let mut count = 0;
         let mut start = columns.start;
-        while start < columns.end {
+        while start < columns.end && !self.stop.is_raised() {
             let band = start.div_euclid(BAND_WIDTH);
             let end = columns.end.min((band + 1) * BAND_WIDTH);
             list_columns(self.sampler, self.frame, start..end, &mut self.columns);
             let mut row = rows.start;
-            while row < rows.end {
+            while row < rows.end && !self.stop.is_raised() {
                 let patch = Patch::new(self.frame, band, row, self.x, self.y);
                 let end = patch.end().min(rows.end);
                 count += self.count_in(&patch, row..end);

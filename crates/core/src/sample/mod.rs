@@ -29,6 +29,7 @@ mod seed;
 mod seek;
 mod sieve;
 mod spacing;
+mod stop;
 mod stretch;
 mod tally;
 mod template;
@@ -62,6 +63,7 @@ pub use rank::{rank, side_for};
 pub use region::{Region, RegionError};
 pub use seed::Seed;
 pub use spacing::{Spacing, SpacingError};
+pub use stop::Stop;
 pub use variants::{Variants, VariantsError};
 pub use warp::{Warp, WarpError};
 

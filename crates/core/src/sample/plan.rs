@@ -5,7 +5,7 @@ use core::ops::Range;
 
 use super::{
     Area, Blocks, ClearOf, Cursor, F32, F64, Format, Frame, LATTICE_LIMIT, Placement, PointId,
-    Points, Region, Sampler, Tile, count, fixed,
+    Points, Region, Sampler, Stop, Tile, count, fixed,
     region::Corner,
     sieve::{self, Sieve},
 };
@@ -20,6 +20,8 @@ pub struct Selection {
     pub area: Area,
     /// What they keep clear of.
     pub clear: Arc<[ClearOf]>,
+    /// Ends the counting early.
+    pub stop: Stop,
 }
 
 impl Selection {
@@ -30,6 +32,7 @@ impl Selection {
             placement,
             area: area.into(),
             clear: Arc::new([]),
+            stop: Stop::default(),
         }
     }
 }
@@ -51,6 +54,9 @@ pub enum PlanError {
         /// The largest absolute value allowed.
         limit: f64,
     },
+    /// [`Selection::stop`] was raised before the points were counted.
+    #[error("the counting was stopped")]
+    Stopped,
     /// The area has no end.
     #[error("the area has no end; it must lie within a box")]
     Unbounded,
@@ -136,6 +142,7 @@ pub struct Plan {
     pub(super) x: Span,
     pub(super) y: Span,
     pub(super) sieve: Option<Arc<Sieve>>,
+    stop: Stop,
     region: Region,
     /// How many points the selection has in all.
     pub(super) total: u128,
@@ -158,6 +165,7 @@ impl Plan {
             placement,
             area,
             clear,
+            stop,
         } = selection;
         let frame = Frame::new(&sampler, placement);
         let region = area.bounds().ok_or(PlanError::Unbounded)?;
@@ -193,6 +201,7 @@ impl Plan {
             x,
             y,
             sieve: sieve.map(Arc::new),
+            stop,
             region,
             total: 0,
             start: None,
@@ -201,6 +210,9 @@ impl Plan {
         };
         plan.total = known.unwrap_or_else(|| plan.count_within(&plan.x.all, &plan.y.all));
         plan.count = plan.total;
+        if plan.stop.is_raised() {
+            return Err(PlanError::Stopped);
+        }
         Ok(plan)
     }
 
@@ -208,8 +220,8 @@ impl Plan {
     pub(super) fn count_within(&self, columns: &Range<i64>, rows: &Range<i64>) -> u128 {
         let (x, y) = (self.x.within(columns), self.y.within(rows));
         match &self.sieve {
-            Some(sieve) => sieve::count(&self.sampler, &self.frame, sieve, &x, &y),
-            None => count::count(&self.sampler, &self.frame, &x, &y),
+            Some(sieve) => sieve::count(&self.sampler, &self.frame, sieve, [&x, &y], &self.stop),
+            None => count::count(&self.sampler, &self.frame, &x, &y, &self.stop),
         }
     }
 
@@ -229,6 +241,12 @@ impl Plan {
     #[must_use]
     pub const fn offset(&self) -> u128 {
         self.offset
+    }
+
+    /// The same plan, whose further counting stops with a flag.
+    #[must_use]
+    pub fn stopped_by(self, stop: Stop) -> Self {
+        Self { stop, ..self }
     }
 
     /// The points from number `offset` of this plan on, `limit` at most. Without warp, of a box,

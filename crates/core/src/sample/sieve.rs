@@ -8,7 +8,7 @@ use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    Area, Frame, Listed, Region, Sampler,
+    Area, Frame, Listed, Region, Sampler, Stop,
     area::{Near, State, Stepper},
     before::Before,
     blocks::{list_columns, locate},
@@ -209,8 +209,14 @@ fn room(x: f64) -> f64 {
 }
 
 /// How many points of a stretch of the lattice pass. Whole strips of rows are asked first; what is
-/// inside them all is counted in closed form.
-pub(super) fn count(sampler: &Sampler, frame: &Frame, sieve: &Sieve, x: &Span, y: &Span) -> u128 {
+/// inside them all is counted in closed form. Once it is stopped the number means nothing.
+pub(super) fn count(
+    sampler: &Sampler,
+    frame: &Frame,
+    sieve: &Sieve,
+    [x, y]: [&Span; 2],
+    stop: &Stop,
+) -> u128 {
     let (columns, rows) = (&x.all, &y.all);
     if columns.is_empty() {
         return 0;
@@ -220,13 +226,14 @@ pub(super) fn count(sampler: &Sampler, frame: &Frame, sieve: &Sieve, x: &Span, y
     let mut piece = Piece {
         sampler,
         frame,
+        stop,
         focus: sieve.focus(),
         bands: vec![Band::default(); BANDS],
         runs: Vec::new(),
     };
     let mut runs = Vec::new();
     let mut start = rows.start;
-    while start < rows.end {
+    while start < rows.end && !stop.is_raised() {
         let end = rows.end.min((start & !(PATCH_HEIGHT - 1)) + PATCH_HEIGHT);
         let rows = start..end;
         start = end;
@@ -254,6 +261,7 @@ pub(super) fn count(sampler: &Sampler, frame: &Frame, sieve: &Sieve, x: &Span, y
 struct Piece<'a> {
     sampler: &'a Sampler,
     frame: &'a Frame,
+    stop: &'a Stop,
     focus: Focus,
     /// By number, the lowest bits of it.
     bands: Vec<Band>,
@@ -293,6 +301,10 @@ impl Piece<'_> {
         let mut count = 0;
         let mut known = rows.start;
         for y in rows.clone() {
+            // A row along an edge, or with other layers near, takes long.
+            if self.stop.is_raised() {
+                break;
+            }
             let Some((class, block)) = locate(sampler, frame, y) else {
                 continue;
             };

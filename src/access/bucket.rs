@@ -1,0 +1,189 @@
+//! Token buckets that points are taken from.
+//!
+//! A bucket fills at a steady rate up to its burst. What is asked for is let through if the bucket
+//! holds it. A request larger than the burst could never be: it is let through when the bucket is
+//! full, and the bucket owes the rest, so that on average nobody gets more than the rate, and no
+//! answer that the server's limits allow is out of reach.
+
+use std::{
+    sync::{Mutex, PoisonError},
+    time::{Duration, Instant},
+};
+
+/// How fast points may be taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rate {
+    /// Points per second, above 0.
+    pub points_per_second: f64,
+    /// How many may be taken at once after a rest, at least 1.
+    pub burst_points: f64,
+}
+
+impl Rate {
+    /// The burst of a rate that names none, in seconds.
+    const REST: f64 = 10.0;
+
+    /// A rate with its burst, or with that of ten seconds.
+    pub(super) fn new(points_per_second: f64, burst_points: Option<f64>) -> Self {
+        let burst = burst_points.unwrap_or(points_per_second * Self::REST);
+        Self {
+            points_per_second,
+            burst_points: burst.max(1.0),
+        }
+    }
+}
+
+/// What is left, and when there will be enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// The rate.
+    pub rate: Rate,
+    /// How many points are left; none while the bucket owes some.
+    pub left: u64,
+    /// How long until it is full.
+    pub full_in: Duration,
+}
+
+/// A bucket holds too little.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Short {
+    /// What is left.
+    pub level: Level,
+    /// How long until the same request is let through, if nothing else is.
+    pub wait: Duration,
+}
+
+/// A bucket.
+#[derive(Debug)]
+pub struct Bucket {
+    rate: Rate,
+    state: Mutex<State>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct State {
+    /// What is in it; negative while it owes.
+    points: f64,
+    at: Instant,
+}
+
+impl Bucket {
+    /// A full one.
+    pub(super) const fn full(rate: Rate, now: Instant) -> Self {
+        Self {
+            rate,
+            state: Mutex::new(State {
+                points: rate.burst_points,
+                at: now,
+            }),
+        }
+    }
+
+    pub(super) const fn rate(&self) -> Rate {
+        self.rate
+    }
+
+    /// Takes points, all or none. `taken` are those that the same request has taken before: without
+    /// them a bucket is as full as it can be.
+    pub(super) fn take(&self, points: f64, taken: f64, now: Instant) -> Result<(), Short> {
+        self.with(now, |rate, held| {
+            let needed = points.min(rate.burst_points - taken);
+            if *held >= needed {
+                *held -= points;
+                return Ok(());
+            }
+            Err(Short {
+                level: level(rate, *held),
+                wait: seconds((needed - *held) / rate.points_per_second),
+            })
+        })
+    }
+
+    /// What is left.
+    pub(super) fn level(&self, now: Instant) -> Level {
+        self.with(now, |rate, held| level(rate, *held))
+    }
+
+    fn with<T>(&self, now: Instant, act: impl FnOnce(Rate, &mut f64) -> T) -> T {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        // Requests meet here in another order than their clocks were read.
+        let passed = now.saturating_duration_since(state.at).as_secs_f64();
+        state.at = state.at.max(now);
+        let filled = state.points + passed * self.rate.points_per_second;
+        state.points = filled.min(self.rate.burst_points);
+        act(self.rate, &mut state.points)
+    }
+}
+
+fn level(rate: Rate, held: f64) -> Level {
+    Level {
+        rate,
+        left: held.max(0.0) as u64,
+        full_in: seconds((rate.burst_points - held) / rate.points_per_second),
+    }
+}
+
+fn seconds(value: f64) -> Duration {
+    Duration::try_from_secs_f64(value.max(0.0)).unwrap_or(Duration::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RATE: Rate = Rate {
+        points_per_second: 100.0,
+        burst_points: 1000.0,
+    };
+
+    #[test]
+    fn nobody_gets_more_than_burst_and_rate() {
+        let start = Instant::now();
+        let bucket = Bucket::full(RATE, start);
+        bucket.take(600.0, 0.0, start).expect("there");
+        let short = bucket.take(600.0, 0.0, start).expect_err("too much");
+        assert_eq!(short.wait, Duration::from_secs(2));
+        assert_eq!(short.level.left, 400);
+        assert_eq!(short.level.full_in, Duration::from_secs(6));
+        // What is refused costs nothing.
+        let later = start + short.wait;
+        bucket.take(600.0, 0.0, later).expect("as was said");
+        assert_eq!(bucket.level(later).left, 0);
+        let rested = later + Duration::from_secs(3600);
+        assert_eq!(bucket.level(rested).left, 1000);
+    }
+
+    #[test]
+    fn more_than_the_burst_needs_a_full_bucket_and_is_owed() {
+        let start = Instant::now();
+        let bucket = Bucket::full(RATE, start);
+        bucket.take(1.0, 0.0, start).expect("full");
+        assert!(bucket.take(5000.0, 0.0, start).is_err());
+        bucket
+            .take(4999.0, 1.0, start)
+            .expect("full but for its own");
+        assert_eq!(bucket.level(start).left, 0);
+        let short = bucket.take(1.0, 0.0, start).expect_err("it owes");
+        assert_eq!(short.wait, Duration::from_millis(40_010));
+        let short = bucket.take(5000.0, 0.0, start).expect_err("it owes");
+        assert_eq!(short.wait, Duration::from_secs(50));
+        bucket
+            .take(5000.0, 0.0, start + short.wait)
+            .expect("paid back");
+    }
+
+    #[test]
+    fn clocks_that_disagree_give_nothing_away() {
+        let start = Instant::now();
+        let bucket = Bucket::full(RATE, start + Duration::from_secs(5));
+        bucket
+            .take(1000.0, 0.0, start + Duration::from_secs(5))
+            .expect("full");
+        assert!(bucket.take(1.0, 0.0, start).is_err());
+        assert!(
+            bucket
+                .take(1.0, 0.0, start + Duration::from_secs(5))
+                .is_err()
+        );
+    }
+}

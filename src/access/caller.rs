@@ -1,0 +1,129 @@
+//! Who asks, as far as it decides what is answered.
+
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
+    time::Instant,
+};
+
+use super::{
+    Denied,
+    bucket::{Bucket, Level},
+};
+
+/// What a request costs, in points.
+const REQUEST: f64 = 1.0;
+
+/// Someone who has been let in. Cheap to clone.
+#[derive(Clone, Debug, Default)]
+pub struct Caller {
+    pub(super) name: Option<Arc<str>>,
+    pub(super) is_admin: bool,
+    pub(super) max_points: Option<u64>,
+    pub(super) places: Option<Arc<Places>>,
+    pub(super) bucket: Option<Arc<Bucket>>,
+}
+
+/// How many streams a key may have at once, and has.
+#[derive(Debug)]
+pub(super) struct Places {
+    pub(super) limit: usize,
+    pub(super) open: Arc<AtomicUsize>,
+}
+
+/// A place for one stream; given back when dropped.
+#[derive(Debug)]
+pub struct Place {
+    open: Arc<AtomicUsize>,
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.open.fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
+impl Caller {
+    /// Who came in where only administrators come in.
+    #[must_use]
+    pub fn admin() -> Self {
+        Self {
+            is_admin: true,
+            ..Self::default()
+        }
+    }
+
+    /// The name of the key, if there was one.
+    #[must_use]
+    pub fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    /// Whether the daemon itself may be told what to do.
+    ///
+    /// # Errors
+    /// [`Denied::NotAdmin`] if not.
+    pub fn must_be_admin(&self) -> Result<(), Denied> {
+        if self.is_admin {
+            return Ok(());
+        }
+        Err(Denied::NotAdmin {
+            name: self.name().map(Into::into),
+        })
+    }
+
+    /// The most points of one answer, where the server allows `limit`.
+    #[must_use]
+    pub fn max_points(&self, limit: u64) -> u64 {
+        self.max_points.map_or(limit, |own| own.min(limit))
+    }
+
+    /// A place for one more stream; none is needed where there is no limit.
+    ///
+    /// # Errors
+    /// [`Denied::TooManyStreams`] if as many as allowed are under way.
+    pub fn place(&self) -> Result<Option<Place>, Denied> {
+        let Some(places) = &self.places else {
+            return Ok(None);
+        };
+        let limit = places.limit;
+        let more = |open: usize| (open < limit).then_some(open + 1);
+        places
+            .open
+            .fetch_update(Ordering::AcqRel, Ordering::Acquire, more)
+            .map_err(|_| Denied::TooManyStreams { limit })?;
+        Ok(Some(Place {
+            open: places.open.clone(),
+        }))
+    }
+
+    /// Takes the points of an answer from the caller's rate.
+    ///
+    /// # Errors
+    /// [`Denied::TooFast`] if there are too few; then nothing is taken.
+    pub fn charge(&self, points: u128) -> Result<(), Denied> {
+        self.take(points, REQUEST)
+    }
+
+    /// Takes what a request costs, whatever it asks for.
+    pub(super) fn charge_request(&self) -> Result<(), Denied> {
+        self.take(REQUEST as u128, 0.0)
+    }
+
+    fn take(&self, points: u128, taken: f64) -> Result<(), Denied> {
+        let Some(bucket) = &self.bucket else {
+            return Ok(());
+        };
+        let taken = bucket.take(points as f64, taken, Instant::now());
+        taken.map_err(|short| Denied::TooFast { points, short })
+    }
+
+    /// How much may be asked now, where that is limited.
+    #[must_use]
+    pub fn level(&self) -> Option<Level> {
+        let bucket = self.bucket.as_ref()?;
+        Some(bucket.level(Instant::now()))
+    }
+}

@@ -1,0 +1,331 @@
+//! The keys that are let in, read from TOML.
+//!
+//! ```toml
+//! [[key]]
+//! name = "game"
+//! hash = "…"                # as `strew key new game` prints it
+//! admin = false
+//! max_points = 1000000
+//! max_streams = 4
+//! points_per_second = 1e6
+//! burst_points = 5e6
+//! ```
+
+use std::{
+    fs, io,
+    path::PathBuf,
+    sync::{Arc, atomic::AtomicUsize},
+    time::Instant,
+};
+
+use serde::Deserialize;
+
+use super::{
+    Settings,
+    bucket::{Bucket, Rate},
+    caller::{Caller, Places},
+    secret::Hashed,
+};
+
+/// Why keys are not taken.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum KeysError {
+    /// The file cannot be read.
+    #[error("cannot read access.keys_file {}: {error}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// It is not such TOML.
+    #[error("{place} holds no keys in TOML: {error}")]
+    Syntax {
+        /// Where.
+        place: String,
+        /// What is wrong where.
+        error: Box<toml::de::Error>,
+    },
+    /// A key has a field that is out of range.
+    #[error("{place}: the key `{name}` has {field} = {value}; allowed: {allowed}")]
+    Field {
+        /// Where.
+        place: String,
+        /// Which key.
+        name: String,
+        /// Which field.
+        field: &'static str,
+        /// Its value.
+        value: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// Keys are asked for, and there are none: nobody could ask anything.
+    #[error("{place} holds no key; make one with `strew key new NAME`")]
+    Empty {
+        /// Where.
+        place: String,
+    },
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    #[serde(default)]
+    key: Vec<Written>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    name: String,
+    hash: String,
+    #[serde(default)]
+    admin: bool,
+    max_points: Option<u64>,
+    max_streams: Option<usize>,
+    points_per_second: Option<f64>,
+    burst_points: Option<f64>,
+}
+
+/// A key and what it may do.
+#[derive(Debug)]
+struct Key {
+    hash: Hashed,
+    caller: Caller,
+    /// Streams under way; the same count after the keys are read again.
+    open: Arc<AtomicUsize>,
+}
+
+/// All keys.
+#[derive(Debug, Default)]
+pub(super) struct Keys {
+    keys: Vec<Key>,
+}
+
+impl Keys {
+    /// Reads the keys that the settings name; `common` is the rate of keys that have none of their
+    /// own. What `before` knows of a key's use is kept.
+    pub(super) fn read(
+        settings: &Settings,
+        common: Option<Rate>,
+        before: &Self,
+    ) -> Result<Self, KeysError> {
+        let mut keys = Self::default();
+        if let Some(path) = settings.keys_file() {
+            let text = fs::read_to_string(path).map_err(|error| KeysError::Unreadable {
+                path: path.into(),
+                error,
+            })?;
+            keys.add(&path.display().to_string(), &text, common, before)?;
+        }
+        if !settings.keys.is_empty() {
+            keys.add("access.keys", &settings.keys, common, before)?;
+        }
+        Ok(keys)
+    }
+
+    fn add(
+        &mut self,
+        place: &str,
+        text: &str,
+        common: Option<Rate>,
+        before: &Self,
+    ) -> Result<(), KeysError> {
+        let document: Document = toml::from_str(text).map_err(|error| KeysError::Syntax {
+            place: place.into(),
+            error: Box::new(error),
+        })?;
+        if document.key.is_empty() {
+            return Err(KeysError::Empty {
+                place: place.into(),
+            });
+        }
+        for written in document.key {
+            let key = self.check(written, common, before);
+            let key = key.map_err(|fault| fault.at(place))?;
+            self.keys.push(key);
+        }
+        Ok(())
+    }
+
+    fn check(&self, written: Written, common: Option<Rate>, before: &Self) -> Result<Key, Fault> {
+        let name: Arc<str> = written.name.as_str().into();
+        let fault = |field, value: String, allowed| Fault {
+            name: written.name.clone(),
+            field,
+            value,
+            allowed,
+        };
+        if !is_name(&name) || self.named(&name).is_some() {
+            return Err(fault("name", format!("{name:?}"), NAME));
+        }
+        let hash = Hashed::read(&written.hash)
+            .ok_or_else(|| fault("hash", format!("{:?}", written.hash), HASH))?;
+        if self.keys.iter().any(|key| key.hash == hash) {
+            return Err(fault("hash", format!("{:?}", written.hash), OTHER_HASH));
+        }
+        if let Some(0) = written.max_points {
+            return Err(fault("max_points", "0".into(), FROM_ONE));
+        }
+        if let Some(0) = written.max_streams {
+            return Err(fault("max_streams", "0".into(), FROM_ONE));
+        }
+        let in_range = |value: f64| (1e-3..=1e15).contains(&value);
+        if let Some(value) = written.points_per_second.filter(|value| !in_range(*value)) {
+            return Err(fault("points_per_second", value.to_string(), RATE));
+        }
+        if let Some(value) = written.burst_points {
+            if !(1.0..=1e15).contains(&value) {
+                return Err(fault("burst_points", value.to_string(), BURST));
+            }
+            if written.points_per_second.is_none() {
+                return Err(fault("burst_points", value.to_string(), WITH_RATE));
+            }
+        }
+        let own = written
+            .points_per_second
+            .map(|per_second| Rate::new(per_second, written.burst_points));
+        let before = before.named(&name);
+        let open = before.map_or_else(Arc::default, |key| key.open.clone());
+        let bucket = own.or(common).map(|rate| {
+            let old = before.and_then(|key| key.caller.bucket.clone());
+            old.filter(|bucket| bucket.rate() == rate)
+                .unwrap_or_else(|| Arc::new(Bucket::full(rate, Instant::now())))
+        });
+        let caller = Caller {
+            name: Some(name),
+            is_admin: written.admin,
+            max_points: written.max_points,
+            places: written.max_streams.map(|limit| {
+                let open = open.clone();
+                Arc::new(Places { limit, open })
+            }),
+            bucket,
+        };
+        Ok(Key { hash, caller, open })
+    }
+
+    fn named(&self, name: &str) -> Option<&Key> {
+        let is_it = |key: &&Key| key.caller.name() == Some(name);
+        self.keys.iter().find(is_it)
+    }
+
+    /// Whose key this is. Takes the same time whatever the key, right or wrong: all are compared,
+    /// each in constant time.
+    pub(super) fn find(&self, key: &[u8]) -> Option<&Caller> {
+        let hash = Hashed::of(key);
+        let mut found = None;
+        for key in &self.keys {
+            if key.hash == hash {
+                found = Some(&key.caller);
+            }
+        }
+        found
+    }
+
+    /// How many there are.
+    pub(super) const fn len(&self) -> usize {
+        self.keys.len()
+    }
+}
+
+const NAME: &str = "1 to 64 ASCII letters, digits, _, - and ., another name for each key";
+const HASH: &str = "64 hexadecimal digits, as `strew key new NAME` prints them";
+const OTHER_HASH: &str = "another hash for each key";
+const FROM_ONE: &str = "an integer from 1 on";
+const RATE: &str = "a number from 0.001 to 1e15";
+const BURST: &str = "a number from 1 to 1e15";
+const WITH_RATE: &str = "only beside points_per_second";
+
+/// Whether a key may be called so.
+#[must_use]
+pub fn is_name(text: &str) -> bool {
+    let fine = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
+    (1..=64).contains(&text.len()) && text.chars().all(fine)
+}
+
+struct Fault {
+    name: String,
+    field: &'static str,
+    value: String,
+    allowed: &'static str,
+}
+
+impl Fault {
+    fn at(self, place: &str) -> KeysError {
+        KeysError::Field {
+            place: place.into(),
+            name: self.name,
+            field: self.field,
+            value: self.value,
+            allowed: self.allowed,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::secret::new_key, *};
+
+    fn read(text: &str, before: &Keys) -> Result<Keys, KeysError> {
+        let settings = Settings {
+            keys: text.into(),
+            ..Settings::default()
+        };
+        Keys::read(&settings, None, before)
+    }
+
+    #[test]
+    fn a_key_is_known_with_all_it_may_do() {
+        let (secret, hash) = new_key().expect("random numbers");
+        let (other, other_hash) = new_key().expect("random numbers");
+        let text = format!(
+            "[[key]]\nname = 'a'\nhash = '{hash}'\nmax_points = 5\nmax_streams = 1\n\
+             points_per_second = 10\n[[key]]\nname = 'b'\nhash = '{other_hash}'\nadmin = true\n"
+        );
+        let keys = read(&text, &Keys::default()).expect("valid");
+        let a = keys.find(secret.as_bytes()).expect("known");
+        assert_eq!((a.name(), a.max_points(9)), (Some("a"), 5));
+        assert!(a.must_be_admin().is_err() && a.level().is_some());
+        let place = a.place().expect("the first");
+        let b = keys.find(other.as_bytes()).expect("known");
+        assert!(b.must_be_admin().is_ok() && b.level().is_none());
+        assert!(keys.find(b"").is_none() && keys.find(hash.to_string().as_bytes()).is_none());
+        // Reading again forgets neither streams nor what was taken.
+        a.charge(30).expect("within the burst");
+        let again = read(&text, &keys).expect("valid");
+        let a = again.find(secret.as_bytes()).expect("known");
+        assert!(a.place().is_err());
+        drop(place);
+        assert!(a.place().is_ok());
+        assert!(a.level().expect("limited").left < 100);
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_key_is_told() {
+        let hash = Hashed::of(b"x").to_string();
+        let key = |more: &str| format!("[[key]]\nname = 'a'\nhash = '{hash}'\n{more}");
+        let twice = format!("{}{}", key(""), key(""));
+        for (text, word) in [
+            ("", "no key"),
+            ("# nothing", "no key"),
+            ("[[key]]\nname = 'a'", "hash"),
+            ("[[key]]\nname = 'a b'\nhash = ''", "name"),
+            ("[[key]]\nname = 'a'\nhash = 'zz'", "hash"),
+            (twice.as_str(), "another name"),
+            (&key("max_points = 0"), "max_points"),
+            (&key("max_streams = 0"), "max_streams"),
+            (&key("points_per_second = -1"), "points_per_second"),
+            (&key("points_per_second = nan"), "points_per_second"),
+            (&key("burst_points = 5"), "beside points_per_second"),
+            (&key("colour = 1"), "colour"),
+        ] {
+            // An empty text is no place for keys at all.
+            let text = if text.is_empty() { " " } else { text };
+            let error = read(text, &Keys::default()).expect_err(text).to_string();
+            assert!(error.contains(word), "{text}: {error}");
+        }
+    }
+}

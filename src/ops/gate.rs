@@ -1,0 +1,127 @@
+//! Letting requests in: what a client shows, and where it comes from, decide who asks.
+//!
+//! Both doors stand behind the same gate; what it refuses is a problem at one and a status at the
+//! other. Open to all are `/livez`, `/readyz`, the pages with the description of the API, and of gRPC
+//! health and reflection: probes have no keys, and what the API looks like is no secret.
+
+use std::{net::IpAddr, sync::Arc};
+
+use axum::{
+    body::Body,
+    extract::{Request, State},
+    middleware::Next,
+    response::{IntoResponse as _, Response},
+};
+use http::{HeaderMap, HeaderName, HeaderValue, header};
+
+use super::Peer;
+use crate::{
+    access::{Caller, Denied, Gate, Level},
+    grpc,
+    service::Error,
+};
+
+const API_KEY: HeaderName = HeaderName::from_static("x-api-key");
+const FORWARDED_FOR: HeaderName = HeaderName::from_static("x-forwarded-for");
+const RATE_LIMIT: HeaderName = HeaderName::from_static("ratelimit");
+const RATE_LIMIT_POLICY: HeaderName = HeaderName::from_static("ratelimit-policy");
+
+/// The services of gRPC that are open to all.
+const OPEN: [&str; 2] = ["/grpc.health.", "/grpc.reflection."];
+
+/// The gate of the REST door.
+pub(super) async fn of_rest(
+    State(gate): State<Arc<Gate>>,
+    mut request: Request,
+    next: Next,
+) -> Response {
+    let (mut response, level) = match admit(&gate, &request) {
+        Ok(caller) => {
+            request.extensions_mut().insert(caller.clone());
+            let response = next.run(request).await;
+            (response, caller.level())
+        }
+        Err(denied) => {
+            let level = match &denied {
+                Denied::TooFast { short, .. } => Some(short.level),
+                _ => None,
+            };
+            (Error::from(denied).into_response(), level)
+        }
+    };
+    if let Some(level) = level {
+        tell(level, response.headers_mut());
+    }
+    response
+}
+
+/// The gate of the gRPC door.
+pub(super) async fn of_calls(
+    State(gate): State<Arc<Gate>>,
+    mut request: Request,
+    next: Next,
+) -> Response {
+    let path = request.uri().path();
+    if !OPEN.iter().any(|open| path.starts_with(open)) {
+        match admit(&gate, &request) {
+            Ok(caller) => {
+                request.extensions_mut().insert(caller);
+            }
+            Err(denied) => return grpc::refusal(&denied.into()).map(Body::new),
+        }
+    }
+    next.run(request).await
+}
+
+/// The gate of the administrators' own address: who reaches it is one, unless it is a page in
+/// somebody's browser, which could reach what that somebody can.
+pub(super) async fn of_admins(mut request: Request, next: Next) -> Response {
+    if request.headers().contains_key(header::ORIGIN) {
+        let denied = Denied::NotAdmin {
+            name: Some("of a web page".into()),
+        };
+        return Error::from(denied).into_response();
+    }
+    request.extensions_mut().insert(Caller::admin());
+    next.run(request).await
+}
+
+fn admit(gate: &Gate, request: &Request) -> Result<Caller, Denied> {
+    let headers = request.headers();
+    let forwarded = headers
+        .get_all(FORWARDED_FOR)
+        .iter()
+        .map(HeaderValue::as_bytes);
+    // Inside a program without sockets all are one.
+    let peer = request.extensions().get::<Peer>();
+    let peer = peer.map_or(IpAddr::from([0, 0, 0, 0]), |peer| peer.0.ip());
+    let lines: Vec<&[u8]> = forwarded.collect();
+    let address = gate.client(peer, lines.into_iter());
+    gate.admit(shown(headers), address)
+}
+
+/// The key that a client shows: `x-api-key`, or else `Authorization` of the scheme Bearer.
+fn shown(headers: &HeaderMap) -> Option<&[u8]> {
+    let own = headers.get(API_KEY).map(HeaderValue::as_bytes);
+    own.or_else(|| {
+        let line = headers.get(header::AUTHORIZATION)?.as_bytes();
+        let (scheme, key) = line.split_at_checked("Bearer ".len())?;
+        let is_bearer = scheme.eq_ignore_ascii_case(b"Bearer ");
+        is_bearer.then(|| key.trim_ascii())
+    })
+}
+
+/// Tells a client how much it may ask (draft-ietf-httpapi-ratelimit-headers).
+fn tell(level: Level, headers: &mut HeaderMap) {
+    let rate = level.rate;
+    let burst = rate.burst_points as u64;
+    let window = (rate.burst_points / rate.points_per_second).ceil().max(1.0) as u64;
+    let full_in = level.full_in.as_secs_f64().ceil() as u64;
+    let policy = format!("\"points\";q={burst};w={window}");
+    let now = format!("\"points\";r={};t={full_in}", level.left);
+    for (name, text) in [(RATE_LIMIT_POLICY, policy), (RATE_LIMIT, now)] {
+        if let Ok(value) = HeaderValue::from_str(&text) {
+            headers.insert(name, value);
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! A panic is a bug, and stays one request's: it is logged, answered as an internal error in the
+//! client's own language, and the connection goes on.
+
+use std::{any::Any, panic::AssertUnwindSafe};
+
+use axum::{
+    body::Body,
+    extract::Request,
+    middleware::Next,
+    response::{IntoResponse as _, Response},
+};
+use futures_util::FutureExt as _;
+
+use super::calls;
+use crate::{grpc, service::Error};
+
+/// Answers what panics.
+pub(super) async fn answered(request: Request, next: Next) -> Response {
+    let is_call = calls::is_grpc(request.headers());
+    let path = request.uri().path().to_owned();
+    let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
+    answer.unwrap_or_else(|panic| {
+        metrics::counter!("strew_panics_total").increment(1);
+        tracing::error!(path, panic = said(&*panic), "a handler panicked");
+        let error = Error::Internal("the request could not be answered");
+        if is_call {
+            grpc::refusal(&error).map(Body::new)
+        } else {
+            error.into_response()
+        }
+    })
+}
+
+/// What a panic says, as far as it is text.
+fn said(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    text.unwrap_or("no text")
+}
