@@ -126,8 +126,12 @@ struct Maker<I> {
 /// At most so many blocks are made ahead of a reader.
 const MOST_AHEAD: usize = 4;
 
-/// A reader that comes back within this time is fast: blocks are made ahead of it.
-const FAST: Duration = Duration::from_millis(10);
+/// A reader that comes back within this time is quick.
+const QUICK: Duration = Duration::from_millis(10);
+
+/// A reader is fast once it was quick so often: not yet while it fills the buffers of its socket, a
+/// few megabytes, nor when a slow one empties a part of them at once.
+const OFTEN: u32 = 32;
 
 /// What the reader and the worker that makes blocks for it share.
 struct Shared<I: Iterator> {
@@ -159,6 +163,8 @@ pub struct BlockStream<I: Iterator> {
     stop: Pin<Box<WaitForCancellationFutureOwned>>,
     /// When the last block was taken.
     taken: Instant,
+    /// How often the reader was quick; halved when it was not.
+    quick: u32,
 }
 
 impl<I> BlockStream<I>
@@ -183,6 +189,7 @@ where
             workers,
             stop,
             taken: Instant::now(),
+            quick: 0,
         }
     }
 }
@@ -272,7 +279,12 @@ where
             shared.reader = Some(cx.waker().clone());
         } else {
             let now = Instant::now();
-            let is_fast = now - self.taken < FAST;
+            self.quick = if now - self.taken < QUICK {
+                (self.quick + 1).min(2 * OFTEN)
+            } else {
+                self.quick / 2
+            };
+            let is_fast = self.quick >= OFTEN;
             shared.ahead = if is_fast { MOST_AHEAD } else { 1 };
             self.taken = now;
         }
@@ -373,15 +385,24 @@ mod tests {
         let (numbers, made) = numbers(usize::MAX, 1000);
         let (mut stream, streams) = stream(numbers);
         let minute = Duration::from_secs(60);
-        for taken in 1..50 {
+        for taken in 1..100 {
             let now = Instant::now();
-            let is_fast = taken <= 20;
-            stream.taken = if is_fast { now + minute } else { now - minute };
+            stream.taken = if taken <= 70 {
+                now + minute
+            } else {
+                now - minute
+            };
             stream.next().await.expect("more").expect("whole");
+            let is_fast = (OFTEN as usize..=70).contains(&taken);
             let least = if is_fast { MOST_AHEAD - 1 } else { 1 };
             until(|| made.load(Ordering::SeqCst) >= taken + least);
             let ahead = made.load(Ordering::SeqCst) - taken;
-            assert!(ahead <= MOST_AHEAD && (taken < 25 || ahead == 1), "{ahead}");
+            let most = if (OFTEN as usize..80).contains(&taken) {
+                MOST_AHEAD
+            } else {
+                1
+            };
+            assert!(ahead <= most, "{ahead} after {taken}");
         }
         drop(stream);
         until(|| streams.open() == 0);

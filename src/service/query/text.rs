@@ -1,6 +1,6 @@
 //! Queries as text: the parameters of an address or of a command line.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::sync::Arc;
 
 use percent_encoding::percent_decode_str;
 
@@ -31,7 +31,8 @@ use crate::service::{
 /// Text parameters by name, each at most once.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Parameters {
-    values: BTreeMap<&'static str, String>,
+    /// Sorted by name: there are few.
+    values: Vec<(&'static str, String)>,
 }
 
 /// Parameters with the faults found so far.
@@ -73,7 +74,7 @@ pub fn parse_pairs(text: &str) -> Parsed {
             faults.push(Fault::new(&name, value, detail, "each parameter once"));
             continue;
         }
-        parameters.values.insert(parameter.name, value.into());
+        parameters.insert(parameter.name, value.into());
     }
     (parameters, faults)
 }
@@ -86,23 +87,36 @@ impl Parameters {
     pub fn of<'a>(given: impl IntoIterator<Item = (&'a str, Option<String>)>) -> Self {
         let known =
             |(name, value): (&str, Option<String>)| Some((Parameter::named(name)?.name, value?));
-        Self {
-            values: given.into_iter().filter_map(known).collect(),
+        let mut parameters = Self::default();
+        for (name, value) in given.into_iter().filter_map(known) {
+            parameters.insert(name, value);
         }
+        parameters
     }
 
     /// The text of a parameter, if it is given.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&str> {
-        self.values.get(name).map(String::as_str)
+        let mut values = self.values.iter();
+        values
+            .find(|(known, _)| *known == name)
+            .map(|(_, value)| value.as_str())
     }
 
-    /// Faults every parameter that is not among these.
-    fn only(&self, allowed: &[&str], faults: &mut Faults) {
+    fn insert(&mut self, name: &'static str, value: String) {
+        match self.values.binary_search_by_key(&name, |(known, _)| known) {
+            Ok(place) => self.values[place].1 = value,
+            Err(place) => self.values.insert(place, (name, value)),
+        }
+    }
+
+    /// Faults every parameter that is in none of these lists.
+    fn only(&self, allowed: &[&[&str]], faults: &mut Faults) {
         for (name, value) in &self.values {
-            if !allowed.contains(name) {
+            if !allowed.iter().any(|list| list.contains(name)) {
                 let detail = "it means nothing here";
-                faults.add(Fault::new(name, value, detail, allowed.join(", ")));
+                let allowed = allowed.concat().join(", ");
+                faults.add(Fault::new(name, value, detail, allowed));
             }
         }
     }
@@ -118,7 +132,7 @@ impl Parameters {
         found: Vec<Fault>,
     ) -> Result<Arc<Entry>, Error> {
         let mut faults = Faults::new(found);
-        self.only(&["alpha", "map", "table"], &mut faults);
+        self.only(&[&["alpha", "map", "table"]], &mut faults);
         let table = TableDraft {
             profile: Some(profile.into()),
             ..self.table()
@@ -152,10 +166,8 @@ impl Parameters {
     #[must_use]
     pub fn draft(&self, region: Option<RegionDraft>, found: Vec<Fault>) -> Body {
         let mut faults = Faults::new(found);
-        let mut allowed: Vec<&str> = [&SET_NAMES[..], &LOOKS_NAMES, &WINDOW_NAMES].concat();
-        if region.is_none() {
-            allowed.extend(REGION_NAMES);
-        }
+        let regions: &[&str] = if region.is_none() { &REGION_NAMES } else { &[] };
+        let allowed = [&SET_NAMES[..], &LOOKS_NAMES, &WINDOW_NAMES, regions];
         self.only(&allowed, &mut faults);
         let draft = Draft {
             region: match region {
@@ -208,7 +220,7 @@ impl Parameters {
             .into_iter()
             .filter(|name| *name != "count")
             .collect();
-        self.only(&[&set[..], others].concat(), &mut faults);
+        self.only(&[&set[..], others], &mut faults);
         self.set(&mut faults)
             .check_alone(catalog, faults.into_inner())
     }
@@ -233,7 +245,7 @@ impl Parameters {
     /// A fault if it is missing or not a number that is allowed.
     pub fn parts(&self) -> Result<u32, Vec<Fault>> {
         let mut faults = Faults::default();
-        self.only(&["parts"], &mut faults);
+        self.only(&[&["parts"]], &mut faults);
         let parts = self.read("parts", PARTS, integer, &mut faults);
         let parts = parts.and_then(|parts| faults.take(check_parts(parts)));
         if self.get("parts").is_none() {
