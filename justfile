@@ -48,6 +48,11 @@ fuzz subject seconds="3600":
 no-std:
     cargo build -p strew-core --no-default-features
 
+# Licenses, bans and sources of all dependencies; the advisories need a network.
+deny:
+    cargo deny --locked --offline check licenses bans sources
+    cargo deny --locked check advisories || echo "the advisories could not be checked"
+
 # Measure the shipped tables again: all figures and pictures of docs/quality.md.
 quality:
     cargo build --release

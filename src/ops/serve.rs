@@ -204,10 +204,12 @@ impl App {
         Ok(broken)
     }
 
-    /// Looks for changes of the tables for as long as the handle is held.
+    /// Looks for changes of tables and keys for as long as the handle is held.
     fn watch(&mut self) -> AbortOnDropHandle<()> {
         let seconds = self.config.tables.watch_seconds;
-        let is_looked_for = seconds > 0.0 && self.config.tables.folder().is_some();
+        let has_keys = self.config.access.keys_file().is_some();
+        let has_files = has_keys || self.config.tables.folder().is_some();
+        let is_looked_for = seconds > 0.0 && has_files;
         let every = is_looked_for.then(|| config::seconds(seconds));
         let hangups = self.hangups.take();
         let reloader = self.reloader.clone();

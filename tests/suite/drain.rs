@@ -43,7 +43,7 @@ fn not_ready_comes_first_and_requests_are_still_answered() {
 
 #[test]
 fn a_stream_that_ends_in_time_is_whole() {
-    let mut daemon = Daemon::start(&["shutdown.drain_seconds=30"]);
+    let mut daemon = Daemon::start(&["shutdown.drain_seconds=300"]);
     let path = "/v1/points?bbox=0,0,1500,1500&density=1&profile=test&format=ndjson";
     let mut reader = raw::open(daemon.address(), "GET", path, &[]);
     // What is read here leaves out the first chunk's size line, so finish() starts at a line's end.
