@@ -8,6 +8,7 @@ use std::{
 
 use crate::{
     daemon::{Daemon, PATIENCE, until},
+    faults::files,
     raw,
 };
 
@@ -92,6 +93,7 @@ fn connections_that_say_nothing_or_too_little_end() {
 fn a_reader_that_takes_nothing_loses_its_connection() {
     let daemon = Daemon::start(&["server.stalled_reader_seconds=0.5"]);
     let long = "/v1/points?bbox=0,0,3e4,3e4&density=1&profile=test&format=f32";
+    let before = files(&daemon);
     let stuck = raw::open(daemon.address(), "GET", long, &[]);
     let mut slow = raw::open(daemon.address(), "GET", long, &[]);
     assert_eq!((stuck.status, slow.status), (200, 200));
@@ -102,6 +104,11 @@ fn a_reader_that_takes_nothing_loses_its_connection() {
         (daemon.streams() == 1).then_some(())
     });
     assert!(start.elapsed() >= Duration::from_millis(300));
+    // Its socket is closed, too, although there is more to take than it will ever take.
+    until("its connection is closed", || {
+        assert!(slow.read(1 << 20).expect("it goes on") > 0);
+        (files(&daemon) <= before + 1).then_some(())
+    });
     assert!(!stuck.drain(), "it is visibly not complete");
     assert!(slow.read(1 << 20).expect("it goes on") > 0);
 }

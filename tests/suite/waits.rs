@@ -21,8 +21,7 @@ use crate::{
 };
 
 /// A query that takes minutes to count.
-const SLOW: &str =
-    r#"{"region": {"circle": {"center": [0, 0], "radius": 1e8}}, "spacing": 1, "profile": "test"}"#;
+const SLOW: &str = r#"{"region": {"circle": {"center": [0, 0], "radius": 1e10}}, "spacing": 1, "profile": "test"}"#;
 
 const LONG: &str = "/v1/points?bbox=0,0,3e4,3e4&density=1&profile=test&format=f32";
 
@@ -53,10 +52,11 @@ fn heard(mut stream: TcpStream) -> String {
 fn is_busy(daemon: &Daemon) -> bool {
     let before = daemon.cpu_ticks();
     let start = Instant::now();
-    while start.elapsed() < Duration::from_millis(200) {
+    while start.elapsed() < Duration::from_millis(500) {
         std::thread::park_timeout(Duration::from_millis(50));
     }
-    daemon.cpu_ticks() - before > 5
+    // On a machine that is busy otherwise it does not get much.
+    daemon.cpu_ticks() - before > 1
 }
 
 #[test]
@@ -116,7 +116,7 @@ async fn a_call_that_takes_too_long_is_refused_and_stops() {
     let daemon = patient(&["server.first_byte_seconds=0.5"]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let request = StreamPointsRequest {
-        region: boxed([0.0, 0.0, 1e8, 1e8]),
+        region: boxed([0.0, 0.0, 1e10, 1e10]),
         amount: Some(Amount::Spacing(1.0)),
         profile: Some(PROFILE.into()),
         seed: Some(7),

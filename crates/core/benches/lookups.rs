@@ -1,116 +1,156 @@
-//! Questions of one answer: counts, places in the order, points by id, nearest points; in
-//! nanoseconds, and in lookups of a displacement at a random place of the table.
+//! What is answered without making points: counts, places by number, points by id, neighbors; in
+//! microseconds, and in lookups of a displacement at a random place of the table.
+//!
+//! The count of a box without warp may not depend on what it holds: 10¹⁸ points may take twice as long
+//! as 10⁶. With `-- --quick` it only checks that everything still runs.
 
-use std::{hint::black_box, sync::Arc};
+use std::{hint::black_box, sync::Arc, time::Instant};
 
-use rounds::{boxed, is_quick, medians, placement, table};
-use strew_core::{PointId, Sampler};
+use rounds::{boxed, is_quick, placement, table};
+use strew_core::{
+    Circle, Plan, PointId, Sampler,
+    sample::{Finder, Selection},
+};
 
 mod rounds;
 
-/// Numbers that look random.
-fn random(state: &mut u64) -> u64 {
-    *state = state
-        .wrapping_mul(6_364_136_223_846_793_005)
-        .wrapping_add(1_442_695_040_888_963_407);
-    *state >> 33
+struct Subject {
+    sampler: Arc<Sampler>,
+    /// Points of the plain pattern.
+    ids: Vec<PointId>,
+    /// Of the plain and of a warped pattern.
+    finders: [Finder; 2],
+    /// A box of 10¹⁴ points.
+    huge: Plan,
+    state: u64,
 }
 
-fn main() {
-    let quick = is_quick();
-    let (many, few, rounds) = if quick {
-        (100, 2, 1)
-    } else {
-        (200_000, 500, 9)
-    };
-    let sampler = Arc::new(Sampler::new(table()));
-    let vectors = sampler.table().displacements();
-    let mut states = [1u64; 6];
-    let [a, b, c, d, e, f] = &mut states;
+impl Subject {
+    fn new() -> Self {
+        let sampler = Arc::new(Sampler::new(table()));
+        let mut ids = vec![];
+        for i in 0..200 {
+            let at = [f64::from(i * 7919), f64::from(i * 104_729)];
+            let plan = boxed(&sampler, at, 20.0, 0);
+            let mut points = vec![Default::default(); plan.count() as usize];
+            plan.blocks_points().fill(&mut points);
+            ids.extend(points.iter().map(|point| point.id));
+        }
+        Self {
+            finders: [0, 1].map(|seed| sampler.finder(placement(seed))),
+            huge: boxed(&sampler, [-1e6, -1e6], 1e7, 0),
+            sampler,
+            ids,
+            state: 1,
+        }
+    }
 
-    // Ids that exist: those of some boxes here and there.
-    let mut ids: Vec<PointId> = vec![];
-    for i in 0..200 {
-        let plan = boxed(
-            &sampler,
-            [f64::from(i * 7919), f64::from(i * 104_729)],
-            20.0,
-            0,
-        );
-        let mut points = vec![Default::default(); plan.count() as usize];
-        plan.blocks_points().fill(&mut points);
-        ids.extend(points.iter().map(|point| point.id));
+    /// A number that looks random.
+    fn random(&mut self) -> u64 {
+        self.state = self
+            .state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        self.state >> 33
     }
-    let (plain, warped) = (sampler.finder(placement(0)), sampler.finder(placement(1)));
-    let huge = boxed(&sampler, [-1e6, -1e6], 1e7, 0);
-    let place = |state: &mut u64| [(); 2].map(|()| random(state) as f64 / 1000.0);
-    let names = [
-        "a displacement of the table",
-        "a point by id",
-        "a point by id, warped",
-        "the nearest point",
-        "the nearest point, warped",
-        "a count (1e3 to 1e15 points)",
-        "point number k of 1e14",
-    ];
-    let result = medians(
-        rounds,
-        &mut [
-            &mut || {
-                for _ in 0..many {
-                    black_box(vectors[random(a) as usize % vectors.len()]);
-                }
-                many
-            },
-            &mut || {
-                for _ in 0..many {
-                    let id = ids[random(b) as usize % ids.len()];
-                    black_box(sampler.point(placement(0), id));
-                }
-                many
-            },
-            &mut || {
-                for _ in 0..many {
-                    let id = ids[random(c) as usize % ids.len()];
-                    black_box(sampler.point(placement(1), id));
-                }
-                many
-            },
-            &mut || {
-                for _ in 0..few * 10 {
-                    black_box(plain.nearest(place(d), 1).expect("in range"));
-                }
-                few * 10
-            },
-            &mut || {
-                for _ in 0..few * 10 {
-                    black_box(warped.nearest(place(e), 1).expect("in range"));
-                }
-                few * 10
-            },
-            &mut || {
-                for i in 0..few {
-                    let side = 31.6 * 10f64.powi(i as i32 % 7);
-                    black_box(boxed(&sampler, [i as f64, 0.5], side, 0).count());
-                }
-                few
-            },
-            &mut || {
-                for _ in 0..few {
-                    let k = u128::from(random(f)) * 46_000 % huge.count();
-                    black_box(huge.window(k, Some(1)).cursor());
-                }
-                few
-            },
-        ],
-    );
+
+    /// Nowhere in particular, so that no two calls ask for the same.
+    fn place(&mut self) -> [f64; 2] {
+        [(); 2].map(|()| self.random() as f64 / 1000.0)
+    }
+
+    fn displacement(&mut self) {
+        let place = self.random() as usize;
+        let vectors = self.sampler.table().displacements();
+        black_box(vectors[place % vectors.len()]);
+    }
+
+    fn boxed(&mut self, seed: u64, side: f64) -> Plan {
+        let [x, y] = self.place();
+        let corner = [x % 1000.0 - side / 2.0, y % 1000.0 - side / 3.0];
+        boxed(&self.sampler, corner, side, seed)
+    }
+
+    fn count(&mut self, seed: u64, side: f64) {
+        black_box(self.boxed(seed, side).count());
+    }
+
+    fn circle(&mut self, radius: f64) {
+        let circle = Circle::new(self.place(), radius).expect("valid");
+        let plan = self.sampler.select(Selection::new(placement(0), circle));
+        black_box(plan.expect("near").count());
+    }
+
+    fn offset(&mut self, side: f64) {
+        let plan = self.boxed(0, side);
+        let offset = plan.count() / 10;
+        black_box(plan.window(offset, Some(10)).offset());
+    }
+
+    fn number(&mut self) {
+        let k = u128::from(self.random()) * 46_000 % self.huge.count();
+        black_box(self.huge.window(k, Some(1)).cursor());
+    }
+
+    fn point(&mut self, seed: u64) {
+        let place = self.random() as usize;
+        let id = self.ids[place % self.ids.len()];
+        black_box(self.sampler.point(placement(seed), id));
+    }
+
+    fn nearest(&mut self, seed: u64, k: usize) {
+        let at = self.place();
+        let finder = &self.finders[seed as usize];
+        black_box(finder.nearest(at, k).expect("near"));
+    }
+}
+
+/// What is asked, and how often before the clock is looked at.
+type Job = (&'static str, u32, fn(&mut Subject));
+
+const JOBS: [Job; 16] = [
+    ("a displacement of the table", 10_000, Subject::displacement),
+    ("point by id", 1000, |s| s.point(0)),
+    ("point by id, warped", 1000, |s| s.point(1)),
+    ("nearest", 100, |s| s.nearest(0, 1)),
+    ("nearest, warped", 100, |s| s.nearest(1, 1)),
+    ("8 nearest, warped", 100, |s| s.nearest(1, 8)),
+    ("count, box of 1e3", 10, |s| s.count(0, 31.6)),
+    ("count, box of 1e6", 10, |s| s.count(0, 1e3)),
+    ("count, box of 1e9", 10, |s| s.count(0, 3.16e4)),
+    ("count, box of 1e12", 10, |s| s.count(0, 1e6)),
+    ("count, box of 1e18", 10, |s| s.count(0, 1e9)),
+    ("count, warped box of 1e6", 1, |s| s.count(1, 1e3)),
+    ("count, circle of 1e6", 1, |s| s.circle(564.0)),
+    ("count and offset 1e5 of 1e6", 1, |s| s.offset(1e3)),
+    ("count and offset 1e17 of 1e18", 1, |s| s.offset(1e9)),
+    ("point number k of 1e14", 1, Subject::number),
+];
+
+fn main() {
+    let (rounds, seconds) = if is_quick() { (1, 0.0) } else { (25, 0.004) };
+    let mut subject = Subject::new();
+    let mut times = JOBS.map(|_| vec![]);
+    for _ in 0..rounds {
+        for ((_, batch, job), times) in JOBS.iter().zip(&mut times) {
+            let batch = if is_quick() { 1 } else { *batch };
+            let (start, mut runs) = (Instant::now(), 0u32);
+            while runs == 0 || start.elapsed().as_secs_f64() < seconds {
+                (0..batch).for_each(|_| job(&mut subject));
+                runs += batch;
+            }
+            times.push(start.elapsed().as_secs_f64() / f64::from(runs));
+        }
+    }
+    let medians = times.map(|mut times| {
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
+    });
     println!("one core, median of {rounds}");
-    println!("{:<30} {:>12} {:>16}", "", "ns", "÷ one lookup");
-    for (name, seconds) in names.iter().zip(result) {
-        println!(
-            "{name:<30} {:>12.1} {:>16.1}",
-            seconds * 1e9,
-            seconds / result[0]
-        );
+    println!("{:<32} {:>12} {:>16}", "", "µs", "÷ one lookup");
+    for ((name, ..), seconds) in JOBS.iter().zip(medians) {
+        let (micros, lookups) = (seconds * 1e6, seconds / medians[0]);
+        println!("{name:<32} {micros:>12.4} {lookups:>16.1}");
     }
+    println!("1e18 : 1e6 {:>34.2}", medians[10] / medians[7]);
 }

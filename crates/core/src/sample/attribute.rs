@@ -13,7 +13,8 @@ use alloc::{string::String, vec::Vec};
 use core::{f64::consts::TAU, fmt, str::FromStr};
 
 use super::{
-    Placement, Point, PointId, Sampler, Seed, Variants, kernel::hashed, rank::rank, seed::split_mix,
+    Placement, Point, PointId, Sampler, Seed, Variants, kernel::compiled, rank::rank,
+    seed::split_mix,
 };
 use crate::pattern::Pattern;
 
@@ -344,12 +345,12 @@ impl BoundAttributes {
             let out = values.as_mut_slice();
             // The usual ones have loops of their own, without a question at each point.
             match bound.attribute {
-                Attribute::Angle => hashed::write(ids.map(|id| angle(hash(key, id))), out),
+                Attribute::Angle => compiled::write(ids.map(|id| angle(hash(key, id))), out),
                 Attribute::Scale(range) => {
-                    hashed::write(ids.map(|id| range.pick(hash(key, id))), out);
+                    compiled::write(ids.map(|id| range.pick(hash(key, id))), out);
                 }
-                Attribute::Uniform(_) => hashed::write(ids.map(|id| unit(hash(key, id))), out),
-                ref other => hashed::write(ids.map(|id| self.number(other, key, id)), out),
+                Attribute::Uniform(_) => compiled::write(ids.map(|id| unit(hash(key, id))), out),
+                ref other => compiled::write(ids.map(|id| self.number(other, key, id)), out),
             }
             *column = Column::Numbers(values);
         }

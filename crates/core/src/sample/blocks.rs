@@ -6,7 +6,7 @@ use core::ops::Range;
 use super::{
     Cursor, Frame, Listed, PointId, Sampler,
     before::Before,
-    kernel::{Backend, Format, Row},
+    kernel::{Backend, Format, Row, compiled},
     patch::{BAND_WIDTH, Patch},
     plan::Plan,
     sieve::{Focus, Run, TOGETHER, World},
@@ -330,7 +330,9 @@ impl<F: Format> Blocks<F> {
             let out = &mut out[filled..];
             if is_direct && self.at.done == 0 && listed.len() <= out.len() {
                 let columns = (listed.as_slice(), inner);
-                filled += write_row(format, patch, row, columns, (vectors, is_inner), out);
+                filled += compiled::run(self.backend, || {
+                    write_row(format, patch, row, columns, (vectors, is_inner), out)
+                });
                 self.at.next_row();
                 continue;
             }

@@ -62,9 +62,10 @@ fn count_rows(sampler: &Sampler, frame: &Frame, x: &Span, y: &Span) -> u128 {
         let (listed, inner) = (&columns[class.ordinal()], &inner[class.ordinal()]);
         let row = sampler.row(block);
         if y.inner.contains(&v) {
-            let margins = listed[..inner.start].iter().chain(&listed[inner.end..]);
-            let holds = |&&(u, block): &&(i64, u32)| x.holds(u, row[block as usize][0]);
-            count += inner.len() + margins.filter(holds).count();
+            count += inner.len();
+            for &(u, block) in listed[..inner.start].iter().chain(&listed[inner.end..]) {
+                count += usize::from(x.holds(u, row[block as usize][0]));
+            }
         } else {
             let holds = |&&(u, block): &&(i64, u32)| {
                 let [dx, dy] = row[block as usize];

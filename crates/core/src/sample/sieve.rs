@@ -245,7 +245,8 @@ pub(super) fn count(
                 continue;
             }
             let mut from = run.columns.start;
-            while from < run.columns.end {
+            // A run along an edge spans thousands of bands.
+            while from < run.columns.end && !stop.is_raised() {
                 let band = from.div_euclid(BAND_WIDTH);
                 let to = run.columns.end.min((band + 1) * BAND_WIDTH);
                 let patch = Patch::new(frame, band, rows.start, x, y);

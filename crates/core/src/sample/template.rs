@@ -225,6 +225,7 @@ impl<F: Format> Template<F> {
 /// Writes a row of a box without a template, for rows that share theirs with few others: there is
 /// room for all of its columns. Those within `inner` are inside along x; `is_inner` rows are along y.
 /// Gives how many points were written.
+#[inline(always)]
 pub(super) fn write_row<F: Format>(
     format: &F,
     patch: &Patch,

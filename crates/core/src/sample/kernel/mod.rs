@@ -25,7 +25,7 @@ mod backend;
         reason = "a backend is only ever named where the machine has it"
     )
 )]
-pub(super) mod hashed;
+pub(super) mod compiled;
 mod shear;
 #[cfg(test)]
 mod tests;

@@ -199,7 +199,7 @@ fn hashed_numbers_have_the_same_bits_as_plain_ones() {
         let number = |n: u64| (n.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11) as f64;
         let expected: Vec<f64> = numbers(4).map(number).take(length).collect();
         let make = |out: &mut [f64]| {
-            hashed::write(numbers(4).map(number), out);
+            compiled::write(numbers(4).map(number), out);
             out.len()
         };
         let note = alloc::format!("{length}");
@@ -208,7 +208,7 @@ fn hashed_numbers_have_the_same_bits_as_plain_ones() {
         let keys: Vec<u64> = numbers(5).take(length).collect();
         let expected: Vec<f64> = keys.iter().copied().map(number).collect();
         let make = |out: &mut [f64]| {
-            hashed::write(keys.iter().copied().map(number), out);
+            compiled::write(keys.iter().copied().map(number), out);
             out.len()
         };
         assert_written(-1.5, f64::to_bits, &expected, make, &note);
