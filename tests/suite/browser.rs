@@ -35,6 +35,25 @@ fn found(name: &str) -> Option<PathBuf> {
         .find(|file| file.is_file())
 }
 
+/// A driver and its port, unless it has ended at once.
+fn listening(program: &Path) -> Option<(Child, String)> {
+    let mut driver = Command::new(program)
+        .arg("--port=0")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("chromedriver runs");
+    let said = BufReader::new(driver.stdout.take().expect("piped"));
+    let port = said.lines().map_while(Result::ok).find_map(|line| {
+        let (_, port) = line.split_once("successfully on port ")?;
+        Some(port.trim_end_matches('.').to_owned())
+    });
+    if port.is_none() {
+        let _ = driver.wait();
+    }
+    Some((driver, port?))
+}
+
 /// A daemon with the built-in tables and a browser to look at it; nothing, said in words, where no
 /// browser is installed.
 pub fn looking(width: u32, height: u32) -> Option<(Daemon, Browser)> {
@@ -50,25 +69,8 @@ impl Browser {
             return None;
         };
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut driver = Command::new(driver)
-            .arg("--port=0")
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("chromedriver runs");
-        let said = BufReader::new(driver.stdout.take().expect("piped"));
-        let port = said
-            .lines()
-            .map_while(Result::ok)
-            .find_map(|line| {
-                Some(
-                    line.split_once("successfully on port ")?
-                        .1
-                        .trim_end_matches('.')
-                        .to_owned(),
-                )
-            })
-            .expect("chromedriver says its port");
+        // The port that it picks may be taken before it listens; then it ends, and another one tries.
+        let (driver, port) = until("chromedriver listens", || listening(&driver));
         let profile = tempfile::tempdir().expect("a temporary folder");
         let mut browser = Self {
             driver,
