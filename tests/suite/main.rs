@@ -7,6 +7,7 @@ mod bodies;
 mod browser;
 mod caching;
 mod calls;
+mod certificates;
 mod clients;
 mod coding;
 mod commands;
