@@ -235,7 +235,7 @@ fn frames_of_a_drag_over_100_000_points() {
         return;
     };
     for renderer in ["&renderer=webgl2", "&renderer=2d"] {
-        browser.look(&daemon, &format!("#at=0,0&span=293&renderer={renderer}"));
+        browser.look(&daemon, &format!("#at=0,0&span=293{renderer}"));
         let count = browser.ready();
         let script = "new Promise((resolve) => { const costs = [], gaps = []; let last = 0, n = 0; \
             const step = (now) => { if (last) gaps.push(now - last); last = now; n += 1; \
@@ -251,14 +251,15 @@ fn frames_of_a_drag_over_100_000_points() {
             let at = |share: f64| list[((list.len() - 1) as f64 * share) as usize];
             (at(0.5), at(0.95), at(1.0))
         };
+        let name = browser.value("document.documentElement.dataset.renderer");
         let ((median, p95, most), gaps) = (sorted(0), sorted(1));
         eprintln!(
-            "{count} points in view{renderer}: a frame takes {median:.1} ms (median), {p95:.1} ms \
+            "{count} points in view, {name}: a frame takes {median:.1} ms (median), {p95:.1} ms \
              (95 %), {most:.1} ms (most); frames are {:.1} ms apart, {:.1} ms (95 %)",
             gaps.0, gaps.1
         );
-        if renderer.ends_with("2d") {
-            assert!(median < 16.0 && p95 < 16.0, "{median} {p95}");
-        }
+        // Without graphics hardware the page takes the plain canvas by itself.
+        let is_slow = name != "2d";
+        assert!(is_slow || median < 16.0 && p95 < 16.0, "{median} {p95}");
     }
 }

@@ -79,6 +79,13 @@ fn what_the_server_refuses_is_said_in_its_words_beside_the_control() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
     };
+    // Also from the beginning: there is nothing to paint, and no black hole where it would be.
+    browser.go(&daemon.url("/#at=0,0&span=30&amount=-1"));
+    browser.until("!document.querySelector('#wrong')?.hidden && document.querySelector('#wrong')?.textContent");
+    assert_eq!(
+        browser.value("getComputedStyle(document.querySelector('#plane')).opacity"),
+        "0"
+    );
     browser.look(&daemon, "");
     browser.choose("#amount", "-1");
     browser.until("!document.querySelector('#wrong').hidden");

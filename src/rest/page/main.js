@@ -95,6 +95,7 @@ async function refresh() {
   }
   banner(null);
   root.dataset.state = "loading";
+  root.dataset.shown = "";
   plane.show({ layers, spacings: notes.map((note) => note.understood.spacing), ...palette() });
   if (!plane.span) plane.lookAt(session.state.x, session.state.y, session.state.span);
   status.moved();
