@@ -36,9 +36,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let scheme = if config.tls.is_on() { "https" } else { "http" };
     let app = App::new(config).map_err(|error| match error {
-        ServeError::Catalog(_) | ServeError::Tls(_) | ServeError::Keys(_) => {
-            Failure::Usage(error.into())
-        }
+        ServeError::Catalog(_)
+        | ServeError::Tls(_)
+        | ServeError::Keys(_)
+        | ServeError::Spans(_) => Failure::Usage(error.into()),
         _ => Failure::Other(error.into()),
     })?;
     let app = app.with_all_metrics();

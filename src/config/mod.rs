@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     access,
-    ops::{telemetry, tls},
+    ops::{spans, telemetry, tls},
     rest,
     service::Limits,
 };
@@ -55,6 +55,8 @@ pub struct Config {
     pub log: Log,
     /// What to count.
     pub metrics: Metrics,
+    /// Where to send spans.
+    pub telemetry: spans::Settings,
 }
 
 /// Where and how to serve.

@@ -17,6 +17,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         shutdown,
         log,
         metrics: _,
+        telemetry,
         tables,
     } = config;
     let mut faults = vec![];
@@ -126,8 +127,22 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     );
     within("limits.cache_bytes", limits.cache_bytes as f64, 0.0, 1e15);
     within("workers.threads", workers.threads as f64, 0.0, 1024.0);
+    within("telemetry.sample_ratio", telemetry.sample_ratio, 0.0, 1.0);
+    within(
+        "telemetry.max_queued_spans",
+        telemetry.max_queued_spans as f64,
+        1.0,
+        1e6,
+    );
+    within(
+        "telemetry.export_timeout_seconds",
+        telemetry.export_timeout_seconds,
+        0.1 * second,
+        hour,
+    );
     within("shutdown.notice_seconds", shutdown.notice_seconds, 0.0, day);
     within("shutdown.drain_seconds", shutdown.drain_seconds, 0.0, day);
+    faults.extend(telemetry.fault());
     if let Err(part) = Networks::read(&access.trusted_proxies) {
         faults.push(format!(
             "access.trusted_proxies = {:?}: {part:?} is not one; allowed: {NETWORKS}",

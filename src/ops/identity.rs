@@ -25,29 +25,33 @@ const LONGEST: usize = 128;
 pub(super) struct Identity {
     /// Its id: visible ASCII without quotes.
     pub(super) id: String,
-    /// Its place in a trace, if the client has one.
+    /// Its place in a trace, if the client has one or it begins one.
     pub(super) trace: Option<Trace>,
 }
 
-/// A place in a trace: the client's span and ours below it.
+/// A place in a trace: the client's span, if there is one, and ours below it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Trace {
     /// The trace, 32 hexadecimal digits.
     pub(super) trace: String,
-    /// The client's span, 16 digits.
-    pub(super) parent: String,
+    /// The client's span, 16 digits; `None` where the trace begins here.
+    pub(super) parent: Option<String>,
     /// Our span, 16 digits.
     pub(super) span: String,
+    /// Whether the client says that the trace is kept.
+    pub(super) is_sampled: bool,
 }
 
 impl Identity {
-    /// That of a request with these headers.
-    pub(super) fn of(headers: &HeaderMap) -> Self {
+    /// That of a request with these headers; `begins_one` says whether one without a trace begins one.
+    pub(super) fn of(headers: &HeaderMap, begins_one: impl FnOnce() -> bool) -> Self {
         let text = |name| headers.get(name)?.to_str().ok();
         let id = text(REQUEST_ID).filter(|id| is_sane(id));
         Self {
             id: id.map_or_else(|| format!("{:016x}", next()), Into::into),
-            trace: text(TRACEPARENT).and_then(Trace::read),
+            trace: text(TRACEPARENT)
+                .and_then(Trace::read)
+                .or_else(|| begins_one().then(Trace::begun)),
         }
     }
 }
@@ -77,15 +81,26 @@ impl Trace {
             && is_hex(flags, 2);
         is_in_order.then(|| Self {
             trace: trace.into(),
-            parent: parent.into(),
+            parent: Some(parent.into()),
             span: format!("{:016x}", next()),
+            is_sampled: u8::from_str_radix(flags, 16).is_ok_and(|flags| flags & 1 == 1),
         })
+    }
+
+    /// A new one, which is kept.
+    fn begun() -> Self {
+        Self {
+            trace: format!("{:016x}{:016x}", next(), next()),
+            parent: None,
+            span: format!("{:016x}", next()),
+            is_sampled: true,
+        }
     }
 }
 
 /// A number that no other process and no other request has, as good as surely: where the counter
 /// begins is random, and what follows is mixed (splitmix64, a bijection).
-fn next() -> u64 {
+pub(super) fn next() -> u64 {
     static NEXT: LazyLock<AtomicU64> =
         LazyLock::new(|| AtomicU64::new(RandomState::new().hash_one("request")));
     const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -109,7 +124,7 @@ mod tests {
         let of = |text: &str| {
             let mut headers = HeaderMap::new();
             headers.insert(REQUEST_ID, HeaderValue::from_str(text).expect("a header"));
-            Identity::of(&headers).id
+            Identity::of(&headers, || false).id
         };
         for kept in ["a", "3f1c-77", "Root=1-67891233-abcdef", &"x".repeat(128)] {
             assert_eq!(of(kept), kept);
@@ -130,9 +145,14 @@ mod tests {
     fn traces_are_continued_if_they_are_in_order() {
         let (trace, parent) = ("4bf92f3577b34da6a3ce929d0e0e4736", "00f067aa0ba902b7");
         let good = format!("00-{trace}-{parent}-01");
-        for text in [good.clone(), format!("cc-{trace}-{parent}-00-what-else")] {
+        let later = format!("cc-{trace}-{parent}-00-what-else");
+        for (text, is_sampled) in [(good.clone(), true), (later, false)] {
             let read = Trace::read(&text).unwrap_or_else(|| panic!("{text}"));
-            assert_eq!((&*read.trace, &*read.parent), (trace, parent));
+            assert_eq!(
+                (&*read.trace, read.parent.as_deref()),
+                (trace, Some(parent))
+            );
+            assert_eq!(read.is_sampled, is_sampled);
             assert!(read.span.len() == 16 && read.span != parent);
         }
         for bad in [

@@ -19,6 +19,7 @@ mod panics;
 pub mod reload;
 pub mod serve;
 pub mod shutdown;
+pub mod spans;
 pub mod telemetry;
 mod timed;
 pub mod tls;

@@ -29,16 +29,21 @@ use super::{
     connections::Peer,
     identity::{Identity, REQUEST_ID},
     metrics::{Broken, Door, Metrics, NO_FORMAT, since},
+    spans::{Answered, Spans},
 };
 use crate::{error_map, grpc, service::Record};
 
-/// A router whose requests are seen.
-pub(super) fn observed(router: Router, metrics: Metrics) -> Router {
-    router.layer(middleware::from_fn_with_state(metrics, observe))
+/// A router whose requests are seen, and sent as spans where these are taken.
+pub(super) fn observed(router: Router, metrics: Metrics, spans: Option<Spans>) -> Router {
+    router.layer(middleware::from_fn_with_state((metrics, spans), observe))
 }
 
-async fn observe(State(metrics): State<Metrics>, request: Request, next: Next) -> Response {
-    let watch = Watch::start(metrics, &request);
+async fn observe(
+    State((metrics, spans)): State<(Metrics, Option<Spans>)>,
+    request: Request,
+    next: Next,
+) -> Response {
+    let watch = Watch::start(metrics, spans, &request);
     let (record, span) = (watch.record.clone(), watch.span.clone());
     let answered = record.scope(next.run(request)).instrument(span);
     let mut response = Seen { watch }.over(answered).await;
@@ -76,6 +81,7 @@ enum Stand {
 #[derive(Debug)]
 struct Watch {
     metrics: Metrics,
+    spans: Option<Spans>,
     record: Arc<Record>,
     identity: Identity,
     span: Span,
@@ -99,8 +105,9 @@ struct Watch {
 const LONGEST: usize = 500;
 
 impl Watch {
-    fn start(metrics: Metrics, request: &Request) -> Self {
-        let identity = Identity::of(request.headers());
+    fn start(metrics: Metrics, spans: Option<Spans>, request: &Request) -> Self {
+        let begins_one = || spans.as_ref().is_some_and(Spans::begins_one);
+        let identity = Identity::of(request.headers(), begins_one);
         let door = match calls::is_grpc(request.headers()) {
             true => Door::Grpc,
             false => Door::Rest,
@@ -126,6 +133,7 @@ impl Watch {
             first_byte: None,
             counted: 0,
             metrics,
+            spans,
             identity,
             door,
         }
@@ -245,7 +253,7 @@ impl Drop for Watch {
                     request_id = self.record.id(),
                     trace_id = trace.map(|trace| &*trace.trace),
                     span_id = trace.map(|trace| &*trace.span),
-                    parent_id = trace.map(|trace| &*trace.parent),
+                    parent_id = trace.and_then(|trace| trace.parent.as_deref()),
                     client,
                     door = self.door.name(),
                     method = self.method.as_str(),
@@ -264,9 +272,32 @@ impl Drop for Watch {
                 )
             };
         }
-        match &*self.route {
-            "/livez" | "/readyz" | "/metrics" => line!(debug),
-            _ => line!(info),
+        // Probes and scrapes come every few seconds and say nothing.
+        if let "/livez" | "/readyz" | "/metrics" = &*self.route {
+            line!(debug);
+            return;
+        }
+        line!(info);
+        if let (Some(spans), Some(trace)) = (&self.spans, trace) {
+            let is_call = self.door == Door::Grpc && &*self.route != NO_ROUTE;
+            spans.take(&Answered {
+                trace,
+                request_id: self.record.id(),
+                call: is_call.then_some(&*self.route),
+                route: Some(&*self.route).filter(|route| *route != NO_ROUTE),
+                method,
+                address: &self.address,
+                client: self.client,
+                status: self.status.map(|status| status.as_u16()),
+                code: self.record.code(),
+                reason,
+                broken,
+                format,
+                points: self.record.points(),
+                bytes: self.bytes,
+                first_byte: first,
+                total,
+            });
         }
     }
 }
@@ -276,6 +307,9 @@ fn milliseconds(seconds: f64) -> f64 {
     (seconds * 1e6).round() / 1e3
 }
 
+/// The route of what has none.
+const NO_ROUTE: &str = "none";
+
 /// The route of a request: one of those there are, never the path as it was written.
 fn route(request: &Request) -> Arc<str> {
     let path = request.uri().path();
@@ -283,7 +317,7 @@ fn route(request: &Request) -> Arc<str> {
         return method.into();
     }
     let matched = request.extensions().get::<MatchedPath>();
-    matched.map_or("none", MatchedPath::as_str).into()
+    matched.map_or(NO_ROUTE, MatchedPath::as_str).into()
 }
 
 /// A method's name, if it is a usual one: clients can make up others.

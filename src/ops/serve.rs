@@ -21,6 +21,7 @@ use super::{
     observe, panics,
     reload::Reloader,
     shutdown::Hangups,
+    spans::{Collector, Spans, SpansError},
     tls::{Tls, TlsError},
 };
 use crate::{
@@ -49,6 +50,9 @@ pub enum ServeError {
     /// The keys cannot be used.
     #[error(transparent)]
     Keys(#[from] KeysError),
+    /// Spans cannot be sent.
+    #[error(transparent)]
+    Spans(#[from] SpansError),
     /// The socket does not work.
     #[error("cannot serve: {0}")]
     Socket(#[from] io::Error),
@@ -68,6 +72,8 @@ pub struct App {
     hangups: Option<Hangups>,
     tls: Option<Tls>,
     metrics: Metrics,
+    collector: Option<Collector>,
+    spans: Option<Spans>,
     more: Router,
 }
 
@@ -78,6 +84,7 @@ impl App {
     /// If a certificate, key or table is not valid or the system gives no threads.
     pub fn new(config: Config) -> Result<Self, ServeError> {
         let tls = Tls::new(&config.tls)?;
+        let collector = Collector::new(&config.telemetry)?;
         let folder = config.tables.folder();
         let catalog = Catalog::load(config.tables.embedded, folder)?;
         let workers = Workers::new(config.workers.threads)?;
@@ -93,6 +100,8 @@ impl App {
             service,
             tls,
             metrics: Metrics::default(),
+            collector,
+            spans: None,
             more: Router::new(),
         })
     }
@@ -143,6 +152,21 @@ impl App {
     /// # Errors
     /// If the socket does not work.
     pub async fn run(
+        mut self,
+        listener: TcpListener,
+        shutdown: impl Future<Output = ()>,
+    ) -> Result<usize, ServeError> {
+        let Some(collector) = self.collector.take() else {
+            return self.serve(listener, shutdown).await;
+        };
+        let (spans, sending) = collector.start(&self.metrics)?;
+        self.spans = Some(spans);
+        let served = self.serve(listener, shutdown).await;
+        sending.finish().await;
+        served
+    }
+
+    async fn serve(
         mut self,
         listener: TcpListener,
         shutdown: impl Future<Output = ()>,
@@ -271,7 +295,7 @@ impl App {
             self.gate.settings().needs_key(),
             self.service.workers().clone(),
         );
-        observe::observed(router, self.metrics.clone())
+        observe::observed(router, self.metrics.clone(), self.spans.clone())
     }
 
     fn metrics_endpoint(&self) -> rest::api::Endpoint {

@@ -81,3 +81,59 @@ fn the_images_hold_what_their_sources_need() {
     assert!(help.status.success());
     assert!(String::from_utf8_lossy(&help.stdout).contains("--ready"));
 }
+
+/// The parts of the values that the chart's templates use, such as `tables.source`.
+fn values_used() -> BTreeSet<String> {
+    let folder = Path::new(ROOT).join("deploy/helm/strew/templates");
+    let files = fs::read_dir(folder).expect("a folder");
+    let mut used = BTreeSet::new();
+    for file in files {
+        let path = file.expect("a file").path();
+        let text = fs::read_to_string(&path).expect("readable");
+        for rest in text.split(".Values.").skip(1) {
+            let is_of_name = |c: char| c.is_ascii_alphanumeric() || c == '.';
+            let name: String = rest.chars().take_while(|&c| is_of_name(c)).collect();
+            used.insert(name);
+        }
+    }
+    used
+}
+
+#[test]
+fn the_chart_uses_values_that_are_explained_and_checked() {
+    let schema = text("deploy/helm/strew/values.schema.json");
+    let schema: serde_json::Value = serde_json::from_str(&schema).expect("JSON");
+    let used = values_used();
+    for name in &used {
+        let mut part = &schema;
+        for key in name.split('.') {
+            part = &part["properties"][key];
+        }
+        assert!(part.is_object(), "the schema has no {name}");
+    }
+    for needed in ["access.keysSecret", "admin.enabled", "tables.source"] {
+        assert!(used.contains(needed), "{needed} is not used");
+    }
+    // Sections stand at the beginning of a line of the values, their keys two spaces further in.
+    let values = text("deploy/helm/strew/values.yaml");
+    let sections = schema["properties"].as_object().expect("sections");
+    for (section, of_section) in sections.iter().filter(|(name, _)| *name != "global") {
+        let all = format!("\n{values}");
+        let (_, rest) = all
+            .split_once(&format!("\n{section}:"))
+            .unwrap_or_else(|| panic!("values.yaml has no {section}"));
+        let end = rest.find('\n').expect("a line");
+        let body = rest[end..]
+            .split_inclusive('\n')
+            .skip(1)
+            .take_while(|line| line.starts_with(' ') || line.trim().is_empty());
+        let body = format!("\n{}", body.collect::<String>());
+        let keys = of_section["properties"].as_object().into_iter().flatten();
+        for (key, _) in keys {
+            assert!(
+                body.contains(&format!("\n  {key}:")),
+                "values.yaml has no {section}.{key}"
+            );
+        }
+    }
+}

@@ -50,6 +50,7 @@ mod reload;
 mod replicas;
 mod settings;
 mod singles;
+mod spans;
 mod streaming;
 mod table;
 mod tls;

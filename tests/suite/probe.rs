@@ -129,7 +129,11 @@ fn a_daemon_that_speaks_tls_is_asked_in_tls() {
     let named = format!("https://127.0.0.2:{}", port(&daemon));
     for (arguments, code, told) in [
         // Nobody vouches for it, or for that name.
-        (&["--url", &url, "--ca", &other][..], 1, "invalid peer certificate"),
+        (
+            &["--url", &url, "--ca", &other][..],
+            1,
+            "invalid peer certificate",
+        ),
         (
             &["--url", &url, "--ca", &ca, "--server-name", "else.example"],
             1,

@@ -114,6 +114,15 @@ impl OfDoor {
     }
 }
 
+/// What becomes of spans.
+#[derive(Debug)]
+pub(super) struct OfSpans {
+    /// Sent to the collector.
+    pub(super) sent: Counter,
+    /// Not sent.
+    pub(super) lost: Counter,
+}
+
 /// A route, a method and how it ended.
 type Outcome = (Door, Arc<str>, &'static str, &'static str);
 
@@ -263,6 +272,15 @@ impl Metrics {
         requests.entry(outcome).or_insert(made).clone()
     }
 
+    /// What becomes of spans, by outcome.
+    pub(super) fn spans(&self) -> OfSpans {
+        let outcome = |name: &'static str| self.counter(SPANS, labels([("outcome", name.into())]));
+        OfSpans {
+            sent: outcome("sent"),
+            lost: outcome("lost"),
+        }
+    }
+
     /// Takes in what the process counts without saying for which daemon. There is one such place in
     /// a process; the first to ask has it.
     pub(super) fn take_all(&self) {
@@ -324,6 +342,7 @@ const POINTS: &str = "strew_points_total";
 const BYTES: &str = "strew_response_bytes_total";
 const REJECTED: &str = "strew_rejected_total";
 const BROKEN: &str = "strew_broken_total";
+const SPANS: &str = "strew_spans_total";
 const CACHE_HITS: &str = "strew_sampler_cache_hits_total";
 const CACHE_MISSES: &str = "strew_sampler_cache_misses_total";
 const IN_FLIGHT: &str = "strew_requests_in_flight";
@@ -337,7 +356,7 @@ const THREADS: &str = "process_threads";
 const FIRST_BYTE: &str = "strew_time_to_first_byte_seconds";
 const WHOLE: &str = "strew_request_duration_seconds";
 
-const COUNTERS: [(&str, &str); 9] = [
+const COUNTERS: [(&str, &str); 10] = [
     (
         REQUESTS,
         "Requests that were answered, by route and how they ended: a class of HTTP or a gRPC code",
@@ -356,6 +375,10 @@ const COUNTERS: [(&str, &str); 9] = [
     (
         "strew_tables_refused_total",
         "Files of tables that were refused when they were read again",
+    ),
+    (
+        SPANS,
+        "Spans for the collector: sent, or lost because it did not take them",
     ),
     (CACHE_HITS, "Tables asked for that were ready"),
     (CACHE_MISSES, "Tables asked for that had to be made ready"),
