@@ -176,3 +176,37 @@ fn libraries_print_nothing() {
         never_names(room, &["println!", "eprintln!", "print!(", "dbg!"]);
     }
 }
+
+#[test]
+fn every_file_of_the_page_is_served_and_every_import_leads_to_one() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/rest");
+    let served = fs::read_to_string(root.join("page.rs")).expect("UTF-8");
+    let entries = fs::read_dir(root.join("page")).expect("readable");
+    let files: Vec<PathBuf> = entries.map(|e| e.expect("readable").path()).collect();
+    let name = |path: &PathBuf| {
+        path.file_name()
+            .expect("a file")
+            .to_string_lossy()
+            .into_owned()
+    };
+    let names: Vec<String> = files.iter().map(name).collect();
+    for (path, name) in files.iter().zip(&names) {
+        let text = fs::read_to_string(path).expect("UTF-8");
+        assert!(
+            text.lines().count() <= 500,
+            "{name} has more than 500 lines"
+        );
+        if name != "index.html" {
+            assert!(
+                served.contains(&format!("\"{name}\",")),
+                "{name} is not served"
+            );
+        }
+        let imports = text.split("from \"./").skip(1);
+        let links = text.split("\"/page/").skip(1);
+        for piece in imports.chain(links) {
+            let part = piece.split('"').next().unwrap_or_default();
+            assert!(names.iter().any(|n| n == part), "{name} names {part}");
+        }
+    }
+}

@@ -239,7 +239,7 @@ impl Files {
 }
 
 /// The certificates of a PEM file: at least one.
-fn certificates(pem: &[u8]) -> Result<Vec<CertificateDer<'static>>, String> {
+pub(crate) fn certificates(pem: &[u8]) -> Result<Vec<CertificateDer<'static>>, String> {
     let read: Result<Vec<_>, _> = CertificateDer::pem_slice_iter(pem).collect();
     let read = read.map_err(|error| format!("it is not PEM: {error}"))?;
     if read.is_empty() {

@@ -15,6 +15,7 @@ mod freshness;
 mod harden;
 mod negotiate;
 mod openapi;
+mod page;
 mod points;
 mod portrait;
 mod problem;
@@ -63,6 +64,7 @@ impl Door {
     /// gate.
     #[must_use]
     pub fn new(mut endpoints: Vec<Endpoint>, gate: impl FnOnce(Router) -> Router) -> Self {
+        endpoints.extend(page::endpoints());
         endpoints.extend(docs::endpoints());
         endpoints.push(openapi::endpoint(&endpoints));
         let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();

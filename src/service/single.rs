@@ -24,6 +24,9 @@ pub struct Found {
     /// How far it is from the place asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance: Option<f64>,
+    /// Its block of the neighborhood map, column and row, where one point alone is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub block: Option<[usize; 2]>,
     /// Its attributes by name.
     #[serde(flatten)]
     pub attributes: Map<String, Value>,
@@ -45,7 +48,9 @@ impl Placed {
             .map_err(|_| Error::Invalid(vec![Fault::new("id", id, "it is not a point id", ID)]))?;
         let point = self.ready.sampler.point(self.placement, read);
         let point = point.ok_or_else(|| Error::NoSuchPoint { id: id.into() })?;
-        Ok(self.found(&point, None))
+        let mut found = self.found(&point, None);
+        found.block = self.ready.sampler.block(self.placement, point.id);
+        Ok(found)
     }
 
     /// The nearest points of a place, nearest first: `k` at most and within `radius`, where these
@@ -90,6 +95,7 @@ impl Placed {
             x: point.x,
             y: point.y,
             distance,
+            block: None,
             attributes: list.iter().enumerate().map(value).collect(),
         }
     }

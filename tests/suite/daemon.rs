@@ -66,6 +66,17 @@ pub fn tables() -> tempfile::TempDir {
     folder
 }
 
+/// A folder with the tables that the program has built in.
+pub fn built_in_tables() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tables");
+    for entry in std::fs::read_dir(from).expect("readable") {
+        let entry = entry.expect("readable");
+        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).expect("copied");
+    }
+    folder
+}
+
 /// Writes a table file.
 pub fn write(folder: &Path, name: &str, table: &Table) {
     std::fs::write(folder.join(name), table.to_bytes()).expect("writable");
@@ -99,6 +110,11 @@ impl Daemon {
     /// Starts one with the test tables at an address, if that is free.
     pub fn at(address: &str) -> Option<Self> {
         Self::launch(strew(), address, tables(), &warnings(&[])).ok()
+    }
+
+    /// Starts one with the built-in tables at an address, if that is free.
+    pub fn built_in_at(address: &str) -> Option<Self> {
+        Self::launch(strew(), address, built_in_tables(), &warnings(&[])).ok()
     }
 
     /// Starts one that logs to a file, or what goes by as one.

@@ -39,7 +39,7 @@ fn it_lives_is_ready_and_lists_its_profiles() {
 fn unknown_paths_and_methods_are_problems() {
     let daemon = Daemon::start(&[]);
     for path in [
-        "/",
+        "/page/none.js",
         "/v1",
         "/v2/points",
         "/v1/points/",

@@ -18,6 +18,8 @@ fn head_is_get_without_a_body() {
             "/v1/profiles/test/spectrum.svg",
             "/openapi.json",
             "/docs",
+            "/",
+            "/page/main.js",
             "/livez",
             "/readyz",
             "/nothing",

@@ -115,6 +115,15 @@ impl Opened {
         ended && expected.map_or(end == b"0\r\n\r\n", |expected| expected == read)
     }
 
+    /// The body of a server that says its length and then keeps the connection.
+    pub fn body(mut self) -> Vec<u8> {
+        let length = self.headers.get("content-length");
+        let length = length.and_then(|v| v.parse().ok()).expect("a length");
+        let mut body = vec![0; length];
+        self.stream.read_exact(&mut body).expect("a whole body");
+        body
+    }
+
     /// Reads to the end: the body, and whether it was complete.
     pub fn finish(mut self) -> (Vec<u8>, bool) {
         let chunked = self

@@ -13,9 +13,18 @@ const SETS: [&str; 3] = [
     "density=1.5&seed=3&warp=2&keep=0.6",
 ];
 
+/// The most intervals of any table.
+fn intervals(daemon: &Daemon) -> u64 {
+    let tables = daemon.get("/v1/profiles").json()["profiles"].clone();
+    let tables = tables.as_array().expect("a list").iter();
+    let intervals = tables.filter_map(|table| table["intervals"].as_u64());
+    intervals.max().expect("a table")
+}
+
 #[test]
 fn every_id_finds_its_point() {
     let daemon = Daemon::start(&[]);
+    let most = intervals(&daemon);
     for set in SETS {
         for region in ["bbox=-2,-2,3,3", "bbox=1e9,-1e9,1000000003,-999999998"] {
             let table = Table::get(&daemon, &format!("{region}&{set}"));
@@ -29,6 +38,9 @@ fn every_id_finds_its_point() {
                     (&found["x"], &found["y"]),
                     (&json!(point.x), &json!(point.y))
                 );
+                let block = found["block"].as_array().expect("a column and a row");
+                assert!(block.iter().all(|i| i.as_u64().is_some_and(|i| i < most)));
+                assert_eq!(block.len(), 2);
             }
         }
         // Most lattice addresses have no point.
@@ -180,9 +192,14 @@ fn attributes_are_the_same_in_every_query_and_within_their_ranges() {
         }
     }
     let (id, value) = all.first_key_value().expect("some");
-    let one = daemon
+    let mut one = daemon
         .get(&format!("/v1/points/{id}?{set}&{ATTRIBUTES}"))
         .json();
+    // Where it stands in the map is told of a single point only.
+    let block = one["point"]
+        .as_object_mut()
+        .and_then(|point| point.remove("block"));
+    assert!(block.is_some());
     assert_eq!(values(&json!([one["point"]]))[id], *value);
 }
 

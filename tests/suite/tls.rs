@@ -3,83 +3,22 @@
 use std::{
     io::{Read as _, Write as _},
     net::TcpStream,
-    path::Path,
     process::Command,
     sync::Arc,
 };
 
-use rcgen::{
-    BasicConstraints, CertificateParams, CertifiedIssuer, ExtendedKeyUsagePurpose, IsCa, KeyPair,
-};
+use rcgen::ExtendedKeyUsagePurpose;
 use rustls::{
     ClientConfig, ClientConnection, RootCertStore, StreamOwned,
     crypto::ring::default_provider,
-    pki_types::{CertificateDer, PrivateKeyDer, PrivatePkcs8KeyDer, ServerName},
+    pki_types::{PrivateKeyDer, PrivatePkcs8KeyDer, ServerName},
 };
 use strew::grpc::proto::{ListProfilesRequest, point_service_client::PointServiceClient};
 
-use crate::daemon::{Daemon, PATIENCE, strew, tables, until};
-
-/// Someone who vouches for certificates.
-struct Authority {
-    issuer: CertifiedIssuer<'static, KeyPair>,
-}
-
-impl Authority {
-    fn new() -> Self {
-        let mut params = CertificateParams::default();
-        params.is_ca = IsCa::Ca(BasicConstraints::Unconstrained);
-        let key = KeyPair::generate().expect("a key");
-        let issuer = CertifiedIssuer::self_signed(params, key).expect("signed");
-        Self { issuer }
-    }
-
-    fn certificate(&self) -> CertificateDer<'static> {
-        self.issuer.der().clone()
-    }
-
-    /// A certificate for a purpose and its key, as PEM and as bytes.
-    fn issue(&self, purpose: ExtendedKeyUsagePurpose) -> Issued {
-        let names = vec!["localhost".to_owned(), "127.0.0.1".to_owned()];
-        let mut params = CertificateParams::new(names).expect("names");
-        params.extended_key_usages = vec![purpose];
-        let key = KeyPair::generate().expect("a key");
-        let certificate = params.signed_by(&key, &self.issuer).expect("signed");
-        Issued {
-            pem: (certificate.pem(), key.serialize_pem()),
-            certificate: certificate.der().clone(),
-            key: key.serialize_der(),
-        }
-    }
-}
-
-struct Issued {
-    pem: (String, String),
-    certificate: CertificateDer<'static>,
-    key: Vec<u8>,
-}
-
-impl Issued {
-    fn write(&self, folder: &Path) {
-        std::fs::write(folder.join("server.pem"), &self.pem.0).expect("writable");
-        std::fs::write(folder.join("server.key"), &self.pem.1).expect("writable");
-    }
-}
-
-/// A daemon that speaks TLS with the files of a folder.
-fn start(folder: &Path, more: &[&str]) -> Daemon {
-    let file = |setting: &str, name: &str| format!("{setting}={}", folder.join(name).display());
-    let mut settings = vec![
-        file("tls.certificate", "server.pem"),
-        file("tls.key", "server.key"),
-    ];
-    if folder.join("clients.pem").exists() {
-        settings.push(file("tls.client_ca", "clients.pem"));
-    }
-    let mut all: Vec<&str> = settings.iter().map(String::as_str).collect();
-    all.extend(more);
-    Daemon::start(&all)
-}
+use crate::{
+    certificates::{Authority, Issued, start},
+    daemon::{Daemon, PATIENCE, strew, tables, until},
+};
 
 /// What a client trusts and shows.
 fn client(trusted: &Authority, shown: Option<&Issued>, protocols: &[&[u8]]) -> Arc<ClientConfig> {
@@ -256,7 +195,7 @@ fn only_clients_with_the_right_certificate_are_let_in() {
     servers
         .issue(ExtendedKeyUsagePurpose::ServerAuth)
         .write(folder.path());
-    std::fs::write(folder.path().join("clients.pem"), clients.issuer.pem()).expect("writable");
+    std::fs::write(folder.path().join("clients.pem"), clients.pem()).expect("writable");
     let daemon = start(folder.path(), &[]);
     let known = clients.issue(ExtendedKeyUsagePurpose::ClientAuth);
     let unknown = Authority::new().issue(ExtendedKeyUsagePurpose::ClientAuth);

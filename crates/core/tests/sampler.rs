@@ -41,7 +41,10 @@ fn brute_force(sampler: &Sampler, placement: Placement, region: Region) -> Vec<P
                     .find(|&i| map.interval(i).contains(&d))
                     .expect("in")
             };
-            let vector = table.displacements()[find(dy) * map.intervals() + find(dx)];
+            let [column, row] = [find(dx), find(dy)];
+            let block = sampler.block(placement, PointId { x, y });
+            assert_eq!(block, Some([column, row]));
+            let vector = table.displacements()[row * map.intervals() + column];
             let place =
                 |v: i64, d: i32| ((i128::from(v) << FRACTION_BITS) + i128::from(d)) as f64 * step;
             let p = if warp.is_off() {

@@ -96,6 +96,13 @@ pub(super) fn shared() -> Value {
                 "x": number(),
                 "y": number(),
                 "distance": number(),
+                "block": {
+                    "type": "array",
+                    "description": "The block of the neighborhood map: column and row. Only of a point asked for by its id.",
+                    "items": count(),
+                    "minItems": 2,
+                    "maxItems": 2,
+                },
             },
         },
         "PointsQuery": query::schema(),

@@ -163,6 +163,22 @@ impl Sampler {
     #[must_use]
     pub fn point(&self, placement: Placement, id: PointId) -> Option<Point> {
         let frame = Frame::new(self, placement);
+        let [block_x, block_y] = self.block_within(&frame, id)?;
+        let [dx, dy] = self.row(block_y)[block_x];
+        let displaced = [fixed(id.x) + i128::from(dx), fixed(id.y) + i128::from(dy)];
+        let [x, y] = frame.warped(displaced).map(|k| frame.world(k));
+        Some(Point { id, x, y })
+    }
+
+    /// The block of the neighborhood map that a point belongs to: the intervals of its two indices,
+    /// each below [`Map::intervals`]. Points of one block have the same displacement and, as far as
+    /// the map reaches, the same neighbors in the pattern. Nothing if there is no such point.
+    #[must_use]
+    pub fn block(&self, placement: Placement, id: PointId) -> Option<[usize; 2]> {
+        self.block_within(&Frame::new(self, placement), id)
+    }
+
+    fn block_within(&self, frame: &Frame, id: PointId) -> Option<[usize; 2]> {
         let within = -LATTICE_LIMIT..=LATTICE_LIMIT;
         if !within.contains(&id.x) || !within.contains(&id.y) {
             return None;
@@ -172,11 +188,7 @@ impl Sampler {
         }
         let (index_x, index_y) = frame.pattern.index(id.x, id.y);
         let map = self.map();
-        let (block_x, block_y) = (map.interval_of(index_x)?, map.interval_of(index_y)?);
-        let [dx, dy] = self.row(block_y)[block_x];
-        let displaced = [fixed(id.x) + i128::from(dx), fixed(id.y) + i128::from(dy)];
-        let [x, y] = frame.warped(displaced).map(|k| frame.world(k));
-        Some(Point { id, x, y })
+        Some([map.interval_of(index_x)?, map.interval_of(index_y)?])
     }
 
     fn map(&self) -> &Map {

@@ -87,7 +87,7 @@ function show(api) {
   document.getElementById("about").textContent = api.info.description;
   // What is asked for most comes first; the parts of this page need no telling.
   const rank = ([path]) => (path.startsWith("/v1/") ? 0 : 1);
-  const paths = Object.entries(api.paths).filter(([path]) => !path.startsWith("/docs/"));
+  const paths = Object.entries(api.paths).filter(([path]) => !path.startsWith("/docs/") && !path.startsWith("/page/"));
   for (const [path, item] of paths.sort((a, b) => rank(a) - rank(b))) {
     for (const [name, operation] of Object.entries(item)) {
       const method = name.toUpperCase();

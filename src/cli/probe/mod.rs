@@ -1,23 +1,28 @@
 //! `strew probe`: asks a daemon whether it lives or takes requests, for health checks of containers
 //! that have no other program in them.
 //!
-//! A few lines of HTTP/1.1 by hand: the whole exchange has one deadline, whatever the other side does.
+//! A few lines of HTTP/1.1 by hand, in TLS if the daemon speaks it: the whole exchange has one
+//! deadline, whatever the other side does.
+
+mod trust;
 
 use std::{
-    io::{self, Read as _, Write as _},
+    io::{self, Read, Write},
     net::{SocketAddr, TcpStream, ToSocketAddrs as _},
     time::{Duration, Instant},
 };
 
 use anyhow::{Context as _, anyhow, bail};
+use rustls::{AlertDescription, ClientConnection, StreamOwned};
 
+use self::trust::{Trust, TrustArgs};
 use super::{Failure, config};
 
 /// Flags of `strew probe`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// Where the daemon is, such as http://127.0.0.1:8080. Default: where the settings say that it
-    /// listens.
+    /// Where the daemon is, such as http://127.0.0.1:8080 or https://strew.example. Default: where
+    /// the settings say that it listens, and by TLS if they say so.
     #[arg(long, value_name = "URL")]
     url: Option<String>,
     /// Ask whether it takes requests (/readyz). This is the default.
@@ -29,6 +34,8 @@ pub(super) struct Args {
     /// How long the answer may take, in seconds.
     #[arg(long, value_name = "SECONDS", default_value = "2")]
     timeout: f64,
+    #[command(flatten)]
+    trust: TrustArgs,
     #[command(flatten)]
     settings: config::Args,
 }
@@ -45,17 +52,28 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let value = args.timeout;
         usage(anyhow!("--timeout {value}: allowed: 0.001 to 3600 seconds"))
     })?;
-    let host = match &args.url {
+    let (is_tls, host) = match &args.url {
         Some(url) => host(url).map_err(usage)?,
-        None => local(args.settings.merged()?.server.listen).map_err(usage)?,
+        None => {
+            let settings = args.settings.merged()?;
+            let host = local(settings.server.listen).map_err(usage)?;
+            (settings.tls.is_on(), host)
+        }
     };
+    let trust = match is_tls {
+        true => args.trust.trust(&host, args.url.is_none()).map(Some),
+        false => args.trust.must_be_unused().map(|()| None),
+    };
+    let trust = trust.map_err(usage)?;
+    let scheme = if is_tls { "https" } else { "http" };
     let path = if args.live { "/livez" } else { "/readyz" };
-    let status = ask(&host, path, timeout).with_context(|| format!("http://{host}{path}"))?;
+    let url = format!("{scheme}://{host}{path}");
+    let status = ask(&host, path, trust, timeout).with_context(|| url.clone())?;
     if status == 200 {
         return Ok(());
     }
     let what = if args.live { "alive" } else { "ready" };
-    Err(anyhow!("http://{host}{path}: not {what}: status {status}").into())
+    Err(anyhow!("{url}: not {what}: status {status}").into())
 }
 
 const HOUR: Duration = Duration::from_secs(3600);
@@ -64,23 +82,29 @@ fn usage(error: anyhow::Error) -> Failure {
     Failure::Usage(error)
 }
 
-/// The host and port of a URL.
-fn host(url: &str) -> anyhow::Result<String> {
-    let wrong = || anyhow!("--url {url}: allowed: http://host:port");
+/// Whether a URL asks for TLS, and its host and port.
+fn host(url: &str) -> anyhow::Result<(bool, String)> {
+    let wrong = || anyhow!("--url {url}: allowed: http://host:port or https://host:port");
     let (scheme, rest) = url.split_once("://").ok_or_else(wrong)?;
     let host = rest.strip_suffix('/').unwrap_or(rest);
     let is_odd = |c: char| c.is_whitespace() || c.is_control() || "/?#@".contains(c);
-    if scheme != "http" || host.is_empty() || host.contains(is_odd) {
+    let (is_tls, port) = match scheme {
+        "http" => (false, 80),
+        "https" => (true, 443),
+        _ => return Err(wrong()),
+    };
+    if host.is_empty() || host.contains(is_odd) {
         return Err(wrong());
     }
     let has_port = host
         .rsplit_once(':')
         .is_some_and(|(_, port)| port.parse::<u16>().is_ok());
-    Ok(if has_port {
+    let host = if has_port {
         host.into()
     } else {
-        format!("{host}:80")
-    })
+        format!("{host}:{port}")
+    };
+    Ok((is_tls, host))
 }
 
 /// Where a daemon of this machine is reached that listens there.
@@ -98,26 +122,35 @@ fn local(mut listen: SocketAddr) -> anyhow::Result<String> {
 }
 
 /// The status of an answer.
-fn ask(host: &str, path: &str, timeout: Duration) -> anyhow::Result<u16> {
+fn ask(host: &str, path: &str, trust: Option<Trust>, timeout: Duration) -> anyhow::Result<u16> {
     let end = Instant::now() + timeout;
-    let left = || {
-        let left = end.saturating_duration_since(Instant::now());
-        let is_over = left.is_zero();
-        (!is_over)
-            .then_some(left)
-            .ok_or_else(|| anyhow!("no answer within {timeout:?}"))
-    };
-    let mut stream = connect(host, left)?;
-    stream.set_write_timeout(Some(left()?))?;
+    let asked = connect(host, end).and_then(|stream| match trust {
+        None => exchange(stream, host, path),
+        Some(trust) => {
+            let connection = ClientConnection::new(trust.config, trust.name)?;
+            exchange(StreamOwned::new(connection, stream), host, path)
+        }
+    });
+    asked.map_err(|error| match error.downcast_ref::<io::Error>() {
+        Some(error) if is_late(error) => anyhow!("no answer within {timeout:?}"),
+        Some(cause) if wants_certificate(cause) => {
+            error.context("it asks for a certificate: give --certificate and --key")
+        }
+        _ => error,
+    })
+}
+
+/// Asks, and reads the first line of the answer.
+fn exchange(mut stream: impl Read + Write, host: &str, path: &str) -> anyhow::Result<u16> {
     let request = format!("GET {path} HTTP/1.1\r\nhost: {host}\r\nconnection: close\r\n\r\n");
     stream.write_all(request.as_bytes())?;
+    stream.flush()?;
     let (mut head, mut part) = (vec![], [0; 4096]);
     while !head.contains(&b'\n') {
-        stream.set_read_timeout(Some(left()?))?;
         match stream.read(&mut part) {
             Ok(0) => bail!("the connection ended without an answer"),
             Ok(read) => head.extend_from_slice(&part[..read]),
-            Err(error) if is_late(&error) => {}
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
             Err(error) => return Err(error.into()),
         }
         if head.len() > MOST_BYTES {
@@ -134,16 +167,60 @@ fn ask(host: &str, path: &str, timeout: Duration) -> anyhow::Result<u16> {
 fn is_late(error: &io::Error) -> bool {
     matches!(
         error.kind(),
-        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut
     )
 }
 
+/// Whether a daemon refused us for want of a certificate: TLS 1.3 has a word for it, 1.2 has not.
+fn wants_certificate(error: &io::Error) -> bool {
+    let cause = error.get_ref().and_then(|cause| cause.downcast_ref());
+    matches!(
+        cause,
+        Some(rustls::Error::AlertReceived(
+            AlertDescription::CertificateRequired
+        ))
+    )
+}
+
+/// A connection whose reads and writes all have to be done by one time, also those of a handshake.
+struct Timed {
+    stream: TcpStream,
+    end: Instant,
+}
+
+/// The time that is left until then.
+fn left(end: Instant) -> io::Result<Duration> {
+    let left = end.saturating_duration_since(Instant::now());
+    let is_over = left.is_zero();
+    (!is_over)
+        .then_some(left)
+        .ok_or_else(|| io::ErrorKind::TimedOut.into())
+}
+
+impl Read for Timed {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.stream.set_read_timeout(Some(left(self.end)?))?;
+        self.stream.read(buffer)
+    }
+}
+
+impl Write for Timed {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.set_write_timeout(Some(left(self.end)?))?;
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
+}
+
 /// A connection to the first address of a host that takes one.
-fn connect(host: &str, left: impl Fn() -> anyhow::Result<Duration>) -> anyhow::Result<TcpStream> {
+fn connect(host: &str, end: Instant) -> anyhow::Result<Timed> {
     let mut last = anyhow!("the name has no address");
     for address in host.to_socket_addrs()? {
-        match TcpStream::connect_timeout(&address, left()?) {
-            Ok(stream) => return Ok(stream),
+        match TcpStream::connect_timeout(&address, left(end)?) {
+            Ok(stream) => return Ok(Timed { stream, end }),
             Err(error) => last = error.into(),
         }
     }
@@ -157,12 +234,15 @@ mod tests {
     #[test]
     fn a_url_is_a_scheme_a_host_and_a_port() {
         for (url, expected) in [
-            ("http://127.0.0.1:8080", "127.0.0.1:8080"),
-            ("http://127.0.0.1:8080/", "127.0.0.1:8080"),
-            ("http://[::1]:8080", "[::1]:8080"),
-            ("http://strew", "strew:80"),
+            ("http://127.0.0.1:8080", (false, "127.0.0.1:8080")),
+            ("http://127.0.0.1:8080/", (false, "127.0.0.1:8080")),
+            ("http://[::1]:8080", (false, "[::1]:8080")),
+            ("http://strew", (false, "strew:80")),
+            ("https://strew", (true, "strew:443")),
+            ("https://strew:8443/", (true, "strew:8443")),
         ] {
-            assert_eq!(host(url).expect(url), expected);
+            let (is_tls, host) = host(url).expect(url);
+            assert_eq!((is_tls, &*host), expected);
         }
         for url in [
             "",

@@ -1,0 +1,192 @@
+//! How `strew probe` speaks TLS: whom it believes, and what it shows of itself.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use anyhow::{Context as _, anyhow, bail};
+use rustls::{
+    ClientConfig, DigitallySignedStruct, Error, RootCertStore, SignatureScheme,
+    client::danger::{HandshakeSignatureValid, ServerCertVerified, ServerCertVerifier},
+    crypto::{
+        CryptoProvider, ring::default_provider, verify_tls12_signature, verify_tls13_signature,
+    },
+    pki_types::{CertificateDer, PrivateKeyDer, ServerName, UnixTime, pem::PemObject as _},
+};
+
+use crate::ops::tls::certificates;
+
+/// Flags for a daemon that speaks TLS.
+#[derive(Debug, clap::Args)]
+pub(super) struct TrustArgs {
+    /// A PEM file with the authorities that vouch for the daemon.
+    #[arg(long, value_name = "FILE", conflicts_with = "insecure")]
+    ca: Option<PathBuf>,
+    /// The name that the daemon's certificate has to have. Default: the host of the URL.
+    #[arg(long, value_name = "NAME", requires = "ca")]
+    server_name: Option<String>,
+    /// Believe any certificate. This is the default without --url: what answers then is on this
+    /// machine, and nothing secret is sent.
+    #[arg(long)]
+    insecure: bool,
+    /// A PEM file with the certificate to show to a daemon that asks for one (tls.client_ca), and
+    /// those that vouch for it.
+    #[arg(long, value_name = "FILE", requires = "key")]
+    certificate: Option<PathBuf>,
+    /// A PEM file with the private key of --certificate.
+    #[arg(long, value_name = "FILE", requires = "certificate")]
+    key: Option<PathBuf>,
+}
+
+/// What a connection is made with.
+#[derive(Debug)]
+pub(super) struct Trust {
+    pub(super) config: Arc<ClientConfig>,
+    pub(super) name: ServerName<'static>,
+}
+
+impl TrustArgs {
+    /// Refuses flags that would mean nothing.
+    pub(super) fn must_be_unused(&self) -> anyhow::Result<()> {
+        let given = [
+            ("--ca", self.ca.is_some()),
+            ("--insecure", self.insecure),
+            ("--certificate", self.certificate.is_some()),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((flag, _)) => bail!("{flag}: the daemon is asked over http; allowed: with https"),
+            None => Ok(()),
+        }
+    }
+
+    /// What to connect to `host` with; `is_here` if it is of this machine.
+    pub(super) fn trust(&self, host: &str, is_here: bool) -> anyhow::Result<Trust> {
+        if self.ca.is_none() && !self.insecure && !is_here {
+            bail!("https asks for --ca FILE, or --insecure to believe any certificate");
+        }
+        let provider = Arc::new(default_provider());
+        let builder = ClientConfig::builder_with_provider(provider.clone())
+            .with_safe_default_protocol_versions()?;
+        let builder = match &self.ca {
+            Some(path) => builder.with_root_certificates(authorities(path)?),
+            None => builder
+                .dangerous()
+                .with_custom_certificate_verifier(Arc::new(Anyone(provider))),
+        };
+        let mut config = match (&self.certificate, &self.key) {
+            (Some(certificate), Some(key)) => {
+                let chain = certificates(&read("--certificate", certificate)?)
+                    .map_err(|problem| of("--certificate", certificate, &problem))?;
+                let private = PrivateKeyDer::from_pem_slice(&read("--key", key)?)
+                    .map_err(|_| of("--key", key, "it holds no private key in PEM"))?;
+                builder
+                    .with_client_auth_cert(chain, private)
+                    .map_err(|error| {
+                        of(
+                            "--key",
+                            key,
+                            &format!("it does not go with --certificate: {error}"),
+                        )
+                    })?
+            }
+            _ => builder.with_no_client_auth(),
+        };
+        config.alpn_protocols = vec![b"http/1.1".to_vec()];
+        let (flag, name) = match &self.server_name {
+            Some(name) => ("--server-name", name.as_str()),
+            None => ("--url", without_port(host)),
+        };
+        let name = ServerName::try_from(name.to_owned())
+            .map_err(|_| anyhow!("{flag}: {name:?} is neither a name of a host nor an address"))?;
+        Ok(Trust {
+            config: Arc::new(config),
+            name,
+        })
+    }
+}
+
+/// The host of `host:port`, without the brackets of IPv6.
+fn without_port(host: &str) -> &str {
+    let name = host.rsplit_once(':').map_or(host, |(name, _)| name);
+    let inner = name
+        .strip_prefix('[')
+        .and_then(|name| name.strip_suffix(']'));
+    inner.unwrap_or(name)
+}
+
+fn authorities(path: &Path) -> anyhow::Result<RootCertStore> {
+    let mut roots = RootCertStore::empty();
+    let read = certificates(&read("--ca", path)?).map_err(|problem| of("--ca", path, &problem))?;
+    for authority in read {
+        roots
+            .add(authority)
+            .map_err(|error| of("--ca", path, &error.to_string()))?;
+    }
+    Ok(roots)
+}
+
+fn read(flag: &str, path: &Path) -> anyhow::Result<Vec<u8>> {
+    std::fs::read(path).with_context(|| format!("{flag} {}: it cannot be read", path.display()))
+}
+
+fn of(flag: &str, path: &Path, problem: &str) -> anyhow::Error {
+    anyhow!("{flag} {}: {problem}", path.display())
+}
+
+/// Believes whoever has the key of the certificate shown, whatever that says.
+#[derive(Debug)]
+struct Anyone(Arc<CryptoProvider>);
+
+impl ServerCertVerifier for Anyone {
+    fn verify_server_cert(
+        &self,
+        _: &CertificateDer<'_>,
+        _: &[CertificateDer<'_>],
+        _: &ServerName<'_>,
+        _: &[u8],
+        _: UnixTime,
+    ) -> Result<ServerCertVerified, Error> {
+        Ok(ServerCertVerified::assertion())
+    }
+
+    fn verify_tls12_signature(
+        &self,
+        message: &[u8],
+        certificate: &CertificateDer<'_>,
+        signed: &DigitallySignedStruct,
+    ) -> Result<HandshakeSignatureValid, Error> {
+        let known = &self.0.signature_verification_algorithms;
+        verify_tls12_signature(message, certificate, signed, known)
+    }
+
+    fn verify_tls13_signature(
+        &self,
+        message: &[u8],
+        certificate: &CertificateDer<'_>,
+        signed: &DigitallySignedStruct,
+    ) -> Result<HandshakeSignatureValid, Error> {
+        let known = &self.0.signature_verification_algorithms;
+        verify_tls13_signature(message, certificate, signed, known)
+    }
+
+    fn supported_verify_schemes(&self) -> Vec<SignatureScheme> {
+        self.0.signature_verification_algorithms.supported_schemes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_host_is_what_stands_before_its_port() {
+        for (host, name) in [
+            ("127.0.0.1:8080", "127.0.0.1"),
+            ("[::1]:8080", "::1"),
+            ("strew:443", "strew"),
+        ] {
+            assert_eq!(without_port(host), name);
+        }
+    }
+}

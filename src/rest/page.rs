@@ -1,0 +1,200 @@
+//! `/`: the daemon's own page for people, a view of the plane. Its parts are embedded and served
+//! under `/page/`; it loads nothing from elsewhere and asks only what anybody can ask.
+//!
+//! The list of parts stands in [`PARTS`]; tests/tidy.rs holds it against the folder.
+
+use axum::{extract::Path, response::Response, routing};
+use bytes::Bytes;
+use http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
+use serde_json::json;
+
+use super::{
+    api::{self, Endpoint, Operation},
+    openapi::fixed,
+};
+use crate::service::{
+    Error, Kind,
+    query::{Parameter, Shape},
+};
+
+/// What the page may load: its own parts, and what the daemon answers. Nothing inline.
+const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; worker-src 'self'; \
+                      connect-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'; \
+                      frame-ancestors 'none'";
+
+/// The page itself.
+const PAGE: &str = include_str!("page/index.html");
+
+macro_rules! parts {
+    ($($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!("page/", $name)))),*]
+    };
+}
+
+/// The parts of the page by their names.
+const PARTS: &[(&str, &str)] = parts![
+    "api.js",
+    "card.js",
+    "charts.js",
+    "chunks.js",
+    "commands.js",
+    "controls.js",
+    "dom.js",
+    "dots.js",
+    "download.js",
+    "fft.js",
+    "gallery.css",
+    "gallery.js",
+    "gestures.js",
+    "grid.js",
+    "icon.svg",
+    "layout.css",
+    "main.js",
+    "marks.js",
+    "measure.js",
+    "measure_worker.js",
+    "neighbors.js",
+    "painter_2d.js",
+    "painter_gl.js",
+    "panel.css",
+    "place.js",
+    "plane.js",
+    "query.js",
+    "session.js",
+    "sheets.js",
+    "spectrum.js",
+    "state.js",
+    "status.js",
+    "take.js",
+    "theme.css",
+    "theme.js",
+    "understand.js",
+];
+
+const HTML: &str = "text/html; charset=utf-8";
+const SCRIPT: &str = "text/javascript";
+const STYLE: &str = "text/css";
+const PICTURE: &str = "image/svg+xml";
+
+/// The content type of a part.
+fn content_type(name: &str) -> &'static str {
+    match name.rsplit_once('.') {
+        Some((_, "js")) => SCRIPT,
+        Some((_, "css")) => STYLE,
+        Some((_, "svg")) => PICTURE,
+        _ => HTML,
+    }
+}
+
+/// The page and its parts.
+pub(super) fn endpoints() -> Vec<Endpoint> {
+    let page = operation("getPage", "/", "The page", &[HTML], &[], vec![]);
+    let page_handler =
+        routing::get(
+            |uri: Uri, headers: HeaderMap| async move { part(&uri, &headers, HTML, PAGE) },
+        );
+    let parts = operation(
+        "getPagePart",
+        "/page/main.js",
+        "A part of the page",
+        &[SCRIPT, STYLE, PICTURE],
+        FILE,
+        vec![Kind::NoSuchPath],
+    );
+    let parts_handler = routing::get(one);
+    vec![
+        Endpoint::new("/", (), vec![(page, page_handler)]).open(),
+        Endpoint::new("/page/{file}", (), vec![(parts, parts_handler)]).open(),
+    ]
+}
+
+const FILE: &[Parameter] = &[Parameter {
+    name: "file",
+    about: "The name of the part.",
+    allowed: "the name of a part",
+    shape: Shape::Text,
+    default: None,
+    example: "main.js",
+}];
+
+fn operation(
+    id: &'static str,
+    example: &str,
+    summary: &'static str,
+    content_types: &[&'static str],
+    path_parameters: &'static [Parameter],
+    problems: Vec<Kind>,
+) -> Operation {
+    let text = |name: &&str| ((*name).into(), json!({ "type": "string" }));
+    Operation {
+        method: Method::GET,
+        id,
+        summary,
+        about: "For people: a view of the plane. Loads nothing from elsewhere.",
+        path_parameters,
+        parameters: vec![],
+        body: None,
+        answers: vec![
+            api::Answer {
+                status: 200,
+                about: summary,
+                headers: vec![],
+                contents: content_types.iter().map(text).collect(),
+            },
+            api::Answer::unchanged(),
+        ],
+        problems,
+        example: example.into(),
+    }
+}
+
+async fn one(Path(file): Path<String>, uri: Uri, headers: HeaderMap) -> Result<Response, Error> {
+    let found = PARTS.iter().find(|(name, _)| *name == file);
+    let &(name, text) = found.ok_or_else(|| Error::NoSuchPath {
+        path: uri.path().into(),
+        available: "/ and the parts that it names".into(),
+    })?;
+    Ok(part(&uri, &headers, content_type(name), text))
+}
+
+fn part(
+    uri: &Uri,
+    headers: &HeaderMap,
+    content_type: &'static str,
+    text: &'static str,
+) -> Response {
+    let content = Bytes::from_static(text.as_bytes());
+    let mut response = fixed(uri, headers, content_type, content);
+    for (name, value) in [
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (CROSS_ORIGIN_OPENER_POLICY, "same-origin"),
+        // Parts of different versions do not fit together, so each load asks whether all are still
+        // right; their tags make that cheap.
+        (header::CACHE_CONTROL, "no-cache"),
+    ] {
+        let value = HeaderValue::from_static(value);
+        response.headers_mut().insert(name, value);
+    }
+    response
+}
+
+const CROSS_ORIGIN_OPENER_POLICY: HeaderName =
+    HeaderName::from_static("cross-origin-opener-policy");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_inline_and_nothing_comes_from_elsewhere() {
+        let all = PARTS.iter().chain(&[("index.html", PAGE)]);
+        for (name, text) in all {
+            for word in ["style=\"", "innerHTML", "eval(", "onclick=\"", "https://"] {
+                assert!(!text.contains(word), "{name} has {word}");
+            }
+        }
+        assert!(!PAGE.contains("<style") && !PAGE.contains("<script>"));
+    }
+}

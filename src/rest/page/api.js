@@ -1,0 +1,122 @@
+// Asking the server: errors in its own words, and patience while it is away.
+
+/** What the server refused, in its words. */
+export class Problem extends Error {
+  constructor(status, words, retryAfter = 0) {
+    super(words);
+    this.status = status;
+    this.retryAfter = retryAfter;
+  }
+
+  /** Whether a key is needed, or another one. */
+  get isLocked() {
+    return this.status === 401;
+  }
+
+  /** Whether the same request may well be answered a little later. */
+  get isPassing() {
+    return this.status === 429 || this.status === 503;
+  }
+}
+
+/** The server cannot be reached, or went away in the middle. */
+export class Gone extends Error {}
+
+const KEY = "strew-key";
+
+/** Keeps a key for as long as this tab is open. */
+export function useKey(key) {
+  sessionStorage.setItem(KEY, key);
+}
+
+/** Whether there is a key to ask with. */
+export function hasKey() {
+  return Boolean(sessionStorage.getItem(KEY));
+}
+
+function headersFor(body) {
+  const headers = body === undefined ? {} : { "content-type": "application/json" };
+  if (hasKey()) headers.authorization = `Bearer ${sessionStorage.getItem(KEY)}`;
+  return headers;
+}
+
+const listeners = new Set();
+let isGone = false;
+
+/** Tells `listener(isGone)` whenever the server goes or comes back. */
+export function onPresence(listener) {
+  listeners.add(listener);
+}
+
+/** Whether the server is away, as far as we know. */
+export function isAway() {
+  return isGone;
+}
+
+function presence(gone) {
+  if (gone === isGone) return;
+  isGone = gone;
+  for (const listener of listeners) listener(gone);
+  if (gone) look(500);
+}
+
+/** Looks whether the server is back, ever more rarely: after ½, 1, 2, 4 and then every 8 seconds. */
+function look(wait) {
+  setTimeout(async () => {
+    try {
+      const answer = await fetch("/livez", { cache: "no-store" });
+      if (answer.ok) return presence(false);
+    } catch { /* Not yet. */ }
+    look(Math.min(8000, wait * 2));
+  }, wait);
+}
+
+/** Says that a body broke off: the server went away while it was sending. */
+export function brokeOff() {
+  presence(true);
+  return new Gone("the connection broke off");
+}
+
+/**
+ * The answer to a request; a body makes it a `POST`.
+ *
+ * Throws `Problem` for what the server refuses, `Gone` if it is not there, and an `AbortError` where
+ * `signal` says so.
+ */
+export async function ask(path, { body, signal, method } = {}) {
+  let answer;
+  try {
+    answer = await fetch(path, {
+      method: method ?? (body === undefined ? "GET" : "POST"),
+      headers: headersFor(body),
+      body,
+      signal,
+    });
+  } catch (error) {
+    if (error.name === "AbortError") throw error;
+    presence(true);
+    throw new Gone("the server does not answer");
+  }
+  if (answer.ok) return answer;
+  throw new Problem(answer.status, await words(answer), Number(answer.headers.get("retry-after")) || 0);
+}
+
+/** A JSON document. */
+export async function askJson(path, options) {
+  const answer = await ask(path, options);
+  try {
+    return await answer.json();
+  } catch (error) {
+    if (error.name === "AbortError") throw error;
+    throw brokeOff();
+  }
+}
+
+async function words(answer) {
+  try {
+    const problem = await answer.json();
+    return problem.detail ?? problem.title ?? `the server answered ${answer.status}`;
+  } catch {
+    return `the server answered ${answer.status} ${answer.statusText}`.trim();
+  }
+}

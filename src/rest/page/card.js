@@ -1,0 +1,160 @@
+// A point that is pointed at: its card, and its place and neighbors above the plane.
+
+import { askJson } from "./api.js";
+import { byId, make, settled, spoken } from "./dom.js";
+import { decimalsFor, distance, formatPlace, parsePlace } from "./place.js";
+import { attributesOf, joined, setOf } from "./query.js";
+import { themeColor } from "./theme.js";
+
+/** How near a pointer has to be to a point, in CSS pixels; a finger or a key may miss by more. */
+const HOVER = 14;
+const TAP = 48;
+const NEIGHBORS = 8;
+
+export class Card {
+  constructor(session, plane) {
+    this.session = session;
+    this.plane = plane;
+    this.element = byId("card");
+    this.over = byId("over");
+    this.point = null;
+    this.isPinned = false;
+    this.later = settled(120, (point) => this.tell(point));
+  }
+
+  hovered(at) {
+    if (this.isPinned) return;
+    const point = at && this.plane.pointAt(at, HOVER);
+    if (!point) return this.close();
+    if (this.point && distance(point.x, this.point.x) === 0 && distance(point.y, this.point.y) === 0) return;
+    this.point = point;
+    this.found = null;
+    this.element.hidden = true;
+    this.draw();
+    this.later(point);
+  }
+
+  tapped(at) {
+    const point = this.plane.pointAt(at, TAP);
+    if (!point) return this.close();
+    this.isPinned = true;
+    this.point = point;
+    this.found = null;
+    this.draw();
+    this.later.cancel();
+    this.tell(point);
+  }
+
+  shown() {
+    this.close();
+  }
+
+  moved() {
+    if (!this.isPinned) this.close();
+    this.draw();
+  }
+
+  themed() {
+    this.draw();
+  }
+
+  close() {
+    this.later.cancel();
+    this.abort?.abort();
+    Object.assign(this, { point: null, found: null, isPinned: false });
+    this.element.hidden = true;
+    this.draw();
+  }
+
+  /** Asks the server who the point is and who is near, and shows it. */
+  async tell(point) {
+    this.abort?.abort();
+    this.abort = new AbortController();
+    const { signal } = this.abort;
+    const layer = this.plane.look.layers[point.layer];
+    const set = joined(setOf(layer, this.plane.keep));
+    const decimals = decimalsFor(this.plane.look.spacings[point.layer]) + 9;
+    const at = [point.x, point.y].map((v) => formatPlace(v, decimals)).join(",");
+    try {
+      const { neighbors } = await askJson(`/v1/nearest?at=${at}&k=${NEIGHBORS + 1}&${set}`, { signal });
+      const known = await askJson(`/v1/points/${neighbors[0].id}?${set}`, { signal });
+      this.found = { self: known.point, near: neighbors.slice(1), layer, index: point.layer };
+      this.show();
+    } catch (error) {
+      if (error.name === "AbortError") return;
+      this.element.replaceChildren(make("p", { class: "bad" }, error.message));
+      this.place();
+    }
+    this.draw();
+  }
+
+  show() {
+    const { self, near, layer, index } = this.found;
+    const rows = [["x", String(self.x)], ["y", String(self.y)]];
+    for (const name of attributesOf(layer)) {
+      const value = self[name];
+      const text = typeof value === "number" ? String(Number(value.toPrecision(6))) : value;
+      rows.push([name, name === "angle" ? `${text} (${Math.round((value * 180) / Math.PI)}°)` : text]);
+    }
+    if (self.block) rows.push(["block", self.block.join(", ")]);
+    if (this.plane.look.layers.length > 1) rows.push(["layer", `${index + 1} ${layer.profile}`]);
+    const close = make("button", { type: "button", "aria-label": "Close", onclick: () => this.close() }, "✕");
+    this.element.replaceChildren(
+      make("header", {}, make("h2", {}, self.id), this.isPinned && close),
+      make("dl", {}, rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
+      make("h3", {}, "Nearest neighbors"),
+      make("table", {}, make("tbody", {}, near.map(({ id, distance: away }) => make("tr", {}, make("td", {}, id), make("td", {}, spoken(away, 5)))))),
+    );
+    this.element.dataset.id = self.id;
+    this.place();
+  }
+
+  /** Where a place of the world is on the canvas, in CSS pixels. */
+  onCanvas(x, y) {
+    const { view } = this.plane;
+    return [view.width / 2 + distance(x, view.x) / view.unit, view.height / 2 - distance(y, view.y) / view.unit];
+  }
+
+  /** Puts the card beside its point, where there is room. */
+  place() {
+    const { element, point } = this;
+    if (!point) return;
+    element.hidden = false;
+    const { width, height } = this.plane.view;
+    const [x, y] = this.onCanvas(point.x, point.y);
+    const [w, h] = [element.offsetWidth, element.offsetHeight];
+    const left = x + 24 + w < width ? x + 24 : x - 24 - w;
+    const top = Math.max(12, Math.min(height - h - 60, y - 40));
+    element.style.left = `${Math.max(12, left)}px`;
+    element.style.top = `${top}px`;
+  }
+
+  /** Draws a ring around the point, and lines to its neighbors. */
+  draw() {
+    const { view } = this.plane;
+    const { over } = this;
+    if (!this.point && !this.hasInk) return;
+    this.hasInk = Boolean(this.point);
+    [over.width, over.height] = view.pixels;
+    if (!this.point) return;
+    const context = over.getContext("2d");
+    context.scale(view.ratio, view.ratio);
+    const [x, y] = this.onCanvas(this.point.x, this.point.y);
+    context.strokeStyle = themeColor("accent");
+    context.lineWidth = 1.5;
+    for (const near of this.found?.near ?? []) {
+      const [nx, ny] = this.onCanvas(parsePlace(String(near.x)), parsePlace(String(near.y)));
+      context.globalAlpha = 0.7;
+      context.beginPath();
+      context.moveTo(x, y);
+      context.lineTo(nx, ny);
+      context.stroke();
+    }
+    context.globalAlpha = 1;
+    context.lineWidth = 2.5;
+    context.beginPath();
+    context.arc(x, y, 9, 0, 2 * Math.PI);
+    context.stroke();
+    if (this.isPinned && this.found) this.place();
+  }
+}

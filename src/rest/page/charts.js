@@ -1,0 +1,95 @@
+// Curves and pictures of spectra, drawn by hand on canvases in the colors of the theme.
+
+import { themeColor } from "./theme.js";
+
+/** Makes a canvas as fine as the screen; gives its context in CSS pixels with its size. */
+function prepared(canvas, aspect) {
+  const width = canvas.clientWidth || 280;
+  const height = Math.round(width * aspect);
+  const ratio = Math.min(2, globalThis.devicePixelRatio || 1);
+  Object.assign(canvas, { width: Math.round(width * ratio), height: Math.round(height * ratio) });
+  const context = canvas.getContext("2d");
+  context.scale(ratio, ratio);
+  return { context, width, height };
+}
+
+/**
+ * Draws curves. `series` are `{ values: [[x, y], …], color, dash }` with the names of theme colors;
+ * `x` and `y` are the ranges; `name` names the horizontal axis; a line marks y = 1.
+ */
+export function lineChart(canvas, { series, x, y, name, aspect = 0.5 }) {
+  const { context, width, height } = prepared(canvas, aspect);
+  const frame = { left: 22, right: 6, top: 6, bottom: 20 };
+  const px = (v) => frame.left + ((v - x[0]) / (x[1] - x[0])) * (width - frame.left - frame.right);
+  const py = (v) => height - frame.bottom - ((v - y[0]) / (y[1] - y[0])) * (height - frame.top - frame.bottom);
+  context.font = "11px system-ui, sans-serif";
+  context.fillStyle = themeColor("soft");
+  context.strokeStyle = themeColor("line");
+  context.lineWidth = 1;
+  context.textAlign = "center";
+  for (let v = x[0]; v <= x[1] + 1e-9; v += 1) {
+    line(context, [[px(v), py(y[0])], [px(v), py(y[1])]]);
+    context.fillText(String(v), px(v), height - 6);
+  }
+  context.fillText(name, px(x[1]) - 18, height - 6);
+  context.textAlign = "right";
+  const step = y[1] > 4 ? 2 : 1;
+  for (let v = y[0]; v <= y[1] + 1e-9; v += step) {
+    line(context, [[px(x[0]), py(v)], [px(x[1]), py(v)]]);
+    context.fillText(String(v), frame.left - 6, py(v) + 4);
+  }
+  context.save();
+  context.beginPath();
+  context.rect(frame.left, frame.top - 2, width - frame.left - frame.right, height - frame.top - frame.bottom + 4);
+  context.clip();
+  for (const { values, color, dash } of series) {
+    context.strokeStyle = themeColor(color);
+    context.lineWidth = dash ? 1.5 : 1.75;
+    context.setLineDash(dash ? [5, 4] : []);
+    line(context, values.map(([a, b]) => [px(a), py(b)]));
+  }
+  context.restore();
+}
+
+function line(context, points) {
+  context.beginPath();
+  points.forEach(([x, y], i) => (i === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
+  context.stroke();
+}
+
+/** The top of an axis that holds these values, not led astray by a single peak. */
+export function topOf(...curves) {
+  const all = curves.flat().map(([, value]) => value).filter(Number.isFinite).sort((a, b) => a - b);
+  const top = all[Math.floor(all.length * 0.99)] ?? 1;
+  return Math.min(8, Math.max(2, Math.ceil(top * 1.1)));
+}
+
+/** Draws power around ν = 0: the ground of the theme is 0, its ink twice white noise or more. */
+export function spectrumPicture(canvas, image, cells) {
+  Object.assign(canvas, { width: cells, height: cells });
+  const context = canvas.getContext("2d");
+  const pixels = context.createImageData(cells, cells);
+  const [from, to] = ["sunken", "ink"].map((name) => themeColor(name).match(/[\d.]+/g).map(Number));
+  image.forEach((power, i) => {
+    const share = Math.min(1, Math.sqrt(power / 3));
+    for (let c = 0; c < 3; c += 1) pixels.data[4 * i + c] = from[c] + (to[c] - from[c]) * share;
+    pixels.data[4 * i + 3] = 255;
+  });
+  context.putImageData(pixels, 0, 0);
+}
+
+/** Draws points x, y of a square of `side` as dots; y upward. */
+export function pointPicture(canvas, points, side) {
+  const { context, width } = prepared(canvas, 1);
+  context.fillStyle = themeColor("sunken");
+  context.fillRect(0, 0, width, width);
+  context.fillStyle = themeColor("ink");
+  context.beginPath();
+  for (let p = 0; p < points.length; p += 2) {
+    const [x, y] = [(points[p] / side) * width, width - (points[p + 1] / side) * width];
+    if (x > width || y < 0) continue;
+    context.moveTo(x + 1.7, y);
+    context.arc(x, y, 1.7, 0, 2 * Math.PI);
+  }
+  context.fill();
+}

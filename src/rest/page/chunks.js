@@ -1,0 +1,194 @@
+// The chunks that are there, under way, or wanted: asked for nearest first and a few at a time, given
+// up when nobody looks at them any more, kept as long as there is room.
+
+import { Gone, Problem, ask, brokeOff, isAway, onPresence } from "./api.js";
+import { chunkRequest, columnsOf } from "./query.js";
+
+/** Requests at a time: browsers open six connections, and one is for what is asked beside. */
+const PARALLEL = 5;
+/** Room for chunks in bytes, on machines with memory to spare and on others. */
+const ROOM = (navigator.deviceMemory ?? 8) >= 4 ? 256e6 : 96e6;
+
+/**
+ * The chunks of the layers that are shown. `changed()` is called whenever points arrive, `failed`
+ * with what the server refuses.
+ */
+export class Chunks {
+  constructor(changed, failed) {
+    this.changed = changed;
+    this.failed = failed;
+    this.all = new Map();
+    this.wanted = [];
+    this.running = 0;
+    this.bytes = 0;
+    this.clock = 0;
+    this.refused = null;
+    this.layers = [];
+    this.identity = "";
+    onPresence((gone) => gone || this.pump());
+  }
+
+  /** Says what the points are; what was asked for other points is given up. */
+  show(layers) {
+    const identity = chunkRequestIdentity(layers);
+    if (identity === this.identity) return;
+    this.identity = identity;
+    this.layers = layers.map((layer) => ({ ...layer }));
+    this.columns = columnsOf(layers);
+    this.refused = null;
+    this.want([], 1);
+  }
+
+  /** Tries again what was refused. */
+  retry() {
+    this.refused = null;
+    this.pump();
+  }
+
+  key(address, keep) {
+    return `${this.identity} ${keep} ${address.size}/${address.cx}/${address.cy}`;
+  }
+
+  /** Says which chunks are looked at; gives these, whatever they hold by now. */
+  want(addresses, keep) {
+    this.clock += 1;
+    this.wanted = addresses.map((address) => {
+      const key = this.key(address, keep);
+      let chunk = this.all.get(key);
+      if (!chunk) {
+        chunk = {
+          key, keep, ...address, state: "waiting", data: new Float32Array(0), count: 0, total: 0,
+          stride: 2 + this.columns.length, columns: this.columns, layers: this.layers, tries: 0,
+        };
+        this.all.set(key, chunk);
+      }
+      chunk.away = address.away;
+      chunk.used = this.clock;
+      return chunk;
+    });
+    for (const chunk of this.all.values()) {
+      if (chunk.used === this.clock) continue;
+      if (chunk.state === "loading") chunk.abort.abort();
+      if (chunk.state !== "done") this.all.delete(chunk.key);
+    }
+    this.tidy();
+    this.pump();
+    return this.wanted;
+  }
+
+  /** The share of what is looked at that is there, 0 to 1. */
+  get progress() {
+    if (this.wanted.length === 0) return 1;
+    const part = (chunk) => (chunk.state === "done" ? 1 : chunk.total > 0 ? chunk.count / chunk.total : 0);
+    return this.wanted.reduce((sum, chunk) => sum + part(chunk), 0) / this.wanted.length;
+  }
+
+  /** Drops what was not looked at for longest, until the rest has room. */
+  tidy() {
+    if (this.bytes <= ROOM) return;
+    const old = [...this.all.values()].filter((chunk) => chunk.state === "done" && chunk.used < this.clock);
+    for (const chunk of old.sort((a, b) => a.used - b.used)) {
+      if (this.bytes <= ROOM) break;
+      this.bytes -= chunk.data.byteLength;
+      this.all.delete(chunk.key);
+      chunk.dropped?.();
+    }
+  }
+
+  pump() {
+    while (this.running < PARALLEL && !this.refused && !isAway()) {
+      const next = this.wanted.find((chunk) => chunk.state === "waiting");
+      if (!next) return;
+      this.load(next);
+    }
+  }
+
+  async load(chunk) {
+    this.running += 1;
+    chunk.state = "loading";
+    chunk.abort = new AbortController();
+    try {
+      const { path, body } = chunkRequest(chunk.layers, chunk, chunk.keep);
+      const answer = await ask(path, { body, signal: chunk.abort.signal });
+      await this.receive(chunk, answer);
+      chunk.state = "done";
+      this.bytes += chunk.data.byteLength;
+    } catch (error) {
+      this.lost(chunk, error);
+    }
+    this.running -= 1;
+    this.changed();
+    this.pump();
+  }
+
+  /** Takes points in as they arrive. */
+  async receive(chunk, answer) {
+    chunk.total = Number(answer.headers.get("strew-count"));
+    chunk.count = 0;
+    const record = 4 * chunk.stride;
+    chunk.data = new Float32Array(chunk.total * chunk.stride);
+    const bytes = new Uint8Array(chunk.data.buffer);
+    const reader = answer.body.getReader();
+    let filled = 0;
+    for (;;) {
+      const piece = await reader.read().catch((error) => {
+        throw error.name === "AbortError" ? error : brokeOff();
+      });
+      if (piece.done) break;
+      bytes.set(piece.value.subarray(0, bytes.length - filled), filled);
+      filled += piece.value.length;
+      chunk.count = Math.min(chunk.total, Math.floor(filled / record));
+      this.changed();
+    }
+    if (filled !== bytes.length) throw brokeOff();
+  }
+
+  /** What did not come is wanted again, unless it was given up or refused for good. */
+  lost(chunk, error) {
+    chunk.state = "waiting";
+    chunk.count = 0;
+    chunk.dropped?.();
+    if (error.name === "AbortError") {
+      if (!this.wanted.includes(chunk)) this.all.delete(chunk.key);
+    } else if (error instanceof Gone) {
+      // It is asked for again when the server is back.
+    } else if (error instanceof Problem && error.isPassing && chunk.tries < 8) {
+      chunk.state = "later";
+      chunk.tries += 1;
+      const wait = Math.max(error.retryAfter * 1000, 200 * 2 ** chunk.tries);
+      setTimeout(() => {
+        if (chunk.state === "later") chunk.state = "waiting";
+        this.pump();
+      }, Math.min(wait, 10_000));
+    } else if (!this.refused && chunk.layers === this.layers) {
+      this.refused = error;
+      this.failed(error);
+    }
+  }
+}
+
+/** Text that differs whenever the points or their columns do. */
+function chunkRequestIdentity(layers) {
+  const { path, body } = chunkRequest(layers, { size: 1, cx: 0, cy: 0 }, 1);
+  return body ?? path;
+}
+
+/** The runs of a chunk's points by layer, as far as they have arrived: `[{ layer, first, count }]`. */
+export function runsOf(chunk) {
+  if (chunk.columns[0] !== "layer") return [{ layer: 0, first: 0, count: chunk.count }];
+  // Points come one layer after another, so where each begins can be bisected for.
+  const { data, stride, count } = chunk;
+  const firstOf = (layer) => {
+    let [low, high] = [0, count];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (data[middle * stride + 2] < layer) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  };
+  return chunk.layers.map((_, layer) => {
+    const first = firstOf(layer);
+    return { layer, first, count: firstOf(layer + 1) - first };
+  });
+}

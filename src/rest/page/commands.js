@@ -1,0 +1,90 @@
+// What to paste elsewhere to get the points in view: the address, curl, grpcurl, Python.
+
+import { Digits, bodyOf, joined, json, memberOf, setOf } from "./query.js";
+
+/** The formats of answers: name, ending of a file, what it is for. A test holds them against the server. */
+export const FORMATS = [
+  ["csv", "csv", "spreadsheets, pandas"],
+  ["json", "json", "programs"],
+  ["ndjson", "ndjson", "streams, a point a line"],
+  ["geojson", "geojson", "QGIS and other maps"],
+  ["geojsonseq", "geojsonl", "maps, as a stream"],
+  ["npy", "npy", "numpy"],
+  ["arrow", "arrows", "Arrow, Polars, DuckDB"],
+  ["ply", "ply", "Blender, MeshLab"],
+  ["f64", "f64", "packed doubles"],
+  ["f32", "f32", "packed floats, from the lower corner on"],
+  ["svg", "svg", "a drawing"],
+  ["png", "png", "a picture"],
+];
+
+/** The parameter that pictures take beside. */
+function looksOf(format) {
+  return format === "png" || format === "svg" ? { size: 2048 } : {};
+}
+
+/** The request for the points in a box of four decimals: `{ path }`, with a `body` for layers. */
+export function requestOf(layers, box, keep, format) {
+  const looks = looksOf(format);
+  if (layers.length === 1) {
+    const pairs = [["bbox", box.join(",")], ...setOf(layers[0], keep), ["format", format]];
+    pairs.push(...Object.entries(looks).map(([name, value]) => [name, String(value)]));
+    return { path: `/v1/points?${joined(pairs)}` };
+  }
+  const region = { bbox: box.map((side) => new Digits(side)) };
+  return { path: "/v1/points:query", body: json(bodyOf(layers, region, keep, { format, ...looks }), 2) };
+}
+
+/** A word of a shell. */
+function quoted(text) {
+  return `'${text.replace(/'/g, "'\\''")}'`;
+}
+
+/** The line for curl. */
+export function curl(origin, { path, body }, file) {
+  const data = body ? ` \\\n  -d ${quoted(body)}` : "";
+  return `curl -f ${quoted(origin + path)} -o ${file}${data}`;
+}
+
+/** The line for grpcurl: what is asked for is the same, the answer is messages. */
+export function grpcurl(host, layers, box, keep) {
+  const [minX, minY, maxX, maxY] = box.map((side) => new Digits(side));
+  const region = { bbox: { min_x: minX, min_y: minY, max_x: maxX, max_y: maxY } };
+  const list = bodyOf(layers, region, keep).layers.map(typed);
+  const message = layers.length === 1 ? { region, ...typed(memberOf(layers[0], keep)) } : { region, layers: list };
+  const plain = location.protocol === "https:" ? "" : " -plaintext";
+  return `grpcurl${plain} -d ${quoted(json(message, 2))} \\\n  ${host} strew.v1.PointService/StreamPoints`;
+}
+
+/** A set as the message has it: numbers for the warp, messages for ranges and variants. */
+function typed(set) {
+  const message = { ...set };
+  if (set.warp === "off" || set.warp === "on") message.warp = set.warp === "on" ? 1 : 0;
+  if (set.scale_range) message.scale_range = { min: set.scale_range[0], max: set.scale_range[1] };
+  if (set.variants) {
+    message.variants = set.variants.split(",").map((one) => {
+      const [name, weight] = one.split(":");
+      return weight === undefined ? { name } : { name, weight: Number(weight) };
+    });
+  }
+  return message;
+}
+
+/** A program in Python that needs nothing installed, but numpy for its own format. */
+export function python(origin, { path, body }, format, file) {
+  const url = JSON.stringify(origin + path);
+  const lines = ["from urllib.request import Request, urlopen", ""];
+  if (body) lines.push(`query = r"""${body}"""`, `request = Request(${url}, data=query.encode())`);
+  else lines.push(`request = Request(${url})`);
+  const read = {
+    csv: ["import csv, io", ["    points = list(csv.DictReader(io.TextIOWrapper(answer, \"utf-8\")))", "print(len(points), \"points, the first:\", points[:1])"]],
+    json: ["import json", ["    points = json.load(answer)[\"points\"]", "print(len(points), \"points, the first:\", points[:1])"]],
+    ndjson: ["import json", ["    *points, summary = map(json.loads, answer)", "print(len(points), \"points, the first:\", points[:1])"]],
+    npy: ["import io\nimport numpy", ["    points = numpy.load(io.BytesIO(answer.read()))", "print(points.shape, \"the first:\", points[:1])"]],
+  }[format];
+  if (read) lines.unshift(...read[0].split("\n"));
+  else lines.unshift("import shutil");
+  lines.push("with urlopen(request) as answer:");
+  lines.push(...(read ? read[1] : [`    with open("${file}", "wb") as file:`, "        shutil.copyfileobj(answer, file)"]));
+  return lines.join("\n");
+}

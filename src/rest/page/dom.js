@@ -1,0 +1,67 @@
+// Elements by hand: everything is put in as text, never as markup.
+
+/** The element of an id. */
+export function byId(id) {
+  return document.getElementById(id);
+}
+
+/**
+ * An element with attributes, listeners (`onclick` and so on, as functions) and children; a child
+ * that is text stays text, and what is `null` or `false` is left out.
+ */
+export function make(name, attributes = {}, ...children) {
+  const element = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (key.startsWith("on")) element.addEventListener(key.slice(2), value);
+    else element.setAttribute(key, value === true ? "" : value);
+  }
+  element.append(...children.flat().filter((child) => child !== null && child !== undefined && child !== false));
+  return element;
+}
+
+/** A drawing within SVG, made of paths: for icons. */
+export function icon(path, label) {
+  const space = "http://www.w3.org/2000/svg";
+  const svg = document.createElementNS(space, "svg");
+  svg.setAttribute("viewBox", "0 0 24 24");
+  svg.setAttribute("class", "icon");
+  if (label) svg.setAttribute("aria-label", label);
+  else svg.setAttribute("aria-hidden", "true");
+  const line = document.createElementNS(space, "path");
+  line.setAttribute("d", path);
+  svg.append(line);
+  return svg;
+}
+
+/** Calls a function once things have been quiet for some milliseconds. */
+export function settled(wait, call) {
+  let timer = 0;
+  const later = (...given) => {
+    clearTimeout(timer);
+    timer = setTimeout(() => call(...given), wait);
+  };
+  later.cancel = () => clearTimeout(timer);
+  return later;
+}
+
+/** A number with at most so many significant digits, groups of three set apart. */
+export function spoken(value, digits = 4) {
+  if (!Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  if (size !== 0 && (size >= 1e15 || size < 1e-4)) return value.toExponential(Math.max(0, digits - 2)).replace("e+", "e");
+  return value.toLocaleString("en", { maximumSignificantDigits: Math.max(digits, size >= 1 ? Math.ceil(Math.log10(size + 1)) : 0) });
+}
+
+/** A count in full. */
+export function counted(count, one = "point", more = `${one}s`) {
+  return `${count.toLocaleString("en")} ${count === 1 ? one : more}`;
+}
+
+/** A size in bytes, as people say it. */
+export function bytes(size) {
+  for (const [unit, name] of [[1e9, "GB"], [1e6, "MB"], [1e3, "kB"]]) {
+    if (size >= unit) return `${(size / unit).toPrecision(3)} ${name}`;
+  }
+  return `${size} bytes`;
+}

@@ -1,0 +1,85 @@
+// The gallery: every profile as points, spectrum and radial power, side by side; each opens in the
+// view.
+
+import { ask } from "./api.js";
+import { lineChart, pointPicture, spectrumPicture, topOf } from "./charts.js";
+import { PROFILE_WORDS } from "./controls.js";
+import { byId, make, spoken } from "./dom.js";
+import { measure } from "./measure.js";
+import { LAYER, encoded } from "./state.js";
+import { figureOf, recordedOf } from "./understand.js";
+
+/** The side of what is measured and of what is drawn of it, in mean spacings. */
+const MEASURED = 64;
+const DRAWN = 20;
+
+export class Gallery {
+  constructor(session, profiles) {
+    this.session = session;
+    this.names = [...new Set(profiles.map((table) => table.profile))];
+    // The one to begin with first, the bare pattern last.
+    const rank = (name) => ({ blue: -1, pattern: 1 })[name] ?? 0;
+    this.names.sort((a, b) => rank(a) - rank(b));
+    this.cards = null;
+  }
+
+  opened(tab) {
+    if (tab === "gallery") this.show();
+  }
+
+  themed() {
+    for (const card of this.cards ?? []) card.draw?.();
+  }
+
+  async show() {
+    if (this.cards) return;
+    this.cards = this.names.map((name) => this.card(name));
+    byId("gallery").replaceChildren(
+      make("header", {}, make("h2", {}, "All profiles side by side"),
+        make("span", { class: "soft" }, "points · spectrum to ν 2.5 · radial power to ν 3")),
+      make("div", { class: "cards" }, this.cards.map((card) => card.element)),
+    );
+    const isWhole = await Promise.all(this.cards.map((card) => this.fill(card)));
+    document.documentElement.dataset.gallery = isWhole.every(Boolean) ? "ready" : "failed";
+  }
+
+  card(name) {
+    const picture = (label) => make("canvas", { class: "square", role: "img", "aria-label": `${label} of ${name}` });
+    const [points, spectrum] = [picture("Points"), picture("Spectrum")];
+    const curve = make("canvas", { role: "img", "aria-label": `Radial power of ${name}` });
+    const about = make("p", {}, PROFILE_WORDS[name] ?? "");
+    const figures = make("small", { class: "soft number" });
+    const open = () => this.session.choose((state) => {
+      state.layers = [{ ...LAYER, ...state.layers[0], profile: name, alpha: "", map: "" }];
+      if (state.layers[0].by === "min_distance") Object.assign(state.layers[0], { by: "spacing", amount: "1" });
+      state.tab = "choose";
+    }, "layers", "tab");
+    const element = make("article", {},
+      make("header", {}, make("h3", {}, name), make("button", { type: "button", id: `open-${name}`, onclick: open }, "Open")),
+      make("div", { class: "pictures" }, points, spectrum), curve, about, figures);
+    return { name, element, points, spectrum, curve, about, figures };
+  }
+
+  async fill(card) {
+    const { name, points, spectrum, curve, figures, about } = card;
+    try {
+      const set = `bbox=0,0,${MEASURED},${MEASURED}&spacing=1&seed=1&profile=${encoded(name)}&format=f32`;
+      const [answer, recorded] = await Promise.all([ask(`/v1/points?${set}`), recordedOf({ profile: name })]);
+      const packed = new Float32Array(await answer.arrayBuffer());
+      const measured = await measure(Float64Array.from(packed), MEASURED);
+      const table = recorded.measured.radial.values.map(([nu, power]) => [nu, power]);
+      figures.textContent = `δ min ${spoken(figureOf(recorded, "delta_min") ?? NaN, 3)} · low power ${spoken(figureOf(recorded, "low_power") ?? NaN, 3)}`;
+      card.draw = () => {
+        pointPicture(points, packed, DRAWN);
+        spectrumPicture(spectrum, measured.image, measured.cells);
+        lineChart(curve, { series: [{ values: table, color: "accent" }], x: [0, 3], y: [0, topOf(table)], name: "ν", aspect: 0.36 });
+      };
+      card.draw();
+      return true;
+    } catch (error) {
+      about.textContent = `Not shown: ${error.message}`;
+      about.className = "bad";
+      return false;
+    }
+  }
+}

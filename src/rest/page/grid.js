@@ -1,0 +1,67 @@
+// Which squares of the world grid a view needs, and how many of its points.
+
+import { distance, place, toNumber } from "./place.js";
+
+/** More points than this are not drawn at once: beyond, the points of lowest rank stand for all. */
+export const MOST_POINTS = 1_000_000;
+/** About so many chunks are to lie in a view. */
+const CHUNKS = 20;
+/** No chunk is smaller than so many spacings: it would hardly hold a point. */
+const LEAST_SPACINGS = 4;
+/** The largest index of a chunk that the server takes. */
+const MOST_INDEX = 2 ** 52;
+
+/** The side of chunks for a view, a power of two, so that corners are exact. */
+export function chunkSize(view, spacing) {
+  const side = Math.sqrt((view.width * view.height) / CHUNKS) * view.unit;
+  return 2 ** Math.round(Math.log2(Math.max(side, LEAST_SPACINGS * spacing)));
+}
+
+/** The share of points to ask for: a power of two, so that what is there serves for long. */
+export function shareFor(view, spacings) {
+  const area = view.width * view.height * view.unit ** 2;
+  const points = spacings.reduce((sum, spacing) => sum + area / spacing ** 2, 0);
+  if (!(points > MOST_POINTS)) return 1;
+  return Math.max(1e-6, 2 ** -Math.ceil(Math.log2(points / MOST_POINTS)));
+}
+
+/** The index of the chunk that a coordinate is in. */
+export function indexOf(at, size) {
+  return size >= 1 ? Math.floor(at.i / size) : at.i / size + Math.floor(at.f / size);
+}
+
+/** How far the corner of a chunk is from a coordinate: exact, as both are near each other. */
+export function cornerFrom(index, size, at) {
+  // The side is a power of two, so the product is exact.
+  return distance(place(index * size), at);
+}
+
+/** The chunks of a view, nearest to its middle first. */
+export function chunksOf(view, size) {
+  const half = { x: (view.width * view.unit) / 2, y: (view.height * view.unit) / 2 };
+  const axis = (at, reach) => {
+    const first = indexOf(at, size);
+    const from = first + Math.floor((-reach - cornerFrom(first, size, at)) / size);
+    const to = first + Math.floor((reach - cornerFrom(first, size, at)) / size);
+    const all = [];
+    for (let index = from; index <= to && all.length < 64; index += 1) {
+      if (Math.abs(index) <= MOST_INDEX) all.push({ index, offset: cornerFrom(index, size, at) });
+    }
+    return all;
+  };
+  const columns = axis(view.x, half.x);
+  const rows = axis(view.y, half.y);
+  const chunks = columns.flatMap((column) => rows.map((row) => ({
+    size,
+    cx: column.index,
+    cy: row.index,
+    away: Math.hypot(column.offset + size / 2, row.offset + size / 2),
+  })));
+  return chunks.sort((a, b) => a.away - b.away);
+}
+
+/** Whether a place is so far out that no doubles tell its points apart. */
+export function isTooFar(view, spacing) {
+  const reach = Math.max(Math.abs(toNumber(view.x)), Math.abs(toNumber(view.y)));
+  return reach > 1.4e15 * spacing;
+}

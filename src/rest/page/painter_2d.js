@@ -1,0 +1,148 @@
+// Points by a plain canvas, where there is no WebGL2 or nothing but a processor to do it: the same
+// sheets, the same marks. Sheets of mere dots are set pixel by pixel.
+
+import { masksOf, packed, setDots } from "./dots.js";
+import { ARROW, SHAPES, isMarked, slotsOf } from "./marks.js";
+
+/** The outline of each shape around 0 with radius 1, direction to the right. */
+const PATHS = [
+  (c) => c.arc(0, 0, 0.72, 0, 2 * Math.PI),
+  (c) => polygon(c, [[0.95, 0], [-0.5, 0.83], [-0.5, -0.83]]),
+  (c) => polygon(c, [[0.62, 0.62], [-0.62, 0.62], [-0.62, -0.62], [0.62, -0.62]]),
+  (c) => polygon(c, [[0.92, 0], [0, 0.92], [-0.92, 0], [0, -0.92]]),
+  (c) => {
+    c.rect(-0.82, -0.25, 1.64, 0.5);
+    c.rect(-0.25, -0.82, 0.5, 1.64);
+  },
+  (c) => {
+    c.arc(0, 0, 0.78, 0, 2 * Math.PI);
+    c.moveTo(0.46, 0);
+    c.arc(0, 0, 0.46, 0, 2 * Math.PI, true);
+  },
+  (c) => polygon(c, [[0.95, 0], [0.1, 0.46], [0.1, 0.1], [-0.95, 0.1], [-0.95, -0.1], [0.1, -0.1], [0.1, -0.46]]),
+];
+
+function polygon(c, corners) {
+  corners.forEach(([x, y], i) => (i === 0 ? c.moveTo(x, y) : c.lineTo(x, y)));
+  c.closePath();
+}
+
+/** A painter. */
+export function plainPainter(canvas) {
+  const context = canvas.getContext("2d", { alpha: false });
+  return context ? new PlainPainter(context, canvas) : null;
+}
+
+function css([r, g, b]) {
+  return `rgb(${[r, g, b].map((v) => Math.round(v * 255)).join(" ")})`;
+}
+
+class PlainPainter {
+  constructor(context, canvas) {
+    this.context = context;
+    this.canvas = canvas;
+    this.name = "2d";
+    /** Points painted at once between looks at the clock. */
+    this.slice = 4000;
+    this.budget = 250_000;
+    this.most = 8192;
+    this.masks = new Map();
+  }
+
+  sheet(width, height) {
+    const canvas = document.createElement("canvas");
+    Object.assign(canvas, { width, height });
+    const context = canvas.getContext("2d", { alpha: false });
+    const image = context.createImageData(width, height);
+    return { width, height, canvas, context, image, pixels: new Uint32Array(image.data.buffer) };
+  }
+
+  drop(sheet) {
+    // Browsers give the memory back at once if nothing is left of it.
+    Object.assign(sheet.canvas, { width: 0, height: 0 });
+  }
+
+  clear(sheet, ground, layers) {
+    sheet.isDots = layers.every((layer) => !isMarked(layer) && !layer.scale);
+    sheet.isTouched = sheet.isDots;
+    if (sheet.isDots) sheet.pixels.fill(packed(ground));
+    else {
+      sheet.context.setTransform(1, 0, 0, 1, 0, 0);
+      sheet.context.fillStyle = css(ground);
+      sheet.context.fillRect(0, 0, sheet.width, sheet.height);
+    }
+  }
+
+  masksFor(size) {
+    const key = size.toFixed(1);
+    if (!this.masks.has(key)) {
+      if (this.masks.size > 64) this.masks.clear();
+      this.masks.set(key, masksOf(Number(key)));
+    }
+    return this.masks.get(key);
+  }
+
+  paint(sheet, chunk, { layer, first, count, corner, zoom, size, color }) {
+    const [left, top] = [sheet.width / 2 + corner[0], sheet.height / 2 - corner[1]];
+    if (sheet.isDots) {
+      sheet.isTouched = true;
+      setDots(sheet, chunk, { first, count, left, top, zoom, masks: this.masksFor(size), color: packed(color) });
+      return;
+    }
+    const { context } = sheet;
+    const { data, stride } = chunk;
+    const slots = slotsOf(layer, chunk.columns);
+    context.fillStyle = css(color);
+    for (let k = first; k < first + count; k += 1) {
+      const [x, y] = [left + data[k * stride] * zoom, top - data[k * stride + 1] * zoom];
+      this.mark(context, layer, [x, y], size, slots, data.subarray(k * stride, (k + 1) * stride));
+    }
+    context.setTransform(1, 0, 0, 1, 0, 0);
+  }
+
+  /** Ends the painting of a frame. */
+  flush(sheet) {
+    if (sheet.isTouched) sheet.context.putImageData(sheet.image, 0, 0);
+    sheet.isTouched = false;
+  }
+
+  mark(context, layer, [x, y], size, slots, record) {
+    const radius = (size / 2) * (slots.scale < 0 ? 1 : record[slots.scale]);
+    const angle = slots.angle < 0 ? 0 : record[slots.angle];
+    const [cos, sin] = [Math.cos(angle) * radius, Math.sin(angle) * radius];
+    const shape = layer.variant ? record[slots.variant] % SHAPES.length : layer.angle ? ARROW : 0;
+    // A dot is a full circle, the circle among shapes as large as its fellows.
+    const grow = isMarked(layer) ? 1 : 1 / 0.72;
+    context.setTransform(cos * grow, -sin * grow, sin * grow, cos * grow, x, y);
+    context.beginPath();
+    PATHS[shape](context);
+    context.fill();
+  }
+
+  begin(ground) {
+    const { context, canvas } = this;
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.fillStyle = css(ground);
+    context.fillRect(0, 0, canvas.width, canvas.height);
+  }
+
+  show(sheet, { x, y, scale, rect }) {
+    const { context, canvas } = this;
+    context.save();
+    if (rect) {
+      const [left, bottom, width, height] = rect;
+      context.beginPath();
+      context.rect(left, canvas.height - bottom - height, width, height);
+      context.clip();
+    }
+    context.imageSmoothingEnabled = scale !== 1;
+    const left = Math.round(canvas.width / 2 + x - (sheet.width / 2) * scale);
+    const top = Math.round(canvas.height / 2 - y - (sheet.height / 2) * scale);
+    context.drawImage(sheet.canvas, left, top, Math.round(sheet.width * scale), Math.round(sheet.height * scale));
+    context.restore();
+  }
+
+  finish() {
+    this.context.getImageData(0, 0, 1, 1);
+  }
+}

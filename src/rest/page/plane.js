@@ -1,0 +1,182 @@
+// The view of the plane: where it is, how it moves, and the loop that paints it.
+
+import { chunkSize, cornerFrom, isTooFar } from "./grid.js";
+import { Chunks, runsOf } from "./chunks.js";
+import { glPainter } from "./painter_gl.js";
+import { plainPainter } from "./painter_2d.js";
+import { moved, place } from "./place.js";
+import { Sheets } from "./sheets.js";
+
+/** A view shows at least half a spacing, and at most so many: a hundred million points, thinned. */
+const LEAST_SPAN = 0.5;
+const MOST_SPAN = 2e4;
+/** A zoom counts as over after so many milliseconds. */
+const REST = 140;
+
+/**
+ * A canvas that shows the points of some layers. `events` are called as things happen:
+ * `moved()` when the view has changed, `progress(share)`, `settled()` when all in view is painted,
+ * `failed(error)`.
+ */
+export class Plane {
+  constructor(canvas, renderer, events) {
+    this.events = events;
+    this.painter = (renderer === "2d" ? null : glPainter(canvas, renderer === "webgl2")) ?? plainPainter(canvas);
+    this.canvas = canvas;
+    this.chunks = new Chunks(() => this.draw(), events.failed);
+    this.sheets = new Sheets(this.painter, this.chunks);
+    this.view = { x: place(0), y: place(0), unit: 1, width: 1, height: 1, ratio: 1, pixels: [1, 1] };
+    this.look = null;
+    this.frames = [];
+    this.isWaiting = false;
+    this.zoomedAt = -Infinity;
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    canvas.addEventListener("webglcontextlost", () => events.failed(new Error(
+      "The graphics driver gave up. Load the page again, or add &renderer=2d to its address.",
+    )));
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (!width || !height) return;
+    const ratio = Math.min(2, globalThis.devicePixelRatio || 1);
+    const pixels = [Math.round(width * ratio), Math.round(height * ratio)];
+    Object.assign(this.view, { width, height, ratio, pixels });
+    [this.canvas.width, this.canvas.height] = pixels;
+    if (this.span) this.view.unit = this.span / Math.min(width, height);
+    this.draw();
+    this.events.moved();
+  }
+
+  /** Says what is shown: the layers with their spacings, colors and the color of the ground. */
+  show(look) {
+    const isNew = this.look === null;
+    const before = this.chunks.identity;
+    this.look = { ...look, spacing: Math.min(...look.spacings) };
+    this.chunks.show(look.layers);
+    this.sheets.renew(!isNew && before === this.chunks.identity);
+    this.draw();
+  }
+
+  /** Looks at a place; `span` is how much of the world the shorter side shows. */
+  lookAt(x, y, span = this.span) {
+    this.span = this.bounded(span);
+    Object.assign(this.view, { x, y, unit: this.span / Math.min(this.view.width, this.view.height) });
+    this.draw();
+    this.events.moved();
+  }
+
+  bounded(span) {
+    const spacing = this.look?.spacing;
+    if (!spacing) return span;
+    return Math.min(MOST_SPAN * spacing, Math.max(LEAST_SPAN * spacing, span));
+  }
+
+  /** Moves the view by CSS pixels, as a hand moves the plane. */
+  drag(dx, dy) {
+    const { view } = this;
+    view.x = moved(view.x, -dx * view.unit);
+    view.y = moved(view.y, dy * view.unit);
+    this.draw();
+    this.events.moved();
+  }
+
+  /** Enlarges by a factor about a place on the canvas, in CSS pixels. */
+  zoom(factor, at = [this.view.width / 2, this.view.height / 2]) {
+    const { view } = this;
+    const span = this.bounded(this.span / factor);
+    const grown = span / this.span;
+    const [dx, dy] = [at[0] - view.width / 2, view.height / 2 - at[1]];
+    view.x = moved(view.x, dx * view.unit * (1 - grown));
+    view.y = moved(view.y, dy * view.unit * (1 - grown));
+    this.span = span;
+    view.unit *= grown;
+    this.zoomedAt = performance.now();
+    this.draw();
+    this.events.moved();
+  }
+
+  draw() {
+    if (this.isWaiting) return;
+    this.isWaiting = true;
+    requestAnimationFrame(() => {
+      this.isWaiting = false;
+      this.paint();
+    });
+  }
+
+  /** One frame. */
+  paint(isMeasured = false) {
+    if (!this.look || !this.span) return;
+    const began = performance.now();
+    const isZooming = began - this.zoomedAt < REST;
+    const hasMore = this.sheets.frame(this.view, this.look, isZooming);
+    if (isMeasured) this.painter.finish();
+    this.cost = performance.now() - began;
+    if (hasMore || isZooming) this.draw();
+    const { progress } = this.chunks;
+    this.events.progress(progress);
+    if (this.sheets.front.isFull && !isZooming && this.sheets.front.unit === this.view.unit) this.events.settled();
+  }
+
+  /** Whether coordinates here are too large for points to be told apart. */
+  get isTooFar() {
+    return this.look !== null && isTooFar(this.view, this.look.spacing);
+  }
+
+  /** The share of the points that is shown. */
+  get keep() {
+    return this.sheets.front?.keep ?? 1;
+  }
+
+  /** How large a chunk is here. */
+  get chunkSize() {
+    return chunkSize(this.view, this.look.spacing);
+  }
+
+  /** Calls `visit(layer, x, y, chunk, k)` for the points in view, x and y from its middle. */
+  each(visit) {
+    const { view, sheets } = this;
+    const [halfX, halfY] = [(view.width * view.unit) / 2, (view.height * view.unit) / 2];
+    for (const { chunk } of sheets.front?.parts ?? []) {
+      const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
+      if (left > halfX || low > halfY || left + chunk.size < -halfX || low + chunk.size < -halfY) continue;
+      for (const { layer, first, count } of runsOf(chunk)) {
+        for (let k = first; k < first + count; k += 1) {
+          const x = left + chunk.data[k * chunk.stride];
+          const y = low + chunk.data[k * chunk.stride + 1];
+          if (x >= -halfX && x < halfX && y >= -halfY && y < halfY) visit(layer, x, y, chunk, k);
+        }
+      }
+    }
+  }
+
+  /** The point nearest to a place on the canvas, if it is within so many CSS pixels. */
+  pointAt([px, py], within) {
+    const { view, sheets } = this;
+    const [x, y] = [(px - view.width / 2) * view.unit, (view.height / 2 - py) * view.unit];
+    const reach = within * view.unit;
+    let best = null;
+    let nearest = reach ** 2;
+    for (const { chunk } of sheets.front?.parts ?? []) {
+      const [left, low] = [cornerFrom(chunk.cx, chunk.size, view.x), cornerFrom(chunk.cy, chunk.size, view.y)];
+      if (x < left - reach || y < low - reach || x > left + chunk.size + reach || y > low + chunk.size + reach) continue;
+      const { data, stride, count } = chunk;
+      for (let k = 0; k < count; k += 1) {
+        const away = (left + data[k * stride] - x) ** 2 + (low + data[k * stride + 1] - y) ** 2;
+        if (away > nearest) continue;
+        nearest = away;
+        best = { chunk, k };
+      }
+    }
+    return best && this.pointOf(best.chunk, best.k);
+  }
+
+  /** A point of a chunk: its layer and where it is. */
+  pointOf(chunk, k) {
+    const { data, stride } = chunk;
+    const layer = chunk.columns[0] === "layer" ? data[k * stride + 2] : 0;
+    const at = (index, offset) => moved(place(index * chunk.size, 0), offset);
+    return { layer, x: at(chunk.cx, data[k * stride]), y: at(chunk.cy, data[k * stride + 1]) };
+  }
+}

@@ -1,0 +1,125 @@
+// From what is chosen to what is asked: parameters of an address for one layer, a body for several.
+
+import { encoded } from "./state.js";
+import { decimalsFor, formatPlace, moved } from "./place.js";
+
+/** The attributes that a layer shows, in the order in which they are asked for. */
+export function attributesOf(layer) {
+  return ["angle", "scale", "variant"].filter((name) => layer[name]);
+}
+
+/** The names of a layer's variants. */
+export function variantNames(layer) {
+  return layer.variants.split(",").map((one) => one.split(":")[0].trim()).filter(Boolean);
+}
+
+/** The parameters that say what the points of a layer are, as pairs. */
+export function setOf(layer, keep = 1) {
+  const pairs = [["profile", layer.profile]];
+  if (layer.alpha) pairs.push(["alpha", layer.alpha]);
+  if (layer.map) pairs.push(["map", layer.map]);
+  pairs.push([layer.by, layer.amount.trim()], ["seed", layer.seed.trim()]);
+  if (layer.warp !== "") pairs.push(["warp", layer.warp]);
+  if (keep < 1) pairs.push(["keep", String(keep)]);
+  const attributes = attributesOf(layer);
+  if (attributes.length > 0) pairs.push(["attributes", attributes.join(",")]);
+  if (layer.scale) pairs.push(["scale_range", layer.range.replace(/\s/g, "")]);
+  if (layer.variant) pairs.push(["variants", layer.variants.replace(/\s/g, "")]);
+  return pairs;
+}
+
+/** Pairs as a query string. */
+export function joined(pairs) {
+  return pairs.map(([name, value]) => `${name}=${encoded(value)}`).join("&");
+}
+
+/**
+ * The same as members of a JSON object: numbers as numbers, as far as they are some. A seed above
+ * 2⁵³ keeps its digits through `raw`, as JSON allows and JavaScript does not.
+ */
+export function memberOf(layer, keep = 1) {
+  const members = {};
+  for (const [name, value] of setOf(layer, keep)) {
+    if (["spacing", "density", "min_distance", "keep"].includes(name)) members[name] = numberOr(value);
+    else if (name === "warp") members[name] = value === "off" || value === "on" ? value : numberOr(value);
+    else if (name === "seed") members[name] = new Digits(value);
+    else if (name === "attributes") members[name] = value.split(",");
+    else if (name === "scale_range") members[name] = value.split(",").map(numberOr);
+    else members[name] = value;
+  }
+  return members;
+}
+
+function numberOr(text) {
+  const number = Number(text);
+  return text !== "" && Number.isFinite(number) ? number : text;
+}
+
+/** A number that is written as it was typed. */
+export class Digits {
+  constructor(text) {
+    const isNumber = /^-?\d+(\.\d+)?(e[+-]?\d+)?$/i.test(text);
+    this.text = isNumber ? text.replace(/^(-?)0+(?=\d)/, "$1") : JSON.stringify(text);
+  }
+}
+
+/** Writes JSON, with `Digits` as they are; `indent` as of `JSON.stringify`. */
+export function json(value, indent = 0) {
+  const marks = [];
+  const text = JSON.stringify(value, (_, member) => {
+    if (!(member instanceof Digits)) return member;
+    marks.push(member.text);
+    return `\u0000${marks.length - 1}\u0000`;
+  }, indent);
+  return text.replace(/"\\u0000(\d+)\\u0000"/g, (_, i) => marks[Number(i)]);
+}
+
+/** What the layer of an index is called in requests. */
+export function layerName(i) {
+  return `layer${i + 1}`;
+}
+
+/** Several layers over a region, as the body of `POST /v1/points:query`. */
+export function bodyOf(layers, region, keep = 1, looks = {}) {
+  const list = layers.map((layer, i) => {
+    const members = { name: layerName(i), ...memberOf(layer, keep) };
+    const clear = Number(layer.clear);
+    if (i > 0 && clear > 0) {
+      members.clear_of = Object.fromEntries(layers.slice(0, i).map((_, j) => [layerName(j), clear]));
+    }
+    return members;
+  });
+  return { region, layers: list, ...looks };
+}
+
+/** The request for a chunk as packed `f32`: `{ path, body }`, the body only for several layers. */
+export function chunkRequest(layers, { size, cx, cy }, keep) {
+  if (layers.length === 1) {
+    const query = joined([...setOf(layers[0], keep), ["format", "f32"]]);
+    return { path: `/v1/chunks/${size}/${cx}/${cy}?${query}` };
+  }
+  const region = { chunk: { size, x: cx, y: cy } };
+  return { path: "/v1/points:query", body: json(bodyOf(layers, region, keep, { format: "f32" })) };
+}
+
+/** The columns of packed answers besides x and y, as the server joins those of several layers. */
+export function columnsOf(layers) {
+  const columns = layers.length > 1 ? ["layer"] : [];
+  for (const name of layers.flatMap(attributesOf)) {
+    if (!columns.includes(name)) columns.push(name);
+  }
+  return columns;
+}
+
+/** All names of variants, as the server joins those of several layers. */
+export function allVariants(layers) {
+  return [...new Set(layers.filter((layer) => layer.variant).flatMap(variantNames))];
+}
+
+/** The box of a view as four decimal numbers, cut to what can be seen: a sixteenth of a pixel. */
+export function boxOf(view) {
+  const decimals = decimalsFor(view.unit / 16);
+  const [halfX, halfY] = [(view.width * view.unit) / 2, (view.height * view.unit) / 2];
+  return [[view.x, -halfX], [view.y, -halfY], [view.x, halfX], [view.y, halfY]]
+    .map(([at, by]) => formatPlace(moved(at, by), decimals));
+}

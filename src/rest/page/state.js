@@ -1,0 +1,126 @@
+// What the page shows, and how it stands in the address: everything that is not a default is in the
+// hash, so that a link shows the same view.
+
+import { decimalsFor, formatPlace, parsePlace, place } from "./place.js";
+
+/** The amounts that an unbounded plane can have, by the names that requests use. */
+export const AMOUNTS = ["spacing", "density", "min_distance"];
+
+/** Colors by number, as Okabe and Ito chose them; the first is the ink of the theme. */
+export const COLOR_NAMES = ["ink", "blue", "vermilion", "green", "orange", "sky", "purple", "yellow"];
+
+/** A layer before anything is chosen. */
+export const LAYER = Object.freeze({
+  profile: "blue",
+  alpha: "",
+  map: "",
+  by: "spacing",
+  amount: "1",
+  seed: "1",
+  warp: "",
+  color: 0,
+  dot: 1,
+  angle: false,
+  scale: false,
+  range: "0.5,1.5",
+  variant: false,
+  variants: "oak:3,birch:1,pine:2",
+  clear: "",
+});
+
+/** The short names of a layer's members in the address. */
+const KEYS = {
+  profile: "profile",
+  alpha: "alpha",
+  map: "map",
+  by: "by",
+  amount: "amount",
+  seed: "seed",
+  warp: "warp",
+  color: "color",
+  dot: "dot",
+  angle: "angle",
+  scale: "scale",
+  range: "range",
+  variant: "variant",
+  variants: "variants",
+  clear: "clear",
+};
+
+/** The most layers that the page offers. */
+export const MOST_LAYERS = 6;
+
+/** The view of somebody who comes without a link: some 900 points. */
+export function initial() {
+  return {
+    x: place(0),
+    y: place(0),
+    span: 30,
+    layers: [{ ...LAYER }],
+    tab: "choose",
+    renderer: "",
+  };
+}
+
+/** Reads the hash of an address; what it does not say stays at its default. */
+export function fromHash(hash) {
+  const given = new URLSearchParams(hash.replace(/^#/, ""));
+  const state = initial();
+  const [x, y] = (given.get("at") ?? "").split(",").map(parsePlace);
+  if (x && y) Object.assign(state, { x, y });
+  const span = Number(given.get("span"));
+  if (Number.isFinite(span) && span > 0) state.span = span;
+  if (["choose", "understand", "take", "gallery"].includes(given.get("tab"))) state.tab = given.get("tab");
+  if (["2d", "webgl2"].includes(given.get("renderer"))) state.renderer = given.get("renderer");
+  const layers = Math.min(MOST_LAYERS, Math.max(1, Number(given.get("layers")) || 1));
+  state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
+  return state;
+}
+
+function layerFrom(given, i) {
+  const layer = { ...LAYER, color: i };
+  for (const [member, key] of Object.entries(KEYS)) {
+    const text = given.get(named(key, i));
+    if (text === null) continue;
+    if (typeof LAYER[member] === "boolean") layer[member] = text === "1";
+    else if (typeof LAYER[member] === "number") {
+      if (Number.isFinite(Number(text))) layer[member] = Number(text);
+    } else layer[member] = text;
+  }
+  if (!AMOUNTS.includes(layer.by)) layer.by = LAYER.by;
+  layer.color = Math.abs(Math.trunc(layer.color)) % COLOR_NAMES.length;
+  layer.dot = Math.min(4, Math.max(0.25, layer.dot));
+  return layer;
+}
+
+/** The name of a key for the layer of an index: those of further layers begin with their number. */
+function named(key, i) {
+  return i === 0 ? key : `${i + 1}.${key}`;
+}
+
+/** Writes the hash of an address. */
+export function toHash(state) {
+  const decimals = decimalsFor(state.span) + 5;
+  const said = [
+    ["at", `${formatPlace(state.x, decimals)},${formatPlace(state.y, decimals)}`],
+    ["span", String(Number(state.span.toPrecision(8)))],
+  ];
+  if (state.layers.length > 1) said.push(["layers", String(state.layers.length)]);
+  state.layers.forEach((layer, i) => {
+    for (const [member, key] of Object.entries(KEYS)) {
+      const standard = member === "color" ? i : LAYER[member];
+      const must = member === "profile" || member === "amount" || member === "seed";
+      if (!must && layer[member] === standard) continue;
+      const value = typeof layer[member] === "boolean" ? (layer[member] ? "1" : "0") : String(layer[member]);
+      said.push([named(key, i), value]);
+    }
+  });
+  if (state.tab !== "choose") said.push(["tab", state.tab]);
+  if (state.renderer) said.push(["renderer", state.renderer]);
+  return `#${said.map(([key, value]) => `${key}=${encoded(value)}`).join("&")}`;
+}
+
+/** Percent-encodes only what an address cannot hold, so that people can read it. */
+export function encoded(text) {
+  return encodeURIComponent(text).replace(/%(2C|3A|28|29|2F)/g, (whole) => decodeURIComponent(whole));
+}

@@ -1,0 +1,78 @@
+// The line at the bottom: how many points are in view, where, and how long a stretch of it is.
+
+import { askJson } from "./api.js";
+import { byId, counted, settled, spoken } from "./dom.js";
+import { decimalsFor, formatPlace } from "./place.js";
+import { bodyOf, boxOf, joined, json, setOf, Digits } from "./query.js";
+
+/** The exact number of points in a box of four decimals; `keep` thins it. */
+export async function countIn(layers, box, keep, signal) {
+  if (layers.length === 1) {
+    const query = joined([["bbox", box.join(",")], ...setOf(layers[0], keep)]);
+    return (await askJson(`/v1/count?${query}`, { signal })).count;
+  }
+  const region = { bbox: box.map((side) => new Digits(side)) };
+  return (await askJson("/v1/count", { body: json(bodyOf(layers, region, keep)), signal })).count;
+}
+
+export class Status {
+  constructor(session, plane) {
+    this.session = session;
+    this.plane = plane;
+    this.count = null;
+    this.abort = null;
+    this.ask = settled(200, () => this.tally());
+  }
+
+  /** The view has moved, or other points are shown. */
+  moved() {
+    const { view } = this.plane;
+    const decimals = decimalsFor(view.unit);
+    byId("where").textContent = `${formatPlace(view.x, decimals)}, ${formatPlace(view.y, decimals)}`;
+    this.scale(view);
+    this.count = null;
+    document.documentElement.dataset.count = "";
+    this.ask();
+  }
+
+  /** A stretch of a round length, up to a hundred pixels. */
+  scale({ unit }) {
+    const most = 100 * unit;
+    const ten = 10 ** Math.floor(Math.log10(most));
+    const length = [5, 2, 1].find((n) => n * ten <= most) * ten;
+    byId("ruler").firstElementChild.style.width = `${length / unit}px`;
+    byId("ruler").lastElementChild.textContent = spoken(length, 1);
+  }
+
+  async tally() {
+    const { plane, session } = this;
+    if (!plane.look) return;
+    this.abort?.abort();
+    this.abort = new AbortController();
+    const { keep } = plane;
+    try {
+      const box = boxOf(plane.view);
+      const { layers } = session.state;
+      const { signal } = this.abort;
+      const shown = await countIn(layers, box, keep, signal);
+      this.all = keep < 1 ? await countIn(layers, box, 1, signal) : shown;
+      this.count = shown;
+      this.say(keep);
+    } catch (error) {
+      if (error.name !== "AbortError") this.say(keep, error);
+    }
+  }
+
+  say(keep, error) {
+    const words = () => {
+      if (error) return `Not counted: ${error.message}`;
+      if (keep < 1) {
+        return `${counted(this.all)} in view, too many to draw: the ${counted(this.count)} of lowest rank `
+          + `stand for them, one in ${Math.round(1 / keep).toLocaleString("en")}`;
+      }
+      return `${counted(this.count)} in view`;
+    };
+    byId("tally").textContent = words() + (this.plane.isTooFar ? ". Too far out: points cannot be told apart here" : "");
+    document.documentElement.dataset.count = error ? "" : String(this.count);
+  }
+}

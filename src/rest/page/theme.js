@@ -1,0 +1,72 @@
+// Light, dark, or as the system has it; and the colors that the painters need as numbers.
+
+import { COLOR_NAMES } from "./state.js";
+
+const KEY = "strew-theme";
+
+/** Begins with what was chosen before; `changed` hears of every change, the system's too. */
+export function watchTheme(button, changed) {
+  const root = document.documentElement;
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const set = (theme) => {
+    if (theme) root.dataset.theme = theme;
+    else delete root.dataset.theme;
+  };
+  set(remembered());
+  const isDark = () => (root.dataset.theme ? root.dataset.theme === "dark" : dark.matches);
+  const tell = () => {
+    button.setAttribute("aria-pressed", String(isDark()));
+    changed();
+  };
+  button.addEventListener("click", () => {
+    const theme = isDark() ? "light" : "dark";
+    set(theme);
+    remember(theme);
+    tell();
+  });
+  dark.addEventListener("change", tell);
+  tell();
+}
+
+function remembered() {
+  try {
+    return localStorage.getItem(KEY);
+  } catch {
+    return null;
+  }
+}
+
+function remember(theme) {
+  try {
+    localStorage.setItem(KEY, theme);
+  } catch { /* Then it is forgotten. */ }
+}
+
+/** The resolved color of an element's property, as red, green and blue from 0 to 1. */
+function resolved(className, property) {
+  const probe = document.createElement("i");
+  probe.className = className;
+  document.body.append(probe);
+  const numbers = getComputedStyle(probe)[property].match(/[\d.]+/g).slice(0, 3).map((v) => Number(v) / 255);
+  probe.remove();
+  return numbers;
+}
+
+/** The ground and the colors of layers in the theme of now. */
+export function palette() {
+  const body = getComputedStyle(document.body).backgroundColor;
+  return {
+    ground: body.match(/[\d.]+/g).slice(0, 3).map((v) => Number(v) / 255),
+    colors: COLOR_NAMES.map((_, i) => resolved(`swatch-${i}`, "backgroundColor")),
+  };
+}
+
+/** A color of the theme as CSS, for drawing on canvases. */
+export function themeColor(name) {
+  const probe = document.createElement("i");
+  probe.style.color = `var(--${name})`;
+  document.body.append(probe);
+  const { color } = getComputedStyle(probe);
+  probe.remove();
+  return color;
+}

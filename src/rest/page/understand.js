@@ -1,0 +1,155 @@
+// The tab Understand: what the points in view measure, beside what the table was measured to be.
+
+import { askJson } from "./api.js";
+import { lineChart, spectrumPicture, topOf } from "./charts.js";
+import { byId, make, settled, spoken } from "./dom.js";
+import { measure } from "./measure.js";
+import { joined } from "./query.js";
+
+/** So many points are measured at most, from the middle of the view, and no fewer than this. */
+const MOST = 14_400;
+const LEAST = 100;
+
+/** The middle of a view as a square, with the points of a layer in it. */
+function middleOf(plane, layer, count) {
+  const { view } = plane;
+  const whole = Math.min(view.width, view.height) * view.unit;
+  const expected = (count * whole * whole) / (view.width * view.height * view.unit ** 2);
+  const side = whole * Math.min(1, Math.sqrt(MOST / Math.max(1, expected)));
+  const found = [];
+  plane.each((of, x, y) => {
+    if (of === layer && Math.abs(x) < side / 2 && Math.abs(y) < side / 2) found.push(x + side / 2, y + side / 2);
+  });
+  return { points: Float64Array.from(found), side };
+}
+
+/** What is recorded of a layer's table. */
+export function recordedOf(layer) {
+  const pairs = [["alpha", layer.alpha], ["map", layer.map]].filter(([, value]) => value);
+  return askJson(`/v1/profiles/${encodeURIComponent(layer.profile)}${pairs.length ? "?" : ""}${joined(pairs)}`);
+}
+
+/** The figure of a name, of the first window that the table was measured on. */
+export function figureOf(recorded, name) {
+  const { figures } = recorded.table.provenance;
+  const from = figures.find((one) => one.subject.startsWith("window")) ?? figures.at(-1);
+  return from?.values[name];
+}
+
+export class Understand {
+  constructor(session, plane) {
+    this.session = session;
+    this.plane = plane;
+    this.layer = 0;
+    this.again = settled(200, () => this.measure());
+    this.note = make("p", { class: "note", role: "status", id: "measured-note" });
+    this.picker = make("div", { class: "choices", role: "group", "aria-label": "Layer" });
+    this.list = make("dl", { class: "figures" });
+    const chart = (id, label) => make("canvas", { id, role: "img", "aria-label": label });
+    const keys = () => make("span", { class: "keys" }, make("span", {}, make("i", { class: "key-here" }), "here"), make("span", {}, make("i", { class: "key-table" }), "table"));
+    this.radial = chart("radial", "Radial power of the points in view beside the table's");
+    this.rdf = chart("rdf", "Radial distribution of the points in view beside the table's");
+    this.spectrum = chart("spectrum", "Spectrum of the points in view");
+    this.charts = make("div", { class: "group" },
+      make("figure", {}, make("figcaption", {}, make("b", {}, "Radial power"), keys()), this.radial,
+        make("p", { class: "note" }, "How much of each frequency ν there is; 1 is pure chance. Low at the left: even. High peaks: regular.")),
+      make("figure", {}, make("figcaption", {}, make("b", {}, "Radial distribution"), keys()), this.rdf,
+        make("p", { class: "note" }, "How often a distance occurs, in mean spacings; 1 is pure chance.")),
+      make("figure", {}, make("figcaption", {}, make("b", {}, "Spectrum")), this.spectrum,
+        make("p", { class: "note" }, "The same frequencies by direction, ν up to 2.5. Round: no direction is special.")));
+    byId("understand").append(this.picker, this.list, this.note, this.charts);
+  }
+
+  get isOpen() {
+    return this.session.state.tab === "understand";
+  }
+
+  opened() {
+    if (this.isOpen) this.rested();
+  }
+
+  shown(layers) {
+    this.moved();
+    this.layer = Math.min(this.layer, layers.length - 1);
+    this.picker.hidden = layers.length < 2;
+    this.picker.replaceChildren(...layers.map((layer, i) => make("button", {
+      type: "button",
+      "aria-pressed": String(i === this.layer),
+      onclick: () => {
+        this.layer = i;
+        this.shown(layers);
+        this.again();
+      },
+    }, `${i + 1} ${layer.profile}`)));
+  }
+
+  moved() {
+    document.documentElement.dataset.measured = "";
+  }
+
+  rested() {
+    if (this.isOpen) this.again();
+  }
+
+  themed() {
+    if (this.drawn) this.draw();
+  }
+
+  async measure() {
+    // What is only partly there is not measured: this is called again when all is.
+    if (!this.isOpen || !this.plane.sheets.front?.isFull) return;
+    const mine = (this.turn = (this.turn ?? 0) + 1);
+    const layer = this.plane.look.layers[this.layer];
+    let count = 0;
+    this.plane.each((of) => (count += of === this.layer ? 1 : 0));
+    const { points, side } = middleOf(this.plane, this.layer, count);
+    const area = this.plane.view.width * this.plane.view.height * this.plane.view.unit ** 2;
+    if (points.length / 2 < LEAST) {
+      this.say(`${points.length / 2} points are too few to measure: zoom out until there are ${LEAST}.`);
+      this.list.replaceChildren();
+      this.charts.hidden = true;
+      document.documentElement.dataset.measured = "too-few";
+      return;
+    }
+    try {
+      const [measured, recorded] = await Promise.all([measure(points, side), recordedOf(layer)]);
+      if (mine !== this.turn) return;
+      this.drawn = { measured, recorded, count, density: count / area, thinned: this.plane.keep < 1 };
+      this.draw();
+      document.documentElement.dataset.measured = String(measured.figures.count);
+    } catch (error) {
+      if (mine === this.turn) this.say(`Not measured: ${error.message}`);
+    }
+  }
+
+  say(words) {
+    this.note.textContent = words;
+  }
+
+  draw() {
+    const { measured, recorded, count, density, thinned } = this.drawn;
+    const { figures, radial, rdf, image, cells } = measured;
+    this.charts.hidden = false;
+    const entry = (words, value, table) => make("div", {}, make("dt", {}, words), make("dd", {}, value, table === undefined ? "" : make("small", { class: "soft" }, ` table ${spoken(table, 3)}`)));
+    this.list.replaceChildren(
+      entry("Points in view", count.toLocaleString("en")),
+      entry("Density", spoken(density, 4)),
+      entry("δ min", spoken(figures.deltaMin, 3), figureOf(recorded, "delta_min")),
+      entry("δ average", spoken(figures.deltaAvg, 3), figureOf(recorded, "delta_avg")),
+    );
+    const part = figures.count < count ? `Measured on the ${figures.count.toLocaleString("en")} points in the middle. ` : "";
+    const note = thinned ? "What is in view is thinned, so it is not what the table was made for. " : "";
+    this.say(`${part}${note}δ is the distance to the nearest neighbor; 1 is that of the densest packing.`);
+    const table = recorded.measured.radial.values.map(([nu, power]) => [nu, power]);
+    lineChart(this.radial, {
+      series: [{ values: table, color: "soft", dash: true }, { values: radial, color: "accent" }],
+      x: [0, 3], y: [0, topOf(table, radial)], name: "ν",
+    });
+    const recordedRdf = recorded.measured.rdf.values;
+    lineChart(this.rdf, {
+      series: [{ values: recordedRdf, color: "soft", dash: true }, { values: rdf, color: "accent" }],
+      x: [0, 5], y: [0, topOf(recordedRdf, rdf)], name: "r",
+    });
+    spectrumPicture(this.spectrum, image, cells);
+  }
+}
