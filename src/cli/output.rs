@@ -17,7 +17,14 @@ use super::Failure;
 pub(super) struct Output {
     writer: Box<dyn Write + Send>,
     /// The partial file and what it will be called.
-    pending: Option<(PathBuf, PathBuf)>,
+    pending: Option<Pending>,
+}
+
+/// A file that is not complete.
+struct Pending {
+    file: File,
+    partial: PathBuf,
+    path: PathBuf,
 }
 
 impl Output {
@@ -43,7 +50,14 @@ impl Output {
             File::create(&partial)
         };
         let file = file.with_context(|| format!("cannot write {}", partial.display()))?;
-        let pending = (!special).then(|| (partial, path.to_owned()));
+        let pending = match special {
+            true => None,
+            false => Some(Pending {
+                file: file.try_clone()?,
+                partial,
+                path: path.to_owned(),
+            }),
+        };
         Ok(Self {
             writer: Box::new(file),
             pending,
@@ -58,7 +72,7 @@ impl Output {
 
     fn explained(&self, error: io::Error) -> anyhow::Error {
         let place = match &self.pending {
-            Some((partial, _)) => format!("{}", partial.display()),
+            Some(pending) => format!("{}", pending.partial.display()),
             None => "the output".into(),
         };
         match error.kind() {
@@ -69,10 +83,16 @@ impl Output {
         }
     }
 
-    /// Everything is written: a file gets its name.
+    /// Everything is written: a file gets its name, once the disk has it all.
     pub(super) fn finish(mut self) -> anyhow::Result<()> {
         self.writer.flush().map_err(|error| self.explained(error))?;
-        if let Some((partial, path)) = &self.pending {
+        if let Some(Pending {
+            file,
+            partial,
+            path,
+        }) = &self.pending
+        {
+            file.sync_all().map_err(|error| self.explained(error))?;
             fs::rename(partial, path).with_context(|| {
                 format!("cannot rename {} to {}", partial.display(), path.display())
             })?;
@@ -85,8 +105,8 @@ impl Output {
 impl Drop for Output {
     /// What was not finished serves nobody, and may be what fills the disk.
     fn drop(&mut self) {
-        if let Some((partial, _)) = self.pending.take() {
-            let _ = fs::remove_file(partial);
+        if let Some(pending) = self.pending.take() {
+            let _ = fs::remove_file(pending.partial);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Single points as messages.
 
-use super::proto::{Point, Value, value};
+use super::proto::{Block, Point, Value, value};
 use crate::service::Found;
 
 /// A point that was found.
@@ -18,5 +18,10 @@ pub(super) fn point(found: Found) -> Point {
         y: found.y,
         distance: found.distance,
         attributes: found.attributes.into_iter().map(attribute).collect(),
+        block: found.block.map(|block| {
+            // A map has a few hundred intervals.
+            let [column, row] = block.map(|i| u32::try_from(i).unwrap_or(u32::MAX));
+            Block { column, row }
+        }),
     }
 }

@@ -65,6 +65,10 @@ async fn a_point_is_found_by_its_id() {
             .into_inner();
         let point = answer.point.expect("set");
         assert_eq!(normal(&written(&point)), normal(expected));
+        let block = point.block.expect("set");
+        let by_rest = daemon.get(&format!("/v1/points/{}?{SET}", point.id)).json();
+        let expected = &by_rest["point"]["block"];
+        assert_eq!(json!([block.column, block.row]), *expected);
         let set = answer.set.expect("set");
         assert_eq!((set.spacing, set.seed, set.warp), (1.5, 9, 1.0));
         assert_eq!(set.attributes.len(), 3);
