@@ -40,14 +40,15 @@ pub(in crate::ops) struct Answered<'a> {
 }
 
 impl Answered<'_> {
-    /// The span of a request that ended at `end`; `None` if its trace is not kept.
-    pub(super) fn span(&self, end: SystemTime) -> Option<SpanData> {
+    /// The span of a request that ended just now; `None` if its trace is not kept.
+    pub(super) fn span(&self) -> Option<SpanData> {
         if !self.trace.is_sampled {
             return None;
         }
         let trace_id = TraceId::from_hex(&self.trace.trace).ok()?;
         let of_span = |text: &str| SpanId::from_hex(text).ok();
         let parent = self.trace.parent.as_deref().and_then(of_span);
+        let end = SystemTime::now();
         let total = Duration::try_from_secs_f64(self.total).unwrap_or_default();
         Some(SpanData {
             span_context: SpanContext::new(

@@ -7,11 +7,7 @@
 
 mod answered;
 
-use std::{
-    path::PathBuf,
-    sync::Arc,
-    time::{Duration, SystemTime},
-};
+use std::{path::PathBuf, sync::Arc, time::Duration};
 
 use opentelemetry::KeyValue;
 use opentelemetry_otlp::{
@@ -211,7 +207,7 @@ impl Spans {
 
     /// Has a request sent as a span, if its trace is one that is kept.
     pub(super) fn take(&self, answered: &Answered<'_>) {
-        let Some(span) = answered.span(SystemTime::now()) else {
+        let Some(span) = answered.span() else {
             return;
         };
         if self.sender.try_send(span).is_err() {
