@@ -1,6 +1,6 @@
 //! The tables that are loaded: the built-in ones and those of a folder.
 //!
-//! Every table is read and checked once, at the start or when the folder is read again ([`reload`]), so
+//! Every table is read and checked once, at the start or when the folder is read again (`reload`), so
 //! that a damaged file is an error then and not during a query. What stays is the file's bytes, a few
 //! kilobytes each, and what is to be said about it; a ready sampler is made from the bytes when a
 //! query needs one.

@@ -2,7 +2,7 @@
 //!
 //! The reader asks for a block; the iterator that makes blocks moves to a worker, makes some, and
 //! moves back. A reader that takes its time has one block ready, and nothing happens until it comes
-//! back. A fast one has up to [`MOST_AHEAD`]: making goes on while blocks are sent, which is what text
+//! back. A fast one has up to `MOST_AHEAD`: making goes on while blocks are sent, which is what text
 //! needs, several blocks of which are written at once, and workers are woken for every other block at
 //! most. So a stream holds the same few blocks whatever its length, a slow reader blocks no thread,
 //! and a reader that goes away leaves at most one block to be finished and thrown away.
