@@ -273,6 +273,9 @@ pub fn command(world: &World, dice: &mut Dice, body: &Value) -> Done {
 pub fn spoiled(world: &World, at: SocketAddr, dice: &mut Dice, body: &Value) -> Done {
     let mut text = body.to_string().into_bytes();
     for _ in 0..=dice.below(3) {
+        if text.is_empty() {
+            break;
+        }
         let place = dice.below(text.len() as u64) as usize;
         match dice.below(3) {
             0 => text[place] = b" \"{}[]:,-+.eE09atx\\\xff\0"[dice.below(20) as usize],
