@@ -40,3 +40,8 @@ helm.sh/chart: {{ printf "%s-%s" .Chart.Name .Chart.Version }}
 {{- end }}
 {{- end }}
 {{- end -}}
+
+{{/* How the common port is spoken to. */}}
+{{- define "strew.scheme" -}}
+{{- if .Values.tls.secret }}https{{ else }}http{{ end }}
+{{- end }}
