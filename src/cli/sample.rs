@@ -5,10 +5,7 @@ use std::path::PathBuf;
 use anyhow::anyhow;
 use bytemuck::cast_slice;
 use rayon::prelude::*;
-use strew_core::{
-    Plan,
-    sample::{F32, F64, Tile},
-};
+use strew_core::{F32, F64, Plan, Tile};
 
 use super::{
     Failure,

@@ -7,10 +7,7 @@ use prost::{
     Message as _,
     encoding::{WireType, encode_key, encode_varint},
 };
-use strew_core::{
-    ALGORITHM_VERSION,
-    sample::{Cursor, F32, F64},
-};
+use strew_core::{ALGORITHM_VERSION, Cursor, F32, F64};
 
 use super::{
     frames,

@@ -1,6 +1,6 @@
 //! Queries as answers echo them.
 
-use strew_core::sample::Attribute;
+use strew_core::Attribute;
 
 use super::proto::{
     self, BoundingBox, Encoding, Region, ResolvedQuery, ScaleRange, StreamPointsRequest, Variant,
@@ -50,7 +50,7 @@ pub(super) fn query(
 
 /// The set that single points are of.
 pub(super) fn placed(placed: &Placed) -> proto::ResolvedSet {
-    let entry = &placed.ready.entry;
+    let entry = &placed.set.entry;
     set(placed.resolved.clone(), &placed.set, entry, None, &[])
 }
 

@@ -158,7 +158,7 @@ fn finished(
     placed: &Placed,
     document: &impl Serialize,
 ) -> Result<Response, Error> {
-    let made_of = (&placed.resolved, &placed.ready.entry.digest);
+    let made_of = (&placed.resolved, &placed.set.entry.digest);
     let freshness = Freshness::of(uri, headers, document::JSON, &made_of)
         .pinned(parameters.get("table").is_some());
     let unchanged = freshness.unchanged(headers);

@@ -1,9 +1,6 @@
 //! The attributes of points as columns of an answer.
 
-use strew_core::{
-    Point,
-    sample::{Attribute, Attributes, BoundAttributes, Column},
-};
+use strew_core::{Attribute, Attributes, BoundAttributes, Column, Point};
 
 use super::encode::{self, Values};
 

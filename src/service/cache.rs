@@ -10,7 +10,7 @@ use std::sync::{
 };
 
 use moka::future::Cache;
-use strew_core::{Sampler, sample::LeastDistance};
+use strew_core::Table;
 
 use super::{Entry, Error, Workers};
 
@@ -36,12 +36,10 @@ pub struct CacheState {
 /// A table ready to answer.
 #[derive(Clone, Debug)]
 pub struct Ready {
-    /// The table.
+    /// What is known of the table.
     pub entry: Arc<Entry>,
-    /// Its sampler.
-    pub sampler: Arc<Sampler>,
-    /// What distance its points keep.
-    pub least: LeastDistance,
+    /// The table; its least distance has been computed.
+    pub table: Table,
 }
 
 impl Ready {
@@ -50,11 +48,11 @@ impl Ready {
     /// # Errors
     /// [`Error::Internal`] if it cannot be read any more.
     pub fn load(entry: &Arc<Entry>) -> Result<Self, Error> {
-        let sampler = Arc::new(entry.sampler()?);
+        let table = entry.table()?;
+        let _ = table.least_distance();
         Ok(Self {
             entry: entry.clone(),
-            least: sampler.least_distance(),
-            sampler,
+            table,
         })
     }
 }
@@ -71,7 +69,7 @@ impl Samplers {
     /// An empty cache that holds at most this many bytes.
     pub(super) fn new(bytes: u64) -> Self {
         let weight = |_: &String, ready: &Ready| {
-            u32::try_from(ready.sampler.memory_bytes()).unwrap_or(u32::MAX)
+            u32::try_from(ready.table.memory_bytes()).unwrap_or(u32::MAX)
         };
         let ready = Cache::builder()
             .name("samplers")
@@ -144,11 +142,11 @@ mod tests {
         let samplers = Samplers::new(1 << 20);
         let asked = (0..50).map(|_| samplers.get(&entry, &workers));
         let got = futures_util::future::join_all(asked).await;
-        let first = got[0].as_ref().expect("built");
-        assert!(
-            got.iter()
-                .all(|s| Arc::ptr_eq(&s.as_ref().expect("built").sampler, &first.sampler))
-        );
+        let vectors = |ready: &Result<Ready, Error>| {
+            let ready = ready.as_ref().expect("built");
+            ready.table.displacements().as_ptr()
+        };
+        assert!(got.iter().all(|ready| vectors(ready) == vectors(&got[0])));
     }
 
     #[tokio::test]

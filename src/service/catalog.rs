@@ -17,9 +17,9 @@ use std::{
 
 use bytes::Bytes;
 use strew_core::{
-    Alpha, Sampler, Table,
+    Alpha, Table,
     map::Size,
-    table::{MAX_FILE_BYTES, Provenance, TableError},
+    table::{BLUE, MAX_FILE_BYTES, Provenance},
 };
 
 use strew_forge::Aim;
@@ -27,8 +27,11 @@ use strew_forge::Aim;
 use super::Error;
 pub use reload::{Refusal, Reload};
 
-/// The tables that are built into the program: (file name, content).
+/// The tables that are built into the program beside the library's: (file name, content).
 static EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));
+
+/// The table that is built into the library.
+const DEFAULT: (&str, &[u8]) = ("blue-5-sqrt3-over-2-s.strew", BLUE);
 
 /// What a table is found by. Keys are in the order of their names, then of their numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -111,7 +114,7 @@ impl Entry {
     fn read(bytes: Bytes, source: Source) -> Result<Self, CatalogError> {
         let table = Table::from_bytes(&bytes).map_err(|error| CatalogError::Table {
             source_name: source.clone(),
-            error: Box::new(error),
+            error,
         })?;
         Ok(Self {
             key: Key {
@@ -143,10 +146,7 @@ impl Entry {
         };
         match read() {
             Ok(Ok(bytes)) => Self::read(bytes.into(), source),
-            Ok(Err(bytes)) => Err(CatalogError::Table {
-                source_name: source,
-                error: Box::new(TableError::TooLarge { bytes }),
-            }),
+            Ok(Err(bytes)) => Err(CatalogError::TooLarge { path, bytes }),
             Err(error) => Err(CatalogError::File { path, error }),
         }
     }
@@ -187,14 +187,6 @@ impl Entry {
             .find(|(known, _)| known == name)
             .map(|(_, value)| *value)
     }
-
-    /// A sampler of the table. Takes about a millisecond.
-    ///
-    /// # Errors
-    /// As [`table`](Self::table).
-    pub fn sampler(&self) -> Result<Sampler, Error> {
-        Ok(Sampler::new(self.table()?))
-    }
 }
 
 /// Why the tables cannot be loaded.
@@ -223,7 +215,15 @@ pub enum CatalogError {
         /// Where it is.
         source_name: Source,
         /// What is wrong where.
-        error: Box<TableError>,
+        error: strew_core::Error,
+    },
+    /// A file is larger than any table; it was not read.
+    #[error("the table {} has {bytes} bytes; at most {MAX_FILE_BYTES} are allowed", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its size.
+        bytes: u64,
     },
     /// Two tables of one place answer the same queries.
     #[error("the tables {first} and {second} are both for {key}: keep one")]
@@ -254,7 +254,7 @@ impl Catalog {
     pub fn load(embedded: bool, folder: Option<&Path>) -> Result<Self, CatalogError> {
         let mut catalog = Self::default();
         if embedded {
-            catalog.add(EMBEDDED.iter().map(|&(name, bytes)| {
+            catalog.add([DEFAULT].iter().chain(EMBEDDED).map(|&(name, bytes)| {
                 Entry::read(Bytes::from_static(bytes), Source::Embedded(name))
             }))?;
             catalog.built_in.clone_from(&catalog.entries);

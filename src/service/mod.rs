@@ -27,7 +27,7 @@ use arc_swap::ArcSwap;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
 use serde::{Deserialize, Serialize};
-use strew_core::sample::Stop;
+use strew_core::server::Stop;
 use tokio::sync::Mutex;
 
 pub use budget::{Budget, Held};

@@ -3,8 +3,8 @@
 use std::sync::{Arc, OnceLock};
 
 use strew_core::{
-    Placement, Plan, Spacing,
-    sample::{Cursor, Stop},
+    Cursor, Plan, PointSet, Spacing,
+    server::{self, Stop},
 };
 
 use super::{
@@ -50,7 +50,7 @@ pub struct PlannedSet {
 }
 
 impl PlannedSet {
-    pub(super) const fn new(
+    pub(super) fn new(
         entry: Arc<Entry>,
         density: f64,
         least_distance: f64,
@@ -72,10 +72,8 @@ impl PlannedSet {
 pub struct Placed {
     /// The set.
     pub set: Set,
-    /// The table.
-    pub ready: Ready,
-    /// Where its points are.
-    pub placement: Placement,
+    /// Its points.
+    pub points: PointSet,
     /// As answers echo it.
     pub resolved: ResolvedSet,
 }
@@ -92,9 +90,8 @@ impl Placed {
         let least = planner::least_distance(&set, &ready, spacing);
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least),
-            placement: set.placement(spacing),
+            points: PointSet::new(ready.table).placed(set.placement(spacing)),
             set,
-            ready,
         })
     }
 }
@@ -258,7 +255,7 @@ impl Planned {
     #[must_use]
     pub fn stopped_by(mut self, stop: &Stop) -> Self {
         for set in &mut self.sets {
-            set.plan = set.plan.clone().stopped_by(stop.clone());
+            set.plan = server::stopped_by(set.plan.clone(), stop.clone());
         }
         self
     }
@@ -283,7 +280,7 @@ impl Planned {
             let plan = planned.plan.clone();
             let has_attributes = !set.attributes.as_slice().is_empty();
             let attributes = has_attributes.then(|| {
-                let bound = set.attributes.bind(plan.sampler(), plan.placement());
+                let bound = plan.attributes(&set.attributes);
                 Arc::new(PointAttributes::new(&set.attributes, bound)) as Arc<dyn Attributes>
             });
             Part {

@@ -1,16 +1,14 @@
 //! Planning the sets of a query one after another, each knowing the layers before it.
 
-use std::sync::Arc;
-
 use strew_core::{
-    Plan, PointId, Region, Spacing,
-    sample::{ClearOf, CountError, Cursor, DistanceError, Layer, Selection, Stop},
+    Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Region, Spacing,
+    server::{self, Stop},
 };
 
 use super::{
     Error, Limits, PlannedSet,
     cache::Ready,
-    effort,
+    effort::{self, Selection},
     query::{self, Amount, Query, Set, Token},
 };
 
@@ -19,7 +17,7 @@ pub(super) struct Planner<'a> {
     query: &'a Query,
     limits: &'a Limits,
     stop: &'a Stop,
-    layers: Vec<Arc<Layer>>,
+    layers: Vec<PointSet>,
 }
 
 /// About how often an area is counted to find the spacing of a count.
@@ -42,25 +40,25 @@ impl<'a> Planner<'a> {
     /// again without counting.
     pub(super) fn plan(&mut self, i: usize, set: &Set, ready: &Ready) -> Result<PlannedSet, Error> {
         let region = &self.query.region;
-        let clear = self.clear_of(set)?;
         let resolved = resolve(set, ready)?;
         let cursor = self.query.window.cursor;
         let here = cursor.filter(|token| i == usize::from(token.set));
         let is_over = cursor.is_some_and(|token| i < usize::from(token.set));
         let known = resolved.map(|(spacing, _)| spacing);
         let known = known.or_else(|| here?.spacing);
-        let unit = Spacing::new(1.0).map_err(|_| Error::Internal("one is not a spacing"))?;
+        let placement = set.placement(known.unwrap_or(Spacing::ONE));
+        let points = PointSet::new(ready.table.clone()).placed(placement);
         let mut selection = Selection {
-            placement: set.placement(known.unwrap_or(unit)),
+            set: self.keeping_clear(set, points)?,
             area: set.area(region),
-            clear: clear.into(),
-            stop: self.stop.clone(),
+            keeps_clear: !set.clear_of.is_empty(),
         };
         let plan = match (known, here) {
             (Some(spacing), _) if is_over || here.is_some() => {
                 let cursor = here.map_or_else(nothing, |token| token.cursor);
-                let plan = ready.sampler.resume(selection.clone(), cursor);
+                let plan = selection.set.resume(selection.area.clone(), cursor);
                 let plan = plan.map_err(|error| region.too_far(spacing, &error))?;
+                let plan = server::stopped_by(plan, self.stop.clone());
                 match set.amount {
                     // The spacing may give a few points more.
                     Amount::Count(count) => {
@@ -71,24 +69,22 @@ impl<'a> Planner<'a> {
                 }
             }
             (Some(spacing), _) => {
-                self.check_rows(ready, &selection, 1.0)?;
-                let plan = ready.sampler.select(selection.clone());
+                self.check_rows(&selection, 1.0)?;
+                let plan = server::within(&selection.set, selection.area.clone(), self.stop);
                 plan.map_err(|error| region.too_far(spacing, &error))?
             }
             (None, here) => {
-                let plan = self.count(set, ready, &mut selection)?;
+                let plan = self.count(set, &mut selection)?;
                 let start = here.map_or(0, |token: Token| token.cursor.offset);
                 plan.window(start, is_over.then_some(0))
             }
         };
         let spacing = plan.placement().spacing;
-        selection.placement.spacing = spacing;
-        self.layers.push(Arc::new(Layer {
-            sampler: ready.sampler.clone(),
-            placement: selection.placement,
-            area: set.region.as_ref().map(|own| own.area.clone()),
-            clear: selection.clear,
-        }));
+        let layer = selection.set.placed(plan.placement());
+        self.layers.push(match &set.region {
+            Some(own) => layer.limited_to(own.area.clone()),
+            None => layer,
+        });
         Ok(PlannedSet::new(
             ready.entry.clone(),
             resolved.map_or(spacing.density(), |(_, density)| density),
@@ -97,26 +93,27 @@ impl<'a> Planner<'a> {
         ))
     }
 
-    /// The layers that a set keeps clear of, with the distances.
-    fn clear_of(&self, set: &Set) -> Result<Vec<ClearOf>, Error> {
-        let clear = set.clear_of.iter().map(|&(place, distance)| {
-            let layer = self.layers.get(place).cloned();
-            let layer = layer.ok_or(Error::Internal("a layer is not planned yet"))?;
-            ClearOf::new(layer, distance).map_err(|error| {
-                let allowed = format!("above 0, at most {:e}", error.limit);
-                set.fault(
-                    "clear_of",
-                    distance,
-                    "the distance is out of range",
-                    allowed,
-                )
+    /// The points of a set that keep clear of the layers it names.
+    fn keeping_clear(&self, set: &Set, points: PointSet) -> Result<PointSet, Error> {
+        set.clear_of
+            .iter()
+            .try_fold(points, |points, &(place, distance)| {
+                let layer = self.layers.get(place);
+                let layer = layer.ok_or(Error::Internal("a layer is not planned yet"))?;
+                points.clear_of(layer, distance).map_err(|error| {
+                    let allowed = error.allowed().to_owned();
+                    set.fault(
+                        "clear_of",
+                        distance,
+                        "the distance is out of range",
+                        allowed,
+                    )
+                })
             })
-        });
-        clear.collect()
     }
 
     /// The plan with exactly as many points as are asked for.
-    fn count(&self, set: &Set, ready: &Ready, selection: &mut Selection) -> Result<Plan, Error> {
+    fn count(&self, set: &Set, selection: &mut Selection) -> Result<Plan, Error> {
         let Amount::Count(count) = set.amount else {
             return Err(Error::Internal("an amount is not resolved"));
         };
@@ -130,24 +127,29 @@ impl<'a> Planner<'a> {
         let side = (max_x - min_x).sqrt() * (max_y - min_y).sqrt();
         let guess = side * (set.keep.get() / count as f64).sqrt();
         if let Ok(spacing) = Spacing::new(guess) {
-            selection.placement.spacing = spacing;
-            self.check_rows(ready, selection, COUNTS)?;
+            let placement = selection.set.placement();
+            let trial = Placement { spacing, ..placement };
+            selection.set = selection.set.clone().placed(trial);
+            self.check_rows(selection, COUNTS)?;
         }
         let least = effort::least_spacing(selection, self.limits.max_rows as f64 / COUNTS);
-        let sampler = &ready.sampler;
-        let plan = sampler.select_count_from(selection, count.into(), least);
-        plan.map_err(|error| match error {
-            CountError::Plan(error) => self
-                .query
-                .region
-                .too_far(selection.placement.spacing, &error),
-            other => set.fault("count", count, other.to_string(), query::AMOUNT),
+        let Selection { set: points, area, .. } = &*selection;
+        let plan = server::exactly(points, count.into(), area, least, self.stop);
+        plan.map_err(|error| match error.kind() {
+            ErrorKind::Count | ErrorKind::TooDense => {
+                let detail = format!("{}; {}", error.problem(), error.allowed());
+                set.fault("count", count, detail, query::AMOUNT)
+            }
+            _ => {
+                let spacing = points.placement().spacing;
+                self.query.region.too_far(spacing, &error)
+            }
         })
     }
 
     /// Where points have to be counted row by row, there must not be too many, in so many counts.
-    fn check_rows(&self, ready: &Ready, selection: &Selection, counts: f64) -> Result<(), Error> {
-        let limit = ready.sampler.limit(selection.placement);
+    fn check_rows(&self, selection: &Selection, counts: f64) -> Result<(), Error> {
+        let limit = selection.set.limit();
         let is_near = |bounds: Region| {
             let mut corners = bounds.min().into_iter().chain(bounds.max());
             corners.all(|value| value.abs() <= limit)
@@ -185,7 +187,7 @@ const fn nothing() -> Cursor {
 pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>, Error> {
     let fault = |field, value: f64, detail: String| set.fault(field, value, detail, query::AMOUNT);
     let wrong = |field, value: f64| {
-        move |error: strew_core::sample::SpacingError| fault(field, value, error.to_string())
+        move |error: strew_core::Error| fault(field, value, error.to_string())
     };
     match set.amount {
         Amount::Density(density) => {
@@ -197,18 +199,16 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>
             Ok(Some((spacing, spacing.density())))
         }
         Amount::MinDistance(distance) => {
-            let spacing = ready
-                .least
-                .spacing_for(distance, set.warp)
-                .map_err(|error| {
-                    let detail = match error {
-                        DistanceError::NoPromise { .. } => {
-                            format!("profile `{}`: {error}", set.entry.key.profile)
-                        }
-                        other => other.to_string(),
-                    };
-                    fault("min_distance", distance, detail)
-                })?;
+            let least = ready.table.least_distance();
+            let spacing = least.spacing_for(distance, set.warp).map_err(|error| {
+                let detail = match error.kind() {
+                    ErrorKind::NoLeastDistance => {
+                        format!("profile `{}`: {}", set.entry.key.profile, error.problem())
+                    }
+                    _ => error.to_string(),
+                };
+                fault("min_distance", distance, detail)
+            })?;
             Ok(Some((spacing, spacing.density())))
         }
         Amount::Count(_) => Ok(None),
@@ -216,5 +216,5 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>
 }
 
 pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing) -> f64 {
-    ready.least.with_warp(set.warp) * spacing.get()
+    ready.table.least_distance().with_warp(set.warp) * spacing.get()
 }

@@ -2,10 +2,7 @@
 
 use serde::Serialize;
 use serde_json::{Map, Value};
-use strew_core::{
-    Point, PointId,
-    sample::{Attribute, FindError, Neighbor},
-};
+use strew_core::{Attribute, ErrorKind, Member, Neighbor, PointId};
 
 use super::{
     Error, Fault, Placed,
@@ -46,10 +43,10 @@ impl Placed {
         let read = id
             .parse::<PointId>()
             .map_err(|_| Error::Invalid(vec![Fault::new("id", id, "it is not a point id", ID)]))?;
-        let point = self.ready.sampler.point(self.placement, read);
-        let point = point.ok_or_else(|| Error::NoSuchPoint { id: id.into() })?;
-        let mut found = self.found(&point, None);
-        found.block = self.ready.sampler.block(self.placement, point.id);
+        let member = self.points.point(read);
+        let member = member.ok_or_else(|| Error::NoSuchPoint { id: id.into() })?;
+        let mut found = self.found(&member, None);
+        found.block = self.points.block(member.id());
         Ok(found)
     }
 
@@ -60,11 +57,11 @@ impl Placed {
     /// [`Error::Invalid`] for a place too far out or too many points.
     pub fn nearest(&self, around: Around) -> Result<Vec<Found>, Error> {
         let Around { at, k, radius } = around;
-        let finder = self.ready.sampler.finder(self.placement);
+        let points = &self.points;
         let found = match (k, radius) {
-            (k, None) => finder.nearest(at, k.unwrap_or(1)),
-            (None, Some(radius)) => finder.within(at, radius, MOST_WITHIN),
-            (Some(k), Some(radius)) => finder.nearest(at, k).map(|mut found| {
+            (k, None) => points.nearest(at, k.unwrap_or(1)),
+            (None, Some(radius)) => points.around(at, radius, MOST_WITHIN),
+            (Some(k), Some(radius)) => points.nearest(at, k).map(|mut found| {
                 found.retain(|neighbor| neighbor.distance <= radius);
                 found
             }),
@@ -72,16 +69,14 @@ impl Placed {
         let found = found.map_err(|error| fault(around, &error))?;
         let found = found
             .iter()
-            .map(|Neighbor { point, distance }| self.found(point, Some(*distance)));
+            .map(|Neighbor { member, distance }| self.found(member, Some(*distance)));
         Ok(found.collect())
     }
 
-    fn found(&self, point: &Point, distance: Option<f64>) -> Found {
+    fn found(&self, member: &Member, distance: Option<f64>) -> Found {
+        let point = member.point();
         let list = self.set.attributes.as_slice();
-        let bound = self
-            .set
-            .attributes
-            .bind(&self.ready.sampler, self.placement);
+        let bound = self.points.attributes(&self.set.attributes);
         let value = |(i, attribute): (usize, &Attribute)| {
             let number = bound.value(i, point.id).unwrap_or_default();
             let value = match attribute {
@@ -101,19 +96,21 @@ impl Placed {
     }
 }
 
-fn fault(Around { at, k, radius }: Around, error: &FindError) -> Error {
-    let (field, value, allowed): (_, _, String) = match error {
-        FindError::Radius(value) => (
+fn fault(Around { at, k, radius }: Around, error: &strew_core::Error) -> Error {
+    let (field, value, allowed): (_, _, String) = match error.kind() {
+        ErrorKind::Radius => (
             "radius",
-            value.to_string(),
+            error.value().to_owned(),
             "a finite number from 0 on".into(),
         ),
-        FindError::TooManyNearest(value) => {
-            ("k", value.to_string(), "an integer from 1 to 10000".into())
-        }
-        FindError::TooMany { about, .. } => match (radius, k) {
+        ErrorKind::Neighbors => (
+            "k",
+            error.value().to_owned(),
+            "an integer from 1 to 10000".into(),
+        ),
+        ErrorKind::TooMany => match (radius, k) {
             (Some(radius), None) => {
-                let detail = format!("about {about:.0} points lie within");
+                let detail = error.problem();
                 let allowed = format!("a radius with at most {MOST_WITHIN} points within");
                 let fault = Fault::new("radius", number(radius), detail, allowed);
                 return Error::Invalid(vec![fault]);

@@ -5,7 +5,7 @@
 
 use std::{fmt, sync::Arc};
 
-use strew_core::sample::Stop;
+use strew_core::server::Stop;
 
 use super::Error;
 

@@ -1,50 +1,70 @@
-//! Strew's core: AA patterns, neighborhood maps, displacement tables and the region sampler.
+//! Strew's core: unbounded, blue-noise point sets with random access, from tiny tables.
+//!
+//! A [`PointSet`] answers questions about an unbounded set of evenly spread points: which lie in this
+//! chunk, how many in that polygon, which are nearest, where is the one with this id. Nothing is stored.
+//! The same question has the same answer in every order, on every machine, with the same bits.
+//!
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
+//! use strew_core::PointSet;
+//! # fn spawn(_: strew_core::PointId, _: [f64; 2], _: f64, _: f64) {}
+//!
+//! let trees = PointSet::blue().spacing(4.0)?.seed(7);
+//! for p in trees.chunk(64.0, [3, -2])? {
+//!     spawn(p.id(), p.at(), p.angle(), p.scale(0.8..=1.2));
+//! }
+//! let near = trees.nearest([10.0, 3.0], 5)?;
+//! # let id = near[0].member.id();
+//! let same = trees.point(id);
+//! # assert_eq!(same, Some(near[0].member));
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! [`cookbook`] has recipes for common tasks, [`comparison`] says how this differs from Poisson-disk
+//! libraries, Wang tiles and jittered grids.
+//!
+//! # How it works
 //!
 //! An *AA pattern* (Ahmed, Huang, Deussen, "AA Patterns for Point Sets with Controlled Spectral
-//! Properties", SIGGRAPH Asia 2015) is an unbounded, structured subset of the integer grid with
-//! full random access. A *displacement table* of a few kilobytes turns it into a point set of a
-//! chosen noise profile. This crate answers "which points lie in this box" exactly, in any order,
-//! on any machine, with the same bits.
+//! Properties", SIGGRAPH Asia 2015) is an unbounded, structured subset of the integer grid with random
+//! access. A *displacement table* of some tens of kilobytes moves its points and so gives the set a noise
+//! profile. The modules build on each other: [`pattern`] → [`map`] → [`table`] → the point set.
 //!
-//! The floors, each built on the one before: [`pattern`] → [`map`] → [`table`] → [`sample`].
+//! # Features
 //!
-//! The crate knows no wire, no async runtime, no file system and no JSON. It builds without the
-//! standard library (`default-features = false`), so engines and browsers can embed it.
+//! - `std` (default): vector instructions of x86-64 are found at run time, and some results are kept.
+//!   Without it the crate needs `alloc` only; all results have the same bits.
+//! - `tables` (default): [`PointSet::blue`] and its table of 34 kB. Others are read from files by
+//!   [`Table::from_bytes`].
 //!
-//! ```
-//! use std::sync::Arc;
-//! use strew_core::{Alpha, Placement, Region, Sampler, Seed, Spacing, Table};
-//!
-//! // A table without displacements: the AA pattern itself.
-//! let table = Table::undisplaced("sqrt(3)".parse::<Alpha>()?, 20, "pattern")?;
-//! let sampler = Arc::new(Sampler::new(table));
-//! let region = Region::new([-50.0, -50.0], [50.0, 50.0])?;
-//! let plan = sampler.plan(Placement::new(Spacing::new(1.0)?, Seed::default()), region)?;
-//! let mut points = vec![[0.0f64; 2]; usize::try_from(plan.count())?];
-//! let filled = plan.blocks_f64().fill(&mut points);
-//! assert_eq!(filled as u128, plan.count());
-//! assert!(points.iter().all(|p| (-50.0..50.0).contains(&p[0])));
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! The crate knows no network, no async runtime, no file system and no serialization framework.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
+pub mod comparison;
+pub mod cookbook;
+mod error;
 pub mod map;
+mod once;
 pub mod pattern;
-pub mod sample;
+mod sample;
+pub mod server;
 pub mod table;
 
+pub use error::{Error, ErrorKind};
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
 pub use sample::{
-    Area, Attribute, Attributes, Circle, Finder, Placement, Plan, Point, PointId, Polygon, Region,
-    Sampler, Seed, Spacing, Warp,
+    Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column, Cursor,
+    F32, F64, Format, Keep, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor, Placement, Plan,
+    Point, PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed, Spacing, Tile, UniformNumber,
+    Variants, Warp, rank, side_for,
 };
 pub use table::Table;
 
-/// The version of the algorithm that turns a table, a density, a seed and a lattice address into
-/// a point, and that orders the points of a region. Any change of any output raises it.
+/// The version of the algorithm that turns a table, a density, a seed and a lattice address into a point,
+/// and that orders the points of a region. Any change of any output raises it.
 pub const ALGORITHM_VERSION: u32 = 1;

@@ -1,30 +1,20 @@
 //! Attributes: ranges, uniformity, independence, and the same value in every query.
 
-use std::sync::Arc;
-
 use proptest::prelude::*;
 use strew_core::{
-    Placement, Point, PointId, Region, Sampler, Seed, Spacing, Table, Warp,
-    sample::{Attribute, AttributeError, Attributes, Column, Variants, side_for},
+    Attribute, Attributes, Column, ErrorKind, Point, PointId, PointSet, Region, Seed, Table, Variants,
+    side_for,
 };
 
-fn sampler() -> Arc<Sampler> {
+fn set(seed: u64) -> PointSet {
     let alpha = "(5-sqrt(3))/2".parse().expect("valid");
-    Arc::new(Sampler::new(
-        Table::undisplaced(alpha, 20, "pattern").expect("valid"),
-    ))
-}
-
-fn placement(seed: u64) -> Placement {
-    Placement::new(Spacing::new(1.0).expect("valid"), Seed(seed))
+    let table = Table::undisplaced(alpha, 20, "pattern").expect("valid");
+    PointSet::new(table).seed(seed)
 }
 
 fn points(seed: u64, min: [f64; 2], max: [f64; 2]) -> Vec<Point> {
     let region = Region::new(min, max).expect("ordered");
-    let plan = sampler().plan(placement(seed), region).expect("near");
-    let mut points = vec![Point::default(); plan.count() as usize];
-    plan.blocks_points().fill(&mut points);
-    points
+    set(seed).within(region).expect("near").to_vec()
 }
 
 fn list(names: &[&str]) -> Attributes {
@@ -33,7 +23,7 @@ fn list(names: &[&str]) -> Attributes {
 }
 
 fn numbers(attributes: &Attributes, seed: u64, points: &[Point]) -> Vec<Vec<f64>> {
-    let bound = attributes.bind(&sampler(), placement(seed));
+    let bound = set(seed).attributes(attributes);
     let columns = bound.columns(points.iter().map(|p| p.id));
     columns
         .into_iter()
@@ -73,7 +63,7 @@ fn hashed_numbers_are_uniform_and_independent() {
         values[3]
             .iter_mut()
             .for_each(|v| *v /= std::f64::consts::TAU);
-        // Beside them: another seed, and the same numbers of the next points in the row.
+        // And another seed, and the numbers of the next points in the row.
         let other = numbers(&list(&["u1"]), 2, points);
         let mut next = values[0].clone();
         next.rotate_left(1);
@@ -88,7 +78,7 @@ fn hashed_numbers_are_uniform_and_independent() {
             for b in &values[..i] {
                 let limit = 4.5 / (a.len() as f64).sqrt();
                 assert!(correlation(a, b).abs() < limit, "{i}");
-                // Not only uncorrelated: pairs fill the square evenly. Ranks are more even.
+                // Pairs also fill the square evenly. Ranks are more even.
                 let pairs = a
                     .iter()
                     .zip(b)
@@ -102,8 +92,8 @@ fn hashed_numbers_are_uniform_and_independent() {
 
 #[test]
 fn neighbors_along_both_axes_are_independent() {
-    // Plain ids in a square, whether points or not.
-    let bound = list(&["u3"]).bind(&sampler(), placement(0));
+    // All ids in a square, whether points or not.
+    let bound = set(0).attributes(&list(&["u3"]));
     let value = |x: i64, y: i64| bound.value(0, PointId { x, y }).expect("there");
     let grid = |dx: i64, dy: i64| -> Vec<f64> {
         (0..200 * 200)
@@ -126,7 +116,8 @@ fn variants_come_by_weight_and_scales_in_their_range() {
         Attribute::scale(0.5, 2.0).expect("valid"),
         Attribute::scale(0.5, 2.0).expect("valid"),
     ]);
-    assert_eq!(attributes, Err(AttributeError::Repeated("scale")));
+    let error = attributes.expect_err("twice");
+    assert_eq!((error.kind(), error.value()), (ErrorKind::Attribute, "scale"));
     let attributes = Attributes::new(vec![
         Attribute::Variant("oak:3,birch:1,rare:0.001".parse().expect("valid")),
         Attribute::scale(0.5, 2.0).expect("valid"),
@@ -159,13 +150,13 @@ fn names_are_checked() {
         assert_eq!(attribute.name(), name);
     }
     for (name, part) in [
-        ("", "no attribute \"\""),
-        ("u0", "no attribute"),
+        ("", "attribute is \"\""),
+        ("u0", "attribute is"),
         ("u17", "u1 to u16"),
-        ("u01", "no attribute"),
-        ("Angle", "no attribute"),
-        ("scale", "needs a range"),
-        ("variant", "needs a list"),
+        ("u01", "attribute is"),
+        ("Angle", "attribute is"),
+        ("scale", "with a range"),
+        ("variant", "with a list"),
     ] {
         let error = name.parse::<Attribute>().expect_err(name).to_string();
         assert!(error.contains(part), "{error}");
@@ -185,7 +176,7 @@ fn names_are_checked() {
 fn ranks_are_fractions_of_the_pattern_and_nest() {
     let points = points(5, [-150.0, -150.0], [150.0, 150.0]);
     let ranks = &numbers(&list(&["rank"]), 5, &points)[0];
-    let alpha = sampler().table().alpha();
+    let alpha = set(5).table().alpha();
     let pattern = strew_core::Pattern::with_origin(alpha, Seed(5).origin());
     for keep in [0.01, 0.1, 0.25, 0.5, 0.9, 1.0] {
         let kept = ranks.iter().filter(|&&r| r < keep).count() as f64 / points.len() as f64;
@@ -206,10 +197,9 @@ proptest! {
     ) {
         let attributes = list(&["angle", "u7", "rank"]);
         let id = PointId { x, y };
-        let warp = Warp::new(strength).expect("in range");
-        let other = Placement::new(Spacing::new(spacing).expect("valid"), Seed(seed)).with_warp(warp);
-        let a = attributes.bind(&sampler(), placement(seed));
-        let b = attributes.bind(&sampler(), other);
+        let other = set(seed).spacing(spacing).expect("valid").warp(strength).expect("in range");
+        let a = set(seed).attributes(&attributes);
+        let b = other.attributes(&attributes);
         let mut columns = vec![Column::Variants(vec![3]); 5];
         b.write([PointId { x: 1, y: 2 }, id].into_iter(), &mut columns);
         prop_assert_eq!(columns.len(), 3);
@@ -217,6 +207,28 @@ proptest! {
             let Column::Numbers(values) = column else { panic!("numbers") };
             prop_assert_eq!(a.value(i, id), Some(values[1]));
         }
+    }
+}
+
+#[test]
+fn members_have_the_values_of_columns() {
+    let kinds: Variants = "oak:3,birch:1,rare:0.5".parse().expect("valid");
+    let attributes = Attributes::new(vec![
+        Attribute::Angle,
+        Attribute::scale(0.8, 1.2).expect("valid"),
+        Attribute::Variant(kinds.clone()),
+        Attribute::uniform(7).expect("valid"),
+        Attribute::Rank,
+    ]);
+    let set = set(77);
+    let bound = set.attributes(&attributes.expect("different"));
+    for member in set.chunk(20.0, [-4, 2]).expect("near") {
+        let value = |i| bound.value(i, member.id()).expect("there");
+        assert_eq!(member.angle(), value(0));
+        assert_eq!(member.scale(0.8..=1.2), value(1));
+        assert_eq!(Some(member.variant(&kinds)), kinds.name(value(2) as u32));
+        assert_eq!(member.uniform(7), value(3));
+        assert_eq!(set.rank(member.id()), value(4));
     }
 }
 
@@ -232,7 +244,7 @@ fn values_are_pinned() {
         Attribute::uniform(16).expect("valid"),
     ])
     .expect("different");
-    let bound = attributes.bind(&sampler(), placement(42));
+    let bound = set(42).attributes(&attributes);
     let values = |x, y| -> Vec<f64> {
         (0..6)
             .filter_map(|i| bound.value(i, PointId { x, y }))

@@ -2,12 +2,9 @@
 //!
 //! A change here is a change of the algorithm: raise `ALGORITHM_VERSION` with it.
 
-use std::sync::Arc;
-
 use strew_core::{
-    ALGORITHM_VERSION, Alpha, Map, Placement, Plan, PointId, Region, Sampler, Seed, Spacing, Table,
-    Warp,
-    sample::{F32, F64, Format, Points},
+    ALGORITHM_VERSION, Alpha, F32, F64, Format, Map, Placement, Plan, PointId, PointSet, Points, Region,
+    Seed, Spacing, Table, Warp,
     table::{Digest, Provenance},
 };
 
@@ -24,6 +21,11 @@ fn table(alpha: &str) -> Table {
     };
     let vectors = (0..blocks).map(|_| [next(), next()]).collect();
     Table::new(map, "golden", vectors, Provenance::default()).expect("valid")
+}
+
+fn unwarped(alpha: &str, spacing: f64, seed: u64) -> PointSet {
+    let spacing = Spacing::new(spacing).expect("valid");
+    PointSet::new(table(alpha)).placed(Placement::new(spacing, Seed(seed)).with_warp(Warp::OFF))
 }
 
 fn items<F: Format>(plan: &Plan) -> Vec<F::Item> {
@@ -105,15 +107,9 @@ fn answers_have_these_bits() {
     let found: Vec<_> = cases
         .iter()
         .map(|&(alpha, spacing, seed, (min, max), ..)| {
-            let sampler = Arc::new(Sampler::new(table(alpha)));
             let region = Region::new(min, max).expect("ordered");
-            let spacing = Spacing::new(spacing).expect("valid");
-            let plan = sampler
-                .plan(
-                    Placement::new(spacing, Seed(seed)).with_warp(Warp::OFF),
-                    region,
-                )
-                .expect("in range");
+            let plan = unwarped(alpha, spacing, seed).within(region);
+            let plan = plan.expect("in range");
             (plan.count(), digest(&plan))
         })
         .collect();
@@ -126,15 +122,10 @@ fn answers_have_these_bits() {
 
 #[test]
 fn single_points_have_these_bits() {
-    let sampler = Arc::new(Sampler::new(table("(5-sqrt(3))/2")));
-    let spacing = Spacing::new(1.0).expect("valid");
     let point = |seed, x, y| {
-        sampler
-            .point(
-                Placement::new(spacing, Seed(seed)).with_warp(Warp::OFF),
-                PointId { x, y },
-            )
-            .map(|p| (p.x.to_bits(), p.y.to_bits()))
+        let set = unwarped("(5-sqrt(3))/2", 1.0, seed);
+        let member = set.point(PointId { x, y })?;
+        Some((member.at()[0].to_bits(), member.at()[1].to_bits()))
     };
     assert_eq!(
         point(0, 0, 0),
@@ -142,7 +133,7 @@ fn single_points_have_these_bits() {
     );
     assert_eq!(point(0, 3, 3), None);
     assert_eq!(
-        sampler.table().digest().to_string(),
+        table("(5-sqrt(3))/2").digest().to_string(),
         "cb67815a5524ba7df97ba2467d7c3622eac07865b88107c7762f9b42e8ba5e2e"
     );
 }

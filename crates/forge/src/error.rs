@@ -2,7 +2,7 @@
 
 use std::{io, path::PathBuf};
 
-use strew_core::table::{MAX_FILE_BYTES, TableError};
+use strew_core::table::MAX_FILE_BYTES;
 
 /// Why the forge refused or failed. Every message says what was asked, and what is allowed.
 #[derive(Debug, thiserror::Error)]
@@ -20,14 +20,14 @@ pub enum ForgeError {
     },
     /// The parts do not make a table.
     #[error(transparent)]
-    Table(#[from] TableError),
+    Table(#[from] strew_core::Error),
     /// A file is not a table.
     #[error("{}: {source}", path.display())]
     NotATable {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
-        source: TableError,
+        source: strew_core::Error,
     },
     /// A file is larger than any table; it was not read.
     #[error("{}: {bytes} bytes; a table file has at most {MAX_FILE_BYTES}", path.display())]

@@ -38,7 +38,7 @@ mod writer;
 use std::fmt;
 
 use bytes::Bytes;
-use strew_core::{Plan, sample};
+use strew_core::{F32, F64, Plan};
 
 use super::{Error, Fault, Planned};
 use head::Head;
@@ -229,9 +229,9 @@ impl Answer {
         });
         let blocks: Box<dyn Blocks> = match &plain {
             Some(Plain { plan, is_f32, .. }) if *is_f32 => {
-                Box::new(Packed::<sample::F32>::new(plan, block_bytes))
+                Box::new(Packed::<F32>::new(plan, block_bytes))
             }
-            Some(Plain { plan, .. }) => Box::new(Packed::<sample::F64>::new(plan, block_bytes)),
+            Some(Plain { plan, .. }) => Box::new(Packed::<F64>::new(plan, block_bytes)),
             None => Box::new(Records::new(rows, layout, block_bytes)),
         };
         Self {

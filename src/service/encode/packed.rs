@@ -2,10 +2,7 @@
 
 use bytemuck::Pod;
 use bytes::Bytes;
-use strew_core::{
-    Plan,
-    sample::{self, F32, F64, Format},
-};
+use strew_core::{F32, F64, Format, Plan};
 
 use super::{Blocks, EncodeError, buffer::Pool};
 
@@ -30,7 +27,7 @@ impl Scalars for F64 {
 /// The blocks of a packed answer.
 #[derive(Debug)]
 pub struct Packed<F: Scalars> {
-    blocks: sample::Blocks<F>,
+    blocks: strew_core::Blocks<F>,
     pool: Pool<F::Item>,
     /// How many items of room a buffer has before and after its points.
     room: [usize; 2],
@@ -62,7 +59,7 @@ impl<F: Scalars> Packed<F> {
     /// where the blocks stand after it. What there is room for is not copied.
     pub fn next_between(
         &mut self,
-        around: impl FnOnce(usize, &sample::Blocks<F>) -> [Vec<u8>; 2],
+        around: impl FnOnce(usize, &strew_core::Blocks<F>) -> [Vec<u8>; 2],
     ) -> Option<Bytes> {
         let mut buffer = self.pool.take();
         let end = buffer.len() - self.room[1];

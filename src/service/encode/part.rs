@@ -3,10 +3,7 @@
 
 use std::{fmt, sync::Arc};
 
-use strew_core::{
-    Plan, Point,
-    sample::{Blocks, F32, Points},
-};
+use strew_core::{Blocks, F32, Plan, Point, Points};
 
 use super::{
     rows::Coordinates,

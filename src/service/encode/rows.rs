@@ -6,7 +6,7 @@
 
 use std::{ops::Range, sync::Arc, vec};
 
-use strew_core::{Plan, Point, sample::Cursor};
+use strew_core::{Cursor, Plan, Point};
 
 use super::{
     Encoding, Output,

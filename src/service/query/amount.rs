@@ -1,7 +1,7 @@
 //! How densely points lie, in one of four ways.
 
 use serde::Serialize;
-use strew_core::{Spacing, sample::SpacingError};
+use strew_core::Spacing;
 
 use super::{AMOUNT, number};
 use crate::service::Fault;
@@ -67,14 +67,9 @@ impl AmountDraft {
             Amount::Count(0) => return Err(out_of_range(COUNT.into())),
             Amount::Count(_) => return Ok(amount),
         };
-        spacing.map(|_| amount).map_err(|error| {
-            out_of_range(match error {
-                SpacingError::Density(_) => {
-                    format!("{:e} to {:e}", Spacing::MIN_DENSITY, Spacing::MAX_DENSITY)
-                }
-                _ => format!("{:e} to {:e}", Spacing::MIN, Spacing::MAX),
-            })
-        })
+        spacing
+            .map(|_| amount)
+            .map_err(|error| out_of_range(error.allowed().to_owned()))
     }
 }
 

@@ -1,9 +1,7 @@
 //! Attributes: the values that points are to have besides their place.
 
 use serde_json::{Value, json};
-use strew_core::sample::{
-    Attribute, AttributeError, Attributes, ScaleRange, UniformNumber, Variants,
-};
+use strew_core::{Attribute, Attributes, ScaleRange, UniformNumber, Variants};
 
 use super::{number, region::listed};
 use crate::service::Fault;
@@ -69,7 +67,7 @@ impl AttributesDraft {
             "scale" => {
                 let [min, max] = self.scale_range.unwrap_or([0.0, 1.0]);
                 let scale = ScaleRange::new(min, max).map(Attribute::Scale);
-                scale.map_err(|error: AttributeError| {
+                scale.map_err(|error| {
                     let value = listed(&[min, max]);
                     Fault::new(&field("scale_range"), value, error.to_string(), SCALE_RANGE)
                 })
@@ -94,7 +92,7 @@ impl AttributesDraft {
                         )
                     })
             }
-            name => name.parse().map_err(|error: AttributeError| {
+            name => name.parse().map_err(|error: strew_core::Error| {
                 Fault::new(&field("attributes"), name, error.to_string(), ATTRIBUTES)
             }),
         }

@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use strew_core::{PointId, Spacing, sample::Cursor};
+use strew_core::{Cursor, PointId, Spacing};
 
 use crate::service::Fault;
 

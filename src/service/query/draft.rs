@@ -1,6 +1,6 @@
 //! Drafts: queries as typed fields, not checked yet.
 
-use strew_core::{Placement, Seed, Spacing, Warp, sample::Keep};
+use strew_core::{Keep, Placement, Seed, Warp};
 
 use super::{
     AmountDraft, AttributesDraft, KEEP, MOST_LAYERS, Query, RegionDraft, Set, TableDraft, WARP,
@@ -212,7 +212,7 @@ impl SetDraft {
         let keep = faults.take(keep.transpose());
         let attributes = faults.take(self.attributes.check(&path));
         let entry = faults.take_all(self.table.check(catalog, &path));
-        let by_default = || Spacing::new(1.0).map_or(Warp::OFF, |s| Placement::new(s, seed).warp);
+        let by_default = || Placement::default_warp(seed);
         Some(Set {
             amount: amount?,
             warp: warp?.unwrap_or_else(by_default),

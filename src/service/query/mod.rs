@@ -23,10 +23,7 @@ mod written;
 
 use std::{fmt, sync::Arc};
 
-use strew_core::{
-    Area, Placement, Seed, Spacing, Warp,
-    sample::{Attributes, Keep, PlanError},
-};
+use strew_core::{Area, Attributes, ErrorKind, Keep, Placement, Seed, Spacing, Warp};
 
 use super::{Entry, Error, Fault};
 
@@ -179,25 +176,25 @@ impl Set {
 
 impl Asked {
     /// The error of a region that reaches too far for a spacing.
-    pub(super) fn too_far(&self, spacing: Spacing, error: &PlanError) -> Error {
+    pub(super) fn too_far(&self, spacing: Spacing, error: &strew_core::Error) -> Error {
         let listed = || region::listed(&self.bbox());
         let value = self.echo.as_ref().map_or_else(listed, ToString::to_string);
-        Error::Invalid(vec![match error {
-            PlanError::TooFar {
-                corner,
-                value: far,
-                limit,
-            } => Fault::new(
+        Error::Invalid(vec![match (error.kind(), error.limit()) {
+            (ErrorKind::TooFar, Some(limit)) => Fault::new(
                 &self.path,
                 value,
-                format!("{corner} is {}, too far from the origin", number(*far)),
+                format!(
+                    "{} is {}, too far from the origin",
+                    error.field(),
+                    error.value()
+                ),
                 format!(
                     "within ±{} at spacing {}, where f64 still tells neighbors apart",
-                    number(*limit),
+                    number(limit),
                     number(spacing.get())
                 ),
             ),
-            other => Fault::new(&self.path, value, other.to_string(), region::REGION),
+            _ => Fault::new(&self.path, value, error.to_string(), region::REGION),
         }])
     }
 }

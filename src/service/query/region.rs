@@ -1,10 +1,7 @@
 //! Regions: boxes, circles, polygons, chunks, and lists of them.
 
 use serde_json::{Value, json};
-use strew_core::{
-    Area, Circle, Polygon, Region,
-    sample::{AreaError, RegionError},
-};
+use strew_core::{Area, Circle, Polygon, Region};
 
 use super::{BOX, faults::Faults, geojson::GEOJSON, number};
 use crate::service::Fault;
@@ -111,7 +108,7 @@ impl RegionDraft {
         match &self.shape {
             ShapeDraft::Box(corners) => faults.take(self.region(*corners)).map(Area::from),
             ShapeDraft::Circle(center, radius) => {
-                let fault = |error: AreaError| {
+                let fault = |error: strew_core::Error| {
                     let value = listed(&[center[0], center[1], *radius]);
                     Fault::new(&self.path, value, error.to_string(), CIRCLE)
                 };
@@ -151,14 +148,13 @@ impl RegionDraft {
         let [min_x, min_y, max_x, max_y] = corners;
         let fault = |detail: String| Fault::new(&self.path, listed(&corners), detail, BOX);
         let region = Region::new([min_x, min_y], [max_x, max_y]).map_err(|error| {
-            fault(match error {
-                RegionError::NotFinite { corner, value } => format!("{corner} is {value}"),
-                RegionError::Reversed {
-                    corner,
-                    value,
-                    lower,
-                } => format!("it is reversed: {corner} is {value}, below the lower bound {lower}"),
-                other => other.to_string(),
+            let (corner, value) = (error.field(), error.value());
+            let is_reversed = corners.iter().all(|v| v.is_finite());
+            fault(if is_reversed {
+                let lower = if corner == "max_x" { min_x } else { min_y };
+                format!("it is reversed: {corner} is {value}, below the lower bound {lower}")
+            } else {
+                format!("{corner} is {value}")
             })
         })?;
         for (axis, i) in [("x", 0), ("y", 1)] {
@@ -208,25 +204,10 @@ impl RegionDraft {
     }
 
     fn chunk(&self, size: f64, at: [i64; 2]) -> Result<Region, Fault> {
-        const MOST: u64 = 1 << 52;
-        let fault = |detail: &str| {
+        Region::chunk(size, at).map_err(|error| {
             let value = format!("{}/{}/{}", number(size), at[0], at[1]);
-            Fault::new(&self.path, value, detail, CHUNK)
-        };
-        if !(size > 0.0 && size.is_finite()) {
-            return Err(fault("the size is not a finite number above 0"));
-        }
-        if at.iter().any(|v| v.unsigned_abs() > MOST) {
-            return Err(fault("it is too far from the origin"));
-        }
-        // Neighbors compute the same corner from the same integer.
-        let corner = |offset: i64| at.map(|v| (v + offset) as f64 * size);
-        let region = Region::new(corner(0), corner(1));
-        let region = region.map_err(|_| fault("its corners are not finite"))?;
-        if region.is_empty() {
-            return Err(fault("it is too small to have an extent there"));
-        }
-        Ok(region)
+            Fault::new(&self.path, value, error.problem(), CHUNK)
+        })
     }
 
     /// As answers echo it, and as a query's body has it.

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use strew_core::{Alpha, map::Size, pattern::AlphaError};
+use strew_core::{Alpha, map::Size};
 
 use super::{DEFAULT_ALPHA, DEFAULT_PROFILE, pin};
 use crate::service::{Catalog, Entry, Error, Fault, Key};
@@ -87,7 +87,7 @@ impl TableDraft {
 }
 
 /// The number of a text; that of most queries has been read before.
-fn parse(text: &str) -> Result<Alpha, AlphaError> {
+fn parse(text: &str) -> Result<Alpha, strew_core::Error> {
     static DEFAULT: LazyLock<Option<Alpha>> = LazyLock::new(|| DEFAULT_ALPHA.parse().ok());
     match *DEFAULT {
         Some(alpha) if text == DEFAULT_ALPHA => Ok(alpha),

@@ -1,26 +1,25 @@
-//! The interval of α on which a map keeps its order of thresholds.
+//! The cell of a map: the interval of α on which its thresholds keep their order.
 //!
-//! Every threshold is a linear function of α, m − (αk + b)/2 with integers m, k, b, as long as no
-//! threshold crosses another or an end of the set region. Comparing two of them is comparing α
-//! with a ratio of integers; the tightest such ratios bound the interval.
+//! While no threshold crosses another or an end of the set region, each is a linear function of α,
+//! m − (αk + b)/2 with integers m, k, b. Comparing two of them means comparing α with a ratio of
+//! integers, and the tightest of these ratios bound the interval.
 
 use core::ops::RangeInclusive;
 
 use super::twin::MAX_Q;
 use crate::pattern::Alpha;
 
-/// A neighbor shift −(αk + b)/2: the place where a neighbor column enters or leaves.
+/// A neighbor shift −(αk + b)/2: the place in index space where a neighbor appears or disappears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Label {
     pub(crate) k: i64,
     pub(crate) b: u8,
 }
 
-/// All shifts that a half-width R knows. Those of e = t coincide with those of e = 0 one step on:
+/// The shifts of half-width R. Those of e = t are those of e = 0 one step further,
 /// t − (αk + b)/2 = −(α(k − 1) + (b + 1))/2, so k runs from −R − 1 to R.
 pub(super) fn labels(radius: u32) -> impl Iterator<Item = Label> {
     let r = i64::from(radius);
-    // k = R belongs to e = 0 only and k = −R − 1 to e = t only; both parities b occur for each.
     (-r - 1..=r).flat_map(|k| [Label { k, b: 0 }, Label { k, b: 1 }])
 }
 
@@ -30,7 +29,7 @@ impl Label {
     /// t = −(1 − α)/2.
     pub(super) const SET_SIDE: Self = Self { k: -1, b: 1 };
 
-    /// The integer that (αk + b)/2 is taken from to give the value modulo 1.
+    /// The integer m for which m − (αk + b)/2 lies in [0, 1).
     pub(crate) fn turns(self, alpha: Alpha) -> i64 {
         let shift = i128::from(alpha.half()) * i128::from(self.k) + (i128::from(self.b) << 63);
         ((shift + i128::from(self.index(alpha))) >> 64) as i64
@@ -45,7 +44,7 @@ impl Label {
             .wrapping_neg()
     }
 
-    /// The value modulo 1 as a linear function, valid near `alpha`.
+    /// The value modulo 1 as a linear function of α, valid near `alpha`.
     fn linear(self, alpha: Alpha) -> Linear {
         Linear {
             constant: 2 * self.turns(alpha) - i64::from(self.b),
@@ -120,14 +119,14 @@ impl Cell {
         };
         let side = alpha.set_side();
         let mut inside: alloc::vec::Vec<(u64, Linear)> = alloc::vec::Vec::new();
-        // Two labels are the ends of the set region; any other there coincides with one.
+        // Two labels are the ends of the set region. Any further one coincides with an end.
         let mut at_ends = 0;
         for label in labels(radius) {
             let (index, line) = (label.index(alpha), label.linear(alpha));
             if index == 0 || index == side {
                 at_ends += 1;
             } else if index > side {
-                // It stays out of the set region.
+                // It must stay outside the set region.
                 cell.keep_less(Linear::SET_SIDE, line);
                 cell.keep_less(line, Linear::ONE);
             } else {
@@ -142,7 +141,7 @@ impl Cell {
         }
         cell.keep_less(last, Linear::SET_SIDE);
         if at_ends > 2 || !cell.contains(alpha.half(), 1 << 63) {
-            // Thresholds coincide at α: it lies between two maps.
+            // Thresholds coincide at α, so it lies between two cells.
             cell.low = cell.high;
         }
         cell
@@ -167,8 +166,8 @@ impl Cell {
     /// The denominators q for which (t + q)/q lies inside.
     pub(super) fn denominators(&self, t: u64) -> impl Iterator<Item = u64> + use<> {
         let cell = *self;
-        // 1 + t/q < high  ⇔  q > t·d/(n − d), and likewise for low; one more on either side is
-        // cheap and keeps the exact test in one place.
+        // 1 + t/q < high  ⇔  q > t·d/(n − d), and likewise for low. One candidate more on either side
+        // leaves the exact test in one place.
         let bound = |ratio: Ratio| {
             let excess = i128::from(ratio.n - ratio.d);
             (excess > 0).then(|| (i128::from(t) * i128::from(ratio.d) / excess) as u64)

@@ -1,18 +1,37 @@
-//! Names for the sizes of maps.
+//! The sizes of maps and their names.
 
 use core::{fmt, str::FromStr};
 
-use super::MAX_RADIUS;
+use crate::error::{Error, ErrorKind, shown};
 
-/// The size of a neighborhood map, by its half-width R. As text `s` (R = 49), `m` (R = 100), `l`
+/// The largest half-width of a map. At 1024 a table has about 1.7 million vectors; the largest shipped
+/// half-width is 200, with 255 intervals at the default α.
+pub const MAX_RADIUS: u32 = 1024;
+
+/// What the text of a size must be.
+const ALLOWED: &str = "s (R = 49), m (R = 100), l (R = 200), or r and R from 0 to 1024";
+
+/// Refuses a half-width above [`MAX_RADIUS`].
+pub(super) fn check_radius(radius: u32) -> Result<(), Error> {
+    if radius <= MAX_RADIUS {
+        return Ok(());
+    }
+    let allowed = alloc::format!("at most {MAX_RADIUS}");
+    Err(Error::new(ErrorKind::MapSize, "map half-width R", radius, allowed))
+}
+
+/// The size of a neighborhood map, named by its half-width R: `s` (R = 49), `m` (R = 100), `l`
 /// (R = 200), or `r` and the number.
+///
+/// ```
+/// use strew_core::map::Size;
+///
+/// assert_eq!("m".parse::<Size>()?.radius(), 100);
+/// assert_eq!(Size::of_radius(64).to_string(), "r64");
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Size(u32);
-
-/// A text that is not the size of a map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a map size is s (R = 49), m (R = 100), l (R = 200), or r and R from 0 to {MAX_RADIUS}")]
-pub struct SizeError;
 
 impl Size {
     /// R = 49: about 15 mean spacings, 63 intervals at the default α.
@@ -47,9 +66,9 @@ impl fmt::Display for Size {
 }
 
 impl FromStr for Size {
-    type Err = SizeError;
+    type Err = Error;
 
-    fn from_str(text: &str) -> Result<Self, SizeError> {
+    fn from_str(text: &str) -> Result<Self, Error> {
         match text {
             "s" => Ok(Self::S),
             "m" => Ok(Self::M),
@@ -60,7 +79,7 @@ impl FromStr for Size {
                 .and_then(|digits| digits.parse().ok())
                 .filter(|&radius| radius <= MAX_RADIUS)
                 .map(Self)
-                .ok_or(SizeError),
+                .ok_or_else(|| Error::new(ErrorKind::MapSize, "map size", shown(text), ALLOWED)),
         }
     }
 }
@@ -79,7 +98,8 @@ mod tests {
         }
         assert_eq!("r49".parse(), Ok(Size::S));
         for bad in ["", "S", "xl", "r", "r-1", "r+1", "r5000", "49"] {
-            assert_eq!(bad.parse::<Size>(), Err(SizeError), "{bad}");
+            let error = bad.parse::<Size>().expect_err(bad);
+            assert_eq!(error.kind(), ErrorKind::MapSize);
         }
     }
 }

@@ -1,26 +1,25 @@
 //! The number α that fixes an AA pattern, kept exactly as text and as a fixed-point unit.
 
-use alloc::string::String;
 use core::{fmt, str::FromStr};
 
 use super::quadratic::Quadratic;
+use crate::error::{Error, ErrorKind, shown};
 
-/// α in the open interval (1, 2), as exact as the index torus can hold it.
+/// The number α, in the open interval (1, 2), as exactly as the index torus can hold it.
 ///
-/// Parsed from a decimal (`1.75`), a fraction (`183/112`) or a quadratic irrational (`sqrt(3)`,
-/// `(5-sqrt(3))/2`, `(1+sqrt(5))/2`). Whatever the spelling, a value has one canonical text, which
-/// [`Display`](fmt::Display) prints and which serves as a key: fractions are reduced, roots are
-/// made square-free.
+/// It is read from a decimal (`1.75`), a fraction (`183/112`) or a quadratic irrational (`sqrt(3)`,
+/// `(5-sqrt(3))/2`, `(1+sqrt(5))/2`). [`Display`](fmt::Display) prints the canonical text of the value,
+/// whatever its spelling was: fractions are reduced and roots square-free. That text serves as a key.
 ///
-/// The pattern itself uses α/2 rounded to the nearest multiple of 2⁻⁶⁴: the pattern of that
-/// rounded number is an exact AA pattern.
+/// The pattern uses α/2 rounded to the nearest multiple of 2⁻⁶⁴. The pattern of the rounded number is
+/// itself an exact AA pattern.
 ///
 /// ```
 /// use strew_core::Alpha;
 /// let alpha: Alpha = "( 10 - sqrt(12) ) / 4".parse()?;
 /// assert_eq!(alpha.to_string(), "(5-sqrt(3))/2");
 /// assert!((alpha.to_f64() - 1.6339745962155614).abs() < 1e-15);
-/// # Ok::<(), strew_core::pattern::AlphaError>(())
+/// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Alpha {
@@ -28,28 +27,9 @@ pub struct Alpha {
     half: u64,
 }
 
-/// Why a text is not an α.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum AlphaError {
-    /// The text is not of a form that is read here.
-    #[error(
-        "alpha `{text}` is not readable: {reason}; allowed are a decimal (1.75), a fraction \
-         (183/112) or a quadratic irrational such as sqrt(3), (5-sqrt(3))/2, (1+sqrt(5))/2"
-    )]
-    Syntax {
-        /// The text as given.
-        text: String,
-        /// What is wrong with it.
-        reason: &'static str,
-    },
-    /// The value is not strictly between 1 and 2.
-    #[error("alpha `{text}` is out of range: it must be greater than 1 and less than 2")]
-    OutOfRange {
-        /// The text as given.
-        text: String,
-    },
-}
+/// What a text must be to be read as α.
+const ALLOWED: &str = "a decimal (1.75), a fraction (183/112) or a quadratic irrational such as \
+                       sqrt(3), (5-sqrt(3))/2 or (1+sqrt(5))/2, between 1 and 2";
 
 impl Alpha {
     /// α/2 in units of 2⁻⁶⁴: the step of the index torus along an axis. Its top bit is set.
@@ -79,27 +59,36 @@ impl Alpha {
     /// The fraction p/q.
     ///
     /// # Errors
-    /// [`AlphaError::OutOfRange`] unless 1 < p/q < 2 and both fit the exact form (see [`Alpha`]).
-    pub fn from_fraction(p: u64, q: u64) -> Result<Self, AlphaError> {
+    /// [`ErrorKind::Alpha`] unless 1 < p/q < 2 and both are at most 10¹⁸.
+    ///
+    /// ```
+    /// use strew_core::Alpha;
+    ///
+    /// assert_eq!(Alpha::from_fraction(366, 224)?.to_string(), "183/112");
+    /// assert!(Alpha::from_fraction(5, 2).is_err());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn from_fraction(p: u64, q: u64) -> Result<Self, Error> {
         alloc::format!("{p}/{q}").parse()
     }
 }
 
 impl FromStr for Alpha {
-    type Err = AlphaError;
+    type Err = Error;
 
-    fn from_str(text: &str) -> Result<Self, AlphaError> {
-        let exact = Quadratic::parse(text).map_err(|reason| AlphaError::Syntax {
-            text: quote(text),
-            reason,
-        })?;
-        // The range is checked on the exact value first; rounding may still land on an end.
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let refused = |problem: &'static str| {
+            let text = alloc::format!("`{}`", shown(text));
+            Error::new(ErrorKind::Alpha, "alpha", text, ALLOWED).because(problem)
+        };
+        let exact = Quadratic::parse(text).map_err(refused)?;
+        // The range is checked on the exact value first; rounding may still reach an end.
         let half = exact
             .strictly_between_one_and_two()
             .then(|| exact.times_power_63())
             .and_then(|v| u64::try_from(v).ok())
             .filter(|&half| half > 1 << 63)
-            .ok_or_else(|| AlphaError::OutOfRange { text: quote(text) })?;
+            .ok_or_else(|| refused("out of range"))?;
         Ok(Self { exact, half })
     }
 }
@@ -107,15 +96,6 @@ impl FromStr for Alpha {
 impl fmt::Display for Alpha {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.exact.fmt(f)
-    }
-}
-
-/// Long input is cut in the message, never in what is parsed.
-fn quote(text: &str) -> String {
-    const SHOWN: usize = 80;
-    match text.char_indices().nth(SHOWN) {
-        Some((at, _)) => alloc::format!("{}…", &text[..at]),
-        None => text.into(),
     }
 }
 
@@ -187,10 +167,9 @@ mod tests {
             "--3/2",
             "1,5",
         ] {
-            assert!(
-                matches!(text.parse::<Alpha>(), Err(AlphaError::Syntax { .. })),
-                "{text}"
-            );
+            let error = text.parse::<Alpha>().expect_err(text);
+            assert_eq!(error.kind(), ErrorKind::Alpha, "{text}");
+            assert_ne!(error.problem(), "out of range", "{text}");
         }
         for text in [
             "1", "2", "0", "-1.5", "2.5", "1e300", "sqrt(5)", "sqrt(4)", "sqrt(1)",

@@ -1,13 +1,22 @@
-//! Finite arrangements: which sets of offsets occur in a pattern, and how often.
+//! Arrangements: which finite sets of offsets occur in a pattern, and how often.
 
 use super::{Alpha, Pattern};
 
-/// How often the arrangement of `offsets` occurs: the density, per pattern point, of points p such
-/// that p + o is in the pattern for every offset o. 0 means that it never occurs.
+/// The frequency of an arrangement: the share of pattern points p for which p + o belongs to the
+/// pattern for every offset o. It is 0 iff the arrangement never occurs.
 ///
-/// The offsets' image in index space must fit the set region; the frequency is the area of the
-/// margin left, over the area t² of the set region. Every offset must belong together with p, so
-/// the offset (0, 0) is always implied.
+/// An arrangement occurs iff the image of its offsets in index space fits the set region. Its frequency
+/// is the area of the margin that is left, over the area t² of the set region. The offset (0, 0) is
+/// implied.
+///
+/// ```
+/// use strew_core::pattern::arrangement_frequency;
+///
+/// let alpha = "sqrt(3)".parse()?;
+/// assert_eq!(arrangement_frequency(alpha, &[]), 1.0);
+/// assert_eq!(arrangement_frequency(alpha, &[(1, 0)]), 0.0);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[must_use]
 pub fn arrangement_frequency(alpha: Alpha, offsets: &[(i64, i64)]) -> f64 {
     let pattern = Pattern::new(alpha);
@@ -16,7 +25,7 @@ pub fn arrangement_frequency(alpha: Alpha, offsets: &[(i64, i64)]) -> f64 {
     let mut high = (0.0f64, 0.0f64);
     for &(i, j) in offsets {
         let (dx, dy) = pattern.index(i, j);
-        // The signed representative: a shift of more than t never fits.
+        // Taken with a sign: a shift beyond ±t never fits.
         let unit = 1.0 / 18_446_744_073_709_551_616.0;
         let (dx, dy) = (dx as i64 as f64 * unit, dy as i64 as f64 * unit);
         low = (low.0.min(dx), low.1.min(dy));

@@ -8,7 +8,7 @@ use core::ops::Range;
 
 use super::{Alpha, first_hit::first_hit, floor_sum::count_hits};
 
-/// One of the two lattice axes.
+/// A lattice axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Axis {
     /// Columns.
@@ -63,9 +63,9 @@ pub struct AxisSet {
 }
 
 impl AxisSet {
-    /// The coordinates v ≡ `parity` (mod 2) with (A·v + `zero`) mod 1 in `interval`, where
-    /// `zero` is the index at coordinate 0 (the origin, plus one half if the other coordinate is
-    /// odd). All in units of 2⁻⁶⁴.
+    /// The coordinates v ≡ `parity` (mod 2) with (A·v + `zero`) mod 1 in `interval`. `zero` is the
+    /// index of coordinate 0: the origin, plus one half if the other coordinate is odd. `zero` and
+    /// `interval` are in units of 2⁻⁶⁴.
     #[must_use]
     pub fn new(alpha: Alpha, zero: u64, parity: u8, interval: Range<u64>) -> Self {
         Self {
@@ -94,7 +94,7 @@ impl AxisSet {
         }
     }
 
-    /// How many coordinates of this parity `range` holds.
+    /// The number of coordinates of this parity in `range`.
     fn candidates(&self, range: &Range<i64>) -> u64 {
         match self.align(range.start) {
             Some(first) if first < range.end => {
@@ -110,7 +110,7 @@ impl AxisSet {
         (v & 1) as u8 == self.parity && self.index(v) < self.width
     }
 
-    /// How many members lie in `range`: a floor sum, O(log).
+    /// The number of members in `range`: a floor sum, O(log).
     #[must_use]
     pub fn count(&self, range: Range<i64>) -> u64 {
         let candidates = self.candidates(&range);
@@ -130,19 +130,19 @@ impl AxisSet {
         i64::try_from(i128::from(first) + 2 * i128::from(steps)).ok()
     }
 
-    /// The member number `k` (from 0) among those ≥ `from`, or `None` if there are not so many
-    /// within `i64`. A bisection on [`count`](Self::count).
+    /// Member number `k` (from 0) among those ≥ `from`, or `None` if `i64` holds fewer. A bisection on
+    /// [`count`](Self::count).
     #[must_use]
     pub fn select(&self, from: i64, k: u64) -> Option<i64> {
         let need = k.checked_add(1)?;
         let has = |end: i64| self.count(from..end) >= need;
-        // Members are spread evenly: start at the expected place and widen the bracket from there.
+        // Members are spread evenly, so the search brackets the expected place.
         let expected = (k as f64) * 2.0 * 18_446_744_073_709_551_616.0 / (self.width.max(1) as f64);
         let mut high = from.saturating_add(expected as i64);
         let mut reach = 64i64;
         while !has(high) {
             if high == i64::MAX {
-                // `count` excludes its end, so the last coordinate is looked at by itself.
+                // `count` excludes its end, so the last coordinate is tested by itself.
                 return (self.contains(i64::MAX) && self.count(from..i64::MAX) == k)
                     .then_some(i64::MAX);
             }
@@ -172,7 +172,7 @@ impl AxisSet {
         Some(high - 1)
     }
 
-    /// The members in `range`, ascending. Each step costs one comparison: a rotation returns to an
+    /// The members in `range`, ascending. Each step costs a comparison: a rotation returns to an
     /// interval after one of at most three gaps (the three-gap theorem).
     pub fn iter(&self, range: Range<i64>) -> impl Iterator<Item = i64> + use<> {
         let (set, gaps) = (*self, Gaps::new(self.step(), self.width));
@@ -191,9 +191,9 @@ impl AxisSet {
 /// The return times of a rotation to the interval [0, width).
 #[derive(Clone, Copy)]
 struct Gaps {
-    /// The least number of steps that move forward by less than the width, and that movement.
+    /// The least number of steps that moves the index forward by less than the width, and by how much.
     up: Option<(u64, u64)>,
-    /// The same backward.
+    /// The least number of steps that moves it backward by less than the width, and by how much.
     down: Option<(u64, u64)>,
     width: u64,
 }
@@ -211,7 +211,7 @@ impl Gaps {
         }
     }
 
-    /// How many steps from `index` (< width) to the next return.
+    /// The number of steps from `index` (< width) to the next return.
     fn after(&self, index: u64) -> Option<u64> {
         match (self.up, self.down) {
             (Some((gap, by)), _) if index < self.width - by => Some(gap),

@@ -1,9 +1,9 @@
-//! When a rotation of the circle first lands in an interval, in O(log) steps.
+//! The first step at which a rotation of the circle lands in an interval, in O(log).
 
 /// The least i ≥ 0 with low ≤ (step·i mod m) ≤ high, for 0 ≤ low ≤ high < m.
 ///
-/// Euclid again: if no multiple of the step lands before the first wrap, the wraps themselves
-/// are multiples of m modulo the step, a smaller problem of the same kind.
+/// Works like Euclid's algorithm: if no multiple of the step lands before the first wrap, the wraps
+/// are multiples of m modulo the step, a smaller problem of the same form.
 fn first_in_range(mut step: u128, m: u128, mut low: u128, mut high: u128) -> Option<u128> {
     step %= m;
     if low == 0 {

@@ -1,9 +1,9 @@
-//! Counting how often a rotation of the circle lands in an interval, in O(log) steps.
+//! How often a rotation of the circle lands in an interval, in O(log).
 
 /// Σ ⌊(a·i + b)/2⁶⁴⌋ for 0 ≤ i < n, modulo 2¹²⁸.
 ///
-/// The Euclid-like recursion on (a, 2⁶⁴) (see e.g. Graham, Knuth, Patashnik, *Concrete
-/// Mathematics*, §3.5); at most about 92 rounds of one division each.
+/// The recursion on (a, 2⁶⁴) of Graham, Knuth, Patashnik, *Concrete Mathematics*, §3.5: about 92
+/// rounds of one division at most.
 pub(super) fn floor_sum(n: u64, a: u64, b: u128) -> u128 {
     let (mut n, mut a, mut b) = (u128::from(n), u128::from(a), b);
     let mut m = 1u128 << 64;
@@ -13,7 +13,7 @@ pub(super) fn floor_sum(n: u64, a: u64, b: u128) -> u128 {
     }
     loop {
         if a >= m {
-            // n·(n − 1) may pass 2¹²⁸ only for n > 2⁶⁴, which n never is: halve the even factor.
+            // n ≤ 2⁶⁴, so n·(n − 1) fits once the even factor is halved.
             let pairs = if n % 2 == 0 {
                 (n / 2) * (n - 1)
             } else {
@@ -37,7 +37,7 @@ pub(super) fn floor_sum(n: u64, a: u64, b: u128) -> u128 {
     }
 }
 
-/// How many i in 0..n have (start + i·step) mod 2⁶⁴ < width.
+/// The number of i in 0..n with (start + i·step) mod 2⁶⁴ < width.
 pub(super) fn count_hits(n: u64, start: u64, step: u64, width: u64) -> u64 {
     // [v mod M < w] = 1 + ⌊v/M⌋ − ⌊(v + M − w)/M⌋ for 0 ≤ w ≤ M.
     let start = u128::from(start);

@@ -1,10 +1,9 @@
-//! The pattern as the image of a rounded linear map (paper, Eq. 1), for cross-checking.
+//! The pattern as the holes of a rounded linear map (paper, Eq. 1).
 //!
-//! Sending every grid point (x, y) to ⌊½ [α −1; 1 α] (x, y)⌋ leaves some target pixels empty.
-//! They are the pattern again, seen in the target: the empty pixels are exactly the images
-//! M(x − 1, y − 1) + (0, 1) of the points (x, y) of AA(α) with index origin (½, 0), as a look at
-//! the gaps between the unit squares that hang on M·Z² shows. (So their density is t² over the
-//! determinant (α² + 1)/4, which is 1 only at α = √3, where the map is a rotation by 30°.)
+//! Let M send every grid point (x, y) to ⌊½ [α −1; 1 α] (x, y)⌋. Some target pixels stay empty, and
+//! they are exactly the images M(x − 1, y − 1) + (0, 1) of the points (x, y) of AA(α) with index origin
+//! (½, 0). Their density is t² over the determinant (α² + 1)/4, so it equals that of the pattern only
+//! at α = √3, where M rotates by 30°.
 
 use super::Alpha;
 
@@ -19,8 +18,9 @@ pub fn forward_map(alpha: Alpha, x: i64, y: i64) -> Option<(i64, i64)> {
     Some((i64::try_from(column).ok()?, i64::try_from(row).ok()?))
 }
 
-/// Whether no grid point is sent to the target pixel. Brute force over the few candidates; for
-/// |column|, |row| ≤ 2⁴⁰ (beyond, the nearest source cannot be located in `f64`).
+/// Whether M sends no grid point to a target pixel, by brute force over the nearest candidates.
+///
+/// Requires |column|, |row| ≤ 2⁴⁰: farther out `f64` cannot locate the candidates.
 #[must_use]
 pub fn is_vacant(alpha: Alpha, column: i64, row: i64) -> bool {
     let a = alpha.to_f64();
@@ -30,7 +30,7 @@ pub fn is_vacant(alpha: Alpha, column: i64, row: i64) -> bool {
         libm::floor(scale * (a * c + r)) as i64,
         libm::floor(scale * (a * r - c)) as i64,
     );
-    // The preimage of a pixel is a square of side at most √2, so sources lie within 2 of its middle.
+    // The preimage of a pixel is a square of side √2 at most, so sources lie within 2 of its center.
     (x - 2..=x + 3)
         .all(|x| (y - 2..=y + 3).all(|y| forward_map(alpha, x, y) != Some((column, row))))
 }

@@ -4,8 +4,8 @@ use core::ops::Range;
 
 use super::{Alpha, Axis, AxisSet, Class};
 
-/// The index of the lattice origin: moving it gives another piece of the same unbounded pattern.
-/// In units of 2⁻⁶⁴ of the torus.
+/// The index of the lattice origin, in units of 2⁻⁶⁴ of the torus. Another origin shows another piece
+/// of the same unbounded pattern.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct IndexOrigin {
     /// dX of the lattice point (0, 0).
@@ -15,7 +15,7 @@ pub struct IndexOrigin {
 }
 
 impl IndexOrigin {
-    /// The component along an axis.
+    /// dX or dY.
     #[must_use]
     pub const fn along(self, axis: Axis) -> u64 {
         match axis {
@@ -26,6 +26,18 @@ impl IndexOrigin {
 }
 
 /// The AA pattern of one α, seen from one origin in index space.
+///
+/// ```
+/// use strew_core::Pattern;
+///
+/// let pattern = Pattern::new("(5-sqrt(3))/2".parse()?);
+/// assert!(pattern.contains(0, 0) && !pattern.contains(1, 0));
+/// // Counting takes no longer for a larger box.
+/// let count = pattern.count(-1_000_000_000..1_000_000_000, -1_000_000_000..1_000_000_000);
+/// let t = pattern.alpha().set_side_f64();
+/// assert!((count as f64 / 4e18 - t * t).abs() < 1e-9);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Pattern {
     alpha: Alpha,
@@ -51,12 +63,12 @@ impl Pattern {
         }
     }
 
-    /// The points of this pattern of [`depth`](Self::depth) below `side`: a share (`side`/t)² of all,
-    /// and a union of four products again. A side above t changes nothing.
+    /// The points of this pattern whose [`depth`](Self::depth) is below `side`, in units of 2⁻⁶⁴: a
+    /// share (`side`/t)² of all, and again a union of four products. A side above t changes nothing.
     ///
-    /// A smaller set region at a corner that depends on the class: dX in [0, `side`) in even rows, in
-    /// [t − `side`, t) in odd ones; dY likewise by columns. One corner for all classes would leave
-    /// them in step with each other, and clump what remains.
+    /// The smaller set region lies at a corner that depends on the class: dX in [0, `side`) in even
+    /// rows and in [t − `side`, t) in odd ones; dY likewise by columns. One corner for all classes
+    /// would keep the classes in step with each other, and the remaining points would clump.
     #[must_use]
     pub const fn thinned(self, side: u64) -> Self {
         let side = if side < self.side { side } else { self.side };
@@ -90,16 +102,16 @@ impl Pattern {
         )
     }
 
-    /// Whether a lattice point belongs to the pattern (paper, Eq. 4): dX < t and dY < t, and its
-    /// depth is below the side of a thinned one.
+    /// Whether a lattice point belongs to the pattern: dX < t and dY < t (paper, Eq. 4), and in a
+    /// thinned pattern its depth is below the side.
     #[must_use]
     pub const fn contains(&self, x: i64, y: i64) -> bool {
         self.depth(x, y) < self.side
     }
 
-    /// How large the set region of a thinned pattern has to be to hold a lattice point: it belongs
-    /// to [`thinned(side)`](Self::thinned) iff its depth is below `side`. Below t for the points of
-    /// the pattern, t or more for all others.
+    /// The depth of a lattice point, in units of 2⁻⁶⁴: the point belongs to
+    /// [`thinned(side)`](Self::thinned) iff its depth is below `side`. It is below t for the points of
+    /// the pattern and t or more for all others.
     #[must_use]
     pub const fn depth(&self, x: i64, y: i64) -> u64 {
         let class = Class::of(x, y);
@@ -108,7 +120,7 @@ impl Pattern {
         if along_x > along_y { along_x } else { along_y }
     }
 
-    /// The part of a depth along one axis: how far the index is from the corner of its class.
+    /// The distance of an index from the corner of its class, along one axis.
     const fn axis_depth(&self, index: u64, other_parity: u8) -> u64 {
         if other_parity & 1 == 0 {
             index
@@ -118,7 +130,7 @@ impl Pattern {
         }
     }
 
-    /// The indices of a thinned pattern along an axis, by parity of the other coordinate.
+    /// The indices that a (thinned) pattern admits along an axis, by parity of the other coordinate.
     pub(crate) const fn window(&self, other_parity: u8) -> Range<u64> {
         let full = self.alpha.set_side();
         if other_parity & 1 == 0 {
@@ -147,22 +159,29 @@ impl Pattern {
         AxisSet::new(self.alpha, self.axis_index(axis, 0, other), own, interval)
     }
 
-    /// The two axis indices of a coordinate, by parity of the other coordinate, of which at most
-    /// one is inside the set region: `Some((other parity, index))`, or `None`.
+    /// The class and the index of a column (`Axis::X`) or row (`Axis::Y`), or `None` if it holds no
+    /// points. A coordinate has two indices, by the parity of the other one; at most one of them lies
+    /// in the set region, so a column or row belongs to one class only.
     #[must_use]
-    pub const fn visit(&self, axis: Axis, v: i64) -> Option<(u8, u64)> {
+    pub const fn visit(&self, axis: Axis, v: i64) -> Option<(Class, u64)> {
         let even = self.axis_index(axis, v, 0);
         let odd = even ^ (1 << 63);
-        if self.axis_depth(even, 0) < self.side {
-            Some((0, even))
+        let (other, index) = if self.axis_depth(even, 0) < self.side {
+            (0, even)
         } else if self.axis_depth(odd, 1) < self.side {
-            Some((1, odd))
+            (1, odd)
         } else {
-            None
-        }
+            return None;
+        };
+        let own = (v & 1) as u8;
+        let class = match axis {
+            Axis::X => Class { x: own, y: other },
+            Axis::Y => Class { x: other, y: own },
+        };
+        Some((class, index))
     }
 
-    /// How many points of the pattern lie in the half-open lattice box. O(log).
+    /// The number of points in a half-open lattice box, in O(log).
     #[must_use]
     pub fn count(&self, x: Range<i64>, y: Range<i64>) -> u128 {
         Class::ALL
@@ -197,7 +216,7 @@ mod tests {
                 for x in -60..60i64 {
                     let dx = ((v * x as f64 + y as f64) / 2.0).rem_euclid(1.0);
                     let dy = ((v * y as f64 + x as f64) / 2.0).rem_euclid(1.0);
-                    // Keep off the ends, where f64 cannot tell.
+                    // Stay away from the ends, where f64 cannot decide.
                     let clear = [dx, dy]
                         .iter()
                         .all(|d| (d - t).abs() > 1e-9 && *d > 1e-9 && *d < 1.0 - 1e-9);

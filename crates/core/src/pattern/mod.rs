@@ -1,9 +1,14 @@
-//! AA patterns: which grid points belong, and how to list, count and find them axis by axis.
+//! AA patterns: which grid points belong to one, and how to list, count and find them.
 //!
-//! A grid point (x, y) has the *index* dX = {(αx + y)/2}, dY = {(αy + x)/2} on the unit torus, and
-//! belongs to AA(α) iff dX < t and dY < t with t = (α − 1)/2 (paper, Eqs. 2 to 4). The torus is
-//! kept as `u64`, one unit = 2⁻⁶⁴, so that {·} is wrapping arithmetic: exact, with the same bits
-//! on every machine, at every coordinate an `i64` admits.
+//! A grid point (x, y) has the *index* dX = {(αx + y)/2}, dY = {(αy + x)/2} on the unit torus. It
+//! belongs to AA(α) iff dX < t and dY < t, with t = (α − 1)/2 (Ahmed, Huang, Deussen 2015, Eqs. 2 to
+//! 4). The torus is held as `u64`, one unit = 2⁻⁶⁴, so {·} is wrapping arithmetic: exact, and the
+//! same bits on every machine, at every coordinate an `i64` holds.
+//!
+//! `alpha` is the number α (`quadratic` reads it exactly), `index` membership, `axis` the sets of
+//! columns and rows whose products make up the pattern. `floor_sum` and `first_hit` count and find
+//! members of such a set in O(log); `turns` counts for all intervals of a map at once. `arrangement`
+//! and `forward` hold two other results of the paper.
 
 mod alpha;
 mod arrangement;
@@ -15,7 +20,7 @@ mod index;
 mod quadratic;
 mod turns;
 
-pub use alpha::{Alpha, AlphaError};
+pub use alpha::Alpha;
 pub use arrangement::arrangement_frequency;
 pub use axis::{Axis, AxisSet, Class};
 pub use forward::{forward_map, is_vacant};

@@ -1,12 +1,12 @@
-//! Exact numbers of the form (a + b·√d)/c, read from text and rounded to fixed point.
+//! Numbers of the form (a + b·√d)/c, exact: read from text and rounded to fixed point.
 
 use core::{cmp::Ordering, fmt};
 
-/// Integers beyond this are refused: they keep the 256-bit comparison below exact.
+/// The largest integer of a rational number; it keeps the 256-bit comparison below exact.
 const MAX_RATIONAL: i128 = 1_000_000_000_000_000_000;
-/// The same for numbers with a root.
+/// The largest integer of a number with a root.
 const MAX_QUADRATIC: i128 = 1_000_000_000;
-/// Longer texts are refused, which also bounds the depth of parentheses.
+/// The longest text, in bytes. It also bounds the depth of parentheses.
 const MAX_TEXT: usize = 120;
 
 /// (a + b·√d)/c in lowest terms: c > 0, gcd(a, b, c) = 1, d square-free; b = 0 exactly if d = 1.
@@ -23,7 +23,7 @@ type Parsed<T> = Result<T, &'static str>;
 impl Quadratic {
     pub(super) fn parse(text: &str) -> Parsed<Self> {
         if text.len() > MAX_TEXT {
-            return Err("it is longer than 120 bytes");
+            return Err("longer than 120 bytes");
         }
         let mut parser = Parser { rest: text };
         let value = parser.sum()?;
@@ -31,26 +31,26 @@ impl Quadratic {
         if parser.rest.is_empty() {
             Ok(value)
         } else {
-            Err("there is something after its end")
+            Err("unexpected characters after the number")
         }
     }
 
     /// Brings (a + b·√d)/c to lowest terms.
     fn new(mut a: i128, mut b: i128, mut c: i128, mut d: i128) -> Parsed<Self> {
         if c == 0 {
-            return Err("it divides by zero");
+            return Err("division by zero");
         }
         // Move squares out of the root.
         let mut root = 2;
         while root * root <= d {
             while d % (root * root) == 0 {
                 d /= root * root;
-                b = b.checked_mul(root).ok_or("its numbers are too large")?;
+                b = b.checked_mul(root).ok_or("numbers too large")?;
             }
             root += 1;
         }
         if d == 1 {
-            a = a.checked_add(b).ok_or("its numbers are too large")?;
+            a = a.checked_add(b).ok_or("numbers too large")?;
             b = 0;
         }
         if b == 0 {
@@ -60,7 +60,7 @@ impl Quadratic {
         (a, b, c) = (a / divisor, b / divisor, c / divisor);
         let limit = if b == 0 { MAX_RATIONAL } else { MAX_QUADRATIC };
         if a.abs() > limit || b.abs() > limit || c > limit {
-            return Err("its numbers are too large (up to 10^18, with a root up to 10^9)");
+            return Err("numbers too large (at most 10^18, with a root 10^9)");
         }
         // All fit now: the limits are below 2⁶³.
         Ok(Self {
@@ -75,12 +75,12 @@ impl Quadratic {
         [self.a.into(), self.b.into(), self.c.into(), self.d.into()]
     }
 
-    /// The root two numbers share, if a sum or product of them stays of this form.
+    /// The root that a sum or product of two numbers has, if it is again of this form.
     fn common_root(self, other: Self) -> Parsed<i128> {
         match (self.d, other.d) {
             (1, d) | (d, 1) => Ok(d.into()),
             (d, e) if d == e => Ok(d.into()),
-            _ => Err("it has two different roots"),
+            _ => Err("two different roots"),
         }
     }
 
@@ -106,7 +106,7 @@ impl Quadratic {
 
     fn inverse(self) -> Parsed<Self> {
         if self.b != 0 {
-            return Err("it has a root in a denominator");
+            return Err("a root in a denominator");
         }
         Self::new(self.c.into(), 0, self.a.into(), 1)
     }
@@ -302,7 +302,7 @@ impl Parser<'_> {
                 scale *= 10;
             }
             if value > MAX_RATIONAL || scale > MAX_RATIONAL {
-                return Err("it has too many digits (up to 18 behind the point)");
+                return Err("too many digits (at most 18 after the point)");
             }
         }
         self.rest = rest;
@@ -313,7 +313,7 @@ impl Parser<'_> {
 /// √n of a positive integer n.
 fn root(n: Quadratic) -> Parsed<Quadratic> {
     if n.b != 0 || n.c != 1 || n.a < 1 || i128::from(n.a) > MAX_QUADRATIC {
-        return Err("a root is taken of whole numbers from 1 to 10^9");
+        return Err("a root of something other than a whole number from 1 to 10^9");
     }
     Quadratic::new(0, 1, 1, n.a.into())
 }

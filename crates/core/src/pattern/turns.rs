@@ -1,17 +1,16 @@
-//! Whole turns of the index along an axis, added up over neighboring coordinates.
+//! Sums of whole turns of the index over a range of coordinates.
 //!
-//! How many indices lie between two thresholds is a difference of such sums. The thresholds of a map
-//! are neighbor shifts, −(αk + b)/2, and shifting the threshold by k is shifting the coordinates by
-//! k: so a few sums in closed form and the coordinates next to both ends give the counts of all
-//! intervals at once.
+//! The number of indices between two thresholds is a difference of such sums. The thresholds of a map
+//! are neighbor shifts −(αk + b)/2, and shifting a threshold by k is shifting the range by k. So four
+//! sums in closed form, corrected at both ends of the range for each k, count all intervals at once.
 
 use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{Axis, Pattern, floor_sum::floor_sum};
 
-/// For each shift k the sums Σ ⌊(α·v + b)/2 + origin⌋ over a range moved by k, modulo 2⁶⁴, by b and
-/// the parity of v.
+/// The sums Σ ⌊(α·v + b)/2 + origin⌋ modulo 2⁶⁴ over a range moved by k, for each k of a range of
+/// shifts, by b and the parity of v.
 #[derive(Clone, Debug)]
 pub(crate) struct Turns {
     least: i64,
@@ -19,7 +18,7 @@ pub(crate) struct Turns {
 }
 
 impl Turns {
-    /// The sums of a range of coordinates for the shifts `shifts`.
+    /// Sums over `range`, moved by each of `shifts`.
     pub(crate) fn new(
         pattern: &Pattern,
         axis: Axis,
@@ -70,7 +69,7 @@ impl Turns {
         }
     }
 
-    /// The sum of one shift, for coordinates (before the shift) of one parity.
+    /// The sum for one shift, over the coordinates whose parity was `parity` before it.
     pub(crate) fn sum(&self, shift: i64, b: u8, parity: u8) -> u64 {
         let sums = &self.sums[(shift - self.least) as usize];
         sums[usize::from(b & 1)][((i64::from(parity) + shift) & 1) as usize]

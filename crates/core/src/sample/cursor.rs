@@ -1,15 +1,17 @@
-//! Cursors: places in the order of a selection's points.
+//! Cursors: places in the order of a request's points.
 
-use super::PointId;
+use super::lattice::PointId;
 
-/// A place in the order of a selection's points: before the point `at`, after `offset` others.
+/// A place in the order of a request's points. [`PointSet::resume`](crate::PointSet::resume) finds the
+/// points from there on without counting.
 ///
-/// It belongs to one selection; with it the rest is found without counting again.
+/// It belongs to one request. With another one, the points of that from the lattice address on are found,
+/// with the numbers of the cursor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cursor {
-    /// How many points come before.
+    /// The number of points before the place.
     pub offset: u128,
-    /// How many points there are in all.
+    /// The number of points of the request.
     pub total: u128,
     /// The lattice address of the next point.
     pub at: PointId,

@@ -1,13 +1,14 @@
-//! Seeds: which piece of the unbounded pattern is looked at.
+//! Seeds, and the hash behind everything that looks random.
 
 use crate::pattern::IndexOrigin;
 
-/// A seed moves the lattice origin in index space; seed 0 is the pattern as it stands.
+/// A seed chooses a piece of the unbounded pattern: it moves the lattice origin in index space. Seed 0
+/// leaves it at index (0, 0).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Seed(pub u64);
 
 impl Seed {
-    /// The index of the lattice origin under this seed.
+    /// The index of the lattice origin.
     #[must_use]
     pub fn origin(self) -> IndexOrigin {
         if self.0 == 0 {
@@ -23,7 +24,7 @@ impl Seed {
 
 /// The finalizer of `SplitMix64` (Steele, Lea, Flood, "Fast splittable pseudorandom number
 /// generators", 2014) after one step of its counter.
-pub(super) const fn split_mix(state: u64) -> u64 {
+pub(crate) const fn split_mix(state: u64) -> u64 {
     let z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

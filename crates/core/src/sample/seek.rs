@@ -1,41 +1,45 @@
 //! Finding a point by its number.
 //!
-//! Points are ordered by band, row and column, and how many come before a band or a row is a count
-//! of a part of the lattice. Those counts grow almost linearly, so a search that interpolates needs
-//! a few of them, whatever the size: O(log) in all where counting is closed, O(rows) elsewhere.
+//! Points are ordered by band, row and column, and the number of points before a band or a row is a count
+//! of a part of the lattice. These counts grow almost linearly, so a search that interpolates needs a few
+//! of them, whatever the size: O(log) in all where counting is closed, O(rows) elsewhere.
 
-use alloc::vec;
+use alloc::{sync::Arc, vec};
 use core::ops::Range;
 
-use super::{Blocks, Plan, Point, PointId, Points, Tile, blocks::bands, patch::BAND_WIDTH};
+use super::{
+    count::count,
+    kernel::Points,
+    lattice::{BAND_WIDTH, Point, PointId},
+    scope::Scope,
+    walk::{Blocks, Tile, bands},
+};
 
-impl Plan {
-    /// The lattice address of point number `k` of the whole selection, if there are so many.
-    pub(super) fn locate(&self, k: u128) -> Option<PointId> {
-        if k >= self.total {
-            return None;
-        }
-        let rows = &self.y.all;
-        let (band, before) = search(bands(self), self.total, k, |band| {
-            self.count_within(&(self.x.all.start..band * BAND_WIDTH), rows)
-        });
-        let columns = band * BAND_WIDTH..(band + 1) * BAND_WIDTH;
-        let within = self.count_within(&columns, rows);
-        let k = k - before;
-        let (row, before) = search(rows.clone(), within, k, |row| {
-            self.count_within(&columns, &(rows.start..row))
-        });
-        let tile = Tile::new(band, row..row + 1);
-        let mut blocks = Blocks::<Points>::new(self, Some(&tile));
-        let mut points = vec![Point::default(); BAND_WIDTH as usize];
-        let filled = blocks.fill(&mut points);
-        let k = usize::try_from(k - before).ok()?;
-        points[..filled].get(k).map(|point| point.id)
+/// The lattice address of point number `k` of a scope that has `total` points, or `None` if there are
+/// fewer.
+pub(super) fn locate(scope: &Arc<Scope>, total: u128, k: u128) -> Option<PointId> {
+    if k >= total {
+        return None;
     }
+    let rows = &scope.y.all;
+    let (band, before) = search(bands(scope), total, k, |band| {
+        count(scope, &(scope.x.all.start..band * BAND_WIDTH), rows)
+    });
+    let columns = band * BAND_WIDTH..(band + 1) * BAND_WIDTH;
+    let within = count(scope, &columns, rows);
+    let k = k - before;
+    let (row, before) = search(rows.clone(), within, k, |row| {
+        count(scope, &columns, &(rows.start..row))
+    });
+    let mut blocks = Blocks::<Points>::of_tile(scope.clone(), &Tile::row(band, row));
+    let mut points = vec![Point::default(); BAND_WIDTH as usize];
+    let filled = blocks.fill(&mut points);
+    let k = usize::try_from(k - before).ok()?;
+    points[..filled].get(k).map(|point| point.id)
 }
 
-/// The last place in `range` before which at most `k` points lie, and how many they are. `before`
-/// grows from 0 at the range's start to `total`, more than `k`, at its end.
+/// The last place in `range` before which at most `k` points lie, and their number. `before` grows from 0
+/// at the start of the range to `total`, more than `k`, at its end.
 fn search(
     range: Range<i64>,
     total: u128,

@@ -1,12 +1,12 @@
-//! A flag that ends counting before it is done: whoever waited for a plan may be gone.
+//! A flag that ends counting early.
 
 use alloc::sync::Arc;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// Tells the counting of a plan to stop. Clones share the flag; the default is never raised.
+/// Tells the counting of a plan to stop. Clones share the flag; the default one is never raised.
 ///
-/// It is looked at every few hundred lattice rows at most. What a plan gives once it is up means
-/// nothing.
+/// Counting looks at the flag at least every few hundred lattice rows. Once it is raised the results of a
+/// plan are meaningless.
 #[derive(Clone, Debug, Default)]
 pub struct Stop {
     flag: Option<Arc<AtomicBool>>,
@@ -21,14 +21,14 @@ impl Stop {
         }
     }
 
-    /// From now on: stop. Does nothing to the default.
+    /// Raises the flag. Does nothing to the default one.
     pub fn raise(&self) {
         if let Some(flag) = &self.flag {
             flag.store(true, Ordering::Relaxed);
         }
     }
 
-    /// Whether to stop.
+    /// Whether the flag is raised.
     #[must_use]
     pub fn is_raised(&self) -> bool {
         self.flag

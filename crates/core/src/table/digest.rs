@@ -1,24 +1,29 @@
-//! The name of a table: a BLAKE3 digest, written in hexadecimal.
+//! Digests, which name tables.
 
 use core::{fmt, str::FromStr};
 
-/// A BLAKE3 digest of 32 bytes; as text, 64 lower-case hexadecimal digits.
+use crate::error::{Error, ErrorKind, shown};
+
+/// A BLAKE3 digest: 32 bytes, as text 64 lower-case hexadecimal digits.
+///
+/// ```
+/// use strew_core::table::Digest;
+///
+/// let digest = Digest::of(b"strew");
+/// assert_eq!(digest.to_string().parse::<Digest>()?, digest);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Digest([u8; 32]);
 
-/// A text that is not 64 hexadecimal digits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a digest is 64 hexadecimal digits")]
-pub struct DigestError;
-
 impl Digest {
-    /// The digest of some bytes.
+    /// The digest of `bytes`.
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         Self(*blake3::hash(bytes).as_bytes())
     }
 
-    /// From its 32 bytes.
+    /// The digest with these bytes.
     #[must_use]
     pub const fn from_bytes(bytes: [u8; 32]) -> Self {
         Self(bytes)
@@ -44,10 +49,12 @@ impl fmt::Debug for Digest {
 }
 
 impl FromStr for Digest {
-    type Err = DigestError;
+    type Err = Error;
 
-    fn from_str(text: &str) -> Result<Self, DigestError> {
-        let hash = blake3::Hash::from_hex(text).map_err(|_| DigestError)?;
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let hash = blake3::Hash::from_hex(text).map_err(|_| {
+            Error::new(ErrorKind::Digest, "the digest", shown(text), "64 hexadecimal digits")
+        })?;
         Ok(Self(*hash.as_bytes()))
     }
 }

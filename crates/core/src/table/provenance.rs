@@ -2,10 +2,12 @@
 
 use alloc::{format, string::String, vec::Vec};
 
-use super::TableError;
-use crate::map::Twin;
+use crate::{
+    error::{Error, ErrorKind},
+    map::Twin,
+};
 
-/// The history of a table, enough to make it again.
+/// The history of a table, sufficient to make it again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Provenance {
     /// The name of the optimizer (`gaussian`, …), or `none`.
@@ -20,26 +22,26 @@ pub struct Provenance {
     pub figures: Vec<Figures>,
 }
 
-/// Figures measured on one point set made with a table.
+/// Figures measured on one point set of a table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figures {
     /// What was measured: `twin 683/418`, `window seed 7`.
     pub subject: String,
     /// Whether the table was optimized on this subject.
     pub seen: bool,
-    /// How many points it has.
+    /// The number of points of the subject.
     pub points: u64,
     /// The figures by name: `low_power`, `peak_power`, `delta_min`, …
     pub values: Vec<(String, f64)>,
 }
 
-/// No list of a history is longer.
+/// The longest list of a history.
 const MAX_ITEMS: usize = 1000;
-/// No name or value is longer, in bytes.
+/// The longest name or value, in bytes.
 const MAX_TEXT: usize = 1000;
 
 impl Figures {
-    /// The figure of that name.
+    /// The figure with a name.
     #[must_use]
     pub fn value(&self, name: &str) -> Option<f64> {
         self.values
@@ -50,8 +52,11 @@ impl Figures {
 }
 
 impl Provenance {
-    /// Whether everything is within the format's limits.
-    pub(super) fn check(&self) -> Result<(), TableError> {
+    /// Refuses what exceeds the format's limits.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        let refused = |value: String, allowed: String| {
+            Error::new(ErrorKind::Table, "provenance", value, allowed)
+        };
         let texts = self
             .parameters
             .iter()
@@ -65,11 +70,7 @@ impl Provenance {
             );
         for text in texts {
             if text.len() > MAX_TEXT {
-                return Err(TableError::Field {
-                    field: "provenance",
-                    value: format!("a text of {} bytes", text.len()),
-                    allowed: format!("texts of at most {MAX_TEXT} bytes"),
-                });
+                return Err(refused(format!("a text of {} bytes", text.len()), format!("texts of at most {MAX_TEXT} bytes")));
             }
         }
         let longest = self
@@ -80,11 +81,7 @@ impl Provenance {
             .max()
             .unwrap_or(0);
         if longest > MAX_ITEMS {
-            return Err(TableError::Field {
-                field: "provenance",
-                value: format!("a list of {longest} items"),
-                allowed: format!("lists of at most {MAX_ITEMS} items"),
-            });
+            return Err(refused(format!("a list of {longest} items"), format!("lists of at most {MAX_ITEMS} items")));
         }
         let not_finite = self
             .figures
@@ -92,11 +89,7 @@ impl Provenance {
             .flat_map(|f| &f.values)
             .find(|(_, v)| !v.is_finite());
         if let Some((name, value)) = not_finite {
-            return Err(TableError::Field {
-                field: "provenance",
-                value: format!("{name} = {value}"),
-                allowed: "finite figures".into(),
-            });
+            return Err(refused(format!("{name} = {value}"), "finite".into()));
         }
         Ok(())
     }

@@ -1,30 +1,32 @@
-//! The published text form of a table: one vector a line, in grid units; row = interval of dY,
-//! column = interval of dX.
+//! The text form in which tables are published: one vector a line, in grid units; row = interval of
+//! dY, column = interval of dX.
 
 use alloc::{format, string::String, vec::Vec};
 use core::fmt;
 
-use super::{MAX_DISPLACEMENT, Provenance, Table, TableError, from_grid_units, to_grid_units};
-use crate::map::Map;
+use super::{MAX_DISPLACEMENT, Provenance, Table, from_grid_units, to_grid_units};
+use crate::{
+    error::{Error, ErrorKind, shown},
+    map::Map,
+};
 
 impl Table {
     /// Writes n² lines of `x y`. The digits are the shortest that read back to the same vector.
     ///
     /// # Errors
-    /// Whatever `out` answers.
+    /// Those of `out`.
     pub fn write_text(&self, out: &mut impl fmt::Write) -> fmt::Result {
-        self.displacements
+        self.displacements()
             .iter()
             .try_for_each(|&[x, y]| writeln!(out, "{} {}", to_grid_units(x), to_grid_units(y)))
     }
 
-    /// Reads n² lines of `x y` for a map; blank lines are passed over. Vectors are rounded to the
-    /// nearest fixed-point place, so what [`write_text`](Self::write_text) wrote reads back
-    /// exactly.
+    /// Reads n² lines of `x y` for a map, skipping blank ones. Vectors are rounded to the nearest
+    /// fixed-point place, so the output of [`write_text`](Self::write_text) reads back exactly.
     ///
     /// # Errors
-    /// [`TableError::Text`] with the line that is wrong, or as [`new`](Self::new).
-    pub fn from_text(map: Map, profile: &str, text: &str) -> Result<Self, TableError> {
+    /// [`ErrorKind::TableText`] naming the line that is wrong, or as [`new`](Self::new).
+    pub fn from_text(map: Map, profile: &str, text: &str) -> Result<Self, Error> {
         let blocks = map.intervals() * map.intervals();
         let mut vectors = Vec::with_capacity(blocks.min(text.len()));
         let lines = text
@@ -33,16 +35,10 @@ impl Table {
             .map(|(i, line)| (i + 1, line.trim()));
         for (number, line) in lines.filter(|(_, line)| !line.is_empty()) {
             if vectors.len() == blocks {
-                let problem = format!("it is beyond the last of {blocks} vectors");
-                return Err(TableError::Text {
-                    line: number,
-                    problem,
-                });
+                let problem = format!("beyond the last of {blocks} vectors");
+                return Err(wrong(number, problem));
             }
-            let vector = read_vector(line).map_err(|problem| TableError::Text {
-                line: number,
-                problem,
-            })?;
+            let vector = read_vector(line).map_err(|problem| wrong(number, problem))?;
             vectors.push(vector);
         }
         if vectors.len() < blocks {
@@ -51,10 +47,7 @@ impl Table {
                 "the text ends after {} of {n}² = {blocks} vectors",
                 vectors.len()
             );
-            return Err(TableError::Text {
-                line: text.lines().count(),
-                problem,
-            });
+            return Err(wrong(text.lines().count(), problem));
         }
         let provenance = Provenance {
             optimizer: "imported".into(),
@@ -64,13 +57,19 @@ impl Table {
     }
 }
 
+/// What is wrong with a line, counted from 1.
+fn wrong(line: usize, problem: String) -> Error {
+    let field = format!("line {line} of the text");
+    Error::new(ErrorKind::TableText, field, "not valid", "").because(problem)
+}
+
 fn read_vector(line: &str) -> Result<[i32; 2], String> {
     let mut parts = line
         .split(|c: char| c.is_whitespace() || c == ',')
         .filter(|part| !part.is_empty());
     let mut next = |axis: &str| {
         let part = parts.next().ok_or_else(|| format!("{axis} is missing"))?;
-        let shown: String = part.chars().take(40).collect();
+        let shown = shown(part);
         let value: f64 = part
             .parse()
             .map_err(|_| format!("{axis} is `{shown}`, not a number"))?;
@@ -81,7 +80,7 @@ fn read_vector(line: &str) -> Result<[i32; 2], String> {
     let vector = [next("x")?, next("y")?];
     match parts.next() {
         None => Ok(vector),
-        Some(_) => Err("it has more than two numbers".into()),
+        Some(_) => Err("more than two numbers".into()),
     }
 }
 
@@ -125,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_line() {
+    fn errors_name_the_line() {
         let good = text(&table());
         let lines = good.lines().count();
         for (bad, line, says) in [
@@ -142,16 +141,10 @@ mod tests {
             ),
             (String::new(), 0, "ends after 0"),
         ] {
-            match Table::from_text(map(), "blue", &bad) {
-                Err(TableError::Text {
-                    line: found,
-                    problem,
-                }) => {
-                    assert_eq!(found, line, "{problem}");
-                    assert!(problem.contains(says), "{problem}");
-                }
-                other => panic!("{other:?}"),
-            }
+            let error = Table::from_text(map(), "blue", &bad).expect_err(says);
+            assert_eq!(error.kind(), ErrorKind::TableText);
+            assert_eq!(error.field(), format!("line {line} of the text"));
+            assert!(error.problem().contains(says), "{error}");
         }
     }
 }

@@ -1,19 +1,18 @@
-//! What the tests of the sampler ask: tables of arbitrary vectors, seeds, and all points of a plan.
+//! What the tests of point sets share: tables of arbitrary vectors, seeds, and all points of a plan.
 
-#![allow(dead_code, reason = "each test takes what it needs")]
+#![allow(dead_code, reason = "each test uses what it needs")]
 
-use std::sync::Arc;
+use std::path::Path;
 
 use proptest::prelude::*;
 use strew_core::{
-    Alpha, Map, Placement, Plan, Point, Sampler, Seed, Spacing, Table, Warp,
-    sample::{Backend, Format},
+    Alpha, Backend, Format, Map, Placement, Plan, Point, PointSet, Seed, Spacing, Table, Warp,
     table::{FRACTION_BITS, Provenance},
 };
 
 const ALPHAS: [&str; 3] = ["(5-sqrt(3))/2", "sqrt(3)", "(1+sqrt(5))/2"];
 
-/// A table with arbitrary vectors up to about ±13 grid units, as long as any published one's.
+/// A table with arbitrary vectors up to about ±13 grid units, as long as those of published tables.
 pub fn table(alpha: &str, radius: u32) -> Table {
     let map = Map::new(alpha.parse::<Alpha>().expect("valid"), radius).expect("small");
     let blocks = map.intervals() * map.intervals();
@@ -33,9 +32,24 @@ pub fn unit(seed: u64) -> Placement {
     Placement::new(Spacing::new(1.0).expect("valid"), Seed(seed))
 }
 
-pub fn samplers() -> &'static [Arc<Sampler>; 3] {
-    static ONCE: std::sync::OnceLock<[Arc<Sampler>; 3]> = std::sync::OnceLock::new();
-    ONCE.get_or_init(|| ALPHAS.map(|alpha| Arc::new(Sampler::new(table(alpha, 20)))))
+/// A table of arbitrary vectors for each α, made once.
+pub fn tables() -> &'static [Table; 3] {
+    static ONCE: std::sync::OnceLock<[Table; 3]> = std::sync::OnceLock::new();
+    ONCE.get_or_init(|| ALPHAS.map(|alpha| table(alpha, 20)))
+}
+
+/// A table of the repository, by the name of its file without the ending.
+pub fn shipped(name: &str) -> Table {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let file = format!("{name}.strew");
+    let places = [root.join("tables"), root.join("../../tables")];
+    let found = places.iter().find_map(|place| std::fs::read(place.join(&file)).ok());
+    Table::from_bytes(&found.expect("there")).expect("valid")
+}
+
+/// The set of a table at a placement.
+pub fn set(table: &Table, placement: Placement) -> PointSet {
+    PointSet::new(table.clone()).placed(placement)
 }
 
 pub fn all<F: Format>(plan: &Plan, block: usize) -> Vec<F::Item> {
@@ -60,8 +74,8 @@ pub fn in_order_of_ids(mut points: Vec<Point>) -> Vec<Point> {
     points
 }
 
-pub fn any_sampler() -> impl Strategy<Value = Arc<Sampler>> {
-    (0..3usize).prop_map(|i| samplers()[i].clone())
+pub fn any_table() -> impl Strategy<Value = Table> {
+    (0..3usize).prop_map(|i| tables()[i].clone())
 }
 
 pub fn any_seed() -> impl Strategy<Value = (Seed, Warp)> {

@@ -1,8 +1,21 @@
 //! Circles.
 
-use super::{AreaError, Region, State, Steps};
+use super::{
+    Region,
+    steps::{State, Steps},
+};
+use crate::error::{Error, ErrorKind, number};
 
-/// A disk: the points nearer to the center than the radius, by squared distances in `f64`.
+/// A disk without its rim: the points nearer to the center than the radius, compared as squared
+/// distances in `f64`.
+///
+/// ```
+/// use strew_core::Circle;
+///
+/// let circle = Circle::new([10.0, 0.0], 5.0)?;
+/// assert!(circle.contains([14.9, 0.0]) && !circle.contains([15.0, 0.0]));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
     center: [f64; 2],
@@ -13,13 +26,15 @@ impl Circle {
     /// The disk around a center.
     ///
     /// # Errors
-    /// [`AreaError`] if a number is not finite or the radius is not positive.
-    pub fn new(center: [f64; 2], radius: f64) -> Result<Self, AreaError> {
+    /// [`ErrorKind::Area`] if a number is not finite or the radius is not positive.
+    pub fn new(center: [f64; 2], radius: f64) -> Result<Self, Error> {
         if let Some(&value) = center.iter().find(|value| !value.is_finite()) {
-            return Err(AreaError::CenterNotFinite(value));
+            let value = alloc::format!("at {}", number(value));
+            return Err(Error::new(ErrorKind::Area, "the center", value, "finite"));
         }
         if !(radius > 0.0 && radius.is_finite()) {
-            return Err(AreaError::Radius(radius));
+            let (value, allowed) = (number(radius), "a positive finite number");
+            return Err(Error::new(ErrorKind::Area, "the radius", value, allowed));
         }
         Ok(Self { center, radius })
     }
@@ -43,7 +58,7 @@ impl Circle {
         dx * dx + dy * dy < self.radius * self.radius
     }
 
-    /// A box around it, a little wider than need be; `None` if its corners are not finite.
+    /// A box around the disk, with room for rounding; `None` if its corners are not finite.
     pub(super) fn bounds(&self) -> Option<Region> {
         let reach = self.radius * (1.0 + SLACK);
         let min = self.center.map(|c| (c - reach).next_down());
@@ -51,9 +66,9 @@ impl Circle {
         Region::new(min, max).ok()
     }
 
-    /// Whether all points of a box, its upper sides included, are inside or none: rounded
-    /// differences, squares and sums grow with what they are made of, so its nearest and its
-    /// farthest place decide.
+    /// `Some(true)` if all points of a box, its upper sides included, lie inside, `Some(false)` if none
+    /// does. Rounded differences, squares and sums are monotone, so the nearest and the farthest place
+    /// of the box decide.
     pub(super) fn within(&self, within: &Region) -> Option<bool> {
         let (min, max) = (within.min(), within.max());
         let nearest = [0, 1].map(|i| self.center[i].max(min[i]).min(max[i]));
@@ -70,6 +85,7 @@ impl Circle {
         }
     }
 
+    /// The states of a strip y₀ ≤ y ≤ y₁ along x.
     pub(super) fn steps(&self, [y0, y1]: [f64; 2], steps: &mut Steps) {
         let [x, y] = self.center;
         let r2 = self.radius * self.radius;
@@ -79,7 +95,7 @@ impl Circle {
         } else {
             (y0 - y).abs().min((y1 - y).abs())
         };
-        // Squares and differences are off by a few units in the last place of the larger term.
+        // Squares and differences err by a few units in the last place of the larger term.
         let half_width = |distance: f64| {
             let square = r2 - distance * distance;
             (square > 0.0).then(|| libm::sqrt(square))
@@ -102,5 +118,5 @@ impl Circle {
     }
 }
 
-/// Relative room for rounding.
+/// Room for rounding, relative.
 const SLACK: f64 = 1e-12;

@@ -1,17 +1,13 @@
-//! How long an area's outline is: what counting its points costs, since only there points have to be
-//! looked at one by one.
+//! The length of outlines. Counting tests points one by one only there, so it is what counting costs.
 
 use alloc::vec::Vec;
 
 use super::{Area, Region};
 
 impl Area {
-    /// About half the length along the axes of the outlines of all its shapes, as far as they lie in
-    /// `within`: width + height for a box that does.
-    ///
-    /// Counting takes time in proportion to this and to the area's height.
-    #[must_use]
-    pub fn outline(&self, within: Region) -> f64 {
+    /// About half the length, along the axes, of the outlines of all shapes inside `within`: width +
+    /// height for a box.
+    pub(crate) fn outline(&self, within: Region) -> f64 {
         let sides = |region: Region| {
             let ([x0, y0], [x1, y1]) = (region.min(), region.max());
             (x1 - x0) + (y1 - y0)
@@ -30,13 +26,10 @@ impl Area {
         }
     }
 
-    /// Over strips of a height, from the bottom of `within` up: the sum of the products of how long
-    /// the [`outline`](Self::outline) is in a strip and how many edges, boxes and circles reach into
-    /// it. Points beside an outline are compared with all of these.
-    ///
-    /// Takes time and memory in proportion to the edges and to the outline in strips.
-    #[must_use]
-    pub fn comparisons(&self, within: Region, strip: f64) -> f64 {
+    /// The sum, over strips of a height, of the [`outline`](Self::outline) in the strip times the number
+    /// of edges, boxes and circles that touch it: points beside an outline are compared with all of
+    /// these.
+    pub(crate) fn comparisons(&self, within: Region, strip: f64) -> f64 {
         let mut strips = Strips {
             within,
             strip,
@@ -60,7 +53,7 @@ impl Area {
     }
 }
 
-/// How many edges each strip has, and how much outline.
+/// The number of edges and the length of outline of each strip.
 struct Strips {
     within: Region,
     strip: f64,
@@ -68,7 +61,7 @@ struct Strips {
 }
 
 impl Strips {
-    /// Adds a part of an outline: `share` of its box's width and height.
+    /// Adds `share` of the width and height of an edge's box.
     fn add(&mut self, part: Region, share: f64) {
         let ([x0, y0], [x1, y1]) = (part.min(), part.max());
         let (min, max) = (self.within.min(), self.within.max());
@@ -92,12 +85,10 @@ impl Strips {
 
 #[cfg(test)]
 mod tests {
-    use crate::sample::{Circle, Polygon};
-
-    use super::*;
+    use super::{super::{Circle, Polygon}, *};
 
     #[test]
-    fn outlines_add_up_and_end_where_they_are_not_looked_at() {
+    fn outlines_add_up_and_are_clipped() {
         let all = Region::new([-100.0; 2], [100.0; 2]).expect("ordered");
         let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
         let square = Area::from(Region::new([0.0; 2], [2.0, 1.0]).expect("ordered"));
@@ -108,7 +99,7 @@ mod tests {
         assert!(near(circle.outline(all), 20.0));
         let part = Region::new([0.0; 2], [1.0; 2]).expect("ordered");
         assert!(near(square.outline(part), 2.0));
-        // The circle reaches into three strips, the square into the second.
+        // The circle touches three strips, the square the second.
         let both = circle.clone().without([square.clone()]);
         let disc = Region::new([-5.0; 2], [5.0; 2]).expect("ordered");
         let compared = both.comparisons(disc, 4.9);

@@ -2,56 +2,56 @@
 
 use alloc::vec::Vec;
 
-use robust::{Coord, orient2d};
-
 use super::{
-    AreaError, Region, State,
-    steps::{Reach, Stepper},
+    Region,
+    edge::{Edge, is_odd},
+    steps::{Reach, State, Stepper},
 };
+use crate::error::{Error, ErrorKind, number};
 
-/// A polygon: one ring or several; a point is inside if a ray from it crosses the rings an odd
-/// number of times, so rings within rings are holes.
+/// A polygon of one or more rings. A point is inside if a ray from it crosses the rings an odd number
+/// of times, so rings within rings are holes.
 ///
-/// A point on an edge counts as on its right (greater x), or above it if it is horizontal, whatever
-/// the order of the vertices. Left of or right of an edge is decided exactly (Shewchuk 1997). So
-/// polygons that share an edge, vertex by vertex, have no point in common and leave none out, and a
-/// rectangle has the points of the half-open box.
+/// A point on an edge belongs to its right (greater x), or above it if the edge is horizontal, whatever
+/// the order of the vertices. The side of an edge is decided exactly (Shewchuk 1997). So polygons that
+/// share an edge, vertex by vertex, share no point and lose none, and a rectangle has the points of the
+/// half-open box.
+///
+/// ```
+/// use strew_core::Polygon;
+///
+/// let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+/// let hole = [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0]];
+/// let polygon = Polygon::new(&[square, hole])?;
+/// assert!(polygon.contains([0.5, 2.0]) && !polygon.contains([2.0, 2.0]));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
-    /// The edges that rays can cross.
+    /// The edges that rays can cross: all but the horizontal ones.
     edges: Vec<Edge>,
-    /// The horizontal ones: rays along them cross nothing, but strips end there.
+    /// The horizontal edges. Rays cross none of them, but strips end there.
     flat: Vec<Edge>,
-    /// Of edges that have been left out because they lie beyond greater x: from which y on rays
-    /// cross one more or one fewer of them. Ascending.
+    /// The y at which a ray crosses one more or one fewer of the edges that were left out because they
+    /// lie at greater x than the box in focus. Ascending.
     turns: Vec<f64>,
-    /// The greatest x of the box that has been focused on.
+    /// The greatest x of the box in focus.
     right: f64,
     vertices: usize,
     min: [f64; 2],
     max: [f64; 2],
 }
 
-/// An edge, upward.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Edge {
-    low: [f64; 2],
-    high: [f64; 2],
-    /// x per y; infinite if that is more than can be reckoned with.
-    slope: f64,
-    /// How far from the edge its x by the slope may be.
-    slack: f64,
-}
-
 impl Polygon {
     /// A polygon of rings. The last vertex of a ring may repeat the first.
     ///
     /// # Errors
-    /// [`AreaError`] without a ring, for one of fewer than three vertices, and for coordinates
-    /// that are not finite.
-    pub fn new(rings: &[impl AsRef<[[f64; 2]]>]) -> Result<Self, AreaError> {
+    /// [`ErrorKind::Area`] if there is no ring, a ring has fewer than three different vertices in a
+    /// row, or a coordinate is not finite.
+    pub fn new(rings: &[impl AsRef<[[f64; 2]]>]) -> Result<Self, Error> {
         if rings.is_empty() {
-            return Err(AreaError::NoRing);
+            let (value, allowed) = ("without a ring", "made of at least one");
+            return Err(Error::new(ErrorKind::Area, "the polygon", value, allowed));
         }
         let mut polygon = Self {
             edges: Vec::new(),
@@ -62,20 +62,18 @@ impl Polygon {
             min: [f64::INFINITY; 2],
             max: [f64::NEG_INFINITY; 2],
         };
-        for (number, ring) in rings.iter().enumerate() {
-            polygon.add(number, ring.as_ref())?;
+        for (which, ring) in rings.iter().enumerate() {
+            polygon.add(which, ring.as_ref())?;
         }
         Ok(polygon)
     }
 
-    fn add(&mut self, number: usize, ring: &[[f64; 2]]) -> Result<(), AreaError> {
+    fn add(&mut self, which: usize, ring: &[[f64; 2]]) -> Result<(), Error> {
         for (vertex, p) in ring.iter().enumerate() {
             if let Some(&value) = p.iter().find(|value| !value.is_finite()) {
-                return Err(AreaError::VertexNotFinite {
-                    ring: number,
-                    vertex,
-                    value,
-                });
+                let field = alloc::format!("vertex {vertex} of ring {which}");
+                let value = alloc::format!("at {}", number(value));
+                return Err(Error::new(ErrorKind::Area, field, value, "finite"));
             }
         }
         let mut vertices: Vec<[f64; 2]> = ring.to_vec();
@@ -84,10 +82,9 @@ impl Polygon {
             vertices.pop();
         }
         if vertices.len() < 3 {
-            return Err(AreaError::FewVertices {
-                ring: number,
-                vertices: vertices.len(),
-            });
+            let field = alloc::format!("ring {which}");
+            let value = alloc::format!("{} different vertices in a row", vertices.len());
+            return Err(Error::new(ErrorKind::Area, field, value, "at least 3"));
         }
         self.vertices += vertices.len();
         for (i, &a) in vertices.iter().enumerate() {
@@ -108,16 +105,15 @@ impl Polygon {
         Ok(())
     }
 
-    /// How many vertices it has.
+    /// The number of vertices of all rings.
     #[must_use]
     pub const fn vertices(&self) -> usize {
         self.vertices
     }
 
-    /// The box around it.
+    /// The box around the polygon.
     #[must_use]
     pub fn bounds(&self) -> Region {
-        // Rings have been checked.
         Region::between(self.min, self.max)
     }
 
@@ -127,13 +123,13 @@ impl Polygon {
         self.is_in_beyond(p[1]) ^ is_odd(self.edges.iter(), p)
     }
 
-    /// Whether rays of this y cross an odd number of the edges left out.
+    /// Whether rays at a y cross an odd number of the edges left out.
     fn is_in_beyond(&self, y: f64) -> bool {
         self.turns.partition_point(|&turn| turn <= y) % 2 == 1
     }
 
-    /// The same polygon for points within a box, its upper sides included; `Ok` if all of them are
-    /// inside or all outside.
+    /// The polygon for points of a box, its upper sides included, with the edges that matter there;
+    /// `Ok` if all of the box is inside or all of it outside.
     pub(super) fn focus(&self, within: &Region) -> Result<bool, Self> {
         let ([x0, y0], [x1, y1]) = (within.min(), within.max());
         let mut near = Self {
@@ -157,10 +153,10 @@ impl Polygon {
         };
         near.flat.extend(self.flat.iter().filter(meets));
         near.turns.sort_unstable_by(f64::total_cmp);
-        // Where one edge ends and the next begins nothing changes.
+        // Nothing changes where one edge ends and the next begins.
         let mut turns: Vec<f64> = Vec::with_capacity(near.turns.len());
         for &turn in near.turns.iter().filter(|&&turn| turn <= y1) {
-            // Those that all rays of the box are above count by their parity.
+            // Of those below all rays of the box only the parity counts.
             let turn = if turn <= y0 { f64::NEG_INFINITY } else { turn };
             if turns.last() == Some(&turn) {
                 turns.pop();
@@ -175,7 +171,7 @@ impl Polygon {
         Err(near)
     }
 
-    /// The boxes around its edges.
+    /// The boxes around the edges.
     pub(super) fn sides(&self) -> impl Iterator<Item = Region> {
         let side = |edge: &Edge| {
             let (a, b) = (edge.low, edge.high);
@@ -185,7 +181,7 @@ impl Polygon {
         self.edges.iter().chain(&self.flat).map(side)
     }
 
-    /// What a strip is along x, within what has been focused on.
+    /// The states of a strip y₀ ≤ y ≤ y₁ along x, within the box in focus.
     pub(super) fn steps(&self, strip: [f64; 2], stepper: &mut Stepper) {
         let Stepper { steps, edges } = stepper;
         let [y0, _] = strip;
@@ -201,7 +197,7 @@ impl Polygon {
                     crosses,
                     edge: *edge,
                 };
-                // They are few, and come in order more often than not.
+                // Few edges, mostly in order already.
                 let is_after = |other: &&Reach| other.extent[0] > reach.extent[0];
                 let after = edges.iter().rev().take_while(is_after).count();
                 edges.insert(edges.len() - after, reach);
@@ -209,8 +205,8 @@ impl Polygon {
         }
         let state = |inside| if inside { State::In } else { State::Out };
         steps.restart(state(inside));
-        // Edges whose extents meet are asked together. What is beyond them is another part of the
-        // outline, which crosses all levels of the strip an even number of times, or all an odd.
+        // Edges whose extents meet are tested together. The outline beyond them crosses every level of
+        // the strip an even number of times, or every level an odd number.
         let mut next = 0;
         while let Some(first) = edges.get(next) {
             steps.push(first.extent[0], State::Test);
@@ -223,96 +219,13 @@ impl Polygon {
                 inside ^= reach.crosses;
                 next += 1;
             }
-            // Edges that go on beyond the box may end in the strip, where those that have been left
-            // out begin.
+            // An edge that leaves the box may end in the strip, where one that was left out begins.
             if end <= self.right {
                 steps.note(start..next, inside);
             }
             steps.push(end, state(inside));
         }
         debug_assert_eq!(inside, beyond, "rings are closed");
-    }
-}
-
-/// Whether a point is left of an odd number of edges, on a level with them.
-#[inline(always)]
-pub(super) fn is_odd<'a>(edges: impl Iterator<Item = &'a Edge> + Clone, p: [f64; 2]) -> bool {
-    let mut odd = false;
-    let mut doubtful = false;
-    for edge in edges.clone() {
-        let [crosses, unsure] = edge.nearly_is_right_of(p);
-        odd ^= crosses;
-        doubtful |= unsure;
-    }
-    if doubtful {
-        odd = is_odd_exactly(edges, p);
-    }
-    odd
-}
-
-#[cold]
-#[inline(never)]
-fn is_odd_exactly<'a>(edges: impl Iterator<Item = &'a Edge>, p: [f64; 2]) -> bool {
-    edges.filter(|edge| edge.is_right_of(p)).count() % 2 == 1
-}
-
-impl Edge {
-    fn new(low: [f64; 2], high: [f64; 2]) -> Self {
-        let [width, height] = [high[0] - low[0], high[1] - low[1]];
-        // Far from where products overflow.
-        let slope = if width.abs() < 1e300 && height > 0.0 && height < 1e300 {
-            width / height
-        } else {
-            f64::INFINITY
-        };
-        let slack = 4e-15 * (low[0].abs() + high[0].abs());
-        Self {
-            low,
-            high,
-            slope,
-            slack,
-        }
-    }
-
-    /// Its least and its greatest x.
-    const fn ends(&self) -> [f64; 2] {
-        let (a, b) = (self.low[0], self.high[0]);
-        if a < b { [a, b] } else { [b, a] }
-    }
-
-    /// Whether a ray from `p` toward greater x crosses the edge.
-    fn is_right_of(&self, p: [f64; 2]) -> bool {
-        let coord = |[x, y]: [f64; 2]| Coord { x, y };
-        self.low[1] <= p[1]
-            && p[1] < self.high[1]
-            && (p[0] < self.low[0].min(self.high[0])
-                || p[0] < self.low[0].max(self.high[0])
-                    && orient2d(coord(self.low), coord(self.high), coord(p)) > 0.0)
-    }
-
-    /// [`is_right_of`](Self::is_right_of) by the slope, and whether that may be wrong.
-    #[inline(always)]
-    fn nearly_is_right_of(&self, p: [f64; 2]) -> [bool; 2] {
-        let level = (self.low[1] <= p[1]) & (p[1] < self.high[1]);
-        let ahead = self.low[0] + (p[1] - self.low[1]) * self.slope - p[0];
-        // Not a number nor infinite where the slope is too steep.
-        let sure = (ahead.abs() > self.slack) & (ahead.abs() < f64::INFINITY);
-        [level & (ahead > 0.0), level & !sure]
-    }
-
-    fn touches(&self, [y0, y1]: [f64; 2]) -> bool {
-        self.low[1] <= y1 && self.high[1] >= y0
-    }
-
-    /// The x that the edge may have between two y that it touches, a little wider than need be.
-    fn extent(&self, [y0, y1]: [f64; 2]) -> [f64; 2] {
-        let ([x0, low], [x1, high]) = (self.low, self.high);
-        let [a, b] = if self.slope.is_finite() {
-            [y0, y1].map(|y| x0 + (y.clamp(low, high) - low) * self.slope)
-        } else {
-            [x0, x1]
-        };
-        [a.min(b) - self.slack, a.max(b) + self.slack]
     }
 }
 
@@ -345,19 +258,15 @@ mod tests {
         assert!(!polygon.contains([1.0, 1.0]) && polygon.contains([3.0, 3.0]));
         assert_eq!(polygon.vertices(), 8);
         let none: [&[[f64; 2]]; 0] = [];
-        assert_eq!(Polygon::new(&none), Err(AreaError::NoRing));
-        assert_eq!(
-            Polygon::new(&[[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0]]]),
-            Err(AreaError::FewVertices {
-                ring: 0,
-                vertices: 2
-            })
-        );
+        assert!(Polygon::new(&none).is_err());
+        let error = Polygon::new(&[[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0]]]);
+        let error = error.expect_err("two vertices");
+        assert_eq!(error.value(), "2 different vertices in a row");
         assert!(Polygon::new(&[[[0.0, 0.0], [1.0, f64::NAN], [1.0, 1.0]]]).is_err());
     }
 
     proptest! {
-        /// A fan of triangles around a point divides its hull's inside: no point twice, none lost.
+        /// A fan of triangles around a point partitions a polygon.
         #[test]
         fn triangles_that_share_edges_divide_the_plane(
             corners in prop::collection::vec((-8i32..8, -8i32..8), 3..8),
@@ -368,7 +277,7 @@ mod tests {
             let whole = Polygon::new(core::slice::from_ref(&ring));
             prop_assume!(whole.is_ok());
             let p = place((x, y));
-            // By parity the fan's triangles add up to the whole, overlapping or not.
+            // By parity the triangles add up to the whole, whether they overlap or not.
             let mut inside = false;
             for (i, &a) in ring.iter().enumerate() {
                 let triangle = [a, ring[(i + 1) % ring.len()], place(center)];

@@ -1,26 +1,26 @@
-//! What a strip of the plane is along x: inside, outside, or not the same everywhere.
+//! Steps: the states of a strip of the plane along x (inside, outside, or to be tested).
 
 use alloc::{vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
     Region,
-    polygon::{Edge, is_odd},
+    edge::{Edge, is_odd},
 };
 
-/// What is known of a rectangle of the plane. Ordered, so that "any of" is the maximum and "all of"
-/// the minimum.
+/// What is known of a rectangle of the plane. Ordered so that "any of" is the maximum and "all of" the
+/// minimum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(in crate::sample) enum State {
-    /// Outside, all of it.
+pub(crate) enum State {
+    /// All of it is outside.
     Out,
-    /// To be asked point by point.
+    /// Points must be tested one by one.
     Test,
-    /// Inside, all of it.
+    /// All of it is inside.
     In,
 }
 
-/// From where on which state holds.
+/// A change of state at `from`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Step {
     from: f64,
@@ -28,43 +28,42 @@ struct Step {
     near: Option<Near>,
 }
 
-/// Which edges of a polygon points have to be compared with, where that is known: some of a
-/// [`Stepper`]'s.
+/// The edges of a [`Stepper`] that decide whether a point of a stretch is inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::sample) struct Near {
+pub(crate) struct Near {
     first: u32,
     end: u32,
-    /// Whether points are inside that these edges are left of, or that are on no level with them.
+    /// Whether points are inside whose rays cross none of these edges.
     inside: bool,
 }
 
-/// An edge that reaches into a strip.
+/// An edge that touches a strip.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// From where to where, along x.
+    /// The x-interval that it covers.
     pub(super) extent: [f64; 2],
-    /// Whether it crosses the strip's lower side.
+    /// Whether it crosses the lower side of the strip.
     pub(super) crosses: bool,
     pub(super) edge: Edge,
 }
 
-/// States along x, ascending, the first from −∞ on. At a step itself nothing is known: what uses
-/// them keeps a distance.
+/// States along x, ascending, the first from −∞. Nothing is known at a step itself; users keep a
+/// distance from it.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::sample) struct Steps(Vec<Step>);
+pub(crate) struct Steps(Vec<Step>);
 
-/// Steps of one strip after another, in the same memory.
+/// Computes the steps of one strip after another in the same memory.
 #[derive(Clone, Debug, Default)]
-pub(in crate::sample) struct Stepper {
-    pub(in crate::sample) steps: Steps,
-    /// Of the last polygon: its edges, from left to right.
+pub(crate) struct Stepper {
+    pub(crate) steps: Steps,
+    /// The edges of the last polygon that touch the strip, from left to right.
     pub(super) edges: Vec<Reach>,
 }
 
 impl Stepper {
-    /// Whether a point is inside of which it is known what it has to be compared with.
+    /// Whether a point of a stretch with known edges is inside.
     #[inline]
-    pub(in crate::sample) fn contains(&self, near: Near, p: [f64; 2]) -> bool {
+    pub(crate) fn contains(&self, near: Near, p: [f64; 2]) -> bool {
         let edges = &self.edges[near.first as usize..near.end as usize];
         near.inside ^ is_odd(edges.iter().map(|reach| &reach.edge), p)
     }
@@ -77,8 +76,8 @@ impl Default for Steps {
 }
 
 impl Steps {
-    /// One state everywhere.
-    pub(in crate::sample) fn all(state: State) -> Self {
+    /// Steps with one state everywhere.
+    pub(crate) fn all(state: State) -> Self {
         Self(vec![Step {
             from: f64::NEG_INFINITY,
             state,
@@ -86,13 +85,13 @@ impl Steps {
         }])
     }
 
-    /// One state everywhere again.
-    pub(in crate::sample) fn restart(&mut self, state: State) {
+    /// Sets one state everywhere.
+    pub(crate) fn restart(&mut self, state: State) {
         self.0.clear();
         self.push(f64::NEG_INFINITY, state);
     }
 
-    /// Adds a step, not below the last one.
+    /// Adds a step at or above the last one.
     pub(super) fn push(&mut self, from: f64, state: State) {
         if self.0.last().is_none_or(|last| last.state != state) {
             let near = None;
@@ -100,8 +99,8 @@ impl Steps {
         }
     }
 
-    /// After a step to points that have to be asked: only edges of these numbers matter there, and
-    /// beyond them it is this state.
+    /// Records, after a step to [`State::Test`], the edges that decide there, and whether points right of
+    /// them are inside.
     pub(super) fn note(&mut self, edges: Range<usize>, inside: bool) {
         if let Some(last) = self.0.last_mut() {
             last.near = Some(Near {
@@ -112,6 +111,7 @@ impl Steps {
         }
     }
 
+    /// Sets the states of a box.
     pub(super) fn set_region(&mut self, region: &Region, [y0, y1]: [f64; 2]) {
         let (min, max) = (region.min(), region.max());
         self.restart(State::Out);
@@ -123,7 +123,7 @@ impl Steps {
         self.push(max[0], State::Out);
     }
 
-    /// The states of a combination of two areas.
+    /// The states of two areas combined by `join`.
     pub(super) fn join(&self, other: &Self, join: fn(State, State) -> State) -> Self {
         let (mut a, mut b) = (self.0.as_slice(), other.0.as_slice());
         let mut state = [State::Out; 2];
@@ -146,7 +146,7 @@ impl Steps {
         joined
     }
 
-    /// The states of everything outside.
+    /// Turns the states of an area into those of its complement.
     pub(super) fn invert(&mut self) {
         for step in &mut self.0 {
             step.state = match step.state {
@@ -160,9 +160,8 @@ impl Steps {
         }
     }
 
-    /// The stretches: from where to where which state holds, and what points are to be compared with
-    /// if that is known.
-    pub(in crate::sample) fn stretches(
+    /// The stretches of equal state: start, end, state, and the edges that decide, if known.
+    pub(crate) fn stretches(
         &self,
     ) -> impl Iterator<Item = (f64, f64, State, Option<Near>)> {
         let ends = self.0.iter().skip(1).map(|step| step.from);

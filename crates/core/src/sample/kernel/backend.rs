@@ -1,36 +1,66 @@
-//! Which instruction set fills rows: found once, at run time.
+//! Backends: the instruction sets that fill rows.
 
-/// The ways a row can be filled, all with the same bits.
+/// A way to fill rows. All have the same bits; [`best`](Self::best) is the default everywhere.
+///
+/// Instructions of x86-64 are found at run time. Without the feature `std` only those are used that the
+/// program is compiled for.
+///
+/// ```
+/// use strew_core::Backend;
+///
+/// assert_eq!(Backend::available().next(), Some(Backend::Scalar));
+/// println!("rows are filled by {:?}", Backend::best());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Backend {
     /// Plain code: the definition.
     Scalar,
-    /// 256-bit vectors.
-    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    /// 256-bit vectors of x86-64.
+    #[cfg(target_arch = "x86_64")]
     Avx2,
-    /// 512-bit vectors.
-    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    /// 512-bit vectors of x86-64.
+    #[cfg(target_arch = "x86_64")]
     Avx512,
+    /// 128-bit vectors of arm64, which every such machine has.
+    #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+    Neon,
+    /// 128-bit vectors of WebAssembly, if the program is compiled with `simd128`.
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    Simd128,
+}
+
+/// Whether the machine has some instructions of x86-64.
+#[cfg(target_arch = "x86_64")]
+macro_rules! has {
+    ($feature:tt) => {{
+        #[cfg(feature = "std")]
+        let has = std::is_x86_feature_detected!($feature);
+        #[cfg(not(feature = "std"))]
+        let has = cfg!(target_feature = $feature);
+        has
+    }};
 }
 
 impl Backend {
-    /// All that this machine has, the fastest last.
+    /// The backends of this machine, the fastest last.
     pub fn available() -> impl DoubleEndedIterator<Item = Self> {
         let all = [
             Some(Self::Scalar),
-            #[cfg(all(feature = "std", target_arch = "x86_64"))]
-            std::is_x86_feature_detected!("avx2").then_some(Self::Avx2),
-            #[cfg(all(feature = "std", target_arch = "x86_64"))]
-            (std::is_x86_feature_detected!("avx512f")
-                && std::is_x86_feature_detected!("avx512vl")
-                && std::is_x86_feature_detected!("avx512dq")
-                && std::is_x86_feature_detected!("avx2"))
-            .then_some(Self::Avx512),
+            #[cfg(target_arch = "x86_64")]
+            has!("avx2").then_some(Self::Avx2),
+            #[cfg(target_arch = "x86_64")]
+            (has!("avx512f") && has!("avx512vl") && has!("avx512dq") && has!("avx2"))
+                .then_some(Self::Avx512),
+            #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+            Some(Self::Neon),
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            Some(Self::Simd128),
         ];
         all.into_iter().flatten()
     }
 
-    /// The fastest that this machine has.
+    /// The fastest backend of this machine.
     #[must_use]
     pub fn best() -> Self {
         Self::available().next_back().unwrap_or(Self::Scalar)

@@ -1,15 +1,24 @@
-//! Every vectorized row beside plain code, bit for bit: all lengths around the widths of vectors,
-//! slices that begin anywhere, and memory before and after them that has to stay as it is. Under a
-//! memory checker (`just sanitize`) the same tests show that nothing beyond a slice is read.
+//! Rows by every backend beside plain code, bit for bit: all lengths around the widths of vectors, slices
+//! that begin anywhere, and memory before and after them that must stay as it is. Under a memory checker
+//! (`just sanitize`) these tests also show that nothing beyond a slice is read.
 
 use alloc::{vec, vec::Vec};
 
-use super::*;
-use crate::sample::{Seed, Warp, warp::Shears};
+use super::{
+    Backend, F32, F64, Format, Points, WarpedColumns, fill_row, fill_warped_row,
+    format::Row,
+    rows::emit,
+    write_numbers,
+};
+use crate::sample::{
+    Seed, Warp,
+    lattice::{Point, PointId},
+    warp::{PatchShears, Shears},
+};
 
-/// Lengths up to here: four vectors of 16 and a rest.
+/// The longest row: four vectors of 16 and a rest.
 const LONGEST: usize = 70;
-/// Slices begin so many items into their memory, or fewer.
+/// The number of places in memory at which slices begin.
 const SHIFTS: usize = 4;
 
 /// Numbers that look random.
@@ -23,7 +32,7 @@ fn numbers(seed: u64) -> impl Iterator<Item = u64> {
     })
 }
 
-/// A row of a patch: columns in their lattice order, each displaced by some units.
+/// A row of a patch: columns in lattice order, each displaced by some units.
 struct Example {
     lattice: Vec<i64>,
     displaced: Vec<i32>,
@@ -52,8 +61,8 @@ fn examples() -> impl Iterator<Item = Example> {
         .into_iter()
 }
 
-/// Runs `make` into every place of some memory and compares with `expected`, also around it. It gives
-/// how many items it has made.
+/// Runs `make` at several places of some memory and compares what it wrote with `expected`, and what lies
+/// around with what was there. `make` returns the number of items written.
 fn assert_written<I: Copy, B: PartialEq + core::fmt::Debug>(
     canary: I,
     bits: impl Fn(I) -> B,
@@ -98,7 +107,7 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
             .collect();
         for length in 0..=LONGEST {
             for from in 0..SHIFTS {
-                // Copies that end where the slices end: a checker sees what is read beyond.
+                // Copies that end where the slices end, so that a checker sees reads beyond.
                 let part = from..from + length;
                 let columns = columns[..part.end].to_vec();
                 let [displaced, displacements] =
@@ -114,7 +123,7 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
                         format.item(row.base, column, y, row.lattice)
                     })
                     .collect();
-                let warped = Columns {
+                let warped = WarpedColumns {
                     displaced: &displaced[from..],
                     displacements: dys,
                     lattice: &lattice[from..],
@@ -122,15 +131,12 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
                 for backend in Backend::available() {
                     let note = alloc::format!("{format:?} {backend:?} {length} from {from}");
                     let fill = |out: &mut [F::Item]| {
-                        format.fill_row(backend, *row, own, dys, out);
+                        fill_row(&format, backend, *row, own, dys, out);
                         out.len()
                     };
                     assert_written(canary, bits, &plain, fill, &note);
-                    let whole =
-                        |out: &mut [F::Item]| format.warp_row(backend, &shears, *row, warped, out);
-                    assert_written(canary, bits, &moved, whole, &note);
                     let all = |out: &mut [F::Item]| {
-                        warped_row(&format, backend, &shears, *row, warped, out);
+                        fill_warped_row(&format, backend, &shears, *row, warped, out);
                         out.len()
                     };
                     assert_written(canary, bits, &moved, all, &note);
@@ -145,7 +151,7 @@ fn rows_of_f32_pairs_have_the_same_bits_by_all_backends() {
     let format = F32 {
         step: 3.7e-7,
         first: [0, 0],
-        // Some places are cut to these, some are not.
+        // Some places are above these.
         last: [410_000.0, -1.249_4e9],
     };
     all_rows(format, [-1.5; 2], |item| item.map(f32::to_bits));
@@ -168,7 +174,7 @@ fn rows_of_points_have_the_same_bits_by_all_backends() {
     all_rows(Points(F64 { step: 3.7e-7 }), canary, bits);
 }
 
-/// Slices of different lengths: only what all of them have is written.
+/// Slices of different lengths: only what all of them hold is written.
 #[test]
 fn rows_end_where_the_shortest_slice_ends() {
     let format = F32 {
@@ -187,7 +193,7 @@ fn rows_end_where_the_shortest_slice_ends() {
             emit(&format, example.row, columns, dys, &mut expected);
             assert!(expected[least..].iter().all(|item| *item == [-1.5; 2]));
             let mut out = vec![[-1.5; 2]; room];
-            format.fill_row(backend, example.row, columns, dys, &mut out);
+            fill_row(&format, backend, example.row, columns, dys, &mut out);
             assert_eq!(out, expected, "{backend:?}");
         }
     }
@@ -199,16 +205,16 @@ fn hashed_numbers_have_the_same_bits_as_plain_ones() {
         let number = |n: u64| (n.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11) as f64;
         let expected: Vec<f64> = numbers(4).map(number).take(length).collect();
         let make = |out: &mut [f64]| {
-            compiled::write(numbers(4).map(number), out);
+            write_numbers(numbers(4).map(number), out);
             out.len()
         };
         let note = alloc::format!("{length}");
         assert_written(-1.5, f64::to_bits, &expected, make, &note);
-        // As attributes are: from an exact-size iterator, which compilers can make vectors of.
+        // As attributes come: from an exact-size iterator, which compilers can vectorize.
         let keys: Vec<u64> = numbers(5).take(length).collect();
         let expected: Vec<f64> = keys.iter().copied().map(number).collect();
         let make = |out: &mut [f64]| {
-            compiled::write(keys.iter().copied().map(number), out);
+            write_numbers(keys.iter().copied().map(number), out);
             out.len()
         };
         assert_written(-1.5, f64::to_bits, &expected, make, &note);

@@ -1,0 +1,217 @@
+//! The crate's one error type.
+
+use alloc::{borrow::Cow, boxed::Box, string::String, string::ToString};
+use core::fmt;
+
+/// Why a request was refused.
+///
+/// One opaque type serves the whole crate. Every error names the *field* that was wrong, the *value*
+/// it had and what is *allowed*; the four parts can be read one by one, and [`Display`](fmt::Display)
+/// joins them into a sentence. Programs that react to particular causes match on [`kind`](Self::kind).
+///
+/// The type is one pointer wide, so `Result<T, Error>` costs nothing where all goes well.
+///
+/// ```
+/// use strew_core::{ErrorKind, PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let error = PointSet::new(table).spacing(-4.0).unwrap_err();
+/// assert_eq!(error.kind(), ErrorKind::Spacing);
+/// assert_eq!((error.field(), error.value()), ("spacing", "-4"));
+/// assert_eq!(error.to_string(), "spacing is -4; it must be a number from 1e-100 to 1e100");
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, PartialEq)]
+pub struct Error(Box<Parts>);
+
+#[derive(Clone, PartialEq)]
+struct Parts {
+    kind: ErrorKind,
+    field: Cow<'static, str>,
+    value: String,
+    problem: Cow<'static, str>,
+    allowed: Cow<'static, str>,
+    limit: Option<f64>,
+}
+
+/// The cause of an [`Error`], for programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// A text is not an α, or its value is not between 1 and 2.
+    Alpha,
+    /// The half-width or the size of a neighborhood map.
+    MapSize,
+    /// A table or its file: which part is damaged or not allowed is the [`field`](Error::field).
+    Table,
+    /// A table file larger than [`MAX_FILE_BYTES`](crate::table::MAX_FILE_BYTES).
+    TableTooLarge,
+    /// A table file that ends before its stated length.
+    TableTruncated,
+    /// A table file written by a release with another file format.
+    TableVersion,
+    /// A line of a table's text form.
+    TableText,
+    /// A text is not 64 hexadecimal digits.
+    Digest,
+    /// A mean spacing.
+    Spacing,
+    /// A density.
+    Density,
+    /// The strength of a warp.
+    Warp,
+    /// A share of points to keep.
+    Keep,
+    /// A corner of a box.
+    Region,
+    /// The size or the place of a chunk.
+    Chunk,
+    /// A circle or a polygon.
+    Area,
+    /// An area that is not bounded, where all of its points are requested.
+    Unbounded,
+    /// A place or region so far from the origin that `f64` cannot tell neighbors apart;
+    /// [`limit`](Error::limit) is the largest absolute coordinate.
+    TooFar,
+    /// A text is not a point id.
+    PointId,
+    /// A place to search around is not finite.
+    Place,
+    /// A radius to search within.
+    Radius,
+    /// More neighbors requested than one search returns.
+    Neighbors,
+    /// A search that would visit more points than allowed.
+    TooMany,
+    /// A distance to keep clear of other points; [`limit`](Error::limit) is the largest.
+    Clearance,
+    /// A least distance that is not a positive finite number.
+    Distance,
+    /// The table guarantees no useful least distance.
+    NoLeastDistance,
+    /// A number of points to place.
+    Count,
+    /// A number of points that needs a smaller spacing than the caller allows.
+    TooDense,
+    /// The name, range or number of an attribute.
+    Attribute,
+    /// A list of variants.
+    Variants,
+    /// Counting was stopped by its [`Stop`](crate::server::Stop).
+    Stopped,
+}
+
+impl Error {
+    /// `field` has `value`; it must be `allowed`.
+    pub(crate) fn new(
+        kind: ErrorKind,
+        field: impl Into<Cow<'static, str>>,
+        value: impl fmt::Display,
+        allowed: impl Into<Cow<'static, str>>,
+    ) -> Self {
+        Self(Box::new(Parts {
+            kind,
+            field: field.into(),
+            value: value.to_string(),
+            problem: "".into(),
+            allowed: allowed.into(),
+            limit: None,
+        }))
+    }
+
+    /// Says what is wrong with the value, where "must be" does not.
+    pub(crate) fn because(mut self, problem: impl Into<Cow<'static, str>>) -> Self {
+        self.0.problem = problem.into();
+        self
+    }
+
+    /// Adds the number that [`limit`](Self::limit) returns.
+    pub(crate) fn with_limit(mut self, limit: f64) -> Self {
+        self.0.limit = Some(limit);
+        self
+    }
+
+    /// The cause.
+    #[must_use]
+    pub fn kind(&self) -> ErrorKind {
+        self.0.kind
+    }
+
+    /// The name of what was wrong: `spacing`, `min_x`, `ring 2`.
+    #[must_use]
+    pub fn field(&self) -> &str {
+        &self.0.field
+    }
+
+    /// The value it had, as text. Long texts are cut.
+    #[must_use]
+    pub fn value(&self) -> &str {
+        &self.0.value
+    }
+
+    /// What is wrong with the value; empty where [`allowed`](Self::allowed) says it all.
+    #[must_use]
+    pub fn problem(&self) -> &str {
+        &self.0.problem
+    }
+
+    /// What is allowed: `a number from 1e-100 to 1e100`.
+    #[must_use]
+    pub fn allowed(&self) -> &str {
+        &self.0.allowed
+    }
+
+    /// The largest value allowed, for the kinds that document one.
+    #[must_use]
+    pub fn limit(&self) -> Option<f64> {
+        self.0.limit
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Parts {
+            field,
+            value,
+            problem,
+            allowed,
+            ..
+        } = &*self.0;
+        write!(f, "{field} is {value}")?;
+        if !problem.is_empty() {
+            write!(f, ": {problem}")?;
+        }
+        if allowed.is_empty() {
+            Ok(())
+        } else {
+            write!(f, "; it must be {allowed}")
+        }
+    }
+}
+
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}: {self}", self.0.kind)
+    }
+}
+
+impl core::error::Error for Error {}
+
+/// A number for a message: plain digits, or an exponent where there would be too many.
+pub(crate) fn number(value: f64) -> String {
+    let plain = value == 0.0 || !value.is_finite() || (1e-5..1e16).contains(&value.abs());
+    if plain {
+        alloc::format!("{value}")
+    } else {
+        alloc::format!("{value:e}")
+    }
+}
+
+/// Cuts long input for a message.
+pub(crate) fn shown(text: &str) -> String {
+    const MOST: usize = 80;
+    match text.char_indices().nth(MOST) {
+        Some((at, _)) => alloc::format!("{}…", &text[..at]),
+        None => text.into(),
+    }
+}

@@ -1,0 +1,132 @@
+//! Boxes.
+
+use crate::error::{Error, ErrorKind, number};
+
+/// A half-open box in world coordinates: min ≤ p < max along both axes. It may be empty.
+///
+/// ```
+/// use strew_core::Region;
+///
+/// let region = Region::new([0.0, 0.0], [64.0, 64.0])?;
+/// assert!(region.contains([0.0, 0.0]) && !region.contains([64.0, 0.0]));
+/// // Chunks of a grid share no point and leave no gap.
+/// assert_eq!(Region::chunk(64.0, [0, 0])?, region);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    min: [f64; 2],
+    max: [f64; 2],
+}
+
+/// The names of the four numbers of a box.
+pub(crate) const CORNERS: [&str; 4] = ["min_x", "min_y", "max_x", "max_y"];
+
+impl Region {
+    /// The largest absolute column or row of a chunk.
+    pub const MAX_CHUNK: i64 = 1 << 52;
+
+    /// The box from `min` (included) to `max` (excluded).
+    ///
+    /// # Errors
+    /// [`ErrorKind::Region`] unless all four numbers are finite and max ≥ min along both axes. The
+    /// [field](Error::field) is `min_x`, `min_y`, `max_x` or `max_y`.
+    pub fn new(min: [f64; 2], max: [f64; 2]) -> Result<Self, Error> {
+        for (value, name) in min.into_iter().chain(max).zip(CORNERS) {
+            if !value.is_finite() {
+                let value = number(value);
+                return Err(Error::new(ErrorKind::Region, name, value, "a finite number"));
+            }
+        }
+        for axis in 0..2 {
+            if max[axis] < min[axis] {
+                let (name, value) = (CORNERS[2 + axis], number(max[axis]));
+                let allowed = alloc::format!("at least {}, the lower bound", number(min[axis]));
+                return Err(Error::new(ErrorKind::Region, name, value, allowed));
+            }
+        }
+        Ok(Self { min, max })
+    }
+
+    /// The chunk in column `at[0]` and row `at[1]` of a grid of squares with a side of `size` world
+    /// units. Neighbors compute their common corners from the same integers, so chunks partition the
+    /// plane exactly.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Chunk`] unless `size` is a positive finite number, column and row are within
+    /// ±[`MAX_CHUNK`](Self::MAX_CHUNK), and the corners are finite and differ in `f64`.
+    pub fn chunk(size: f64, at: [i64; 2]) -> Result<Self, Error> {
+        const ALLOWED: &str = "a size above 0 and two integers within ±4503599627370496";
+        let refused = |problem: &'static str| {
+            let value = alloc::format!("{}/{}/{}", number(size), at[0], at[1]);
+            Error::new(ErrorKind::Chunk, "chunk", value, ALLOWED).because(problem)
+        };
+        if !(size > 0.0 && size.is_finite()) {
+            return Err(refused("the size is not a finite number above 0"));
+        }
+        if at.iter().any(|v| v.unsigned_abs() > Self::MAX_CHUNK as u64) {
+            return Err(refused("too far from the origin"));
+        }
+        let corner = |offset: i64| at.map(|v| (v + offset) as f64 * size);
+        let region = Self::new(corner(0), corner(1));
+        let region = region.map_err(|_| refused("the corners are not finite"))?;
+        if region.is_empty() {
+            return Err(refused("too small to have an extent there"));
+        }
+        Ok(region)
+    }
+
+    /// The box between corners known to be in order. They may be infinite.
+    pub(crate) const fn between(min: [f64; 2], max: [f64; 2]) -> Self {
+        Self { min, max }
+    }
+
+    /// The lower corner, included.
+    #[must_use]
+    pub const fn min(&self) -> [f64; 2] {
+        self.min
+    }
+
+    /// The upper corner, excluded.
+    #[must_use]
+    pub const fn max(&self) -> [f64; 2] {
+        self.max
+    }
+
+    /// The intersection of two boxes; empty if they do not meet.
+    #[must_use]
+    pub fn and(&self, other: Self) -> Self {
+        let [min, max] = [
+            [0, 1].map(|i| self.min[i].max(other.min[i])),
+            [0, 1].map(|i| self.max[i].min(other.max[i])),
+        ];
+        let reversed = (0..2).any(|i| max[i] < min[i]);
+        Self {
+            min,
+            max: if reversed { min } else { max },
+        }
+    }
+
+    /// `Some(true)` if all points of another box, its upper sides included, lie inside, `Some(false)` if
+    /// none does.
+    pub(super) fn within(&self, other: &Self) -> Option<bool> {
+        let (min, max) = (other.min, other.max);
+        if (0..2).any(|i| max[i] < self.min[i] || self.max[i] <= min[i]) || self.is_empty() {
+            Some(false)
+        } else {
+            (self.contains(min) && self.contains(max)).then_some(true)
+        }
+    }
+
+    /// Whether the box has no extent along an axis.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.max[0] <= self.min[0] || self.max[1] <= self.min[1]
+    }
+
+    /// Whether a point lies inside.
+    #[must_use]
+    pub fn contains(&self, p: [f64; 2]) -> bool {
+        (0..2).all(|i| self.min[i] <= p[i] && p[i] < self.max[i])
+    }
+}

@@ -1,0 +1,177 @@
+//! The kinds of attributes.
+
+use core::{fmt, str::FromStr};
+
+use super::Variants;
+use crate::error::{Error, ErrorKind, number, shown};
+
+/// A value that every point has.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Attribute {
+    /// `angle`: a rotation in radians, uniform in [0, 2π).
+    Angle,
+    /// `scale`: a factor, uniform in a range.
+    Scale(ScaleRange),
+    /// `variant`: one of several named things, chosen by weight.
+    Variant(Variants),
+    /// `rank`: a number in [0, 1), uniform over the pattern. The points of rank below λ are a share λ of
+    /// all, nested as λ grows; see [`rank`](crate::rank).
+    Rank,
+    /// `u1` to `u16`: a number uniform in [0, 1), a multiple of 2⁻⁵³.
+    Uniform(UniformNumber),
+}
+
+/// The range of a scale: 0 ≤ min ≤ max.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaleRange {
+    min: f64,
+    max: f64,
+}
+
+/// The number of a uniform attribute, from 1 to 16.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UniformNumber(u8);
+
+impl ScaleRange {
+    /// The greatest scale.
+    pub const LIMIT: f64 = 1e9;
+
+    /// The range from `min` to `max`, both included.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Attribute`] unless 0 ≤ min ≤ max ≤ [`LIMIT`](Self::LIMIT).
+    pub fn new(min: f64, max: f64) -> Result<Self, Error> {
+        if 0.0 <= min && min <= max && max <= Self::LIMIT {
+            Ok(Self { min, max })
+        } else {
+            let value = alloc::format!("{} to {}", number(min), number(max));
+            let allowed = "two numbers with 0 <= min <= max <= 1e9";
+            Err(Error::new(ErrorKind::Attribute, "scale_range", value, allowed))
+        }
+    }
+
+    /// The least scale, included.
+    #[must_use]
+    pub const fn min(self) -> f64 {
+        self.min
+    }
+
+    /// The greatest scale, included.
+    #[must_use]
+    pub const fn max(self) -> f64 {
+        self.max
+    }
+}
+
+impl UniformNumber {
+    /// The largest number.
+    pub const MAX: u8 = 16;
+
+    /// The uniform number `n`, from 1 to [`MAX`](Self::MAX).
+    ///
+    /// # Errors
+    /// [`ErrorKind::Attribute`] for any other.
+    pub fn new(n: u8) -> Result<Self, Error> {
+        if 1 <= n && n <= Self::MAX {
+            Ok(Self(n))
+        } else {
+            let field = "the uniform number";
+            Err(Error::new(ErrorKind::Attribute, field, n, "from 1 to 16"))
+        }
+    }
+
+    /// The number, from 1 to 16.
+    #[must_use]
+    pub const fn get(self) -> u8 {
+        self.0
+    }
+}
+
+/// The names of the uniform numbers.
+const UNIFORM_NAMES: [&str; UniformNumber::MAX as usize] = [
+    "u1", "u2", "u3", "u4", "u5", "u6", "u7", "u8", "u9", "u10", "u11", "u12", "u13", "u14", "u15",
+    "u16",
+];
+
+impl Attribute {
+    /// A scale uniform in [min, max].
+    ///
+    /// # Errors
+    /// As [`ScaleRange::new`].
+    pub fn scale(min: f64, max: f64) -> Result<Self, Error> {
+        ScaleRange::new(min, max).map(Self::Scale)
+    }
+
+    /// The uniform number `n`.
+    ///
+    /// # Errors
+    /// As [`UniformNumber::new`].
+    pub fn uniform(n: u8) -> Result<Self, Error> {
+        UniformNumber::new(n).map(Self::Uniform)
+    }
+
+    /// The name: `angle`, `scale`, `variant`, `rank`, `u1` to `u16`.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Angle => "angle",
+            Self::Scale(_) => "scale",
+            Self::Variant(_) => "variant",
+            Self::Rank => "rank",
+            Self::Uniform(n) => UNIFORM_NAMES[n.0 as usize - 1],
+        }
+    }
+
+    /// The codes keep the hashes of attributes apart. Part of the algorithm version.
+    pub(crate) const ANGLE: u64 = 1;
+    pub(crate) const SCALE: u64 = 2;
+    pub(crate) const VARIANT: u64 = 3;
+
+    pub(crate) const fn uniform_code(n: u8) -> u64 {
+        0x100 + n as u64
+    }
+
+    /// The code of this attribute. The rank, which is not hashed, has 0.
+    pub(super) const fn code(&self) -> u64 {
+        match self {
+            Self::Rank => 0,
+            Self::Angle => Self::ANGLE,
+            Self::Scale(_) => Self::SCALE,
+            Self::Variant(_) => Self::VARIANT,
+            Self::Uniform(n) => Self::uniform_code(n.0),
+        }
+    }
+}
+
+/// Reads the attributes that consist of a name: `angle`, `rank`, `u1` to `u16`.
+impl FromStr for Attribute {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let incomplete = |name, needs: &'static str| {
+            let error = Error::new(ErrorKind::Attribute, "attribute", name, needs);
+            Err(error.because("incomplete"))
+        };
+        match text {
+            "angle" => Ok(Self::Angle),
+            "rank" => Ok(Self::Rank),
+            "scale" => incomplete("scale", "given with a range, such as 0.8 to 1.2"),
+            "variant" => incomplete("variant", "given with a list of variants, such as oak:3,birch:1"),
+            _ => match (1..).zip(UNIFORM_NAMES).find(|(_, name)| *name == text) {
+                Some((n, _)) => Self::uniform(n),
+                None => {
+                    let value = alloc::format!("{:?}", shown(text));
+                    let allowed = "angle, scale, variant, rank or u1 to u16";
+                    Err(Error::new(ErrorKind::Attribute, "attribute", value, allowed))
+                }
+            },
+        }
+    }
+}
+
+impl fmt::Display for Attribute {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

@@ -1,0 +1,132 @@
+//! Tallies: the number of columns or rows of a range in each class and block, all at once.
+//!
+//! Short ranges are listed. In others the number of coordinates whose index lies between two thresholds
+//! is a difference of sums of whole turns. Thresholds are neighbor shifts, so the sums of all of them
+//! follow from a few, corrected at the ends of the range: see [`Turns`].
+
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use crate::{
+    pattern::{Axis, Class, Turns},
+    sample::lattice::{Lattice, lines_of_class},
+};
+
+/// Counts by class (in the order of [`Class::ordinal`]) and block.
+pub(super) type Tally = [Vec<u64>; 4];
+
+/// Listing this many coordinates for each interval takes as long as the sums.
+const WORTH: usize = 8;
+
+/// The tally of a range along an axis.
+pub(super) fn tally(lattice: &Lattice, axis: Axis, range: &Range<i64>) -> Tally {
+    let intervals = lattice.map().intervals();
+    if range.end - range.start < (WORTH * intervals) as i64 {
+        by_listing(lattice, axis, range)
+    } else {
+        by_turns(lattice, axis, range)
+    }
+}
+
+fn by_listing(lattice: &Lattice, axis: Axis, range: &Range<i64>) -> Tally {
+    Class::ALL.map(|class| {
+        let mut counts = alloc::vec![0; lattice.map().intervals()];
+        let ranges = [range.clone(), range.end..range.end];
+        for line in lines_of_class(lattice, axis, class, ranges) {
+            counts[line.block as usize] += 1;
+        }
+        counts
+    })
+}
+
+fn by_turns(lattice: &Lattice, axis: Axis, range: &Range<i64>) -> Tally {
+    let (map, pattern) = (lattice.map(), &lattice.pattern);
+    let alpha = pattern.alpha();
+    let reach = i64::from(map.radius()) + 1;
+    let turns = Turns::new(pattern, axis, range, -reach..reach);
+    let ends = map.labels().iter().map(|label| (label, label.turns(alpha)));
+    let ends: Vec<_> = ends.collect();
+    Class::ALL.map(|class| {
+        let (own, other) = match axis {
+            Axis::X => (class.x, class.y),
+            Axis::Y => (class.y, class.x),
+        };
+        let first = range.start + ((range.start ^ i64::from(own)) & 1);
+        let candidates = ((range.end - first).max(0) as u64).div_ceil(2);
+        // Σ ⌊index − threshold⌋ over the coordinates of the class. Subtracting a threshold adds k
+        // coordinates and b halves to the index.
+        let below = |i: usize| {
+            let (label, turned) = ends[i];
+            let halves = other + label.b;
+            let whole = i64::from(halves / 2) - turned;
+            let sum = turns.sum(label.k, halves, own);
+            sum.wrapping_add(candidates.wrapping_mul(whole as u64))
+        };
+        let window = pattern.window(other);
+        let mut start = below(0);
+        let count = |i: usize| {
+            let end = below(i + 1);
+            let all = core::mem::replace(&mut start, end).wrapping_sub(end);
+            let interval = map.interval(i);
+            if window.start <= interval.start && interval.end <= window.end {
+                all
+            } else {
+                // The window of a thinned pattern ends inside the block or before it.
+                pattern
+                    .axis_subset(axis, class, interval)
+                    .count(range.clone())
+            }
+        };
+        (0..map.intervals()).map(count).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        sample::{Keep, Placement, Seed, Spacing},
+        table::Table,
+    };
+
+    proptest! {
+        #[test]
+        fn turns_agree_with_listing(
+            alpha in prop_oneof![Just("(5-sqrt(3))/2"), Just("sqrt(2)"), Just("3/2"), Just("1.07")],
+            radius in 0u32..60, seed: u64, share in prop_oneof![0.01..1.0f64, Just(1.0)],
+            start in prop_oneof![-3000i64..3000, -(1i64 << 52)..1 << 52], length in 0i64..2500,
+        ) {
+            let table = Table::undisplaced(alpha.parse().expect("valid"), radius, "test");
+            let placement = Placement::new(Spacing::new(1.0).expect("valid"), Seed(seed))
+                .with_keep(Keep::new(share).expect("in range"));
+            let lattice = Lattice::new(table.expect("small"), placement);
+            let range = start..start + length;
+            for axis in [Axis::X, Axis::Y] {
+                let expected = by_listing(&lattice, axis, &range);
+                prop_assert_eq!(by_turns(&lattice, axis, &range), expected);
+            }
+        }
+
+        #[test]
+        fn tallies_of_long_ranges_add_up(
+            seed: u64, start in -(1i64 << 52)..1 << 52, length in 0i64..1 << 52, cut in 0.0..1.0f64,
+        ) {
+            let alpha = "(5-sqrt(3))/2".parse().expect("valid");
+            let table = Table::undisplaced(alpha, 49, "test").expect("small");
+            let placement = Placement::new(Spacing::new(1.0).expect("valid"), Seed(seed));
+            let lattice = Lattice::new(table, placement);
+            let middle = start + (length as f64 * cut) as i64;
+            let of = |range| by_turns(&lattice, Axis::Y, &range);
+            let (whole, a, b) = (of(start..start + length), of(start..middle), of(middle..start + length));
+            for class in 0..4 {
+                for i in 0..whole[class].len() {
+                    prop_assert_eq!(whole[class][i], a[class][i] + b[class][i]);
+                }
+            }
+            let set = lattice.pattern.axis_set(Axis::Y, Class::ALL[2]);
+            prop_assert_eq!(whole[2].iter().sum::<u64>(), set.count(start..start + length));
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! 256-bit vectors of x86-64: eight lanes.
+
+use core::arch::x86_64::*;
+
+use super::super::{dispatch::VectorLoop, lanes::Lanes};
+use crate::sample::warp::{CELL_BITS, PATCH_CELL_MASK, PATCH_CELLS};
+
+/// Runs a loop.
+///
+/// # Safety
+/// The machine has AVX2.
+#[target_feature(enable = "avx2")]
+pub(in super::super) unsafe fn run(work: &mut impl VectorLoop) -> usize {
+    // SAFETY: the machine has AVX2.
+    unsafe { work.run::<Avx2>() }
+}
+
+pub(in super::super) struct Avx2;
+
+impl Lanes for Avx2 {
+    const WIDTH: usize = 8;
+    const IS_PAIRED: bool = false;
+
+    type Ints = __m256i;
+    type Singles = __m256;
+    type Doubles = [__m256d; 2];
+
+    #[inline(always)]
+    unsafe fn load_ints(from: *const i32) -> __m256i {
+        unsafe { _mm256_loadu_si256(from.cast()) }
+    }
+
+    #[inline(always)]
+    unsafe fn store_ints(to: *mut i32, v: __m256i) {
+        unsafe { _mm256_storeu_si256(to.cast(), v) }
+    }
+
+    #[inline(always)]
+    unsafe fn splat_int(v: i32) -> __m256i {
+        unsafe { _mm256_set1_epi32(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn add_ints(a: __m256i, b: __m256i) -> __m256i {
+        unsafe { _mm256_add_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn sub_ints(a: __m256i, b: __m256i) -> __m256i {
+        unsafe { _mm256_sub_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn cells(v: __m256i) -> __m256i {
+        unsafe { _mm256_srai_epi32::<{ CELL_BITS as i32 }>(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn places(v: __m256i) -> __m256i {
+        unsafe { _mm256_and_si256(v, _mm256_set1_epi32(PATCH_CELL_MASK)) }
+    }
+
+    #[inline(always)]
+    unsafe fn load_singles(from: *const f32) -> __m256 {
+        unsafe { _mm256_loadu_ps(from) }
+    }
+
+    #[inline(always)]
+    unsafe fn splat_single(v: f32) -> __m256 {
+        unsafe { _mm256_set1_ps(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn add_singles(a: __m256, b: __m256) -> __m256 {
+        unsafe { _mm256_add_ps(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn mul_singles(a: __m256, b: __m256) -> __m256 {
+        unsafe { _mm256_mul_ps(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn min_singles(a: __m256, b: __m256) -> __m256 {
+        unsafe { _mm256_min_ps(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn singles_of(v: __m256i) -> __m256 {
+        unsafe { _mm256_cvtepi32_ps(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn truncate(v: __m256) -> __m256i {
+        unsafe { _mm256_cvttps_epi32(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn pick(table: &[f32; PATCH_CELLS], index: __m256i) -> __m256 {
+        unsafe {
+            let low = _mm256_loadu_ps(table.as_ptr());
+            let high = _mm256_loadu_ps(table.as_ptr().add(8));
+            // The fourth bit of the index, as the sign, selects the half.
+            let half = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(index));
+            let low = _mm256_permutevar8x32_ps(low, index);
+            let high = _mm256_permutevar8x32_ps(high, index);
+            _mm256_blendv_ps(low, high, half)
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn load_doubles(from: *const f64) -> [__m256d; 2] {
+        unsafe { [_mm256_loadu_pd(from), _mm256_loadu_pd(from.add(4))] }
+    }
+
+    #[inline(always)]
+    unsafe fn splat_double(v: f64) -> [__m256d; 2] {
+        unsafe { [_mm256_set1_pd(v); 2] }
+    }
+
+    #[inline(always)]
+    unsafe fn add_doubles(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
+        unsafe { [_mm256_add_pd(a[0], b[0]), _mm256_add_pd(a[1], b[1])] }
+    }
+
+    #[inline(always)]
+    unsafe fn mul_doubles(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
+        unsafe { [_mm256_mul_pd(a[0], b[0]), _mm256_mul_pd(a[1], b[1])] }
+    }
+
+    #[inline(always)]
+    unsafe fn doubles_of(v: __m256i) -> [__m256d; 2] {
+        unsafe {
+            let low = _mm256_cvtepi32_pd(_mm256_castsi256_si128(v));
+            let high = _mm256_cvtepi32_pd(_mm256_extracti128_si256::<1>(v));
+            [low, high]
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn offsets(from: *const i32, y: i32) -> [__m256d; 2] {
+        unsafe { Self::doubles_of(Self::add_ints(Self::load_ints(from), Self::splat_int(y))) }
+    }
+
+    #[inline(always)]
+    unsafe fn narrow([low, high]: [__m256d; 2]) -> __m256 {
+        unsafe { _mm256_set_m128(_mm256_cvtpd_ps(high), _mm256_cvtpd_ps(low)) }
+    }
+
+    #[inline(always)]
+    unsafe fn store_single_pairs(to: *mut [f32; 2], x: __m256, y: __m256) {
+        unsafe {
+            // Pairs 0 1 4 5 and 2 3 6 7.
+            let even = _mm256_unpacklo_ps(x, y);
+            let odd = _mm256_unpackhi_ps(x, y);
+            let to: *mut f32 = to.cast();
+            _mm256_storeu_ps(to, _mm256_permute2f128_ps::<0x20>(even, odd));
+            _mm256_storeu_ps(to.add(8), _mm256_permute2f128_ps::<0x31>(even, odd));
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn store_double_pairs(to: *mut [f64; 2], x: [__m256d; 2], y: [__m256d; 2]) {
+        unsafe {
+            let to: *mut f64 = to.cast();
+            for half in 0..2 {
+                // Pairs 0 2 and 1 3.
+                let even = _mm256_unpacklo_pd(x[half], y[half]);
+                let odd = _mm256_unpackhi_pd(x[half], y[half]);
+                let to = to.add(8 * half);
+                _mm256_storeu_pd(to, _mm256_permute2f128_pd::<0x20>(even, odd));
+                _mm256_storeu_pd(to.add(4), _mm256_permute2f128_pd::<0x31>(even, odd));
+            }
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! 512-bit vectors of x86-64: sixteen lanes.
+
+use core::arch::x86_64::*;
+
+use super::super::{dispatch::VectorLoop, lanes::Lanes};
+use crate::sample::{
+    lattice::Point,
+    warp::{CELL_BITS, PATCH_CELL_MASK, PATCH_CELLS},
+};
+
+/// Runs a loop.
+///
+/// # Safety
+/// The machine has AVX-512 F, VL and DQ, and AVX2.
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+pub(in super::super) unsafe fn run(work: &mut impl VectorLoop) -> usize {
+    // SAFETY: the machine has the instructions.
+    unsafe { work.run::<Avx512>() }
+}
+
+/// Runs plain code, compiled for these instructions.
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+pub(in super::super) fn compiled<T>(work: impl FnOnce() -> T) -> T {
+    work()
+}
+
+pub(in super::super) struct Avx512;
+
+impl Lanes for Avx512 {
+    const WIDTH: usize = 16;
+    const IS_PAIRED: bool = true;
+
+    type Ints = __m512i;
+    type Singles = __m512;
+    type Doubles = [__m512d; 2];
+
+    #[inline(always)]
+    unsafe fn load_ints(from: *const i32) -> __m512i {
+        unsafe { _mm512_loadu_epi32(from) }
+    }
+
+    #[inline(always)]
+    unsafe fn store_ints(to: *mut i32, v: __m512i) {
+        unsafe { _mm512_storeu_epi32(to, v) }
+    }
+
+    #[inline(always)]
+    unsafe fn splat_int(v: i32) -> __m512i {
+        unsafe { _mm512_set1_epi32(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn add_ints(a: __m512i, b: __m512i) -> __m512i {
+        unsafe { _mm512_add_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn sub_ints(a: __m512i, b: __m512i) -> __m512i {
+        unsafe { _mm512_sub_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn cells(v: __m512i) -> __m512i {
+        unsafe { _mm512_srai_epi32::<CELL_BITS>(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn places(v: __m512i) -> __m512i {
+        unsafe { _mm512_and_si512(v, _mm512_set1_epi32(PATCH_CELL_MASK)) }
+    }
+
+    #[inline(always)]
+    unsafe fn load_singles(from: *const f32) -> __m512 {
+        unsafe { _mm512_loadu_ps(from) }
+    }
+
+    #[inline(always)]
+    unsafe fn splat_single(v: f32) -> __m512 {
+        unsafe { _mm512_set1_ps(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn add_singles(a: __m512, b: __m512) -> __m512 {
+        unsafe { _mm512_add_ps(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn mul_singles(a: __m512, b: __m512) -> __m512 {
+        unsafe { _mm512_mul_ps(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn min_singles(a: __m512, b: __m512) -> __m512 {
+        unsafe { _mm512_min_ps(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn singles_of(v: __m512i) -> __m512 {
+        unsafe { _mm512_cvtepi32_ps(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn truncate(v: __m512) -> __m512i {
+        unsafe { _mm512_cvttps_epi32(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn pick(table: &[f32; PATCH_CELLS], index: __m512i) -> __m512 {
+        unsafe { _mm512_permutexvar_ps(index, _mm512_loadu_ps(table.as_ptr())) }
+    }
+
+    #[inline(always)]
+    unsafe fn load_doubles(from: *const f64) -> [__m512d; 2] {
+        unsafe { [_mm512_loadu_pd(from), _mm512_loadu_pd(from.add(8))] }
+    }
+
+    #[inline(always)]
+    unsafe fn splat_double(v: f64) -> [__m512d; 2] {
+        unsafe { [_mm512_set1_pd(v); 2] }
+    }
+
+    #[inline(always)]
+    unsafe fn add_doubles(a: [__m512d; 2], b: [__m512d; 2]) -> [__m512d; 2] {
+        unsafe { [_mm512_add_pd(a[0], b[0]), _mm512_add_pd(a[1], b[1])] }
+    }
+
+    #[inline(always)]
+    unsafe fn mul_doubles(a: [__m512d; 2], b: [__m512d; 2]) -> [__m512d; 2] {
+        unsafe { [_mm512_mul_pd(a[0], b[0]), _mm512_mul_pd(a[1], b[1])] }
+    }
+
+    #[inline(always)]
+    unsafe fn doubles_of(v: __m512i) -> [__m512d; 2] {
+        unsafe {
+            let low = _mm512_cvtepi32_pd(_mm512_castsi512_si256(v));
+            let high = _mm512_cvtepi32_pd(_mm512_extracti64x4_epi64::<1>(v));
+            [low, high]
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn offsets(from: *const i32, y: i32) -> [__m512d; 2] {
+        unsafe {
+            // Loads of halves need no shuffle.
+            let half = |from: *const i32| {
+                let sum = _mm256_add_epi32(_mm256_loadu_si256(from.cast()), _mm256_set1_epi32(y));
+                _mm512_cvtepi32_pd(sum)
+            };
+            [half(from), half(from.add(8))]
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn narrow([low, high]: [__m512d; 2]) -> __m512 {
+        unsafe {
+            let low = _mm512_castps256_ps512(_mm512_cvtpd_ps(low));
+            _mm512_insertf32x8::<1>(low, _mm512_cvtpd_ps(high))
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn store_single_pairs(to: *mut [f32; 2], x: __m512, y: __m512) {
+        unsafe {
+            let low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+            let high =
+                _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+            let to: *mut f32 = to.cast();
+            _mm512_storeu_ps(to, _mm512_permutex2var_ps(x, low, y));
+            _mm512_storeu_ps(to.add(16), _mm512_permutex2var_ps(x, high, y));
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn store_double_pairs(to: *mut [f64; 2], x: [__m512d; 2], y: [__m512d; 2]) {
+        unsafe {
+            let low = _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11);
+            let high = _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
+            let to: *mut f64 = to.cast();
+            for half in 0..2 {
+                let to = to.add(16 * half);
+                _mm512_storeu_pd(to, _mm512_permutex2var_pd(x[half], low, y[half]));
+                _mm512_storeu_pd(to.add(8), _mm512_permutex2var_pd(x[half], high, y[half]));
+            }
+        }
+    }
+
+    const HAS_POINTS: bool = true;
+
+    #[inline(always)]
+    unsafe fn store_points(to: *mut Point, columns: *const [u64; 2], row: i64, y: [__m512d; 2]) {
+        // A point is written as these four, in this order.
+        const {
+            assert!(size_of::<Point>() == 32);
+            assert!(core::mem::offset_of!(Point, id.x) == 0);
+            assert!(core::mem::offset_of!(Point, id.y) == 8);
+            assert!(core::mem::offset_of!(Point, x) == 16);
+            assert!(core::mem::offset_of!(Point, y) == 24);
+        }
+        unsafe {
+            let row = _mm512_set1_pd(f64::from_bits(row as u64));
+            // Two points each: column, (row), x, y.
+            let pairs = [
+                _mm512_setr_epi64(0, 0, 1, 8, 2, 0, 3, 9),
+                _mm512_setr_epi64(4, 0, 5, 10, 6, 0, 7, 11),
+                _mm512_setr_epi64(0, 0, 1, 12, 2, 0, 3, 13),
+                _mm512_setr_epi64(4, 0, 5, 14, 6, 0, 7, 15),
+            ];
+            let (from, to): (*const f64, *mut f64) = (columns.cast(), to.cast());
+            for (half, y) in y.into_iter().enumerate() {
+                let from = from.add(16 * half);
+                let columns = [_mm512_loadu_pd(from), _mm512_loadu_pd(from.add(8))];
+                for (k, pair) in pairs.into_iter().enumerate() {
+                    let points = _mm512_permutex2var_pd(columns[k / 2], pair, y);
+                    let points = _mm512_mask_mov_pd(points, 0b0010_0010, row);
+                    _mm512_storeu_pd(to.add(32 * half + 8 * k), points);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! 128-bit vectors of arm64: four lanes.
+
+use core::arch::aarch64::*;
+
+use super::super::{dispatch::VectorLoop, lanes::Lanes};
+use crate::sample::warp::{CELL_BITS, PATCH_CELL_MASK, PATCH_CELLS};
+
+/// Runs a loop.
+///
+/// # Safety
+/// The machine has NEON.
+#[target_feature(enable = "neon")]
+pub(in super::super) unsafe fn run(work: &mut impl VectorLoop) -> usize {
+    // SAFETY: the machine has NEON.
+    unsafe { work.run::<Neon>() }
+}
+
+pub(in super::super) struct Neon;
+
+impl Lanes for Neon {
+    const WIDTH: usize = 4;
+    const IS_PAIRED: bool = true;
+
+    type Ints = int32x4_t;
+    type Singles = float32x4_t;
+    type Doubles = [float64x2_t; 2];
+
+    #[inline(always)]
+    unsafe fn load_ints(from: *const i32) -> int32x4_t {
+        unsafe { vld1q_s32(from) }
+    }
+
+    #[inline(always)]
+    unsafe fn store_ints(to: *mut i32, v: int32x4_t) {
+        unsafe { vst1q_s32(to, v) }
+    }
+
+    #[inline(always)]
+    unsafe fn splat_int(v: i32) -> int32x4_t {
+        unsafe { vdupq_n_s32(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn add_ints(a: int32x4_t, b: int32x4_t) -> int32x4_t {
+        unsafe { vaddq_s32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn sub_ints(a: int32x4_t, b: int32x4_t) -> int32x4_t {
+        unsafe { vsubq_s32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn cells(v: int32x4_t) -> int32x4_t {
+        unsafe { vshrq_n_s32::<{ CELL_BITS as i32 }>(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn places(v: int32x4_t) -> int32x4_t {
+        unsafe { vandq_s32(v, vdupq_n_s32(PATCH_CELL_MASK)) }
+    }
+
+    #[inline(always)]
+    unsafe fn load_singles(from: *const f32) -> float32x4_t {
+        unsafe { vld1q_f32(from) }
+    }
+
+    #[inline(always)]
+    unsafe fn splat_single(v: f32) -> float32x4_t {
+        unsafe { vdupq_n_f32(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn add_singles(a: float32x4_t, b: float32x4_t) -> float32x4_t {
+        unsafe { vaddq_f32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn mul_singles(a: float32x4_t, b: float32x4_t) -> float32x4_t {
+        unsafe { vmulq_f32(a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn min_singles(a: float32x4_t, b: float32x4_t) -> float32x4_t {
+        // Not `vminq_f32`, which orders the two zeros.
+        unsafe { vbslq_f32(vcltq_f32(a, b), a, b) }
+    }
+
+    #[inline(always)]
+    unsafe fn singles_of(v: int32x4_t) -> float32x4_t {
+        unsafe { vcvtq_f32_s32(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn truncate(v: float32x4_t) -> int32x4_t {
+        unsafe { vcvtq_s32_f32(v) }
+    }
+
+    #[inline(always)]
+    unsafe fn pick(table: &[f32; PATCH_CELLS], index: int32x4_t) -> float32x4_t {
+        unsafe {
+            // The table is 64 bytes; entry i is bytes 4i to 4i + 3.
+            let table = vld1q_u8_x4(table.as_ptr().cast());
+            let index = vreinterpretq_u32_s32(vandq_s32(index, vdupq_n_s32(15)));
+            let first = vdupq_n_u32(0x0302_0100);
+            let bytes = vmlaq_u32(first, index, vdupq_n_u32(0x0404_0404));
+            vreinterpretq_f32_u8(vqtbl4q_u8(table, vreinterpretq_u8_u32(bytes)))
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn load_doubles(from: *const f64) -> [float64x2_t; 2] {
+        unsafe { [vld1q_f64(from), vld1q_f64(from.add(2))] }
+    }
+
+    #[inline(always)]
+    unsafe fn splat_double(v: f64) -> [float64x2_t; 2] {
+        unsafe { [vdupq_n_f64(v); 2] }
+    }
+
+    #[inline(always)]
+    unsafe fn add_doubles(a: [float64x2_t; 2], b: [float64x2_t; 2]) -> [float64x2_t; 2] {
+        unsafe { [vaddq_f64(a[0], b[0]), vaddq_f64(a[1], b[1])] }
+    }
+
+    #[inline(always)]
+    unsafe fn mul_doubles(a: [float64x2_t; 2], b: [float64x2_t; 2]) -> [float64x2_t; 2] {
+        unsafe { [vmulq_f64(a[0], b[0]), vmulq_f64(a[1], b[1])] }
+    }
+
+    #[inline(always)]
+    unsafe fn doubles_of(v: int32x4_t) -> [float64x2_t; 2] {
+        unsafe {
+            let low = vcvtq_f64_s64(vmovl_s32(vget_low_s32(v)));
+            let high = vcvtq_f64_s64(vmovl_high_s32(v));
+            [low, high]
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn offsets(from: *const i32, y: i32) -> [float64x2_t; 2] {
+        unsafe { Self::doubles_of(vaddq_s32(vld1q_s32(from), vdupq_n_s32(y))) }
+    }
+
+    #[inline(always)]
+    unsafe fn narrow([low, high]: [float64x2_t; 2]) -> float32x4_t {
+        unsafe { vcvt_high_f32_f64(vcvt_f32_f64(low), high) }
+    }
+
+    #[inline(always)]
+    unsafe fn store_single_pairs(to: *mut [f32; 2], x: float32x4_t, y: float32x4_t) {
+        unsafe { vst2q_f32(to.cast(), float32x4x2_t(x, y)) }
+    }
+
+    #[inline(always)]
+    unsafe fn store_double_pairs(to: *mut [f64; 2], x: [float64x2_t; 2], y: [float64x2_t; 2]) {
+        unsafe {
+            let to: *mut f64 = to.cast();
+            vst2q_f64(to, float64x2x2_t(x[0], y[0]));
+            vst2q_f64(to.add(4), float64x2x2_t(x[1], y[1]));
+        }
+    }
+}

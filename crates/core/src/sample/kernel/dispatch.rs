@@ -1,0 +1,63 @@
+//! Running a loop by a backend.
+
+use super::{Backend, arch, lanes::Lanes};
+
+/// A loop over vectors, written once for all instruction sets.
+pub(super) trait VectorLoop {
+    /// Writes items from the front in whole vectors. Returns the number written: all of them, or none if
+    /// there are fewer than fill a vector.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `L`.
+    unsafe fn run<L: Lanes>(&mut self) -> usize;
+}
+
+/// Runs a vector loop by a backend. Returns the number of items written; the caller's plain code writes
+/// the rest.
+#[inline]
+pub(super) fn run_vectors(backend: Backend, work: &mut impl VectorLoop) -> usize {
+    let _ = &work;
+    match backend {
+        Backend::Scalar => 0,
+        // SAFETY: `Backend::available` has found the instructions.
+        #[cfg(target_arch = "x86_64")]
+        Backend::Avx2 => unsafe { arch::avx2::run(work) },
+        #[cfg(target_arch = "x86_64")]
+        Backend::Avx512 => {
+            // SAFETY: `Backend::available` has found the instructions.
+            let written = unsafe { arch::avx512::run(work) };
+            if written > 0 {
+                return written;
+            }
+            // Rows too short for 512 bits. SAFETY: as above; this backend includes AVX2.
+            unsafe { arch::avx2::run(work) }
+        }
+        // SAFETY: the program is compiled for machines with the instructions.
+        #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+        Backend::Neon => unsafe { arch::neon::run(work) },
+        // SAFETY: the program is compiled for machines with the instructions.
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        Backend::Simd128 => unsafe { arch::simd128::run(work) },
+    }
+}
+
+/// Runs plain code that is compiled for the backend's instructions. Hashed numbers profit most: their
+/// 64-bit products are single AVX-512 instructions, and a dozen instructions elsewhere.
+#[inline]
+pub(crate) fn compiled<T>(backend: Backend, work: impl FnOnce() -> T) -> T {
+    match backend {
+        // SAFETY: `Backend::available` has found the instructions.
+        #[cfg(target_arch = "x86_64")]
+        Backend::Avx512 => unsafe { arch::avx512::compiled(work) },
+        _ => work(),
+    }
+}
+
+/// Writes numbers one after another, as many as `out` has room for.
+pub(crate) fn write_numbers(numbers: impl Iterator<Item = f64>, out: &mut [f64]) {
+    compiled(Backend::best(), || {
+        for (out, number) in out.iter_mut().zip(numbers) {
+            *out = number;
+        }
+    });
+}

@@ -1,0 +1,100 @@
+//! Pairs of `f64` in world coordinates.
+
+use super::{
+    Format,
+    format::{Emit, Geometry, Row},
+    lanes::Lanes,
+    rows::vector_starts,
+};
+use crate::table::fixed;
+
+/// Pairs of `f64` world coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct F64 {
+    pub(super) step: f64,
+}
+
+impl F64 {
+    #[inline(always)]
+    pub(super) fn place(&self, base: f64, offset: i32) -> f64 {
+        (base + f64::from(offset)) * self.step
+    }
+
+    /// The places of a vector of offsets.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `L`.
+    #[inline(always)]
+    pub(super) unsafe fn places<L: Lanes>(&self, base: f64, offsets: L::Doubles) -> L::Doubles {
+        // SAFETY: as the caller ensures.
+        unsafe {
+            let place = L::add_doubles(L::splat_double(base), offsets);
+            L::mul_doubles(place, L::splat_double(self.step))
+        }
+    }
+}
+
+impl Format for F64 {}
+
+impl Emit for F64 {
+    type Item = [f64; 2];
+    type Column = f64;
+
+    fn new(geometry: &Geometry) -> Self {
+        Self {
+            step: geometry.step,
+        }
+    }
+
+    fn base(&self, origin: [i64; 2]) -> [f64; 2] {
+        origin.map(|v| fixed(v) as f64)
+    }
+
+    #[inline(always)]
+    fn column(&self, base: [f64; 2], x: i32, _: i64) -> f64 {
+        self.place(base[0], x)
+    }
+
+    #[inline(always)]
+    fn item(&self, base: [f64; 2], x: f64, y: i32, _: i64) -> [f64; 2] {
+        [x, self.place(base[1], y)]
+    }
+
+    #[inline(always)]
+    unsafe fn vector_row<L: Lanes>(
+        &self,
+        row: Row,
+        columns: &[f64],
+        displacements: &[i32],
+        out: &mut [[f64; 2]],
+    ) -> usize {
+        let length = out.len().min(columns.len()).min(displacements.len());
+        // SAFETY: the machine has the instructions, and WIDTH values from `i` on lie within all slices.
+        unsafe {
+            for i in vector_starts::<L>(length) {
+                let offsets = L::offsets(displacements.as_ptr().add(i), row.y);
+                let y = self.places::<L>(row.base[1], offsets);
+                let x = L::load_doubles(columns.as_ptr().add(i));
+                L::store_double_pairs(out.as_mut_ptr().add(i), x, y);
+            }
+        }
+        if length < L::WIDTH { 0 } else { length }
+    }
+
+    #[inline(always)]
+    unsafe fn vector_items<L: Lanes>(
+        &self,
+        row: Row,
+        [x, y]: [L::Ints; 2],
+        _: &[i64],
+        out: &mut [[f64; 2]],
+    ) {
+        debug_assert_eq!(out.len(), L::WIDTH);
+        // SAFETY: the machine has the instructions, and `out` has WIDTH items.
+        unsafe {
+            let x = self.places::<L>(row.base[0], L::doubles_of(x));
+            let y = self.places::<L>(row.base[1], L::doubles_of(y));
+            L::store_double_pairs(out.as_mut_ptr(), x, y);
+        }
+    }
+}

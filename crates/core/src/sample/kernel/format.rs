@@ -1,0 +1,77 @@
+//! Output formats: how the position of a point becomes an item.
+
+use core::fmt::Debug;
+
+use super::lanes::Lanes;
+
+/// A format of points: [`F32`](super::F32), [`F64`](super::F64) or [`Points`](super::Points).
+///
+/// `F::Item` is what a block holds: `[f32; 2]`, `[f64; 2]` or [`Point`](crate::Point). The trait is
+/// sealed.
+pub trait Format: Emit {}
+
+/// What a format needs to know of a plan.
+#[derive(Clone, Copy, Debug)]
+pub struct Geometry {
+    /// World units per fixed-point unit.
+    pub(crate) step: f64,
+    /// The first fixed-point coordinates inside the region.
+    pub(crate) first: [i128; 2],
+    /// The sides of the region in world units.
+    pub(crate) extent: [f64; 2],
+}
+
+/// A lattice row of a patch.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// [`Emit::base`] of the patch.
+    pub(crate) base: [f64; 2],
+    /// Relative to the patch's origin.
+    pub(crate) y: i32,
+    /// The lattice coordinate.
+    pub(crate) lattice: i64,
+}
+
+/// The definition of a format. The part along x comes first, since a template keeps it for all rows.
+pub trait Emit: Copy + Send + Debug + 'static {
+    /// What is written for a point.
+    type Item: Copy + Default + Send + 'static;
+    /// What a column contributes to the items of a row.
+    type Column: Copy + Send + Debug + 'static;
+
+    fn new(geometry: &Geometry) -> Self;
+
+    /// The place of a patch's origin.
+    fn base(&self, origin: [i64; 2]) -> [f64; 2];
+
+    /// What a column contributes: `x` is relative to the patch's origin, `column` the lattice column.
+    fn column(&self, base: [f64; 2], x: i32, column: i64) -> Self::Column;
+
+    /// The item of a column and a `y` relative to the patch's origin; `row` is the lattice row.
+    fn item(&self, base: [f64; 2], column: Self::Column, y: i32, row: i64) -> Self::Item;
+
+    /// Writes the items of a row in whole vectors. Returns the number written: all, or none.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `L`.
+    unsafe fn vector_row<L: Lanes>(
+        &self,
+        row: Row,
+        columns: &[Self::Column],
+        displacements: &[i32],
+        out: &mut [Self::Item],
+    ) -> usize;
+
+    /// Writes one vector of items at positions relative to the patch's origin. `lattice` and `out` have
+    /// [`Lanes::WIDTH`] entries.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `L`.
+    unsafe fn vector_items<L: Lanes>(
+        &self,
+        row: Row,
+        position: [L::Ints; 2],
+        lattice: &[i64],
+        out: &mut [Self::Item],
+    );
+}

@@ -1,0 +1,70 @@
+//! Lanes: the vector operations that the row loops need, as one small trait.
+
+use crate::sample::{lattice::Point, warp::PATCH_CELLS};
+
+/// Vectors of one instruction set: [`WIDTH`](Self::WIDTH) integers, singles or doubles, in as many
+/// registers as that takes.
+///
+/// # Safety
+/// All functions require a machine with the instruction set, which
+/// [`Backend::available`](super::Backend::available) ensures. Those that take pointers require
+/// [`WIDTH`](Self::WIDTH) values there; pointers need no alignment.
+pub trait Lanes {
+    /// The number of lanes.
+    const WIDTH: usize;
+    /// Whether two chains of operations side by side are faster than one, as where latencies are long.
+    const IS_PAIRED: bool;
+
+    /// `i32` lanes.
+    type Ints: Copy;
+    /// `f32` lanes.
+    type Singles: Copy;
+    /// `f64` lanes.
+    type Doubles: Copy;
+
+    unsafe fn load_ints(from: *const i32) -> Self::Ints;
+    unsafe fn store_ints(to: *mut i32, v: Self::Ints);
+    unsafe fn splat_int(v: i32) -> Self::Ints;
+    unsafe fn add_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints;
+    unsafe fn sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints;
+    /// The cells of coordinates: `v >> CELL_BITS`.
+    unsafe fn cells(v: Self::Ints) -> Self::Ints;
+    /// The places of coordinates in their cells: `v & PATCH_CELL_MASK`.
+    unsafe fn places(v: Self::Ints) -> Self::Ints;
+
+    unsafe fn load_singles(from: *const f32) -> Self::Singles;
+    unsafe fn splat_single(v: f32) -> Self::Singles;
+    unsafe fn add_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles;
+    unsafe fn mul_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles;
+    /// `if a < b { a } else { b }`
+    unsafe fn min_singles(a: Self::Singles, b: Self::Singles) -> Self::Singles;
+    unsafe fn singles_of(v: Self::Ints) -> Self::Singles;
+    /// Rounds toward zero.
+    unsafe fn truncate(v: Self::Singles) -> Self::Ints;
+    /// The entries of a table, by the lowest four bits of each index.
+    unsafe fn pick(table: &[f32; PATCH_CELLS], index: Self::Ints) -> Self::Singles;
+
+    unsafe fn load_doubles(from: *const f64) -> Self::Doubles;
+    unsafe fn splat_double(v: f64) -> Self::Doubles;
+    unsafe fn add_doubles(a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
+    unsafe fn mul_doubles(a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
+    unsafe fn doubles_of(v: Self::Ints) -> Self::Doubles;
+    /// The sums of some integers and `y`, as doubles.
+    unsafe fn offsets(from: *const i32, y: i32) -> Self::Doubles;
+    /// Rounds to nearest.
+    unsafe fn narrow(v: Self::Doubles) -> Self::Singles;
+
+    /// Stores x and y of each lane side by side.
+    unsafe fn store_single_pairs(to: *mut [f32; 2], x: Self::Singles, y: Self::Singles);
+    /// Stores x and y of each lane side by side.
+    unsafe fn store_double_pairs(to: *mut [f64; 2], x: Self::Doubles, y: Self::Doubles);
+
+    /// Whether [`store_points`](Self::store_points) is faster than plain code.
+    const HAS_POINTS: bool = false;
+
+    /// Stores points: their columns and the bits of their x by turns, their common row, and their y.
+    unsafe fn store_points(to: *mut Point, columns: *const [u64; 2], row: i64, y: Self::Doubles) {
+        let _ = (to, columns, row, y);
+        unreachable!("HAS_POINTS is false");
+    }
+}

@@ -1,0 +1,120 @@
+//! Pairs of `f32` relative to the corner of a region.
+
+use super::{
+    Format,
+    format::{Emit, Geometry, Row},
+    lanes::Lanes,
+    rows::vector_starts,
+};
+use crate::table::fixed;
+
+/// Pairs of `f32` coordinates relative to the region's lower corner
+/// ([`Plan::origin`](crate::Plan::origin)).
+///
+/// The offset from the first fixed-point place inside the region is exact in integers, scaled in `f64`
+/// and rounded once to `f32`. What would round up to the region's extent becomes the largest `f32` below
+/// it, so relative coordinates lie in \[0, extent).
+#[derive(Clone, Copy, Debug)]
+pub struct F32 {
+    pub(super) step: f64,
+    /// The first place inside.
+    pub(super) first: [i128; 2],
+    /// The largest value per axis.
+    pub(super) last: [f32; 2],
+}
+
+impl F32 {
+    #[inline(always)]
+    fn place(&self, axis: usize, base: f64, offset: i32) -> f32 {
+        let (place, last) = (
+            ((base + f64::from(offset)) * self.step) as f32,
+            self.last[axis],
+        );
+        // Neither is NaN, so this is the minimum.
+        if place < last { place } else { last }
+    }
+}
+
+impl Format for F32 {}
+
+impl Emit for F32 {
+    type Item = [f32; 2];
+    type Column = f32;
+
+    fn new(geometry: &Geometry) -> Self {
+        Self {
+            step: geometry.step,
+            first: geometry.first,
+            last: geometry.extent.map(below),
+        }
+    }
+
+    fn base(&self, origin: [i64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| (fixed(origin[axis]) - self.first[axis]) as f64)
+    }
+
+    #[inline(always)]
+    fn column(&self, base: [f64; 2], x: i32, _: i64) -> f32 {
+        self.place(0, base[0], x)
+    }
+
+    #[inline(always)]
+    fn item(&self, base: [f64; 2], x: f32, y: i32, _: i64) -> [f32; 2] {
+        [x, self.place(1, base[1], y)]
+    }
+
+    #[inline(always)]
+    unsafe fn vector_row<L: Lanes>(
+        &self,
+        row: Row,
+        columns: &[f32],
+        displacements: &[i32],
+        out: &mut [[f32; 2]],
+    ) -> usize {
+        let length = out.len().min(columns.len()).min(displacements.len());
+        // SAFETY: the machine has the instructions, and WIDTH values from `i` on lie within all slices.
+        unsafe {
+            let (base, step) = (L::splat_double(row.base[1]), L::splat_double(self.step));
+            let last = L::splat_single(self.last[1]);
+            for i in vector_starts::<L>(length) {
+                let offset = L::offsets(displacements.as_ptr().add(i), row.y);
+                let y = L::narrow(L::mul_doubles(L::add_doubles(base, offset), step));
+                let x = L::load_singles(columns.as_ptr().add(i));
+                L::store_single_pairs(out.as_mut_ptr().add(i), x, L::min_singles(y, last));
+            }
+        }
+        if length < L::WIDTH { 0 } else { length }
+    }
+
+    #[inline(always)]
+    unsafe fn vector_items<L: Lanes>(
+        &self,
+        row: Row,
+        position: [L::Ints; 2],
+        _: &[i64],
+        out: &mut [[f32; 2]],
+    ) {
+        debug_assert_eq!(out.len(), L::WIDTH);
+        // SAFETY: the machine has the instructions, and `out` has WIDTH items.
+        unsafe {
+            let step = L::splat_double(self.step);
+            let place = |axis: usize| {
+                let base = L::splat_double(row.base[axis]);
+                let place = L::add_doubles(base, L::doubles_of(position[axis]));
+                let last = L::splat_single(self.last[axis]);
+                L::min_singles(L::narrow(L::mul_doubles(place, step)), last)
+            };
+            L::store_single_pairs(out.as_mut_ptr(), place(0), place(1));
+        }
+    }
+}
+
+/// The largest `f32` below a positive extent, or 0 if there is none.
+fn below(extent: f64) -> f32 {
+    let nearest = extent as f32;
+    if f64::from(nearest) < extent {
+        nearest
+    } else {
+        nearest.next_down().max(0.0)
+    }
+}

@@ -1,0 +1,51 @@
+//! The share of points that is kept.
+
+use crate::error::{Error, ErrorKind, number};
+
+/// The share of the points that is kept: those whose [rank](crate::rank) is below it. By
+/// default all are.
+///
+/// Shares nest: a smaller one keeps a part of what a larger one keeps.
+///
+/// ```
+/// use strew_core::Keep;
+///
+/// assert_eq!(Keep::new(0.25)?.get(), 0.25);
+/// assert!(Keep::new(0.0).is_err());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Keep(f64);
+
+impl Keep {
+    /// All points.
+    pub const ALL: Self = Self(1.0);
+    /// The least share. Rows are visited whether or not they keep points, so a smaller share would cost
+    /// more than a wider spacing.
+    pub const MIN: f64 = 1e-6;
+
+    /// A share of the points, from [`MIN`](Self::MIN) to 1.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Keep`] outside [`MIN`](Self::MIN) to 1 and for NaN.
+    pub fn new(share: f64) -> Result<Self, Error> {
+        if (Self::MIN..=1.0).contains(&share) {
+            Ok(Self(share))
+        } else {
+            let allowed = alloc::format!("a number from {:e} to 1", Self::MIN);
+            Err(Error::new(ErrorKind::Keep, "keep", number(share), allowed))
+        }
+    }
+
+    /// The share.
+    #[must_use]
+    pub const fn get(self) -> f64 {
+        self.0
+    }
+}
+
+impl Default for Keep {
+    fn default() -> Self {
+        Self::ALL
+    }
+}

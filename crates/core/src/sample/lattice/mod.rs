@@ -1,0 +1,34 @@
+//! The lattice of a point set: which addresses have points, and where in the world these are.
+//!
+//! `placement` holds the parameters (`spacing`, `keep`; seed and warp have files of their own), and
+//! `world` joins them with a table into the [`Lattice`]. Positions are integers in fixed point, 2⁻²⁰ grid
+//! units, until the last conversion: one multiplication by the step, the world size of a unit. That
+//! conversion is monotone, so the bounds of a region become integers once (`span`), and integers decide
+//! membership.
+//!
+//! Work proceeds in pieces: `lines` lists the columns and rows that hold points, `prefix` counts them,
+//! `patch` has the bands and patches in which positions fit 32 bits. `point` is what comes out, `rank`
+//! the order in which points leave.
+
+mod keep;
+mod lines;
+mod patch;
+mod placement;
+mod point;
+mod prefix;
+mod rank;
+mod span;
+mod spacing;
+mod world;
+
+pub use keep::Keep;
+pub(super) use lines::{Columns, Line, lines_of_class};
+pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
+pub use placement::Placement;
+pub use point::{Point, PointId};
+pub(super) use prefix::PrefixCounts;
+pub use rank::{rank, side_for};
+pub use spacing::Spacing;
+pub(super) use span::Span;
+pub use world::LATTICE_LIMIT;
+pub(super) use world::Lattice;

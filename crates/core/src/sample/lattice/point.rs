@@ -1,0 +1,97 @@
+//! Points and their ids.
+
+use core::{fmt, str::FromStr};
+
+use crate::error::{Error, ErrorKind, shown};
+
+/// The stable id of a point: its lattice address. The text form is `x:y`, two decimal integers.
+///
+/// An id finds its point again in the same point set; other sets have other points under it, or none.
+///
+/// ```
+/// use strew_core::PointId;
+///
+/// let id: PointId = "-31:52".parse()?;
+/// assert_eq!(id, PointId { x: -31, y: 52 });
+/// assert_eq!(id.to_string(), "-31:52");
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(C)]
+pub struct PointId {
+    /// The lattice column.
+    pub x: i64,
+    /// The lattice row.
+    pub y: i64,
+}
+
+/// A point with its id, in world coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Point {
+    /// The stable id.
+    pub id: PointId,
+    /// The world coordinate along x.
+    pub x: f64,
+    /// The world coordinate along y.
+    pub y: f64,
+}
+
+impl Point {
+    /// The world coordinates.
+    #[must_use]
+    pub const fn at(&self) -> [f64; 2] {
+        [self.x, self.y]
+    }
+}
+
+impl fmt::Display for PointId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.x, self.y)
+    }
+}
+
+impl FromStr for PointId {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        const ALLOWED: &str = "two integers joined by a colon, such as -31:52";
+        let refused = || Error::new(ErrorKind::PointId, "id", shown(text), ALLOWED);
+        let (x, y) = text.split_once(':').ok_or_else(refused)?;
+        // An id has one text: no plus sign, no leading zeros, no minus zero.
+        let id = Self {
+            x: x.parse().map_err(|_| refused())?,
+            y: y.parse().map_err(|_| refused())?,
+        };
+        let canonical = alloc::format!("{id}") == text;
+        canonical.then_some(id).ok_or_else(refused)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_round_trips_and_is_unique() {
+        for (x, y) in [(0, 0), (-31, 52), (i64::MIN, i64::MAX)] {
+            let id = PointId { x, y };
+            assert_eq!(alloc::format!("{id}").parse(), Ok(id));
+        }
+        for bad in [
+            "",
+            ":",
+            "1",
+            "1:",
+            "1:2:3",
+            "+1:2",
+            "01:2",
+            "-0:2",
+            " 1:2",
+            "1:99999999999999999999",
+        ] {
+            let error = bad.parse::<PointId>().expect_err(bad);
+            assert_eq!(error.kind(), ErrorKind::PointId);
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! The limits of searches, checked before the work.
+
+use crate::{
+    error::{Error, ErrorKind, number},
+    sample::lattice::{LATTICE_LIMIT, Lattice},
+    table::fixed,
+};
+
+/// The most neighbors that one search for the nearest returns.
+pub(crate) const MAX_NEAREST: usize = 10_000;
+/// The most points that a search visits: a few hundred milliseconds of work.
+pub(crate) const MAX_CANDIDATES: usize = 4_000_000;
+/// The most lattice lines that a search visits. Only an α next to 1 or 2 needs more.
+const MAX_LINES: f64 = 1e7;
+/// Lattice units kept free at the limit: more than the longest displacement and warp.
+const BORDER: i64 = 1 << 20;
+
+/// The largest absolute coordinate that a search may reach.
+pub(crate) fn limit(lattice: &Lattice) -> f64 {
+    lattice.world(fixed(LATTICE_LIMIT - BORDER))
+}
+
+/// Refuses a place that is not finite.
+pub(super) fn check_place(at: [f64; 2]) -> Result<(), Error> {
+    for (name, value) in ["x of the place", "y of the place"].into_iter().zip(at) {
+        if !value.is_finite() {
+            let value = number(value);
+            return Err(Error::new(ErrorKind::Place, name, value, "a finite number"));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a search that leaves the lattice's limit.
+pub(super) fn check_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> Result<(), Error> {
+    let limit = limit(lattice);
+    for (name, value) in ["x of the place", "y of the place"].into_iter().zip(at) {
+        if value.abs() + radius > limit {
+            let allowed = alloc::format!(
+                "within ±{limit:e}, with the radius searched, where f64 coordinates with this spacing \
+                 still tell neighbors apart"
+            );
+            let error = Error::new(ErrorKind::TooFar, name, number(value), allowed);
+            return Err(error.because("too far from the origin").with_limit(limit));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a radius that is not a number from 0 on.
+pub(super) fn check_radius(radius: f64) -> Result<(), Error> {
+    if radius.is_finite() && radius >= 0.0 {
+        return Ok(());
+    }
+    let allowed = "a finite number, 0 or greater";
+    Err(Error::new(ErrorKind::Radius, "radius", number(radius), allowed))
+}
+
+/// Refuses a radius for which more than `limit` points must be visited, kept or not, or too many lattice
+/// lines.
+pub(super) fn check_work(lattice: &Lattice, radius: f64, limit: usize) -> Result<(), Error> {
+    let stretched = radius * lattice.stretch.factor;
+    check_number(lattice, stretched, 1.0, limit)?;
+    let lines = stretched / lattice.world(fixed(1));
+    if lines <= MAX_LINES {
+        Ok(())
+    } else {
+        Err(too_many(radius, lines, limit))
+    }
+}
+
+/// Refuses a radius within which more than `limit` points of a share of all lie on average.
+pub(super) fn check_number(
+    lattice: &Lattice,
+    radius: f64,
+    share: f64,
+    limit: usize,
+) -> Result<(), Error> {
+    let spacings = radius / lattice.placement.spacing.get();
+    let about = core::f64::consts::PI * spacings * spacings * share;
+    if about <= limit as f64 {
+        Ok(())
+    } else {
+        Err(too_many(radius, about, limit))
+    }
+}
+
+/// The error of a radius within which about `about` points lie.
+pub(super) fn too_many(radius: f64, about: f64, limit: usize) -> Error {
+    let problem = alloc::format!("about {about:.0} points lie within");
+    let allowed = alloc::format!("a radius with at most {limit} points");
+    let error = Error::new(ErrorKind::TooMany, "the radius searched", number(radius), allowed);
+    error.because(problem).with_limit(limit as f64)
+}

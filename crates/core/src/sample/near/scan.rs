@@ -1,0 +1,122 @@
+//! The scan: visits all points that may lie within a distance of a place.
+//!
+//! Undoing the warp takes the place to where the table's points are, and a disk around it into one that
+//! is at most [`Stretch::factor`] times as wide. Candidates are products again: columns and rows near
+//! it, class by class. Only those whose unwarped distance can be small enough are warped and converted.
+//! The distance of the reported coordinates decides.
+//!
+//! [`Stretch::factor`]: crate::sample::warp::Stretch
+
+use alloc::vec::Vec;
+use core::ops::{ControlFlow, RangeInclusive};
+
+use crate::{
+    pattern::Axis,
+    sample::{
+        lattice::{Lattice, Point, PointId},
+        warp::NearShears,
+    },
+    table::{FRACTION_BITS, fixed},
+};
+
+/// Memory that [`scan`] reuses: the columns near a place, by class.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch([Vec<NearColumn>; 4]);
+
+#[derive(Clone, Copy, Debug)]
+struct NearColumn {
+    x: i64,
+    /// From the unwarped place, in fixed-point units.
+    offset: i64,
+    block: u32,
+}
+
+/// Calls `visit` with the squared distance of every point whose reported coordinates lie within `radius`
+/// of `at`, and of some farther ones, until it breaks. `at` and the disk around it lie within the
+/// lattice's limit.
+pub(super) fn scan(
+    lattice: &Lattice,
+    scratch: &mut Scratch,
+    at: [f64; 2],
+    radius: f64,
+    mut visit: impl FnMut(f64, Point) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let there = at.map(|v| (v / lattice.step) as i128);
+    let center = lattice.shears.map_or(there, |shears| shears.invert(there));
+    // Positions relative to `origin` are small.
+    let (mut shears, origin) = match &lattice.shears {
+        Some(shears) => {
+            let (near, origin) = NearShears::new(shears, center);
+            (Some(near), origin)
+        }
+        None => (None, center),
+    };
+    let [left, bottom] = [0, 1].map(|i| (center[i] - origin[i]) as i64);
+    let reach = unwarped_reach(lattice, at, radius);
+    let most = reach * reach;
+
+    list_columns(lattice, &mut scratch.0, center[0], reach);
+    for y in candidates(lattice, Axis::Y, center[1], reach) {
+        let Some((class, block)) = lattice.row(y) else {
+            continue;
+        };
+        let offset = (fixed(y) - center[1]) as i64;
+        let vectors = lattice.vectors(block);
+        for column in &scratch.0[class.ordinal()] {
+            let [dx, dy] = vectors[column.block as usize];
+            let [x_offset, y_offset] = [column.offset + i64::from(dx), offset + i64::from(dy)];
+            let (x, y_near) = (x_offset as f64, y_offset as f64);
+            if x * x + y_near * y_near > most {
+                continue;
+            }
+            let displaced = [left + x_offset, bottom + y_offset];
+            let place = match &mut shears {
+                Some(shears) => shears.apply(displaced),
+                None => displaced,
+            };
+            let [x, y_place] = [0, 1].map(|i| lattice.world(origin[i] + i128::from(place[i])));
+            let (x_offset, y_offset) = (x - at[0], y_place - at[1]);
+            let id = PointId { x: column.x, y };
+            let point = Point { id, x, y: y_place };
+            visit(x_offset * x_offset + y_offset * y_offset, point)?;
+        }
+    }
+    ControlFlow::Continue(())
+}
+
+/// The largest distance from the unwarped place, in fixed-point units, of a point whose reported
+/// coordinates lie within `radius`.
+fn unwarped_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> f64 {
+    let (step, stretch) = (lattice.step, lattice.stretch);
+    // Reported coordinates and quotients err by a few parts in 2⁵³ of their size.
+    let rounding = (at[0].abs().max(at[1].abs()) + radius) / step * (4.0 * f64::EPSILON);
+    let reported = radius / step * (1.0 + 1e-12) + rounding + 4.0;
+    stretch.factor * (reported + stretch.slack) + stretch.slack
+}
+
+/// The lattice coordinates along an axis whose points may lie within `reach`.
+fn candidates(lattice: &Lattice, axis: Axis, center: i128, reach: f64) -> RangeInclusive<i64> {
+    let [least, most] = lattice.table.reach()[axis as usize];
+    let reach = reach as i128 + 1;
+    let first = center - reach - i128::from(most);
+    let last = center + reach - i128::from(least);
+    (first >> FRACTION_BITS) as i64..=(last >> FRACTION_BITS) as i64
+}
+
+fn list_columns(
+    lattice: &Lattice,
+    columns: &mut [Vec<NearColumn>; 4],
+    center: i128,
+    reach: f64,
+) {
+    columns.iter_mut().for_each(Vec::clear);
+    for x in candidates(lattice, Axis::X, center, reach) {
+        if let Some((class, index)) = lattice.pattern.visit(Axis::X, x) {
+            columns[class.ordinal()].push(NearColumn {
+                x,
+                offset: (fixed(x) - center) as i64,
+                block: lattice.map().locate(index) as u32,
+            });
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Searches: the nearest points of a place, and all points within a radius.
+//!
+//! Both are exact for the reported coordinates: distances are those of the `f64` pairs, compared as
+//! dx·dx + dy·dy in plain `f64`. Among equals the smaller id comes first.
+
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
+
+use super::{
+    limits::{
+        MAX_CANDIDATES, MAX_NEAREST, check_number, check_place, check_radius, check_reach, check_work,
+        too_many,
+    },
+    mask::Mask,
+    scan::{Scratch, scan},
+};
+use crate::{
+    error::{Error, ErrorKind},
+    sample::lattice::{Lattice, Point},
+};
+
+/// A point found, with its squared distance.
+pub(crate) type Found = (f64, Point);
+
+/// The `k` nearest points, in order.
+pub(crate) fn nearest(
+    lattice: &Lattice,
+    mask: &Mask,
+    at: [f64; 2],
+    k: usize,
+) -> Result<Vec<Found>, Error> {
+    if k > MAX_NEAREST {
+        let allowed = alloc::format!("at most {MAX_NEAREST}");
+        return Err(Error::new(ErrorKind::Neighbors, "k", k, allowed));
+    }
+    let placement = lattice.placement;
+    // A disk that holds k + 2√k + 2 points on average mostly has k.
+    let wanted = k as f64 + 2.0 * libm::sqrt(k as f64) + 2.0;
+    let area = wanted / (core::f64::consts::PI * placement.keep.get());
+    let mut radius = placement.spacing.get() * libm::sqrt(area);
+    loop {
+        let mut found = within(lattice, mask, at, radius, MAX_CANDIDATES)?;
+        if found.len() >= k {
+            found.truncate(k);
+            return Ok(found);
+        }
+        radius *= 1.5;
+    }
+}
+
+/// All points within a radius, `limit` at most, in order.
+pub(crate) fn within(
+    lattice: &Lattice,
+    mask: &Mask,
+    at: [f64; 2],
+    radius: f64,
+    limit: usize,
+) -> Result<Vec<Found>, Error> {
+    check_place(at)?;
+    check_radius(radius)?;
+    // Counts come close to their means in disks of many points.
+    let generous = limit.saturating_mul(2).max(100);
+    check_number(lattice, radius, lattice.placement.keep.get(), generous)?;
+    check_work(lattice, radius, 2 * MAX_CANDIDATES)?;
+    check_reach(lattice, at, radius)?;
+    let squared = radius * radius;
+    let guards = mask.guards();
+    let (mut found, mut inside) = (Vec::new(), 0usize);
+    let _ = scan(lattice, &mut Scratch::default(), at, radius, |d, point| {
+        if d <= squared && guards.permit(point.at()) {
+            inside += 1;
+            if inside <= limit {
+                found.push((d, point));
+            }
+        }
+        ControlFlow::Continue(())
+    });
+    if inside > limit {
+        return Err(too_many(radius, inside as f64, limit));
+    }
+    found.sort_unstable_by(|(d, p), (e, q)| d.total_cmp(e).then(p.id.cmp(&q.id)));
+    Ok(found)
+}

@@ -1,0 +1,160 @@
+//! The sieve of one piece of the lattice.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use crate::{
+    pattern::Axis,
+    sample::{
+        area::{Area, Near, Region, State, Stepper},
+        near::Guard,
+    },
+};
+
+/// A sieve aimed at a piece of the lattice. It keeps memory, so each thread has its own.
+#[derive(Clone, Debug)]
+pub(crate) struct LocalSieve {
+    area: Option<Area>,
+    guards: Vec<Guard>,
+    /// The least and the greatest distance of a point from its lattice address, in lattice units, by
+    /// axis.
+    reach: [[f64; 2]; 2],
+    /// World units per lattice unit.
+    unit: f64,
+    /// Lattice units per world unit.
+    per_unit: f64,
+    stepper: Stepper,
+}
+
+/// A range of neighboring columns.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Run {
+    pub(crate) columns: Range<i64>,
+    /// Whether all of their points pass; otherwise each must be tested.
+    pub(crate) passes: bool,
+    /// The edges to compare them with, if not with the whole area.
+    near: Option<Near>,
+}
+
+impl LocalSieve {
+    pub(super) fn new(guards: Vec<Guard>, reach: [[f64; 2]; 2], unit: f64) -> Self {
+        Self {
+            area: None,
+            guards,
+            reach,
+            unit,
+            per_unit: 1.0 / unit,
+            stepper: Stepper::default(),
+        }
+    }
+
+    /// Narrows the sieve to the points of some rows and columns that lie in `area`.
+    pub(crate) fn aim(&mut self, area: Option<&Area>, rows: &Range<i64>, columns: &Range<i64>) {
+        let [x, y] = [self.strip(Axis::X, columns), self.strip(Axis::Y, rows)];
+        let within = Region::between([x[0], y[0]], [x[1], y[1]]);
+        self.area = area.map(|area| area.focus(&within));
+    }
+
+    /// The area, reduced to what matters here.
+    pub(crate) const fn area(&self) -> Option<&Area> {
+        self.area.as_ref()
+    }
+
+    /// The range of world coordinates of the points of some rows or columns, with room for rounding.
+    fn strip(&self, axis: Axis, range: &Range<i64>) -> [f64; 2] {
+        let [least, most] = self.reach[axis as usize];
+        let (start, end) = (range.start as f64 + least, (range.end - 1) as f64 + most);
+        [
+            (start - room(start)) * self.unit,
+            (end + room(end)) * self.unit,
+        ]
+    }
+
+    /// Whether a point of one of the last [`runs`](Self::runs) passes.
+    #[inline]
+    pub(crate) fn passes(&self, run: &Run, p: [f64; 2]) -> bool {
+        let inside = match (run.near, &self.area) {
+            (Some(near), _) => self.stepper.contains(near, p),
+            (None, Some(area)) => area.contains(p),
+            (None, None) => true,
+        };
+        inside && self.guards.iter().all(|guard| guard.permits(p))
+    }
+
+    /// The columns whose points may pass in any of some rows. The points of a run that passes do so in
+    /// all of the rows.
+    pub(crate) fn runs(&mut self, rows: Range<i64>, columns: &Range<i64>, runs: &mut Vec<Run>) {
+        runs.clear();
+        let strip = self.strip(Axis::Y, &rows);
+        match &self.area {
+            Some(area) => area.steps(strip, &mut self.stepper),
+            None => self.stepper.steps.restart(State::In),
+        }
+        let is_guarded = !self.guards.is_empty();
+        let mut push = |run: Range<i64>, passes: bool, near: Option<Near>| {
+            let passes = passes && !is_guarded;
+            match runs.last_mut() {
+                _ if run.is_empty() => {}
+                Some(last) if last.passes == passes && last.columns.end == run.start => {
+                    last.columns.end = run.end;
+                    last.near = None;
+                }
+                _ => runs.push(Run {
+                    columns: run,
+                    passes,
+                    near,
+                }),
+            }
+        };
+        let mut next = columns.start;
+        // The edges to compare with, if only one stretch is unsure since the last sure one with columns.
+        let (mut near, mut unsure) = (None, 0);
+        for (from, to, state, compared) in self.stepper.steps.stretches() {
+            if state == State::Test {
+                unsure += 1;
+                near = compared.filter(|_| unsure == 1);
+                continue;
+            }
+            let start = self.first_beyond(from).clamp(next, columns.end);
+            let end = self.last_before(to).clamp(start, columns.end);
+            if start == end {
+                continue;
+            }
+            push(next..start, false, near);
+            if state == State::In {
+                push(start..end, true, None);
+            }
+            next = end;
+            (near, unsure) = (None, 0);
+        }
+        push(next..columns.end, false, near);
+    }
+
+    /// The first column whose points all lie above a world x, however they are displaced.
+    fn first_beyond(&self, x: f64) -> i64 {
+        let x = x * self.per_unit;
+        at_or_above(x - self.reach[0][0] + room(x))
+    }
+
+    /// The end of the columns whose points all lie below a world x, however they are displaced.
+    fn last_before(&self, x: f64) -> i64 {
+        let x = x * self.per_unit;
+        at_or_above(x - self.reach[0][1] - room(x))
+    }
+}
+
+/// The first integer at or above `x`. Casts saturate.
+fn at_or_above(x: f64) -> i64 {
+    let whole = x as i64;
+    whole.saturating_add(i64::from((whole as f64) < x))
+}
+
+/// The height of a strip in lattice rows. Higher strips leave more points to be tested one by one, lower
+/// ones cost more calls of `Area::steps`.
+pub(crate) const STRIP_ROWS: i64 = 8;
+
+/// The room for rounding at a boundary, in lattice units: sums, quotients and conversions err by a few
+/// units in the last place. It is bounded so that ±∞ stays outermost.
+fn room(x: f64) -> f64 {
+    1.0 / 256.0 + (2e-15 * x.abs()).min(1e300)
+}

@@ -1,0 +1,49 @@
+//! The sieve of a whole plan.
+
+use super::LocalSieve;
+use crate::{
+    pattern::Axis,
+    sample::{
+        area::Area,
+        lattice::Lattice,
+        near::Mask,
+    },
+    table::FRACTION_BITS,
+};
+
+/// What every point of a plan satisfies.
+#[derive(Clone, Debug)]
+pub(crate) struct Sieve {
+    /// Its area is `None` where all of the plan's box is requested.
+    mask: Mask,
+    /// The least and the greatest distance of a point from its lattice address, in lattice units, by
+    /// axis.
+    reach: [[f64; 2]; 2],
+    /// World units per lattice unit.
+    unit: f64,
+}
+
+impl Sieve {
+    /// A sieve, or `None` if everything passes.
+    pub(crate) fn new(lattice: &Lattice, mask: Mask) -> Option<Self> {
+        if mask.area.is_none() && mask.clear.is_empty() {
+            return None;
+        }
+        let grid_units = |v: i32| f64::from(v) / f64::from(1u32 << FRACTION_BITS);
+        Some(Self {
+            mask,
+            reach: [Axis::X, Axis::Y].map(|axis| lattice.reach(axis).map(grid_units)),
+            unit: lattice.step * f64::from(1u32 << FRACTION_BITS),
+        })
+    }
+
+    /// A sieve to be aimed at one piece of the lattice after another.
+    pub(crate) fn local(&self) -> LocalSieve {
+        LocalSieve::new(self.mask.clear_guards(), self.reach, self.unit)
+    }
+
+    /// The area in which points lie, if not in all of the box.
+    pub(crate) const fn area(&self) -> Option<&Area> {
+        self.mask.area.as_ref()
+    }
+}

@@ -1,0 +1,481 @@
+//! The walk over a plan: bands of columns, rows within a band, columns within a row.
+
+use alloc::{sync::Arc, vec::Vec};
+use core::ops::Range;
+
+use super::{
+    template::{
+        Check, Kept, Part, Template, Templates, displaced, sift, write_row,
+    },
+    tile::{Tile, bands},
+};
+use crate::{
+    pattern::{Axis, Class},
+    sample::{
+        cursor::Cursor,
+        kernel::{Backend, Format, Geometry, Row, compiled},
+        lattice::{BAND_WIDTH, Columns, Patch, PointId, PrefixCounts, clip_to_band},
+        scope::Scope,
+        sieve::{LocalSieve, Run, STRIP_ROWS, Scale},
+    },
+};
+
+/// The number of lattice rows from which a band keeps its templates.
+const TALL: i64 = 512;
+
+/// A part of the points of a scope: from a place on, up to a number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Window {
+    /// The lattice address of the first point, unless that is the scope's first.
+    pub(crate) start: Option<PointId>,
+    /// The number of points before the window.
+    pub(crate) offset: u128,
+    /// The number of points of the window.
+    pub(crate) count: u128,
+    /// The number of points of the scope.
+    pub(crate) total: u128,
+}
+
+/// The points of a plan, or of one of its tiles, in order, in blocks of any size.
+///
+/// It owns all it needs, so it can move between threads from block to block.
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [100.0, 50.0])?)?;
+/// let (mut blocks, mut block) = (plan.blocks_f32(), [[0.0; 2]; 512]);
+/// let mut total = 0;
+/// loop {
+///     let filled = blocks.fill(&mut block);
+///     total += filled;
+///     if filled < block.len() {
+///         break;
+///     }
+/// }
+/// assert_eq!(total as u128, plan.count());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Blocks<F: Format> {
+    scope: Arc<Scope>,
+    /// What the walk covers of the scope; `None` for a tile.
+    window: Option<Window>,
+    format: F,
+    /// The bands still to come.
+    bands: Range<i64>,
+    /// The current band.
+    band: i64,
+    /// The rows of every band.
+    rows: Range<i64>,
+    at: Place,
+    /// The number of points still to come.
+    left: u128,
+    sieve: Option<Sifting>,
+    columns: Columns,
+    /// The columns that lie inside whatever their displacement, as places in the lists.
+    inner: [Range<usize>; 4],
+    templates: Templates<F>,
+    patch: Patch,
+    base: [f64; 2],
+    backend: Backend,
+}
+
+/// The place of the next point in a band.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    /// The current row; the end of the rows when a new band is due.
+    y: i64,
+    /// The number of columns of the row's template that are done.
+    done: usize,
+    /// The lattice column where the current row begins, if it is the first of a window.
+    from: Option<i64>,
+}
+
+/// The state of a walk through a sieve.
+#[derive(Debug)]
+struct Sifting {
+    /// The sieve for the band, and for the patch.
+    band: LocalSieve,
+    patch: LocalSieve,
+    /// Whether the sieve leaves out points of the current patch.
+    is_cut: bool,
+    /// The runs of the current row and those after it, up to `runs_end`.
+    runs: Vec<Run>,
+    runs_end: i64,
+    prefix: PrefixCounts,
+}
+
+impl Place {
+    const fn row(y: i64) -> Self {
+        Self {
+            y,
+            done: 0,
+            from: None,
+        }
+    }
+
+    const fn next_row(&mut self) {
+        *self = Self::row(self.y + 1);
+    }
+}
+
+impl<F: Format> Blocks<F> {
+    /// The points of a window.
+    pub(crate) fn of_window(scope: Arc<Scope>, window: Window) -> Self {
+        let (bands, rows) = (bands(&scope), scope.y.all.clone());
+        let bands = match window.start {
+            Some(at) => at.x.div_euclid(BAND_WIDTH)..bands.end,
+            None => bands,
+        };
+        let mut blocks = Self::new(scope, Some(window), bands, rows);
+        if let Some(at) = window.start
+            && blocks.next_band()
+            && blocks.rows.contains(&at.y)
+        {
+            blocks.at = Place {
+                from: Some(at.x),
+                ..Place::row(at.y)
+            };
+            blocks.next_patch();
+        }
+        blocks
+    }
+
+    /// The points of a tile.
+    pub(crate) fn of_tile(scope: Arc<Scope>, tile: &Tile) -> Self {
+        Self::new(scope, None, tile.band..tile.band + 1, tile.rows.clone())
+    }
+
+    fn new(
+        scope: Arc<Scope>,
+        window: Option<Window>,
+        bands: Range<i64>,
+        rows: Range<i64>,
+    ) -> Self {
+        let begins_within = window.is_some_and(|window| window.start.is_some());
+        let kept = match &scope.sieve {
+            Some(_) => Kept::All,
+            None if begins_within => Kept::Places,
+            None => Kept::Columns,
+        };
+        let (min, max) = (scope.region.min(), scope.region.max());
+        let format = F::new(&Geometry {
+            step: scope.lattice.step,
+            first: [scope.x.bounds.start, scope.y.bounds.start],
+            extent: [0, 1].map(|axis| max[axis] - min[axis]),
+        });
+        let patch = Patch::new(&scope.lattice, bands.start, rows.start, &scope.x, &scope.y);
+        let is_tall = rows.end - rows.start >= TALL;
+        Self {
+            base: format.base(patch.origin()),
+            format,
+            band: bands.start,
+            bands,
+            at: Place::row(rows.end),
+            rows,
+            left: window.map_or(u128::MAX, |window| window.count),
+            sieve: scope.sieve.as_ref().map(|sieve| Sifting {
+                band: sieve.local(),
+                patch: sieve.local(),
+                is_cut: false,
+                runs: Vec::new(),
+                runs_end: i64::MIN,
+                prefix: PrefixCounts::default(),
+            }),
+            columns: Columns::default(),
+            inner: [const { 0..0 }; 4],
+            templates: Templates::new(&scope.lattice, is_tall, kept),
+            patch,
+            backend: Backend::best(),
+            scope,
+            window,
+        }
+    }
+
+    /// The same points by another backend than the machine's best.
+    #[must_use]
+    pub const fn with_backend(mut self, backend: Backend) -> Self {
+        self.backend = backend;
+        self
+    }
+
+    /// Writes the next points into `out`. Returns the number written; fewer than `out` holds, down to 0,
+    /// only at the end.
+    pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
+        let most = usize::try_from(self.left).map_or(out.len(), |left| left.min(out.len()));
+        let out = &mut out[..most];
+        let mut filled = 0;
+        while filled < out.len() {
+            if self.at.y == self.rows.end && !self.next_band() {
+                break;
+            }
+            if self.at.y == self.patch.end() {
+                self.next_patch();
+            }
+            let end = self.rows.end.min(self.patch.end());
+            let out = &mut out[filled..];
+            filled += if self.sieve.as_ref().is_some_and(|sieve| sieve.is_cut) {
+                self.fill_sifted(end, out)
+            } else {
+                self.fill_rows(end, out)
+            };
+        }
+        self.left -= filled as u128;
+        filled
+    }
+
+    /// The place after the points written so far, found without counting. `None` for a tile, whose
+    /// place in the order is unknown, and for a plan without points, which has no place to resume from.
+    ///
+    /// Its lattice address lies after that of the last point written, and may lie before that of the
+    /// next.
+    #[must_use]
+    pub fn cursor(&self) -> Option<Cursor> {
+        let window = self.window.filter(|window| window.count > 0)?;
+        let at = if self.at.y == self.rows.end {
+            PointId {
+                x: self.bands.start * BAND_WIDTH,
+                y: self.rows.start,
+            }
+        } else {
+            PointId {
+                x: self.column(),
+                y: self.at.y,
+            }
+        };
+        Some(Cursor {
+            offset: window.offset + (window.count - self.left),
+            total: window.total,
+            at,
+        })
+    }
+
+    /// The lattice column at which the current row goes on.
+    fn column(&self) -> i64 {
+        let start = self.band * BAND_WIDTH;
+        if self.at.done == 0 {
+            return self.at.from.unwrap_or(start);
+        }
+        let lattice = &self.scope.lattice;
+        let column = lattice.row(self.at.y).and_then(|(class, block)| {
+            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
+            self.templates
+                .column(&self.patch, columns, vectors, self.at.done)
+        });
+        column.unwrap_or(start + BAND_WIDTH)
+    }
+
+    /// Moves to the first row of the next band.
+    fn next_band(&mut self) -> bool {
+        let Some(band) = self.bands.next() else {
+            return false;
+        };
+        let Scope { lattice, x, .. } = &*self.scope;
+        let columns = clip_to_band(band, &x.all);
+        self.columns.list(lattice, columns.clone());
+        self.inner = self.columns.places(&x.inner);
+        if let (Some(sieve), Some(sifting)) = (&self.scope.sieve, &mut self.sieve) {
+            sifting.band.aim(sieve.area(), &self.rows, &columns);
+            sifting.prefix.update(&columns, &self.columns);
+        }
+        self.templates.clear();
+        self.band = band;
+        self.at = Place::row(self.rows.start);
+        self.next_patch();
+        true
+    }
+
+    /// Moves to the patch of the current row.
+    fn next_patch(&mut self) {
+        let Scope { lattice, x, y, .. } = &*self.scope;
+        self.patch = Patch::new(lattice, self.band, self.at.y, x, y);
+        self.base = self.format.base(self.patch.origin());
+        if let Some(sifting) = &mut self.sieve {
+            let rows = self.at.y..self.patch.end().min(self.rows.end);
+            let columns = clip_to_band(self.band, &x.all);
+            if sifting.next_patch(&rows, &columns) {
+                self.at = Place::row(rows.end);
+            }
+        }
+    }
+
+    /// Writes points of the patch's rows up to `end`, or as many as there is room for.
+    fn fill_rows(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+        let Scope {
+            lattice,
+            x,
+            y: span,
+            ..
+        } = &*self.scope;
+        let (format, patch, base) = (&self.format, &self.patch, self.base);
+        let is_split = patch.is_warped() && !patch.columns_are_inner;
+        let is_direct = self.templates.are_plain() && !patch.is_warped();
+        let mut filled = 0;
+        while self.at.y < end && filled < out.len() {
+            let y = self.at.y;
+            let Some((class, block)) = lattice.row(y) else {
+                self.at.next_row();
+                continue;
+            };
+            let row = Row {
+                base,
+                y: patch.relative(Axis::Y, y),
+                lattice: y,
+            };
+            let is_inner = span.inner.contains(&y);
+            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
+            let inner = self.inner[class.ordinal()].clone();
+            let out = &mut out[filled..];
+            if is_direct && self.at.done == 0 && columns.len() <= out.len() {
+                filled += compiled(self.backend, || {
+                    write_row(format, patch, row, (columns, inner), (vectors, is_inner), out)
+                });
+                self.at.next_row();
+                continue;
+            }
+            let template = self
+                .templates
+                .get(class, block, self.at.done > 0, |template, kept| {
+                    template.make(format, base, patch, (columns, inner), vectors, kept);
+                });
+            if let Some(from) = self.at.from.take() {
+                self.at.done = template.columns_before(from);
+            }
+            let part = if !is_inner {
+                Part {
+                    columns: self.at.done..template.len(),
+                    check: Check::Bounds,
+                }
+            } else if is_split {
+                next_part(template, self.at.done, &x.inner)
+            } else {
+                Part {
+                    columns: self.at.done..template.len(),
+                    check: Check::Nothing,
+                }
+            };
+            let progress = template.fill(format, patch, row, part, self.backend, out);
+            filled += progress.written;
+            self.at.done += progress.done;
+            if self.at.done == template.len() {
+                self.at.next_row();
+            }
+        }
+        filled
+    }
+
+    /// Writes points of a patch that the sieve cuts, up to row `end`, or as many as there is room for.
+    fn fill_sifted(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+        let Scope { lattice, x, .. } = &*self.scope;
+        let Some(sifting) = &mut self.sieve else {
+            return 0;
+        };
+        let (format, patch, base) = (&self.format, &self.patch, self.base);
+        let range = clip_to_band(self.band, &x.all);
+        let scale = Scale::new(lattice, patch);
+        let mut filled = 0;
+        while self.at.y < end && filled < out.len() {
+            let y = self.at.y;
+            let Some((class, block)) = lattice.row(y) else {
+                self.at.next_row();
+                continue;
+            };
+            if sifting.next_strip(y, end, &range) {
+                self.at = Place::row(sifting.runs_end);
+                continue;
+            }
+            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
+            let template = self
+                .templates
+                .get(class, block, self.at.done > 0, |template, kept| {
+                    let all = 0..columns.len();
+                    template.make(format, base, patch, (columns, all), vectors, kept);
+                });
+            if let Some(from) = self.at.from.take() {
+                let from = from.clamp(range.start, range.end);
+                self.at.done = sifting.prefix.before(class, from);
+            }
+            let row = Row {
+                base,
+                y: patch.relative(Axis::Y, y),
+                lattice: y,
+            };
+            for run in &sifting.runs {
+                let places = sifting.places(class, run);
+                let part = places.start.max(self.at.done)..places.end;
+                if part.is_empty() {
+                    continue;
+                }
+                let (start, out) = (part.start, &mut out[filled..]);
+                let progress = if run.passes {
+                    let part = Part {
+                        columns: part,
+                        check: Check::Nothing,
+                    };
+                    template.fill(format, patch, row, part, self.backend, out)
+                } else {
+                    let columns = displaced(patch, &columns[part], vectors);
+                    let passes = |place| sifting.patch.passes(run, scale.world(place));
+                    sift(format, patch, row, columns, passes, out)
+                };
+                filled += progress.written;
+                self.at.done = start + progress.done;
+                if self.at.done < places.end {
+                    return filled;
+                }
+            }
+            self.at.next_row();
+        }
+        filled
+    }
+}
+
+/// The next columns of a warped row that need one kind of check: those left of the inner columns, the
+/// inner ones, or those right of them.
+fn next_part<F: Format>(template: &Template<F>, done: usize, inner: &Range<i64>) -> Part {
+    let inner = [inner.start, inner.end].map(|v| template.columns_before(v));
+    let (end, check) = if done < inner[0] {
+        (inner[0], Check::Bounds)
+    } else if done < inner[1] {
+        (inner[1], Check::Nothing)
+    } else {
+        (template.len(), Check::Bounds)
+    };
+    Part {
+        columns: done..end,
+        check,
+    }
+}
+
+impl Sifting {
+    /// Aims at a patch. Returns whether none of its points pass.
+    fn next_patch(&mut self, rows: &Range<i64>, columns: &Range<i64>) -> bool {
+        self.patch.aim(self.band.area(), rows, columns);
+        self.patch.runs(rows.clone(), columns, &mut self.runs);
+        self.runs_end = rows.start;
+        self.is_cut = match self.runs.as_slice() {
+            [] => false,
+            // Such a patch lies inside the plan's box as well, and is filled like one.
+            [run] => !(run.passes && run.columns == *columns),
+            _ => true,
+        };
+        self.runs.is_empty()
+    }
+
+    /// Makes sure that the runs of row `y` are known. Returns whether no point of its strip passes.
+    fn next_strip(&mut self, y: i64, end: i64, columns: &Range<i64>) -> bool {
+        if y >= self.runs_end {
+            self.runs_end = end.min(y + STRIP_ROWS);
+            self.patch.runs(y..self.runs_end, columns, &mut self.runs);
+        }
+        self.runs.is_empty()
+    }
+
+    /// The places of a run in the list of a class.
+    fn places(&self, class: Class, run: &Run) -> Range<usize> {
+        let before = |x| self.prefix.before(class, x);
+        before(run.columns.start)..before(run.columns.end)
+    }
+}

@@ -1,0 +1,383 @@
+//! Templates: what the rows of one class and block of a band have in common.
+//!
+//! The columns of a row, with their displacements, depend only on the class and the block of the row. So
+//! at most 4·n templates serve all rows of a band. A tall band keeps them; in a short one, where few rows
+//! share a template, each row makes its own.
+
+use alloc::{vec, vec::Vec};
+use core::{mem::take, ops::Range};
+
+use crate::{
+    pattern::{Axis, Class},
+    sample::{
+        kernel::{Backend, Format, Row, WarpedColumns, fill_row, fill_warped_row},
+        lattice::{Lattice, Line, Patch},
+    },
+};
+
+/// The columns of a row.
+#[derive(Debug)]
+pub(super) struct Template<F: Format> {
+    /// What each column contributes; without warp only.
+    columns: Vec<F::Column>,
+    /// The lattice columns, where they are needed: with warp, and where rows begin in the middle.
+    lattice: Vec<i64>,
+    /// The displaced x of each column, relative to the patch's origin; with warp only.
+    displaced: Vec<i32>,
+    /// The vertical displacement of each column.
+    displacements: Vec<i32>,
+    is_made: bool,
+}
+
+/// Some columns of a template, and what their points must satisfy.
+#[derive(Debug)]
+pub(super) struct Part {
+    pub(super) columns: Range<usize>,
+    pub(super) check: Check,
+}
+
+/// What points must satisfy.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Check {
+    /// Nothing: all are requested.
+    Nothing,
+    /// The bounds of the patch.
+    Bounds,
+}
+
+/// What one call wrote: the number of items, and the number of columns that are done with, which is all
+/// of them unless the output was full before.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Progress {
+    pub(super) written: usize,
+    pub(super) done: usize,
+}
+
+/// A displaced column of a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Displaced {
+    lattice: i64,
+    /// The x of its point, relative to the patch's origin.
+    x: i32,
+    /// The vertical displacement of its point.
+    dy: i32,
+}
+
+/// Columns with the vectors of a row's block.
+pub(super) fn displaced(
+    patch: &Patch,
+    columns: &[Line],
+    vectors: &[[i32; 2]],
+) -> impl Iterator<Item = Displaced> {
+    columns.iter().map(|column| {
+        let [dx, dy] = vectors[column.block as usize];
+        Displaced {
+            lattice: column.at,
+            x: patch.relative(Axis::X, column.at) + dx,
+            dy,
+        }
+    })
+}
+
+impl<F: Format> Template<F> {
+    const fn new() -> Self {
+        Self {
+            columns: Vec::new(),
+            lattice: Vec::new(),
+            displaced: Vec::new(),
+            displacements: Vec::new(),
+            is_made: false,
+        }
+    }
+
+    /// The number of columns.
+    pub(super) fn len(&self) -> usize {
+        self.displacements.len()
+    }
+
+    /// The number of columns before a lattice column.
+    pub(super) fn columns_before(&self, x: i64) -> usize {
+        debug_assert_eq!(self.lattice.len(), self.len(), "the template keeps places");
+        self.lattice.partition_point(|&v| v < x)
+    }
+
+    /// Makes the template of the columns of a class with the vectors of a block. Those in `inner` lie
+    /// inside the region along x.
+    pub(super) fn make(
+        &mut self,
+        format: &F,
+        base: [f64; 2],
+        patch: &Patch,
+        (columns, inner): (&[Line], Range<usize>),
+        vectors: &[[i32; 2]],
+        kept: Kept,
+    ) {
+        self.columns.clear();
+        self.lattice.clear();
+        self.displaced.clear();
+        self.displacements.clear();
+        let all = kept.has_all(patch);
+        if patch.is_warped() {
+            let of_all = || displaced(patch, columns, vectors);
+            self.displaced.extend(of_all().map(|column| column.x));
+            self.displacements.extend(of_all().map(|column| column.dy));
+            self.lattice.extend(columns.iter().map(|column| column.at));
+        } else {
+            let inner = if all { 0..columns.len() } else { inner };
+            let room = columns.len();
+            let mut made = (take(&mut self.columns), take(&mut self.displacements));
+            made.0.reserve(room);
+            made.1.reserve(room);
+            let column = |column: Displaced| {
+                let Displaced { lattice, x, dy } = column;
+                (format.column(base, x, lattice), dy)
+            };
+            let holds = |column: &Displaced| patch.holds_along(Axis::X, column.x);
+            let [left, middle, right] = [0..inner.start, inner.clone(), inner.end..room]
+                .map(|part| displaced(patch, &columns[part], vectors));
+            for (x, dy) in left.filter(holds).map(column) {
+                made.0.push(x);
+                made.1.push(dy);
+            }
+            made.extend(middle.map(column));
+            for (x, dy) in right.filter(holds).map(column) {
+                made.0.push(x);
+                made.1.push(dy);
+            }
+            (self.columns, self.displacements) = made;
+            if kept != Kept::Columns {
+                let of_all = displaced(patch, columns, vectors);
+                let held = of_all.filter(|column| all || holds(column));
+                self.lattice.extend(held.map(|column| column.lattice));
+            }
+        }
+        self.is_made = true;
+    }
+
+    /// Writes the points of a part of a row.
+    pub(super) fn fill(
+        &self,
+        format: &F,
+        patch: &Patch,
+        row: Row,
+        part: Part,
+        backend: Backend,
+        out: &mut [F::Item],
+    ) -> Progress {
+        let Part { columns, check } = part;
+        match (check, patch.shears()) {
+            (Check::Nothing, shears) => {
+                let written = columns.len().min(out.len());
+                let columns = columns.start..columns.start + written;
+                let out = &mut out[..written];
+                if let Some(shears) = shears {
+                    let columns = self.warped(columns);
+                    fill_warped_row(format, backend, shears, row, columns, out);
+                } else {
+                    let dys = &self.displacements[columns.clone()];
+                    fill_row(format, backend, row, &self.columns[columns], dys, out);
+                }
+                Progress {
+                    written,
+                    done: written,
+                }
+            }
+            (Check::Bounds, Some(_)) => {
+                let dys = &self.displacements[columns.clone()];
+                let WarpedColumns {
+                    displaced, lattice, ..
+                } = self.warped(columns);
+                let columns = lattice.iter().zip(displaced).zip(dys);
+                let columns = columns.map(|((&lattice, &x), &dy)| Displaced { lattice, x, dy });
+                sift(format, patch, row, columns, |p| patch.holds(p), out)
+            }
+            // Columns outside along x are not in the template.
+            (Check::Bounds, None) => self.clip(format, patch, row, columns, out),
+        }
+    }
+
+    fn warped(&self, columns: Range<usize>) -> WarpedColumns<'_> {
+        WarpedColumns {
+            displaced: &self.displaced[columns.clone()],
+            displacements: &self.displacements[columns.clone()],
+            lattice: &self.lattice[columns],
+        }
+    }
+
+    /// Writes the points within the patch's bounds along y.
+    fn clip(
+        &self,
+        format: &F,
+        patch: &Patch,
+        row: Row,
+        part: Range<usize>,
+        out: &mut [F::Item],
+    ) -> Progress {
+        let (mut written, mut done) = (0, 0);
+        let columns = &self.columns[part.clone()];
+        for (&column, &displacement) in columns.iter().zip(&self.displacements[part]) {
+            let y = row.y + displacement;
+            if patch.holds_along(Axis::Y, y) {
+                let Some(item) = out.get_mut(written) else {
+                    break;
+                };
+                *item = format.item(row.base, column, y, row.lattice);
+                written += 1;
+            }
+            done += 1;
+        }
+        Progress { written, done }
+    }
+}
+
+/// Writes a row of a box without warp and without a template, for rows that share theirs with few
+/// others. There is room for all columns. Columns in `inner` lie inside along x; `is_inner` rows do along
+/// y. Returns the number of points written.
+#[inline(always)]
+pub(super) fn write_row<F: Format>(
+    format: &F,
+    patch: &Patch,
+    row: Row,
+    (columns, inner): (&[Line], Range<usize>),
+    (vectors, is_inner): (&[[i32; 2]], bool),
+    out: &mut [F::Item],
+) -> usize {
+    let item = |Displaced { lattice, x, dy }: Displaced| {
+        let column = format.column(row.base, x, lattice);
+        format.item(row.base, column, row.y + dy, row.lattice)
+    };
+    let inner = if is_inner { inner } else { 0..0 };
+    let parts = [0..inner.start, inner.clone(), inner.end..columns.len()];
+    let [left, middle, right] = parts.map(|part| displaced(patch, &columns[part], vectors));
+    let holds = |column: &Displaced| patch.holds([column.x, row.y + column.dy]);
+    let mut written = 0;
+    for (out, column) in out.iter_mut().zip(left.filter(holds)) {
+        *out = item(column);
+        written += 1;
+    }
+    for (out, column) in out[written..].iter_mut().zip(middle) {
+        *out = item(column);
+    }
+    written += inner.len();
+    for (out, column) in out[written..].iter_mut().zip(right.filter(holds)) {
+        *out = item(column);
+        written += 1;
+    }
+    written
+}
+
+/// Writes those points of some columns of a row whose place, relative to the patch's origin, passes.
+pub(super) fn sift<F: Format>(
+    format: &F,
+    patch: &Patch,
+    row: Row,
+    columns: impl Iterator<Item = Displaced>,
+    passes: impl Fn([i32; 2]) -> bool,
+    out: &mut [F::Item],
+) -> Progress {
+    let (mut written, mut done) = (0, 0);
+    for Displaced { lattice, x, dy } in columns {
+        let position = patch.place([x, row.y + dy]);
+        if passes(position) {
+            let Some(out) = out.get_mut(written) else {
+                break;
+            };
+            let column = format.column(row.base, position[0], lattice);
+            *out = format.item(row.base, column, position[1], row.lattice);
+            written += 1;
+        }
+        done += 1;
+    }
+    Progress { written, done }
+}
+
+/// What templates keep of their columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kept {
+    /// The columns inside the box: what whole rows need.
+    Columns,
+    /// Their lattice coordinates as well, for rows that begin in the middle.
+    Places,
+    /// Columns outside the box as well, where a sieve decides.
+    All,
+}
+
+impl Kept {
+    /// Whether columns are kept whether they lie inside the box or not.
+    fn has_all(self, patch: &Patch) -> bool {
+        patch.is_warped() || self == Self::All || patch.columns_are_inner
+    }
+}
+
+/// The templates of a band by class and block, or only the last one.
+#[derive(Debug)]
+pub(super) struct Templates<F: Format> {
+    slots: Vec<Template<F>>,
+    intervals: usize,
+    /// Whether there is a slot for every class and block.
+    is_tall: bool,
+    kept: Kept,
+}
+
+impl<F: Format> Templates<F> {
+    pub(super) fn new(lattice: &Lattice, is_tall: bool, kept: Kept) -> Self {
+        let intervals = lattice.map().intervals();
+        let slots = if is_tall { 4 * intervals } else { 1 };
+        let mut templates = Self {
+            slots: vec![],
+            intervals,
+            is_tall,
+            kept,
+        };
+        templates.slots.resize_with(slots, Template::new);
+        templates
+    }
+
+    /// Drops all templates; their memory is kept.
+    pub(super) fn clear(&mut self) {
+        self.slots.iter_mut().for_each(|slot| slot.is_made = false);
+    }
+
+    /// The lattice column of number `n` of the template of some columns.
+    pub(super) fn column(
+        &self,
+        patch: &Patch,
+        columns: &[Line],
+        vectors: &[[i32; 2]],
+        n: usize,
+    ) -> Option<i64> {
+        let all = self.kept.has_all(patch);
+        let columns = columns.iter().filter(|column| {
+            let displaced = patch.relative(Axis::X, column.at) + vectors[column.block as usize][0];
+            all || patch.holds_along(Axis::X, displaced)
+        });
+        columns.map(|column| column.at).nth(n)
+    }
+
+    /// Whether each row makes a template of its own, and only for what it writes.
+    pub(super) fn are_plain(&self) -> bool {
+        !self.is_tall && self.kept == Kept::Columns
+    }
+
+    /// The template of a row, made if it is not there; `is_same` states that the row is the one of the
+    /// last call.
+    #[inline]
+    pub(super) fn get(
+        &mut self,
+        class: Class,
+        block: usize,
+        is_same: bool,
+        make: impl FnOnce(&mut Template<F>, Kept),
+    ) -> &Template<F> {
+        let slot = if self.is_tall {
+            class.ordinal() * self.intervals + block
+        } else {
+            0
+        };
+        let template = &mut self.slots[slot];
+        if !template.is_made || !(self.is_tall || is_same) {
+            make(template, self.kept);
+        }
+        template
+    }
+}

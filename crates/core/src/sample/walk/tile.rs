@@ -1,0 +1,56 @@
+//! Tiles: parts of a plan that can be filled independently.
+
+use core::ops::Range;
+
+use crate::{
+    pattern::{Axis, Class},
+    sample::{
+        lattice::{BAND_WIDTH, clip_to_band},
+        scope::Scope,
+    },
+};
+
+/// Some rows of one band of a plan; see [`Plan::tiles`](crate::Plan::tiles).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tile {
+    pub(super) band: i64,
+    pub(super) rows: Range<i64>,
+}
+
+impl Tile {
+    /// A row of a band.
+    pub(crate) const fn row(band: i64, row: i64) -> Self {
+        let rows = row..row + 1;
+        Self { band, rows }
+    }
+}
+
+/// The bands that a scope touches.
+pub(crate) fn bands(scope: &Scope) -> Range<i64> {
+    let columns = &scope.x.all;
+    if columns.is_empty() || scope.y.all.is_empty() {
+        return 0..0;
+    }
+    columns.start.div_euclid(BAND_WIDTH)..(columns.end - 1).div_euclid(BAND_WIDTH) + 1
+}
+
+/// The tiles of a scope, in order, of at most `max_points` points each, or one row if that has more.
+pub(crate) fn tiles(scope: &Scope, max_points: usize) -> impl Iterator<Item = Tile> + use<> {
+    let (rows, columns) = (scope.y.all.clone(), scope.x.all.clone());
+    let pattern = scope.lattice.pattern;
+    bands(scope).flat_map(move |band| {
+        let columns = clip_to_band(band, &columns);
+        let longest = Class::ALL
+            .map(|class| pattern.axis_set(Axis::X, class).count(columns.clone()))
+            .into_iter()
+            .fold(1, u64::max);
+        let height = (max_points as u64 / longest).clamp(1, 1 << 40) as i64;
+        let end = rows.end;
+        let mut start = rows.start;
+        core::iter::from_fn(move || {
+            let rows = start..end.min(start + height);
+            start = rows.end;
+            (!rows.is_empty()).then_some(Tile { band, rows })
+        })
+    })
+}

@@ -1,0 +1,26 @@
+//! The seeded warp: area-preserving shears that end the pattern's quasi-periodicity.
+//!
+//! A displaced pattern repeats itself almost exactly, so the spectrum of a large window consists of
+//! Bragg peaks. The warp moves points along four directions d by smooth random functions of the
+//! coordinate across, p ← p + d·g(d⊥·p), one direction after another, and so decorrelates distant parts.
+//! Each shear preserves area exactly, so the low-frequency power does not rise, and inverts exactly, so
+//! random access remains.
+//!
+//! Everything is integer arithmetic on fixed-point positions except g, whose cubic is evaluated in
+//! `f32` with plain multiplications and additions: the same bits on every machine and in every lane.
+//!
+//! `strength` is the setting, `shears` the definition. Two faster forms have the same bits: `near` for
+//! points around a place, `patch` for the points of a patch, on which the kernel builds. `stretch`
+//! bounds what the warp does to distances.
+
+mod near;
+mod patch;
+mod shears;
+mod strength;
+mod stretch;
+
+pub(super) use near::NearShears;
+pub(super) use patch::{PATCH_CELL_MASK, PATCH_CELLS, PatchShears};
+pub(super) use shears::{CELL_BITS, Shears};
+pub use strength::Warp;
+pub(super) use stretch::Stretch;

@@ -1,0 +1,70 @@
+//! The warp of points around a place, in 64-bit positions.
+
+use super::shears::{CELL_BITS, CELL_MASK, Cubic, Shears, evaluate, shear};
+
+/// The shears near one place. Positions are relative to an origin nearby, and the cubic last used in
+/// each direction is kept.
+#[derive(Debug)]
+pub(crate) struct NearShears<'a> {
+    shears: &'a Shears,
+    /// The cells of the origin, by direction.
+    cells: [i64; 4],
+    last: [(i64, Cubic); 4],
+}
+
+impl<'a> NearShears<'a> {
+    /// The shears near `place`, and the origin of positions: a multiple of the knot distance along both
+    /// axes, so that cells start there in every direction.
+    pub(crate) fn new(shears: &'a Shears, place: [i128; 2]) -> (Self, [i128; 2]) {
+        let [x, y] = place.map(|v| (v >> CELL_BITS) as i64);
+        let cells = [y, x, x - y, x + y];
+        let mut last = [(0, [0.0; 4]); 4];
+        for (i, last) in last.iter_mut().enumerate() {
+            last.1 = shears.cubic(i, cells[i]);
+        }
+        let near = Self {
+            shears,
+            cells,
+            last,
+        };
+        (near, [x, y].map(|v| i128::from(v) << CELL_BITS))
+    }
+
+    /// [`Shears::apply`], relative to the origin.
+    #[inline]
+    pub(crate) fn apply(&mut self, position: [i64; 2]) -> [i64; 2] {
+        (0..4).fold(position, |p, i| {
+            shear(i, p, |s| {
+                let cell = s >> CELL_BITS;
+                if self.last[i].0 != cell {
+                    self.last[i] = (cell, self.shears.cubic(i, self.cells[i].wrapping_add(cell)));
+                }
+                evaluate(&self.last[i].1, (s & CELL_MASK as i64) as i32).into()
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::sample::{Seed, Warp};
+
+    proptest! {
+        #[test]
+        fn points_near_a_place_get_the_same_bits(
+            seed: u64, x in -(1i128 << 72)..1 << 72, y in -(1i128 << 72)..1 << 72,
+            near in proptest::collection::vec([-1i64 << 30..1 << 30, -1i64 << 30..1 << 30], 1..20),
+        ) {
+            let shears = Shears::new(Warp::ON, Seed(seed), 0.317).expect("on");
+            let (mut relative, [left, bottom]) = NearShears::new(&shears, [x, y]);
+            for [dx, dy] in near {
+                let there = shears.apply([left + i128::from(dx), bottom + i128::from(dy)]);
+                let [dx, dy] = relative.apply([dx, dy]).map(i128::from);
+                prop_assert_eq!(there, [left + dx, bottom + dy]);
+            }
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! The displacement table.
+
+use alloc::{sync::Arc, vec, vec::Vec};
+use core::fmt;
+
+use super::{Digest, Displacement, Provenance, file, parts::Parts};
+use crate::{error::Error, map::Map, once::Once, pattern::Alpha};
+
+/// The displacement vectors of one noise profile for one neighborhood map, with their history.
+///
+/// A table is immutable: its content has been checked, and its digest names it. Cloning shares the
+/// content.
+///
+/// ```
+/// use strew_core::Table;
+///
+/// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let file = table.to_bytes();
+/// assert_eq!(Table::from_bytes(&file)?, table);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct Table(Arc<Content>);
+
+struct Content {
+    parts: Parts,
+    digest: Digest,
+    /// The least and the greatest displacement along x and y.
+    reach: [[i32; 2]; 2],
+    /// The least squared distance between two points, once it has been computed.
+    least_squared: Once<u64>,
+}
+
+impl Table {
+    /// A table from its parts. `displacements` has n² vectors, row = interval of dY, column = interval
+    /// of dX, in units of 2⁻²⁰ grid units.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Table`](crate::ErrorKind::Table) for a wrong number of vectors, a component of
+    /// [`MAX_DISPLACEMENT`](super::MAX_DISPLACEMENT) or more, a profile name that is not 1 to 32 of
+    /// `a-z 0-9 -`, or a history beyond the format's limits.
+    pub fn new(
+        map: Map,
+        profile: &str,
+        displacements: Vec<Displacement>,
+        provenance: Provenance,
+    ) -> Result<Self, Error> {
+        let parts = Parts {
+            map,
+            profile: profile.into(),
+            displacements,
+            provenance,
+        };
+        parts.check()?;
+        let digest = file::digest(&parts)?;
+        Ok(Self::checked(parts, digest))
+    }
+
+    /// A table of checked parts.
+    fn checked(parts: Parts, digest: Digest) -> Self {
+        let mut reach = [[i32::MAX, i32::MIN]; 2];
+        for vector in &parts.displacements {
+            for (ends, &v) in reach.iter_mut().zip(vector) {
+                *ends = [ends[0].min(v), ends[1].max(v)];
+            }
+        }
+        Self(Arc::new(Content {
+            parts,
+            digest,
+            reach,
+            least_squared: Once::new(),
+        }))
+    }
+
+    /// A table without displacements: the AA pattern itself.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is too
+    /// large.
+    pub fn undisplaced(alpha: Alpha, radius: u32, profile: &str) -> Result<Self, Error> {
+        let map = Map::new(alpha, radius)?;
+        let blocks = map.intervals() * map.intervals();
+        let provenance = Provenance {
+            optimizer: "none".into(),
+            ..Provenance::default()
+        };
+        Self::new(map, profile, vec![[0, 0]; blocks], provenance)
+    }
+
+    /// Reads a table file and checks everything in it.
+    ///
+    /// # Errors
+    /// One of the `Table…` kinds, [`ErrorKind::Alpha`](crate::ErrorKind::Alpha) or
+    /// [`ErrorKind::MapSize`](crate::ErrorKind::MapSize), naming the part of the file that is wrong.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
+        let (parts, digest) = file::read(bytes)?;
+        Ok(Self::checked(parts, digest))
+    }
+
+    /// The table as a file. Equal tables have equal bytes.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        file::write(&self.0.parts)
+    }
+
+    /// The neighborhood map whose blocks the vectors belong to.
+    #[must_use]
+    pub fn map(&self) -> &Map {
+        &self.0.parts.map
+    }
+
+    /// The number α.
+    #[must_use]
+    pub fn alpha(&self) -> Alpha {
+        self.map().alpha()
+    }
+
+    /// The name of the noise profile.
+    #[must_use]
+    pub fn profile(&self) -> &str {
+        &self.0.parts.profile
+    }
+
+    /// All n² vectors, row = interval of dY, column = interval of dX, in units of 2⁻²⁰ grid units.
+    #[must_use]
+    pub fn displacements(&self) -> &[Displacement] {
+        &self.0.parts.displacements
+    }
+
+    /// How the table was made, and what was measured on it.
+    #[must_use]
+    pub fn provenance(&self) -> &Provenance {
+        &self.0.parts.provenance
+    }
+
+    /// The BLAKE3 digest of the file, which names the table in answers.
+    #[must_use]
+    pub fn digest(&self) -> Digest {
+        self.0.digest
+    }
+
+    /// The memory that the table holds, in bytes.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        // A bound, a label and about two buckets for each interval.
+        let map = 32 * self.map().intervals();
+        size_of::<Content>() + size_of_val(self.displacements()) + map + 4096
+    }
+
+    /// The least and the greatest displacement along x and y.
+    pub(crate) fn reach(&self) -> [[i32; 2]; 2] {
+        self.0.reach
+    }
+
+    /// The vectors of all blocks with one interval of dY.
+    pub(crate) fn row(&self, block_y: usize) -> &[Displacement] {
+        let n = self.map().intervals();
+        &self.displacements()[block_y * n..][..n]
+    }
+
+    /// The result of `compute` when it was first called.
+    pub(crate) fn least_squared(&self, compute: impl FnOnce() -> u64) -> u64 {
+        self.0.least_squared.get_or(compute)
+    }
+}
+
+impl fmt::Debug for Table {
+    /// Names the table; its vectors would fill pages.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Table")
+            .field("profile", &self.profile())
+            .field("alpha", &format_args!("{}", self.alpha()))
+            .field("map", &format_args!("{}", self.map().size()))
+            .field("digest", &self.digest())
+            .finish()
+    }
+}
+
+impl PartialEq for Table {
+    fn eq(&self, other: &Self) -> bool {
+        self.digest() == other.digest() && self.0.parts == other.0.parts
+    }
+}

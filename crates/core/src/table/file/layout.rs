@@ -1,0 +1,26 @@
+//! The fixed numbers of the file format.
+
+use alloc::format;
+
+use crate::error::{Error, ErrorKind};
+
+/// The version of the file format that this release writes and reads.
+pub const FORMAT_VERSION: u32 = 1;
+
+/// The size of the largest table file, in bytes: more than the largest map needs.
+pub const MAX_FILE_BYTES: u64 = 64 << 20;
+
+pub(super) const MAGIC: [u8; 8] = *b"\x89STREW\r\n";
+pub(super) const HEADER_BYTES: usize = 24;
+pub(super) const DIGEST_BYTES: usize = 32;
+pub(super) const MAX_SECTIONS: u32 = 64;
+
+/// Refuses a file of more than [`MAX_FILE_BYTES`].
+pub(super) fn check_size(bytes: u64) -> Result<(), Error> {
+    if bytes <= MAX_FILE_BYTES {
+        return Ok(());
+    }
+    let value = format!("{bytes} bytes");
+    let allowed = format!("at most {MAX_FILE_BYTES} bytes");
+    Err(Error::new(ErrorKind::TableTooLarge, "the table file", value, allowed))
+}

@@ -1,0 +1,27 @@
+//! The table file: a header, tagged sections, a digest. All numbers are little-endian.
+//!
+//! ```text
+//! 0   8  magic: 89 'STREW' 0d 0a (a text-mode transfer damages it)
+//! 8   4  format version
+//! 12  4  number of sections
+//! 16  8  size of the whole file
+//! 24  …  sections: 4 letters, u64 length, that many bytes
+//! −32 32 BLAKE3 of everything before
+//! ```
+//!
+//! `HEAD`: α as text, R, n, profile. `PROV`: the history. `DISP`: n² pairs of i32, row by row. A reader
+//! skips a section it does not know if the name starts with a lower-case letter, so later releases can
+//! add sections without a new format.
+//!
+//! `write` and `read` are each other's inverse over the encodings of `wire`.
+
+mod layout;
+mod read;
+#[cfg(test)]
+mod tests;
+mod wire;
+mod write;
+
+pub use layout::{FORMAT_VERSION, MAX_FILE_BYTES};
+pub(super) use read::read;
+pub(super) use write::{digest, write};

@@ -1,0 +1,242 @@
+//! Reading a table file. Checks run from the outside in, so the error names the first thing that does
+//! not hold.
+
+use alloc::{format, string::String, vec::Vec};
+
+use super::{
+    layout::{DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, check_size},
+    wire::Reader,
+};
+use crate::{
+    error::{Error, ErrorKind},
+    map::{Map, Twin},
+    pattern::Alpha,
+    table::{Digest, Figures, Provenance, parts::Parts},
+};
+
+/// The content of a table file, and its digest.
+pub(crate) fn read(bytes: &[u8]) -> Result<(Parts, Digest), Error> {
+    check_size(bytes.len() as u64)?;
+    let sections = check_frame(bytes)?;
+    let body = &bytes[..bytes.len() - DIGEST_BYTES];
+
+    let mut found = Sections::default();
+    let mut at = HEADER_BYTES;
+    for _ in 0..sections {
+        at = found.add(body, at)?;
+    }
+    if at != body.len() {
+        let problem = format!("{} bytes are left after the last section", body.len() - at);
+        return Err(wrong(b"none", at, problem));
+    }
+    // The digest of this very file. With optional sections that were skipped it is not the digest of
+    // the parts when they are written again.
+    Ok((found.into_parts()?, Digest::of(body)))
+}
+
+/// Checks magic, version, size and digest. Returns the number of sections.
+fn check_frame(bytes: &[u8]) -> Result<u32, Error> {
+    const FILE: &str = "the table file";
+    let have = bytes.len() as u64;
+    let least = (HEADER_BYTES + DIGEST_BYTES) as u64;
+    let truncated = |need: u64| {
+        let (value, allowed) = (format!("{have} bytes long"), format!("{need} bytes long"));
+        Error::new(ErrorKind::TableTruncated, FILE, value, allowed).because("truncated")
+    };
+    let short = || truncated(least);
+    let field = |at: usize, length: usize| bytes.get(at..at + length).ok_or_else(short);
+    let magic = field(0, 8)?;
+    if magic != MAGIC {
+        let value = format!("{magic:02x?} in its first 8 bytes");
+        let allowed = "89 'STREW' 0d 0a: this is not a Strew table";
+        return Err(Error::new(ErrorKind::Table, FILE, value, allowed));
+    }
+    let mut header = Reader::new(field(8, 16)?);
+    let mut number = || header.u32("header").map_err(|_| short());
+    let version = number()?;
+    if version != FORMAT_VERSION {
+        let problem = if version < FORMAT_VERSION {
+            "written by an older release"
+        } else {
+            "written by a newer release"
+        };
+        let allowed = format!("{FORMAT_VERSION}, the version this release reads");
+        let field = "the format version of the table file";
+        return Err(Error::new(ErrorKind::TableVersion, field, version, allowed).because(problem));
+    }
+    let sections = number()?;
+    let stated = u64::from(number()?) | u64::from(number()?) << 32;
+    if have < stated.max(least) {
+        return Err(truncated(stated.max(least)));
+    }
+    if have > stated {
+        let allowed = format!("{stated} bytes long, as its header states");
+        let error = Error::new(ErrorKind::Table, FILE, format!("{have} bytes long"), allowed);
+        return Err(error.because("oversized"));
+    }
+    let (body, seal) = bytes.split_at(bytes.len() - DIGEST_BYTES);
+    let computed = Digest::of(body);
+    if computed.as_bytes() != seal {
+        let mut digest = [0; DIGEST_BYTES];
+        digest.copy_from_slice(seal);
+        let allowed = format!("{}, as its last 32 bytes state", Digest::from_bytes(digest));
+        let error = Error::new(ErrorKind::Table, "the digest of the table file", computed, allowed);
+        return Err(error.because("the file is damaged"));
+    }
+    if sections > MAX_SECTIONS {
+        let allowed = format!("at most {MAX_SECTIONS}");
+        let field = "the number of sections of the table file";
+        return Err(Error::new(ErrorKind::Table, field, sections, allowed));
+    }
+    Ok(sections)
+}
+
+/// A section's payload and where it starts.
+type Payload<'a> = (&'a [u8], usize);
+
+#[derive(Default)]
+struct Sections<'a> {
+    head: Option<Payload<'a>>,
+    prov: Option<Payload<'a>>,
+    disp: Option<Payload<'a>>,
+}
+
+impl<'a> Sections<'a> {
+    /// Files the section at `at`. Returns the place after it.
+    fn add(&mut self, body: &'a [u8], at: usize) -> Result<usize, Error> {
+        let mut reader = Reader::new(&body[at..]);
+        let tag = reader
+            .take(4, "a section's name")
+            .map_err(|p| wrong(b"none", at, p))?;
+        let length = reader
+            .u64("a section's length")
+            .map_err(|p| wrong(tag, at, p))?;
+        let length = usize::try_from(length).unwrap_or(usize::MAX);
+        let payload = reader
+            .take(length, "its content")
+            .map_err(|p| wrong(tag, at, p))?;
+        let slot = match tag {
+            b"HEAD" => &mut self.head,
+            b"PROV" => &mut self.prov,
+            b"DISP" => &mut self.disp,
+            _ if tag[0].is_ascii_lowercase() => return Ok(at + 12 + length),
+            _ => return Err(wrong(tag, at, "unknown to this release".into())),
+        };
+        if slot.replace((payload, at + 12)).is_some() {
+            return Err(wrong(tag, at, "occurs twice".into()));
+        }
+        Ok(at + 12 + length)
+    }
+
+    fn into_parts(self) -> Result<Parts, Error> {
+        let missing = |tag: &[u8]| wrong(tag, HEADER_BYTES, "missing".into());
+        let (head, head_at) = self.head.ok_or_else(|| missing(b"HEAD"))?;
+        let (prov, prov_at) = self.prov.ok_or_else(|| missing(b"PROV"))?;
+        let (disp, disp_at) = self.disp.ok_or_else(|| missing(b"DISP"))?;
+
+        let head = Head::read(head).map_err(|p| wrong(b"HEAD", head_at, p))?;
+        let alpha: Alpha = head.alpha.parse()?;
+        if format!("{alpha}") != head.alpha {
+            let problem = format!(
+                "alpha `{}` is not in its canonical form `{alpha}`",
+                head.alpha
+            );
+            return Err(wrong(b"HEAD", head_at, problem));
+        }
+        let map = Map::new(alpha, head.radius)?;
+        if map.intervals() != head.intervals as usize {
+            let problem = format!(
+                "states {} intervals, but alpha = {alpha} with R = {} has {}",
+                head.intervals,
+                head.radius,
+                map.intervals()
+            );
+            return Err(wrong(b"HEAD", head_at, problem));
+        }
+        let provenance = read_prov(prov).map_err(|p| wrong(b"PROV", prov_at, p))?;
+        let displacements =
+            read_disp(disp, map.intervals()).map_err(|p| wrong(b"DISP", disp_at, p))?;
+        let parts = Parts {
+            map,
+            profile: head.profile,
+            displacements,
+            provenance,
+        };
+        parts.check()?;
+        Ok(parts)
+    }
+}
+
+/// What is wrong with a section at a byte of the file.
+fn wrong(tag: &[u8], at: usize, problem: String) -> Error {
+    let section = format!("section {} of the table file", String::from_utf8_lossy(tag));
+    let value = format!("not valid at byte {at}");
+    Error::new(ErrorKind::Table, section, value, "").because(problem)
+}
+
+struct Head {
+    alpha: String,
+    radius: u32,
+    intervals: u32,
+    profile: String,
+}
+
+impl Head {
+    fn read(bytes: &[u8]) -> Result<Self, String> {
+        let mut reader = Reader::new(bytes);
+        let head = Self {
+            alpha: reader.text("alpha")?,
+            radius: reader.u32("R")?,
+            intervals: reader.u32("n")?,
+            profile: reader.text("profile")?,
+        };
+        reader.end("profile")?;
+        Ok(head)
+    }
+}
+
+fn read_prov(bytes: &[u8]) -> Result<Provenance, String> {
+    let mut reader = Reader::new(bytes);
+    let provenance = Provenance {
+        optimizer: reader.text("optimizer")?,
+        seed: reader.u64("seed")?,
+        parameters: reader.list(8, "parameters", |r| {
+            Ok((r.text("a parameter")?, r.text("a parameter")?))
+        })?,
+        twins: reader.list(16, "twins", |r| {
+            let (p, q) = (r.u64("a twin")?, r.u64("a twin")?);
+            Twin::new(p, q).ok_or_else(|| format!("{p}/{q} is not a twin"))
+        })?,
+        figures: reader.list(20, "figures", |r| {
+            Ok(Figures {
+                subject: r.text("a subject")?,
+                seen: match r.u32("seen")? {
+                    0 => false,
+                    1 => true,
+                    other => return Err(format!("seen is {other}; allowed: 0 or 1")),
+                },
+                points: r.u64("points")?,
+                values: r.list(12, "values", |r| {
+                    Ok((r.text("a figure")?, r.f64("a figure")?))
+                })?,
+            })
+        })?,
+    };
+    reader.end("figures")?;
+    Ok(provenance)
+}
+
+fn read_disp(bytes: &[u8], intervals: usize) -> Result<Vec<[i32; 2]>, String> {
+    let mut reader = Reader::new(bytes);
+    let blocks = intervals * intervals;
+    if reader.remaining() != 8 * blocks {
+        return Err(format!(
+            "{} bytes; {blocks} blocks need {}",
+            bytes.len(),
+            8 * blocks
+        ));
+    }
+    (0..blocks)
+        .map(|_| Ok([reader.i32("a vector")?, reader.i32("a vector")?]))
+        .collect()
+}

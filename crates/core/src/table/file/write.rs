@@ -1,0 +1,94 @@
+//! Writing a table file.
+
+use alloc::vec::Vec;
+
+use super::{
+    layout::{DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, check_size},
+    wire::Writer,
+};
+use crate::{
+    error::Error,
+    table::{Digest, Provenance, parts::Parts},
+};
+
+/// A table as a file.
+pub(crate) fn write(table: &Parts) -> Vec<u8> {
+    let mut bytes = body(table);
+    let digest = Digest::of(&bytes);
+    bytes.extend(digest.as_bytes());
+    bytes
+}
+
+/// The digest of the file that a table will have.
+pub(crate) fn digest(table: &Parts) -> Result<Digest, Error> {
+    let body = body(table);
+    check_size((body.len() + DIGEST_BYTES) as u64)?;
+    Ok(Digest::of(&body))
+}
+
+/// Everything before the digest.
+fn body(table: &Parts) -> Vec<u8> {
+    let sections = [
+        (*b"HEAD", head(table)),
+        (*b"PROV", prov(&table.provenance)),
+        (*b"DISP", disp(table)),
+    ];
+    let payload: usize = sections.iter().map(|(_, bytes)| 12 + bytes.len()).sum();
+    let mut out = Writer::default();
+    out.bytes.extend(MAGIC);
+    out.u32(FORMAT_VERSION);
+    out.length(sections.len());
+    out.u64((HEADER_BYTES + payload + DIGEST_BYTES) as u64);
+    for (tag, bytes) in sections {
+        out.bytes.extend(tag);
+        out.u64(bytes.len() as u64);
+        out.bytes.extend(bytes);
+    }
+    out.bytes
+}
+
+fn head(table: &Parts) -> Vec<u8> {
+    let mut out = Writer::default();
+    out.text(&alloc::format!("{}", table.map.alpha()));
+    out.u32(table.map.radius());
+    out.length(table.map.intervals());
+    out.text(&table.profile);
+    out.bytes
+}
+
+fn prov(provenance: &Provenance) -> Vec<u8> {
+    let mut out = Writer::default();
+    out.text(&provenance.optimizer);
+    out.u64(provenance.seed);
+    out.length(provenance.parameters.len());
+    for (name, value) in &provenance.parameters {
+        out.text(name);
+        out.text(value);
+    }
+    out.length(provenance.twins.len());
+    for twin in &provenance.twins {
+        out.u64(twin.p());
+        out.u64(twin.q());
+    }
+    out.length(provenance.figures.len());
+    for figures in &provenance.figures {
+        out.text(&figures.subject);
+        out.u32(figures.seen.into());
+        out.u64(figures.points);
+        out.length(figures.values.len());
+        for (name, value) in &figures.values {
+            out.text(name);
+            out.f64(*value);
+        }
+    }
+    out.bytes
+}
+
+fn disp(table: &Parts) -> Vec<u8> {
+    let mut out = Writer::default();
+    for [x, y] in &table.displacements {
+        out.i32(*x);
+        out.i32(*y);
+    }
+    out.bytes
+}

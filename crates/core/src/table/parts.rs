@@ -1,0 +1,48 @@
+//! What a table is made of, checked.
+
+use alloc::{format, string::String, vec::Vec};
+
+use super::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, Provenance, to_grid_units};
+use crate::{
+    error::{Error, ErrorKind},
+    map::Map,
+};
+
+/// The content of a table: everything but its digest.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Parts {
+    pub(super) map: Map,
+    pub(super) profile: String,
+    /// n² vectors, row = interval of dY, column = interval of dX.
+    pub(super) displacements: Vec<Displacement>,
+    pub(super) provenance: Provenance,
+}
+
+impl Parts {
+    /// Refuses a wrong number of vectors, vectors that are too long, a profile name that is not
+    /// allowed, and a history beyond the format's limits.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        let refused = |field, value: String, allowed: String| {
+            Err(Error::new(ErrorKind::Table, field, value, allowed))
+        };
+        let expected = self.map.intervals() * self.map.intervals();
+        if self.displacements.len() != expected {
+            let value = format!("{} vectors", self.displacements.len());
+            let allowed = format!("{expected} vectors, the number of blocks");
+            return refused("displacements", value, allowed);
+        }
+        let limit = (MAX_DISPLACEMENT as i32) << FRACTION_BITS;
+        let too_long = |d: &Displacement| d.iter().any(|v| !(-limit < *v && *v < limit));
+        if let Some(block) = self.displacements.iter().position(too_long) {
+            let [x, y] = self.displacements[block].map(to_grid_units);
+            let allowed = format!("less than {MAX_DISPLACEMENT} grid units along an axis");
+            return refused("displacements", format!("({x}, {y}) in block {block}"), allowed);
+        }
+        let is_allowed = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit() || c == b'-';
+        if !(1..=32).contains(&self.profile.len()) || !self.profile.bytes().all(is_allowed) {
+            let allowed = "1 to 32 characters of a-z, 0-9 and -".into();
+            return refused("profile", format!("{:?}", self.profile), allowed);
+        }
+        self.provenance.check()
+    }
+}
