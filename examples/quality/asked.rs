@@ -1,40 +1,40 @@
-//! What a profile was asked to show, and the worst that was measured of it.
+//! The requirements on each profile, and the worst value measured for each.
 
 use std::{error::Error, fs, path::Path};
 
 use serde_json::Value;
 use strew_forge::judge::{Figure, Side};
 
-/// Something that was asked.
+/// A requirement: a bound on one figure of a profile.
 struct Ask {
     profile: &'static str,
-    /// Endings of the files of answers that are looked at.
+    /// Name endings of the result files to read.
     files: &'static [&'static str],
     read: Read,
     side: Side,
     limit: f64,
 }
 
-/// How a value is read from a subject.
+/// How the value is read from a measured point set (a subject).
 enum Read {
-    /// A figure that is in the answer.
+    /// A figure recorded in the results.
     Figure(Figure),
-    /// The largest power of a ring between two frequencies.
+    /// The largest power of any ring between two frequencies, in ν.
     Highest(f64, f64),
-    /// The mean power between two frequencies.
+    /// The mean power between two frequencies, in ν.
     Mean(f64, f64),
 }
 
-/// Twins and windows of the tables of all α and maps.
+/// Twins and windows, for the tables of every α and map.
 const SETS: &[&str] = &[".many.json"];
-/// Regions of the default table as they are served with a seed.
+/// Regions of the default table, served with a seed.
 const SERVED: &[&str] = &[
     "5-sqrt3-over-2-s.region.json",
     "5-sqrt3-over-2-s.region2.json",
     "5-sqrt3-over-2-s.region77.json",
     "5-sqrt3-over-2-s.million.json",
 ];
-/// Those of about 131,000 points.
+/// The served regions of about 131,000 points.
 const SERVED_SMALL: &[&str] = SERVED.split_at(3).0;
 
 const fn most(profile: &'static str, figure: Figure, limit: f64) -> Ask {
@@ -104,14 +104,15 @@ const fn served(profile: &'static str, figure: Figure, side: Side, limit: f64) -
 }
 
 const HEAD: &str = "\
-| profile | asked | sets | worst measured | on |
+| profile | requirement | sets | worst measured | on |
 |---|---|---|---|---|
 ";
 
-/// The table of all that was asked.
+/// The table of all requirements, as Markdown. `answers` is the folder with the output of
+/// `strew measure`.
 ///
 /// # Errors
-/// If an answer cannot be read.
+/// If results are missing or cannot be read.
 pub fn table(answers: &Path) -> Result<String, Box<dyn Error>> {
     let mut text = HEAD.to_owned();
     for ask in &ASKED {
@@ -120,7 +121,7 @@ pub fn table(answers: &Path) -> Result<String, Box<dyn Error>> {
             Side::AtMost => a.1.total_cmp(&b.1),
             Side::AtLeast => b.1.total_cmp(&a.1),
         };
-        let (name, worst) = all.iter().max_by(worse).ok_or("nothing was measured")?;
+        let (name, worst) = all.iter().max_by(worse).ok_or("no measurements found")?;
         let missed = match ask.side {
             Side::AtMost => *worst > ask.limit,
             Side::AtLeast => *worst < ask.limit,
@@ -128,7 +129,7 @@ pub fn table(answers: &Path) -> Result<String, Box<dyn Error>> {
         let sets = if ask.files == SETS {
             "twins and windows"
         } else {
-            "served with a seed"
+            "seeded regions"
         };
         text += &format!(
             "| `{}` | {} {} {} | {} {sets} | {}{} | {name} |\n",
@@ -145,7 +146,7 @@ pub fn table(answers: &Path) -> Result<String, Box<dyn Error>> {
 }
 
 impl Ask {
-    /// The value of every subject that the table was not made on, with its name.
+    /// The name and value of every subject that the table was not optimized on.
     fn subjects(&self, answers: &Path) -> Result<Vec<(String, f64)>, Box<dyn Error>> {
         let mut files = fs::read_dir(answers)?.collect::<Result<Vec<_>, _>>()?;
         files.sort_by_key(fs::DirEntry::file_name);
@@ -161,12 +162,13 @@ impl Ask {
             let answer: Value = serde_json::from_str(&fs::read_to_string(file.path())?)?;
             let subjects = answer["subjects"].as_array().into_iter().flatten();
             for subject in subjects.filter(|subject| subject["made_on_it"] == false) {
-                let value = self.read.value(subject).ok_or_else(|| {
-                    format!("{name} does not say {} everywhere", self.read.name())
-                })?;
+                let value = self
+                    .read
+                    .value(subject)
+                    .ok_or_else(|| format!("{name}: a subject has no {}", self.read.name()))?;
                 let table = rest.split('.').next().unwrap_or(rest);
                 let set = subject["subject"].as_str().unwrap_or_default();
-                // A region is told as a whole query.
+                // A region is named by its whole query; its seed is enough here.
                 let seed = set.split(", ").find(|part| part.starts_with("seed"));
                 let set = seed.unwrap_or(set);
                 all.push((format!("{table}: {set}"), value));
@@ -198,7 +200,7 @@ impl Read {
         if let Self::Highest(..) = self {
             return rings.map(|(_, power)| power).reduce(f64::max);
         }
-        // Equally wide rings have modes as their frequency.
+        // Rings of equal width hold modes in proportion to their frequency.
         let (sum, weight) = rings.fold((0.0, 0.0), |(sum, weight), (nu, power)| {
             (sum + nu * power, weight + nu)
         });
@@ -206,7 +208,7 @@ impl Read {
     }
 }
 
-/// As it was asked.
+/// A limit as its requirement states it.
 fn short(value: f64) -> String {
     match value {
         ..1e-3 => format!("{value:e}"),
@@ -214,7 +216,7 @@ fn short(value: f64) -> String {
     }
 }
 
-/// Four digits: what is measured keeps no more.
+/// Four significant digits, the precision of the recorded figures.
 fn four(value: f64) -> String {
     match value {
         ..1e-3 => format!("{value:.3e}"),

@@ -1,8 +1,9 @@
-//! Writes the rows and profiles of `docs/quality.md` from what `strew measure` found.
+//! Writes the generated parts of `docs/quality.md` from the output of `strew measure`.
 //!
-//! It measures nothing itself: `docs/quality/measure` runs the documented commands and then this,
-//! with the folder of their answers and the document, whose parts between `<!-- rows -->`,
-//! `<!-- asked -->` or `<!-- profiles -->` and `<!-- end -->` are replaced.
+//! It measures nothing itself. `docs/quality/measure` runs the documented commands, then this
+//! program with two arguments: the folder of their output and the document. It replaces the parts
+//! of the document between `<!-- rows -->`, `<!-- requirements -->` or `<!-- profiles -->` and
+//! `<!-- end -->`.
 
 mod asked;
 
@@ -14,24 +15,24 @@ use strew_forge::{Aim, Profile, file_name, read_table};
 
 type Anything = Box<dyn Error>;
 
-/// Every α that tables are shipped for, as people write it.
+/// Every α that tables are shipped for: as it is parsed, and as the document shows it.
 const ALPHAS: [(&str, &str); 3] = [
     ("(5-sqrt(3))/2", "(5−√3)/2"),
     ("sqrt(3)", "√3"),
     ("(1+sqrt(5))/2", "(1+√5)/2"),
 ];
-/// The sizes of maps and their half-widths.
+/// The map sizes and their half-widths R.
 const SIZES: [(&str, u32); 3] = [("s", 49), ("m", 100), ("l", 200)];
 
-/// The head of the table of rows.
+/// The header of the table of rows.
 const HEAD: &str = "\
 | profile | α | map | set | points | low power | peak | δ_min | δ_avg | ν_eff | area | hole | dB | tallest |
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
-/// A table that is shipped.
+/// A shipped table.
 struct Shipped {
-    /// Its file's name without the ending.
+    /// The file name without its extension.
     stem: String,
     alpha: &'static str,
     size: &'static str,
@@ -53,12 +54,12 @@ fn main() -> Result<(), Anything> {
     }
     let text = fs::read_to_string(&document)?;
     let text = replaced(&text, "rows", &rows)?;
-    let text = replaced(&text, "asked", &asked::table(Path::new(&answers))?)?;
+    let text = replaced(&text, "requirements", &asked::table(Path::new(&answers))?)?;
     let text = replaced(&text, "profiles", &profiles)?;
     Ok(fs::write(document, text)?)
 }
 
-/// The tables of a profile, in the order of the lists above.
+/// The shipped tables of a profile, in the order of [`ALPHAS`] and [`SIZES`].
 fn shipped(profile: &Profile) -> Result<Vec<Shipped>, Anything> {
     let mut found = Vec::new();
     for (number, alpha) in ALPHAS {
@@ -79,7 +80,7 @@ fn shipped(profile: &Profile) -> Result<Vec<Shipped>, Anything> {
     Ok(found)
 }
 
-/// The smallest unseen twin, the first window, and the region.
+/// The rows of a table: its smallest unseen twin, its first unseen window, and its served region.
 fn rows_of(profile: &Profile, of: &Shipped, answers: &Path) -> Result<String, Anything> {
     let subjects = |ending: &str| -> Result<Vec<Value>, Anything> {
         let text = fs::read_to_string(answers.join(format!("{}{ending}", of.stem)))?;
@@ -146,7 +147,7 @@ fn two_digits(value: f64) -> String {
     }
 }
 
-/// What a profile is, what it aims at, what is lowered to get there, and pictures.
+/// The section of a profile: its summary, target, energy and pictures.
 fn told(profile: &Profile, shipped: &[Shipped]) -> String {
     let Some(first) = shipped.first() else {
         return String::new();
@@ -158,8 +159,8 @@ fn told(profile: &Profile, shipped: &[Shipped]) -> String {
         .iter()
         .map(|b| format!("`{}` {} {}", b.figure.name(), b.side, b.limit));
     let bounds = match bounds.collect::<Vec<_>>() {
-        none if none.is_empty() => "none: it is what it is".to_owned(),
-        some => some.join(", "),
+        none if none.is_empty() => "none".to_owned(),
+        some => format!("on unseen sets, {}", some.join(", ")),
     };
     let curve = aim
         .and_then(|aim| aim.curve)
@@ -176,9 +177,13 @@ fn told(profile: &Profile, shipped: &[Shipped]) -> String {
         });
     let energy = match history.optimizer.as_str() {
         "gaussian" => "Gaussian repulsion and a guard against close pairs, in two phases",
-        "spacing" => "a push between pairs in conflict, harder from stage to stage, and a Gaussian",
-        "radial" => "the squared error of the radial power, and power as such where none should be",
-        "lloyd" => "the mean squared distance from a place to its nearest point",
+        "spacing" => {
+            "a push between conflicting pairs, harder in each stage, and Gaussian repulsion"
+        }
+        "radial" => {
+            "the squared error of the radial power, and the power itself where the curve is 0"
+        }
+        "lloyd" => "the mean squared distance from a location to its nearest point",
         _ => "none",
     };
     let parameters = history.parameters.iter();
@@ -187,7 +192,7 @@ fn told(profile: &Profile, shipped: &[Shipped]) -> String {
         .map(|(name, value)| format!("{name} {value}"))
         .collect();
     let mut text = format!(
-        "### `{}`\n\n{}.\n\n- *Target*: {curve}on unseen sets: {bounds}.\n- *Energy*: {energy} ({}).\n\n",
+        "### `{}`\n\n{}.\n\n- *Target*: {curve}{bounds}.\n- *Energy*: {energy} ({}).\n\n",
         profile.name,
         profile.summary,
         parameters.join(", ")
@@ -199,12 +204,14 @@ fn told(profile: &Profile, shipped: &[Shipped]) -> String {
     text
 }
 
-/// The document with another text between a part's marks.
+/// The document with the text between the marks of `part` replaced by `text`.
 fn replaced(document: &str, part: &str, text: &str) -> Result<String, Anything> {
     let mark = format!("<!-- {part} -->\n");
     let (before, rest) = document
         .split_once(&mark)
-        .ok_or_else(|| format!("no {mark}"))?;
-    let (_, after) = rest.split_once("<!-- end -->").ok_or("no end")?;
+        .ok_or_else(|| format!("the document has no {}", mark.trim_end()))?;
+    let (_, after) = rest
+        .split_once("<!-- end -->")
+        .ok_or_else(|| format!("no <!-- end --> after <!-- {part} -->"))?;
     Ok(format!("{before}{mark}{text}<!-- end -->{after}"))
 }

@@ -1,8 +1,9 @@
-//! How fast a box is filled, beside the published row scanner and a plain fill, in one run.
+//! The speed of filling a box, compared with the published row scanner and a plain fill in the same
+//! run.
 //!
-//! `cargo bench -p strew-core` prints medians of interleaved rounds and ratios; ratios hold on
-//! noisy machines, absolute times do not. `cargo bench -p strew-core -- --quick` only checks that
-//! everything still runs.
+//! `cargo bench -p strew-core` prints medians of interleaved rounds and their ratios. Ratios hold
+//! on noisy machines; absolute times do not. `cargo bench -p strew-core -- --quick` only checks
+//! that everything still runs.
 
 use std::{hint::black_box, sync::Arc};
 
@@ -16,10 +17,10 @@ mod rounds;
 #[path = "baseline/row_scanner.rs"]
 mod row_scanner;
 
-/// Points with attributes are made so many at a time, to stay in fast memory.
+/// Points per block with attributes: few enough to stay in cache.
 const AT_ONCE: usize = 1024;
 
-/// Makes all points with ids and two attributes; gives how many.
+/// Makes all points of a plan with ids and two attributes. Returns the number of points.
 fn fill_with_attributes(plan: &Plan, points: &mut [strew_core::Point]) -> u64 {
     let attributes = vec![Attribute::Angle, Attribute::scale(0.5, 2.0).expect("valid")];
     let attributes = Attributes::new(attributes).expect("different");

@@ -1,8 +1,8 @@
-//! What is answered without making points: counts, places by number, points by id, neighbors; in
-//! microseconds, and in lookups of a displacement at a random place of the table.
+//! Queries that make no points: counts, offsets, points by number and by id, and nearest points.
+//! Times are in microseconds and in lookups of a displacement at a random place in the table.
 //!
-//! The count of a box without warp may not depend on what it holds: 10¹⁸ points may take twice as long
-//! as 10⁶. With `-- --quick` it only checks that everything still runs.
+//! Counting a box without warp must take about as long whatever the box holds: 10¹⁸ points at most
+//! twice as long as 10⁶. `-- --quick` only checks that everything still runs.
 
 use std::{hint::black_box, sync::Arc, time::Instant};
 
@@ -16,9 +16,9 @@ mod rounds;
 
 struct Subject {
     sampler: Arc<Sampler>,
-    /// Points of the plain pattern.
+    /// Ids of points of the plain pattern.
     ids: Vec<PointId>,
-    /// Of the plain and of a warped pattern.
+    /// Finders for the plain pattern and a warped one.
     finders: [Finder; 2],
     /// A box of 10¹⁴ points.
     huge: Plan,
@@ -45,7 +45,7 @@ impl Subject {
         }
     }
 
-    /// A number that looks random.
+    /// A pseudorandom number.
     fn random(&mut self) -> u64 {
         self.state = self
             .state
@@ -54,7 +54,7 @@ impl Subject {
         self.state >> 33
     }
 
-    /// Nowhere in particular, so that no two calls ask for the same.
+    /// A pseudorandom place, so that no two calls make the same query.
     fn place(&mut self) -> [f64; 2] {
         [(); 2].map(|()| self.random() as f64 / 1000.0)
     }
@@ -105,7 +105,7 @@ impl Subject {
     }
 }
 
-/// What is asked, and how often before the clock is looked at.
+/// The name of a query, the number of calls between clock readings, and the call.
 type Job = (&'static str, u32, fn(&mut Subject));
 
 const JOBS: [Job; 16] = [

@@ -1,7 +1,7 @@
-//! Fresh memory and two threads: a region into memory that was never touched, beside a plain fill
-//! of it; tiles on two threads, beside one.
+//! Fresh memory and two threads: a box written to untouched memory, compared with a plain fill of
+//! the same memory; and tiles on two threads, compared with one.
 //!
-//! `-- --points N` sets the size; the default takes 2 GB twice over, one after the other.
+//! `-- --points N` sets the size. The default allocates 2 GB twice, one after the other.
 
 use std::{hint::black_box, sync::Arc};
 
@@ -11,8 +11,8 @@ use strew_core::{Plan, Sampler, sample::F32};
 
 mod rounds;
 
-/// The points of a plan on some threads, each with a block of its own; gives how many. Tiles hold
-/// many blocks: what its rows have in common is made once a tile.
+/// Makes the points of a plan on a thread pool, with one block per thread. Returns the number of
+/// points. A tile holds many blocks because the work that its rows share is done once per tile.
 fn on_threads(plan: &Plan, pool: &rayon::ThreadPool) -> u64 {
     pool.install(|| {
         let tiles: Vec<_> = plan.tiles(16 * BLOCK).collect();
@@ -45,7 +45,7 @@ fn main() {
         rounds,
         &mut [
             &mut || {
-                // Never zero, or the system would be asked for zeroed pages and nothing written.
+                // Never zero: the allocator would request zeroed pages and write nothing.
                 black_box(vec![[black_box(1f32); 2]; count]);
                 count as u64
             },

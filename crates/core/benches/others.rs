@@ -1,5 +1,5 @@
-//! Other ways to get points: a hashed jittered grid, a tile that repeats, the published row
-//! scanner, and a Poisson-disk crate; beside a box of ours into the same block.
+//! Other ways to generate points: a hashed jittered grid, a repeated tile, the published row
+//! scanner and a Poisson-disk crate, compared with a box of ours written to the same block.
 
 use std::{hint::black_box, sync::Arc};
 
@@ -15,7 +15,7 @@ mod row_scanner;
 #[path = "baseline/tiled.rs"]
 mod tiled;
 
-/// The side of the repeated tile: 16,384 points, as much as fits fast memory.
+/// The side of the repeated tile. It holds 16,384 points, as many as fit in cache.
 const TILE: f64 = 128.0;
 
 fn main() {
@@ -46,7 +46,7 @@ fn main() {
             &mut || tile.fill(side as f32, four),
             &mut || {
                 seed += 1;
-                // Maximal sets of disks have about 0.7 points per square of the radius.
+                // Maximal Poisson-disk sets have about 0.7 points per squared radius.
                 let poisson = Poisson2D::new()
                     .with_dimensions([disks, disks], 0.84)
                     .with_seed(seed);

@@ -1,4 +1,4 @@
-//! Small boxes with a cold plan, and regions that are no boxes, beside the bulk rate of a box.
+//! Small boxes with a cold plan, circles and polygons, compared with the bulk rate of a box.
 
 use std::{hint::black_box, sync::Arc};
 
@@ -10,8 +10,8 @@ use strew_core::{
 
 mod rounds;
 
-/// A polygon of 100 vertices around the origin, every other one nearer to it: at 0.8 a star whose
-/// outline is almost four times as long as a circle's.
+/// A polygon of 100 vertices around the origin, alternately at `radius` and `near * radius`. With
+/// `near` 0.8 it is a star whose outline is almost four times as long as a circle's.
 fn star(radius: f64, near: f64) -> Polygon {
     let vertex = |i: i32| {
         let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 100.0).sin_cos();
@@ -28,7 +28,7 @@ fn main() {
     let sampler = Arc::new(Sampler::new(table()));
     let mut block = vec![[0f32; 2]; BLOCK];
 
-    // Planning is part of the work: nothing is known before.
+    // Planning is timed too.
     let bulk = |block: &mut [[f32; 2]]| {
         let plan = boxed(&sampler, [0.0, 0.0], points.sqrt(), 0);
         fill_all::<F32>(&plan, block)

@@ -1,7 +1,7 @@
-//! A hashed jittered grid: a point in every cell, moved by a hash of the cell. What most programs do
-//! that need random access; its noise is poor.
+//! A hashed jittered grid: one point per cell, moved by a hash of the cell. Most programs that need
+//! random access do this; its noise is poor.
 
-/// Points per unit of area are 1, as everywhere here.
+/// Fills a square of `side` × `side` cells of unit area. Returns the number of points.
 pub fn fill(side: u32, seed: u32, block: &mut [[f32; 2]]) -> u64 {
     let (mut written, mut total) = (0, 0);
     for y in 0..side {
@@ -20,7 +20,7 @@ pub fn fill(side: u32, seed: u32, block: &mut [[f32; 2]]) -> u64 {
     total + written as u64
 }
 
-/// Two rounds of multiply and shift: as little as looks random.
+/// Two rounds of multiply and shift, the least that looks random.
 fn hash(x: u32, y: u32, seed: u32) -> u64 {
     let mut h = (u64::from(y) << 32 | u64::from(x)) ^ (u64::from(seed) << 16);
     h = (h ^ (h >> 31)).wrapping_mul(0x9e37_79b9_7f4a_7c15);

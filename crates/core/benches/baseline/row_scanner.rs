@@ -1,17 +1,17 @@
-//! The row scanner as the papers describe it, written here as a baseline: walk the grid row by
-//! row; in a row whose dY is inside the set region walk the columns, keep dX up to date by
-//! addition, test it, look up the block by the index, add the displacement.
+//! The row scanner as the papers describe it, implemented as a baseline. It walks the grid row by
+//! row. In a row whose dY is inside the set region, it walks the columns, updates dX by addition,
+//! tests it, looks up the block by the index and adds the displacement.
 
 use strew_core::Table;
 
-/// Index space is cut into this many cells per axis for the lookup of an interval.
+/// Cells per axis of index space, for looking up an interval.
 const CELLS: usize = 4096;
 
 pub struct RowScanner {
     half: u64,
     side: u64,
     scale: f32,
-    /// Interval by cell of the set region.
+    /// The interval of each cell of the set region.
     interval: Vec<u8>,
     shift: u32,
     displacements: Vec<[f32; 2]>,
@@ -45,7 +45,7 @@ impl RowScanner {
         }
     }
 
-    /// Scans a square of `side` mean spacings into a reused block; gives the number of points.
+    /// Scans a square of `side` mean spacings into a reused block. Returns the number of points.
     pub fn scan(&self, side: f64, block: &mut [[f32; 2]]) -> u64 {
         let cells = (side / f64::from(self.scale)) as u64;
         let (mut written, mut total) = (0, 0u64);

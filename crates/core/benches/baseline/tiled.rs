@@ -1,18 +1,18 @@
-//! Tiled lookup: one toroidal tile of points, repeated over the plane, with a spatial grid that
-//! finds the points of a region's part of it.
+//! Tiled lookup: one toroidal tile of points, repeated over the plane. A spatial grid finds the
+//! points of the part of the tile that a region covers.
 
 /// A tile of prepared points.
 pub struct Tile {
     side: f32,
     /// Cells per axis.
     cells: usize,
-    /// Where each cell's points begin, and the end.
+    /// The index of each cell's first point, then the number of points.
     starts: Vec<u32>,
     points: Vec<[f32; 2]>,
 }
 
 impl Tile {
-    /// A tile of points in a square that starts at the origin, about four to a cell.
+    /// A tile of points in the square [0, `side`)², with about four points per cell.
     pub fn new(side: f32, points: &[[f32; 2]]) -> Self {
         let cells = ((points.len() / 4) as f32).sqrt().max(1.0) as usize;
         let cell = |p: &[f32; 2]| {
@@ -30,7 +30,7 @@ impl Tile {
         }
     }
 
-    /// Writes the points of a square at the origin; gives how many.
+    /// Writes the points of the square [0, `side`)². Returns the number of points.
     pub fn fill(&self, side: f32, block: &mut [[f32; 2]]) -> u64 {
         let (mut written, mut total) = (0, 0);
         let tiles = (side / self.side).ceil() as usize;

@@ -1,4 +1,4 @@
-//! What the benches share: a table, interleaved rounds with their medians, and filling to the end.
+//! Shared code of the benches: a table, medians of interleaved rounds, and filling a whole plan.
 
 #![allow(dead_code, reason = "each bench takes what it needs")]
 
@@ -12,8 +12,8 @@ use strew_core::{
 /// Points per reused block: 512 KiB of f32 pairs.
 pub const BLOCK: usize = 65_536;
 
-/// Whether only to check that everything runs: `--quick`, or `--test` as `cargo test --benches`
-/// says.
+/// Whether to check only that everything runs: with `--quick`, or with `--test`, which
+/// `cargo test --benches` passes.
 pub fn is_quick() -> bool {
     std::env::args().any(|arg| arg == "--quick" || arg == "--test")
 }
@@ -33,18 +33,18 @@ pub fn table() -> Table {
     Table::new(map, "bench", vectors, Provenance::default()).expect("valid")
 }
 
-/// At mean spacing 1. Seed 0 is the plain pattern, all others are warped.
+/// A placement at mean spacing 1. Seed 0 is the plain pattern; other seeds are warped.
 pub fn placement(seed: u64) -> Placement {
     Placement::new(Spacing::new(1.0).expect("valid"), Seed(seed))
 }
 
-/// A box at mean spacing 1.
+/// The plan of a square of `side` at mean spacing 1, with its lower corner at `min`.
 pub fn boxed(sampler: &Arc<Sampler>, min: [f64; 2], side: f64, seed: u64) -> Plan {
     let region = Region::new(min, min.map(|v| v + side)).expect("ordered");
     sampler.plan(placement(seed), region).expect("in range")
 }
 
-/// Makes all points of a plan in a reused block; gives how many.
+/// Makes all points of a plan in a reused block. Returns the number of points.
 pub fn fill_all<F: Format>(plan: &Plan, buffer: &mut [F::Item]) -> u64 {
     let mut blocks = plan.blocks::<F>();
     let mut total = 0;
@@ -58,7 +58,8 @@ pub fn fill_all<F: Format>(plan: &Plan, buffer: &mut [F::Item]) -> u64 {
     }
 }
 
-/// Seconds per unit of each job's work: the median over interleaved rounds.
+/// Seconds per unit of work of each job, as the median over interleaved rounds. A job returns its
+/// amount of work.
 pub fn medians<const N: usize>(rounds: usize, jobs: &mut [&mut dyn FnMut() -> u64; N]) -> [f64; N] {
     let mut times: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
     for _ in 0..rounds {
