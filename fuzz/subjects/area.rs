@@ -1,12 +1,8 @@
-//! Areas, from bytes: boxes, disks, polygons and what is made of them, anywhere on the plane, the
-//! edge of the coordinates' range included. What a plan gives is compared with asking every point of
-//! the box around.
-
-use std::sync::{Arc, LazyLock};
+//! Areas, from bytes: boxes, disks, polygons and combinations of them, anywhere on the plane, the edge of
+//! the coordinates' range included. A plan is compared with a test of every point of the box around.
 
 use strew_core::{
-    Area, Circle, Placement, Point, Polygon, Region, Sampler, Seed, Spacing, Table, Warp,
-    sample::{Keep, Plan, Points, Selection},
+    Area, Circle, Keep, Placement, Plan, Point, PointSet, Polygon, Region, Seed, Spacing, Warp,
 };
 
 /// The widest and highest area that is listed, in mean spacings.
@@ -15,12 +11,6 @@ const MOST_SPACINGS: f64 = 60.0;
 const MOST_PARTS: usize = 8;
 /// The most corners of a ring.
 const MOST_CORNERS: usize = 12;
-
-static SAMPLER: LazyLock<Arc<Sampler>> = LazyLock::new(|| {
-    let table = Table::from_bytes(include_bytes!("../../tables/blue-5-sqrt3-over-2-s.strew"))
-        .expect("shipped");
-    Arc::new(Sampler::new(table))
-});
 
 /// Bytes, taken one after another; zeros when they are used up.
 struct Tape<'a>(&'a [u8]);
@@ -94,7 +84,7 @@ fn area(tape: &mut Tape<'_>, ground: &Ground) -> Option<Area> {
     Some(Area::any_of(parts))
 }
 
-fn placement(tape: &mut Tape<'_>) -> Option<(Placement, Ground)> {
+fn set(tape: &mut Tape<'_>) -> Option<(PointSet, Ground)> {
     let spacing = match tape.byte() {
         255 => f64::from_bits(tape.bits()),
         byte => 2f64.powi(i32::from(byte as i8) / 4),
@@ -112,7 +102,8 @@ fn placement(tape: &mut Tape<'_>) -> Option<(Placement, Ground)> {
     let placement = Placement::new(spacing, seed)
         .with_warp(warp)
         .with_keep(keep);
-    let limit = SAMPLER.limit(placement);
+    let set = PointSet::blue().placed(placement);
+    let limit = set.limit();
     let center = [0, 1].map(|_| match tape.byte() {
         byte @ 0..100 => f64::from(byte as i8) * spacing.get(),
         byte @ 100..130 => f64::from(byte as i8) / 128.0 * limit,
@@ -121,20 +112,18 @@ fn placement(tape: &mut Tape<'_>) -> Option<(Placement, Ground)> {
         byte => limit / f64::from(u32::from(byte - 189)).exp2(),
     });
     let step = spacing.get();
-    Some((placement, Ground { center, step }))
+    Some((set, Ground { center, step }))
 }
 
 fn list(plan: &Plan) -> Vec<Point> {
-    let mut points = vec![Point::default(); usize::try_from(plan.count()).expect("few") + 1];
-    let filled = plan.blocks::<Points>().fill(&mut points);
-    points.truncate(filled);
-    assert_eq!(filled as u128, plan.count());
+    let points = plan.to_vec();
+    assert_eq!(points.len() as u128, plan.count());
     points
 }
 
 pub fn run(data: &[u8]) {
     let mut tape = Tape(data);
-    let Some((placement, ground)) = placement(&mut tape) else {
+    let Some((set, ground)) = set(&mut tape) else {
         return;
     };
     let Some(area) = area(&mut tape, &ground) else {
@@ -145,26 +134,24 @@ pub fn run(data: &[u8]) {
     if extent.iter().any(|&e| e.is_nan() || e > MOST_SPACINGS) {
         return;
     }
-    let sampler = &*SAMPLER;
-    let around = sampler.plan(placement, bounds);
-    let plan = sampler.select(Selection::new(placement, area.clone()));
+    let placement = set.placement();
+    let (around, plan) = (set.within(bounds), set.within(area.clone()));
     let (Ok(around), Ok(plan)) = (around, plan) else {
         return;
     };
     let mut expected = list(&around);
-    expected.retain(|p| area.contains([p.x, p.y]));
+    expected.retain(|p| area.contains(p.at()));
     let points = list(&plan);
     assert_eq!(points, expected, "{placement:?} {area:?}");
 
-    // A window of it, and what a cursor leads to.
+    // A window of it, and the points from its cursor on.
     let offset = usize::from(tape.byte()).min(points.len());
     let limit = usize::from(tape.byte());
     let window = plan.window(offset as u128, Some(limit as u128));
     let end = points.len().min(offset + limit);
     assert_eq!(list(&window), points[offset..end], "{placement:?} {area:?}");
     if let Some(cursor) = window.next_cursor() {
-        let selection = Selection::new(placement, area.clone());
-        let resumed = sampler.resume(selection, cursor).expect("planned before");
+        let resumed = set.resume(area.clone(), cursor).expect("planned before");
         assert_eq!(list(&resumed), points[end..], "{placement:?} {area:?}");
     }
 }

@@ -1,8 +1,6 @@
 //! The table reader: any file, as it is and with a right digest and length put into it.
 
-use std::sync::Arc;
-
-use strew_core::{Placement, Region, Sampler, Seed, Spacing, Table, Warp, table::Digest};
+use strew_core::{PointSet, Region, Table, table::Digest};
 
 const DIGEST_BYTES: usize = 32;
 /// Where the header has the size of the whole file.
@@ -39,17 +37,14 @@ fn read(bytes: &[u8]) {
         return;
     }
     // It can be sampled, whatever its vectors.
-    let sampler = Arc::new(Sampler::new(table));
-    let spacing = Spacing::new(1.0).expect("valid");
+    let set = PointSet::new(table);
     let region = Region::new([-3.0, -2.0], [5.0, 6.0]).expect("ordered");
-    for warp in [Warp::OFF, Warp::ON] {
-        let placement = Placement::new(spacing, Seed(3)).with_warp(warp);
-        let Ok(plan) = sampler.plan(placement, region) else {
+    for set in [set.clone(), set.seed(3)] {
+        let Ok(plan) = set.within(region) else {
             continue;
         };
-        let mut points = vec![[0.0; 2]; usize::try_from(plan.count()).expect("few") + 1];
-        let filled = plan.blocks_f64().fill(&mut points);
-        assert_eq!(filled as u128, plan.count());
-        assert!(points[..filled].iter().all(|&p| region.contains(p)));
+        let points = plan.to_vec();
+        assert_eq!(points.len() as u128, plan.count());
+        assert!(points.iter().all(|p| region.contains(p.at())));
     }
 }

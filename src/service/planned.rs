@@ -50,12 +50,7 @@ pub struct PlannedSet {
 }
 
 impl PlannedSet {
-    pub(super) fn new(
-        entry: Arc<Entry>,
-        density: f64,
-        least_distance: f64,
-        plan: Plan,
-    ) -> Self {
+    pub(super) fn new(entry: Arc<Entry>, density: f64, least_distance: f64, plan: Plan) -> Self {
         Self {
             entry,
             density,

@@ -128,12 +128,17 @@ impl<'a> Planner<'a> {
         let guess = side * (set.keep.get() / count as f64).sqrt();
         if let Ok(spacing) = Spacing::new(guess) {
             let placement = selection.set.placement();
-            let trial = Placement { spacing, ..placement };
+            let trial = Placement {
+                spacing,
+                ..placement
+            };
             selection.set = selection.set.clone().placed(trial);
             self.check_rows(selection, COUNTS)?;
         }
         let least = effort::least_spacing(selection, self.limits.max_rows as f64 / COUNTS);
-        let Selection { set: points, area, .. } = &*selection;
+        let Selection {
+            set: points, area, ..
+        } = &*selection;
         let plan = server::exactly(points, count.into(), area, least, self.stop);
         plan.map_err(|error| match error.kind() {
             ErrorKind::Count | ErrorKind::TooDense => {
@@ -186,9 +191,8 @@ const fn nothing() -> Cursor {
 /// What an amount is on its table; `None` for a count, which needs a region.
 pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>, Error> {
     let fault = |field, value: f64, detail: String| set.fault(field, value, detail, query::AMOUNT);
-    let wrong = |field, value: f64| {
-        move |error: strew_core::Error| fault(field, value, error.to_string())
-    };
+    let wrong =
+        |field, value: f64| move |error: strew_core::Error| fault(field, value, error.to_string());
     match set.amount {
         Amount::Density(density) => {
             let spacing = Spacing::from_density(density).map_err(wrong("density", density))?;

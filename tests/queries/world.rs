@@ -36,7 +36,13 @@ pub fn world() -> &'static World {
 impl World {
     /// Every table, and whether it promises a distance.
     pub fn keys(&self) -> (Vec<Key>, Vec<bool>) {
-        let promises = |ready: &Ready| ready.least.with_warp(strew_core::Warp::OFF) > 0.1;
+        let promises = |ready: &Ready| {
+            ready
+                .table
+                .least_distance()
+                .with_warp(strew_core::Warp::OFF)
+                > 0.1
+        };
         let all = self.ready.values();
         all.map(|ready| (ready.entry.key.clone(), promises(ready)))
             .unzip()

@@ -1,8 +1,6 @@
 //! Every format carries the same points, and they are the library's.
 
-use std::sync::Arc;
-
-use strew_core::{Placement, Plan, Point, Region, Sampler, Seed, Spacing};
+use strew_core::{Plan, Point, PointSet, Region};
 
 use crate::{
     daemon::{Daemon, PROFILE, table},
@@ -13,12 +11,10 @@ use crate::{
 const QUERY: &str = "/v1/points?bbox=-3.5,1,40,33.25&density=7&profile=test&seed=5";
 
 pub fn plan() -> Plan {
-    let sampler = Arc::new(Sampler::new(table("(5-sqrt(3))/2", PROFILE)));
+    let set = PointSet::new(table("(5-sqrt(3))/2", PROFILE)).seed(5);
     let region = Region::new([-3.5, 1.0], [40.0, 33.25]).expect("a box");
-    let spacing = Spacing::from_density(7.0).expect("positive");
-    sampler
-        .plan(Placement::new(spacing, Seed(5)), region)
-        .expect("near")
+    let set = set.density(7.0).expect("positive");
+    set.within(region).expect("near")
 }
 
 pub fn points(plan: &Plan) -> Vec<Point> {
@@ -44,7 +40,7 @@ fn check_headers(answer: &raw::Answer, plan: &Plan, content_type: &str) {
     assert_eq!(answer.status, 200);
     assert_eq!(answer.header("content-type"), content_type);
     assert_eq!(answer.header("strew-count"), plan.count().to_string());
-    let digest = plan.sampler().table().digest().to_string();
+    let digest = plan.table().digest().to_string();
     assert_eq!(answer.header("strew-table"), digest);
     let version = strew_core::ALGORITHM_VERSION.to_string();
     assert_eq!(answer.header("strew-algorithm"), version);

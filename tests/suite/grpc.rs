@@ -46,7 +46,7 @@ async fn the_default_encoding_has_fields_and_ids() {
         let [set] = query.sets.as_slice() else {
             panic!("there is one set of points");
         };
-        assert_eq!(set.table, plan.sampler().table().digest().to_string());
+        assert_eq!(set.table, plan.table().digest().to_string());
         assert_eq!(
             (set.density, set.spacing),
             (7.0, plan.placement().spacing.get())

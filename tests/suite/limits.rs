@@ -3,13 +3,12 @@
 use std::{
     io::{Read as _, Write as _},
     net::TcpStream,
-    sync::Arc,
 };
 
 use strew::grpc::proto::{
     StreamPointsRequest, point_service_client::PointServiceClient, stream_points_request::Amount,
 };
-use strew_core::{Placement, Region, Sampler, Seed, Spacing};
+use strew_core::{PointSet, Region};
 use tonic::Code;
 use tonic_types::StatusExt as _;
 
@@ -21,13 +20,9 @@ use crate::{
 
 /// The exact count of a box around the origin at density 1.
 fn count(half: f64) -> u128 {
-    let sampler = Arc::new(Sampler::new(table("(5-sqrt(3))/2", PROFILE)));
+    let set = PointSet::new(table("(5-sqrt(3))/2", PROFILE));
     let region = Region::new([-half, -half], [half, half]).expect("a box");
-    let spacing = Spacing::new(1.0).expect("positive");
-    let plan = sampler
-        .plan(Placement::new(spacing, Seed(0)), region)
-        .expect("near");
-    plan.count()
+    set.count(region).expect("near")
 }
 
 #[tokio::test]

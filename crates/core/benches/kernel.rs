@@ -5,13 +5,10 @@
 //! on noisy machines; absolute times do not. `cargo bench -p strew-core -- --quick` only checks
 //! that everything still runs.
 
-use std::{hint::black_box, sync::Arc};
+use std::hint::black_box;
 
-use rounds::{BLOCK, boxed, fill_all, is_quick, medians, table};
-use strew_core::{
-    Plan, Sampler,
-    sample::{Attribute, Attributes, Column, F32, F64, Points},
-};
+use rounds::{BLOCK, boxed, fill_all, is_quick, medians, sets, table};
+use strew_core::{Attribute, Attributes, Column, F32, F64, Member, Plan, Points};
 
 mod rounds;
 #[path = "baseline/row_scanner.rs"]
@@ -24,7 +21,7 @@ const AT_ONCE: usize = 1024;
 fn fill_with_attributes(plan: &Plan, points: &mut [strew_core::Point]) -> u64 {
     let attributes = vec![Attribute::Angle, Attribute::scale(0.5, 2.0).expect("valid")];
     let attributes = Attributes::new(attributes).expect("different");
-    let bound = attributes.bind(plan.sampler(), plan.placement());
+    let bound = plan.attributes(&attributes);
     let mut columns: Vec<Column> = vec![];
     let (mut blocks, mut total) = (plan.blocks_points(), 0);
     loop {
@@ -38,13 +35,21 @@ fn fill_with_attributes(plan: &Plan, points: &mut [strew_core::Point]) -> u64 {
     }
 }
 
+/// Visits all points of a plan one by one. Returns the number of points.
+fn iterate(plan: &Plan) -> u64 {
+    let (mut sum, mut count) = (0.0, 0);
+    for member in plan {
+        sum += member.at()[0];
+        count += 1;
+    }
+    black_box(sum);
+    count
+}
+
 fn main() {
     let (side, count) = if is_quick() { (300.0, 1) } else { (5477.0, 9) };
-    let table = table();
-    let scanner = row_scanner::RowScanner::new(&table);
-    let sampler = Arc::new(Sampler::new(table));
-    let plan = boxed(&sampler, [0.0, 0.0], side, 0);
-    let warped = boxed(&sampler, [0.0, 0.0], side, 1);
+    let scanner = row_scanner::RowScanner::new(&table());
+    let [plan, warped] = sets().map(|set| boxed(&set, [0.0, 0.0], side));
     let points = plan.count() as u64;
 
     let (mut f32s, mut f64s) = (vec![[0f32; 2]; BLOCK], vec![[0f64; 2]; BLOCK]);
@@ -69,6 +74,12 @@ fn main() {
             &mut || fill_all::<F32>(&warped, &mut warped_f32s),
             &mut || fill_all::<Points>(&plan, &mut ids),
             &mut || fill_with_attributes(&plan, &mut with_attributes),
+            &mut || iterate(&plan),
+            &mut || {
+                let sum = |sum: f64, member: Member| sum + member.at()[0];
+                black_box(plan.iter().fold(0.0, sum));
+                points
+            },
         ],
     );
     let names = [
@@ -79,6 +90,8 @@ fn main() {
         "box with warp, f32",
         "box, ids and f64",
         "box, ids, two attributes",
+        "iterator, `for`",
+        "iterator, `fold`",
     ];
     println!("{points} points, blocks of {BLOCK}, one core, median of {count}");
     println!(
@@ -92,5 +105,9 @@ fn main() {
             result[0] / seconds,
             result[1] / seconds
         );
+    }
+    // `result[5]` fills blocks of the same points.
+    for (name, seconds) in names.iter().zip(result).skip(7) {
+        println!("{name}: {:.2} × filling blocks", seconds / result[5]);
     }
 }

@@ -4,22 +4,18 @@
 //! Counting a box without warp must take about as long whatever the box holds: 10¹⁸ points at most
 //! twice as long as 10⁶. `-- --quick` only checks that everything still runs.
 
-use std::{hint::black_box, sync::Arc, time::Instant};
+use std::{hint::black_box, time::Instant};
 
-use rounds::{boxed, is_quick, placement, table};
-use strew_core::{
-    Circle, Plan, PointId, Sampler,
-    sample::{Finder, Selection},
-};
+use rounds::{boxed, is_quick, sets};
+use strew_core::{Circle, Plan, PointId, PointSet};
 
 mod rounds;
 
 struct Subject {
-    sampler: Arc<Sampler>,
+    /// The plain and a warped set.
+    sets: [PointSet; 2],
     /// Ids of points of the plain pattern.
     ids: Vec<PointId>,
-    /// Finders for the plain pattern and a warped one.
-    finders: [Finder; 2],
     /// A box of 10¹⁴ points.
     huge: Plan,
     state: u64,
@@ -27,19 +23,15 @@ struct Subject {
 
 impl Subject {
     fn new() -> Self {
-        let sampler = Arc::new(Sampler::new(table()));
+        let sets = sets();
         let mut ids = vec![];
         for i in 0..200 {
             let at = [f64::from(i * 7919), f64::from(i * 104_729)];
-            let plan = boxed(&sampler, at, 20.0, 0);
-            let mut points = vec![Default::default(); plan.count() as usize];
-            plan.blocks_points().fill(&mut points);
-            ids.extend(points.iter().map(|point| point.id));
+            ids.extend(boxed(&sets[0], at, 20.0).iter().map(|member| member.id()));
         }
         Self {
-            finders: [0, 1].map(|seed| sampler.finder(placement(seed))),
-            huge: boxed(&sampler, [-1e6, -1e6], 1e7, 0),
-            sampler,
+            huge: boxed(&sets[0], [-1e6, -1e6], 1e7),
+            sets,
             ids,
             state: 1,
         }
@@ -61,24 +53,23 @@ impl Subject {
 
     fn displacement(&mut self) {
         let place = self.random() as usize;
-        let vectors = self.sampler.table().displacements();
+        let vectors = self.sets[0].table().displacements();
         black_box(vectors[place % vectors.len()]);
     }
 
-    fn boxed(&mut self, seed: u64, side: f64) -> Plan {
+    fn boxed(&mut self, set: usize, side: f64) -> Plan {
         let [x, y] = self.place();
         let corner = [x % 1000.0 - side / 2.0, y % 1000.0 - side / 3.0];
-        boxed(&self.sampler, corner, side, seed)
+        boxed(&self.sets[set], corner, side)
     }
 
-    fn count(&mut self, seed: u64, side: f64) {
-        black_box(self.boxed(seed, side).count());
+    fn count(&mut self, set: usize, side: f64) {
+        black_box(self.boxed(set, side).count());
     }
 
     fn circle(&mut self, radius: f64) {
         let circle = Circle::new(self.place(), radius).expect("valid");
-        let plan = self.sampler.select(Selection::new(placement(0), circle));
-        black_box(plan.expect("near").count());
+        black_box(self.sets[0].count(circle).expect("near"));
     }
 
     fn offset(&mut self, side: f64) {
@@ -92,16 +83,15 @@ impl Subject {
         black_box(self.huge.window(k, Some(1)).cursor());
     }
 
-    fn point(&mut self, seed: u64) {
+    fn point(&mut self, set: usize) {
         let place = self.random() as usize;
         let id = self.ids[place % self.ids.len()];
-        black_box(self.sampler.point(placement(seed), id));
+        black_box(self.sets[set].point(id));
     }
 
-    fn nearest(&mut self, seed: u64, k: usize) {
+    fn nearest(&mut self, set: usize, k: usize) {
         let at = self.place();
-        let finder = &self.finders[seed as usize];
-        black_box(finder.nearest(at, k).expect("near"));
+        black_box(self.sets[set].nearest(at, k).expect("near"));
     }
 }
 

@@ -3,11 +3,11 @@
 //!
 //! `-- --points N` sets the size. The default allocates 2 GB twice, one after the other.
 
-use std::{hint::black_box, sync::Arc};
+use std::hint::black_box;
 
 use rayon::prelude::*;
-use rounds::{BLOCK, boxed, is_quick, medians, table};
-use strew_core::{Plan, Sampler, sample::F32};
+use rounds::{BLOCK, boxed, is_quick, medians, sets};
+use strew_core::{F32, Plan};
 
 mod rounds;
 
@@ -38,8 +38,8 @@ fn main() {
     let quick = is_quick();
     let points = argument.unwrap_or(if quick { 1e5 } else { 2.5e8 });
     let rounds = if quick { 1 } else { 5 };
-    let sampler = Arc::new(Sampler::new(table()));
-    let plan = boxed(&sampler, [0.0, 0.0], points.sqrt(), 0);
+    let [set, _] = sets();
+    let plan = boxed(&set, [0.0, 0.0], points.sqrt());
     let count = plan.count() as usize;
     let result = medians(
         rounds,
@@ -69,7 +69,7 @@ fn main() {
         );
     }
 
-    let plan = boxed(&sampler, [0.0, 0.0], (points / 8.0).sqrt(), 0);
+    let plan = boxed(&set, [0.0, 0.0], (points / 8.0).sqrt());
     let threads = |n| {
         rayon::ThreadPoolBuilder::new()
             .num_threads(n)

@@ -1,11 +1,11 @@
 //! Other ways to generate points: a hashed jittered grid, a repeated tile, the published row
 //! scanner and a Poisson-disk crate, compared with a box of ours written to the same block.
 
-use std::{hint::black_box, sync::Arc};
+use std::hint::black_box;
 
 use fast_poisson::Poisson2D;
-use rounds::{BLOCK, boxed, fill_all, is_quick, medians, table};
-use strew_core::{Sampler, sample::F32};
+use rounds::{BLOCK, boxed, fill_all, is_quick, medians, sets, table};
+use strew_core::F32;
 
 #[path = "baseline/jittered.rs"]
 mod jittered;
@@ -25,11 +25,10 @@ fn main() {
     } else {
         (3200.0, 200.0, 9)
     };
-    let table = table();
-    let scanner = row_scanner::RowScanner::new(&table);
-    let sampler = Arc::new(Sampler::new(table));
-    let plan = boxed(&sampler, [0.0, 0.0], side, 0);
-    let prepared = boxed(&sampler, [0.0, 0.0], TILE, 0);
+    let scanner = row_scanner::RowScanner::new(&table());
+    let [set, _] = sets();
+    let plan = boxed(&set, [0.0, 0.0], side);
+    let prepared = boxed(&set, [0.0, 0.0], TILE);
     let mut points = vec![[0f32; 2]; prepared.count() as usize];
     prepared.blocks_f32().fill(&mut points);
     let tile = tiled::Tile::new(TILE as f32, &points);

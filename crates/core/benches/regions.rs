@@ -1,12 +1,9 @@
 //! Small boxes with a cold plan, circles and polygons, compared with the bulk rate of a box.
 
-use std::{hint::black_box, sync::Arc};
+use std::hint::black_box;
 
-use rounds::{BLOCK, boxed, fill_all, is_quick, medians, placement, table};
-use strew_core::{
-    Plan, Sampler,
-    sample::{Area, Circle, F32, Polygon, Selection},
-};
+use rounds::{BLOCK, boxed, fill_all, is_quick, medians, sets};
+use strew_core::{Area, Circle, F32, Polygon};
 
 mod rounds;
 
@@ -25,22 +22,21 @@ fn main() {
     let quick = is_quick();
     let points = if quick { 1e4 } else { 1e7f64 };
     let rounds = if quick { 1 } else { 15 };
-    let sampler = Arc::new(Sampler::new(table()));
+    let sets = sets();
     let mut block = vec![[0f32; 2]; BLOCK];
 
     // Planning is timed too.
     let bulk = |block: &mut [[f32; 2]]| {
-        let plan = boxed(&sampler, [0.0, 0.0], points.sqrt(), 0);
+        let plan = boxed(&sets[0], [0.0, 0.0], points.sqrt());
         fill_all::<F32>(&plan, block)
     };
     let area = |area: Area, block: &mut [[f32; 2]]| {
-        let selection = Selection::new(placement(0), area);
-        let plan: Plan = sampler.select(selection).expect("in range");
+        let plan = sets[0].within(area).expect("in range");
         fill_all::<F32>(&plan, block)
     };
     let radius = (points / std::f64::consts::PI).sqrt();
     let mut number = 0;
-    let mut small = |seed: u64, block: &mut [[f32; 2]]| {
+    let mut small = |set: usize, block: &mut [[f32; 2]]| {
         let boxes = if quick { 10 } else { 1000 };
         let mut total = 0;
         for _ in 0..boxes {
@@ -49,7 +45,7 @@ fn main() {
                 f64::from(number % 997) * 40.0,
                 f64::from(number / 997) * 40.0,
             ];
-            let plan = boxed(&sampler, at, 31.6, seed);
+            let plan = boxed(&sets[set], at, 31.6);
             let count = plan.count() as usize;
             let filled = plan.blocks_f32().fill(&mut block[..count]);
             black_box(&mut *block);

@@ -1,1 +1,263 @@
-//! placeholder
+//! Recipes for common tasks. Each is a program that runs.
+//!
+//! - [Chunks of a game world](#chunks-of-a-game-world)
+//! - [Ids that persist](#ids-that-persist)
+//! - [The nearest points](#the-nearest-points)
+//! - [An exact number of points](#an-exact-number-of-points)
+//! - [A least distance](#a-least-distance)
+//! - [Attributes](#attributes)
+//! - [Layers that keep clear of each other](#layers-that-keep-clear-of-each-other)
+//! - [A polygon with holes](#a-polygon-with-holes)
+//! - [Levels of detail](#levels-of-detail)
+//! - [Pages](#pages)
+//! - [Many points, fast](#many-points-fast)
+//! - [Parallel filling](#parallel-filling)
+//! - [Another noise profile](#another-noise-profile)
+//!
+//! # Chunks of a game world
+//!
+//! Ask for one chunk at a time, in any order and as often as you like. Chunks are half-open: neighbors
+//! share no point and lose none, and a chunk is the same whenever it is loaded.
+//!
+//! ```
+//! use strew_core::PointSet;
+//!
+//! let trees = PointSet::blue().spacing(4.0)?.seed(7);
+//! let (size, camera) = (64.0, [1000.0, -250.0]);
+//! let [column, row] = camera.map(|v: f64| (v / size).floor() as i64);
+//! for y in row - 1..=row + 1 {
+//!     for x in column - 1..=column + 1 {
+//!         for tree in trees.chunk(size, [x, y])? {
+//!             let [tx, ty] = tree.at();
+//!             // Offsets from the corner fit `f32`, however far out the chunk lies.
+//!             let _near = [(tx - x as f64 * size) as f32, (ty - y as f64 * size) as f32];
+//!         }
+//!     }
+//! }
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # Ids that persist
+//!
+//! An id is a lattice address. It finds its point again, so a saved game keeps ids and nothing else. Ids
+//! belong to a set: another spacing, seed or table has other points under them.
+//!
+//! ```
+//! use std::collections::HashSet;
+//! use strew_core::{PointId, PointSet};
+//!
+//! let trees = PointSet::blue().spacing(4.0)?.seed(7);
+//! let mut felled: HashSet<PointId> = HashSet::new();
+//! let tree = trees.nearest([10.0, 3.0], 1)?[0].member;
+//! felled.insert(tree.id());
+//!
+//! let saved = tree.id().to_string();
+//! let id: PointId = saved.parse()?;
+//! assert_eq!(trees.point(id), Some(tree));
+//! let standing = trees.chunk(64.0, [0, 0])?.into_iter().filter(|tree| !felled.contains(&tree.id()));
+//! assert_eq!(standing.count(), trees.chunk(64.0, [0, 0])?.iter().len() - 1);
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # The nearest points
+//!
+//! ```
+//! use strew_core::PointSet;
+//!
+//! let wells = PointSet::blue().spacing(500.0)?.seed(3);
+//! for near in wells.nearest([1234.5, -99.0], 3)? {
+//!     println!("{} is {:.1} m away", near.member.id(), near.distance);
+//! }
+//! // All within a radius, at most 100.
+//! let around = wells.around([1234.5, -99.0], 900.0, 100)?;
+//! assert!(around.is_sorted_by_key(|near| near.distance));
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # An exact number of points
+//!
+//! The number of points in an area is known before any is made. To place a given number, let the spacing
+//! follow from it.
+//!
+//! ```
+//! use strew_core::{Circle, PointSet};
+//!
+//! let samples = PointSet::blue().seed(5);
+//! let disk = Circle::new([0.0, 0.0], 1.0)?;
+//! let plan = samples.exactly(256, disk)?;
+//! assert_eq!(plan.to_vec().len(), 256);
+//! println!("mean spacing {}", plan.placement().spacing.get());
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # A least distance
+//!
+//! A distance that no two points undercut, anywhere. The profile `spaced` has more points for the same
+//! distance than `blue`.
+//!
+//! ```
+//! use strew_core::PointSet;
+//!
+//! let posts = PointSet::blue().seed(1).min_distance(2.0)?;
+//! let near = posts.nearest([50.0, 50.0], 2)?;
+//! let [a, b] = [near[0].member.at(), near[1].member.at()];
+//! assert!((a[0] - b[0]).hypot(a[1] - b[1]) >= 2.0);
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # Attributes
+//!
+//! A rotation, a scale, a kind and further random numbers for each point. They depend on the id and the
+//! seed alone, so the same tree looks the same in every query.
+//!
+//! ```
+//! use strew_core::{PointSet, Variants};
+//!
+//! let trees = PointSet::blue().spacing(4.0)?.seed(7);
+//! let kinds: Variants = "oak:3,birch:1".parse()?;
+//! for tree in trees.chunk(64.0, [0, 0])? {
+//!     let (angle, scale) = (tree.angle(), tree.scale(0.8..=1.2));
+//!     let is_old = tree.uniform(1) < 0.1;
+//!     let _ = (angle, scale, tree.variant(&kinds), is_old);
+//! }
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! As columns, for many points at once:
+//!
+//! ```
+//! use strew_core::{Attribute, Attributes, PointSet};
+//!
+//! let trees = PointSet::blue().spacing(4.0)?.seed(7);
+//! let plan = trees.chunk(64.0, [0, 0])?;
+//! let attributes = Attributes::new(vec![Attribute::Angle, Attribute::scale(0.8, 1.2)?])?;
+//! let columns = plan.attributes(&attributes).columns(plan.iter().map(|tree| tree.id()));
+//! let angles = columns[0].numbers().expect("angles are numbers");
+//! assert_eq!(angles.len() as u128, plan.count());
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # Layers that keep clear of each other
+//!
+//! Rocks first, then trees at least 3 m from any rock, then grass that avoids both. Whether a point stays
+//! is decided by its surroundings in the unbounded plane, so chunks agree.
+//!
+//! ```
+//! use strew_core::PointSet;
+//!
+//! let rocks = PointSet::blue().spacing(20.0)?.seed(1);
+//! let trees = PointSet::blue().spacing(5.0)?.seed(2).clear_of(&rocks, 3.0)?;
+//! let grass = PointSet::blue().spacing(1.0)?.seed(3).clear_of(&rocks, 1.5)?.clear_of(&trees, 0.6)?;
+//! for blade in grass.chunk(8.0, [5, 5])? {
+//!     assert!(rocks.nearest(blade.at(), 1)?[0].distance >= 1.5);
+//! }
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # A polygon with holes
+//!
+//! ```
+//! use strew_core::{Area, Circle, PointSet, Polygon};
+//!
+//! let meadow = Polygon::new(&[[[0.0, 0.0], [90.0, 10.0], [60.0, 80.0]]])?;
+//! let pond = Circle::new([50.0, 30.0], 8.0)?;
+//! let dry = Area::from(meadow).without([pond.into()]);
+//! let flowers = PointSet::blue().spacing(0.5)?.seed(4);
+//! println!("{} flowers", flowers.count(dry.clone())?);
+//! assert!(flowers.within(dry)?.iter().all(|flower| !pond.contains(flower.at())));
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # Levels of detail
+//!
+//! Each point has a rank in [0, 1). Those of rank below λ are an evenly spread share λ of all, and shares
+//! nest, so nothing jumps when the share changes.
+//!
+//! ```
+//! use strew_core::PointSet;
+//!
+//! let near = PointSet::blue().spacing(4.0)?.seed(7);
+//! let far = near.clone().keep(0.25)?;
+//! for tree in far.chunk(256.0, [0, 0])? {
+//!     assert!(near.point(tree.id()).is_some() && near.rank(tree.id()) < 0.25);
+//! }
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # Pages
+//!
+//! Points have a fixed order, so a part of them is well defined. A cursor resumes without counting.
+//!
+//! ```
+//! use strew_core::{PointSet, Region};
+//!
+//! let set = PointSet::blue().seed(7);
+//! let region = Region::new([0.0, 0.0], [100.0, 100.0])?;
+//! let mut page = set.within(region)?.window(0, Some(1000));
+//! let mut seen = 0;
+//! loop {
+//!     seen += page.to_vec().len();
+//!     let Some(cursor) = page.next_cursor() else { break };
+//!     page = set.resume(region, cursor)?.window(0, Some(1000));
+//! }
+//! assert_eq!(seen as u128, set.count(region)?);
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # Many points, fast
+//!
+//! Blocks in a buffer of your own are the fastest way: a billion points take half a second on one core.
+//! Coordinates come as `f32` from the region's corner, as `f64`, or with ids.
+//!
+//! ```
+//! use strew_core::{PointSet, Region};
+//!
+//! let plan = PointSet::blue().within(Region::new([0.0, 0.0], [300.0, 300.0])?)?;
+//! let (mut blocks, mut block) = (plan.blocks_f32(), vec![[0f32; 2]; 4096]);
+//! loop {
+//!     let filled = blocks.fill(&mut block);
+//!     for [_x, _y] in &block[..filled] {}
+//!     if filled < block.len() {
+//!         break;
+//!     }
+//! }
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # Parallel filling
+//!
+//! Tiles are filled independently; this uses [rayon](https://docs.rs/rayon). One tile after another, the
+//! points have the order of the plan, with any number of threads.
+//!
+//! ```
+//! use rayon::prelude::*;
+//! use strew_core::{F32, PointSet, Region};
+//!
+//! let plan = PointSet::blue().within(Region::new([0.0, 0.0], [500.0, 500.0])?)?;
+//! let tiles: Vec<_> = plan.tiles(1 << 16).collect();
+//! let parts: Vec<Vec<[f32; 2]>> = tiles
+//!     .par_iter()
+//!     .map(|tile| {
+//!         let mut part = vec![[0.0; 2]; 1 << 16];
+//!         let filled = plan.tile_blocks::<F32>(tile).fill(&mut part);
+//!         part.truncate(filled);
+//!         part
+//!     })
+//!     .collect();
+//! let points: usize = parts.iter().map(Vec::len).sum();
+//! assert_eq!(points as u128, plan.count());
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # Another noise profile
+//!
+//! The crate embeds one table. Others lie in the repository's folder `tables`, and `strew forge` makes
+//! more.
+//!
+//! ```no_run
+//! use strew_core::{PointSet, Table};
+//!
+//! let file = std::fs::read("tables/spaced-5-sqrt3-over-2-m.strew")?;
+//! let posts = PointSet::new(Table::from_bytes(&file)?).min_distance(2.0)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```

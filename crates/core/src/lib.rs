@@ -58,10 +58,10 @@ pub use error::{Error, ErrorKind};
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
 pub use sample::{
-    Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column, Cursor,
-    F32, F64, Format, Keep, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor, Placement, Plan,
-    Point, PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed, Spacing, Tile, UniformNumber,
-    Variants, Warp, rank, side_for,
+    Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
+    Cursor, F32, F64, Format, Keep, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
+    Placement, Plan, Point, PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed, Spacing,
+    Tile, UniformNumber, Variants, Warp, rank, side_for,
 };
 pub use table::Table;
 

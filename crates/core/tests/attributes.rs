@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use strew_core::{
-    Attribute, Attributes, Column, ErrorKind, Point, PointId, PointSet, Region, Seed, Table, Variants,
-    side_for,
+    Attribute, Attributes, Column, ErrorKind, Point, PointId, PointSet, Region, Seed, Table,
+    Variants, side_for,
 };
 
 fn set(seed: u64) -> PointSet {
@@ -117,7 +117,10 @@ fn variants_come_by_weight_and_scales_in_their_range() {
         Attribute::scale(0.5, 2.0).expect("valid"),
     ]);
     let error = attributes.expect_err("twice");
-    assert_eq!((error.kind(), error.value()), (ErrorKind::Attribute, "scale"));
+    assert_eq!(
+        (error.kind(), error.value()),
+        (ErrorKind::Attribute, "scale")
+    );
     let attributes = Attributes::new(vec![
         Attribute::Variant("oak:3,birch:1,rare:0.001".parse().expect("valid")),
         Attribute::scale(0.5, 2.0).expect("valid"),

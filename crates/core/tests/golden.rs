@@ -3,8 +3,8 @@
 //! A change here is a change of the algorithm: raise `ALGORITHM_VERSION` with it.
 
 use strew_core::{
-    ALGORITHM_VERSION, Alpha, F32, F64, Format, Map, Placement, Plan, PointId, PointSet, Points, Region,
-    Seed, Spacing, Table, Warp,
+    ALGORITHM_VERSION, Alpha, F32, F64, Format, Map, Placement, Plan, PointId, PointSet, Points,
+    Region, Seed, Spacing, Table, Warp,
     table::{Digest, Provenance},
 };
 

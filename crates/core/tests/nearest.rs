@@ -4,7 +4,8 @@ mod subject;
 
 use proptest::prelude::*;
 use strew_core::{
-    Circle, ErrorKind, Keep, Neighbor, Placement, Point, PointSet, Region, Seed, Spacing, Table, Warp,
+    Circle, ErrorKind, Keep, Neighbor, Placement, Point, PointSet, Region, Seed, Spacing, Table,
+    Warp,
 };
 use subject::{set, shipped, table};
 
@@ -159,14 +160,20 @@ fn a_thousand_neighbors_and_the_limits() {
     let kind = |error: strew_core::Error| error.kind();
     let most = PointSet::MAX_NEAREST;
     let error = set.nearest(at, most + 1).expect_err("too many");
-    assert_eq!((error.kind(), error.value()), (ErrorKind::Neighbors, "10001"));
+    assert_eq!(
+        (error.kind(), error.value()),
+        (ErrorKind::Neighbors, "10001")
+    );
     let error = set.around(at, 1e6, 1_000_000).expect_err("many");
     assert!(error.to_string().contains("at most"), "{error}");
     assert!(set.around(at, 1e300, 1_000_000).is_err());
     for radius in [-1.0, f64::NAN, f64::INFINITY] {
         let refused = set.around(at, radius, 10).map_err(kind);
         assert_eq!(refused, Err(ErrorKind::Radius));
-        assert_eq!(set.clearance(radius).map(|_| ()).map_err(kind), Err(ErrorKind::Radius));
+        assert_eq!(
+            set.clearance(radius).map(|_| ()).map_err(kind),
+            Err(ErrorKind::Radius)
+        );
     }
     assert!(set.clearance(1e4).is_err());
     let limit = set.search_limit();

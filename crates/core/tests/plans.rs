@@ -4,8 +4,8 @@ mod subject;
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Attribute, Attributes, Backend, Circle, ErrorKind, F32, F64, Placement, Plan, Point, PointSet,
-    Points, Polygon, Region, Seed, Spacing,
+    Area, Attribute, Attributes, Backend, Circle, ErrorKind, F32, F64, Placement, Plan, Point,
+    PointSet, Points, Polygon, Region, Seed, Spacing,
     server::{self, Stop},
 };
 use subject::{all, all_by, any_seed, any_table, in_order_of_ids, set, tables, unit};
@@ -276,13 +276,21 @@ fn what_cannot_be_planned_is_refused() {
     let error = set.within(outside.clone()).expect_err("unbounded");
     assert_eq!(error.kind(), ErrorKind::Unbounded);
     // A limit bounds it.
-    let limited = set.clone().limited_to(Region::new([-1.0; 2], [1.0; 2]).expect("ordered"));
+    let limited = set
+        .clone()
+        .limited_to(Region::new([-1.0; 2], [1.0; 2]).expect("ordered"));
     assert!(limited.within(outside).is_ok());
     for distance in [0.0, -1.0, f64::NAN, 17.0] {
         let error = set.clone().clear_of(&set, distance).expect_err("refused");
-        assert_eq!((error.kind(), error.limit()), (ErrorKind::Clearance, Some(16.0)));
+        assert_eq!(
+            (error.kind(), error.limit()),
+            (ErrorKind::Clearance, Some(16.0))
+        );
     }
-    assert_eq!(set.exactly(0, region).expect_err("none").kind(), ErrorKind::Count);
+    assert_eq!(
+        set.exactly(0, region).expect_err("none").kind(),
+        ErrorKind::Count
+    );
     let stop = Stop::new();
     stop.raise();
     let error = server::within(&set, region, &stop).expect_err("stopped");

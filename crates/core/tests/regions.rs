@@ -290,7 +290,11 @@ fn reversed_and_non_finite_boxes_are_refused() {
 #[test]
 fn chunks_partition_the_plane() {
     let set = set(&tables()[1], unit(9));
-    for (size, x, y) in [(16.0, -3i64, 7i64), (0.1, 1 << 40, -5), (7.3, 123_456_789, 0)] {
+    for (size, x, y) in [
+        (16.0, -3i64, 7i64),
+        (0.1, 1 << 40, -5),
+        (7.3, 123_456_789, 0),
+    ] {
         let whole = set.within(
             Region::new(
                 [x as f64 * size, y as f64 * size],
@@ -301,7 +305,12 @@ fn chunks_partition_the_plane() {
         let whole = whole.expect("in range").to_vec();
         let mut parts = Vec::new();
         for at in (0..6).map(|i| [x + i % 3, y + i / 3]) {
-            parts.extend(set.chunk(size, at).expect("in range").iter().map(Point::from));
+            parts.extend(
+                set.chunk(size, at)
+                    .expect("in range")
+                    .iter()
+                    .map(Point::from),
+            );
         }
         assert_eq!(in_order_of_ids(parts), whole);
     }

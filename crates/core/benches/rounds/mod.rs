@@ -2,12 +2,9 @@
 
 #![allow(dead_code, reason = "each bench takes what it needs")]
 
-use std::{hint::black_box, sync::Arc, time::Instant};
+use std::{hint::black_box, time::Instant};
 
-use strew_core::{
-    Alpha, Map, Placement, Plan, Region, Sampler, Seed, Spacing, Table, sample::Format,
-    table::Provenance,
-};
+use strew_core::{Alpha, Format, Map, Plan, PointSet, Region, Table, table::Provenance};
 
 /// Points per reused block: 512 KiB of f32 pairs.
 pub const BLOCK: usize = 65_536;
@@ -33,15 +30,17 @@ pub fn table() -> Table {
     Table::new(map, "bench", vectors, Provenance::default()).expect("valid")
 }
 
-/// A placement at mean spacing 1. Seed 0 is the plain pattern; other seeds are warped.
-pub fn placement(seed: u64) -> Placement {
-    Placement::new(Spacing::new(1.0).expect("valid"), Seed(seed))
+/// The plain and a warped set of [`table`], at mean spacing 1.
+pub fn sets() -> [PointSet; 2] {
+    let plain = PointSet::new(table());
+    let warped = plain.clone().seed(1);
+    [plain, warped]
 }
 
-/// The plan of a square of `side` at mean spacing 1, with its lower corner at `min`.
-pub fn boxed(sampler: &Arc<Sampler>, min: [f64; 2], side: f64, seed: u64) -> Plan {
+/// The points in a square of `side` with its lower corner at `min`.
+pub fn boxed(set: &PointSet, min: [f64; 2], side: f64) -> Plan {
     let region = Region::new(min, min.map(|v| v + side)).expect("ordered");
-    sampler.plan(placement(seed), region).expect("in range")
+    set.within(region).expect("in range")
 }
 
 /// Makes all points of a plan in a reused block. Returns the number of points.

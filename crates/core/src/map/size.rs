@@ -17,7 +17,12 @@ pub(super) fn check_radius(radius: u32) -> Result<(), Error> {
         return Ok(());
     }
     let allowed = alloc::format!("at most {MAX_RADIUS}");
-    Err(Error::new(ErrorKind::MapSize, "map half-width R", radius, allowed))
+    Err(Error::new(
+        ErrorKind::MapSize,
+        "map half-width R",
+        radius,
+        allowed,
+    ))
 }
 
 /// The size of a neighborhood map, named by its half-width R: `s` (R = 49), `m` (R = 100), `l`

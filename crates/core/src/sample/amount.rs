@@ -32,7 +32,12 @@ pub(super) fn exactly(
     }
     let bounds = mask.clone().and_within(area.clone()).area;
     let bounds = bounds.as_ref().and_then(Area::bounds).ok_or_else(|| {
-        Error::new(ErrorKind::Unbounded, "the area", "unbounded", "within a box")
+        Error::new(
+            ErrorKind::Unbounded,
+            "the area",
+            "unbounded",
+            "within a box",
+        )
     })?;
     let [width, height] = [0, 1].map(|i| bounds.max()[i] - bounds.min()[i]);
     let share = lattice.placement.keep.get();
@@ -54,9 +59,7 @@ pub(super) fn exactly(
         let plan = match Plan::new(&trial, mask, area.clone(), stop.clone(), None) {
             Ok(plan) => plan,
             // So dense that points cannot be told apart.
-            Err(error)
-                if error.kind() == ErrorKind::TooFar && low == 0.0 && high.is_finite() =>
-            {
+            Err(error) if error.kind() == ErrorKind::TooFar && low == 0.0 && high.is_finite() => {
                 low = guess;
                 guess = between(low, high);
                 continue;

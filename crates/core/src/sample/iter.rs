@@ -3,13 +3,7 @@
 use alloc::{boxed::Box, vec};
 use core::iter::FusedIterator;
 
-use super::{
-    kernel::Points,
-    lattice::Point,
-    member::Member,
-    seed::Seed,
-    walk::Blocks,
-};
+use super::{kernel::Points, lattice::Point, member::Member, seed::Seed, walk::Blocks};
 
 /// The points of a plan, one by one, in order; see [`Plan::iter`](crate::Plan::iter).
 ///

@@ -16,7 +16,10 @@ use super::{
     stop::Stop,
     walk::{Blocks, Tile, Window, tiles},
 };
-use crate::error::{Error, ErrorKind};
+use crate::{
+    error::{Error, ErrorKind},
+    table::Table,
+};
 
 /// The points of a set in an area: their exact number is known, the points come on demand, in a fixed
 /// order.
@@ -283,6 +286,12 @@ impl Plan {
     #[must_use]
     pub fn origin(&self) -> [f64; 2] {
         self.region().min()
+    }
+
+    /// The table of the set.
+    #[must_use]
+    pub fn table(&self) -> &Table {
+        &self.scope.lattice.table
     }
 
     /// Spacing, seed, warp and share of the set.

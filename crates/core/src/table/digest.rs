@@ -53,7 +53,12 @@ impl FromStr for Digest {
 
     fn from_str(text: &str) -> Result<Self, Error> {
         let hash = blake3::Hash::from_hex(text).map_err(|_| {
-            Error::new(ErrorKind::Digest, "the digest", shown(text), "64 hexadecimal digits")
+            Error::new(
+                ErrorKind::Digest,
+                "the digest",
+                shown(text),
+                "64 hexadecimal digits",
+            )
         })?;
         Ok(Self(*hash.as_bytes()))
     }

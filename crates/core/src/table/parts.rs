@@ -36,7 +36,11 @@ impl Parts {
         if let Some(block) = self.displacements.iter().position(too_long) {
             let [x, y] = self.displacements[block].map(to_grid_units);
             let allowed = format!("less than {MAX_DISPLACEMENT} grid units along an axis");
-            return refused("displacements", format!("({x}, {y}) in block {block}"), allowed);
+            return refused(
+                "displacements",
+                format!("({x}, {y}) in block {block}"),
+                allowed,
+            );
         }
         let is_allowed = |c: u8| c.is_ascii_lowercase() || c.is_ascii_digit() || c == b'-';
         if !(1..=32).contains(&self.profile.len()) || !self.profile.bytes().all(is_allowed) {

@@ -70,7 +70,10 @@ impl Provenance {
             );
         for text in texts {
             if text.len() > MAX_TEXT {
-                return Err(refused(format!("a text of {} bytes", text.len()), format!("texts of at most {MAX_TEXT} bytes")));
+                return Err(refused(
+                    format!("a text of {} bytes", text.len()),
+                    format!("texts of at most {MAX_TEXT} bytes"),
+                ));
             }
         }
         let longest = self
@@ -81,7 +84,10 @@ impl Provenance {
             .max()
             .unwrap_or(0);
         if longest > MAX_ITEMS {
-            return Err(refused(format!("a list of {longest} items"), format!("lists of at most {MAX_ITEMS} items")));
+            return Err(refused(
+                format!("a list of {longest} items"),
+                format!("lists of at most {MAX_ITEMS} items"),
+            ));
         }
         let not_finite = self
             .figures

@@ -43,7 +43,9 @@ pub fn shipped(name: &str) -> Table {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let file = format!("{name}.strew");
     let places = [root.join("tables"), root.join("../../tables")];
-    let found = places.iter().find_map(|place| std::fs::read(place.join(&file)).ok());
+    let found = places
+        .iter()
+        .find_map(|place| std::fs::read(place.join(&file)).ok());
     Table::from_bytes(&found.expect("there")).expect("valid")
 }
 

@@ -85,7 +85,10 @@ impl Strips {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::{Circle, Polygon}, *};
+    use super::{
+        super::{Circle, Polygon},
+        *,
+    };
 
     #[test]
     fn outlines_add_up_and_are_clipped() {

@@ -35,7 +35,12 @@ impl Region {
         for (value, name) in min.into_iter().chain(max).zip(CORNERS) {
             if !value.is_finite() {
                 let value = number(value);
-                return Err(Error::new(ErrorKind::Region, name, value, "a finite number"));
+                return Err(Error::new(
+                    ErrorKind::Region,
+                    name,
+                    value,
+                    "a finite number",
+                ));
             }
         }
         for axis in 0..2 {

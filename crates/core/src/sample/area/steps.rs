@@ -161,9 +161,7 @@ impl Steps {
     }
 
     /// The stretches of equal state: start, end, state, and the edges that decide, if known.
-    pub(crate) fn stretches(
-        &self,
-    ) -> impl Iterator<Item = (f64, f64, State, Option<Near>)> {
+    pub(crate) fn stretches(&self) -> impl Iterator<Item = (f64, f64, State, Option<Near>)> {
         let ends = self.0.iter().skip(1).map(|step| step.from);
         let ends = ends.chain([f64::INFINITY]);
         self.0

@@ -47,7 +47,12 @@ impl ScaleRange {
         } else {
             let value = alloc::format!("{} to {}", number(min), number(max));
             let allowed = "two numbers with 0 <= min <= max <= 1e9";
-            Err(Error::new(ErrorKind::Attribute, "scale_range", value, allowed))
+            Err(Error::new(
+                ErrorKind::Attribute,
+                "scale_range",
+                value,
+                allowed,
+            ))
         }
     }
 
@@ -157,13 +162,21 @@ impl FromStr for Attribute {
             "angle" => Ok(Self::Angle),
             "rank" => Ok(Self::Rank),
             "scale" => incomplete("scale", "given with a range, such as 0.8 to 1.2"),
-            "variant" => incomplete("variant", "given with a list of variants, such as oak:3,birch:1"),
+            "variant" => incomplete(
+                "variant",
+                "given with a list of variants, such as oak:3,birch:1",
+            ),
             _ => match (1..).zip(UNIFORM_NAMES).find(|(_, name)| *name == text) {
                 Some((n, _)) => Self::uniform(n),
                 None => {
                     let value = alloc::format!("{:?}", shown(text));
                     let allowed = "angle, scale, variant, rank or u1 to u16";
-                    Err(Error::new(ErrorKind::Attribute, "attribute", value, allowed))
+                    Err(Error::new(
+                        ErrorKind::Attribute,
+                        "attribute",
+                        value,
+                        allowed,
+                    ))
                 }
             },
         }

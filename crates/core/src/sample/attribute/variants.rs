@@ -48,9 +48,7 @@ impl Variants {
     /// [`ErrorKind::Variants`] unless there are 1 to [`MAX`](Self::MAX), with different names of 1 to
     /// [`MAX_NAME`](Self::MAX_NAME) ASCII letters, digits, `_`, `-`, `.`, and weights from
     /// [`MIN_WEIGHT`](Self::MIN_WEIGHT) to [`MAX_WEIGHT`](Self::MAX_WEIGHT).
-    pub fn new<'a>(
-        variants: impl IntoIterator<Item = (&'a str, f64)>,
-    ) -> Result<Self, Error> {
+    pub fn new<'a>(variants: impl IntoIterator<Item = (&'a str, f64)>) -> Result<Self, Error> {
         let mut entries: Vec<Entry> = Vec::new();
         let mut more = variants.into_iter();
         for (name, weight) in more.by_ref().take(Self::MAX) {
@@ -139,7 +137,12 @@ fn check_name(name: &str) -> Result<(), Error> {
     let value = alloc::format!("{:?}", shown(name));
     let most = Variants::MAX_NAME;
     let allowed = alloc::format!("1 to {most} characters of a-z, A-Z, 0-9, `_`, `-` and `.`");
-    Err(Error::new(ErrorKind::Variants, "variant name", value, allowed))
+    Err(Error::new(
+        ErrorKind::Variants,
+        "variant name",
+        value,
+        allowed,
+    ))
 }
 
 impl FromStr for Variants {

@@ -8,21 +8,14 @@ use crate::{
     pattern::Axis,
     sample::{
         area::Area,
-        lattice::{
-            BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span,
-        },
+        lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale, Sieve},
         stop::Stop,
     },
 };
 
 /// The number of points that pass; meaningless once `stop` is raised.
-pub(super) fn count(
-    lattice: &Lattice,
-    sieve: &Sieve,
-    [x, y]: [&Span; 2],
-    stop: &Stop,
-) -> u128 {
+pub(super) fn count(lattice: &Lattice, sieve: &Sieve, [x, y]: [&Span; 2], stop: &Stop) -> u128 {
     let (columns, rows) = (&x.all, &y.all);
     if columns.is_empty() {
         return 0;

@@ -10,16 +10,25 @@
 //! each instruction set is a thin file of `arch`. `backend` finds out once which sets the machine has, and
 //! `dispatch` runs a loop by one of them. `tests` compares every backend with plain code.
 
-#[expect(unsafe_code, reason = "vector intrinsics, and loads and stores by pointer")]
+#[expect(
+    unsafe_code,
+    reason = "vector intrinsics, and loads and stores by pointer"
+)]
 mod arch;
 mod backend;
-#[expect(unsafe_code, reason = "a backend is only named where the machine has it")]
+#[expect(
+    unsafe_code,
+    reason = "a backend is only named where the machine has it"
+)]
 mod dispatch;
 #[expect(unsafe_code, reason = "vector loops, bounds checked before")]
 mod doubles;
 #[expect(unsafe_code, reason = "declares the vector loops of formats")]
 mod format;
-#[expect(unsafe_code, reason = "functions of vectors exist only where the machine has them")]
+#[expect(
+    unsafe_code,
+    reason = "functions of vectors exist only where the machine has them"
+)]
 mod lanes;
 #[expect(unsafe_code, reason = "vector loops, bounds checked before")]
 mod points;

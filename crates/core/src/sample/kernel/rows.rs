@@ -165,9 +165,8 @@ impl<F: Emit> WarpedRow<'_, F> {
             // `start` on.
             unsafe {
                 let y = L::splat_int(row.y);
-                let at = |from: &[i32], k: usize| {
-                    L::load_ints(from.as_ptr().add(start + k * L::WIDTH))
-                };
+                let at =
+                    |from: &[i32], k: usize| L::load_ints(from.as_ptr().add(start + k * L::WIDTH));
                 let xs = core::array::from_fn(|k| at(columns.displaced, k));
                 let ys = core::array::from_fn(|k| L::add_ints(at(columns.displacements, k), y));
                 let (xs, ys) = warp::<L, K>(self.shears, xs, ys);

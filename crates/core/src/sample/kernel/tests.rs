@@ -5,10 +5,8 @@
 use alloc::{vec, vec::Vec};
 
 use super::{
-    Backend, F32, F64, Format, Points, WarpedColumns, fill_row, fill_warped_row,
-    format::Row,
-    rows::emit,
-    write_numbers,
+    Backend, F32, F64, Format, Points, WarpedColumns, fill_row, fill_warped_row, format::Row,
+    rows::emit, write_numbers,
 };
 use crate::sample::{
     Seed, Warp,

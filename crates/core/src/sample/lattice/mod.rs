@@ -17,8 +17,8 @@ mod placement;
 mod point;
 mod prefix;
 mod rank;
-mod span;
 mod spacing;
+mod span;
 mod world;
 
 pub use keep::Keep;

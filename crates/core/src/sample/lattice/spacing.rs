@@ -35,7 +35,12 @@ impl Spacing {
             Ok(Self(spacing))
         } else {
             let allowed = alloc::format!("a number from {:e} to {:e}", Self::MIN, Self::MAX);
-            Err(Error::new(ErrorKind::Spacing, "spacing", number(spacing), allowed))
+            Err(Error::new(
+                ErrorKind::Spacing,
+                "spacing",
+                number(spacing),
+                allowed,
+            ))
         }
     }
 
@@ -54,7 +59,12 @@ impl Spacing {
         } else {
             let (min, max) = (Self::MIN_DENSITY, Self::MAX_DENSITY);
             let allowed = alloc::format!("a number from {min:e} to {max:e}");
-            Err(Error::new(ErrorKind::Density, "density", number(density), allowed))
+            Err(Error::new(
+                ErrorKind::Density,
+                "density",
+                number(density),
+                allowed,
+            ))
         }
     }
 

@@ -84,9 +84,7 @@ impl Lattice {
     /// The blocks of dX and dY of an address, or `None` if it has no point.
     pub(crate) fn block(&self, id: PointId) -> Option<[usize; 2]> {
         let within = -LATTICE_LIMIT..=LATTICE_LIMIT;
-        if !within.contains(&id.x)
-            || !within.contains(&id.y)
-            || !self.pattern.contains(id.x, id.y)
+        if !within.contains(&id.x) || !within.contains(&id.y) || !self.pattern.contains(id.x, id.y)
         {
             return None;
         }

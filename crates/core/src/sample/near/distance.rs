@@ -118,7 +118,12 @@ impl LeastDistance {
         if !(distance.is_finite() && distance > 0.0) {
             let allowed = "a finite number greater than 0";
             let value = number(distance);
-            return Err(Error::new(ErrorKind::Distance, "min_distance", value, allowed));
+            return Err(Error::new(
+                ErrorKind::Distance,
+                "min_distance",
+                value,
+                allowed,
+            ));
         }
         let kept = self.with_warp(warp);
         if !self.is_useful() || kept <= 0.0 {
@@ -128,12 +133,22 @@ impl LeastDistance {
                 self.relative(),
                 Self::MIN_RELATIVE
             );
-            let error = Error::new(ErrorKind::NoLeastDistance, "min_distance", number(distance), "");
+            let error = Error::new(
+                ErrorKind::NoLeastDistance,
+                "min_distance",
+                number(distance),
+                "",
+            );
             return Err(error.because(problem));
         }
         Spacing::new(distance / kept * (1.0 + Self::MARGIN)).map_err(|error| {
             let allowed = alloc::format!("a distance with a {error}");
-            Error::new(ErrorKind::Spacing, "min_distance", number(distance), allowed)
+            Error::new(
+                ErrorKind::Spacing,
+                "min_distance",
+                number(distance),
+                allowed,
+            )
         })
     }
 }

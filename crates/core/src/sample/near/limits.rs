@@ -53,7 +53,12 @@ pub(super) fn check_radius(radius: f64) -> Result<(), Error> {
         return Ok(());
     }
     let allowed = "a finite number, 0 or greater";
-    Err(Error::new(ErrorKind::Radius, "radius", number(radius), allowed))
+    Err(Error::new(
+        ErrorKind::Radius,
+        "radius",
+        number(radius),
+        allowed,
+    ))
 }
 
 /// Refuses a radius for which more than `limit` points must be visited, kept or not, or too many lattice
@@ -89,6 +94,11 @@ pub(super) fn check_number(
 pub(super) fn too_many(radius: f64, about: f64, limit: usize) -> Error {
     let problem = alloc::format!("about {about:.0} points lie within");
     let allowed = alloc::format!("a radius with at most {limit} points");
-    let error = Error::new(ErrorKind::TooMany, "the radius searched", number(radius), allowed);
+    let error = Error::new(
+        ErrorKind::TooMany,
+        "the radius searched",
+        number(radius),
+        allowed,
+    );
     error.because(problem).with_limit(limit as f64)
 }

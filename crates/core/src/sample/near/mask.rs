@@ -83,7 +83,12 @@ impl ClearOf {
                 number(limit),
                 Self::MAX_SPACINGS
             );
-            let error = Error::new(ErrorKind::Clearance, "the distance", number(distance), allowed);
+            let error = Error::new(
+                ErrorKind::Clearance,
+                "the distance",
+                number(distance),
+                allowed,
+            );
             error.with_limit(limit)
         };
         if !(distance > 0.0 && distance <= limit) {

@@ -103,12 +103,7 @@ fn candidates(lattice: &Lattice, axis: Axis, center: i128, reach: f64) -> RangeI
     (first >> FRACTION_BITS) as i64..=(last >> FRACTION_BITS) as i64
 }
 
-fn list_columns(
-    lattice: &Lattice,
-    columns: &mut [Vec<NearColumn>; 4],
-    center: i128,
-    reach: f64,
-) {
+fn list_columns(lattice: &Lattice, columns: &mut [Vec<NearColumn>; 4], center: i128, reach: f64) {
     columns.iter_mut().for_each(Vec::clear);
     for x in candidates(lattice, Axis::X, center, reach) {
         if let Some((class, index)) = lattice.pattern.visit(Axis::X, x) {

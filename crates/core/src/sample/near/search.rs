@@ -8,8 +8,8 @@ use core::ops::ControlFlow;
 
 use super::{
     limits::{
-        MAX_CANDIDATES, MAX_NEAREST, check_number, check_place, check_radius, check_reach, check_work,
-        too_many,
+        MAX_CANDIDATES, MAX_NEAREST, check_number, check_place, check_radius, check_reach,
+        check_work, too_many,
     },
     mask::Mask,
     scan::{Scratch, scan},

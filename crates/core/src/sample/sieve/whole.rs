@@ -3,11 +3,7 @@
 use super::LocalSieve;
 use crate::{
     pattern::Axis,
-    sample::{
-        area::Area,
-        lattice::Lattice,
-        near::Mask,
-    },
+    sample::{area::Area, lattice::Lattice, near::Mask},
     table::FRACTION_BITS,
 };
 

@@ -4,9 +4,7 @@ use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
 use super::{
-    template::{
-        Check, Kept, Part, Template, Templates, displaced, sift, write_row,
-    },
+    template::{Check, Kept, Part, Template, Templates, displaced, sift, write_row},
     tile::{Tile, bands},
 };
 use crate::{
@@ -148,12 +146,7 @@ impl<F: Format> Blocks<F> {
         Self::new(scope, None, tile.band..tile.band + 1, tile.rows.clone())
     }
 
-    fn new(
-        scope: Arc<Scope>,
-        window: Option<Window>,
-        bands: Range<i64>,
-        rows: Range<i64>,
-    ) -> Self {
+    fn new(scope: Arc<Scope>, window: Option<Window>, bands: Range<i64>, rows: Range<i64>) -> Self {
         let begins_within = window.is_some_and(|window| window.start.is_some());
         let kept = match &scope.sieve {
             Some(_) => Kept::All,
@@ -330,7 +323,14 @@ impl<F: Format> Blocks<F> {
             let out = &mut out[filled..];
             if is_direct && self.at.done == 0 && columns.len() <= out.len() {
                 filled += compiled(self.backend, || {
-                    write_row(format, patch, row, (columns, inner), (vectors, is_inner), out)
+                    write_row(
+                        format,
+                        patch,
+                        row,
+                        (columns, inner),
+                        (vectors, is_inner),
+                        out,
+                    )
                 });
                 self.at.next_row();
                 continue;

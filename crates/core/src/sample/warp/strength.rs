@@ -36,7 +36,12 @@ impl Warp {
             })
         } else {
             let allowed = alloc::format!("a number from 0 (off) to {}", Self::MAX_STRENGTH);
-            Err(Error::new(ErrorKind::Warp, "warp", number(strength), allowed))
+            Err(Error::new(
+                ErrorKind::Warp,
+                "warp",
+                number(strength),
+                allowed,
+            ))
         }
     }
 

@@ -22,5 +22,10 @@ pub(super) fn check_size(bytes: u64) -> Result<(), Error> {
     }
     let value = format!("{bytes} bytes");
     let allowed = format!("at most {MAX_FILE_BYTES} bytes");
-    Err(Error::new(ErrorKind::TableTooLarge, "the table file", value, allowed))
+    Err(Error::new(
+        ErrorKind::TableTooLarge,
+        "the table file",
+        value,
+        allowed,
+    ))
 }

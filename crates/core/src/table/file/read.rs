@@ -71,7 +71,12 @@ fn check_frame(bytes: &[u8]) -> Result<u32, Error> {
     }
     if have > stated {
         let allowed = format!("{stated} bytes long, as its header states");
-        let error = Error::new(ErrorKind::Table, FILE, format!("{have} bytes long"), allowed);
+        let error = Error::new(
+            ErrorKind::Table,
+            FILE,
+            format!("{have} bytes long"),
+            allowed,
+        );
         return Err(error.because("oversized"));
     }
     let (body, seal) = bytes.split_at(bytes.len() - DIGEST_BYTES);
@@ -80,7 +85,12 @@ fn check_frame(bytes: &[u8]) -> Result<u32, Error> {
         let mut digest = [0; DIGEST_BYTES];
         digest.copy_from_slice(seal);
         let allowed = format!("{}, as its last 32 bytes state", Digest::from_bytes(digest));
-        let error = Error::new(ErrorKind::Table, "the digest of the table file", computed, allowed);
+        let error = Error::new(
+            ErrorKind::Table,
+            "the digest of the table file",
+            computed,
+            allowed,
+        );
         return Err(error.because("the file is damaged"));
     }
     if sections > MAX_SECTIONS {
