@@ -78,7 +78,7 @@ impl UniformNumber {
     /// # Errors
     /// [`ErrorKind::Attribute`] for any other.
     pub fn new(n: u8) -> Result<Self, Error> {
-        if 1 <= n && n <= Self::MAX {
+        if (1..=Self::MAX).contains(&n) {
             Ok(Self(n))
         } else {
             let field = "the uniform number";
