@@ -1,0 +1,5 @@
+//! Docs.
+mod api_contract;
+mod api_examples;
+mod deploy;
+mod openapi;

@@ -1,0 +1,9 @@
+//! gRPC.
+mod calls;
+mod discovery;
+mod encodings;
+mod invalid_requests;
+mod python;
+mod queries;
+mod single_points;
+mod web;

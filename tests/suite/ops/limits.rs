@@ -1,0 +1,278 @@
+//! Limits refuse before the first byte, and say what they are.
+
+use std::{io::Write as _, net::TcpStream, sync::Arc};
+
+use serde_json::{Value, json};
+use strew::grpc::proto::{
+    StreamPointsRequest, point_service_client::PointServiceClient, stream_points_request::Amount,
+};
+use strew_core::{Placement, Region, Sampler, Seed, Spacing};
+use tonic::Code;
+use tonic_types::StatusExt as _;
+
+use strew_testkit::{
+    http1::{self, read_to_close},
+    wait::until,
+};
+
+use crate::support::{
+    daemon::{Daemon, PROFILE, table},
+    grpc::boxed,
+    problem::assert_fault,
+    queries::{MANY_ROWS, SLOW, long},
+};
+
+/// The exact count of a box around the origin at density 1.
+fn count(half: f64) -> u128 {
+    let sampler = Arc::new(Sampler::new(table("(5-sqrt(3))/2", PROFILE)));
+    let region = Region::new([-half, -half], [half, half]).expect("a box");
+    let spacing = Spacing::new(1.0).expect("positive");
+    let plan = sampler
+        .plan(Placement::new(spacing, Seed(0)), region)
+        .expect("near");
+    plan.count()
+}
+
+#[tokio::test]
+async fn too_many_points_are_refused_with_the_exact_count_and_the_limit() {
+    let daemon = Daemon::start(&["limits.max_points=1000"]);
+    let mut client = PointServiceClient::new(daemon.channel().await);
+    // The last holds more points than 64 bits can count.
+    for half in [20.0, 1e5, 1e14] {
+        let (count, path) = (
+            count(half).to_string(),
+            format!("/v1/points?bbox=-{half},-{half},{half},{half}&density=1&profile=test"),
+        );
+        let answer = daemon.get(&path);
+        assert_eq!(answer.status, 413, "{}", answer.text());
+        assert_eq!(answer.header("content-type"), "application/problem+json");
+        assert!(
+            answer.text().contains(&format!("\"count\":{count},")),
+            "{}",
+            answer.text()
+        );
+        assert!(answer.text().contains("\"limit\":1000"));
+
+        let request = StreamPointsRequest {
+            region: boxed([-half, -half, half, half]),
+            amount: Some(Amount::Spacing(1.0)),
+            profile: Some(PROFILE.into()),
+            ..StreamPointsRequest::default()
+        };
+        let status = client.stream_points(request).await.expect_err("too many");
+        assert_eq!(status.code(), Code::ResourceExhausted);
+        assert!(status.message().contains(&count) && status.message().contains("1000"));
+        let details = status.get_error_details();
+        let info = details.error_info().expect("details");
+        assert_eq!(
+            (info.reason.as_str(), info.domain.as_str()),
+            ("TOO_MANY_POINTS", "strew")
+        );
+        assert_eq!(info.metadata["count"], count);
+        assert_eq!(info.metadata["limit"], "1000");
+        assert_eq!(
+            details.quota_failure().expect("details").violations.len(),
+            1
+        );
+    }
+    let fits = daemon.get("/v1/points?bbox=-15,-15,15,15&density=1&profile=test");
+    assert_eq!(fits.status, 200);
+}
+
+#[test]
+fn more_streams_than_allowed_are_asked_to_wait() {
+    let daemon = Daemon::start(&["limits.max_streams=2"]);
+    let path = long("f32");
+    let open = || http1::open(daemon.address(), "GET", &path, &[]);
+    let (first, second) = (open(), open());
+    assert_eq!((first.status, second.status), (200, 200));
+    let third = daemon.get(&path);
+    assert_eq!(third.status, 503, "{}", third.text());
+    assert_eq!(third.header("retry-after"), "1");
+    assert_eq!(third.json()["limit"], 2);
+    drop(first);
+    until("a place is free", || (open().status == 200).then_some(()));
+}
+
+#[test]
+fn heads_are_bounded_in_size_and_time() {
+    let daemon = Daemon::start(&[
+        "server.max_header_bytes=8192",
+        "server.header_read_timeout_seconds=0.2",
+    ]);
+    let long = format!("/v1/points?bbox={}", "1".repeat(9000));
+    let answer = http1::open(daemon.address(), "GET", &long, &[]);
+    assert!((414..=431).contains(&answer.status), "{}", answer.status);
+
+    let mut slow = http1::connect(daemon.address()).expect("connected");
+    slow.write_all(b"GET /livez HTTP/1.1\r\nhost")
+        .expect("sent");
+    // Closed by the daemon, with or without a word.
+    assert!(!read_to_close(slow).starts_with("HTTP/1.1 200"));
+}
+
+#[test]
+fn bodies_are_read_up_to_a_limit() {
+    let daemon = Daemon::start(&["limits.max_body_bytes=2000"]);
+    let body = |bytes: usize| {
+        let query = r#"{ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1 }"#;
+        format!("{query:<bytes$}").into_bytes()
+    };
+    for path in ["/v1/points:query", "/v1/count", "/v1/points:split?parts=2"] {
+        assert_eq!(
+            http1::post(daemon.address(), path, &[], &body(2000)).status,
+            200
+        );
+        let refused = http1::post(daemon.address(), path, &[], &body(2001));
+        check_refusal(&refused.json());
+        assert_eq!(refused.header("content-type"), "application/problem+json");
+    }
+    // What says how long it is need not be sent.
+    let stream = announce(&daemon, "/v1/count", ("content-length", "100000000000"));
+    let text = read_to_close(stream);
+    assert!(text.starts_with("HTTP/1.1 413"), "{text}");
+    // What does not say it is read as far as the limit.
+    let mut stream = announce(&daemon, "/v1/count", ("transfer-encoding", "chunked"));
+    let piece = String::from_utf8(body(1500)).expect("UTF-8");
+    write!(stream, "5dc\r\n{piece}\r\n5dc\r\n{piece}\r\n").expect("sent");
+    let text = read_to_close(stream);
+    assert!(text.starts_with("HTTP/1.1 413"), "{text}");
+    let problem = text.split("\r\n\r\n").nth(1).expect("a body");
+    check_refusal(&serde_json::from_str(problem).expect("JSON"));
+}
+
+/// Sends the head of a POST, which announces a body.
+fn announce(daemon: &Daemon, path: &str, header: (&str, &str)) -> TcpStream {
+    http1::send(daemon.address(), "POST", path, &[header], None).expect("sent")
+}
+
+fn check_refusal(problem: &Value) {
+    assert_eq!(problem["type"], "urn:strew:problem:body-too-large");
+    assert_eq!(problem["status"], 413);
+    assert_eq!(problem["limit"], 2000);
+}
+
+#[test]
+fn what_would_take_too_long_to_count_is_refused_at_once() {
+    let daemon = Daemon::start(&["limits.max_rows=1000", "limits.max_points=1000000"]);
+    let ring = |ring: Value| json!({ "polygon": { "type": "Polygon", "coordinates": [ring] } });
+    let stripes: Vec<Value> = (0..200)
+        .map(|i| json!({ "bbox": [0, i, 40, i as f64 + 0.5] }))
+        .collect();
+    for region in [
+        json!({ "circle": { "center": [0, 0], "radius": 100 } }),
+        ring(json!([[0, 0], [2000, 0], [2000, 1], [0, 1]])),
+        ring(json!([[0, 0], [1, 0], [1, 2000], [0, 2000]])),
+        json!({ "include": stripes }),
+    ] {
+        let body = json!({ "region": region, "spacing": 1 });
+        let answer = daemon.post("/v1/count", &body);
+        assert_eq!(answer.status, 413, "{body}: {}", answer.text());
+        assert_eq!(answer.json()["type"], "urn:strew:problem:too-many-rows");
+        assert_eq!(answer.json()["limit"], 1000);
+        let narrow = json!({ "region": region, "spacing": 40 });
+        assert_eq!(daemon.post("/v1/count", &narrow).status, 200, "{narrow}");
+    }
+    // Points that keep clear of others are looked at one by one.
+    let layers = json!({ "region": { "bbox": [0, 0, 90, 90] }, "layers": [
+        { "name": "a", "spacing": 1 },
+        { "name": "b", "spacing": 1, "seed": 3, "warp": "off", "clear_of": { "a": 0.5 } },
+    ] });
+    let answer = daemon.post("/v1/count", &layers);
+    assert_eq!(answer.json()["type"], "urn:strew:problem:too-many-rows");
+    // A comb: few rows, but points beside each of its many edges are compared with all of them.
+    let tip = |i: u32| [f64::from(i) * 0.01, f64::from(i % 2) * 0.2];
+    let comb: Vec<[f64; 2]> = (0..3000).map(tip).chain([[15.0, -1.0]]).collect();
+    let other = Daemon::start(&["limits.max_rows=2000"]);
+    let body = json!({ "region": ring(json!(comb)), "spacing": 1 });
+    let answer = other.post("/v1/count", &body);
+    assert_eq!(answer.json()["type"], "urn:strew:problem:too-many-rows");
+    // Nothing is in it at any spacing, so the search for one has to end somewhere.
+    let line = json!({ "region": ring(json!([[0, 0], [9, 9], [18, 18]])), "count": 10 });
+    assert_fault(
+        &daemon.post("/v1/count", &line),
+        "a line",
+        "count",
+        &["10 points"],
+    );
+}
+
+#[test]
+fn more_requests_than_allowed_are_asked_to_wait_and_probes_are_not() {
+    let daemon = Daemon::start(&[
+        MANY_ROWS,
+        "server.first_byte_seconds=3600",
+        "limits.max_requests=2",
+    ]);
+    let mut slow = vec![];
+    let small = "/v1/points?bbox=0,0,5,5&density=1&profile=test";
+    let refused = until("two are under way", || {
+        // The small one may have had the place that this one needed.
+        let body = Some(SLOW.as_bytes());
+        slow.push(http1::send(
+            daemon.address(),
+            "POST",
+            "/v1/count",
+            &[],
+            body,
+        ));
+        let answer = daemon.get(small);
+        (answer.status != 200).then_some(answer)
+    });
+    assert_eq!(refused.status, 503);
+    assert_eq!(refused.header("retry-after"), "1");
+    assert_eq!(refused.json()["limit"], 2);
+    assert_eq!(daemon.get("/livez").status, 200);
+    assert_eq!(daemon.get("/readyz").status, 200);
+    drop(slow);
+    until("a place is free", || {
+        (daemon.get(small).status == 200).then_some(())
+    });
+}
+
+#[test]
+fn what_bodies_and_streams_hold_is_bounded() {
+    // Room for what one request may need: 28 MB, of which a stream takes 3.
+    let daemon = Daemon::start(&["limits.max_bytes_in_flight=28000000"]);
+    let body = vec![b' '; 4_000_000];
+    let send = |length: usize| {
+        let announced = ("content-length", "4000000");
+        let mut stream = announce(&daemon, "/v1/points:query", announced);
+        stream.write_all(&body[..length]).expect("sent");
+        stream
+    };
+    let waiting: Vec<TcpStream> = (0..5).map(|_| send(body.len() - 1)).collect();
+    let path = long("f32");
+    let open = || http1::open(daemon.address(), "GET", &path, &[]);
+    let mut streams = vec![];
+    let refused = until("no room is left", || {
+        let opened = open();
+        match opened.status {
+            200 => {
+                streams.push(opened);
+                assert!(streams.len() < 16, "never refused");
+                None
+            }
+            _ => Some(opened),
+        }
+    });
+    assert_eq!(refused.status, 503);
+    assert_eq!(refused.headers["retry-after"], "1");
+    let (problem, _) = refused.finish();
+    let problem: Value = serde_json::from_slice(&problem).expect("JSON");
+    assert_eq!(problem["limit"], 28_000_000);
+    // A sixth body has no room either.
+    let said = read_to_close(send(body.len()));
+    assert!(
+        said.starts_with("HTTP/1.1 503") || said.is_empty(),
+        "{said}"
+    );
+    for stream in &mut streams {
+        assert!(stream.skip(1 << 16).expect("it goes on") > 0);
+    }
+    drop((waiting, streams));
+    until("there is room for many", || {
+        let all: Vec<_> = (0..6).map(|_| open()).collect();
+        all.iter().all(|opened| opened.status == 200).then_some(())
+    });
+}

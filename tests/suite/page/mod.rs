@@ -1,0 +1,4 @@
+//! Page.
+mod controls;
+mod export;
+mod view;

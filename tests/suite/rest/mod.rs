@@ -1,0 +1,17 @@
+//! REST.
+mod amounts;
+mod browsers;
+mod caching;
+mod compression;
+mod curl;
+mod format_readers;
+mod formats;
+mod http;
+mod invalid_bodies;
+mod invalid_parameters;
+mod invalid_queries;
+mod layers;
+mod paging;
+mod profiles;
+mod regions;
+mod single_points;
