@@ -1,4 +1,4 @@
-//! The library as tests ask it: the built-in tables, and queries as clients send them.
+//! The library without a server: the built-in tables, and queries as clients send them.
 
 use std::{collections::BTreeMap, sync::OnceLock};
 
@@ -8,16 +8,16 @@ use strew::{
     service::{Catalog, Error, Key, Limits, Planned, Query, Ready, query::read_body},
 };
 
-/// The built-in tables, ready, by their digests.
-pub struct World {
+/// The built-in tables, and what a daemon with default settings makes of a query.
+pub struct Library {
     pub catalog: Catalog,
     ready: BTreeMap<String, Ready>,
     pub limits: Limits,
 }
 
-/// The one there is.
-pub fn world() -> &'static World {
-    static ONCE: OnceLock<World> = OnceLock::new();
+/// The library, loaded on first use.
+pub fn library() -> &'static Library {
+    static ONCE: OnceLock<Library> = OnceLock::new();
     ONCE.get_or_init(|| {
         let catalog = Catalog::load(true, None).expect("built in");
         let ready = catalog.entries().map(|entry| {
@@ -25,7 +25,7 @@ pub fn world() -> &'static World {
             (entry.key.to_string(), ready)
         });
         let settings = Layers::new().and_then(Layers::finish).expect("in order");
-        World {
+        Library {
             ready: ready.collect(),
             limits: settings.limits,
             catalog,
@@ -33,8 +33,8 @@ pub fn world() -> &'static World {
     })
 }
 
-impl World {
-    /// Every table, and whether it promises a distance.
+impl Library {
+    /// The key of every table, and whether the table guarantees a distance.
     pub fn keys(&self) -> (Vec<Key>, Vec<bool>) {
         let promises = |ready: &Ready| ready.least.with_warp(strew_core::Warp::OFF) > 0.1;
         let all = self.ready.values();
@@ -42,13 +42,13 @@ impl World {
             .unzip()
     }
 
-    /// A query as a client sends it, checked.
+    /// Checks a query, as JSON.
     pub fn query(&self, body: &Value) -> Result<Query, Error> {
         let body = read_body(body.to_string().as_bytes())?;
         body.draft.check(&self.catalog, 10_000, body.faults)
     }
 
-    /// The same, planned.
+    /// Checks and plans a query, as JSON.
     pub fn planned(&self, body: &Value) -> Result<Planned, Error> {
         let query = self.query(body)?;
         let of = |set: &strew::service::Set| self.ready[&set.entry.key.to_string()].clone();

@@ -1,4 +1,4 @@
-//! The gRPC door: the same queries as messages, and their points compared with the library's.
+//! Requests over gRPC: the queries as messages, and their points compared with the library's.
 
 use std::{collections::HashMap, net::SocketAddr, time::Duration};
 
@@ -12,13 +12,13 @@ use strew::{
     },
     service,
 };
+use strew_testkit::random::SplitMix;
 use tonic::{Code, Status, transport::Endpoint};
 
 use crate::{
-    any::Dice,
     checks,
+    library::Library,
     tally::{Done, Trouble},
-    world::World,
 };
 
 fn number(value: &Value) -> f64 {
@@ -96,7 +96,7 @@ fn names(value: &Value) -> Vec<String> {
     items(value).filter_map(text).collect()
 }
 
-/// The message that says what a JSON body says.
+/// A JSON body as a message.
 fn message(body: &Value) -> StreamPointsRequest {
     use request::Amount;
     let amount = |body: &Value| {
@@ -161,7 +161,7 @@ async fn client(at: SocketAddr) -> Result<PointServiceClient<tonic::transport::C
     Ok(PointServiceClient::new(channel))
 }
 
-/// What a failed call is: no answer, or one that is to be compared.
+/// The trouble that a failed call is; `None` if its status is an answer to compare.
 fn refused(status: &Status) -> Option<Trouble> {
     match status.code() {
         Code::ResourceExhausted if status.message().contains("under way") => Some(Trouble::Busy),
@@ -172,10 +172,10 @@ fn refused(status: &Status) -> Option<Trouble> {
     }
 }
 
-/// A stream, point by point.
-pub async fn stream(world: &World, at: SocketAddr, body: &Value) -> Done {
+/// A stream, compared point by point.
+pub async fn stream(library: &Library, at: SocketAddr, body: &Value) -> Done {
     let asked = client(at).await?.stream_points(message(body)).await;
-    let planned = world.planned(body);
+    let planned = library.planned(body);
     let mut stream = match (asked, &planned) {
         (Ok(answer), Ok(_)) => answer.into_inner(),
         (Err(status), planned) => {
@@ -189,12 +189,12 @@ pub async fn stream(world: &World, at: SocketAddr, body: &Value) -> Done {
         }
         (Ok(_), Err(error)) => {
             return Err(Trouble::Wrong(format!(
-                "answered where the library says {error}: {body}"
+                "answered, but the library returns {error}: {body}"
             )));
         }
     };
-    let planned = planned.expect("looked at");
-    let csv = checks::whole(world, &planned, service::Encoding::Csv).expect("csv holds all");
+    let planned = planned.expect("not an error");
+    let csv = checks::whole(library, &planned, service::Encoding::Csv).expect("csv holds all");
     let csv = String::from_utf8(csv).expect("UTF-8");
     let mut lines = csv.lines();
     let head: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
@@ -237,8 +237,8 @@ pub async fn stream(world: &World, at: SocketAddr, body: &Value) -> Done {
     }
 }
 
-/// Calls for long streams that are reset after a message or none.
-pub async fn resets(at: SocketAddr, dice: &mut Dice) -> Done {
+/// Calls for long streams, each reset after at most two messages.
+pub async fn resets(at: SocketAddr, random: &mut SplitMix) -> Done {
     let mut client = client(at).await?;
     let body = serde_json::json!({ "region": { "bbox": [0, 0, 20000, 20000] }, "spacing": 1 });
     for _ in 0..20 {
@@ -249,7 +249,7 @@ pub async fn resets(at: SocketAddr, dice: &mut Dice) -> Done {
             }
         };
         let mut stream = answer.into_inner();
-        for _ in 0..dice.below(3) {
+        for _ in 0..random.below(3) {
             let _ = stream.message().await;
         }
     }
