@@ -1,20 +1,20 @@
-//! The least a client can do over HTTP/1.1: ask, read, throw away.
+//! The least a client can do over HTTP/1.1: send a request, read, throw away.
 
 use std::{
-    io::{Read as _, Write as _},
+    io::Read as _,
     net::{SocketAddr, TcpStream},
 };
 
-/// Opens a connection and asks for a path; the answer ends with the connection.
-pub fn ask(address: SocketAddr, path: &str) -> TcpStream {
-    let mut stream = TcpStream::connect(address).expect("a listener");
-    let head = format!("GET {path} HTTP/1.1\r\nhost: bench\r\nconnection: close\r\n\r\n");
-    stream.write_all(head.as_bytes()).expect("sent");
-    stream
+use strew_testkit::http1;
+
+/// Requests a path and reads nothing yet. The response ends with the connection.
+pub fn open(address: SocketAddr, path: &str) -> TcpStream {
+    http1::send(address, "GET", path, &[], None).expect("sent")
 }
 
-/// Reads an answer to its end and gives its size, head included.
-pub fn drain(mut stream: TcpStream) -> u64 {
+/// Requests a path and reads the response to its end. Returns its size in bytes, head included.
+pub fn whole(address: SocketAddr, path: &str) -> u64 {
+    let mut stream = open(address, path);
     let mut buffer = vec![0; 1 << 20];
     let mut total = 0;
     loop {
@@ -29,9 +29,4 @@ pub fn drain(mut stream: TcpStream) -> u64 {
             }
         }
     }
-}
-
-/// Asks and reads all of the answer.
-pub fn get(address: SocketAddr, path: &str) -> u64 {
-    drain(ask(address, path))
 }
