@@ -1,5 +1,5 @@
-//! The daemon inside this process, with further routes whose answers cost nothing to make: a prepared
-//! block sent again and again, or copied first.
+//! The daemon inside this process, with further routes whose answers cost nothing to make: a
+//! prepared block sent again and again, or copied first.
 
 use std::{
     convert::Infallible,

@@ -2,8 +2,8 @@
 //!
 //! `cargo bench --bench serving` prints medians of interleaved rounds and their ratios. Arguments
 //! after `--`: names of parts (http, grpc, boxes, text, readers, start) to run only those,
-//! `--rounds N`, `--points N` for long streams, `--against ADDRESS/PATH` to alternate our streams with
-//! a file of another server, and `--quick` to check only that everything runs.
+//! `--rounds N`, `--points N` for long streams, `--against ADDRESS/PATH` to alternate our streams
+//! with a file of another server, and `--quick` to check only that everything runs.
 
 mod boxes;
 mod download;

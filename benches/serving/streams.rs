@@ -1,4 +1,5 @@
-//! Long streams: points as they are made, next to a block that is copied and one that is sent as is.
+//! Long streams: points as they are made, next to a block that is copied and one that is sent as
+//! is.
 
 use std::net::SocketAddr;
 

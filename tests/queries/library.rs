@@ -21,10 +21,10 @@ pub fn library() -> &'static Library {
     ONCE.get_or_init(|| {
         let catalog = Catalog::load(true, None).expect("built in");
         let ready = catalog.entries().map(|entry| {
-            let ready = Ready::load(entry).expect("in order");
+            let ready = Ready::load(entry).expect("valid");
             (entry.key.to_string(), ready)
         });
-        let settings = Layers::new().and_then(Layers::finish).expect("in order");
+        let settings = Layers::new().and_then(Layers::finish).expect("valid");
         Library {
             ready: ready.collect(),
             limits: settings.limits,
@@ -55,4 +55,13 @@ impl Library {
         let tables: Vec<Ready> = query.sets.iter().map(of).collect();
         Planned::new(query, &tables, &self.limits)
     }
+}
+
+/// A JSON object with further members.
+pub fn with(body: &Value, members: &[(&str, Value)]) -> Value {
+    let mut body = body.clone();
+    for (name, value) in members {
+        body[*name] = value.clone();
+    }
+    body
 }

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use strew::service::{Answer, Encoding, Error, Output, Planned};
 use strew_testkit::random::SplitMix;
 
-use library::{Library, library};
+use library::{Library, library, with};
 
 const QUERIES: u64 = 10_000;
 
@@ -28,21 +28,13 @@ fn lines(planned: &Planned, block_bytes: usize) -> Vec<String> {
     text.lines().skip(1).map(Into::into).collect()
 }
 
-fn with(body: &Value, members: &[(&str, Value)]) -> Value {
-    let mut body = body.clone();
-    for (name, value) in members {
-        body[*name] = value.clone();
-    }
-    body
-}
-
-/// Checks a query with its windows, pages and splits. Returns the number of points, or `None` if the
-/// query is refused for a valid reason.
+/// Checks a query with its windows, pages and splits. Returns the number of points, or `None` if
+/// the query is refused for a valid reason.
 fn check(library: &Library, random: &mut SplitMix, body: &Value) -> Option<usize> {
     let whole = match library.planned(body) {
         Ok(planned) => planned,
-        // In a region that holds next to nothing, a count may have no spacing, or one so narrow that
-        // the distance to keep clear is too wide for it.
+        // In a region that holds next to nothing, a count may have no spacing, or one so narrow
+        // that the distance to keep clear is too wide for it.
         Err(Error::Invalid(faults)) if faults.iter().all(|f| is_about_counts(&f.field)) => {
             return None;
         }

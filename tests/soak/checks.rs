@@ -17,7 +17,7 @@ use strew_testkit::{
 };
 
 use crate::{
-    library::Library,
+    library::{Library, with},
     replica::strew,
     tally::{Done, Trouble},
 };
@@ -107,14 +107,6 @@ fn compare(library: &Library, opened: Response, body: &Value, encoding: Encoding
             "request {id}: status {status} where the library says `{error}`: {body}"
         ))),
     }
-}
-
-fn with(body: &Value, members: &[(&str, Value)]) -> Value {
-    let mut body = body.clone();
-    for (name, value) in members {
-        body[*name] = value.clone();
-    }
-    body
 }
 
 /// A query in any format, compressed or not.
@@ -225,7 +217,7 @@ pub fn long(library: &Library, at: SocketAddr, random: &mut SplitMix) -> Done {
     let body = json!({
         "region": { "bbox": [0, 0, side, side] }, "spacing": 1, "seed": seed, "warp": warp,
     });
-    let planned = library.planned(&body).expect("in order");
+    let planned = library.planned(&body).expect("valid");
     let name = encoding.name();
     let path = format!(
         "/v1/points?bbox=0,0,{side},{side}&spacing=1&seed={seed}&warp={warp}&format={name}"
@@ -318,7 +310,7 @@ pub fn spoiled(library: &Library, at: SocketAddr, random: &mut SplitMix, body: &
         expected => Err(wrong(format!(
             "status {status}, {}, where the library says {:?}: {}",
             String::from_utf8_lossy(&answer),
-            expected.map(|_| "it is in order"),
+            expected.map(|_| "a valid query"),
             shown()
         ))),
     }

@@ -110,8 +110,8 @@ fn launch(address: SocketAddr, tables: &Path) -> Result<Daemon, NotReady> {
         .listen(address)
         .tables(tables)
         .settings(&[
-            // Faults are injected all the time: only errors are worth reading, and damaged tables are
-            // none.
+            // Faults are injected all the time: only errors are worth reading, and damaged tables
+            // are none.
             "log.filter=error,strew::ops::reload=off",
             "shutdown.drain_seconds=1",
         ])

@@ -1,6 +1,6 @@
 //! Displacement tables for tests.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use strew_core::{
     Map, Table,
@@ -39,9 +39,4 @@ pub fn random(alpha: &str, profile: &str, radius: u32) -> Table {
 /// Writes a table into a folder.
 pub fn write(folder: &Path, name: &str, table: &Table) {
     std::fs::write(folder.join(name), table.to_bytes()).expect("writable");
-}
-
-/// The folder of the shipped tables, which the program also has built in.
-pub fn shipped() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tables")
 }

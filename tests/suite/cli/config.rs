@@ -1,10 +1,10 @@
-//! Settings: defaults < file < environment < flags; nothing unknown, nothing out of range.
+//! `strew config`: defaults < file < environment < flags; unknown and invalid settings are errors.
 
 use std::process::Command;
 
 use crate::support::daemon::strew;
 
-/// Runs `strew config`; gives the exit code, the settings and the message.
+/// Runs `strew config`. Returns the exit code, the settings and the message.
 fn config(prepare: impl FnOnce(&mut Command)) -> (Option<i32>, toml::Table, String) {
     let mut command = strew();
     command.arg("config");
@@ -38,7 +38,7 @@ fn the_defaults_are_those_of_the_commented_file() {
             assert!(same, "{section}.{key}: {} and {value}", merged[key]);
         }
     }
-    // Every setting is explained.
+    // Every setting has a comment.
     let mut explained = false;
     for line in strew::config::DEFAULTS.lines() {
         assert!(
@@ -50,7 +50,7 @@ fn the_defaults_are_those_of_the_commented_file() {
 }
 
 #[test]
-fn each_layer_is_stronger_than_the_one_before() {
+fn each_layer_overrides_the_one_before() {
     let points = |settings: &toml::Table| settings["limits"]["max_points"].as_integer();
     let file = file("[limits]\nmax_points = 11\nmax_streams = 12\nblock_bytes = 5000\n");
     let given = |command: &mut Command| {
@@ -74,7 +74,7 @@ fn each_layer_is_stronger_than_the_one_before() {
     assert_eq!(settings["limits"]["max_streams"].as_integer(), Some(23));
     assert_eq!(settings["limits"]["block_bytes"].as_integer(), Some(5000));
     assert_eq!(settings["server"]["listen"].as_str(), Some("127.0.0.1:1"));
-    // The file may be named by the environment, too; what is printed is a file again.
+    // The environment may name the file; the output is a valid file.
     let (_, settings, _) = config(|command| {
         command.env("STREW_CONFIG", file.path());
     });
@@ -87,7 +87,7 @@ fn each_layer_is_stronger_than_the_one_before() {
 }
 
 #[test]
-fn what_is_wrong_is_named_with_its_place() {
+fn errors_name_the_setting_and_its_source() {
     let refused = |prepare: &dyn Fn(&mut Command), texts: &[&str]| {
         let (code, settings, message) = config(prepare);
         assert_eq!(code, Some(2), "{message}");

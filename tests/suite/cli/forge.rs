@@ -1,4 +1,4 @@
-//! `strew forge`: curves from files, interrupted work, what is written and what is said.
+//! `strew forge`: interrupted and killed work, rejected tables, target curves.
 
 use std::{
     fs,
@@ -11,7 +11,7 @@ use strew_testkit::wait::until;
 
 use crate::support::{command::errors, daemon::strew};
 
-/// A small job: seconds of work, and never accepted.
+/// A small job: it takes seconds, and its table is never accepted.
 fn forge(folder: &Path, flags: &[&str]) -> Command {
     let mut command = strew();
     command.current_dir(folder);
@@ -25,7 +25,7 @@ fn run(folder: &Path, flags: &[&str]) -> Output {
 }
 
 #[test]
-fn killed_work_goes_on_to_the_same_table() {
+fn killed_work_resumes_to_the_same_table() {
     let whole = tempfile::tempdir().expect("a folder");
     let flags = ["--steps", "600", "--keep-rejected"];
     assert!(run(whole.path(), &flags).status.success());
@@ -42,7 +42,7 @@ fn killed_work_goes_on_to_the_same_table() {
     let status = child.wait().expect("a child");
     assert!(!status.success() && !folder.join("t.strew").exists());
 
-    // Another job does not take it, nor touch it.
+    // Another job neither uses the checkpoint nor touches it.
     let before = fs::read(&kept).expect("kept");
     let other = run(folder, &["--steps", "599", "--keep-rejected"]);
     assert_eq!(other.status.code(), Some(2));
@@ -64,7 +64,7 @@ fn killed_work_goes_on_to_the_same_table() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupt_keeps_where_the_work_stands() {
+fn an_interrupt_keeps_a_checkpoint() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let kept = folder.join("t.strew.checkpoint");
@@ -72,7 +72,7 @@ fn an_interrupt_keeps_where_the_work_stands() {
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program runs");
-    until("it works", || kept.exists().then_some(()));
+    until("a checkpoint is kept", || kept.exists().then_some(()));
     let sent = Command::new("kill")
         .args(["-INT", &child.id().to_string()])
         .status();
@@ -82,7 +82,7 @@ fn an_interrupt_keeps_where_the_work_stands() {
     let text = errors(&output);
     assert!(text.contains("the same command goes on from"), "{text}");
     assert!(kept.exists() && !folder.join("t.strew").exists());
-    // A damaged checkpoint is refused in words, and --restart passes it over.
+    // A damaged checkpoint is refused with a message; --restart ignores it.
     fs::write(&kept, "strewck1 and no more").expect("writable");
     let refused = run(folder, &["--steps", "2"]);
     assert_eq!(refused.status.code(), Some(2));
@@ -93,7 +93,7 @@ fn an_interrupt_keeps_where_the_work_stands() {
 }
 
 #[test]
-fn a_rejected_table_can_be_kept_without_doing_the_work_again() {
+fn a_rejected_table_can_be_kept_without_repeating_the_work() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let rejected = run(folder, &["--steps", "5"]);
@@ -111,7 +111,7 @@ fn a_rejected_table_can_be_kept_without_doing_the_work_again() {
         "{}",
         errors(&kept)
     );
-    // The leftover of a rejected job is in nobody's way.
+    // The checkpoint of a rejected job does not block other jobs.
     assert_eq!(
         run(folder, &["--steps", "5", "--force"]).status.code(),
         Some(1)
@@ -126,7 +126,7 @@ fn a_rejected_table_can_be_kept_without_doing_the_work_again() {
 }
 
 #[test]
-fn a_target_that_no_set_has_is_announced_and_missed_in_words() {
+fn an_impossible_target_is_announced_and_reported_as_missed() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let curve = "[[piece]]\nfrom = 0\nto = 0.9\npower = 0\n";
@@ -179,8 +179,11 @@ fn bad_curves_are_refused_before_any_work() {
         fs::write(folder.join("curve"), text).expect("writable");
         let output = run(folder, &["--profile", "mine", "--target", "curve"]);
         assert_eq!(output.status.code(), Some(2), "{text:?}");
-        let said = errors(&output);
-        assert!(said.contains(words) && said.contains("allowed"), "{said}");
+        let message = errors(&output);
+        assert!(
+            message.contains(words) && message.contains("allowed"),
+            "{message}"
+        );
     }
     let flags = ["--profile", "Not A Name", "--target", "curve"];
     fs::write(folder.join("curve"), "0 1\n").expect("writable");
@@ -190,8 +193,8 @@ fn bad_curves_are_refused_before_any_work() {
     assert_eq!(fs::read_dir(folder).expect("a folder").count(), 1);
 }
 
-/// Kills the forge at some moment and reads what it left; what another reads meanwhile is what a kill
-/// at that very moment would leave.
+/// Kills the forge at some moment and reads the files it left. Files read while it runs are those
+/// that a kill at that moment would leave.
 #[test]
 fn a_forge_that_is_killed_at_any_moment_leaves_whole_files() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -212,10 +215,10 @@ fn a_forge_that_is_killed_at_any_moment_leaves_whole_files() {
             .stdout(Stdio::null())
             .spawn()
             .expect("the program runs");
-        // Some rounds go on to the end, and others end sooner or later.
+        // The last round runs to the end; the others are killed after this many reads.
         let most = [1, 3, 10, 40, 150, u64::MAX][round];
         let mut reads = 0;
-        until("it was read often enough", || {
+        until("the checkpoint was read often enough", || {
             for _ in 0..20 {
                 let checkpoint = Checkpoint::read_file(&kept).expect("whole, or not there");
                 reads += u64::from(checkpoint.is_some());
@@ -235,8 +238,8 @@ fn a_forge_that_is_killed_at_any_moment_leaves_whole_files() {
         }
     }
     assert!(seen > 100, "checkpoints were read only {seen} times");
-    assert!(table.exists(), "some round went on to the end");
-    // Whatever was left half written is in nobody's way.
+    assert!(table.exists(), "a round ran to the end");
+    // Half-written files do not get in the way.
     let loaded = strew().args(["table", "show"]).arg(&table).output();
     assert!(loaded.expect("the program runs").status.success());
 }

@@ -1,5 +1,5 @@
-//! When the machine does not do as it should: full disks, folders that are none, taken ports, bad
-//! settings. What is said, the exit code, and that nothing broken is left behind.
+//! Full disks: the error, the exit code, and no broken file left behind. Tests that mount a small
+//! file system are skipped where that is not permitted.
 
 use std::{
     fs,
@@ -9,13 +9,13 @@ use std::{
 
 use crate::support::{command::errors, daemon::strew};
 
-/// A disk that is full but for some bytes.
+/// A small disk.
 struct SmallDisk {
     folder: tempfile::TempDir,
 }
 
 impl SmallDisk {
-    /// A file system of a megabyte, if this process may mount one.
+    /// Mounts a file system of 1 MiB, if this process may.
     fn mount() -> Option<Self> {
         let folder = tempfile::tempdir().expect("a folder");
         let mounted = Command::new("mount")
@@ -32,7 +32,7 @@ impl SmallDisk {
         self.folder.path()
     }
 
-    /// Leaves no room at all.
+    /// Fills the disk to the last byte.
     fn fill(&self) {
         let mut piece = 1 << 20;
         let mut filler = vec![];
@@ -45,7 +45,7 @@ impl SmallDisk {
         }
     }
 
-    /// The names there are, but for the filler.
+    /// The names of all files except the filler.
     fn names(&self) -> Vec<PathBuf> {
         let entries = fs::read_dir(self.path()).expect("a folder");
         let names = entries.map(|entry| entry.expect("an entry").file_name().into());
@@ -80,7 +80,7 @@ fn sample(output: &Path) -> Output {
 }
 
 #[test]
-fn a_full_device_is_told_and_is_no_success() {
+fn a_full_device_is_reported_as_a_failure() {
     for output in [
         sample(Path::new("/dev/full")),
         strew()

@@ -1,8 +1,8 @@
-//! Commands with wrong flags and wrong files: what is said, and the exit code.
+//! Wrong flags and wrong files: the message and the exit code.
 
 use crate::support::command::run;
 
-/// (arguments, what is said).
+/// (arguments, texts in the message).
 const WRONG: [(&str, &[&str]); 32] = [
     (
         "sample --bbox 0,0,9,9 --spacing 1 -o trees.shp",
@@ -126,21 +126,24 @@ const WRONG: [(&str, &[&str]); 32] = [
 ];
 
 #[test]
-fn wrong_flags_are_named_with_what_is_allowed() {
+fn errors_name_the_flag_and_what_is_allowed() {
     for (arguments, texts) in WRONG {
         let arguments: Vec<&str> = arguments.split_whitespace().collect();
         let output = run(&arguments, "{}");
-        let said = String::from_utf8(output.stderr).expect("UTF-8");
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        let message = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
         assert!(output.stdout.is_empty(), "{arguments:?}");
         for text in texts {
-            assert!(said.contains(text), "{arguments:?}: no `{text}`: {said}");
+            assert!(
+                message.contains(text),
+                "{arguments:?}: no `{text}`: {message}"
+            );
         }
     }
 }
 
 #[test]
-fn wrong_files_are_named_with_the_place_in_them() {
+fn errors_name_the_file_and_the_member() {
     let line = r#"{"type": "Feature", "geometry": {"type": "LineString", "coordinates": []}}"#;
     for (flag, input, texts) in [
         ("--query=-", "{", &["--query -", "not JSON"][..]),
@@ -176,18 +179,18 @@ fn wrong_files_are_named_with_the_place_in_them() {
         let mut arguments = vec!["sample", flag];
         arguments.extend((flag == "--region=-").then_some("--spacing=1"));
         let output = run(&arguments, input);
-        let said = String::from_utf8(output.stderr).expect("UTF-8");
-        assert_eq!(output.status.code(), Some(2), "{input}: {said}");
+        let message = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(2), "{input}: {message}");
         for text in texts {
-            assert!(said.contains(text), "{input}: no `{text}`: {said}");
+            assert!(message.contains(text), "{input}: no `{text}`: {message}");
         }
     }
 }
 
 #[test]
-fn a_point_that_is_not_there_is_no_wrong_usage() {
+fn a_missing_point_is_not_a_usage_error() {
     let output = run(&["point", "1:0", "--spacing=1"], "");
-    let said = String::from_utf8(output.stderr).expect("UTF-8");
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("1:0"), "{said}");
+    let message = String::from_utf8(output.stderr).expect("UTF-8");
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("1:0"), "{message}");
 }

@@ -1,4 +1,4 @@
-//! `strew probe`: what health checks of containers run.
+//! `strew probe`, which health checks of containers run.
 
 use std::{
     io::Write as _,
@@ -10,7 +10,7 @@ use strew_testkit::{certificates::Authority, wait::until};
 
 use crate::support::daemon::{Daemon, strew};
 
-/// The exit code and the message.
+/// Runs `strew probe`. Returns the exit code and the message.
 fn probe(arguments: &[&str]) -> (Option<i32>, String) {
     let output = strew().arg("probe").args(arguments).output();
     let output = output.expect("the program runs");
@@ -24,7 +24,7 @@ fn a_daemon_that_serves_is_ready_and_one_that_stops_is_not() {
     let url = daemon.url("");
     assert_eq!(probe(&["--url", &url]), (Some(0), String::new()));
     assert_eq!(probe(&["--url", &url, "--live"]), (Some(0), String::new()));
-    // Without a URL it looks where the settings say.
+    // Without a URL it uses the address of the settings.
     assert_eq!(
         probe(&["--listen", &daemon.address().to_string()]).0,
         Some(0)
@@ -39,7 +39,7 @@ fn a_daemon_that_serves_is_ready_and_one_that_stops_is_not() {
 }
 
 #[test]
-fn what_is_no_daemon_is_told_within_the_time() {
+fn an_address_without_a_daemon_is_reported_in_time() {
     let silent = TcpListener::bind("127.0.0.1:0").expect("a port");
     let url = format!("http://{}", silent.local_addr().expect("bound"));
     let start = Instant::now();
@@ -48,7 +48,7 @@ fn what_is_no_daemon_is_told_within_the_time() {
     assert!(message.contains("no answer within 200ms"), "{message}");
     assert!(start.elapsed() < Duration::from_secs(10));
 
-    // One that never ends its first line.
+    // A server that never ends its first line.
     let dripping = std::thread::spawn(move || {
         for _ in 0..2 {
             let Ok((mut stream, _)) = silent.accept() else {
@@ -70,8 +70,8 @@ fn what_is_no_daemon_is_told_within_the_time() {
 }
 
 #[test]
-fn wrong_flags_are_told() {
-    for (arguments, told) in [
+fn wrong_flags_are_reported() {
+    for (arguments, part) in [
         (&["--url", "https:/x"][..], "allowed: http://host:port"),
         (&["--timeout", "0"], "allowed: 0.001 to 3600"),
         (&["--timeout", "NaN"], "allowed: 0.001 to 3600"),
@@ -91,12 +91,12 @@ fn wrong_flags_are_told() {
     ] {
         let (code, message) = probe(arguments);
         assert_eq!(code, Some(2), "{arguments:?}");
-        assert!(message.contains(told), "{message}");
+        assert!(message.contains(part), "{message}");
     }
 }
 
 #[test]
-fn a_daemon_that_speaks_tls_is_asked_in_tls() {
+fn the_probe_speaks_tls() {
     let folder = tempfile::tempdir().expect("a folder");
     let authority = Authority::new();
     authority.issue_server().write_server(folder.path());
@@ -109,7 +109,7 @@ fn a_daemon_that_speaks_tls_is_asked_in_tls() {
     let daemon = Daemon::with_tls(folder.path(), &["shutdown.notice_seconds=20"]);
     let url = format!("https://{}", daemon.address());
 
-    // What the images' health check runs: settings from the surroundings, and no flag of TLS.
+    // The images' health check: settings from the environment, no flags for TLS.
     let health_check = || {
         let output = strew()
             .args(["probe", "--ready"])
@@ -125,8 +125,8 @@ fn a_daemon_that_speaks_tls_is_asked_in_tls() {
     assert_eq!(probe(&["--url", &url, "--ca", &ca]), yes);
     assert_eq!(probe(&["--url", &url, "--live", "--insecure"]), yes);
     let named = format!("https://127.0.0.2:{}", daemon.address().port());
-    for (arguments, code, told) in [
-        // Nobody vouches for it, or for that name.
+    for (arguments, code, part) in [
+        // The certificate is not trusted, or not for that name.
         (
             &["--url", &url, "--ca", &other][..],
             1,
@@ -137,13 +137,13 @@ fn a_daemon_that_speaks_tls_is_asked_in_tls() {
             1,
             "else.example",
         ),
-        // Plain words get no answer in TLS.
+        // Plain HTTP gets no answer from a TLS port.
         (&["--url", &daemon.url("")], 1, "the connection ended"),
         (&["--url", &named], 2, "https asks for --ca FILE"),
     ] {
         let (ended, message) = probe(arguments);
         assert_eq!(ended, Some(code), "{arguments:?}: {message}");
-        assert!(message.contains(told), "no `{told}`: {message}");
+        assert!(message.contains(part), "no `{part}`: {message}");
     }
     daemon.terminate();
     until("it is not ready", || {
@@ -154,7 +154,7 @@ fn a_daemon_that_speaks_tls_is_asked_in_tls() {
 }
 
 #[test]
-fn a_daemon_that_asks_for_a_certificate_is_shown_one() {
+fn the_probe_presents_a_client_certificate() {
     let folder = tempfile::tempdir().expect("a folder");
     let (servers, clients) = (Authority::new(), Authority::new());
     servers.issue_server().write_server(folder.path());
@@ -180,13 +180,13 @@ fn a_daemon_that_asks_for_a_certificate_is_shown_one() {
     );
 
     let server_key = folder.path().join("server.key").display().to_string();
-    for (key, told) in [
+    for (key, part) in [
         (&*server_key, "does not go with --certificate"),
         (&*certificate, "no private key"),
         ("/nowhere", "--key /nowhere: it cannot be read"),
     ] {
         let (code, message) = probe(&[&shown[..], &["--key", key]].concat());
         assert_eq!(code, Some(2));
-        assert!(message.contains(told), "no `{told}`: {message}");
+        assert!(message.contains(part), "no `{part}`: {message}");
     }
 }

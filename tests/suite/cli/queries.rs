@@ -1,15 +1,15 @@
-//! The commands that ask: the same features and the same answers as by REST, without a server.
+//! `sample`, `count`, `point`, `nearest` and `split`: the features and answers of REST without a
+//! server.
 
 use std::collections::BTreeSet;
 
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use serde_json::{Value, json};
-
 use strew_testkit::http1;
 
 use crate::support::{command::run, daemon::Daemon};
 
-/// What a command prints.
+/// The output of a command, which must succeed.
 fn printed(arguments: &[&str], input: &str) -> Vec<u8> {
     let output = run(arguments, input);
     let message = String::from_utf8_lossy(&output.stderr);
@@ -26,7 +26,7 @@ fn read(text: &[u8]) -> Value {
     serde_json::from_slice(text).expect("JSON")
 }
 
-/// A query as flags and as the rest of an address.
+/// Queries as flags and as parameters of REST.
 const QUERIES: [(&str, &str); 9] = [
     (
         "--bbox -3.5,1,40,33.25 --density 0.7",
@@ -89,7 +89,7 @@ fn the_flags_are_the_parameters_of_rest() {
         ("nearest", "/v1/nearest", &["json"]),
     ] {
         let parameters = document["paths"][path]["get"]["parameters"].as_array();
-        let told: BTreeSet<String> = parameters
+        let documented: BTreeSet<String> = parameters
             .expect("a list")
             .iter()
             .filter(|parameter| parameter["in"] == "query")
@@ -112,7 +112,7 @@ fn the_flags_are_the_parameters_of_rest() {
             own.contains(&name) || more.contains(&name) || has_region && query.contains(&name)
         };
         let flags: BTreeSet<String> = names.filter(|name| !ignored(name)).collect();
-        assert_eq!(flags, told, "{command}");
+        assert_eq!(flags, documented, "{command}");
     }
 }
 
@@ -130,21 +130,25 @@ fn samples_are_the_answers_of_rest() {
             arguments.extend(flags.split_whitespace());
             let output = run(&arguments, "");
             assert!(output.stdout == answer.body, "{flags} as {format}");
-            let said = String::from_utf8(output.stderr).expect("UTF-8");
+            let message = String::from_utf8(output.stderr).expect("UTF-8");
             let count = answer.header("strew-count");
             assert!(
-                said.starts_with(&format!("{count} points as {format}")),
-                "{said}"
+                message.starts_with(&format!("{count} points as {format}")),
+                "{message}"
             );
             let next = answer.header("strew-next");
-            assert_eq!(said.contains("the rest begins"), !next.is_empty(), "{said}");
-            assert!(said.contains(next), "{said}");
+            assert_eq!(
+                message.contains("the rest begins"),
+                !next.is_empty(),
+                "{message}"
+            );
+            assert!(message.contains(next), "{message}");
         }
     }
 }
 
 #[test]
-fn count_point_and_nearest_are_the_documents_of_rest() {
+fn count_point_and_nearest_print_the_documents_of_rest() {
     let daemon = Daemon::start(&[]);
     for (flags, query) in QUERIES {
         if query.contains("decimals") || flags.contains("chunk") {
@@ -180,7 +184,7 @@ fn count_point_and_nearest_are_the_documents_of_rest() {
     assert_eq!(line, point.json()["point"]);
 }
 
-/// Layers, a region with a hole, attributes: what only a body can say.
+/// Layers and a region with a hole, which only a body can express.
 fn layered() -> Value {
     json!({
         "region": {
@@ -197,7 +201,7 @@ fn layered() -> Value {
 }
 
 #[test]
-fn a_query_of_a_file_is_that_of_a_body_and_its_looks_can_change() {
+fn a_query_file_is_a_rest_body_and_flags_override_its_format() {
     let daemon = Daemon::start(&[]);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("query.json");
@@ -256,8 +260,8 @@ fn parquet_holds_layers_and_attributes() {
         .iter()
         .map(|field| field.name().clone())
         .collect();
-    let told: BTreeSet<String> = csv[0].split(',').map(Into::into).collect();
-    assert_eq!(columns, told);
+    let names: BTreeSet<String> = csv[0].split(',').map(Into::into).collect();
+    assert_eq!(columns, names);
     let batches = reader.build().expect("readable");
     let rows: usize = batches.map(|batch| batch.expect("whole").num_rows()).sum();
     assert_eq!(rows, csv.len() - 1);
@@ -265,7 +269,7 @@ fn parquet_holds_layers_and_attributes() {
 }
 
 #[test]
-fn the_parts_of_a_query_are_the_query() {
+fn the_parts_of_a_split_make_the_whole() {
     let daemon = Daemon::start(&[]);
     let mut whole = layered();
     whole["format"] = "csv".into();
@@ -283,17 +287,17 @@ fn the_parts_of_a_query_are_the_query() {
         &["split", "--parts=5", "--query=-", "--json"],
         &body,
     ));
-    let told = read(&answer);
-    assert_eq!(document["count"], told["count"]);
+    let answered = read(&answer);
+    assert_eq!(document["count"], answered["count"]);
     for (i, part) in parts.iter().enumerate() {
-        let (own, rest) = (&document["parts"][i], &told["parts"][i]);
+        let (own, rest) = (&document["parts"][i], &answered["parts"][i]);
         assert_eq!(own["query"], read(part.as_bytes()));
         assert_eq!(own["count"], rest["count"]);
         for name in ["cursor", "limit", "format"] {
             assert_eq!(own["query"][name], rest["query"][name], "{name}");
         }
     }
-    // Numbers of any length survive being written down.
+    // Numbers with many digits survive being written.
     let odd = "--circle=0.1,-1e-7,7.3000000000000025 --density=1.1000000000000003 --seed=9";
     let mut arguments = vec!["split", "--parts=2"];
     arguments.extend(odd.split_whitespace());

@@ -1,7 +1,7 @@
-"""Makes queries that schemathesis invents answerable: one region, one amount, numbers that are near.
+"""Hooks that make the queries of schemathesis valid: one region, one amount, moderate numbers.
 
-What no schema tells (that parameters exclude each other, which tables are loaded) would otherwise
-leave next to no answer with points to look at.
+No schema says that parameters exclude each other, or which tables are loaded. Without these hooks,
+next to no answer would have points.
 """
 
 import schemathesis
@@ -23,7 +23,7 @@ def choose(value, among):
 
 
 def one_of(query, among, default):
-    """Leaves one of some members, by what the query looks like."""
+    """Keeps one member of some, chosen by the query itself."""
     given = [name for name in among if name in query] or [default]
     chosen = choose(query, given)
     for name in among:

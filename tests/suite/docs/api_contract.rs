@@ -1,32 +1,29 @@
-//! The API's description against the daemon, by a fuzzer that reads it (schemathesis): nothing it
-//! thinks of is a 5xx, and every answer is one that the description tells.
+//! The daemon against its OpenAPI document, by a fuzzer that reads it (schemathesis): no request
+//! gets a 5xx, and every answer is one that the document describes.
 
-use std::{process::Command, time::Instant};
+use std::time::Instant;
 
-use crate::support::daemon::Daemon;
+use crate::support::{clients, daemon::Daemon};
 
-/// What no description can know: which tables are loaded, and that parameters exclude each other.
-const NOT_TOLD: &str = "positive_data_acceptance";
+/// A check that no description can satisfy: it does not know which tables are loaded, nor that
+/// parameters exclude each other.
+const EXCLUDED: &str = "positive_data_acceptance";
 
-/// The folder of hooks that put queries in order, so that answers with points are looked at, too.
+/// The folder of the hooks that make queries valid, so that answers with points are checked, too.
 const HOOKS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/docs");
 
 #[test]
 fn a_fuzzer_finds_no_breach_of_contract() {
-    let Ok(python) = std::env::var("STREW_TEST_PYTHON") else {
-        eprintln!("skipped: STREW_TEST_PYTHON names no Python with schemathesis");
+    let fuzzer = || {
+        let mut command = clients::python("schemathesis")?;
+        command.args(["-m", "schemathesis.cli"]);
+        Some(command)
+    };
+    let Some(mut version) = fuzzer() else {
         return;
     };
-    let fuzzer = || {
-        let mut command = Command::new(&python);
-        command.args(["-m", "schemathesis.cli"]);
-        command
-    };
-    if !fuzzer()
-        .arg("--version")
-        .output()
-        .is_ok_and(|output| output.status.success())
-    {
+    let version = version.arg("--version").output();
+    if !version.is_ok_and(|output| output.status.success()) {
         eprintln!("skipped: schemathesis is not installed");
         return;
     }
@@ -34,7 +31,7 @@ fn a_fuzzer_finds_no_breach_of_contract() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let start = Instant::now();
     for in_order in [false, true] {
-        let mut command = fuzzer();
+        let mut command = fuzzer().expect("as above");
         if in_order {
             command
                 .env("SCHEMATHESIS_HOOKS", "api_contract")
@@ -44,11 +41,11 @@ fn a_fuzzer_finds_no_breach_of_contract() {
         let mode = if in_order { "positive" } else { "all" };
         let output = command
             .args(["run", &daemon.url("/openapi.json"), "--no-color"])
-            .args(["--checks", "all", "--exclude-checks", NOT_TOLD])
+            .args(["--checks", "all", "--exclude-checks", EXCLUDED])
             .args(["--mode", mode, "--max-examples", "25"])
             .args(["--seed", "1", "--generation-deterministic"])
             .args(["--request-timeout", "10"])
-            // It keeps notes where it runs.
+            // It writes .schemathesis/ into the folder it runs in.
             .current_dir(folder.path())
             .output()
             .expect("Python runs");

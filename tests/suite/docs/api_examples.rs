@@ -1,13 +1,16 @@
-//! docs/api.md says what happens: its lines are run against a daemon, and print what it shows.
+//! The examples of docs/api.md are run against a daemon, and must print what the document shows.
 //!
-//! A fenced `sh` block that begins with `curl` or `strew` is a line to paste; the block right after
-//! it shows what it prints. There a line `…` stands for any number of lines, and a line that ends
-//! in `…` for a longer one. `UPDATE_GOLDEN=1` writes what is printed now, shortened in the same
-//! places; an empty block is filled.
+//! An example is a fenced `sh` block that begins with `curl` or `strew`; the block right after it
+//! shows its output. There, a line `…` stands for any number of lines, and a line that ends in `…`
+//! for a longer one. `UPDATE_GOLDEN=1` writes the current output, shortened in the same places; an
+//! empty block is filled.
 
 use std::{path::Path, process::Command};
 
-use crate::support::daemon::{Daemon, strew};
+use crate::support::{
+    clients,
+    daemon::{Daemon, strew},
+};
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/api.md");
 /// The daemon's address in the document.
@@ -37,7 +40,7 @@ fn blocks(lines: &[String]) -> Vec<Block> {
     blocks
 }
 
-/// What a line prints, with the document's address.
+/// The output of an example, with the document's address in place of the daemon's.
 fn run(script: &str, daemon: &Daemon, folder: &Path) -> Vec<String> {
     let mut command = Command::new("sh");
     let program = strew();
@@ -63,7 +66,7 @@ fn run(script: &str, daemon: &Daemon, folder: &Path) -> Vec<String> {
     text.lines().map(unnamed).collect()
 }
 
-/// A line in which requests are called as in the document: they have another name each time.
+/// A line with the request id of the document: the daemon makes another one each time.
 fn unnamed(line: &str) -> String {
     const BEFORE: &str = "\"request_id\":\"";
     let Some((before, after)) = line.split_once(BEFORE) else {
@@ -73,7 +76,7 @@ fn unnamed(line: &str) -> String {
     format!("{before}{BEFORE}9c1f0a52e87b63d4{rest}")
 }
 
-/// What is printed, shortened where the document shortens it.
+/// The output, shortened where the document shortens it.
 fn shortened(printed: &[String], shown: &[String]) -> Vec<String> {
     let line = |(printed, shown): (&String, &String)| match shown.strip_suffix(MORE) {
         Some(head) if printed.chars().count() > head.chars().count() => {
@@ -97,9 +100,8 @@ fn shortened(printed: &[String], shown: &[String]) -> Vec<String> {
 }
 
 #[test]
-fn the_lines_of_the_api_document_print_what_it_shows() {
-    if Command::new("curl").arg("--version").output().is_err() {
-        eprintln!("skipped: curl is not installed");
+fn the_examples_print_what_the_document_shows() {
+    if clients::find("curl").is_none() {
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,5 @@
-//! What is shipped for running the daemon says what the daemon takes: settings and paths that there are.
+//! The files in `deploy/` and the Dockerfile name settings, values, commands and metrics that
+//! exist.
 
 use std::{collections::BTreeSet, fs, path::Path};
 
@@ -13,7 +14,7 @@ fn text(path: &str) -> String {
     fs::read_to_string(Path::new(ROOT).join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
 }
 
-/// Variables of settings in a file: everything that begins like one, without those of the build.
+/// The `STREW_…` variables named in a file, without those of the build.
 fn variables(text: &str) -> BTreeSet<String> {
     let words = text.split(|c: char| !c.is_ascii_uppercase() && c != '_');
     let settings = words.filter(|w| w.starts_with("STREW_") && w.len() > 6);
@@ -22,7 +23,7 @@ fn variables(text: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn every_setting_that_is_shipped_is_one() {
+fn every_setting_in_the_files_exists() {
     let known: toml::Table = strew::config::DEFAULTS.parse().expect("TOML");
     let mut seen = 0;
     for path in [
@@ -43,12 +44,12 @@ fn every_setting_that_is_shipped_is_one() {
             assert!(is_known, "{path}: there is no setting {variable}");
         }
     }
-    assert!(seen >= 6, "{seen} settings were looked at");
+    assert!(seen >= 6, "only {seen} settings were checked");
 }
 
 #[test]
-fn the_images_hold_what_their_sources_need() {
-    // What the build is given is all that cargo wants to see.
+fn the_images_get_all_sources_and_a_health_check() {
+    // The build context holds everything that cargo reads.
     let ignored = text(".dockerignore");
     for needed in [
         "Cargo.toml",
@@ -76,7 +77,7 @@ fn the_images_hold_what_their_sources_need() {
             assert!(text.contains(part), "{path} has no {part}");
         }
     }
-    // Its health check is a command that there is.
+    // The health check is an existing command.
     let help = strew()
         .args(["probe", "--help"])
         .output()
@@ -85,7 +86,7 @@ fn the_images_hold_what_their_sources_need() {
     assert!(String::from_utf8_lossy(&help.stdout).contains("--ready"));
 }
 
-/// The parts of the values that the chart's templates use, such as `tables.source`.
+/// The values that the chart's templates use, such as `tables.source`.
 fn values_used() -> BTreeSet<String> {
     let folder = Path::new(ROOT).join("deploy/helm/strew/templates");
     let files = fs::read_dir(folder).expect("a folder");
@@ -103,7 +104,7 @@ fn values_used() -> BTreeSet<String> {
 }
 
 #[test]
-fn the_chart_uses_values_that_are_explained_and_checked() {
+fn every_value_of_the_chart_is_documented_and_checked() {
     let schema = text("deploy/helm/strew/values.schema.json");
     let schema: serde_json::Value = serde_json::from_str(&schema).expect("JSON");
     let used = values_used();
@@ -117,7 +118,7 @@ fn the_chart_uses_values_that_are_explained_and_checked() {
     for needed in ["access.keysSecret", "admin.enabled", "tables.source"] {
         assert!(used.contains(needed), "{needed} is not used");
     }
-    // Sections stand at the beginning of a line of the values, their keys two spaces further in.
+    // In values.yaml, sections begin a line; their keys are indented by two spaces.
     let values = text("deploy/helm/strew/values.yaml");
     let sections = schema["properties"].as_object().expect("sections");
     for (section, of_section) in sections.iter().filter(|(name, _)| *name != "global") {
@@ -142,7 +143,7 @@ fn the_chart_uses_values_that_are_explained_and_checked() {
 }
 
 #[test]
-fn the_dashboard_asks_for_metrics_that_there_are() {
+fn the_dashboard_uses_metrics_that_exist() {
     let text = text("deploy/grafana/strew.json");
     let dashboard: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let panels = dashboard["panels"].as_array().expect("panels");
@@ -171,6 +172,6 @@ fn the_dashboard_asks_for_metrics_that_there_are() {
             some = true;
             assert!(known.contains(&name), "{name} in {expression}");
         }
-        assert!(some, "{expression} asks for nothing");
+        assert!(some, "{expression} names no metric");
     }
 }

@@ -1,15 +1,14 @@
-//! The description of the API: complete, pinned, and true of the daemon.
+//! The OpenAPI document: pinned, consistent, and true of the daemon.
 
 use std::{collections::BTreeSet, path::Path};
 
 use serde_json::Value;
-
 use strew_testkit::http1;
 
 use crate::support::daemon::Daemon;
 
-/// The pinned document. A change of it is a change of the API: look at it, then let
-/// `UPDATE_GOLDEN=1 cargo test --test suite openapi` write it.
+/// A change of the document is a change of the API: review it, then accept it with
+/// `UPDATE_GOLDEN=1 cargo test --test suite openapi`.
 #[test]
 fn the_document_is_the_pinned_one() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/openapi.json");
@@ -22,12 +21,12 @@ fn the_document_is_the_pinned_one() {
     let golden = std::fs::read(&path).unwrap_or_default();
     assert!(
         golden == document.body,
-        "/openapi.json is not tests/golden/openapi.json any more. If that is meant: \
+        "/openapi.json differs from tests/golden/openapi.json. To accept the change: \
          UPDATE_GOLDEN=1 cargo test --test suite openapi"
     );
 }
 
-/// Every operation as (path, method, description).
+/// Every operation as (path, method, operation).
 fn operations(document: &Value) -> Vec<(String, String, Value)> {
     let paths = document["paths"].as_object().expect("an object");
     let of = |(path, item): (&String, &Value)| {
@@ -40,7 +39,7 @@ fn operations(document: &Value) -> Vec<(String, String, Value)> {
 }
 
 #[test]
-fn references_lead_somewhere_and_names_are_unique() {
+fn references_resolve_and_operation_ids_are_unique() {
     let document = Daemon::start(&[]).get("/openapi.json").json();
     assert_eq!(document["openapi"], "3.1.0");
     let mut open = vec![&document];
@@ -79,11 +78,11 @@ fn every_get_example_is_answered() {
         let address = address.split(['\'', ' ']).next().expect("an address");
         let answer = http1::get(daemon.address(), address, &[]);
         assert_eq!(answer.status, 200, "{path}: {address}: {:?}", answer.text());
-        let told = &operation["responses"]["200"]["content"];
+        let described = &operation["responses"]["200"]["content"];
         let content_type = answer.header("content-type");
         assert!(
-            told.get(content_type).is_some(),
-            "{address} is {content_type}, which is not told"
+            described.get(content_type).is_some(),
+            "{address} is {content_type}, which is not described"
         );
         asked += 1;
     }

@@ -1,13 +1,12 @@
-//! What a gRPC call can ask besides its message: a deadline, compression, a table; and what it
-//! hears when something is wrong.
+//! What a call carries besides its query: a deadline, compression, a pinned table. What ends it:
+//! cancellation, and requests that are not gRPC.
 
 use std::time::{Duration, Instant};
 
 use strew::grpc::proto::{StreamPointsRequest, point_service_client::PointServiceClient};
+use strew_testkit::http1;
 use tonic::{Code, Request, codec::CompressionEncoding};
 use tonic_types::StatusExt as _;
-
-use strew_testkit::http1;
 
 use crate::support::{
     daemon::{Daemon, PROFILE, table},
@@ -45,7 +44,7 @@ async fn a_stream_stops_at_its_deadline() {
 }
 
 #[tokio::test]
-async fn what_is_done_in_time_is_whole() {
+async fn a_stream_that_ends_before_its_deadline_is_complete() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let mut request = Request::new(square(10.0));
@@ -63,7 +62,7 @@ async fn what_is_done_in_time_is_whole() {
 }
 
 #[tokio::test]
-async fn a_deadline_that_does_not_read_is_a_fault() {
+async fn an_unreadable_deadline_is_a_fault() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let mut request = Request::new(square(10.0));
@@ -79,15 +78,15 @@ async fn a_deadline_that_does_not_read_is_a_fault() {
     assert!(faults[0].description.contains("soon"));
 }
 
-/// A reader that stops reading and then goes away frees its place at once, although the daemon was
-/// in the middle of sending.
+/// A client that stops reading and cancels frees its stream at once, although the daemon is
+/// sending.
 #[tokio::test(flavor = "multi_thread")]
-async fn a_cancelled_call_frees_its_place() {
+async fn a_cancelled_call_frees_its_stream() {
     let daemon = Daemon::start(&["limits.max_streams=1"]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     for _ in 0..5 {
         let mut answer = client.stream_points(square(LONG)).await;
-        // The last one's place may still be finishing its last block.
+        // The stream before may still be finishing its last block.
         let start = Instant::now();
         while matches!(&answer, Err(status) if status.code() == Code::ResourceExhausted) {
             let status = answer.as_ref().expect_err("busy");
@@ -182,7 +181,7 @@ async fn another_table_than_the_pinned_one_is_a_failed_precondition() {
 }
 
 #[test]
-fn what_is_no_call_hears_so_in_http() {
+fn requests_that_are_not_calls_get_http_problems() {
     let daemon = Daemon::start(&[]);
     let path = "/strew.v1.PointService/StreamPoints";
     for (method, content_type, status) in [

@@ -1,4 +1,4 @@
-//! The gRPC door: the same points in the same order as the library and the REST door.
+//! What a client can find out before it sends a query: profiles, health, reflection.
 
 use strew::grpc::proto::{ListProfilesRequest, point_service_client::PointServiceClient};
 use tonic_health::pb::{HealthCheckRequest, health_client::HealthClient};
@@ -7,7 +7,7 @@ use tonic_reflection::pb::{v1, v1alpha};
 use crate::support::daemon::Daemon;
 
 #[tokio::test]
-async fn profiles_are_those_of_the_rest_door() {
+async fn profiles_are_those_of_rest() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let answer = client.list_profiles(ListProfilesRequest {}).await;

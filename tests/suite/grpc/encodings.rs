@@ -1,4 +1,4 @@
-//! Every encoding carries the same points, and they are the library's and those of REST.
+//! Every encoding carries the library's points, in the library's order.
 
 use strew::grpc::proto::{
     Encoding, StreamPointsRequest, point_service_client::PointServiceClient, region::Shape,
@@ -69,7 +69,7 @@ async fn the_default_encoding_has_fields_and_ids() {
 }
 
 #[tokio::test]
-async fn packed_encodings_are_the_bytes_of_the_rest_door() {
+async fn packed_encodings_are_the_bytes_of_rest() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     for (encoding, format) in [(Encoding::F64Le, "f64"), (Encoding::F32Le, "f32")] {

@@ -1,4 +1,4 @@
-//! Wrong input of every kind, by gRPC: the status, the path of the field and the value are right.
+//! Invalid requests: the status names the path of each field at fault and its value.
 
 use strew::grpc::proto::{
     Chunk, Circle, Combined, CountPointsRequest, Encoding, FindNearestRequest, GetPointRequest,
@@ -23,7 +23,7 @@ fn request(region: Option<Region>, amount: Option<Amount>) -> StreamPointsReques
     }
 }
 
-/// A query that is in order, of which a case replaces a part.
+/// A valid query, of which each case replaces a part.
 fn base() -> StreamPointsRequest {
     request(boxed([0.0, 0.0, 10.0, 10.0]), Some(Amount::Density(1.0)))
 }
@@ -151,7 +151,7 @@ fn regions() -> Vec<Case> {
     let deep = (0..10).fold(fine(), |inner, _| {
         combined(vec![inner], vec![]).expect("some")
     });
-    // Long paths are cut off like all that is echoed.
+    // Long paths are shortened like everything that is echoed.
     let deepest = format!("region.combined{}", ".include[0].combined".repeat(8));
     let deepest = format!("{}…", &deepest[..120]);
     let cases: Vec<(_, &'static str, &'static str)> = vec![
@@ -228,13 +228,13 @@ fn layers() -> Vec<Case> {
     };
     let clear = |name: &str, distance| [(name.to_owned(), distance)].into();
     let amount = |amount| move |layer: &mut Layer| layer.amount = amount;
-    let beside = StreamPointsRequest {
+    let with_seed = StreamPointsRequest {
         seed: Some(3),
         ..of(&[trees()])
     };
     vec![
         (of(&vec![trees(); 17]), vec!["layers"], vec!["16"]),
-        (beside, vec!["seed"], vec!["beside layers"]),
+        (with_seed, vec!["seed"], vec!["beside layers"]),
         (
             of(&[trees(), trees()]),
             vec!["layers[1].name"],
@@ -288,7 +288,7 @@ fn layers() -> Vec<Case> {
     ]
 }
 
-/// Fails unless a status names these fields, each with its text somewhere.
+/// Fails unless a status names exactly these fields, and its message contains these texts.
 fn check(status: &Status, fields: &[&str], texts: &[&str]) {
     assert_eq!(status.code(), Code::InvalidArgument, "{status:?}");
     let details = status.get_error_details();
@@ -307,7 +307,7 @@ fn check(status: &Status, fields: &[&str], texts: &[&str]) {
 }
 
 #[tokio::test]
-async fn wrong_queries_name_their_fields() {
+async fn faults_name_the_wrong_fields() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     for (request, fields, texts) in [cases(), regions(), layers()].concat() {
@@ -338,7 +338,7 @@ async fn wrong_queries_name_their_fields() {
 }
 
 #[tokio::test]
-async fn what_is_asked_beside_the_query_is_checked_too() {
+async fn fields_besides_the_query_are_checked_too() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let answer = client
@@ -457,7 +457,7 @@ async fn what_is_asked_beside_the_query_is_checked_too() {
 }
 
 #[tokio::test]
-async fn too_many_rows_are_a_quota() {
+async fn too_many_rows_are_a_quota_failure() {
     let daemon = Daemon::start(&["limits.max_rows=1000"]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let circle = shaped(Shape::Circle(Circle {

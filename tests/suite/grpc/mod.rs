@@ -1,4 +1,8 @@
-//! gRPC.
+//! The gRPC API: the points, counts and echoes of REST as messages (queries, single points,
+//! encodings), what a call carries besides its message (deadlines, compression, cancellation),
+//! gRPC-Web, discovery (profiles, health, reflection), the statuses of invalid requests, and the
+//! Python client.
+
 mod calls;
 mod discovery;
 mod encodings;

@@ -1,12 +1,10 @@
-//! Real clients, where they are installed: curl, and gRPC's own library for Python.
+//! gRPC's own library for Python, where it is installed.
 
-use std::process::Command;
-
-use crate::support::daemon::Daemon;
+use crate::support::{clients, daemon::Daemon};
 
 const QUERY: &str = "/v1/points?bbox=0,0,50,50&density=2&profile=test&format=";
 
-/// Needs no generated code: it learns the contract by reflection, as grpcurl does.
+/// A client without generated code: it reads the contract by reflection, as grpcurl does.
 const PYTHON: &str = r#"
 import sys
 import grpc
@@ -33,13 +31,12 @@ for response in call(request):
 "#;
 
 #[test]
-fn grpc_for_python() {
-    let Ok(python) = std::env::var("STREW_TEST_PYTHON") else {
-        eprintln!("skipped: STREW_TEST_PYTHON names no Python with grpcio-reflection");
+fn the_python_client_gets_the_points_of_rest() {
+    let Some(mut python) = clients::python("grpcio-reflection") else {
         return;
     };
     let daemon = Daemon::start(&[]);
-    let output = Command::new(python)
+    let output = python
         .args(["-c", PYTHON, &daemon.address().to_string()])
         .output()
         .expect("Python runs");

@@ -1,4 +1,4 @@
-//! Every feature of queries by gRPC: the points, attributes and counts are those that REST gives.
+//! Every feature of queries: points, attributes, counts, pages and parts are those of REST.
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{
@@ -6,7 +6,6 @@ use strew::grpc::proto::{
     ScaleRange, SplitPointsRequest, StreamPointsRequest, Variant, layer,
     point_service_client::PointServiceClient, region::Shape, stream_points_request::Amount,
 };
-
 use strew_testkit::http1;
 
 use crate::support::{
@@ -14,7 +13,7 @@ use crate::support::{
     grpc::{boxed, collect, normal, ring, shaped},
 };
 
-/// Blocks so small that there are many.
+/// A daemon with small blocks, so that a stream has many.
 fn daemon() -> Daemon {
     Daemon::start(&["limits.block_bytes=4096"])
 }
@@ -24,7 +23,7 @@ fn variant(name: &str, weight: Option<f64>) -> Variant {
     Variant { name, weight }
 }
 
-/// The same queries as both doors take them.
+/// Queries as messages, with the same queries as JSON.
 fn queries() -> Vec<(StreamPointsRequest, Value)> {
     let center = Some(Position { x: 100.0, y: -3.0 });
     let circle = |radius| Shape::Circle(Circle { center, radius });
@@ -154,7 +153,7 @@ fn queries() -> Vec<(StreamPointsRequest, Value)> {
     ]
 }
 
-/// What REST answers to a query, in a format.
+/// The answer of REST to a query, in a format.
 fn rest(daemon: &Daemon, body: &Value, format: &str) -> Vec<u8> {
     let mut body = body.clone();
     body["format"] = format.into();
@@ -176,7 +175,7 @@ fn document(bytes: &[u8]) -> Value {
 }
 
 #[tokio::test]
-async fn points_attributes_and_echoes_are_those_of_the_rest_door() {
+async fn points_attributes_and_echoes_are_those_of_rest() {
     let daemon = daemon();
     let mut client = PointServiceClient::new(daemon.channel().await);
     for (request, body) in queries() {
@@ -240,17 +239,18 @@ async fn points_attributes_and_echoes_are_those_of_the_rest_door() {
                 .map(Vec::as_slice)
                 .unwrap_or_default();
             assert_eq!(set.attributes.len(), attributes.len());
-            for (told, expected) in set.attributes.iter().zip(attributes) {
-                assert_eq!(told.name, expected["name"]);
-                let range = told.range.map(|range| json!([range.min, range.max]));
+            for (attribute, expected) in set.attributes.iter().zip(attributes) {
+                assert_eq!(attribute.name, expected["name"]);
+                let range = attribute.range.map(|range| json!([range.min, range.max]));
                 assert_eq!(normal(&range.into()), expected["range"]);
                 let listed = expected["variants"]
                     .as_array()
                     .map(Vec::as_slice)
                     .unwrap_or_default();
-                let told = told.variants.iter();
-                let told = told.map(|v| normal(&json!({ "name": v.name, "weight": v.weight })));
-                assert_eq!(told.collect::<Vec<_>>(), listed);
+                let variants = attribute.variants.iter();
+                let variants =
+                    variants.map(|v| normal(&json!({ "name": v.name, "weight": v.weight })));
+                assert_eq!(variants.collect::<Vec<_>>(), listed);
             }
             let clear_of = echo["clear_of"].as_object().map_or(0, serde_json::Map::len);
             assert_eq!(set.clear_of.len(), clear_of);
@@ -271,7 +271,7 @@ async fn points_attributes_and_echoes_are_those_of_the_rest_door() {
 }
 
 #[tokio::test]
-async fn packed_coordinates_have_columns_beside_them() {
+async fn packed_blocks_carry_attribute_columns() {
     let daemon = daemon();
     let mut client = PointServiceClient::new(daemon.channel().await);
     for (request, body) in queries() {
@@ -294,7 +294,7 @@ async fn packed_coordinates_have_columns_beside_them() {
         if heads.is_empty() {
             assert!(narrow.bytes() == rest(&daemon, &body, "f32"), "{body}");
         }
-        let origin = narrow.header.origin.expect("told");
+        let origin = narrow.header.origin.expect("set");
         let corner = whole.header.origin.unwrap_or_default();
         let bytes = narrow.bytes();
         let (values, []) = bytes.as_chunks::<4>() else {
@@ -336,7 +336,7 @@ async fn packed_coordinates_have_columns_beside_them() {
 }
 
 #[tokio::test]
-async fn a_stream_goes_on_where_it_broke_and_pages_make_the_whole() {
+async fn a_broken_stream_resumes_and_pages_make_the_whole() {
     let daemon = daemon();
     let mut client = PointServiceClient::new(daemon.channel().await);
     for (request, mut body) in queries() {
@@ -356,7 +356,7 @@ async fn a_stream_goes_on_where_it_broke_and_pages_make_the_whole() {
             let counts: Vec<usize> = counts.collect();
             for (i, (block, count)) in whole.blocks.iter().zip(counts).enumerate() {
                 came += count;
-                // The first blocks, one around each layer's end, and the last ones.
+                // Resume after the first two blocks, at the end of each layer, and at the end.
                 let layers = whole
                     .blocks
                     .get(i + 1)
@@ -380,7 +380,7 @@ async fn a_stream_goes_on_where_it_broke_and_pages_make_the_whole() {
             assert_eq!(came, expected.len());
         }
 
-        // In pages, by both doors in turn.
+        // Pages, over gRPC and REST in turn.
         let mut request = StreamPointsRequest {
             limit: Some(300),
             ..request
@@ -410,7 +410,7 @@ async fn a_stream_goes_on_where_it_broke_and_pages_make_the_whole() {
 }
 
 #[tokio::test]
-async fn parts_make_the_whole() {
+async fn the_parts_of_a_split_make_the_whole() {
     let daemon = daemon();
     let mut client = PointServiceClient::new(daemon.channel().await);
     for (request, body) in queries() {

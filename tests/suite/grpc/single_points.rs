@@ -1,4 +1,4 @@
-//! Single points and counts by gRPC: what REST gives.
+//! Single points and counts are those of REST.
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{
@@ -24,7 +24,7 @@ fn attributes() -> (Vec<String>, Vec<Variant>) {
     (names.into(), variants.map(variant).into())
 }
 
-/// As REST writes a point.
+/// A point as REST writes it.
 fn written(point: &Point) -> Value {
     let mut written = json!({ "id": point.id, "x": point.x, "y": point.y });
     if let Some(distance) = point.distance {
@@ -77,7 +77,7 @@ async fn a_point_is_found_by_its_id() {
 }
 
 #[tokio::test]
-async fn neighbors_are_those_of_the_rest_door() {
+async fn neighbors_are_those_of_rest() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let (attributes, variants) = attributes();

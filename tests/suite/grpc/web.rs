@@ -1,12 +1,11 @@
-//! gRPC-Web on the same port, as a page's script speaks it: POST over HTTP/1.1, the status as a last
-//! frame of the body.
+//! gRPC-Web on the same port, as scripts of a page use it: POST over HTTP/1.1, with the status in
+//! the last frame of the body.
 
 use prost::Message as _;
 use strew::grpc::proto::{
     StreamPointsRequest, StreamPointsResponse, stream_points_request::Amount,
     stream_points_response::Message,
 };
-
 use strew_testkit::http1;
 
 use crate::support::{
@@ -16,7 +15,7 @@ use crate::support::{
 
 const STREAM: &str = "/strew.v1.PointService/StreamPoints";
 
-/// A frame: a byte of flags, the length, the content.
+/// A frame: one byte of flags, the length, the content.
 fn frame(content: &[u8]) -> Vec<u8> {
     let mut frame = vec![0];
     let length = u32::try_from(content.len()).expect("short");
@@ -25,7 +24,7 @@ fn frame(content: &[u8]) -> Vec<u8> {
     frame
 }
 
-/// The frames of a body: flags and content.
+/// The frames of a body, as (flags, content).
 fn frames(mut body: &[u8]) -> Vec<(u8, &[u8])> {
     let mut frames = vec![];
     while let [flags, a, b, c, d, rest @ ..] = body {
@@ -83,7 +82,7 @@ fn a_page_gets_points_and_a_status() {
 }
 
 #[test]
-fn a_page_may_ask_first() {
+fn preflight_requests_are_allowed() {
     let daemon = Daemon::start(&[]);
     let asks = [
         PAGE,
@@ -116,12 +115,12 @@ fn errors_reach_a_page_too() {
     let nothing = "/strew.v1.PointService/Nothing";
     let opened = http1::open_post(daemon.address(), nothing, &[WEB, PAGE], &frame(&[]));
     let (headers, (body, _)) = (opened.headers.clone(), opened.finish());
-    let told = headers.get("grpc-status").map(String::as_str) == Some("12");
-    assert!(told || String::from_utf8_lossy(&body).contains("grpc-status:12"));
+    let in_head = headers.get("grpc-status").map(String::as_str) == Some("12");
+    assert!(in_head || String::from_utf8_lossy(&body).contains("grpc-status:12"));
 }
 
 #[test]
-fn answers_are_compressed_for_those_who_ask() {
+fn answers_are_compressed_on_request() {
     let daemon = Daemon::start(&[]);
     let ask = |headers: &[(&str, &str)]| {
         let headers = [&[WEB], headers].concat();
@@ -130,7 +129,7 @@ fn answers_are_compressed_for_those_who_ask() {
         opened.headers.get("grpc-encoding").cloned()
     };
     assert_eq!(ask(&[]), None);
-    // As many libraries say whatever their users want.
+    // Many libraries send this header whether or not their users want compression.
     let listed = ("grpc-accept-encoding", "identity, deflate, gzip");
     assert_eq!(ask(&[listed]), None);
     let gzip = ask(&[listed, ("grpc-encoding", "gzip")]);

@@ -1,9 +1,8 @@
-//! What only administrators may do: have tables and keys read again.
+//! Reloads on request: only with the key of an administrator or over their own address.
 
 use std::net::SocketAddr;
 
 use serde_json::Value;
-
 use strew_testkit::{http1, tables::write};
 
 use crate::support::{
@@ -26,7 +25,7 @@ fn sources(list: &Value) -> Vec<String> {
 }
 
 #[test]
-fn without_a_key_or_an_address_for_it_nobody_reloads() {
+fn a_reload_needs_an_admin_key_or_the_admin_address() {
     let daemon = Daemon::start(&[]);
     let refused = reload(daemon.address(), &[]);
     assert_eq!(refused.status, 403, "{}", refused.text());
@@ -41,7 +40,7 @@ fn without_a_key_or_an_address_for_it_nobody_reloads() {
 }
 
 #[test]
-fn an_administrators_key_reloads_and_hears_what_came_of_it() {
+fn an_admin_key_reloads_and_gets_a_report() {
     let entries = [entry("user", "u", ""), entry("root", "r", "admin = true")].concat();
     let daemon = Daemon::start(&[&keys(&entries), "tables.watch_seconds=0"]);
     let address = daemon.address();
@@ -79,7 +78,7 @@ fn an_administrators_key_reloads_and_hears_what_came_of_it() {
 }
 
 #[test]
-fn an_address_of_their_own_lets_administrators_in() {
+fn the_admin_address_needs_no_key() {
     let mut daemon = Daemon::start(&["admin.listen=127.0.0.1:0"]);
     let line = daemon.line();
     let admin = line.strip_prefix("administrators on http://").expect(&line);
@@ -89,10 +88,10 @@ fn an_address_of_their_own_lets_administrators_in() {
     assert_eq!(done.header("cache-control"), "no-store");
     assert_eq!(done.json()["keys"], Value::Null);
     assert_eq!(http1::get(admin, "/livez", &[]).status, 200);
-    // Nothing else is there, and the other door is as it was.
+    // The address serves nothing else, and the public one refuses as before.
     assert_eq!(http1::get(admin, "/v1/profiles", &[]).status, 404);
     assert_eq!(reload(daemon.address(), &[]).status, 403);
-    // A page in an administrator's browser is no administrator.
+    // A page in an administrator's browser may not reload.
     let page = reload(admin, &[("origin", "https://page.example")]);
     assert_eq!(page.status, 403, "{}", page.text());
     daemon.terminate();

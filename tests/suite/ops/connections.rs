@@ -1,4 +1,4 @@
-//! Connections: so many and no more, none that only sits there, and all given back.
+//! Connections: their number is bounded, silent and stalled ones are closed, and all are freed.
 
 use std::{
     io::Write as _,
@@ -17,7 +17,7 @@ fn connect(daemon: &Daemon) -> TcpStream {
     http1::connect(daemon.address()).expect("connected")
 }
 
-/// Whether a request is answered over a connection of its own.
+/// Whether a request over a new connection is answered.
 fn is_served(daemon: &Daemon) -> bool {
     let mut stream = connect(daemon);
     let request = b"GET /livez HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n";
@@ -25,17 +25,17 @@ fn is_served(daemon: &Daemon) -> bool {
 }
 
 #[test]
-fn one_connection_too_many_is_refused_in_words_and_the_others_go_on() {
+fn one_connection_too_many_gets_a_problem_and_the_others_go_on() {
     let daemon = Daemon::start(&["server.max_connections=3"]);
     let mut reader = http1::open(daemon.address(), "GET", &long("f32"), &[]);
     let idle = [connect(&daemon), connect(&daemon)];
-    // The system may know of a connection before the daemon does.
-    let refusal = until("no place is left", || {
+    // The system may accept a connection before the daemon counts it.
+    let refusal = until("no connection is left", || {
         let mut stream = connect(&daemon);
         let request = b"GET /livez HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n";
         let _ = stream.write_all(request);
-        let said = read_to_close(stream);
-        (!said.starts_with("HTTP/1.1 200")).then_some(said)
+        let response = read_to_close(stream);
+        (!response.starts_with("HTTP/1.1 200")).then_some(response)
     });
     assert!(refusal.starts_with("HTTP/1.1 503 "), "{refusal}");
     for words in [
@@ -48,16 +48,16 @@ fn one_connection_too_many_is_refused_in_words_and_the_others_go_on() {
     }
     assert!(reader.skip(1 << 20).expect("more") > 0, "it goes on");
     drop(idle);
-    until("a place is free", || is_served(&daemon).then_some(()));
+    until("a connection is free", || is_served(&daemon).then_some(()));
 }
 
 #[test]
-fn connections_that_say_nothing_or_too_little_end() {
+fn silent_and_incomplete_connections_are_closed() {
     let daemon = Daemon::start(&[
         "server.header_read_timeout_seconds=0.3",
         "server.max_connections=8",
     ]);
-    // Nothing; the beginning of HTTP/2 and no more; a head that never ends; a request and no second.
+    // Nothing; a byte; the beginning of HTTP/2; an incomplete head; a request without another one.
     let beginnings: [&[u8]; 5] = [
         b"",
         b"P",
@@ -86,24 +86,24 @@ fn a_reader_that_takes_nothing_loses_its_connection() {
     let stuck = http1::open(daemon.address(), "GET", &long("f32"), &[]);
     let mut slow = http1::open(daemon.address(), "GET", &long("f32"), &[]);
     assert_eq!((stuck.status, slow.status), (200, 200));
-    // One that takes a little all the time stays.
+    // A reader that keeps taking a little stays.
     let start = Instant::now();
-    until("the other's place is free", || {
+    until("the stalled stream is freed", || {
         assert!(slow.skip(1 << 20).expect("it goes on") > 0);
         (daemon.streams() == 1).then_some(())
     });
     assert!(start.elapsed() >= Duration::from_millis(300));
-    // Its socket is closed, too, although there is more to take than it will ever take.
+    // Its socket is closed, too, although unsent data remain.
     until("its connection is closed", || {
         assert!(slow.skip(1 << 20).expect("it goes on") > 0);
         (daemon.open_files() <= before + 1).then_some(())
     });
-    assert!(!stuck.drain(), "it is visibly not complete");
+    assert!(!stuck.drain(), "the answer looks complete");
     assert!(slow.skip(1 << 20).expect("it goes on") > 0);
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn an_http2_connection_without_requests_ends_in_good_order() {
+async fn an_idle_http2_connection_ends_with_goaway() {
     let daemon = Daemon::start(&["server.idle_connection_seconds=0.3"]);
     let stream = tokio::net::TcpStream::connect(daemon.address()).await;
     let (mut client, connection) = h2::client::handshake(stream.expect("connected"))
@@ -116,7 +116,7 @@ async fn an_http2_connection_without_requests_ends_in_good_order() {
     let (answer, _) = client.send_request(ask, true).expect("sent");
     assert_eq!(answer.await.expect("an answer").status(), 200);
     let ended = tokio::time::timeout(PATIENCE, ended).await;
-    // It said goodbye (GOAWAY without an error) rather than hang up.
+    // The connection ends with GOAWAY without an error.
     ended
         .expect("it ends")
         .expect("no panic")

@@ -1,5 +1,5 @@
-//! Clients at their worst: thousands that say nothing, streams reset as fast as they are opened, readers
-//! that never read. Memory stays bounded, others are served, and everything is given back.
+//! Hostile clients: thousands of silent connections, streams reset as soon as they are opened,
+//! readers that never read. Memory stays bounded, others are served, and everything is freed.
 
 use std::{
     io::Write as _,
@@ -8,7 +8,6 @@ use std::{
 };
 
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
-
 use strew_testkit::{
     http1,
     wait::{PATIENCE, until},
@@ -21,9 +20,9 @@ use crate::support::{
 
 const SMALL: &str = "/v1/points?bbox=0,0,9,9&density=1&profile=test";
 
-/// As many connections as this process may have, up to ten thousand.
+/// The number of connections that this process may open, up to ten thousand.
 fn most_connections() -> usize {
-    /// Other tests need some, too.
+    /// Open files left to other tests.
     const OTHERS: u64 = 1500;
     let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
     let wanted = 10_000 + OTHERS;
@@ -42,7 +41,7 @@ fn most_connections() -> usize {
 }
 
 #[test]
-fn ten_thousand_idle_connections_are_small_and_in_nobodys_way() {
+fn ten_thousand_idle_connections_take_little_memory_and_others_are_served() {
     let count = most_connections();
     assert!(count >= 100, "this machine allows {count} connections");
     if count < 10_000 {
@@ -52,7 +51,7 @@ fn ten_thousand_idle_connections_are_small_and_in_nobodys_way() {
     let daemon = Daemon::start(&[&limit, "server.header_read_timeout_seconds=3600"]);
     assert_eq!(daemon.get(SMALL).status, 200);
     let before = daemon.memory_kib("VmRSS");
-    // Silent ones, some that begin to speak, and some that have been answered.
+    // Silent ones, some with a part of a request, and some that have been answered.
     let words: [&[u8]; 4] = [
         b"",
         b"",
@@ -66,7 +65,7 @@ fn ten_thousand_idle_connections_are_small_and_in_nobodys_way() {
             stream
         })
         .collect();
-    until("all are there", || {
+    until("all are open", || {
         (daemon.open_files() > count).then_some(())
     });
     let grown = daemon.memory_kib("VmRSS") - before;
@@ -78,34 +77,34 @@ fn ten_thousand_idle_connections_are_small_and_in_nobodys_way() {
     }
     assert!(start.elapsed() < PATIENCE / 3);
     drop(idle);
-    until("all places are free", || {
+    until("all are closed", || {
         (daemon.open_files() < 100).then_some(())
     });
     assert_eq!(daemon.get(SMALL).status, 200);
 }
 
 #[test]
-fn silent_connections_make_room_by_themselves() {
+fn silent_connections_are_closed_to_make_room() {
     let daemon = Daemon::start(&[
         "server.max_connections=200",
         "server.header_read_timeout_seconds=0.5",
     ]);
     let connect = || TcpStream::connect(daemon.address()).expect("connected");
     let idle: Vec<TcpStream> = (0..200).map(|_| connect()).collect();
-    // They are still open on our side, and yet there is room.
+    // They are still open on our side, yet there is room.
     until("there is room", || {
         let mut stream = connect();
         let request = b"GET /livez HTTP/1.1\r\nhost: x\r\nconnection: close\r\n\r\n";
         stream.write_all(request).ok()?;
-        let mut said = String::new();
-        std::io::Read::read_to_string(&mut stream, &mut said).ok()?;
-        said.starts_with("HTTP/1.1 200").then_some(())
+        let mut response = String::new();
+        std::io::Read::read_to_string(&mut stream, &mut response).ok()?;
+        response.starts_with("HTTP/1.1 200").then_some(())
     });
     drop(idle);
 }
 
 #[test]
-fn readers_that_never_read_hold_little_and_others_are_served() {
+fn readers_that_never_read_take_little_memory_and_others_are_served() {
     let daemon = Daemon::start(&["limits.max_streams=200"]);
     assert_eq!(daemon.get(SMALL).status, 200);
     let before = daemon.memory_kib("VmRSS");
@@ -127,8 +126,8 @@ fn readers_that_never_read_hold_little_and_others_are_served() {
     daemon.until_no_streams();
 }
 
-/// Opens requests and resets them at once, until the daemon hangs up or has had enough of them; how
-/// many it took.
+/// Sends up to `most` requests over a connection and resets each at once. Returns how many were
+/// sent before the daemon closed the connection.
 async fn reset_rapidly(daemon: &Daemon, most: usize) -> usize {
     let stream = tokio::net::TcpStream::connect(daemon.address()).await;
     let handshake = h2::client::handshake(stream.expect("connected")).await;
@@ -152,7 +151,7 @@ async fn reset_rapidly(daemon: &Daemon, most: usize) -> usize {
         if body.send_data(query, true).is_err() {
             return sent;
         }
-        // Some begin to be counted before they are reset.
+        // Let the daemon begin to count for some of them.
         if sent % 7 == 0 {
             tokio::task::yield_now().await;
         }
@@ -177,9 +176,10 @@ async fn rapid_resets_cost_little_and_leave_nothing() {
     let grown = daemon.memory_kib("VmHWM").saturating_sub(before);
     println!("{sent} requests reset: {grown} KiB at most");
     assert!(sent > 0);
-    // What was reset waits in the workers' queue, a few KiB each, until one looks at it and drops it.
+    // A request that was reset stays in the queue of the workers, a few KiB each, until one drops
+    // it.
     assert!(grown < 200 << 10, "{grown} KiB");
-    // Nothing of what they asked for is computed on.
+    // The daemon stops computing for them.
     until("the daemon is idle", || {
         let ticks = daemon.cpu_ticks_over(Duration::from_millis(300));
         (ticks <= 2).then_some(())
@@ -190,7 +190,7 @@ async fn rapid_resets_cost_little_and_leave_nothing() {
 }
 
 #[test]
-fn a_log_that_cannot_be_written_hurts_nobody() {
+fn a_log_that_cannot_be_written_stops_nothing() {
     let full = std::fs::File::options().write(true).open("/dev/full");
     let full = full.expect("Linux");
     let daemon = Daemon::logging_to(full, &["log.filter=trace", "limits.max_streams=1"]);

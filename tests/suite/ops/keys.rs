@@ -1,4 +1,4 @@
-//! Keys: who has none is not let in by either door, and each key may do what its entry says.
+//! API keys: REST and gRPC require one, and each has the limits of its entry.
 
 use std::{fs, path::Path, process::Output};
 
@@ -9,11 +9,10 @@ use strew::{
         stream_points_request::Amount,
     },
 };
+use strew_testkit::{http1, tables::write, wait::until};
 use tonic::{Code, Request};
 use tonic_health::pb::{HealthCheckRequest, health_client::HealthClient};
 use tonic_types::StatusExt as _;
-
-use strew_testkit::{http1, tables::write, wait::until};
 
 use crate::support::{
     daemon::{Daemon, PROFILE, strew, table, tables},
@@ -29,7 +28,7 @@ fn bearer(key: &str) -> String {
 }
 
 #[test]
-fn nobody_is_let_in_without_a_key_by_rest() {
+fn rest_requires_a_key() {
     let daemon = Daemon::start(&[&keys(&entry("a", "secret", ""))]);
     let address = daemon.address();
     for path in [
@@ -77,7 +76,7 @@ fn nobody_is_let_in_without_a_key_by_rest() {
     ] {
         let answer = http1::get(address, POINTS, headers);
         assert_eq!(answer.status, 200, "{}", answer.text());
-        // No cache may give it to others.
+        // Shared caches must not serve it to others.
         assert_eq!(answer.header("cache-control"), "private, max-age=300");
         let pinned = format!("{POINTS}&table={}", answer.header("strew-table"));
         let pinned = http1::get(address, &pinned, headers);
@@ -98,7 +97,7 @@ fn nobody_is_let_in_without_a_key_by_rest() {
     }
     let basic = http1::get(address, POINTS, &[("authorization", "Basic c2VjcmV0")]);
     assert_eq!(basic.status, 401);
-    // Pages of other origins may send one.
+    // Pages of other origins may send a key.
     let asks = [
         ("origin", "https://a.example"),
         ("access-control-request-method", "GET"),
@@ -110,7 +109,7 @@ fn nobody_is_let_in_without_a_key_by_rest() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn nobody_is_let_in_without_a_key_by_grpc() {
+async fn grpc_requires_a_key() {
     let daemon = Daemon::start(&[&keys(&entry("a", "secret", "max_points = 100"))]);
     let channel = daemon.channel().await;
     let mut client = PointServiceClient::new(channel.clone());
@@ -155,7 +154,7 @@ async fn nobody_is_let_in_without_a_key_by_grpc() {
         details.error_info().expect("details").metadata["limit"],
         "100"
     );
-    // Probes have no keys.
+    // Health checks need no key.
     let health = HealthClient::new(channel)
         .check(HealthCheckRequest::default())
         .await;
@@ -193,7 +192,7 @@ fn a_key_has_limits_of_its_own() {
     let others = [open("m"), open("m")];
     assert!(others.iter().all(|other| other.status == 200));
     drop(first);
-    until("the place is free", || {
+    until("the stream is free", || {
         (open("f").status == 200).then_some(())
     });
 }
@@ -205,7 +204,7 @@ fn new_key(arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn a_new_key_is_shown_once_and_its_entry_lets_it_in() {
+fn a_new_key_is_shown_once_and_its_entry_admits_it() {
     let limits = [
         "--max-points",
         "60",
@@ -216,10 +215,10 @@ fn a_new_key_is_shown_once_and_its_entry_lets_it_in() {
     ];
     let made = new_key(&[&["game", "--admin"], &limits[..]].concat());
     assert!(made.status.success());
-    let [entry, said] =
+    let [entry, message] =
         [made.stdout, made.stderr].map(|bytes| String::from_utf8(bytes).expect("text"));
-    let key = said.lines().last().expect("the key");
-    assert!(key.starts_with("strew_") && key.len() == 70, "{said}");
+    let key = message.lines().last().expect("the key");
+    assert!(key.starts_with("strew_") && key.len() == 70, "{message}");
     assert!(!entry.contains(key));
     for line in [
         "name = \"game\"",
@@ -253,7 +252,7 @@ fn a_new_key_is_shown_once_and_its_entry_lets_it_in() {
 }
 
 #[test]
-fn keys_come_and_go_while_the_daemon_serves() {
+fn keys_are_added_and_removed_while_the_daemon_serves() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("keys.toml");
     let write_keys = |text: &str| fs::write(&file, text).expect("writable");
@@ -265,8 +264,8 @@ fn keys_come_and_go_while_the_daemon_serves() {
     write_keys(&[entry("a", "one", ""), entry("b", "two", "")].concat());
     until("a key is added", || is_in("two").then_some(()));
     write_keys(&entry("b", "two", ""));
-    until("a key is taken back", || (!is_in("one")).then_some(()));
-    // What is not in order changes nothing.
+    until("a key is removed", || (!is_in("one")).then_some(()));
+    // An invalid file changes nothing.
     let daemon = Daemon::start(&[&setting, "tables.watch_seconds=0"]);
     let is_in = |key: &str| get_with_key(&daemon, POINTS, key).status == 200;
     for wrong in ["[[key]", "", "[[key]]\nname = 'a'\nhash = 'a'"] {
@@ -278,25 +277,25 @@ fn keys_come_and_go_while_the_daemon_serves() {
             "/v1/count?bbox=0,0,5,5&density=1&alpha=sqrt(3)&profile=new{}",
             wrong.len()
         );
-        until("it has been read", || {
+        until("the file has been read", || {
             (get_with_key(&daemon, &path, "two").status == 200).then_some(())
         });
         assert!(is_in("two") && !is_in("one"));
     }
     write_keys(&entry("a", "one", ""));
     daemon.signal("-HUP");
-    until("good ones are taken again", || is_in("one").then_some(()));
+    until("a valid file is applied", || is_in("one").then_some(()));
 }
 
 #[test]
-fn those_without_a_key_can_be_let_in_as_well() {
+fn anonymous_clients_can_be_admitted_as_well() {
     let entries = keys(&entry("a", "secret", ""));
     let daemon = Daemon::start(&[&entries, "access.anonymous=true"]);
     assert_eq!(daemon.get(POINTS).status, 200);
     assert_eq!(get_with_key(&daemon, POINTS, "secret").status, 200);
-    // A wrong key is an error of its own: whoever has one wants what it allows.
+    // A wrong key is an error even so: its owner expects the limits of the key.
     assert_eq!(get_with_key(&daemon, POINTS, "wrong").status, 401);
-    // Without keys, what is shown means nothing.
+    // A daemon without keys ignores those that clients present.
     let open = Daemon::start(&[]);
     assert_eq!(get_with_key(&open, POINTS, "anything").status, 200);
     assert_eq!(
@@ -306,7 +305,7 @@ fn those_without_a_key_can_be_let_in_as_well() {
 }
 
 #[test]
-fn a_daemon_does_not_start_on_keys_that_are_not_in_order() {
+fn a_daemon_does_not_start_with_invalid_access_settings() {
     let folder = tables();
     let absent = folder.path().join("absent.toml");
     let absent = format!("access.keys_file={}", absent.display());
@@ -341,8 +340,8 @@ fn a_daemon_does_not_start_on_keys_that_are_not_in_order() {
         ("rate.points_per_second=-1", "rate.points_per_second"),
         ("rate.max_clients=0", "rate.max_clients"),
     ] {
-        let (code, said) = start(setting, folder.path());
-        assert_eq!(code, Some(2), "{setting}: {said}");
-        assert!(said.contains(words), "{setting}: {said}");
+        let (code, message) = start(setting, folder.path());
+        assert_eq!(code, Some(2), "{setting}: {message}");
+        assert!(message.contains(words), "{setting}: {message}");
     }
 }

@@ -1,19 +1,23 @@
-//! Limits refuse before the first byte, and say what they are.
+//! Limits on points, rows, streams, requests, bodies and memory: each refuses before the first byte
+//! and names the limit.
 
-use std::{io::Write as _, net::TcpStream, sync::Arc};
+use std::{
+    io::{Read as _, Write as _},
+    net::TcpStream,
+    sync::Arc,
+};
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{
     StreamPointsRequest, point_service_client::PointServiceClient, stream_points_request::Amount,
 };
 use strew_core::{Placement, Region, Sampler, Seed, Spacing};
-use tonic::Code;
-use tonic_types::StatusExt as _;
-
 use strew_testkit::{
     http1::{self, read_to_close},
     wait::until,
 };
+use tonic::Code;
+use tonic_types::StatusExt as _;
 
 use crate::support::{
     daemon::{Daemon, PROFILE, table},
@@ -37,7 +41,7 @@ fn count(half: f64) -> u128 {
 async fn too_many_points_are_refused_with_the_exact_count_and_the_limit() {
     let daemon = Daemon::start(&["limits.max_points=1000"]);
     let mut client = PointServiceClient::new(daemon.channel().await);
-    // The last holds more points than 64 bits can count.
+    // The last one holds more points than fit into 64 bits.
     for half in [20.0, 1e5, 1e14] {
         let (count, path) = (
             count(half).to_string(),
@@ -80,7 +84,7 @@ async fn too_many_points_are_refused_with_the_exact_count_and_the_limit() {
 }
 
 #[test]
-fn more_streams_than_allowed_are_asked_to_wait() {
+fn too_many_streams_are_refused_with_a_time_to_retry() {
     let daemon = Daemon::start(&["limits.max_streams=2"]);
     let path = long("f32");
     let open = || http1::open(daemon.address(), "GET", &path, &[]);
@@ -91,11 +95,13 @@ fn more_streams_than_allowed_are_asked_to_wait() {
     assert_eq!(third.header("retry-after"), "1");
     assert_eq!(third.json()["limit"], 2);
     drop(first);
-    until("a place is free", || (open().status == 200).then_some(()));
+    until("there is room again", || {
+        (open().status == 200).then_some(())
+    });
 }
 
 #[test]
-fn heads_are_bounded_in_size_and_time() {
+fn request_heads_are_bounded_in_size_and_time() {
     let daemon = Daemon::start(&[
         "server.max_header_bytes=8192",
         "server.header_read_timeout_seconds=0.2",
@@ -107,7 +113,7 @@ fn heads_are_bounded_in_size_and_time() {
     let mut slow = http1::connect(daemon.address()).expect("connected");
     slow.write_all(b"GET /livez HTTP/1.1\r\nhost")
         .expect("sent");
-    // Closed by the daemon, with or without a word.
+    // The daemon closes the connection, with or without an answer.
     assert!(!read_to_close(slow).starts_with("HTTP/1.1 200"));
 }
 
@@ -127,11 +133,12 @@ fn bodies_are_read_up_to_a_limit() {
         check_refusal(&refused.json());
         assert_eq!(refused.header("content-type"), "application/problem+json");
     }
-    // What says how long it is need not be sent.
-    let stream = announce(&daemon, "/v1/count", ("content-length", "100000000000"));
-    let text = read_to_close(stream);
+    // A body that announces its length is refused before it is sent.
+    let mut stream = announce(&daemon, "/v1/count", ("content-length", "100000000000"));
+    let mut text = String::new();
+    stream.read_to_string(&mut text).expect("an answer");
     assert!(text.starts_with("HTTP/1.1 413"), "{text}");
-    // What does not say it is read as far as the limit.
+    // A chunked body is read as far as the limit.
     let mut stream = announce(&daemon, "/v1/count", ("transfer-encoding", "chunked"));
     let piece = String::from_utf8(body(1500)).expect("UTF-8");
     write!(stream, "5dc\r\n{piece}\r\n5dc\r\n{piece}\r\n").expect("sent");
@@ -141,7 +148,7 @@ fn bodies_are_read_up_to_a_limit() {
     check_refusal(&serde_json::from_str(problem).expect("JSON"));
 }
 
-/// Sends the head of a POST, which announces a body.
+/// Sends the head of a POST with a header that announces a body.
 fn announce(daemon: &Daemon, path: &str, header: (&str, &str)) -> TcpStream {
     http1::send(daemon.address(), "POST", path, &[header], None).expect("sent")
 }
@@ -153,7 +160,7 @@ fn check_refusal(problem: &Value) {
 }
 
 #[test]
-fn what_would_take_too_long_to_count_is_refused_at_once() {
+fn queries_with_too_many_rows_are_refused_at_once() {
     let daemon = Daemon::start(&["limits.max_rows=1000", "limits.max_points=1000000"]);
     let ring = |ring: Value| json!({ "polygon": { "type": "Polygon", "coordinates": [ring] } });
     let stripes: Vec<Value> = (0..200)
@@ -173,21 +180,21 @@ fn what_would_take_too_long_to_count_is_refused_at_once() {
         let narrow = json!({ "region": region, "spacing": 40 });
         assert_eq!(daemon.post("/v1/count", &narrow).status, 200, "{narrow}");
     }
-    // Points that keep clear of others are looked at one by one.
+    // Points that keep clear of others are checked one by one.
     let layers = json!({ "region": { "bbox": [0, 0, 90, 90] }, "layers": [
         { "name": "a", "spacing": 1 },
         { "name": "b", "spacing": 1, "seed": 3, "warp": "off", "clear_of": { "a": 0.5 } },
     ] });
     let answer = daemon.post("/v1/count", &layers);
     assert_eq!(answer.json()["type"], "urn:strew:problem:too-many-rows");
-    // A comb: few rows, but points beside each of its many edges are compared with all of them.
+    // A comb: few rows, but points near each of its many edges are compared with all edges.
     let tip = |i: u32| [f64::from(i) * 0.01, f64::from(i % 2) * 0.2];
     let comb: Vec<[f64; 2]> = (0..3000).map(tip).chain([[15.0, -1.0]]).collect();
     let other = Daemon::start(&["limits.max_rows=2000"]);
     let body = json!({ "region": ring(json!(comb)), "spacing": 1 });
     let answer = other.post("/v1/count", &body);
     assert_eq!(answer.json()["type"], "urn:strew:problem:too-many-rows");
-    // Nothing is in it at any spacing, so the search for one has to end somewhere.
+    // No spacing puts points on a line, so the search for one must end somewhere.
     let line = json!({ "region": ring(json!([[0, 0], [9, 9], [18, 18]])), "count": 10 });
     assert_fault(
         &daemon.post("/v1/count", &line),
@@ -198,7 +205,7 @@ fn what_would_take_too_long_to_count_is_refused_at_once() {
 }
 
 #[test]
-fn more_requests_than_allowed_are_asked_to_wait_and_probes_are_not() {
+fn too_many_requests_are_refused_with_a_time_to_retry_and_probes_are_not() {
     let daemon = Daemon::start(&[
         MANY_ROWS,
         "server.first_byte_seconds=3600",
@@ -206,16 +213,11 @@ fn more_requests_than_allowed_are_asked_to_wait_and_probes_are_not() {
     ]);
     let mut slow = vec![];
     let small = "/v1/points?bbox=0,0,5,5&density=1&profile=test";
-    let refused = until("two are under way", || {
-        // The small one may have had the place that this one needed.
+    let refused = until("two requests are in progress", || {
+        // The small request may have taken the place of the slow one.
         let body = Some(SLOW.as_bytes());
-        slow.push(http1::send(
-            daemon.address(),
-            "POST",
-            "/v1/count",
-            &[],
-            body,
-        ));
+        let sent = http1::send(daemon.address(), "POST", "/v1/count", &[], body);
+        slow.push(sent.expect("sent"));
         let answer = daemon.get(small);
         (answer.status != 200).then_some(answer)
     });
@@ -225,23 +227,25 @@ fn more_requests_than_allowed_are_asked_to_wait_and_probes_are_not() {
     assert_eq!(daemon.get("/livez").status, 200);
     assert_eq!(daemon.get("/readyz").status, 200);
     drop(slow);
-    until("a place is free", || {
+    until("there is room again", || {
         (daemon.get(small).status == 200).then_some(())
     });
 }
 
 #[test]
-fn what_bodies_and_streams_hold_is_bounded() {
-    // Room for what one request may need: 28 MB, of which a stream takes 3.
+fn the_memory_of_bodies_and_streams_is_bounded() {
+    // Room for the most that one request may need: 28 MB, of which a stream takes 3.
     let daemon = Daemon::start(&["limits.max_bytes_in_flight=28000000"]);
     let body = vec![b' '; 4_000_000];
-    let send = |length: usize| {
-        let announced = ("content-length", "4000000");
-        let mut stream = announce(&daemon, "/v1/points:query", announced);
-        stream.write_all(&body[..length]).expect("sent");
-        stream
-    };
-    let waiting: Vec<TcpStream> = (0..5).map(|_| send(body.len() - 1)).collect();
+    let announced = ("content-length", "4000000");
+    let announce = || announce(&daemon, "/v1/points:query", announced);
+    let waiting: Vec<TcpStream> = (0..5)
+        .map(|_| {
+            let mut stream = announce();
+            stream.write_all(&body[1..]).expect("sent");
+            stream
+        })
+        .collect();
     let path = long("f32");
     let open = || http1::open(daemon.address(), "GET", &path, &[]);
     let mut streams = vec![];
@@ -261,11 +265,13 @@ fn what_bodies_and_streams_hold_is_bounded() {
     let (problem, _) = refused.finish();
     let problem: Value = serde_json::from_slice(&problem).expect("JSON");
     assert_eq!(problem["limit"], 28_000_000);
-    // A sixth body has no room either.
-    let said = read_to_close(send(body.len()));
+    // There is no room for a sixth body either: the daemon may hang up before it is sent.
+    let mut sixth = announce();
+    let _ = sixth.write_all(&body);
+    let response = read_to_close(sixth);
     assert!(
-        said.starts_with("HTTP/1.1 503") || said.is_empty(),
-        "{said}"
+        response.starts_with("HTTP/1.1 503") || response.is_empty(),
+        "{response}"
     );
     for stream in &mut streams {
         assert!(stream.skip(1 << 16).expect("it goes on") > 0);

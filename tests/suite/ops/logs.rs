@@ -1,21 +1,20 @@
-//! The log: a line a request, with names that are the client's where they may be.
+//! The log: one line for each request, with the client's ids where they are valid.
 
 use serde_json::Value;
-
 use strew_testkit::http1;
 
 use crate::support::daemon::Daemon;
 
-/// The next line of the log with a word in it, which must be JSON.
-fn json_line(daemon: &Daemon, word: &str) -> Value {
-    let line = daemon.log_line(word);
+/// The next line of the log that contains `part`, which must be JSON.
+fn json_line(daemon: &Daemon, part: &str) -> Value {
+    let line = daemon.log_line(part);
     serde_json::from_str(&line).unwrap_or_else(|e| panic!("{line}: {e}"))
 }
 
 const POINTS: &str = "/v1/points?bbox=0,0,20,20&density=1&profile=test&format=csv";
 
 #[test]
-fn every_request_has_a_line_with_what_was_done() {
+fn every_request_is_logged_with_its_outcome() {
     let daemon = Daemon::with_log(&["log.format=json"]);
     let trace = "4bf92f3577b34da6a3ce929d0e0e4736";
     let parent = format!("00-{trace}-00f067aa0ba902b7-01");
@@ -44,7 +43,7 @@ fn every_request_has_a_line_with_what_was_done() {
         line.get("broken").is_none() && line.get("reason").is_none(),
         "{line}"
     );
-    // An id that would mangle the log is replaced, a trace out of order left out.
+    // An id that would garble the log is replaced; an invalid trace is left out.
     let headers = [
         ("x-request-id", "a\" level=\"x"),
         ("traceparent", "00-0-0-0"),
@@ -57,7 +56,7 @@ fn every_request_has_a_line_with_what_was_done() {
 }
 
 #[test]
-fn errors_say_what_they_are_called_in_the_log() {
+fn errors_and_their_lines_share_a_request_id() {
     let daemon = Daemon::with_log(&["log.format=json"]);
     for (path, reason) in [
         ("/v1/points?bbox=0", Some("invalid-query")),
@@ -90,13 +89,13 @@ fn errors_say_what_they_are_called_in_the_log() {
 }
 
 #[test]
-fn lines_for_people_name_requests_too_and_probes_are_quiet() {
+fn text_lines_have_request_ids_and_probes_are_not_logged() {
     let daemon = Daemon::with_log(&[]);
     for path in ["/livez", "/readyz", "/metrics"] {
         assert_eq!(http1::get(daemon.address(), path, &[]).status, 200);
     }
     http1::get(daemon.address(), POINTS, &[("x-request-id", "mine-8")]);
-    // The first line of the kind is not that of a probe.
+    // The first access line is not that of a probe.
     let line = daemon.log_line("strew::access");
     assert!(
         line.contains("INFO") && line.contains("request_id=\"mine-8\""),

@@ -1,9 +1,9 @@
-//! `/metrics`: what is counted is what was done, and names stay few.
+//! `/metrics`: requests, points and bytes are counted exactly, and the number of samples is
+//! bounded.
 
 use strew::grpc::proto::{
     StreamPointsRequest, point_service_client::PointServiceClient, stream_points_request::Amount,
 };
-
 use strew_testkit::{http1, wait::until};
 
 use crate::support::{
@@ -15,7 +15,7 @@ use crate::support::{
 const POINTS: &str = "/v1/points?bbox=0,0,20,20&density=1&profile=test&format=";
 
 #[test]
-fn requests_points_and_bytes_are_counted_by_door_and_format() {
+fn requests_points_and_bytes_are_counted_by_protocol_and_format() {
     let daemon = Daemon::start(&[]);
     let csv = daemon.get(&format!("{POINTS}csv"));
     let packed = daemon.get(&format!("{POINTS}f32"));
@@ -69,7 +69,7 @@ fn requests_points_and_bytes_are_counted_by_door_and_format() {
         let all = [labels[0], labels[1], "le=\"+Inf\""];
         assert_eq!(of(&format!("{histogram}_bucket"), &all), 1.0);
     }
-    // The one that asks is being answered.
+    // The request for the metrics itself.
     assert_eq!(of("strew_requests_in_flight", &["rest"]), 1.0);
     assert_eq!(of("strew_sampler_cache_misses_total", &[]), 1.0);
     assert_eq!(of("strew_sampler_cache_hits_total", &[]), 2.0);
@@ -92,7 +92,7 @@ async fn calls_are_counted_by_method_and_code() {
         .await
         .expect_err("empty");
     assert_eq!(status.code(), tonic::Code::InvalidArgument);
-    // By pages' way of calling, too, where the code stands in the body.
+    // Over gRPC-Web, too, where the code is in the body.
     let empty_call = [("content-type", "application/grpc-web+proto")];
     let path = "/strew.v1.PointService/CountPoints";
     http1::post(daemon.address(), path, &empty_call, &[0; 5]);
@@ -115,7 +115,7 @@ async fn calls_are_counted_by_method_and_code() {
 }
 
 #[test]
-fn what_made_up_names_add_is_bounded() {
+fn made_up_names_add_few_samples() {
     let daemon = Daemon::start(&[]);
     let ask = |i: u32| {
         let method = format!("M{i}");
@@ -133,25 +133,25 @@ fn what_made_up_names_add_is_bounded() {
 }
 
 #[test]
-fn readers_that_go_away_are_told_from_whole_answers() {
+fn broken_answers_are_counted_apart() {
     let daemon = Daemon::start(&[]);
     let long = "/v1/points?bbox=0,0,20000,20000&density=1&profile=test&format=f32";
     let mut reader = http1::open(daemon.address(), "GET", long, &[]);
     assert!(reader.skip(1).expect("a byte") > 0);
     assert_eq!(sum(&samples(&daemon), "strew_streams_in_flight", &[]), 1.0);
     drop(reader);
-    let samples = until("the reader is missed", || {
+    let samples = until("the broken answer is counted", || {
         let samples = samples(&daemon);
         let gone = sum(&samples, "strew_broken_total", &["by=\"client\""]);
         (gone == 1.0).then_some(samples)
     });
-    // What was made until then is counted, and no more.
+    // The points made until then are counted, and no more.
     let points = sum(&samples, "strew_points_total", &["format=\"f32\""]);
     assert!(points > 0.0 && points < 3e8, "{points}");
 }
 
 #[test]
-fn what_is_loaded_and_runs_is_told() {
+fn tables_version_and_process_are_exported() {
     let daemon = Daemon::start(&["tables.embedded=false"]);
     let samples = samples(&daemon);
     let tables: Vec<_> = samples
@@ -178,13 +178,13 @@ fn what_is_loaded_and_runs_is_told() {
 }
 
 #[test]
-fn they_can_be_switched_off() {
+fn metrics_can_be_switched_off() {
     let daemon = Daemon::start(&["metrics.enabled=false"]);
     assert_eq!(daemon.get("/metrics").status, 404);
 }
 
 #[test]
-fn tables_read_again_are_counted() {
+fn reloads_are_counted() {
     let daemon = Daemon::start(&[]);
     daemon.signal("-HUP");
     until("the signal is counted", || {

@@ -1,4 +1,7 @@
-//! Ops.
+//! Running the daemon: starting, reloading and stopping it; who may use it and how much (keys,
+//! administrators, rates, limits, timeouts, TLS); what it withstands (connections, hostile clients,
+//! panics, long streams, a replica that fails); and what it reports (logs, metrics, spans).
+
 mod admin;
 mod connections;
 mod hostile_clients;

@@ -1,4 +1,4 @@
-//! What keeps mistakes small: headers for browsers, panics that stay one request's, warnings.
+//! Panics: they fail one request, which gets an internal error without details of the source.
 
 use std::net::TcpListener;
 
@@ -7,13 +7,13 @@ use strew::{config::Layers, ops::App};
 use strew_testkit::http1;
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_panic_stays_one_requests() {
+async fn a_panic_fails_one_request_only() {
     let mut layers = Layers::new().expect("the defaults");
     for setting in ["server.listen=127.0.0.1:0", "shutdown.drain_seconds=1"] {
         layers = layers.assignment(setting).expect("a setting");
     }
     async fn panics() -> &'static str {
-        panic!("as asked for: a secret of the source")
+        panic!("a secret of the source")
     }
     let routes = Router::new().route("/panics", routing::any(panics));
     let app = App::new(layers.finish().expect("settings"))
@@ -25,7 +25,7 @@ async fn a_panic_stays_one_requests() {
     let running = tokio::spawn(app.run(listener, async move {
         let _ = stopped.await;
     }));
-    let asked = tokio::task::spawn_blocking(move || {
+    let requests = tokio::task::spawn_blocking(move || {
         for _ in 0..3 {
             let answer = http1::get(address, "/panics", &[]);
             assert_eq!(answer.status, 500, "{}", answer.text());
@@ -38,7 +38,7 @@ async fn a_panic_stays_one_requests() {
         assert_eq!(answer.header("grpc-status"), "13", "INTERNAL");
         assert_eq!(http1::get(address, "/livez", &[]).status, 200);
     });
-    asked.await.expect("in order");
+    requests.await.expect("no panic");
     let _ = stop.send(());
-    running.await.expect("no panic").expect("in order");
+    running.await.expect("no panic").expect("stopped");
 }

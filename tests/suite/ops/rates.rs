@@ -1,12 +1,11 @@
-//! Rates: each client takes points no faster than it may, and is told when there will be more.
+//! Rates: each client gets points no faster than it may, and learns when to retry.
 
 use strew::grpc::proto::{
     StreamPointsRequest, point_service_client::PointServiceClient, stream_points_request::Amount,
 };
+use strew_testkit::{http1, wait::until};
 use tonic::Code;
 use tonic_types::StatusExt as _;
-
-use strew_testkit::{http1, wait::until};
 
 use crate::support::{
     daemon::{Daemon, PROFILE},
@@ -16,7 +15,7 @@ use crate::support::{
 
 /// About 400 points.
 const POINTS: &str = "/v1/points?bbox=0,0,20,20&density=1&profile=test&format=csv";
-/// Slow enough for a test to take no notice.
+/// So slow that no points return during a test.
 const SLOW: &str = "rate.points_per_second=0.01";
 const BURST: &str = "rate.burst_points=1000";
 
@@ -31,7 +30,7 @@ fn left(answer: &http1::Answer) -> u64 {
 }
 
 #[test]
-fn who_takes_points_too_fast_is_told_when_there_will_be_more() {
+fn a_client_above_its_rate_gets_429_and_a_time_to_retry() {
     let daemon = Daemon::start(&[SLOW, BURST]);
     let first = daemon.get(POINTS);
     assert_eq!(first.status, 200);
@@ -41,9 +40,9 @@ fn who_takes_points_too_fast_is_told_when_there_will_be_more() {
         first.header("ratelimit-policy"),
         "\"points\";q=1000;w=100000"
     );
-    // The request itself costs one.
+    // The request itself costs one point.
     assert_eq!(left(&first), 1000 - 1 - count);
-    // What gives no points costs no more than that.
+    // A request that returns no points costs no more than that.
     let head = http1::open(daemon.address(), "HEAD", POINTS, &[]);
     assert_eq!(head.status, 200);
     let tag = first.header("etag");
@@ -69,7 +68,7 @@ fn who_takes_points_too_fast_is_told_when_there_will_be_more() {
     );
     let seconds: f64 = refused.header("retry-after").parse().expect("a number");
     assert_eq!(seconds, wait.ceil());
-    // Fewer points are still to be had, and probes are never counted.
+    // A smaller query still fits; probes are free.
     assert_eq!(daemon.get("/v1/points?bbox=0,0,5,5&density=1").status, 200);
     assert_eq!(daemon.get("/livez").header("ratelimit"), "");
 }
@@ -77,7 +76,7 @@ fn who_takes_points_too_fast_is_told_when_there_will_be_more() {
 #[test]
 fn points_come_back_with_time() {
     let daemon = Daemon::start(&["rate.points_per_second=2000", "rate.burst_points=450"]);
-    until("it is too fast", || {
+    until("the rate is exceeded", || {
         (daemon.get(POINTS).status == 429).then_some(())
     });
     until("there are points again", || {
@@ -86,7 +85,7 @@ fn points_come_back_with_time() {
 }
 
 #[test]
-fn more_than_the_burst_is_let_through_after_a_rest_and_paid_back() {
+fn a_query_above_the_burst_is_answered_once_and_paid_back() {
     let daemon = Daemon::start(&[SLOW, "rate.burst_points=100"]);
     let first = daemon.get(POINTS);
     assert_eq!(first.status, 200, "{}", first.text());
@@ -95,13 +94,13 @@ fn more_than_the_burst_is_let_through_after_a_rest_and_paid_back() {
     assert_eq!(debt.json()["left"], 0);
     let daemon = Daemon::start(&["rate.points_per_second=1000", "rate.burst_points=100"]);
     assert_eq!(daemon.get(POINTS).status, 200);
-    until("it is paid back", || {
+    until("the debt is paid back", || {
         (daemon.get(POINTS).status == 200).then_some(())
     });
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn grpc_says_when_to_come_back() {
+async fn grpc_returns_a_retry_delay() {
     let daemon = Daemon::start(&[SLOW, BURST]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let request = || StreamPointsRequest {
@@ -125,7 +124,7 @@ async fn grpc_says_when_to_come_back() {
         .retry_delay
         .expect("a time");
     assert!((1000..100_000).contains(&wait.as_secs()), "{wait:?}");
-    // Both doors count together.
+    // REST and gRPC share the rate.
     assert_eq!(daemon.get(POINTS).status, 429);
 }
 
@@ -137,7 +136,7 @@ fn a_key_has_a_rate_of_its_own() {
     let statuses = |key: &str| [0; 4].map(|_| get_with_key(&daemon, POINTS, key).status);
     assert_eq!(statuses("s"), [200, 429, 429, 429]);
     assert_eq!(statuses("f"), [200; 4]);
-    // Keys without one have the common one, each for itself.
+    // Keys without a rate have the default one, each for itself.
     let entries = [entry("a", "a", ""), entry("b", "b", "")].concat();
     let daemon = Daemon::start(&[&keys(&entries), SLOW, "rate.burst_points=500"]);
     let statuses = |key: &str| [0; 2].map(|_| get_with_key(&daemon, POINTS, key).status);
@@ -146,7 +145,7 @@ fn a_key_has_a_rate_of_its_own() {
 }
 
 #[test]
-fn addresses_behind_trusted_proxies_count_for_themselves() {
+fn clients_behind_a_trusted_proxy_have_rates_of_their_own() {
     let from = |daemon: &Daemon, client: &str| {
         http1::get(daemon.address(), POINTS, &[("x-forwarded-for", client)]).status
     };
@@ -155,7 +154,7 @@ fn addresses_behind_trusted_proxies_count_for_themselves() {
     assert_eq!(from(&daemon, "192.0.2.1"), 200);
     assert_eq!(from(&daemon, "192.0.2.1"), 429);
     assert_eq!(from(&daemon, "192.0.2.2"), 200);
-    // What a client writes itself stands before what the proxy writes.
+    // The proxy appends to what a client sends itself.
     assert_eq!(from(&daemon, "198.51.100.7, 192.0.2.2"), 429);
     let alone = Daemon::start(&[SLOW, burst]);
     assert_eq!(from(&alone, "192.0.2.1"), 200);

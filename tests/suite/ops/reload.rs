@@ -1,10 +1,9 @@
-//! Tables that change under a running daemon: good ones are served, bad ones refused, answers under
-//! way end as they began.
+//! Tables that change while the daemon runs: good ones are served, bad ones refused, and streams
+//! end with the table they began with.
 
 use std::{fs, path::Path};
 
 use strew_core::Table;
-
 use strew_testkit::{
     http1,
     tables::{random, write},
@@ -30,15 +29,15 @@ fn other() -> Table {
     .expect("valid")
 }
 
-/// Puts a file in its place in one step, as careful people do.
+/// Replaces a file atomically.
 fn replace(folder: &Path, name: &str, bytes: &[u8]) {
     let new = folder.join(format!("{name}.new"));
     fs::write(&new, bytes).expect("writable");
     fs::rename(new, folder.join(name)).expect("renamed");
 }
 
-/// A daemon that only reads its tables again when told to.
-fn patient() -> Daemon {
+/// A daemon that reloads its tables only on a signal.
+fn unwatched() -> Daemon {
     Daemon::start(&["tables.watch_seconds=0"])
 }
 
@@ -59,8 +58,8 @@ fn has_profile(daemon: &Daemon, profile: &str) -> bool {
 }
 
 #[test]
-fn a_signal_takes_new_changed_and_removed_tables() {
-    let daemon = patient();
+fn a_signal_applies_new_changed_and_removed_tables() {
+    let daemon = unwatched();
     let before = daemon.get(POINTS);
     assert!(!has_profile(&daemon, "added"));
     replace(daemon.folder(), "a.strew", &other().to_bytes());
@@ -76,7 +75,7 @@ fn a_signal_takes_new_changed_and_removed_tables() {
     let after = daemon.get(POINTS);
     assert_ne!(after.body, before.body);
     assert_ne!(after.header("etag"), before.header("etag"));
-    // And back: nothing of the table in between is left.
+    // And back: nothing is left of the table in between.
     replace(
         daemon.folder(),
         "a.strew",
@@ -94,7 +93,7 @@ fn a_change_of_the_folder_is_noticed() {
     replace(daemon.folder(), "a.strew", &other().to_bytes());
     until_served(&daemon, &other());
     assert_ne!(digest(&daemon), first);
-    // A file of its own takes the place of a built-in table, and gives it back.
+    // A file overrides a built-in table for as long as it exists.
     let built_in = |daemon: &Daemon| {
         let answer = daemon.get("/v1/points?bbox=0,0,5,5&density=1&map=s");
         answer.header("strew-table").to_owned()
@@ -113,8 +112,8 @@ fn a_change_of_the_folder_is_noticed() {
 }
 
 #[test]
-fn a_bad_file_is_refused_alone_and_its_table_serves_on() {
-    let daemon = patient();
+fn a_bad_file_is_refused_and_the_table_before_serves_on() {
+    let daemon = unwatched();
     let before = daemon.get(POINTS);
     let good = table(ALPHA, PROFILE).to_bytes();
     let mut flipped = good.clone();
@@ -127,9 +126,9 @@ fn a_bad_file_is_refused_alone_and_its_table_serves_on() {
     ];
     for (name, bytes) in damages {
         replace(daemon.folder(), "a.strew", bytes);
-        // A second table for the queries of one that serves is no better.
+        // A second table for the same queries is refused, too.
         write(daemon.folder(), "z.strew", &table("sqrt(3)", PROFILE));
-        // The good one beside them shows when they have been read.
+        // A good table shows when the folder has been read.
         write(daemon.folder(), "good.strew", &table(ALPHA, name));
         daemon.signal("-HUP");
         until("the good one is served", || {
@@ -145,7 +144,7 @@ fn a_bad_file_is_refused_alone_and_its_table_serves_on() {
         assert_eq!(after.body, before.body, "{name}");
         assert_eq!(daemon.get(&format!("{POINTS}&alpha=sqrt(3)")).status, 200);
     }
-    // A folder that cannot be read takes nothing away either.
+    // A folder that cannot be read removes no table.
     let hidden = daemon.folder().with_extension("hidden");
     fs::rename(daemon.folder(), &hidden).expect("renamed");
     daemon.signal("-HUP");
@@ -157,8 +156,8 @@ fn a_bad_file_is_refused_alone_and_its_table_serves_on() {
 }
 
 #[test]
-fn a_stream_under_way_ends_on_the_table_it_began_with() {
-    let daemon = patient();
+fn a_stream_ends_with_the_table_it_began_with() {
+    let daemon = unwatched();
     let path = "/v1/points?bbox=0,0,2000,2000&density=1&profile=test&format=f64";
     let whole = daemon.get(path);
     assert_eq!(
@@ -172,13 +171,16 @@ fn a_stream_under_way_ends_on_the_table_it_began_with() {
     until_served(&daemon, &other());
     let (body, complete) = reader.finish();
     assert!(complete);
-    assert!(body == whole.body, "it is the same stream to the last byte");
-    assert!(daemon.get(path).body != whole.body, "and a new one is not");
+    assert!(body == whole.body, "the stream changed");
+    assert!(
+        daemon.get(path).body != whole.body,
+        "a new answer is the old one"
+    );
 }
 
 #[test]
-fn who_pinned_the_replaced_table_is_told_so() {
-    let daemon = patient();
+fn a_pin_of_a_replaced_table_is_a_conflict() {
+    let daemon = unwatched();
     let first = daemon.get(&format!("{POINTS}&limit=10"));
     let (pinned, cursor) = (first.header("strew-table"), first.header("strew-next"));
     replace(daemon.folder(), "a.strew", &other().to_bytes());
@@ -191,7 +193,7 @@ fn who_pinned_the_replaced_table_is_told_so() {
     assert_eq!(problem["loaded"], other().digest().to_string());
     let loaded = format!("{POINTS}&table={}", other().digest());
     assert_eq!(daemon.get(&loaded).status, 200);
-    // A cursor belongs to its table, too.
+    // A cursor belongs to its table.
     let stale = daemon.get(&format!("{POINTS}&cursor={cursor}"));
     assert_eq!(stale.status, 400, "{}", stale.text());
     assert!(stale.text().contains("cursor"), "{}", stale.text());

@@ -1,4 +1,4 @@
-//! Stopping: not ready first, then no new connections, then an end to what is still open.
+//! Stopping: first not ready, then no new connections, then an end of open streams.
 
 use std::{
     net::TcpStream,
@@ -6,9 +6,8 @@ use std::{
 };
 
 use strew::grpc::proto::point_service_client::PointServiceClient;
-use tonic::Code;
-
 use strew_testkit::{http1, wait::until};
+use tonic::Code;
 
 use crate::support::{
     daemon::Daemon,
@@ -17,7 +16,7 @@ use crate::support::{
 };
 
 #[test]
-fn an_idle_daemon_ends_at_once_and_well() {
+fn an_idle_daemon_exits_at_once_with_success() {
     let mut daemon = Daemon::start(&[]);
     assert_eq!(daemon.get("/readyz").status, 200);
     daemon.terminate();
@@ -27,10 +26,10 @@ fn an_idle_daemon_ends_at_once_and_well() {
 }
 
 #[test]
-fn not_ready_comes_first_and_requests_are_still_answered() {
+fn readiness_ends_first_and_requests_are_still_answered() {
     let mut daemon = Daemon::start(&["shutdown.notice_seconds=2"]);
     daemon.terminate();
-    until("readyz says no", || {
+    until("the daemon is not ready", || {
         (daemon.get("/readyz").status == 503).then_some(())
     });
     assert_eq!(daemon.get("/livez").status, 200);
@@ -40,42 +39,42 @@ fn not_ready_comes_first_and_requests_are_still_answered() {
 }
 
 #[test]
-fn a_stream_that_ends_in_time_is_whole() {
+fn a_stream_that_ends_in_time_is_complete() {
     let mut daemon = Daemon::start(&["shutdown.drain_seconds=300"]);
     let path = "/v1/points?bbox=0,0,1500,1500&density=1&profile=test&format=ndjson";
     let mut reader = http1::open(daemon.address(), "GET", path, &[]);
     assert!(reader.skip(1).expect("a byte") > 0);
     daemon.terminate();
-    until("no connection is taken", || {
+    until("no connection is accepted", || {
         TcpStream::connect(daemon.address()).err()
     });
     let (body, is_complete) = reader.finish();
-    assert!(is_complete, "the last chunk is there");
+    assert!(is_complete, "the stream broke off");
     let text = String::from_utf8(body).expect("UTF-8");
     assert!(text.ends_with("}\n") && text.contains("\"summary\""));
     assert_eq!(daemon.wait().code(), Some(0));
 }
 
 #[test]
-fn a_stream_that_does_not_end_in_time_breaks_visibly() {
+fn a_stream_that_does_not_end_in_time_is_incomplete() {
     let mut daemon = Daemon::start(&["shutdown.drain_seconds=0.3"]);
     let open = |format: &str| http1::open(daemon.address(), "GET", &long(format), &[]);
     let readers = [open("ndjson"), open("f32"), open("json")];
-    // One that never reads on must not hold up the end either.
+    // A reader that never reads on must not delay the end.
     let _stuck = open("f64");
     let threads = readers.map(|reader| std::thread::spawn(move || reader.drain()));
     daemon.terminate();
     let start = Instant::now();
     assert_eq!(daemon.wait().code(), Some(0));
-    assert!(start.elapsed() < Duration::from_secs(5), "bounded");
+    assert!(start.elapsed() < Duration::from_secs(5));
     for thread in threads {
         let complete = thread.join().expect("no panic");
-        assert!(!complete, "the reader sees that it is not complete");
+        assert!(!complete, "the answer looks complete");
     }
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_grpc_stream_breaks_with_a_status() {
+async fn a_grpc_stream_that_does_not_end_in_time_gets_a_status() {
     let mut daemon = Daemon::start(&["shutdown.drain_seconds=0.3"]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let mut stream = client

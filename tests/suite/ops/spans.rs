@@ -1,4 +1,4 @@
-//! Spans of requests, as a collector gets them.
+//! Spans of requests, as an OpenTelemetry collector receives them.
 
 use std::{
     net::{SocketAddr, TcpListener},
@@ -15,15 +15,14 @@ use opentelemetry_proto::tonic::{
     trace::v1::{Span, span::SpanKind, status::StatusCode},
 };
 use strew::grpc::proto::{ListProfilesRequest, point_service_client::PointServiceClient};
-use tonic::{
-    Request, Response, Status,
-    transport::{Identity, Server, ServerTlsConfig, server::TcpIncoming},
-};
-
 use strew_testkit::{
     certificates::Authority,
     http1,
     wait::{PATIENCE, until},
+};
+use tonic::{
+    Request, Response, Status,
+    transport::{Identity, Server, ServerTlsConfig, server::TcpIncoming},
 };
 
 use crate::support::{
@@ -31,7 +30,7 @@ use crate::support::{
     metrics::{samples, sum},
 };
 
-/// A collector that passes on what it gets.
+/// A collector that passes on what it receives.
 struct Collector {
     address: SocketAddr,
     got: mpsc::Receiver<ExportTraceServiceRequest>,
@@ -47,7 +46,7 @@ impl TraceService for Passing {
         request: Request<ExportTraceServiceRequest>,
     ) -> Result<Response<ExportTraceServiceResponse>, Status> {
         let passed = self.0.send(request.into_inner());
-        passed.map_err(|_| Status::unavailable("nobody listens"))?;
+        passed.map_err(|_| Status::unavailable("no receiver"))?;
         Ok(Response::new(ExportTraceServiceResponse::default()))
     }
 }
@@ -79,7 +78,7 @@ impl Collector {
         }
     }
 
-    /// The spans of the next message, with the name of the service that they are of.
+    /// The spans of the next message, each with the name of its service.
     fn next(&self) -> Vec<(String, Span)> {
         let message = self.got.recv_timeout(PATIENCE).expect("a message");
         let mut spans = vec![];
@@ -123,7 +122,7 @@ const PARENT: &str = "00f067aa0ba902b7";
 const QUERY: &str = "bbox=0,0,10,10&spacing=1&format=csv";
 
 #[tokio::test(flavor = "multi_thread")]
-async fn requests_are_sent_as_spans_of_the_traces_they_belong_to() {
+async fn requests_become_spans_of_their_traces() {
     let collector = tokio::task::spawn_blocking(|| Collector::start(None));
     let collector = collector.await.expect("started");
     let endpoint = format!("telemetry.otlp_endpoint=http://{}", collector.address);
@@ -134,7 +133,7 @@ async fn requests_are_sent_as_spans_of_the_traces_they_belong_to() {
         let headers = [("traceparent", &*parent), ("x-request-id", "tile-7")];
         http1::get(daemon.address(), path, &headers)
     };
-    // Neither a trace that is not kept nor a probe is sent.
+    // Neither an unsampled trace nor a probe is sent.
     assert_eq!(get(&points, "00").status, 200);
     assert_eq!(get("/readyz", "01").status, 200);
     let answer = get(&points, "01");
@@ -144,7 +143,7 @@ async fn requests_are_sent_as_spans_of_the_traces_they_belong_to() {
         .list_profiles(ListProfilesRequest {})
         .await
         .expect("an answer");
-    // A stop sends what waits.
+    // Stopping sends the spans in the queue.
     daemon.terminate();
     assert!(daemon.wait().success());
     let mut spans = vec![];
@@ -181,7 +180,7 @@ async fn requests_are_sent_as_spans_of_the_traces_they_belong_to() {
     let lines = answer.text().lines().count() as i64;
     assert_eq!(of("strew.points"), lines - 1);
 
-    // Others begin traces of their own.
+    // Requests without a trace begin their own.
     let refused = spans.iter().find(|(_, span)| {
         value(&span.attributes, "http.response.status_code") == Some(Value::IntValue(400))
     });
@@ -193,7 +192,7 @@ async fn requests_are_sent_as_spans_of_the_traces_they_belong_to() {
     for span in [refused, call] {
         assert!(span.parent_span_id.is_empty() || hex(&span.parent_span_id) == "0".repeat(16));
         assert_ne!(hex(&span.trace_id), TRACE);
-        // Who asks wrongly is no fault of ours.
+        // An invalid request is not an error of the server.
         let status = span.status.as_ref().map_or(0, |status| status.code);
         assert_eq!(status, StatusCode::Unset as i32);
     }
@@ -219,14 +218,14 @@ fn collectors_may_speak_tls() {
     assert_eq!(spans[0].0, "strew");
     assert_eq!(spans[0].1.name, "GET /v1/profiles");
     let sent = ["outcome=\"sent\""];
-    until("it is counted", || {
+    until("the span is counted", || {
         (sum(&samples(&daemon), "strew_spans_total", &sent) == 1.0).then_some(())
     });
 }
 
 #[test]
-fn a_collector_that_takes_nothing_holds_up_nobody() {
-    // It lets connect and says nothing.
+fn an_unresponsive_collector_delays_no_request() {
+    // It accepts connections and never answers.
     let silent = TcpListener::bind("127.0.0.1:0").expect("a port");
     let endpoint = format!(
         "telemetry.otlp_endpoint=http://{}",
@@ -245,7 +244,7 @@ fn a_collector_that_takes_nothing_holds_up_nobody() {
     let start = Instant::now();
     let mut asked = 0.0;
     let lost = |daemon: &Daemon| sum(&samples(daemon), "strew_spans_total", &["outcome=\"lost\""]);
-    // Those that wait are lost when time is up, those beyond at once.
+    // Spans in the queue are lost after the timeout, further ones at once.
     until("spans are lost", || {
         for _ in 0..20 {
             assert_eq!(daemon.get("/v1/profiles").status, 200);
@@ -275,8 +274,8 @@ fn a_collector_that_takes_nothing_holds_up_nobody() {
 }
 
 #[test]
-fn settings_that_cannot_be_used_are_named() {
-    for (endpoint, ca, told) in [
+fn unusable_settings_are_named() {
+    for (endpoint, ca, part) in [
         ("127.0.0.1:4317", "", "allowed: http://host:port"),
         ("ftp://a:1", "", "allowed: http://host:port"),
         ("http://a:1/v1/traces", "", "allowed: http://host:port"),
@@ -296,8 +295,8 @@ fn settings_that_cannot_be_used_are_named() {
             .args(["--set", &format!("telemetry.otlp_ca={ca}")])
             .output()
             .expect("the program runs");
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains(told), "no `{told}`: {said}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(part), "no `{part}`: {message}");
     }
 }

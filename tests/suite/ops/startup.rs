@@ -1,4 +1,5 @@
-//! What a daemon says about itself, and that it starts with whatever tables there are.
+//! Starting: which tables the daemon serves, what it reports about itself, why it refuses to start,
+//! and what it warns of.
 
 use std::{
     fs,
@@ -17,7 +18,7 @@ use crate::support::{
 };
 
 #[test]
-fn it_lives_is_ready_and_lists_its_profiles() {
+fn a_daemon_is_live_and_ready_and_lists_its_profiles() {
     let daemon = Daemon::start(&[]);
     assert_eq!(daemon.get("/livez").status, 200);
     let ready = daemon.get("/readyz");
@@ -45,7 +46,7 @@ fn it_lives_is_ready_and_lists_its_profiles() {
 }
 
 #[test]
-fn it_starts_without_any_table_and_says_so() {
+fn a_daemon_starts_without_any_table_and_reports_it() {
     let daemon = Daemon::with_tables(no_tables(), &["tables.embedded=false"]);
     assert_eq!(daemon.get("/readyz").json()["tables"], 0);
     let answer = daemon.get("/v1/points?bbox=0,0,1,1&density=1");
@@ -92,7 +93,7 @@ fn a_table_of_the_folder_replaces_a_built_in_one_and_answers_by_default() {
     );
 }
 
-/// Starts a daemon that must not start; gives its exit code and what it says.
+/// Starts a daemon that must refuse to start. Returns its exit code and message.
 fn refused(arguments: &[&str]) -> (Option<i32>, String) {
     let output = strew()
         .args(["serve", "--listen", "127.0.0.1:0"])
@@ -100,13 +101,13 @@ fn refused(arguments: &[&str]) -> (Option<i32>, String) {
         .stdin(Stdio::null())
         .output()
         .expect("the program runs");
-    assert!(output.stdout.is_empty(), "nothing is announced");
+    assert!(output.stdout.is_empty(), "it announced an address");
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     (output.status.code(), text)
 }
 
 #[test]
-fn bad_tables_are_named_at_the_start() {
+fn bad_tables_are_named() {
     let folder = tables();
     let path = folder.path().to_str().expect("Unicode").to_owned();
     let damaged = folder.path().join("damaged.strew");
@@ -134,7 +135,7 @@ fn bad_tables_are_named_at_the_start() {
 }
 
 #[test]
-fn a_port_in_use_is_said_to_be() {
+fn a_port_in_use_is_reported() {
     let daemon = Daemon::start(&[]);
     let address = daemon.address().to_string();
     let (code, text) = refused(&["--listen", &address]);
@@ -148,18 +149,19 @@ fn a_port_in_use_is_said_to_be() {
     assert!(text.contains(&address) && text.contains("in use"), "{text}");
 }
 
+/// Runs `strew serve`, with the test tables unless the flags name others.
 fn serve(flags: &[&str]) -> Output {
     let tables = tables();
-    strew()
-        .args(["serve", "--tables"])
-        .arg(tables.path())
-        .args(flags)
-        .output()
-        .expect("the program runs")
+    let mut command = strew();
+    command.arg("serve").args(flags);
+    if !flags.contains(&"--tables") {
+        command.arg("--tables").arg(tables.path());
+    }
+    command.output().expect("the program runs")
 }
 
 #[test]
-fn a_daemon_that_cannot_start_says_why_and_with_what_code() {
+fn a_daemon_that_cannot_start_reports_why() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = taken.local_addr().expect("an address").to_string();
     let folder = tempfile::tempdir().expect("a folder");
@@ -197,7 +199,7 @@ fn a_daemon_that_cannot_start_says_why_and_with_what_code() {
         ),
     ];
     for (flags, code, words) in cases {
-        let output = serve_with(&flags);
+        let output = serve(&flags);
         let text = errors(&output);
         assert_eq!(output.status.code(), Some(code), "{flags:?}: {text}");
         assert!(output.stdout.is_empty(), "{flags:?}");
@@ -207,20 +209,7 @@ fn a_daemon_that_cannot_start_says_why_and_with_what_code() {
     }
 }
 
-/// Flags may replace the folder of tables.
-fn serve_with(flags: &[&str]) -> Output {
-    if flags.contains(&"--tables") {
-        let mut command = strew();
-        return command
-            .arg("serve")
-            .args(flags)
-            .output()
-            .expect("the program runs");
-    }
-    serve(flags)
-}
-
-/// The log of a daemon that has just begun to serve.
+/// The log of a daemon up to the line that says that it serves.
 fn first_log(listen: &str, settings: &[&str]) -> String {
     let folder = tables();
     let daemon = Launcher::new(PROGRAM)
@@ -234,20 +223,20 @@ fn first_log(listen: &str, settings: &[&str]) -> String {
 }
 
 #[test]
-fn a_daemon_that_everybody_can_reach_says_so() {
+fn a_daemon_that_other_machines_can_reach_warns() {
     let wide = "0.0.0.0:0";
-    let said = first_log(wide, &[]);
+    let log = first_log(wide, &[]);
     assert!(
-        said.contains("WARN") && said.contains("beyond this machine"),
-        "{said}"
+        log.contains("WARN") && log.contains("beyond this machine"),
+        "{log}"
     );
     assert!(
-        said.contains("without keys") && said.contains("access.keys_file"),
-        "{said}"
+        log.contains("without keys") && log.contains("access.keys_file"),
+        "{log}"
     );
-    // Keys alone are no secret for long.
-    let said = first_log(wide, &[&keys(&entry("a", "secret", ""))]);
-    assert!(said.contains("take the keys"), "{said}");
-    let said = first_log("127.0.0.1:0", &[]);
-    assert!(!said.contains("WARN"), "{said}");
+    // Over plain HTTP, keys can be read on the way.
+    let log = first_log(wide, &[&keys(&entry("a", "secret", ""))]);
+    assert!(log.contains("take the keys"), "{log}");
+    let log = first_log("127.0.0.1:0", &[]);
+    assert!(!log.contains("WARN"), "{log}");
 }

@@ -1,9 +1,8 @@
-//! Streams hold the same few blocks whatever their length, and end with their readers.
+//! Long streams: memory does not grow with their length, and they end with their readers.
 
 use std::time::{Duration, Instant};
 
 use strew::grpc::proto::{Encoding, StreamPointsRequest, point_service_client::PointServiceClient};
-
 use strew_testkit::{
     http1,
     wait::{PATIENCE, until},
@@ -15,11 +14,11 @@ use crate::support::{
     queries::long,
 };
 
-/// What the daemon may hold at most, in KiB.
+/// The most memory that the daemon may hold, in KiB.
 const MOST_MEMORY: u64 = 100 << 10;
 
 #[test]
-fn a_billion_points_to_slow_readers_stay_small() {
+fn a_billion_points_to_slow_readers_take_little_memory() {
     let daemon = Daemon::start(&[]);
     let mut readers: Vec<_> = ["f32", "f64", "ndjson", "f32"]
         .iter()
@@ -42,7 +41,7 @@ fn a_billion_points_to_slow_readers_stay_small() {
         std::thread::park_timeout(Duration::from_millis(10));
     }
     assert!(read > 1 << 20, "something was read");
-    // Then one as fast as it comes.
+    // Then one reader as fast as it can.
     let mut left = 100 << 20;
     while left > 0 {
         left -= readers[0].skip(1 << 20).expect("more").min(left);
@@ -71,7 +70,7 @@ fn vanished_clients_leave_nothing_running() {
     assert_eq!(daemon.get("/livez").status, 200);
 }
 
-/// Waits until the daemon uses no processor time worth mentioning.
+/// Waits until the daemon uses next to no processor time.
 fn idle(daemon: &Daemon) {
     until("the daemon is idle", || {
         let ticks = daemon.cpu_ticks_over(Duration::from_millis(300));
@@ -92,7 +91,7 @@ async fn grpc_streams_end_with_their_readers_too() {
         };
         let answer = client.stream_points(request).await.expect("an answer");
         let mut stream = answer.into_inner();
-        // Blocks stay well below what clients take.
+        // Clients decode 4 MiB at most by default; blocks stay well below.
         for _ in 0..20 {
             let message = stream.message().await.expect("a message").expect("more");
             assert!(prost::Message::encoded_len(&message) <= 1 << 20);

@@ -1,5 +1,4 @@
-//! How long the daemon waits for what: bodies, plans, readers, whole answers. And how much it takes
-//! on meanwhile.
+//! Timeouts: how long the daemon waits for bodies, plans, readers and whole answers.
 
 use std::{
     fs,
@@ -12,13 +11,12 @@ use strew::grpc::proto::{
     CountPointsRequest, StreamPointsRequest, point_service_client::PointServiceClient,
     stream_points_request::Amount,
 };
-use tonic::Code;
-use tonic_types::StatusExt as _;
-
 use strew_testkit::{
     http1::{self, read_to_close},
     wait::{PATIENCE, until},
 };
+use tonic::Code;
+use tonic_types::StatusExt as _;
 
 use crate::support::{
     daemon::{Daemon, PROFILE},
@@ -26,19 +24,19 @@ use crate::support::{
     queries::{MANY_ROWS, SLOW, long},
 };
 
-/// A daemon that would count for minutes.
+/// A daemon that may count for minutes.
 fn patient(settings: &[&str]) -> Daemon {
     Daemon::start(&[&[MANY_ROWS], settings].concat())
 }
 
-/// Whether the daemon computes: its processor time grows while nobody asks anything.
+/// Whether the daemon computes: it uses processor time without any request of ours.
 fn is_busy(daemon: &Daemon) -> bool {
-    // On a machine that is busy otherwise it does not get much.
+    // On a busy machine it does not get much.
     daemon.cpu_ticks_over(Duration::from_millis(500)) > 1
 }
 
 #[test]
-fn a_body_that_does_not_come_is_not_waited_for() {
+fn a_body_that_does_not_arrive_times_out() {
     let daemon = Daemon::start(&["server.body_read_timeout_seconds=0.3"]);
     let announced = [("content-length", "100")];
     let mut slow = http1::send(
@@ -51,20 +49,20 @@ fn a_body_that_does_not_come_is_not_waited_for() {
     .expect("sent");
     slow.write_all(b"{\"region\": ").expect("sent");
     let start = Instant::now();
-    let said = read_to_close(slow);
+    let response = read_to_close(slow);
     assert!(start.elapsed() < PATIENCE / 2);
-    assert!(said.starts_with("HTTP/1.1 408"), "{said}");
+    assert!(response.starts_with("HTTP/1.1 408"), "{response}");
     for words in [
         "application/problem+json",
         "urn:strew:problem:body-too-slow",
         "0.3",
     ] {
-        assert!(said.contains(words), "no `{words}`: {said}");
+        assert!(response.contains(words), "no `{words}`: {response}");
     }
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_call_that_does_not_come_is_not_waited_for() {
+async fn a_message_that_does_not_arrive_times_out() {
     let daemon = Daemon::start(&["server.body_read_timeout_seconds=0.3"]);
     let stream = tokio::net::TcpStream::connect(daemon.address()).await;
     let (mut client, connection) = h2::client::handshake(stream.expect("connected"))
@@ -93,7 +91,9 @@ fn a_plan_that_takes_too_long_is_refused_and_stops() {
         assert_eq!(answer.status, 503, "{}", answer.text());
         assert_eq!(answer.header("retry-after"), "5");
         assert_eq!(answer.json()["type"], "urn:strew:problem:time-over");
-        until("nothing is computed", || (!is_busy(&daemon)).then_some(()));
+        until("the daemon stops computing", || {
+            (!is_busy(&daemon)).then_some(())
+        });
     }
     assert_eq!(daemon.streams(), 0);
 }
@@ -117,7 +117,9 @@ async fn a_call_that_takes_too_long_is_refused_and_stops() {
     assert_eq!(details.error_info().expect("details").reason, "TIME_OVER");
     let delay = details.retry_info().expect("details").retry_delay;
     assert_eq!(delay, Some(Duration::from_secs(5)));
-    until("nothing is computed", || (!is_busy(&daemon)).then_some(()));
+    until("the daemon stops computing", || {
+        (!is_busy(&daemon)).then_some(())
+    });
 }
 
 #[test]
@@ -125,13 +127,15 @@ fn a_plan_stops_when_its_client_leaves() {
     let daemon = patient(&["server.first_byte_seconds=3600"]);
     let body = Some(SLOW.as_bytes());
     let client = http1::send(daemon.address(), "POST", "/v1/count", &[], body).expect("sent");
-    until("it computes", || is_busy(&daemon).then_some(()));
+    until("the daemon computes", || is_busy(&daemon).then_some(()));
     drop(client);
-    until("nothing is computed", || (!is_busy(&daemon)).then_some(()));
+    until("the daemon stops computing", || {
+        (!is_busy(&daemon)).then_some(())
+    });
 }
 
 #[test]
-fn an_answer_whose_time_is_over_breaks_visibly() {
+fn an_answer_that_takes_too_long_is_incomplete() {
     let daemon = Daemon::start(&["server.max_stream_seconds=0.5"]);
     for format in ["f32", "json", "ndjson"] {
         let opened = http1::open(daemon.address(), "GET", &long(format), &[]);
@@ -142,7 +146,7 @@ fn an_answer_whose_time_is_over_breaks_visibly() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_call_whose_time_is_over_ends_with_a_status() {
+async fn a_grpc_stream_that_takes_too_long_gets_a_status() {
     let daemon = Daemon::start(&["server.max_stream_seconds=0.5"]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let mut stream = client
@@ -162,10 +166,10 @@ async fn a_call_whose_time_is_over_ends_with_a_status() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_stream_that_nobody_takes_ends_although_its_connection_lives() {
+async fn a_stalled_stream_ends_although_its_connection_lives() {
     let daemon = Daemon::start(&["server.stalled_reader_seconds=0.5"]);
     let stream = tokio::net::TcpStream::connect(daemon.address()).await;
-    // One stream cannot fill what the connection may hold.
+    // The window of the connection is larger than that of one stream.
     let (client, connection) = h2::client::Builder::new()
         .initial_connection_window_size(1 << 20)
         .handshake::<_, bytes::Bytes>(stream.expect("connected"))
@@ -185,7 +189,7 @@ async fn a_stream_that_nobody_takes_ends_although_its_connection_lives() {
     let mut untouched = ask(&long("f32")).await.into_body();
     let start = Instant::now();
     while daemon.streams() > 0 {
-        assert!(start.elapsed() < PATIENCE, "it is there still");
+        assert!(start.elapsed() < PATIENCE, "the stream is still there");
         let mut alive = ask("/livez").await.into_body();
         while let Some(data) = alive.data().await {
             let data = data.expect("whole");
@@ -195,7 +199,7 @@ async fn a_stream_that_nobody_takes_ends_although_its_connection_lives() {
                 .expect("held");
         }
     }
-    // What had been sent is there, and then it is broken.
+    // What was sent before arrives, then the reset.
     let broken = loop {
         match untouched.data().await {
             Some(Ok(data)) => {
@@ -203,17 +207,17 @@ async fn a_stream_that_nobody_takes_ends_although_its_connection_lives() {
                 window.release_capacity(data.len()).expect("held");
             }
             Some(Err(error)) => break error,
-            None => panic!("it looks complete"),
+            None => panic!("the stream looks complete"),
         }
     };
     assert!(broken.is_reset(), "{broken}");
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_connection_of_which_nothing_is_taken_ends() {
+async fn a_connection_without_a_window_is_closed() {
     let daemon = Daemon::start(&["server.stalled_reader_seconds=0.5"]);
     let stream = tokio::net::TcpStream::connect(daemon.address()).await;
-    // No window: even the smallest answer waits.
+    // Without a window, even the smallest answer cannot be sent.
     let (mut client, connection) = h2::client::Builder::new()
         .initial_window_size(0)
         .handshake::<_, bytes::Bytes>(stream.expect("connected"))
@@ -226,7 +230,7 @@ async fn a_connection_of_which_nothing_is_taken_ends() {
     let (answer, _) = client.send_request(request, true).expect("sent");
     let _untouched = answer.await.expect("an answer");
     let ended = tokio::time::timeout(PATIENCE, ended).await;
-    // With an error or without: it is over.
+    // With or without an error.
     let _ = ended.expect("it ends").expect("no panic");
 }
 
@@ -245,8 +249,8 @@ fn nothing_is_timed_by_a_clock_that_can_jump() {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut found = vec![];
     look(&source, &mut found);
-    // Deadlines, intervals and ages are measured with `Instant`, which only goes forward. The time of
-    // day is told in metrics and spans, and compared with that of files by one who expects it to jump.
+    // Deadlines, intervals and ages are measured with `Instant`, which never jumps. The time of day
+    // is for metrics, spans, and the times of files.
     found.retain(|path| {
         let known = [
             "ops/metrics/mod.rs",

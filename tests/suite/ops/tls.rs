@@ -1,4 +1,4 @@
-//! TLS and mutual TLS: who is let in, what is spoken, and new certificates without a restart.
+//! TLS and mutual TLS: protocols, certificates of clients, and new certificates without a restart.
 
 use std::{
     io::{Read as _, Write as _},
@@ -12,7 +12,6 @@ use rustls::{
     pki_types::{CertificateDer, PrivateKeyDer, PrivatePkcs8KeyDer, ServerName},
 };
 use strew::grpc::proto::{ListProfilesRequest, point_service_client::PointServiceClient};
-
 use strew_testkit::{
     certificates::{Authority, Certificate},
     http1::{self, read_to_close},
@@ -21,7 +20,7 @@ use strew_testkit::{
 
 use crate::support::daemon::{Daemon, strew, tables};
 
-/// What a client trusts and shows.
+/// The configuration of a client: the authority it trusts, the certificate it presents.
 fn client(
     trusted: &Authority,
     shown: Option<&Certificate>,
@@ -56,40 +55,40 @@ fn connect(daemon: &Daemon, config: &Arc<ClientConfig>) -> Connected {
     StreamOwned::new(connection, stream)
 }
 
-/// Asks for a path over an open connection, and reads up to the end of a body of known length.
-fn ask(connected: &mut Connected, path: &str) -> std::io::Result<String> {
+/// Requests a path over an open connection, and reads a body of known length.
+fn get(connected: &mut Connected, path: &str) -> std::io::Result<String> {
     let request = format!("GET {path} HTTP/1.1\r\nhost: localhost\r\n\r\n");
     connected.write_all(request.as_bytes())?;
-    let mut text = Vec::new();
+    let mut bytes = Vec::new();
     let mut buffer = [0; 4096];
     loop {
-        let said = String::from_utf8_lossy(&text).into_owned();
-        if let Some((head, body)) = said.split_once("\r\n\r\n") {
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        if let Some((head, body)) = text.split_once("\r\n\r\n") {
             let length = head
                 .lines()
                 .find_map(|line| line.strip_prefix("content-length: ")?.parse().ok())
                 .unwrap_or(0);
             if body.len() >= length {
-                return Ok(said);
+                return Ok(text);
             }
         }
         match connected.read(&mut buffer)? {
             0 => return Err(std::io::ErrorKind::UnexpectedEof.into()),
-            read => text.extend_from_slice(&buffer[..read]),
+            read => bytes.extend_from_slice(&buffer[..read]),
         }
     }
 }
 
-/// The certificate that a new connection is shown.
+/// The certificate that the daemon presents to a new connection.
 fn shown(daemon: &Daemon, config: &Arc<ClientConfig>) -> Vec<u8> {
     let mut connected = connect(daemon, config);
-    ask(&mut connected, "/livez").expect("an answer");
+    get(&mut connected, "/livez").expect("an answer");
     let chain = connected.conn.peer_certificates().expect("shown");
     chain[0].to_vec()
 }
 
 #[test]
-fn both_protocols_are_spoken_in_tls_and_nothing_plainly() {
+fn http_1_and_2_work_over_tls_and_plain_http_does_not() {
     let folder = tempfile::tempdir().expect("a folder");
     let authority = Authority::new();
     authority.issue_server().write_server(folder.path());
@@ -104,19 +103,19 @@ fn both_protocols_are_spoken_in_tls_and_nothing_plainly() {
         assert_eq!(connected.conn.alpn_protocol(), Some(protocol));
     }
     let config = client(&authority, None, &[b"http/1.1"]);
-    let said = ask(&mut connect(&daemon, &config), "/livez").expect("an answer");
-    assert!(said.starts_with("HTTP/1.1 200"), "{said}");
-    // A client that trusts another authority does not go on.
+    let response = get(&mut connect(&daemon, &config), "/livez").expect("an answer");
+    assert!(response.starts_with("HTTP/1.1 200"), "{response}");
+    // A client that trusts another authority refuses the certificate.
     let other = client(&Authority::new(), None, &[]);
-    ask(&mut connect(&daemon, &other), "/livez").expect_err("not trusted");
-    // Plain words get no answer.
+    get(&mut connect(&daemon, &other), "/livez").expect_err("not trusted");
+    // Plain HTTP gets no answer.
     let plain = http1::send(daemon.address(), "GET", "/livez", &[], None).expect("sent");
-    let heard = read_to_close(plain);
-    assert!(!heard.starts_with("HTTP"), "{heard:?}");
+    let response = read_to_close(plain);
+    assert!(!response.starts_with("HTTP"), "{response:?}");
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn grpc_is_spoken_in_tls() {
+async fn grpc_works_over_tls() {
     let folder = tempfile::tempdir().expect("a folder");
     let authority = Authority::new();
     authority.issue_server().write_server(folder.path());
@@ -143,7 +142,7 @@ async fn grpc_is_spoken_in_tls() {
     assert!(!answer.into_inner().profiles.is_empty());
 }
 
-/// Makes a connector for tonic of a function that connects.
+/// Makes a connector for tonic from a function that connects.
 fn tower_connector<F, T, S>(
     connect: F,
 ) -> impl tonic::codegen::Service<
@@ -186,7 +185,7 @@ where
 }
 
 #[test]
-fn only_clients_with_the_right_certificate_are_let_in() {
+fn only_clients_with_a_trusted_certificate_are_admitted() {
     let folder = tempfile::tempdir().expect("a folder");
     let (servers, clients) = (Authority::new(), Authority::new());
     servers.issue_server().write_server(folder.path());
@@ -194,29 +193,29 @@ fn only_clients_with_the_right_certificate_are_let_in() {
     let daemon = Daemon::with_tls(folder.path(), &[]);
     let known = clients.issue_client();
     let unknown = Authority::new().issue_client();
-    let ask = |shown: Option<&Certificate>| {
+    let request = |shown: Option<&Certificate>| {
         let config = client(&servers, shown, &[b"http/1.1"]);
-        ask(&mut connect(&daemon, &config), "/livez")
+        get(&mut connect(&daemon, &config), "/livez")
     };
-    let said = ask(Some(&known)).expect("let in");
-    assert!(said.starts_with("HTTP/1.1 200"), "{said}");
-    ask(None).expect_err("no certificate");
-    ask(Some(&unknown)).expect_err("nobody vouches for it");
-    ask(Some(&known)).expect("others are not hurt");
+    let response = request(Some(&known)).expect("admitted");
+    assert!(response.starts_with("HTTP/1.1 200"), "{response}");
+    request(None).expect_err("no certificate");
+    request(Some(&unknown)).expect_err("an untrusted certificate");
+    request(Some(&known)).expect("still admitted");
 }
 
 #[test]
-fn new_certificates_serve_new_connections_and_bad_ones_nobody() {
+fn new_certificates_serve_new_connections_and_bad_ones_change_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let authority = Authority::new();
     let first = authority.issue_server();
     first.write_server(folder);
-    // Looked at by signal alone: what is seen below is the signal's doing.
+    // Files are read on a signal only, so that a change below is the effect of the signal.
     let daemon = Daemon::with_tls(folder, &["tls.watch_seconds=0"]);
     let config = client(&authority, None, &[b"http/1.1"]);
     let mut open = connect(&daemon, &config);
-    ask(&mut open, "/livez").expect("an answer");
+    get(&mut open, "/livez").expect("an answer");
     assert_eq!(shown(&daemon, &config), first.der);
     let hang_up = || daemon.signal("-HUP");
 
@@ -226,30 +225,30 @@ fn new_certificates_serve_new_connections_and_bad_ones_nobody() {
     until("the new certificate is shown", || {
         (shown(&daemon, &config) == second.der).then_some(())
     });
-    ask(&mut open, "/livez").expect("the old connection goes on");
+    get(&mut open, "/livez").expect("the old connection goes on");
 
-    // A key that does not go with its certificate changes nothing.
+    // A key that does not match its certificate changes nothing.
     std::fs::write(folder.join("server.key"), &first.key_pem).expect("writable");
     hang_up();
     std::fs::write(folder.join("server.pem"), "no certificate").expect("writable");
     hang_up();
     assert_eq!(shown(&daemon, &config), second.der);
-    ask(&mut open, "/livez").expect("the old connection goes on");
+    get(&mut open, "/livez").expect("the old connection goes on");
 
-    // Good ones are taken up again.
+    // Good files are applied again.
     let third = authority.issue_server();
     third.write_server(folder);
     hang_up();
     until("the third certificate is shown", || {
         let shown = shown(&daemon, &config);
         let is_known = [&second, &third].map(|issued| shown == issued.der);
-        assert_ne!(is_known, [false, false], "no other is ever shown");
+        assert_ne!(is_known, [false, false], "another certificate is presented");
         is_known[1].then_some(())
     });
 }
 
 #[test]
-fn changed_files_are_seen_without_a_signal() {
+fn changed_files_are_noticed_without_a_signal() {
     let folder = tempfile::tempdir().expect("a folder");
     let authority = Authority::new();
     authority.issue_server().write_server(folder.path());
@@ -263,7 +262,7 @@ fn changed_files_are_seen_without_a_signal() {
 }
 
 #[test]
-fn files_that_cannot_be_used_are_named() {
+fn unusable_files_are_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let authority = Authority::new();
@@ -306,15 +305,15 @@ fn files_that_cannot_be_used_are_named() {
             .args(["--set", &format!("tls.client_ca={clients}")])
             .output()
             .expect("the program runs");
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{said}");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
         for word in words {
-            assert!(said.contains(word), "no `{word}`: {said}");
+            assert!(message.contains(word), "no `{word}`: {message}");
         }
     }
 }
 
-/// The warning of a daemon that anyone may reach, if it gives one.
+/// The messages of a daemon that starts to listen on an address that is taken.
 fn warned(listen: &str, settings: &[String]) -> String {
     let tables = tables();
     let mut command = strew();
@@ -323,14 +322,14 @@ fn warned(listen: &str, settings: &[String]) -> String {
     for setting in settings {
         command.args(["--set", setting]);
     }
-    // A listener that is taken ends the program after it has said what it has to say.
+    // It warns first, then fails to listen.
     let output = command.output().expect("the program runs");
     assert_eq!(output.status.code(), Some(1));
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 #[test]
-fn listening_wide_without_tls_is_warned_of() {
+fn listening_on_the_network_without_tls_warns() {
     let taken = std::net::TcpListener::bind("0.0.0.0:0").expect("a port");
     let port = taken.local_addr().expect("an address").port();
     let text = warned(&format!("0.0.0.0:{port}"), &[]);

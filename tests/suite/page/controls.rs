@@ -1,8 +1,8 @@
-//! Every control of the page changes what is asked for, stands in the address, and comes back from it.
+//! The controls of the page: each changes the query, appears in the URL, and is restored from it.
 
 use crate::support::browser::{Browser, looking};
 
-/// Chooses a value and waits for other points; gives the hash.
+/// Chooses a value and waits for other points. Returns the hash.
 fn chosen(browser: &Browser, selector: &str, value: &str) -> String {
     let before = browser.value("strew.plane.chunks.identity");
     browser.choose(selector, value);
@@ -13,12 +13,12 @@ fn chosen(browser: &Browser, selector: &str, value: &str) -> String {
 }
 
 #[test]
-fn every_control_changes_the_points_and_stands_in_the_address() {
+fn every_control_changes_the_points_and_the_url() {
     let Some((daemon, browser)) = looking(1280, 900) else {
         return;
     };
     browser.look(&daemon, "");
-    for (selector, value, said) in [
+    for (selector, value, part) in [
         ("#profile", "spaced", "profile=spaced"),
         ("#map", "m", "map=m"),
         ("#alpha", "sqrt(3)", "alpha=sqrt(3)"),
@@ -30,9 +30,9 @@ fn every_control_changes_the_points_and_stands_in_the_address() {
         ("#warp", "2", "warp=2"),
     ] {
         let hash = chosen(&browser, selector, value);
-        assert!(hash.contains(said), "{selector} {value}: {hash}");
+        assert!(hash.contains(part), "{selector} {value}: {hash}");
     }
-    for (box_, said) in [
+    for (box_, part) in [
         ("#angle", "angle=1"),
         ("#scale", "scale=1"),
         ("#variant", "variant=1"),
@@ -41,11 +41,11 @@ fn every_control_changes_the_points_and_stands_in_the_address() {
         browser.click(box_);
         browser.until(&format!("strew.plane.chunks.identity !== {before}"));
         browser.ready();
-        assert!(browser.hash().contains(said), "{box_}");
+        assert!(browser.hash().contains(part), "{box_}");
     }
     assert!(chosen(&browser, "#range", "0.2,0.9").contains("range=0.2,0.9"));
     assert!(chosen(&browser, "#variants", "fir:1,elm:2").contains("variants=fir:1,elm:2"));
-    // Looks change no points.
+    // The appearance changes no points.
     let identity = browser.value("strew.plane.chunks.identity");
     browser.click("#color-3");
     browser.until("location.hash.includes('color=3')");
@@ -61,7 +61,7 @@ fn every_control_changes_the_points_and_stands_in_the_address() {
     chosen(&browser, "#clear", "0.3");
     assert!(browser.ready() < both);
     let (hash, count) = (browser.hash(), browser.ready());
-    // The address alone gives all of it again.
+    // The URL alone restores everything.
     browser.look(&daemon, &hash);
     assert_eq!((browser.hash(), browser.ready()), (hash, count));
     browser.click("#layer-1");
@@ -71,15 +71,15 @@ fn every_control_changes_the_points_and_stands_in_the_address() {
     browser.value("history.back()");
     browser.until("location.hash.includes('layers=2')");
     assert_eq!(browser.ready(), count);
-    assert_eq!(browser.complaints(), Vec::<String>::new());
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
 #[test]
-fn what_the_server_refuses_is_said_in_its_words_beside_the_control() {
+fn refusals_of_the_server_are_shown_at_the_control() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
     };
-    // Also from the beginning: there is nothing to paint, and no black hole where it would be.
+    // On a page that starts with a refused query, the plane is hidden.
     browser.go(&daemon.url("/#at=0,0&span=30&amount=-1"));
     browser.until("!document.querySelector('#wrong')?.hidden && document.querySelector('#wrong')?.textContent");
     assert_eq!(
@@ -89,10 +89,10 @@ fn what_the_server_refuses_is_said_in_its_words_beside_the_control() {
     browser.look(&daemon, "");
     browser.choose("#amount", "-1");
     browser.until("!document.querySelector('#wrong').hidden");
-    let said = browser.text("#wrong");
+    let text = browser.text("#wrong");
     assert!(
-        said.contains("spacing") && said.contains("out of range"),
-        "{said}"
+        text.contains("spacing") && text.contains("out of range"),
+        "{text}"
     );
     assert_eq!(
         browser.value("document.querySelector('#amount').getAttribute('aria-invalid')"),
@@ -112,7 +112,7 @@ fn what_the_server_refuses_is_said_in_its_words_beside_the_control() {
 }
 
 #[test]
-fn a_phone_shows_all_of_it() {
+fn everything_fits_on_a_phone() {
     let Some((daemon, browser)) = looking(390, 844) else {
         return;
     };
@@ -129,7 +129,7 @@ fn a_phone_shows_all_of_it() {
     browser.until("strew.plane.view.height > 600");
     assert!(browser.ready() > 0 && small > 0);
     assert_eq!(browser.value(inside), true);
-    // A finger's tap.
+    // A tap with a finger.
     let at = [serde_json::json!({ "x": 195, "y": 300 })];
     browser.cdp(
         "Input.dispatchTouchEvent",
@@ -140,11 +140,11 @@ fn a_phone_shows_all_of_it() {
         &serde_json::json!({ "type": "touchEnd", "touchPoints": [] }),
     );
     browser.until("!document.querySelector('#card').hidden && document.querySelector('#card h2')?.textContent");
-    assert_eq!(browser.complaints(), Vec::<String>::new());
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
 #[test]
-fn the_panel_measures_what_is_in_view_beside_the_table() {
+fn the_panel_measures_the_view_next_to_the_table() {
     let Some((daemon, browser)) = looking(1280, 900) else {
         return;
     };
@@ -162,7 +162,7 @@ fn the_panel_measures_what_is_in_view_beside_the_table() {
     assert!((number(1) - 1.0).abs() < 0.01, "density {drawn}");
     // The table's own δ_min is 0.666; the warp takes a few hundredths at most.
     assert!((0.6..0.68).contains(&number(2)), "δ_min {drawn}");
-    // Blue noise: nearly nothing at low frequencies, chance at high ones.
+    // Blue noise: next to no power at low frequencies, that of white noise at high ones.
     assert!(number(3) < 1e-3, "low power {drawn}");
     assert!((number(4) - 1.0).abs() < 0.15, "high power {drawn}");
     assert!(number(5) > 50.0);
@@ -190,5 +190,5 @@ fn the_gallery_shows_every_profile_and_opens_one() {
         "location.hash.includes('profile=pink') && document.querySelector('#gallery').hidden",
     );
     browser.ready();
-    assert_eq!(browser.complaints(), Vec::<String>::new());
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }

@@ -1,14 +1,16 @@
-//! What the page gives to take away: requests that give exactly the points in view, and files.
+//! What the page offers to take away: requests that return exactly the points in view, and files.
 
 use std::process::Command;
 
 use serde_json::{Value, json};
-
 use strew_testkit::wait::until;
 
-use crate::support::browser::{Browser, looking};
+use crate::support::{
+    browser::{Browser, looking},
+    clients,
+};
 
-/// The request that a button has put into the clipboard.
+/// The request that the copy button puts into the clipboard; `way` is its language.
 fn copied(browser: &Browser, way: &str) -> String {
     browser.click(&format!("#way-{way}"));
     browser.click("#copy");
@@ -22,7 +24,7 @@ fn allow_clipboard(browser: &Browser) {
     browser.cdp("Browser.grantPermissions", &names);
 }
 
-/// Whether answers of points are those in view.
+/// Fails unless these points are those in view.
 fn assert_same(browser: &Browser, found: &[[f64; 2]]) {
     let middle = browser.value("[strew.plane.view.x, strew.plane.view.y].map(({ i, f }) => i + f)");
     let middle = [0, 1].map(|i| middle[i].as_f64().expect("a number"));
@@ -52,7 +54,7 @@ fn rows(csv: &str) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn a_copied_request_gives_the_points_in_view() {
+fn a_copied_request_returns_the_points_in_view() {
     let Some((daemon, browser)) = looking(1280, 900) else {
         return;
     };
@@ -79,22 +81,23 @@ fn a_copied_request_gives_the_points_in_view() {
     let python = Command::new("python3").args(["-c", &program]).output();
     match python {
         Ok(output) => {
-            let said = String::from_utf8_lossy(&output.stdout).into_owned();
+            let printed = String::from_utf8_lossy(&output.stdout).into_owned();
             let errors = String::from_utf8_lossy(&output.stderr).into_owned();
             let count = browser.ready();
             assert!(
-                said.starts_with(&format!("{count} points")),
-                "{said} {errors}"
+                printed.starts_with(&format!("{count} points")),
+                "{printed} {errors}"
             );
         }
         Err(_) => eprintln!("skipped: python3 is not installed"),
     }
 }
 
-/// Runs a line of a shell that writes strew.csv, in a folder of its own.
+/// Runs a shell command that writes strew.csv, in a folder of its own, and passes the file to
+/// `look`.
 fn run(line: &str, needs: &str, look: impl Fn(&str)) {
-    if Command::new(needs).arg("--version").output().is_err() {
-        return eprintln!("skipped: {needs} is not installed");
+    if clients::find(needs).is_none() {
+        return;
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
     let shell = Command::new("sh")
@@ -111,7 +114,7 @@ fn run(line: &str, needs: &str, look: impl Fn(&str)) {
 }
 
 #[test]
-fn a_copied_request_for_layers_gives_the_points_in_view() {
+fn a_copied_request_for_layers_returns_the_points_in_view() {
     let Some((daemon, browser)) = looking(1280, 900) else {
         return;
     };
@@ -153,7 +156,7 @@ fn a_copied_request_for_layers_gives_the_points_in_view() {
 }
 
 #[test]
-fn a_download_has_the_count_and_the_size_that_were_said() {
+fn a_download_has_the_count_and_the_size_that_were_shown() {
     let Some((daemon, browser)) = looking(1280, 900) else {
         return;
     };
@@ -199,5 +202,5 @@ fn a_download_has_the_count_and_the_size_that_were_said() {
         }
         std::fs::remove_file(&file).expect("removed");
     }
-    assert_eq!(browser.complaints(), Vec::<String>::new());
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }

@@ -1,13 +1,12 @@
-//! The page at `/` in a real browser: it shows the points, moves, and stays sharp far out.
+//! The view: it shows the points, moves, and stays sharp far from the origin.
 
 use serde_json::Value;
-
 use strew_testkit::wait::until;
 
 use crate::support::{browser::looking, daemon::Daemon};
 
 #[test]
-fn the_page_shows_its_points_and_complains_of_nothing() {
+fn the_page_shows_its_points_without_console_errors() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
     };
@@ -16,11 +15,11 @@ fn the_page_shows_its_points_and_complains_of_nothing() {
     assert!((800..1300).contains(&count), "{count}");
     assert_eq!(browser.in_view().len() as u64, count);
     assert!(browser.text("#tally").contains("points in view"));
-    assert_eq!(browser.complaints(), Vec::<String>::new());
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
 #[test]
-fn dragging_zooming_and_keys_move_the_view_and_its_address() {
+fn dragging_zooming_and_keys_move_the_view_and_its_url() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
     };
@@ -38,7 +37,7 @@ fn dragging_zooming_and_keys_move_the_view_and_its_address() {
     browser.keys(&["\u{E014}", "\u{E013}", "+"]);
     browser.until("strew.plane.span < 60 && strew.plane.view.x.i > 25");
     browser.ready();
-    // What lies in view is what the server counts, after all of that.
+    // After all of that, the page shows as many points as the server counts.
     let count = browser.ready();
     let shown = browser.in_view().len() as u64;
     assert!(count.abs_diff(shown) <= 1, "{count} {shown}");
@@ -46,7 +45,7 @@ fn dragging_zooming_and_keys_move_the_view_and_its_address() {
 }
 
 #[test]
-fn a_jump_to_1e12_is_as_sharp_as_home_and_back_goes_home() {
+fn a_jump_to_1e12_is_as_sharp_as_the_origin_and_back_returns() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
     };
@@ -67,9 +66,9 @@ fn a_jump_to_1e12_is_as_sharp_as_home_and_back_goes_home() {
         let count = browser.ready();
         let far = browser.in_view();
         assert_eq!(far.len() as u64, count);
-        // Points of seed 1 are at least 0.57 apart, and the server says where each is; doubles are
-        // a ten-thousandth apart here, the page's own coordinates a ten-millionth. The server takes
-        // the corner of a chunk as a double, so neighbors agree within two ten-thousandths.
+        // Points of seed 1 are at least 0.57 apart. Here doubles are 1e-4 apart, the page's own
+        // coordinates 1e-7. The server takes the corner of a chunk as a double, so its points agree
+        // within 2e-4.
         for (i, a) in far.iter().enumerate() {
             for b in &far[..i] {
                 assert!((a[0] - b[0]).hypot(a[1] - b[1]) > 0.57, "{a:?} {b:?}");
@@ -95,7 +94,8 @@ fn a_jump_to_1e12_is_as_sharp_as_home_and_back_goes_home() {
     }
 }
 
-/// The points around (1e12, -1e12), from there, in full precision: chunks of 8 around that corner.
+/// The server's points around (1e12, -1e12), relative to there: the four chunks of size 8 that
+/// meet.
 fn chunk_points(daemon: &Daemon) -> Vec<[f64; 2]> {
     let mut all = vec![];
     for (dx, dy) in [(0, 0), (-1, 0), (0, -1), (-1, -1)] {
@@ -140,7 +140,7 @@ fn webgl2_and_the_plain_canvas_show_the_same_points() {
     assert_eq!(plain, shown);
     let colors = "(() => { const c = strew.plane.canvas; const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; return new Set(new Uint32Array(d.buffer)).size; })()";
     assert!(browser.value(colors).as_u64().expect("a number") > 20);
-    assert_eq!(browser.complaints(), Vec::<String>::new());
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
 #[test]
@@ -151,10 +151,10 @@ fn beyond_a_million_points_the_page_thins_and_says_so() {
     browser.look(&daemon, "#at=0,0&span=1500&seed=0");
     let count = browser.ready();
     assert!((400_000..=1_000_000).contains(&count), "{count}");
-    let said = browser.text("#tally");
+    let text = browser.text("#tally");
     assert!(
-        said.contains("too many to draw") && said.contains("lowest rank"),
-        "{said}"
+        text.contains("too many to draw") && text.contains("lowest rank"),
+        "{text}"
     );
     assert!(browser.in_view().len().abs_diff(count as usize) < 20);
 }
@@ -190,7 +190,7 @@ fn a_server_that_goes_away_is_waited_for() {
 }
 
 #[test]
-fn a_tapped_point_tells_who_it_is() {
+fn a_tapped_point_shows_its_details() {
     let Some((daemon, browser)) = looking(1280, 800) else {
         return;
     };
@@ -212,7 +212,7 @@ fn a_tapped_point_tells_who_it_is() {
     );
 }
 
-/// Run it by hand on a quiet machine:
+/// Run by hand on a quiet machine:
 /// `cargo test --release --test suite -- --ignored --nocapture frames`.
 #[test]
 #[ignore = "a measurement, for a quiet machine"]
@@ -244,7 +244,7 @@ fn frames_of_a_drag_over_100_000_points() {
              (95 %), {most:.1} ms (most); frames are {:.1} ms apart, {:.1} ms (95 %)",
             gaps.0, gaps.1
         );
-        // Without graphics hardware the page takes the plain canvas by itself.
+        // Without graphics hardware the page chooses the plain canvas by itself.
         let is_slow = name != "2d";
         assert!(is_slow || median < 16.0 && p95 < 16.0, "{median} {p95}");
     }

@@ -1,4 +1,4 @@
-//! Amounts: distances that are kept, counts that are met, and what is counted is what is sent.
+//! Amounts: least distances hold, counts are met, and `/v1/count` counts what an answer holds.
 
 use serde_json::json;
 
@@ -17,11 +17,11 @@ fn a_least_distance_is_kept_by_all_pairs_with_and_without_warp() {
             assert!(table.points.len() > 300, "{query}");
             let least = least_distance(&table.points);
             assert!(least >= 0.8, "{query}: {least}");
-            // It is not kept by being sparse: some pair comes near it where the table allows.
+            // The points are not sparse: some pair comes close to the least distance.
             assert!(least < 1.5, "{query}: {least}");
         }
     }
-    // The echo says what became of it.
+    // The echo reports the distance that is guaranteed.
     let query = daemon.get("/v1/count?bbox=0,0,9,9&min_distance=0.8").json()["query"].clone();
     let promised = query["least_distance"].as_f64().expect("a number");
     assert!((0.8..0.80001).contains(&promised), "{query}");
@@ -51,7 +51,7 @@ fn a_count_is_met_in_regions_of_all_kinds() {
 }
 
 #[test]
-fn counts_by_both_methods_are_the_lengths_of_answers() {
+fn counts_by_get_and_post_are_the_lengths_of_answers() {
     let daemon = Daemon::start(&[]);
     let queries = [
         ("bbox=-3,0.5,44,31", json!({ "bbox": [-3, 0.5, 44, 31] })),

@@ -1,4 +1,4 @@
-//! Headers for browsers: cross-origin requests, and policies against misuse of an answer.
+//! Headers for browsers: security policies and cross-origin requests.
 
 use strew_testkit::http1;
 
@@ -7,7 +7,7 @@ use crate::support::daemon::Daemon;
 const POINTS: &str = "/v1/points?bbox=0,0,10,10&density=1&profile=test&format=";
 
 #[test]
-fn every_answer_tells_browsers_what_it_is_not() {
+fn every_answer_has_security_headers() {
     let daemon = Daemon::start(&[]);
     for (path, status) in [
         ("/docs", 200),
@@ -41,7 +41,7 @@ fn every_answer_tells_browsers_what_it_is_not() {
 }
 
 #[test]
-fn pages_of_any_origin_may_ask_and_read_all_headers() {
+fn any_origin_may_send_requests_and_read_all_headers() {
     let daemon = Daemon::start(&[]);
     let origin = ("origin", "https://page.example");
     for path in [
@@ -68,13 +68,13 @@ fn pages_of_any_origin_may_ask_and_read_all_headers() {
             "*, authorization"
         );
     }
-    // No page asks: nobody is told.
+    // Without an origin there is nothing to allow.
     let plain = daemon.get("/livez");
     assert_eq!(plain.header("access-control-allow-origin"), "");
 }
 
 #[test]
-fn pages_may_be_listed_or_none() {
+fn allowed_origins_can_be_listed_or_none() {
     let daemon = Daemon::start(&["http.cors_origins=https://a.example https://b.example"]);
     let ask = |daemon: &Daemon, origin| {
         let answer = http1::get(daemon.address(), "/livez", &[("origin", origin)]);

@@ -1,4 +1,4 @@
-//! Tags, copies that are still right, and how long answers may be kept.
+//! Entity tags, conditional requests, and how long answers may be cached.
 
 use strew_testkit::{
     http1,
@@ -12,8 +12,8 @@ use crate::support::{
 
 const POINTS: &str = "/v1/points?bbox=0,0,10,10&density=1&profile=test";
 
-/// Every address whose answer may be kept.
-const KEPT: [&str; 8] = [
+/// Paths whose answers may be cached.
+const CACHEABLE: [&str; 8] = [
     POINTS,
     "/v1/points?bbox=0,0,10,10&density=1&profile=test&format=csv",
     "/v1/points?bbox=0,0,10,10&density=1&profile=test&format=f32",
@@ -29,9 +29,9 @@ fn with(daemon: &Daemon, path: &str, headers: &[(&str, &str)]) -> http1::Answer 
 }
 
 #[test]
-fn a_copy_that_is_right_is_not_sent_again() {
+fn a_matching_tag_gets_304() {
     let daemon = Daemon::start(&[]);
-    for path in KEPT {
+    for path in CACHEABLE {
         let first = daemon.get(path);
         assert_eq!(first.status, 200, "{path}");
         let tag = first.header("etag");
@@ -58,7 +58,7 @@ fn a_copy_that_is_right_is_not_sent_again() {
 }
 
 #[test]
-fn no_place_is_needed_to_say_that_nothing_changed() {
+fn a_304_needs_no_stream() {
     let daemon = Daemon::start(&["limits.max_streams=1"]);
     let tag = daemon.get(POINTS).header("etag").to_owned();
     let _open = http1::open(daemon.address(), "GET", &long("f32"), &[]);
@@ -70,7 +70,7 @@ fn no_place_is_needed_to_say_that_nothing_changed() {
 }
 
 #[test]
-fn what_is_refused_is_refused_whatever_the_client_has() {
+fn a_refused_query_is_refused_whatever_tag_is_sent() {
     let daemon = Daemon::start(&["limits.max_points=50"]);
     let any = with(&daemon, POINTS, &[("if-none-match", "*")]);
     assert_eq!(any.status, 413);
@@ -92,7 +92,7 @@ fn different_answers_have_different_tags() {
         tag(&format!("{POINTS}&seed=1"), &[]),
         tag(&format!("{POINTS}&alpha=sqrt(3)"), &[]),
     ];
-    // The same address is answered by another table.
+    // The same path, answered by another table.
     let tables = tempfile::tempdir().expect("a temporary folder");
     let other = random("(5-sqrt(3))/2", "test", 21);
     write(tables.path(), "a.strew", &other);
@@ -101,12 +101,12 @@ fn different_answers_have_different_tags() {
     let unique: std::collections::BTreeSet<_> = tags.iter().collect();
     assert_eq!(unique.len(), tags.len(), "{tags:?}");
     assert!(tags[2].ends_with("-gzip\"") && tags[3].ends_with("-zstd\""));
-    // A restart changes nothing.
+    // A restart changes no tag.
     assert_eq!(Daemon::start(&[]).get(POINTS).header("etag"), tags[0]);
 }
 
 #[test]
-fn a_pinned_table_answers_forever_or_not_at_all() {
+fn answers_of_a_pinned_table_are_immutable_or_refused() {
     let daemon = Daemon::start(&["http.cache_seconds=7"]);
     let digest = table("(5-sqrt(3))/2", "test").digest().to_string();
     for path in [

@@ -1,4 +1,4 @@
-//! Compressed answers: the same bytes once read, as they come, and only of text.
+//! Compressed answers: text only, the same bytes once decompressed, flushed block by block.
 
 use std::io::Read;
 
@@ -25,7 +25,7 @@ fn plain(coding: &str, bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn text_is_compressed_for_those_who_accept_it() {
+fn text_is_compressed_for_clients_that_accept_it() {
     let daemon = Daemon::start(&["limits.block_bytes=4096"]);
     let mut paths: Vec<String> = ["json", "ndjson", "csv"]
         .iter()
@@ -64,7 +64,7 @@ fn text_is_compressed_for_those_who_accept_it() {
 }
 
 #[test]
-fn numbers_and_short_problems_stay_as_they_are() {
+fn packed_numbers_and_short_problems_are_not_compressed() {
     let daemon = Daemon::start(&[]);
     for format in ["f32", "f64"] {
         let path = format!("{POINTS}{format}");
@@ -87,10 +87,10 @@ fn numbers_and_short_problems_stay_as_they_are() {
     );
 }
 
-/// A compressed answer without end: what is read of it can be read at once, and it ends with its
+/// A compressed answer that takes long: its first bytes arrive at once, and it ends with its
 /// reader.
 #[test]
-fn blocks_come_one_by_one() {
+fn compressed_blocks_are_flushed_one_by_one() {
     let daemon = Daemon::start(&[]);
     let path = long("csv");
     for coding in ["gzip", "zstd"] {
@@ -104,7 +104,7 @@ fn blocks_come_one_by_one() {
 }
 
 #[test]
-fn a_compressed_stream_that_breaks_is_seen_to_break() {
+fn a_compressed_stream_that_breaks_off_is_incomplete() {
     let mut daemon = Daemon::start(&["shutdown.drain_seconds=0.2"]);
     let opened = http1::open(
         daemon.address(),
@@ -115,5 +115,8 @@ fn a_compressed_stream_that_breaks_is_seen_to_break() {
     let reader = std::thread::spawn(move || opened.drain());
     daemon.terminate();
     assert_eq!(daemon.wait().code(), Some(0));
-    assert!(!reader.join().expect("no panic"), "the reader sees it");
+    assert!(
+        !reader.join().expect("no panic"),
+        "the answer looks complete"
+    );
 }

@@ -68,7 +68,7 @@ def ply(path):
 
 
 def geojson(path):
-    """By GDAL, which finds out by itself what it reads and gives WKB: order, kind, x, y."""
+    """By GDAL, which detects the format by itself and returns WKB: byte order, type, x, y."""
     import pyogrio
 
     meta, _, geometries, (ids,) = pyogrio.raw.read(path, columns=["id"])

@@ -1,10 +1,12 @@
-//! Each format read back by a reader that is not ours, where Python has it.
+//! Each format read back by independent software: NumPy, PyArrow, plyfile, GDAL, Pillow, as far as
+//! the Python of `STREW_TEST_PYTHON` has them.
 
-use std::{collections::HashSet, path::Path, process::Command};
+use std::{collections::HashSet, path::Path};
 
 use strew_core::Point;
 
 use crate::support::{
+    clients,
     daemon::{Daemon, PROFILE, strew, tables},
     library::{plan, points},
 };
@@ -15,14 +17,10 @@ const SCRIPT: &str = concat!(
     "/tests/suite/rest/format_readers.py"
 );
 
-/// What a reader finds in a file, as ids (where the format has them) and coordinates; nothing if the
-/// reader is not installed.
+/// The points that a reader finds in a file, as ids (empty where the format has none) and
+/// coordinates; `None` if the reader is not installed.
 fn read(format: &str, file: &Path) -> Option<Vec<(String, [f64; 2])>> {
-    let Ok(python) = std::env::var("STREW_TEST_PYTHON") else {
-        eprintln!("skipped: STREW_TEST_PYTHON names no Python with a reader of {format}");
-        return None;
-    };
-    let output = Command::new(python)
+    let output = clients::python(&format!("a reader of {format}"))?
         .args([Path::new(SCRIPT), Path::new(format), file])
         .output()
         .expect("Python runs");
@@ -46,8 +44,8 @@ fn read(format: &str, file: &Path) -> Option<Vec<(String, [f64; 2])>> {
     Some(lines.map(row).collect())
 }
 
-/// Fails unless a reader finds just these points; ids may be missing from all.
-fn holds(format: &str, file: &Path, expected: &[Point]) {
+/// Fails unless a reader finds exactly these points.
+fn assert_holds(format: &str, file: &Path, expected: &[Point]) {
     let Some(rows) = read(format, file) else {
         return;
     };
@@ -63,9 +61,9 @@ fn holds(format: &str, file: &Path, expected: &[Point]) {
     }
 }
 
-/// All points of an answer, as another reader sees them, are the library's.
+/// Readers find the library's points in every answer.
 #[test]
-fn other_readers_find_every_point() {
+fn independent_readers_find_every_point() {
     let (daemon, plan) = (Daemon::start(&["limits.block_bytes=4096"]), plan());
     let expected = points(&plan);
     let folder = tempfile::tempdir().expect("a folder");
@@ -74,7 +72,7 @@ fn other_readers_find_every_point() {
         assert_eq!(answer.status, 200, "{format}: {:?}", answer.headers);
         let file = folder.path().join(format!("points.{format}"));
         std::fs::write(&file, &answer.body).expect("writable");
-        holds(format, &file, &expected);
+        assert_holds(format, &file, &expected);
     }
     let mut near = vec![[0f32; 2]; expected.len()];
     plan.blocks_f32().fill(&mut near);
@@ -87,9 +85,10 @@ fn other_readers_find_every_point() {
     }
 }
 
-/// `strew sample` knows formats by the ends of names, and writes what the daemon streams.
+/// `strew sample` chooses the format by the file extension, and writes the bytes that the daemon
+/// sends.
 #[test]
-fn sampled_files_are_the_streamed_answers_and_parquet() {
+fn sampled_files_equal_streamed_answers_and_parquet_reads_back() {
     let (daemon, folder) = (Daemon::start(&[]), tables());
     let expected = points(&plan());
     let ends = [
@@ -111,16 +110,19 @@ fn sampled_files_are_the_streamed_answers_and_parquet() {
         let message = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{end}: {message}");
         if format == "parquet" {
-            holds(format, &file, &expected);
+            assert_holds(format, &file, &expected);
         } else {
             let answer = daemon.get(&format!("{QUERY}{format}"));
             let bytes = std::fs::read(&file).expect("written");
-            assert!(bytes == answer.body, "{format} of a file is another");
+            assert!(
+                bytes == answer.body,
+                "the file of {format} differs from the answer"
+            );
         }
     }
 }
 
-/// Dots lie where points are, y upward, and nowhere else.
+/// Dots are where the points are, with y upward, and nowhere else.
 #[test]
 fn pictures_show_every_point() {
     let (daemon, plan) = (Daemon::start(&["limits.block_bytes=4096"]), plan());
@@ -153,19 +155,19 @@ fn pictures_show_every_point() {
     let mut allowed = HashSet::new();
     for place in &places {
         let [x, y] = place.map(|v| v as i64);
-        assert!(drawn.contains(&[x, y]), "nothing at {place:?}");
+        assert!(drawn.contains(&[x, y]), "no dot at {place:?}");
         allowed.extend((-2..=2).flat_map(|dy| (-2..=2).map(move |dx| [x + dx, y + dy])));
     }
     assert!(drawn.is_subset(&allowed));
 }
 
 #[test]
-fn sizes_of_pictures_are_as_asked_for() {
+fn pictures_have_the_requested_size() {
     let daemon = Daemon::start(&[]);
     let size = |path: &str| {
         let answer = daemon.get(&format!("{QUERY}png{path}"));
         assert_eq!(answer.status, 200, "{path}");
-        // The header comes first, by PNG's rules: width and height after 16 bytes.
+        // In a PNG, width and height follow the first 16 bytes.
         let side = |at: usize| u32::from_be_bytes(answer.body[at..at + 4].try_into().expect("4"));
         (side(16), side(20))
     };
@@ -177,7 +179,7 @@ fn sizes_of_pictures_are_as_asked_for() {
 }
 
 #[test]
-fn sizes_are_known_before_where_records_are_fixed() {
+fn formats_with_fixed_records_announce_their_length() {
     let daemon = Daemon::start(&[]);
     for (format, content_type) in [("npy", "application/x-npy"), ("ply", "application/ply")] {
         let answer = daemon.get(&format!("{QUERY}{format}"));

@@ -1,4 +1,4 @@
-//! Every format carries the same points, and they are the library's.
+//! Every format carries the library's points.
 
 use strew_core::{Plan, Point};
 use strew_testkit::http1;
@@ -8,7 +8,7 @@ use crate::support::{
     library::{QUERY, assert_same, plan, points},
 };
 
-/// Blocks so small that there are many.
+/// A daemon with small blocks, so that an answer has many.
 fn daemon() -> Daemon {
     Daemon::start(&["limits.block_bytes=4096"])
 }
@@ -97,7 +97,7 @@ fn csv_has_a_header_and_exact_numbers() {
 }
 
 #[test]
-fn decimals_are_as_many_as_asked_for() {
+fn numbers_have_the_requested_decimals() {
     let (daemon, plan) = (daemon(), plan());
     let fixed = |value: f64| {
         let text = format!("{value:.3}");
@@ -118,7 +118,7 @@ fn decimals_are_as_many_as_asked_for() {
     assert_eq!(json.json()["query"]["decimals"], 0);
     assert!(
         json.text().contains("\"x\":-3,"),
-        "no point of zero decimals"
+        "no decimal point without decimals"
     );
 }
 
@@ -161,7 +161,7 @@ fn the_format_parameter_wins_over_accept_and_head_has_no_body() {
     let named = format!("{QUERY}&format=ndjson");
     let answer = http1::get(daemon.address(), &named, &accept);
     check_headers(&answer, &plan, "application/x-ndjson");
-    // A named format needs no acceptable one.
+    // A named format overrides an `Accept` header that nothing satisfies.
     let odd = [("accept", "text/html")];
     assert_eq!(http1::get(daemon.address(), &named, &odd).status, 200);
     let head = http1::request(daemon.address(), "HEAD", QUERY, &[]);
@@ -169,7 +169,7 @@ fn the_format_parameter_wins_over_accept_and_head_has_no_body() {
 }
 
 #[test]
-fn defaults_and_spellings_do_not_matter() {
+fn explicit_defaults_and_other_spellings_change_nothing() {
     let daemon = Daemon::start(&[]);
     let plain = daemon.get(&format!("{QUERY}&format=f64"));
     let spacing = plan().placement().spacing.get();
@@ -188,7 +188,7 @@ fn defaults_and_spellings_do_not_matter() {
 }
 
 #[test]
-fn a_region_without_points_is_a_whole_answer() {
+fn a_region_without_points_has_a_complete_answer() {
     let daemon = Daemon::start(&[]);
     let path = "/v1/points?bbox=0,0,1e-9,1e-9&density=1&profile=test";
     let json = daemon.get(&format!("{path}&seed=3"));

@@ -1,5 +1,5 @@
-//! HTTP around the answers: HEAD, pages of other origins, errors that are problems whoever finds
-//! them.
+//! HTTP around the answers: HEAD, unknown paths and methods, and problem documents for errors of
+//! every layer.
 
 use strew_testkit::http1;
 
@@ -38,7 +38,7 @@ fn head_is_get_without_a_body() {
         for headers in [&mut expected, &mut got] {
             headers.remove("date");
             headers.remove("transfer-encoding");
-            // Each request has a name of its own.
+            // Each request has an id of its own.
             assert!(headers.remove("x-request-id").is_some(), "{path}");
         }
         assert_eq!(got, expected, "{path}");
@@ -48,7 +48,7 @@ fn head_is_get_without_a_body() {
 }
 
 #[test]
-fn errors_are_problems_whoever_finds_them() {
+fn errors_of_every_layer_are_problem_documents() {
     let daemon = Daemon::start(&["server.max_header_bytes=8192"]);
     let long = format!("/v1/points?bbox={}", "1".repeat(9000));
     let wide = "x".repeat(8200);
@@ -78,7 +78,7 @@ fn errors_are_problems_whoever_finds_them() {
 }
 
 #[test]
-fn unknown_paths_and_methods_are_problems() {
+fn unknown_paths_and_methods_are_problem_documents() {
     let daemon = Daemon::start(&[]);
     for path in [
         "/page/none.js",

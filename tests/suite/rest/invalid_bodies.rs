@@ -1,12 +1,11 @@
-//! Queries as bodies that are wrong, or too much.
+//! Invalid query bodies: the problem names the member at fault, its value, and what is allowed.
 
 use serde_json::{Value, json};
-
 use strew_testkit::http1;
 
 use crate::support::{daemon::Daemon, problem::assert_fault};
 
-/// (what is put into a query that is in order, the field at fault, texts that its fault has).
+/// (members that replace those of a valid query, the field at fault, texts in its fault).
 fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
     let region = |shape: Value| json!({ "region": shape });
     let layers = |layers: Value| json!({ "layers": layers, "spacing": null });
@@ -218,14 +217,14 @@ fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
 }
 
 #[test]
-fn bodies_are_faulted_member_by_member() {
+fn faults_name_the_wrong_member() {
     let daemon = Daemon::start(&[]);
     for (members, field, texts) in members() {
         let mut body = json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1 });
         for (name, value) in members.as_object().expect("an object") {
             body[name] = value.clone();
         }
-        // Whatever is asked of a query, it is read alike.
+        // Every path reads a query alike.
         for path in ["points:query", "count", "points:split?parts=2"] {
             let answer = daemon.post(&format!("/v1/{path}"), &body);
             assert_fault(&answer, &format!("{path} {body}"), field, &texts);
@@ -250,7 +249,7 @@ fn bodies_are_faulted_member_by_member() {
 }
 
 #[test]
-fn what_is_no_json_object_is_a_fault_of_the_body() {
+fn a_body_that_is_not_a_json_object_is_a_fault_of_the_body() {
     let daemon = Daemon::start(&[]);
     let bodies: [&[u8]; 8] = [
         b"",
@@ -279,7 +278,7 @@ fn what_is_no_json_object_is_a_fault_of_the_body() {
 fn the_content_type_of_a_body_does_not_matter() {
     let daemon = Daemon::start(&[]);
     let body = br#"{ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1, "size": null }"#;
-    // `curl -d` calls everything a form.
+    // `curl -d` labels every body a form.
     for content_type in [
         "application/json",
         "application/x-www-form-urlencoded",

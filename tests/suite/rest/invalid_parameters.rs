@@ -1,9 +1,10 @@
-//! Wrong input in addresses: every parameter of the query API, by name, with what is allowed.
+//! Invalid parameters of every path: the problem names the parameter, its value, and what is
+//! allowed.
 
 use crate::support::{daemon::Daemon, problem::assert_fault};
 
-/// (path with parameters, the field at fault, texts that its fault has).
-const ADDRESSES: &[(&str, &str, &[&str])] = &[
+/// (path with parameters, the field at fault, texts in its fault).
+const PATHS: &[(&str, &str, &[&str])] = &[
     ("points?circle=0,0&spacing=1", "circle", &["0,0", "radius"]),
     (
         "points?circle=0,0,0&spacing=1",
@@ -204,9 +205,9 @@ const ADDRESSES: &[(&str, &str, &[&str])] = &[
 ];
 
 #[test]
-fn addresses_are_faulted_field_by_field() {
+fn faults_name_the_wrong_parameter() {
     let daemon = Daemon::start(&[]);
-    for (rest, field, texts) in ADDRESSES {
+    for (rest, field, texts) in PATHS {
         let path = format!("/v1/{rest}");
         assert_fault(&daemon.get(&path), &path, field, texts);
     }

@@ -1,19 +1,19 @@
-//! Wrong input of every kind, by REST: the status, the field and the value are right.
+//! Invalid queries to `/v1/points`: the problem document lists exactly the fields at fault.
 
 use strew_testkit::http1;
 
 use crate::support::daemon::Daemon;
 
-/// A query that is in order, and the parts that a case may replace.
+/// A valid region.
 const BOX: &str = "bbox=0,0,10,10";
 
-/// (query, the fields at fault, a text each of the faults must have somewhere).
+/// (query, the fields at fault, texts in the answer).
 const CASES: &[(&str, &[&str], &[&str])] = &[
     // Missing.
     ("", &["bbox", "density"], &["missing"]),
     ("density=1", &["bbox"], &["missing"]),
     (BOX, &["density"], &["missing", "spacing"]),
-    // Not numbers, not finite, far out.
+    // Not a number, not finite, too far.
     ("bbox=0,0,NaN,10&density=1", &["bbox"], &["max_x", "NaN"]),
     ("bbox=0,0,10,inf&density=1", &["bbox"], &["max_y", "inf"]),
     ("bbox=-infinity,0,10,10&density=1", &["bbox"], &["min_x"]),
@@ -51,7 +51,7 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
     ),
     ("bbox=0,0,0,10&density=1", &["bbox"], &["empty", "max_x"]),
     ("bbox=0,5,10,5&density=1", &["bbox"], &["empty", "max_y"]),
-    // How dense.
+    // The amount.
     ("bbox=0,0,10,10&density=0", &["density"], &["0", "1e-200"]),
     ("bbox=0,0,10,10&density=-1", &["density"], &["-1"]),
     ("bbox=0,0,10,10&density=NaN", &["density"], &["NaN"]),
@@ -67,7 +67,7 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
         &["spacing"],
         &["density"],
     ),
-    // Which table.
+    // The table.
     (
         "bbox=0,0,10,10&density=1&profile=mauve",
         &["profile"],
@@ -89,7 +89,7 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
         &["alpha"],
         &["root", "decimal"],
     ),
-    // The rest.
+    // Other parameters.
     (
         "bbox=0,0,10,10&density=1&seed=-1",
         &["seed"],
@@ -182,7 +182,7 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
         &["\u{fffd}"],
         &["no such parameter"],
     ),
-    // Many at once.
+    // Several faults at once.
     (
         "bbox=5,5,1,1&density=0&profile=mauve&alpha=x&seed=y&format=z&w=v",
         &["w", "seed", "format", "bbox", "density", "profile", "alpha"],
@@ -191,7 +191,7 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
 ];
 
 #[test]
-fn by_rest() {
+fn the_problem_lists_exactly_the_fields_at_fault() {
     let daemon = Daemon::start(&[]);
     for (query, fields, texts) in CASES {
         let default = if query.contains("profile=") {
@@ -199,7 +199,7 @@ fn by_rest() {
         } else {
             "&profile=test"
         };
-        // Spaces do not occur in a request line; all else goes as it stands.
+        // A request line has no spaces; everything else is sent as it is.
         let path = format!("/v1/points?{query}{default}").replace(' ', "%20");
         let answer = daemon.get(&path);
         assert_eq!(answer.status, 400, "{path}: {}", answer.text());
@@ -242,7 +242,7 @@ fn long_values_are_not_echoed_whole() {
 }
 
 #[test]
-fn unacceptable_formats_are_told_what_there_is() {
+fn an_unacceptable_accept_header_gets_the_list_of_formats() {
     let daemon = Daemon::start(&[]);
     let path = format!("/v1/points?{BOX}&density=1&profile=test");
     for accept in [

@@ -1,4 +1,4 @@
-//! Several sets at once: which keep clear of which, seamless over chunks, in every format.
+//! Layers: they keep clear of each other, are seamless across chunks, and appear in every format.
 
 use std::io::Cursor;
 
@@ -26,7 +26,7 @@ fn forest(region: &Value) -> Value {
 /// The points of each layer.
 fn by_layer(table: &Csv) -> [Vec<Point>; 3] {
     let layers = &table.columns["layer"];
-    // One layer after another.
+    // Layers follow each other.
     let order = |name: &String| ["trees", "bushes", "rocks"].iter().position(|n| n == name);
     assert!(layers.is_sorted_by_key(order));
     ["trees", "bushes", "rocks"].map(|name| {
@@ -60,7 +60,7 @@ fn layers_keep_clear_and_lose_no_more_than_they_must() {
     ] {
         assert!(clearance(a, b) >= distance);
     }
-    // By hand, away from the border: what is gone is too near, and all of it.
+    // By brute force, away from the border: exactly the points that are too near are missing.
     let inner = |p: &&Point| p.x.abs() < 15.0 && p.y.abs() < 15.0;
     let free = Csv::get(&daemon, "bbox=-15,-15,15,15&spacing=1&seed=2").points;
     let left: Vec<Point> = free
@@ -98,7 +98,7 @@ fn chunks_of_layers_are_seamless() {
 }
 
 #[test]
-fn the_layer_stands_beside_each_point_in_every_format() {
+fn every_format_names_the_layer_of_each_point() {
     let daemon = Daemon::start(&[]);
     let mut body = forest(&json!({ "circle": { "center": [0, 0], "radius": 9 } }));
     let table = Csv::post(&daemon, &body);
@@ -169,7 +169,7 @@ fn the_layer_stands_beside_each_point_in_every_format() {
 }
 
 #[test]
-fn answers_without_points_are_whole_in_every_format() {
+fn answers_without_points_are_complete_in_every_format() {
     let daemon = Daemon::start(&[]);
     let away = json!({ "circle": { "center": [1e6, 1e6], "radius": 3 } });
     let none = [
@@ -179,7 +179,7 @@ fn answers_without_points_are_whole_in_every_format() {
                 "attributes": ["angle", "variant"], "variants": "a,b" }),
         json!({ "region": { "include": [{ "bbox": [0, 0, 9, 9] }],
                             "exclude": [{ "bbox": [-1, -1, 10, 10] }] }, "spacing": 1 }),
-        // Layers that are elsewhere.
+        // Layers whose own regions lie elsewhere.
         json!({ "region": { "bbox": [0, 0, 9, 9] }, "layers": [
             { "name": "a", "spacing": 1, "region": away },
             { "name": "b", "spacing": 1, "seed": 4, "region": away, "clear_of": { "a": 2 } },

@@ -1,4 +1,8 @@
-//! REST.
+//! The REST API, a file for each subject: which points a query returns (amounts, regions, layers,
+//! single points, paging), how they are written (formats, and the same files read by other
+//! software), what HTTP adds (caching, compression, methods, headers for browsers), and which
+//! problem documents invalid queries, parameters and bodies get.
+
 mod amounts;
 mod browsers;
 mod caching;

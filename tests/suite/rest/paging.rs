@@ -1,17 +1,17 @@
-//! Reading an answer in pieces: by pages, from where it broke off, in parts side by side.
+//! Reading an answer in pieces: pages by limit and cursor, offsets, and the parts of a split.
 
 use serde_json::{Value, json};
 use strew_core::Point;
 
 use crate::support::{csv::Csv, daemon::Daemon};
 
-/// Queries of one set and of several, as bodies.
+/// Queries with and without layers.
 fn queries() -> Vec<Value> {
     let region = json!({ "circle": { "center": [4, -3], "radius": 11 } });
     vec![
         json!({ "region": { "bbox": [-7, 1, 12, 15] }, "spacing": 0.6 }),
         json!({ "region": region, "spacing": 0.6, "seed": 8, "keep": 0.7 }),
-        // The spacing is found again by what the cursor holds.
+        // The cursor carries what is needed to find the same spacing again.
         json!({ "region": region, "count": 700, "seed": 8 }),
         json!({ "region": region, "layers": [
             { "name": "trees", "count": 90, "seed": 1 },
@@ -31,7 +31,7 @@ fn with(body: &Value, members: &[(&str, Value)]) -> Value {
 }
 
 #[test]
-fn pages_by_limit_and_cursor_are_the_whole() {
+fn pages_by_limit_and_cursor_make_the_whole() {
     let daemon = Daemon::start(&[]);
     for body in queries() {
         let whole = Csv::post(&daemon, &body);
@@ -84,7 +84,7 @@ fn an_offset_counts_from_the_beginning_or_from_the_cursor() {
 }
 
 #[test]
-fn parts_are_queries_whose_answers_are_the_whole() {
+fn the_parts_of_a_split_make_the_whole() {
     let daemon = Daemon::start(&[]);
     for body in queries() {
         let cut = with(&body, &[("offset", json!(20)), ("limit", json!(250))]);
@@ -97,7 +97,7 @@ fn parts_are_queries_whose_answers_are_the_whole() {
                 assert_eq!(split["count"], whole.len());
                 let split = split["parts"].as_array().expect("a list").clone();
                 assert_eq!(split.len(), parts.min(whole.len()));
-                // A part a point would be many questions.
+                // Thousands of parts would be thousands of requests.
                 if parts > 100 {
                     continue;
                 }
@@ -158,7 +158,7 @@ fn cursors_of_other_queries_and_damaged_ones_are_refused() {
         refused(body, "next", "not a cursor");
         refused(body, "", "not a cursor");
     }
-    // How an answer looks does not matter, nor by which method it is asked for.
+    // A cursor depends neither on the format nor on the method.
     let page = Csv::get(&daemon, "bbox=-7,1,12,15&spacing=0.6&limit=3");
     let cursor = page.answer.header("strew-next");
     let rest = Csv::post(&daemon, &with(&queries[0], &[("cursor", json!(cursor))]));

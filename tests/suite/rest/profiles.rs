@@ -3,7 +3,7 @@
 use crate::support::daemon::Daemon;
 
 #[test]
-fn a_profile_has_its_curves_and_its_picture() {
+fn a_profile_has_curves_a_target_and_a_picture() {
     let daemon = Daemon::start(&[]);
     let answer = daemon.get("/v1/profiles/blue?alpha=sqrt(3)&map=s");
     assert_eq!(answer.status, 200, "{}", answer.text());

@@ -1,4 +1,4 @@
-//! Regions of all kinds: what they hold, and that neighbors share nothing and lose nothing.
+//! Regions of all kinds: the points they hold. Adjacent regions share no point and lose none.
 
 use serde_json::{Value, json};
 use strew_core::Point;
@@ -18,7 +18,7 @@ fn ask(daemon: &Daemon, region: &Value) -> Vec<Point> {
 }
 
 #[test]
-fn polygons_by_both_methods_and_their_holes() {
+fn polygons_by_get_and_post_and_their_holes() {
     let daemon = Daemon::start(&[]);
     let outer = json!([[0, 0], [30, -4], [36, 22], [10, 31], [0, 0]]);
     let hole = json!([[8, 8], [20, 6], [17, 19]]);
@@ -32,7 +32,7 @@ fn polygons_by_both_methods_and_their_holes() {
         sorted([holed.clone(), missing].concat()),
         sorted(whole.clone())
     );
-    // The same by exclusion, and as two polygons at once, which overlap.
+    // A hole is an exclusion; overlapping polygons are a union.
     let excluded = json!({
         "include": [polygon(&json!([outer]))],
         "exclude": [polygon(&json!([hole]))],

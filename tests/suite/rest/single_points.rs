@@ -1,4 +1,4 @@
-//! Single points: by id, near a place, and what else is known of them, the same in every query.
+//! Single points: by id and near a place. Their attributes are the same in every query.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ const SETS: [&str; 3] = [
     "density=1.5&seed=3&warp=2&keep=0.6",
 ];
 
-/// The most intervals of any table.
+/// The largest number of intervals of any table.
 fn intervals(daemon: &Daemon) -> u64 {
     let tables = daemon.get("/v1/profiles").json()["profiles"].clone();
     let tables = tables.as_array().expect("a list").iter();
@@ -56,7 +56,7 @@ fn every_id_finds_its_point() {
     }
 }
 
-/// Neighbors by looking at all points around.
+/// All points with their squared distances, nearest first.
 fn brute(points: &[Point], at: [f64; 2]) -> Vec<(f64, Point)> {
     let squared = |p: &Point| {
         let [dx, dy] = [p.x - at[0], p.y - at[1]];
@@ -68,7 +68,7 @@ fn brute(points: &[Point], at: [f64; 2]) -> Vec<(f64, Point)> {
 }
 
 #[test]
-fn the_nearest_are_those_of_a_search_by_hand() {
+fn the_nearest_points_are_those_of_a_brute_force_search() {
     let daemon = Daemon::start(&[]);
     for set in SETS {
         let all = Csv::get(&daemon, &format!("bbox=-30,-30,30,30&{set}")).points;
@@ -109,7 +109,7 @@ fn the_nearest_are_those_of_a_search_by_hand() {
 const ATTRIBUTES: &str = "attributes=angle,scale,variant,rank,u1,u16&scale_range=0.5,2&\
                           variants=oak:3,birch,ash:0.5";
 
-/// The values of points by id, as JSON has them.
+/// The attributes of points in JSON, by id.
 fn values(points: &Value) -> BTreeMap<String, Value> {
     let point = |point: &Value| {
         let mut point = point.clone();
@@ -182,7 +182,7 @@ fn attributes_are_the_same_in_every_query_and_within_their_ranges() {
         let other = values(other);
         assert!(other.len() >= 50);
         for (id, value) in &other {
-            // The order of variants by weight is that of their names in an object.
+            // In an object, variants are ordered by name, which changes who gets which.
             let (mut value, mut known) = (value.clone(), all[id].clone());
             if i == 3 {
                 value["variant"] = Value::Null;
@@ -195,7 +195,7 @@ fn attributes_are_the_same_in_every_query_and_within_their_ranges() {
     let mut one = daemon
         .get(&format!("/v1/points/{id}?{set}&{ATTRIBUTES}"))
         .json();
-    // Where it stands in the map is told of a single point only.
+    // Only a single point reports its block.
     let block = one["point"]
         .as_object_mut()
         .and_then(|point| point.remove("block"));
@@ -204,7 +204,7 @@ fn attributes_are_the_same_in_every_query_and_within_their_ranges() {
 }
 
 #[test]
-fn shares_are_nested_and_are_those_of_lesser_rank() {
+fn a_share_keeps_the_points_of_lowest_rank() {
     let daemon = Daemon::start(&[]);
     for set in ["spacing=0.5", "spacing=0.5&seed=6&profile=step"] {
         let region = "bbox=-15,-15,15,15";

@@ -1,5 +1,5 @@
 //! A real browser: headless Chromium, driven through ChromeDriver by the W3C WebDriver protocol,
-//! which is JSON over HTTP. A client library would bring more than these few calls need.
+//! which is JSON over HTTP.
 
 use std::{
     io::{BufRead as _, BufReader},
@@ -10,15 +10,14 @@ use std::{
 };
 
 use serde_json::{Value, json};
-
 use strew_testkit::{http1, wait::until};
 
-use super::daemon::Daemon;
+use super::{clients, daemon::Daemon};
 
-/// One browser at a time: it is the heaviest thing that the tests start.
+/// Held while a browser runs: one at a time, because nothing else that tests start is as heavy.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// A window of a browser of its own; closed when dropped.
+/// A browser with one window; closed when dropped.
 pub struct Browser {
     driver: Child,
     address: SocketAddr,
@@ -27,15 +26,7 @@ pub struct Browser {
     _alone: MutexGuard<'static, ()>,
 }
 
-/// A program on the path.
-fn found(name: &str) -> Option<PathBuf> {
-    let path = std::env::var_os("PATH")?;
-    std::env::split_paths(&path)
-        .map(|folder| folder.join(name))
-        .find(|file| file.is_file())
-}
-
-/// A driver and its port, unless it has ended at once.
+/// Starts a driver. Returns it with its port, or `None` if it ends at once.
 fn listening(program: &Path) -> Option<(Child, u16)> {
     let mut driver = Command::new(program)
         .arg("--port=0")
@@ -43,8 +34,8 @@ fn listening(program: &Path) -> Option<(Child, u16)> {
         .stderr(Stdio::null())
         .spawn()
         .expect("chromedriver runs");
-    let said = BufReader::new(driver.stdout.take().expect("piped"));
-    let port = said.lines().map_while(Result::ok).find_map(|line| {
+    let output = BufReader::new(driver.stdout.take().expect("piped"));
+    let port = output.lines().map_while(Result::ok).find_map(|line| {
         let (_, port) = line.split_once("successfully on port ")?;
         port.trim_end_matches('.').parse().ok()
     });
@@ -54,8 +45,8 @@ fn listening(program: &Path) -> Option<(Child, u16)> {
     Some((driver, port?))
 }
 
-/// A daemon with the built-in tables and a browser to look at it; nothing, said in words, where no
-/// browser is installed.
+/// A daemon with the built-in tables, and a browser. `None`, with a message, where no browser is
+/// installed.
 pub fn looking(width: u32, height: u32) -> Option<(Daemon, Browser)> {
     let browser = Browser::start(width, height)?;
     Some((Daemon::built_in(), browser))
@@ -63,12 +54,9 @@ pub fn looking(width: u32, height: u32) -> Option<(Daemon, Browser)> {
 
 impl Browser {
     fn start(width: u32, height: u32) -> Option<Self> {
-        let (Some(driver), Some(chromium)) = (found("chromedriver"), found("chromium")) else {
-            eprintln!("skipped: chromium and chromedriver are not installed");
-            return None;
-        };
+        let (driver, chromium) = (clients::find("chromedriver")?, clients::find("chromium")?);
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-        // The port that it picks may be taken before it listens; then it ends, and another one tries.
+        // A driver ends if its port is taken before it listens; then another one is started.
         let (driver, port) = until("chromedriver listens", || listening(&driver));
         let profile = tempfile::tempdir().expect("a temporary folder");
         let mut browser = Self {
@@ -111,7 +99,7 @@ impl Browser {
         std::fs::create_dir_all(folder("downloads")).expect("a folder");
     }
 
-    /// Where downloads go.
+    /// The folder of downloads.
     pub fn downloads(&self) -> PathBuf {
         self.profile.path().join("downloads")
     }
@@ -133,7 +121,7 @@ impl Browser {
         self.send("POST", &format!("/session/{}/{path}", self.session), body)
     }
 
-    /// A command of the browser's own protocol.
+    /// Sends a command of the Chrome DevTools Protocol.
     pub fn cdp(&self, name: &str, parameters: &Value) -> Value {
         self.call(
             "goog/cdp/execute",
@@ -141,33 +129,33 @@ impl Browser {
         )
     }
 
-    /// Makes the window so large, inside.
+    /// Sets the inner size of the window, in CSS pixels.
     pub fn resize(&self, width: u32, height: u32) {
         let size =
             json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         self.cdp("Emulation.setDeviceMetricsOverride", &size);
     }
 
-    /// Goes to an address.
+    /// Loads a URL.
     pub fn go(&self, url: &str) {
         self.call("url", &json!({ "url": url }));
     }
 
-    /// Goes to the page of a daemon with a hash, and waits until all points are painted.
+    /// Loads the page of a daemon with a hash, and waits until all points are painted.
     pub fn look(&self, daemon: &Daemon, hash: &str) {
-        // Another hash alone would not load the page anew.
+        // A change of the hash alone does not load the page again.
         self.go("about:blank");
         self.go(&daemon.url(&format!("/{hash}")));
         self.ready();
     }
 
-    /// The value of an expression on the page; promises are waited for.
+    /// The value of a JavaScript expression; promises are awaited.
     pub fn value(&self, expression: &str) -> Value {
         let script = format!("return (async () => ({expression}))()");
         self.call("execute/sync", &json!({ "script": script, "args": [] }))
     }
 
-    /// Waits until an expression is true, or anything else that counts as such.
+    /// Waits until an expression is truthy. Returns its value.
     pub fn until(&self, expression: &str) -> Value {
         until(&format!("the page says {expression}"), || {
             let value = self.value(expression);
@@ -180,14 +168,14 @@ impl Browser {
         })
     }
 
-    /// Waits until all points in view are painted and counted; gives the count.
+    /// Waits until all points in view are painted and counted. Returns the count.
     pub fn ready(&self) -> u64 {
         let words = "document.documentElement.dataset.state === 'ready' && document.documentElement.dataset.count";
         let count = self.until(words);
         count.as_str().expect("text").parse().expect("a number")
     }
 
-    /// The points in view, x and y from its middle.
+    /// The points in view, relative to its middle.
     pub fn in_view(&self) -> Vec<[f64; 2]> {
         let script = "(() => { const all = []; \
             strew.plane.each((layer, x, y) => all.push([x, y])); return all; })()";
@@ -197,7 +185,7 @@ impl Browser {
         points.map(|p| [number(p, 0), number(p, 1)]).collect()
     }
 
-    /// The hash of the address.
+    /// The hash of the URL.
     pub fn hash(&self) -> String {
         self.value("location.hash").as_str().expect("text").into()
     }
@@ -208,7 +196,7 @@ impl Browser {
         text.as_str().expect("text").into()
     }
 
-    /// The element of a selector, as the protocol names it.
+    /// The element that a selector matches, as a reference of the protocol.
     fn element(&self, selector: &str) -> Value {
         self.call(
             "element",
@@ -216,7 +204,7 @@ impl Browser {
         )
     }
 
-    /// Clicks an element, as a mouse does.
+    /// Clicks an element with the mouse.
     pub fn click(&self, selector: &str) {
         let element = self.element(selector);
         let id = element.as_object().expect("an element").values().next();
@@ -224,7 +212,7 @@ impl Browser {
         self.call(&format!("element/{id}/click"), &json!({}));
     }
 
-    /// Chooses a value in a field or a list, as a person would in the end.
+    /// Sets the value of a field or a list and fires the events of a change.
     pub fn choose(&self, selector: &str, value: &str) {
         let script = format!(
             "(() => {{ const e = document.querySelector({selector:?}); e.value = {value:?}; \
@@ -244,7 +232,7 @@ impl Browser {
         self.call("actions", &json!({ "actions": [source] }));
     }
 
-    /// Drags the plane with the mouse, in steps.
+    /// Drags with the mouse, in steps.
     pub fn drag(&self, from: [i32; 2], by: [i32; 2]) {
         let to =
             |[x, y]: [i32; 2]| json!({ "type": "pointerMove", "x": x, "y": y, "duration": 30 });
@@ -262,7 +250,7 @@ impl Browser {
         );
     }
 
-    /// Turns the wheel over the plane.
+    /// Turns the wheel.
     pub fn wheel(&self, at: [i32; 2], by: i32) {
         self.call(
             "actions",
@@ -272,8 +260,8 @@ impl Browser {
         );
     }
 
-    /// What the page's console said that is worse than a warning.
-    pub fn complaints(&self) -> Vec<String> {
+    /// The errors in the page's console.
+    pub fn errors(&self) -> Vec<String> {
         let log = self.call("se/log", &json!({ "type": "browser" }));
         let entries = log.as_array().expect("a list").iter();
         entries

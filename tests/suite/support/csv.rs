@@ -1,10 +1,9 @@
-//! Answers as CSV, read back.
+//! Answers as CSV, parsed.
 
 use std::collections::BTreeMap;
 
 use serde_json::Value;
 use strew_core::Point;
-
 use strew_testkit::http1;
 
 use super::daemon::Daemon;
@@ -17,7 +16,7 @@ pub struct Csv {
 }
 
 impl Csv {
-    /// Reads an answer that must be one.
+    /// Parses an answer, which must be a success.
     pub fn of(answer: http1::Answer) -> Self {
         assert_eq!(answer.status, 200, "{}", answer.text());
         let text = answer.text().to_owned();
@@ -66,19 +65,19 @@ impl Csv {
         Self::of(daemon.post("/v1/points:query", &body))
     }
 
-    /// A chunk; `rest` is the path after `chunks/` with the query.
+    /// The answer for a chunk; `rest` is the path after `chunks/`, with a query.
     pub fn chunk(daemon: &Daemon, rest: &str) -> Self {
         Self::of(daemon.get(&format!("/v1/chunks/{rest}&format=csv")))
     }
 }
 
-/// In the order of ids.
+/// Sorts points by id.
 pub fn sorted(mut points: Vec<Point>) -> Vec<Point> {
     points.sort_by_key(|point| point.id);
     points
 }
 
-/// The least distance of any two.
+/// The least distance of any two points.
 pub fn least_distance(points: &[Point]) -> f64 {
     let mut least = f64::INFINITY;
     for (i, p) in points.iter().enumerate() {

@@ -90,7 +90,7 @@ impl Daemon {
         Self::launch(quiet().listen(address), no_tables()).ok()
     }
 
-    /// Starts one that speaks TLS with the files of a folder: `server.pem` with `server.key`, and
+    /// Starts one that serves TLS with the files of a folder: `server.pem` with `server.key`, and
     /// `clients.pem`, if it is there, for certificates of clients.
     pub fn with_tls(folder: &Path, settings: &[&str]) -> Self {
         let file = |setting: &str, name: &str| format!("{setting}={}", folder.join(name).display());

@@ -1,4 +1,4 @@
-//! gRPC calls as tests make them.
+//! Messages for gRPC requests, and streams collected.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ pub fn shaped(shape: Shape) -> Option<Region> {
     Some(Region { shape: Some(shape) })
 }
 
-/// The side of a square that holds a billion points and a few at density 1.
+/// The side of a square that holds a little over a billion points at density 1.
 pub const LONG: f64 = 31_700.0;
 
 /// A square with a corner at the origin, at density 1.
@@ -82,7 +82,7 @@ pub async fn collect(
 }
 
 impl Whole {
-    /// The points as the JSON format writes them: id, x, y, the layer and attributes.
+    /// The points as in the JSON format: id, x, y, layer and attributes.
     pub fn points(&self) -> Vec<Value> {
         let sets = &self.header.query.as_ref().expect("set").sets;
         let mut points = vec![];
@@ -109,11 +109,11 @@ impl Whole {
         points
     }
 
-    /// The values of each column of a block, names as text.
+    /// The values of each attribute column of a block; variants as names.
     pub fn columns(&self, block: &PointBlock) -> BTreeMap<String, Vec<Value>> {
         let columns = block.columns.iter().map(|column| {
             let is_head = |head: &&ColumnHead| head.name == column.name;
-            let head = self.header.columns.iter().find(is_head).expect("told");
+            let head = self.header.columns.iter().find(is_head).expect("a head");
             let name = |&i: &u32| head.names[i as usize].clone().into();
             let numbers = column.numbers.iter().map(|&v| Value::from(v));
             let values: Vec<Value> = numbers.chain(column.indices.iter().map(name)).collect();
@@ -128,7 +128,8 @@ impl Whole {
     }
 }
 
-/// All numbers as floating-point ones, and points without what their layer lacks.
+/// JSON with all numbers as floating-point ones and without members that are null, for comparisons
+/// between REST and gRPC.
 pub fn normal(value: &Value) -> Value {
     match value {
         Value::Number(number) => number.as_f64().into(),

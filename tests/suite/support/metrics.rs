@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::daemon::Daemon;
 
+/// The samples of a daemon, by name with labels as written.
 pub fn samples(daemon: &Daemon) -> BTreeMap<String, f64> {
     let answer = daemon.get("/metrics");
     assert_eq!(answer.status, 200);
@@ -27,7 +28,7 @@ pub fn samples(daemon: &Daemon) -> BTreeMap<String, f64> {
     lines.map(sample).collect()
 }
 
-/// The sum of the samples of a name that have all of these labels.
+/// The sum of the samples with this name and all of these labels.
 pub fn sum(samples: &BTreeMap<String, f64>, name: &str, labels: &[&str]) -> f64 {
     let is_it = |sample: &str| {
         let own = sample.split_once('{').map_or(sample, |(own, _)| own);

@@ -1,6 +1,8 @@
-//! What the tests of several folders share. There are no tests here.
+//! What tests of several folders share. There are no tests here; parts that other test binaries and
+//! benches need as well are in `crates/testkit`.
 
 pub mod browser;
+pub mod clients;
 pub mod command;
 pub mod csv;
 pub mod daemon;

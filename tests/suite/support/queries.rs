@@ -1,6 +1,6 @@
 //! Queries that keep a daemon busy.
 
-/// The path of a billion points and a few, in a format.
+/// The path of a little over a billion points, in a format.
 pub fn long(format: &str) -> String {
     format!("/v1/points?bbox=0,0,31700,31700&density=1&profile=test&format={format}")
 }
