@@ -27,8 +27,8 @@ pub fn command(program: impl AsRef<OsStr>) -> Command {
     command
 }
 
-/// How to start a daemon: on a free port of this machine, with the built-in tables and the default
-/// settings, unless said otherwise. Its log is kept, see [`Daemon::log`].
+/// How to start a daemon. By default it listens on a free port of this machine and has the built-in
+/// tables and the default settings; its log is kept, see [`Daemon::log`].
 pub struct Launcher {
     command: Command,
     listen: String,
