@@ -6,7 +6,8 @@ pub fn long(format: &str) -> String {
 }
 
 /// A body whose points take minutes to count.
-pub const SLOW: &str = r#"{"region": {"circle": {"center": [0, 0], "radius": 1e10}}, "spacing": 1, "profile": "test"}"#;
+pub const SLOW: &str =
+    r#"{"region": {"circle": {"center": [0, 0], "radius": 1e8}}, "spacing": 1, "profile": "test"}"#;
 
 /// The setting that lets a daemon count [`SLOW`].
 pub const MANY_ROWS: &str = "limits.max_rows=1000000000000";
