@@ -1,4 +1,4 @@
-//! Small boxes, each elsewhere, beside a constant answer of the same size.
+//! Small boxes, each in another place, next to a constant answer of the same size.
 
 use std::{
     net::SocketAddr,
@@ -19,14 +19,14 @@ use super::{
     timing::{Effort, median},
 };
 
-/// A connection that asks again and again.
+/// A connection that is used for many requests.
 struct Connection {
     socket: TcpStream,
     buffer: Vec<u8>,
 }
 
 impl Connection {
-    /// Asks for a path and reads the answer.
+    /// Requests a path and reads the answer.
     async fn get(&mut self, path: &str) {
         let head = format!("GET {path} HTTP/1.1\r\nhost: bench\r\n\r\n");
         self.socket.write_all(head.as_bytes()).await.expect("sent");
@@ -61,13 +61,15 @@ impl Connection {
     }
 }
 
-/// What one burst gave: answers per second, and the 99th percentile of their times.
+/// What one burst measured.
 struct Burst {
+    /// Answers per second.
     rate: f64,
+    /// The 99th percentile of their times, in seconds.
     p99: f64,
 }
 
-/// Asks on several connections at once for a while.
+/// Sends requests over several connections at once for `time`.
 async fn burst(
     address: SocketAddr,
     connections: usize,
@@ -86,10 +88,10 @@ async fn burst(
                 let mut connection = Connection { socket, buffer };
                 let mut times = vec![];
                 while start.elapsed() < time {
-                    let asked = Instant::now();
+                    let sent = Instant::now();
                     let path = path(number.fetch_add(1, Ordering::Relaxed));
                     connection.get(&path).await;
-                    times.push(asked.elapsed().as_secs_f64());
+                    times.push(sent.elapsed().as_secs_f64());
                 }
                 times
             })
@@ -107,7 +109,7 @@ async fn burst(
     }
 }
 
-/// A box of about 1,000 points, another one each time.
+/// The path of a box of about 1,000 points, in another place for each number.
 fn elsewhere(number: u64) -> String {
     let (x, y) = ((number % 997) * 40, (number / 997) * 40);
     let (to_x, to_y) = (x as f64 + 31.6, y as f64 + 31.6);
@@ -122,7 +124,7 @@ pub fn boxes(host: &Host, effort: Effort) {
         .enable_all()
         .build()
         .expect("a runtime");
-    println!("\nBoxes of 1,000 points as f32 (8 kB), HTTP/1.1, each elsewhere");
+    println!("\nBoxes of 1,000 points as f32 (8 kB), HTTP/1.1, each in another place");
     println!(
         "{:<14} {:>12} {:>12} {:>8} {:>10} {:>10} {:>8}",
         "connections", "boxes/s", "constant/s", "ratio", "p99 µs", "const. µs", "ratio"

@@ -1,4 +1,4 @@
-//! The least a client can do over gRPC: call, read frames, give the window back, throw away.
+//! The least a client can do over gRPC: call, read frames, release their window, throw away.
 
 use std::net::SocketAddr;
 
@@ -10,7 +10,7 @@ use strew::grpc::proto::{
     stream_points_request::Amount,
 };
 
-/// What a client allows the server to send.
+/// How much a client lets the server send, in bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Windows {
     frame: u32,
@@ -19,13 +19,13 @@ pub struct Windows {
 }
 
 impl Windows {
-    /// What hyper's and tonic's clients say unasked.
+    /// The defaults of hyper's and tonic's clients.
     pub const DEFAULT: Self = Self {
         frame: 16 << 10,
         stream: 2 << 20,
         connection: 5 << 20,
     };
-    /// What fast clients say.
+    /// What clients set that want to be fast.
     pub const WIDE: Self = Self {
         frame: 256 << 10,
         stream: 8 << 20,
@@ -33,7 +33,7 @@ impl Windows {
     };
 }
 
-/// A request for a square with about so many points as packed `f32`, framed.
+/// A framed request for a square with about `points` points as packed `f32`.
 pub fn request(points: u64) -> Bytes {
     let side = (points as f64).sqrt();
     let request = StreamPointsRequest {
@@ -53,7 +53,7 @@ pub fn request(points: u64) -> Bytes {
     [&[0], &length.to_be_bytes()[..], &message].concat().into()
 }
 
-/// Calls a method and gives how many bytes came.
+/// Calls a method. Returns the number of bytes received.
 pub fn call(address: SocketAddr, path: &str, request: Bytes, windows: Windows) -> f64 {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
@@ -83,7 +83,7 @@ pub fn call(address: SocketAddr, path: &str, request: Bytes, windows: Windows) -
             let read = data.expect("whole").len();
             total += read;
             let flow = answer.flow_control();
-            flow.release_capacity(read).expect("what was taken");
+            flow.release_capacity(read).expect("received");
         }
         total as f64
     })

@@ -1,5 +1,5 @@
-//! The daemon inside this process, with routes beside its own whose answers cost nothing to make:
-//! a prepared block sent again and again, or copied first.
+//! The daemon inside this process, with further routes whose answers cost nothing to make: a
+//! prepared block sent again and again, or copied first.
 
 use std::{
     convert::Infallible,
@@ -18,8 +18,9 @@ use strew::{
     ops::App,
     service::{Service, encode::Pool},
 };
+use strew_testkit::random::SplitMix;
 
-/// A daemon that serves as long as this lives.
+/// A daemon that serves until it is dropped.
 pub struct Host {
     pub address: SocketAddr,
     _runtime: tokio::runtime::Runtime,
@@ -96,7 +97,7 @@ fn routes(service: &Arc<Service>, block_bytes: usize) -> Router {
         )
 }
 
-/// The sizes of the blocks of so many bytes.
+/// The sizes of the blocks that make `bytes` bytes.
 fn cut(bytes: usize, block: usize) -> impl Iterator<Item = usize> + Send + Unpin {
     (0..bytes.div_ceil(block)).map(move |i| block.min(bytes - i * block))
 }
@@ -134,14 +135,8 @@ fn framed(block: &Bytes) -> Bytes {
     framed.into()
 }
 
-/// Bytes that look like points, as far as the wire cares.
+/// Random bytes, which no layer can compress.
 fn noise(bytes: usize) -> Vec<u8> {
-    let mut state = 1u64;
-    let next = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 56) as u8
-    };
-    std::iter::repeat_with(next).take(bytes).collect()
+    let mut random = SplitMix::new(1);
+    (0..bytes).map(|_| random.bits() as u8).collect()
 }

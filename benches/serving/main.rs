@@ -1,15 +1,15 @@
-//! How fast answers are served, beside answers that cost nothing to make, in one run.
+//! How fast answers are served, next to answers that cost nothing to make, in one run.
 //!
 //! `cargo bench --bench serving` prints medians of interleaved rounds and their ratios. Arguments
 //! after `--`: names of parts (http, grpc, boxes, text, readers, start) to run only those,
-//! `--rounds N`, `--points N` for long streams, `--against ADDRESS/PATH` to read a file from
-//! another server by turns with our streams, and `--quick` to check only that everything runs.
+//! `--rounds N`, `--points N` for long streams, `--against ADDRESS/PATH` to alternate our streams
+//! with a file of another server, and `--quick` to check only that everything runs.
 
 mod boxes;
+mod download;
 mod h2c;
 mod host;
-mod http1;
-mod program;
+mod process;
 mod readers;
 mod start;
 mod streams;

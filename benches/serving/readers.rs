@@ -1,4 +1,4 @@
-//! Many slow readers and a fast one: what the fast one keeps, and what the program holds.
+//! Many slow readers and a fast one: the speed of the fast one, and the memory of the daemon.
 
 use std::{
     io::Read as _,
@@ -11,17 +11,18 @@ use std::{
     time::{Duration, Instant},
 };
 
+use strew_testkit::daemon::Daemon;
+
 use super::{
-    http1,
-    program::Program,
+    download, process,
     timing::{Effort, median},
 };
 
-/// What a slow reader takes at a time, and how long it rests after that.
+/// The bytes that a slow reader takes at a time, and how long it rests after that.
 const SIP: usize = 16 << 10;
 const REST: Duration = Duration::from_millis(50);
 
-/// Readers that take a sip each, one after another, then rest; gives what they took.
+/// Lets readers take a sip each, one after another, then rest, until `over`. Counts their bytes.
 fn sip(mut readers: Vec<TcpStream>, over: &AtomicBool, taken: &AtomicU64) {
     let mut buffer = vec![0; SIP];
     while !over.load(Ordering::Relaxed) {
@@ -34,8 +35,8 @@ fn sip(mut readers: Vec<TcpStream>, over: &AtomicBool, taken: &AtomicU64) {
 }
 
 /// Bytes per second of one reader that reads as fast as it can for a while.
-fn fast(program: &Program, time: Duration) -> f64 {
-    let mut stream = http1::ask(program.address, &endless());
+fn fast(daemon: &Daemon, time: Duration) -> f64 {
+    let mut stream = download::open(daemon.address(), &endless());
     let mut buffer = vec![0; 1 << 20];
     let (start, mut total) = (Instant::now(), 0);
     while start.elapsed() < time {
@@ -44,7 +45,7 @@ fn fast(program: &Program, time: Duration) -> f64 {
     total as f64 / start.elapsed().as_secs_f64()
 }
 
-/// A stream that does not end before the bench does.
+/// The path of a stream that does not end before the bench does.
 fn endless() -> String {
     let side = 1.4e9f64.sqrt();
     format!("/v1/points?bbox=0,0,{side},{side}&spacing=1&format=f32")
@@ -56,14 +57,14 @@ pub fn readers(effort: Effort) {
     } else {
         (256, Duration::from_secs(1))
     };
-    let program = Program::start(&["limits.max_streams=300"]);
+    let daemon = process::start(&["limits.max_streams=300"]);
     let mut alone = vec![];
     for _ in 0..effort.rounds {
-        alone.push(fast(&program, time));
+        alone.push(fast(&daemon, time));
     }
-    let idle = program.resident();
+    let idle = process::resident(&daemon);
     let path = endless();
-    let readers = (0..slow).map(|_| http1::ask(program.address, &path));
+    let readers = (0..slow).map(|_| download::open(daemon.address(), &path));
     let (over, taken) = (
         Arc::new(AtomicBool::new(false)),
         Arc::new(AtomicU64::new(0)),
@@ -76,8 +77,8 @@ pub fn readers(effort: Effort) {
     let (start, before) = (Instant::now(), taken.load(Ordering::Relaxed));
     let (mut beside, mut resident) = (vec![], vec![]);
     for _ in 0..effort.rounds {
-        beside.push(fast(&program, time));
-        resident.extend(program.resident());
+        beside.push(fast(&daemon, time));
+        resident.extend(process::resident(&daemon));
     }
     let sipped = (taken.load(Ordering::Relaxed) - before) as f64 / start.elapsed().as_secs_f64();
     over.store(true, Ordering::Relaxed);
@@ -88,7 +89,7 @@ pub fn readers(effort: Effort) {
     println!("{:<34} {:>8.2} GB/s", "the fast one alone", alone * 1e-9);
     println!(
         "{:<34} {:>8.2} GB/s",
-        "the fast one beside the slow",
+        "the fast one among the slow",
         beside * 1e-9
     );
     println!(

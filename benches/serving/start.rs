@@ -1,10 +1,9 @@
-//! From starting the program to its first answer, and what it holds when it has nothing to do.
+//! The time from the start of the program to its first answer, and its memory when idle.
 
 use std::time::Instant;
 
 use super::{
-    http1,
-    program::Program,
+    download, process,
     timing::{Effort, median},
 };
 
@@ -13,11 +12,11 @@ pub fn start(effort: Effort) {
     let (mut listening, mut answered, mut resident) = (vec![], vec![], vec![]);
     for _ in 0..rounds {
         let start = Instant::now();
-        let program = Program::start(&[]);
+        let daemon = process::start(&[]);
         listening.push(start.elapsed().as_secs_f64());
-        resident.extend(program.resident());
-        let bytes = http1::get(
-            program.address,
+        resident.extend(process::resident(&daemon));
+        let bytes = download::whole(
+            daemon.address(),
             "/v1/points?bbox=0,0,30,30&spacing=1&format=f32",
         );
         answered.push(start.elapsed().as_secs_f64());

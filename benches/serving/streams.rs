@@ -1,25 +1,25 @@
-//! Long streams: points as they are made, beside a block that is copied and one that is sent as
-//! it is.
+//! Long streams: points as they are made, next to a block that is copied and one that is sent as
+//! is.
 
 use std::net::SocketAddr;
 
 use super::{
+    download,
     h2c::{self, Windows},
     host::Host,
-    http1,
-    timing::{Effort, Way, rates, tell},
+    timing::{Effort, Way, print, rates},
 };
 
-/// The bytes of a point.
+/// The bytes of a point as two `f32`.
 const POINT: u64 = 8;
 
-/// The address of a square with about so many points.
+/// The path of a square with about `points` points.
 fn square(points: u64, rest: &str) -> String {
     let side = (points as f64).sqrt();
     format!("/v1/points?bbox=0,0,{side},{side}&spacing=1&{rest}")
 }
 
-/// HTTP/1.1, and another server that sends a file of the same size, if there is one.
+/// HTTP/1.1, next to another server that sends a file of the same size, if one is given.
 pub fn http(host: &Host, effort: Effort, other: Option<(SocketAddr, String)>) {
     let address = host.address;
     let bytes = effort.points * POINT;
@@ -35,15 +35,15 @@ pub fn http(host: &Host, effort: Effort, other: Option<(SocketAddr, String)>) {
     ];
     let mut ways: Vec<Way<'_>> = paths
         .iter()
-        .map(|(name, path)| Way::new(name, move || http1::get(address, path) as f64))
+        .map(|(name, path)| Way::new(name, move || download::whole(address, path) as f64))
         .collect();
     if let Some((address, path)) = &other {
-        let work = move || http1::get(*address, path) as f64;
+        let work = move || download::whole(*address, path) as f64;
         ways.push(Way::new("the other server", work));
     }
     let rates = rates(effort.rounds, &mut ways);
     let title = format!("HTTP/1.1, {} points a stream, one reader", effort.points);
-    tell(&title, "GB/s", 1e-9, &ways, &rates);
+    print(&title, "GB/s", 1e-9, &ways, &rates);
 }
 
 /// gRPC with packed blocks.
@@ -69,6 +69,6 @@ pub fn grpc(host: &Host, effort: Effort) {
             }),
         ];
         let rates = rates(effort.rounds, &mut ways);
-        tell(title, "GB/s", 1e-9, &ways, &rates);
+        print(title, "GB/s", 1e-9, &ways, &rates);
     }
 }

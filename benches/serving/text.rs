@@ -1,8 +1,8 @@
-//! Text: what an answer costs beside writing the same numbers and nothing else.
+//! Text: the cost of an answer next to that of writing the same numbers and nothing else.
 //!
 //! The pure cost is that of prepared points written by the fastest formatter for each kind of
-//! number, on one thread into memory that stays warm. Beside it: our encoder on one thread, making
-//! the points, and the answer as it is served, on as many threads as the workers have.
+//! number, on one thread into memory that stays warm. Next to it: our encoder on one thread, which
+//! also makes the points, and the answer as served, on all worker threads.
 
 use std::{hint::black_box, time::Instant};
 
@@ -13,12 +13,12 @@ use strew::service::{
 use strew_core::Point;
 
 use super::{
+    download,
     host::Host,
-    http1,
     timing::{Effort, median},
 };
 
-/// Prepared points: few enough to stay in the fastest memory.
+/// The number of prepared points: few enough to stay in the fastest cache.
 const PREPARED: usize = 1024;
 
 fn limits() -> Limits {
@@ -33,7 +33,7 @@ fn query(catalog: &Catalog, points: u64) -> Query {
     checked.expect("valid").0
 }
 
-/// What stands around the three values of a point.
+/// The text around the three values of a point.
 type Frame = [&'static [u8]; 4];
 
 const CSV: Frame = [b"", b",", b",", b"\n"];
@@ -81,7 +81,7 @@ fn write_shortest(value: f64, out: &mut Vec<u8>) {
     out.extend_from_slice(zmij::Buffer::new().format_finite(value).as_bytes());
 }
 
-/// Writes points and nothing else; gives seconds per point.
+/// Writes points and nothing else. Returns seconds per point.
 fn pure(points: &[Point], count: u64, frame: &Frame, number: fn(f64, &mut Vec<u8>)) -> f64 {
     let mut out = Vec::with_capacity(256 << 10);
     let start = Instant::now();
@@ -108,7 +108,7 @@ fn pure(points: &[Point], count: u64, frame: &Frame, number: fn(f64, &mut Vec<u8
     start.elapsed().as_secs_f64() / written as f64
 }
 
-/// Makes an answer, throws it away; gives seconds per point.
+/// Makes an answer and throws it away. Returns seconds per point.
 fn made(planned: &Planned, output: &Output, limits: &Limits) -> f64 {
     let start = Instant::now();
     let mut answer = Answer::new(planned, output, limits.block_bytes).expect("any format");
@@ -153,7 +153,7 @@ pub fn text(host: &Host, effort: Effort) {
                 figures[0].push(pure(&points, count, frame, number));
                 figures[1].push(alone.install(|| made(&planned, &output, &limits)));
                 let start = Instant::now();
-                http1::get(host.address, &path);
+                download::whole(host.address, &path);
                 figures[2].push(start.elapsed().as_secs_f64() / count as f64);
             }
             let [pure, made, served] = figures.map(median);

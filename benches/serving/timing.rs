@@ -1,5 +1,5 @@
-//! Interleaved rounds, medians and how they are told: ratios within one run hold on busy machines,
-//! absolute figures do not.
+//! Interleaved rounds, their medians, and how they are printed. Ratios within one run hold on busy
+//! machines, absolute figures do not.
 
 use std::time::Instant;
 
@@ -8,15 +8,16 @@ use std::time::Instant;
 pub struct Effort {
     /// Only checks that everything runs.
     pub quick: bool,
-    /// Rounds of which medians are taken.
+    /// The number of rounds of which medians are taken.
     pub rounds: usize,
-    /// The points of a long stream.
+    /// The number of points of a long stream.
     pub points: u64,
 }
 
-/// One way to do some work: gives how much of it was done.
+/// One way to do some work.
 pub struct Way<'a> {
     pub name: &'a str,
+    /// Does the work and returns its amount.
     pub work: Box<dyn FnMut() -> f64 + 'a>,
 }
 
@@ -32,7 +33,7 @@ impl<'a> Way<'a> {
 /// The amount per second of each way, as the median over interleaved rounds.
 pub fn rates(rounds: usize, ways: &mut [Way<'_>]) -> Vec<f64> {
     let mut rates = vec![vec![]; ways.len()];
-    // One round more: the first one warms up.
+    // The first round warms up and is not counted, unless it is the only one.
     for round in 0..=rounds {
         for (way, rates) in ways.iter_mut().zip(&mut rates) {
             let start = Instant::now();
@@ -46,14 +47,14 @@ pub fn rates(rounds: usize, ways: &mut [Way<'_>]) -> Vec<f64> {
     rates.into_iter().map(median).collect()
 }
 
-/// The middle one.
+/// The median; the upper one of an even number.
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
 }
 
-/// A line for each way: its rate, and that of the first over its own.
-pub fn tell(title: &str, unit: &str, scale: f64, ways: &[Way<'_>], rates: &[f64]) {
+/// Prints a line for each way: its rate, and the first way's rate divided by it.
+pub fn print(title: &str, unit: &str, scale: f64, ways: &[Way<'_>], rates: &[f64]) {
     println!("\n{title}");
     println!("{:<34} {unit:>12} {:>14}", "", "first ÷ this");
     for (way, rate) in ways.iter().zip(rates) {

@@ -142,8 +142,7 @@ impl<'a> Planner<'a> {
         let plan = server::exactly(points, count.into(), area, least, self.stop);
         plan.map_err(|error| match error.kind() {
             ErrorKind::Count | ErrorKind::TooDense => {
-                let detail = format!("{}; {}", error.problem(), error.allowed());
-                set.fault("count", count, detail, query::AMOUNT)
+                set.fault("count", count, error.problem(), query::AMOUNT)
             }
             _ => {
                 let spacing = points.placement().spacing;

@@ -1,22 +1,23 @@
-//! Count, windows, cursors and splits agree with the stream on 10,000 random queries of all kinds:
-//! all regions, all built-in profiles, with warp, shares, layers and every way to say how many.
+//! Counts, windows, cursors and splits agree with the whole answer, for 10,000 random queries: all
+//! kinds of regions, all built-in profiles, warps, shares, layers, and every way to set the amount.
 //!
-//! Queries go in as JSON, as a client sends them, and answers are compared as CSV with ids.
+//! Queries are read from JSON, as a client sends them; answers are compared as CSV with ids.
 
-mod any;
-mod world;
+mod generate;
+mod library;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use any::Dice;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use strew::service::{Answer, Encoding, Error, Output, Planned};
-use world::{World, world};
+use strew_testkit::random::SplitMix;
+
+use library::{Library, library, with};
 
 const QUERIES: u64 = 10_000;
 
-/// The lines of an answer without the first.
+/// The lines of an answer as CSV, without the column names.
 fn lines(planned: &Planned, block_bytes: usize) -> Vec<String> {
     let answer = Answer::new(planned, &Output::new(Encoding::Csv), block_bytes).expect("fits");
     let mut text = vec![];
@@ -27,20 +28,13 @@ fn lines(planned: &Planned, block_bytes: usize) -> Vec<String> {
     text.lines().skip(1).map(Into::into).collect()
 }
 
-fn with(body: &Value, members: &[(&str, Value)]) -> Value {
-    let mut body = body.clone();
-    for (name, value) in members {
-        body[*name] = value.clone();
-    }
-    body
-}
-
-/// One query with its windows; `None` if it cannot be answered, for a reason that is in order.
-fn check(world: &World, dice: &mut Dice, body: &Value) -> Option<usize> {
-    let whole = match world.planned(body) {
+/// Checks a query with its windows, pages and splits. Returns the number of points, or `None` if
+/// the query is refused for a valid reason.
+fn check(library: &Library, random: &mut SplitMix, body: &Value) -> Option<usize> {
+    let whole = match library.planned(body) {
         Ok(planned) => planned,
-        // In a region that holds next to nothing there is not always a spacing for a count, or it
-        // is so narrow that a distance is too wide for it.
+        // In a region that holds next to nothing, a count may have no spacing, or one so narrow
+        // that the distance to keep clear is too wide for it.
         Err(Error::Invalid(faults)) if faults.iter().all(|f| is_about_counts(&f.field)) => {
             return None;
         }
@@ -51,7 +45,7 @@ fn check(world: &World, dice: &mut Dice, body: &Value) -> Option<usize> {
     assert_eq!(whole.offset(), 0, "{body}");
     assert!(whole.next().is_none(), "{body}");
     let of = |body: &Value| {
-        let planned = world
+        let planned = library
             .planned(body)
             .unwrap_or_else(|e| panic!("{e}: {body}"));
         let lines = lines(&planned, 500);
@@ -59,9 +53,9 @@ fn check(world: &World, dice: &mut Dice, body: &Value) -> Option<usize> {
         (planned, lines)
     };
 
-    // A window, and what comes after it.
-    let offset = dice.below(all.len() as u64 + 3) as usize;
-    let limit = 1 + dice.below(all.len() as u64 + 3) as usize;
+    // A window, and what follows it.
+    let offset = random.below(all.len() as u64 + 3) as usize;
+    let limit = 1 + random.below(all.len() as u64 + 3) as usize;
     let (start, end) = (offset.min(all.len()), (offset + limit).min(all.len()));
     let asked = with(body, &[("offset", json!(offset)), ("limit", json!(limit))]);
     let (window, some) = of(&asked);
@@ -73,22 +67,22 @@ fn check(world: &World, dice: &mut Dice, body: &Value) -> Option<usize> {
         let (resumed, some) = of(&rest);
         assert_eq!(some, all[end..], "{rest}");
         assert_eq!(resumed.offset(), end as u128, "{rest}");
-        // From a cursor on, an offset leaves out more.
-        let (skip, most) = (dice.below(20) as usize, 1 + dice.below(30) as usize);
+        // An offset counts from the cursor.
+        let (skip, most) = (random.below(20) as usize, 1 + random.below(30) as usize);
         let asked = with(&rest, &[("offset", json!(skip)), ("limit", json!(most))]);
         let (window, some) = of(&asked);
         let start = (end + skip).min(all.len());
         let end = (start + most).min(all.len());
         assert_eq!(some, all[start..end], "{asked}");
         assert_eq!(window.next().is_some(), end < all.len(), "{asked}");
-        if dice.below(3) == 0 {
-            check_split(world, dice, &window, &asked, &all[start..end]);
+        if random.below(3) == 0 {
+            check_split(library, random, &window, &asked, &all[start..end]);
         }
     }
 
-    check_split(world, dice, &whole, body, &all);
-    // Pages to the end.
-    let page = 1 + all.len().div_ceil(1 + dice.below(3) as usize);
+    check_split(library, random, &whole, body, &all);
+    // Page after page, to the end.
+    let page = 1 + all.len().div_ceil(1 + random.below(3) as usize);
     let mut next = None;
     let mut read = vec![];
     loop {
@@ -112,9 +106,15 @@ fn is_about_counts(field: &str) -> bool {
     field.ends_with("count") || field.ends_with("clear_of")
 }
 
-/// The parts of a split, read each by itself, are the whole.
-fn check_split(world: &World, dice: &mut Dice, planned: &Planned, body: &Value, all: &[String]) {
-    let parts = 1 + dice.below(4) as u32;
+/// Checks that the parts of a split, each read by itself, make the whole.
+fn check_split(
+    library: &Library,
+    random: &mut SplitMix,
+    planned: &Planned,
+    body: &Value,
+    all: &[String],
+) {
+    let parts = 1 + random.below(4) as u32;
     if parts == 1 {
         return;
     }
@@ -129,7 +129,7 @@ fn check_split(world: &World, dice: &mut Dice, planned: &Planned, body: &Value, 
             ("limit", json!(count)),
         ];
         let asked = with(&body, &wanted);
-        let part = world
+        let part = library
             .planned(&asked)
             .unwrap_or_else(|e| panic!("{e}: {asked}"));
         assert_eq!(part.count(), u128::from(count), "{asked}");
@@ -141,19 +141,19 @@ fn check_split(world: &World, dice: &mut Dice, planned: &Planned, body: &Value, 
 
 #[test]
 fn counts_windows_cursors_and_splits_agree_with_streams() {
-    let world = world();
-    let (keys, promising) = world.keys();
+    let library = library();
+    let (keys, promising) = library.keys();
     let (points, refused) = (AtomicUsize::new(0), AtomicUsize::new(0));
     (0..QUERIES).into_par_iter().for_each(|number| {
-        let mut dice = Dice::new(number);
-        let body = any::query(&mut dice, &keys, &promising);
-        match check(world, &mut dice, &body) {
+        let mut random = SplitMix::new(number);
+        let body = generate::query(&mut random, &keys, &promising);
+        match check(library, &mut random, &body) {
             Some(found) => points.fetch_add(found, Ordering::Relaxed),
             None => refused.fetch_add(1, Ordering::Relaxed),
         };
     });
     let (points, refused) = (points.into_inner(), refused.into_inner() as u64);
     eprintln!("{QUERIES} queries, {points} points, {refused} refused");
-    // Most were not trivial.
+    // Most queries were answered, with many points.
     assert!(points as u64 > 20 * QUERIES && refused < QUERIES / 50);
 }

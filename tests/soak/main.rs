@@ -1,28 +1,27 @@
-//! A soak: mixed questions by all doors for a given time, with faults injected, and every answer
-//! compared with the library's.
+//! A soak: mixed requests over REST and gRPC for a given time, with faults injected, and every
+//! answer compared with the library's.
 //!
-//! Two daemons run. One is never stopped: it must answer everything, and its memory is told at start
-//! and end. It gets SIGHUPs while a table in its folder is damaged and mended. The other is killed
-//! and restarted again and again; what fails on it meanwhile is excused, what it answers has to be
+//! Two daemons run. One is never stopped: it must answer everything, and its memory is reported. It
+//! gets SIGHUPs while a table in its folder is damaged and repaired. The other is killed and
+//! restarted again and again; what fails on it meanwhile is excused, but what it answers must be
 //! right. `cargo test` runs this for a few seconds; for longer:
 //!
 //! ```sh
 //! cargo test --release --test soak -- --seconds 1800
 //! ```
 //!
-//! Ends with 1 if any answer was wrong or missing without an excuse, if a daemon died, or if answers
-//! are still under way afterwards.
+//! Exits with 1 if any answer was wrong, or missing without an excuse, if a daemon died, or if
+//! streams are still in progress afterwards.
 
-#[path = "../queries/any.rs"]
-mod any;
-mod calls;
 mod checks;
-mod faults;
-mod http;
+#[path = "../queries/generate.rs"]
+mod generate;
+mod grpc;
+mod hostile;
+#[path = "../queries/library.rs"]
+mod library;
 mod replica;
 mod tally;
-#[path = "../queries/world.rs"]
-mod world;
 
 use std::{
     path::Path,
@@ -30,24 +29,31 @@ use std::{
     time::{Duration, Instant},
 };
 
-use any::Dice;
-use replica::Replica;
 use strew_core::Table;
-use tally::{Done, Tally};
-use world::{World, world};
+use strew_testkit::{random::SplitMix, tables::write};
 
-/// How long, how many clients, and which questions.
-struct Asked {
+use library::{Library, library};
+use replica::Replica;
+use tally::{Done, Tally};
+
+/// The arguments.
+struct Arguments {
     seconds: u64,
+    /// The number of concurrent clients.
     clients: u64,
+    /// Decides the requests.
     seed: u64,
 }
 
-/// What is run in passing, by `cargo test`.
+/// The seconds of a run by `cargo test`.
 const SHORT: u64 = 4;
 
-fn asked() -> Result<Option<Asked>, String> {
-    let mut asked = Asked {
+/// The file of the table that is damaged and repaired.
+const DAMAGED: &str = "soak.strew";
+
+/// Reads the arguments; `None` if they select other tests, or ask for a list.
+fn arguments() -> Result<Option<Arguments>, String> {
+    let mut read = Arguments {
         seconds: SHORT,
         clients: 8,
         seed: 1,
@@ -55,10 +61,9 @@ fn asked() -> Result<Option<Asked>, String> {
     let mut arguments = std::env::args().skip(1);
     while let Some(name) = arguments.next() {
         let slot = match name.as_str() {
-            "--seconds" => &mut asked.seconds,
-            "--clients" => &mut asked.clients,
-            "--seed" => &mut asked.seed,
-            // Somebody wants other tests, or their list.
+            "--seconds" => &mut read.seconds,
+            "--clients" => &mut read.clients,
+            "--seed" => &mut read.seed,
             "--list" => return Ok(None),
             other if !other.starts_with('-') && !"soak".contains(other) => return Ok(None),
             _ => continue,
@@ -70,54 +75,54 @@ fn asked() -> Result<Option<Asked>, String> {
             .filter(|value| (1..=1 << 20).contains(value))
             .ok_or_else(|| format!("{name} {value}: allowed: 1 to 1048576"))?;
     }
-    Ok(Some(asked))
+    Ok(Some(read))
 }
 
 fn main() -> ExitCode {
-    let asked = match asked() {
-        Ok(Some(asked)) => asked,
+    let arguments = match arguments() {
+        Ok(Some(arguments)) => arguments,
         Ok(None) => return ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
             return ExitCode::from(2);
         }
     };
-    match soak(&asked) {
+    match soak(&arguments) {
         0 => ExitCode::SUCCESS,
         _ => ExitCode::FAILURE,
     }
 }
 
-/// How many answers were wrong.
-fn soak(asked: &Asked) -> u64 {
-    let world = world();
+/// Runs the soak. Returns the number of wrong answers.
+fn soak(arguments: &Arguments) -> u64 {
+    let library = library();
     let tally = Tally::default();
     let tables = tempfile::tempdir().expect("a temporary folder");
-    // Nobody asks for it, so that nothing is wrong while it is damaged.
+    // No query uses this table, so it may be damaged at any time.
     let table = Table::undisplaced("3/2".parse().expect("valid"), 20, "soak").expect("small");
-    mend(tables.path(), &table);
+    write(tables.path(), DAMAGED, &table);
     let steady = Replica::start(tables.path());
     let shaky = Replica::start(tables.path());
     let start = Instant::now();
-    let end = start + Duration::from_secs(asked.seconds);
-    // What is built on first use is no growth.
-    let warm = start + Duration::from_secs((asked.seconds / 10).min(20));
+    let end = start + Duration::from_secs(arguments.seconds);
+    // Memory is compared with that after a while: what is built on first use is not growth.
+    let warm = start + Duration::from_secs((arguments.seconds / 10).min(20));
     let mut memory = None;
     std::thread::scope(|scope| {
-        for number in 0..asked.clients {
+        for number in 0..arguments.clients {
             let (steady, shaky, tally) = (&steady, &shaky, &tally);
-            let seed = asked.seed << 32 | number;
-            scope.spawn(move || client(world, [steady, shaky], tally, seed, end));
+            let seed = arguments.seed << 32 | number;
+            scope.spawn(move || client(library, [steady, shaky], tally, seed, end));
         }
         scope.spawn(|| disturb(&steady, &shaky, &tally, tables.path(), &table, end));
-        let mut told = start;
+        let mut reported = start;
         while Instant::now() < end {
             std::thread::park_timeout(Duration::from_millis(200));
             if memory.is_none() && Instant::now() > warm {
                 memory = Some(steady.memory());
             }
-            if told.elapsed() > Duration::from_secs(60) {
-                told = Instant::now();
+            if reported.elapsed() > Duration::from_secs(60) {
+                reported = Instant::now();
                 let seconds = start.elapsed().as_secs();
                 eprintln!("{seconds} s: {}, {:.0} MiB", tally.short(), steady.memory());
             }
@@ -133,9 +138,9 @@ fn soak(asked: &Asked) -> u64 {
     println!(
         "{} seconds, {} clients, seed {}\n{}memory of the daemon that was never stopped: {:.1} MiB \
          after {} s, {:.1} MiB at the end",
-        asked.seconds,
-        asked.clients,
-        asked.seed,
+        arguments.seconds,
+        arguments.clients,
+        arguments.seed,
         tally.report(),
         memory.unwrap_or_default(),
         warm.duration_since(start).as_secs(),
@@ -144,56 +149,56 @@ fn soak(asked: &Asked) -> u64 {
     tally.wrongs()
 }
 
-/// One client after another, each with one question.
-fn client(world: &World, replicas: [&Replica; 2], tally: &Tally, seed: u64, end: Instant) {
+/// Sends requests one after another, each over a connection of its own.
+fn client(library: &Library, replicas: [&Replica; 2], tally: &Tally, seed: u64, end: Instant) {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build()
         .expect("a runtime");
-    let (keys, promising) = world.keys();
-    let mut dice = Dice::new(seed);
+    let (keys, promising) = library.keys();
+    let mut random = SplitMix::new(seed);
     while Instant::now() < end {
-        let replica = replicas[usize::from(dice.once_in(3))];
+        let replica = replicas[usize::from(random.once_in(3))];
         let (at, epoch) = (replica.address, replica.epoch());
-        let body = any::query(&mut dice, &keys, &promising);
-        let (name, done): (_, Done) = match dice.below(100) {
+        let body = generate::query(&mut random, &keys, &promising);
+        let (name, done): (_, Done) = match random.below(100) {
             0..=34 => (
                 "a query by REST",
-                checks::query(world, at, &mut dice, &body),
+                checks::query(library, at, &mut random, &body),
             ),
             35..=46 => (
                 "pages by cursors",
-                checks::pages(world, at, &mut dice, &body),
+                checks::pages(library, at, &mut random, &body),
             ),
-            47..=54 => ("a count", checks::count(world, at, &body)),
+            47..=54 => ("a count", checks::count(library, at, &body)),
             55..=60 => (
                 "parts of a split",
-                checks::parts(world, at, &mut dice, &body),
+                checks::parts(library, at, &mut random, &body),
             ),
             61..=75 => (
                 "a stream by gRPC",
-                runtime.block_on(calls::stream(world, at, &body)),
+                runtime.block_on(grpc::stream(library, at, &body)),
             ),
-            76..=80 => ("a long stream", checks::long(world, at, &mut dice)),
+            76..=80 => ("a long stream", checks::long(library, at, &mut random)),
             81..=87 => (
                 "a spoiled query",
-                checks::spoiled(world, at, &mut dice, &body),
+                checks::spoiled(library, at, &mut random, &body),
             ),
-            88..=90 => ("a client that vanishes", faults::vanish(at, &mut dice)),
-            91..=93 => ("half a request", faults::half(at, &mut dice)),
-            94..=96 => ("no HTTP at all", faults::garbage(at, &mut dice)),
+            88..=90 => ("a client that vanishes", hostile::vanish(at, &mut random)),
+            91..=93 => ("half a request", hostile::half(at, &mut random)),
+            94..=96 => ("no HTTP at all", hostile::garbage(at, &mut random)),
             97..=98 => (
                 "calls that are reset",
-                runtime.block_on(calls::resets(at, &mut dice)),
+                runtime.block_on(grpc::resets(at, &mut random)),
             ),
-            _ => ("a command", checks::command(world, &mut dice, &body)),
+            _ => ("a command", checks::command(library, &mut random, &body)),
         };
         let later = replica.epoch();
         tally.note(name, done, epoch != later || epoch % 2 == 1);
     }
 }
 
-/// Damages and mends a table, signals, kills and restarts.
+/// Damages and repairs a table, reloads, kills and restarts.
 fn disturb(
     steady: &Replica,
     shaky: &Replica,
@@ -215,13 +220,13 @@ fn disturb(
                 let mut bytes = table.to_bytes();
                 let middle = bytes.len() / 2;
                 bytes[middle] ^= 1;
-                std::fs::write(tables.join("soak.strew"), bytes).expect("writable");
+                std::fs::write(tables.join(DAMAGED), bytes).expect("writable");
                 steady.signal("-HUP");
                 tally.event("a reload with a damaged table");
             }
             1 => {
-                // A daemon that starts meanwhile needs it in order.
-                mend(tables, table);
+                // A daemon does not start on a damaged table.
+                write(tables, DAMAGED, table);
                 shaky.restart("-KILL");
                 tally.event("a daemon killed and restarted");
             }
@@ -235,8 +240,4 @@ fn disturb(
             }
         }
     }
-}
-
-fn mend(tables: &Path, table: &Table) {
-    std::fs::write(tables.join("soak.strew"), table.to_bytes()).expect("writable");
 }

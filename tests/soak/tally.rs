@@ -1,19 +1,19 @@
-//! What happened: requests by kind, points, errors, and above all wrong answers.
+//! Counts of what happened: requests by kind, points, errors, and wrong answers.
 
 use std::{collections::BTreeMap, fmt::Write as _, sync::Mutex};
 
-/// Why an action did not end as it should.
+/// Why a request did not succeed.
 #[derive(Debug)]
 pub enum Trouble {
-    /// An answer that is not what the library says.
+    /// The answer differs from the library's.
     Wrong(String),
-    /// No answer, or a part of one.
+    /// No answer, or an incomplete one.
     Failed(String),
-    /// The server said that it has no room; that is in order.
+    /// The server had no room, which is allowed.
     Busy,
 }
 
-/// What an action gives: how many points were compared.
+/// The outcome of a request: the number of points compared.
 pub type Done = Result<u64, Trouble>;
 
 impl From<std::io::Error> for Trouble {
@@ -31,17 +31,17 @@ struct Counts {
     wrongs: u64,
 }
 
-/// All that happened.
+/// The counts, shared by all clients.
 #[derive(Default)]
 pub struct Tally {
     counts: Mutex<Counts>,
 }
 
-/// So many wrong answers are shown.
+/// The number of wrong answers shown.
 const SHOWN: usize = 10;
 
 impl Tally {
-    /// Notes how an action ended; `excused` says that the daemon was killed meanwhile.
+    /// Records the outcome of a request; `excused` if the daemon was down meanwhile.
     pub fn note(&self, action: &'static str, done: Done, excused: bool) {
         let mut counts = self.counts.lock().expect("no panic");
         *counts.requests.entry(action).or_default() += 1;
@@ -70,23 +70,23 @@ impl Tally {
         }
     }
 
-    /// Notes something that is in order, by its name.
+    /// Records an event that is not a request.
     pub fn event(&self, name: &'static str) {
         let mut counts = self.counts.lock().expect("no panic");
         *counts.requests.entry(name).or_default() += 1;
     }
 
-    /// Notes something that is not.
+    /// Records a fault found at the end.
     pub fn wrong(&self, what: String) {
         self.note("the end", Err(Trouble::Wrong(what)), false);
     }
 
-    /// How many wrong answers there were.
+    /// The number of wrong answers.
     pub fn wrongs(&self) -> u64 {
         self.counts.lock().expect("no panic").wrongs
     }
 
-    /// A line of what happened so far.
+    /// The totals so far, in one line.
     pub fn short(&self) -> String {
         let counts = self.counts.lock().expect("no panic");
         let requests: u64 = counts.requests.values().sum();
@@ -95,7 +95,7 @@ impl Tally {
         format!("{requests} requests, {points} points, {errors} errors, {wrongs} wrong")
     }
 
-    /// All of it.
+    /// All counts.
     pub fn report(&self) -> String {
         let mut text = self.short() + "\n";
         let counts = self.counts.lock().expect("no panic");

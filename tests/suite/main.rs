@@ -1,58 +1,13 @@
-//! The daemon from outside: the real program over real sockets, and the real clients.
+//! The daemon from outside: the real program over real sockets, and real clients.
+//!
+//! One binary, so that it links once. `cargo test --test suite NAME` runs the tests whose path
+//! contains `NAME`, such as `rest::paging` or `keys`. Clients that are not installed are skipped
+//! with a message.
 
-mod addresses;
-mod admin;
-mod amounts;
-mod bodies;
-mod browser;
-mod caching;
-mod calls;
-mod certificates;
-mod clients;
-mod coding;
-mod commands;
-mod commands_wrong;
-mod connections;
-mod contract;
-mod daemon;
-mod deploy;
-mod documented;
-mod drain;
-mod failures;
-mod faults;
-mod forge;
-mod formats;
-mod fresh;
+mod cli;
+mod docs;
 mod grpc;
-mod grpc_calls;
-mod grpc_queries;
-mod grpc_single;
-mod grpc_web;
-mod grpc_wrong;
-mod hardening;
-mod http;
-mod keys;
-mod layers;
-mod limits;
-mod logs;
-mod metrics;
-mod openapi;
+mod ops;
 mod page;
-mod page_controls;
-mod page_taking;
-mod pages;
-mod probe;
-mod rates;
-mod raw;
-mod readers;
-mod regions;
-mod reload;
-mod replicas;
-mod settings;
-mod singles;
-mod spans;
-mod streaming;
-mod table;
-mod tls;
-mod waits;
-mod wrong;
+mod rest;
+mod support;

@@ -64,7 +64,8 @@ pub fn outline(area: &Area, within: Region) -> f64 {
 /// the number of edges, boxes and circles that touch it. Points beside an outline are compared with all
 /// of these, so it is what an area of many edges costs besides.
 ///
-/// Takes time and memory in proportion to the edges and to the outline in strips.
+/// Takes time in proportion to the edges and to the outline in strips. There are at most 65,536 strips,
+/// higher ones if need be.
 #[must_use]
 pub fn comparisons(area: &Area, within: Region, strip: f64) -> f64 {
     area.comparisons(within, strip)

@@ -76,9 +76,10 @@ pub(super) fn exactly(
                 more = Some(plan);
             }
         } else if guess <= least {
-            let allowed = "fewer points: these take a smaller spacing than is allowed";
+            let allowed = "a smaller number";
             let error = Error::new(ErrorKind::TooDense, "count", count, allowed);
-            let problem = alloc::format!("the spacing would be below {} here", number(least));
+            let problem =
+                alloc::format!("{count} points take a spacing below {} here", number(least));
             return Err(error.because(problem).with_limit(least));
         } else {
             high = guess;

@@ -30,9 +30,10 @@ impl Area {
     /// of edges, boxes and circles that touch it: points beside an outline are compared with all of
     /// these.
     pub(crate) fn comparisons(&self, within: Region, strip: f64) -> f64 {
+        let height = within.max()[1] - within.min()[1];
         let mut strips = Strips {
             within,
-            strip,
+            strip: strip.max(height / MOST_STRIPS),
             all: Vec::new(),
         };
         self.gather(&mut strips);
@@ -52,6 +53,9 @@ impl Area {
         }
     }
 }
+
+/// The most strips, which bounds the memory. Higher strips overestimate.
+const MOST_STRIPS: f64 = 65_536.0;
 
 /// The number of edges and the length of outline of each strip.
 struct Strips {

@@ -1,0 +1,78 @@
+//! Certificates made for a test.
+
+use std::path::Path;
+
+use rcgen::{
+    BasicConstraints, CertificateParams, CertifiedIssuer, ExtendedKeyUsagePurpose, IsCa, KeyPair,
+};
+
+/// A certificate authority of its own.
+pub struct Authority {
+    issuer: CertifiedIssuer<'static, KeyPair>,
+}
+
+impl Authority {
+    /// An authority that nothing trusts yet.
+    #[expect(clippy::new_without_default, reason = "each one has another key")]
+    pub fn new() -> Self {
+        let mut params = CertificateParams::default();
+        params.is_ca = IsCa::Ca(BasicConstraints::Unconstrained);
+        let key = KeyPair::generate().expect("a key");
+        let issuer = CertifiedIssuer::self_signed(params, key).expect("signed");
+        Self { issuer }
+    }
+
+    /// The authority's own certificate as DER.
+    pub fn der(&self) -> Vec<u8> {
+        self.issuer.der().to_vec()
+    }
+
+    /// The authority's own certificate as PEM.
+    pub fn pem(&self) -> String {
+        self.issuer.pem()
+    }
+
+    /// Issues a server certificate for `localhost` and `127.0.0.1`.
+    pub fn issue_server(&self) -> Certificate {
+        self.issue(ExtendedKeyUsagePurpose::ServerAuth)
+    }
+
+    /// Issues a client certificate.
+    pub fn issue_client(&self) -> Certificate {
+        self.issue(ExtendedKeyUsagePurpose::ClientAuth)
+    }
+
+    fn issue(&self, purpose: ExtendedKeyUsagePurpose) -> Certificate {
+        let names = vec!["localhost".to_owned(), "127.0.0.1".to_owned()];
+        let mut params = CertificateParams::new(names).expect("names");
+        params.extended_key_usages = vec![purpose];
+        let key = KeyPair::generate().expect("a key");
+        let certificate = params.signed_by(&key, &self.issuer).expect("signed");
+        Certificate {
+            pem: certificate.pem(),
+            key_pem: key.serialize_pem(),
+            der: certificate.der().to_vec(),
+            key_der: key.serialize_der(),
+        }
+    }
+}
+
+/// A certificate with its key. The key is PKCS #8.
+pub struct Certificate {
+    /// The certificate as PEM.
+    pub pem: String,
+    /// The key as PEM.
+    pub key_pem: String,
+    /// The certificate as DER.
+    pub der: Vec<u8>,
+    /// The key as DER.
+    pub key_der: Vec<u8>,
+}
+
+impl Certificate {
+    /// Writes the certificate and its key as `server.pem` and `server.key`.
+    pub fn write_server(&self, folder: &Path) {
+        std::fs::write(folder.join("server.pem"), &self.pem).expect("writable");
+        std::fs::write(folder.join("server.key"), &self.key_pem).expect("writable");
+    }
+}

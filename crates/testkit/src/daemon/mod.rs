@@ -1,0 +1,330 @@
+//! Starting the daemon as a process of its own.
+//!
+//! [`Launcher`] starts the program and waits for the line that says where it listens. [`Daemon`] is
+//! the running process: it is killed when dropped, and its log is printed if a test panics.
+
+mod output;
+
+use std::{
+    ffi::OsStr,
+    fmt, io,
+    net::SocketAddr,
+    path::Path,
+    process::{Child, Command, ExitStatus, Stdio},
+};
+
+use crate::wait::until;
+use output::Output;
+
+/// The program without the `STREW_…` settings of the caller's environment.
+pub fn command(program: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(program);
+    for (name, _) in std::env::vars_os() {
+        if name.to_string_lossy().starts_with("STREW_") {
+            command.env_remove(name);
+        }
+    }
+    command
+}
+
+/// How to start a daemon. By default it listens on a free port of this machine and has the built-in
+/// tables and the default settings; its log is kept, see [`Daemon::log`].
+pub struct Launcher {
+    command: Command,
+    listen: String,
+    log: Option<Stdio>,
+}
+
+impl Launcher {
+    /// A launcher of `program`, the path of the built binary.
+    pub fn new(program: impl AsRef<OsStr>) -> Self {
+        let mut command = command(program);
+        command.arg("serve");
+        Self {
+            command,
+            listen: "127.0.0.1:0".into(),
+            log: None,
+        }
+    }
+
+    /// Listens on an address; port 0 takes a free one.
+    pub fn listen(mut self, address: impl fmt::Display) -> Self {
+        self.listen = address.to_string();
+        self
+    }
+
+    /// Adds the tables of a folder.
+    pub fn tables(mut self, folder: &Path) -> Self {
+        self.command.arg("--tables").arg(folder);
+        self
+    }
+
+    /// Adds settings, each as `key=value`. The last one of a key wins.
+    pub fn settings(mut self, settings: &[&str]) -> Self {
+        for setting in settings {
+            self.command.args(["--set", setting]);
+        }
+        self
+    }
+
+    /// Sends the log elsewhere instead of keeping it.
+    pub fn log_to(mut self, log: impl Into<Stdio>) -> Self {
+        self.log = Some(log.into());
+        self
+    }
+
+    /// Starts the daemon and waits until it listens.
+    ///
+    /// # Errors
+    ///
+    /// [`NotReady`] if its first line does not say where it listens.
+    pub fn start(mut self) -> Result<Daemon, NotReady> {
+        let mut child = self
+            .command
+            .args(["--listen", &self.listen])
+            .stdout(Stdio::piped())
+            .stderr(self.log.unwrap_or_else(Stdio::piped))
+            .spawn()
+            .expect("the program runs");
+        let output = Output::of(child.stdout.take().expect("piped"));
+        let log = child.stderr.take().map(Output::of);
+        let process = Process { child, log };
+        let line = output.next("");
+        let Some(address) = line.as_deref().and_then(address_in) else {
+            return Err(process.not_ready(line));
+        };
+        Ok(Daemon {
+            process,
+            output,
+            address,
+        })
+    }
+}
+
+/// The address in the line `listening on http://ADDRESS`.
+fn address_in(line: &str) -> Option<SocketAddr> {
+    let (scheme, address) = line.strip_prefix("listening on ")?.split_once("://")?;
+    ["http", "https"].contains(&scheme).then_some(())?;
+    address.parse().ok()
+}
+
+/// Why a daemon does not listen: what it printed first, how it ended, and its log.
+pub struct NotReady {
+    line: Option<String>,
+    status: io::Result<ExitStatus>,
+    log: String,
+}
+
+impl fmt::Display for NotReady {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { line, status, log } = self;
+        write!(f, "the daemon is not ready: ")?;
+        match status {
+            Ok(status) => write!(f, "{status}")?,
+            Err(error) => write!(f, "{error}")?,
+        }
+        if let Some(line) = line {
+            write!(f, "; it printed `{line}`")?;
+        }
+        write!(f, "\n{log}")
+    }
+}
+
+impl fmt::Debug for NotReady {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// A child that does not outlive this value.
+struct Process {
+    child: Child,
+    log: Option<Output>,
+}
+
+impl Process {
+    fn not_ready(mut self, line: Option<String>) -> NotReady {
+        // One that printed nothing closed its output, and ends by itself.
+        if line.is_some() {
+            let _ = self.child.kill();
+        }
+        NotReady {
+            line,
+            status: self.child.wait(),
+            log: self.closed_log(),
+        }
+    }
+
+    /// The whole log of a process that has ended.
+    fn closed_log(&mut self) -> String {
+        self.log.as_mut().map_or_else(String::new, |log| {
+            log.close();
+            log.text()
+        })
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+        if std::thread::panicking() {
+            let log = self.closed_log();
+            if !log.is_empty() {
+                eprintln!("the log of daemon {}:\n{log}", self.child.id());
+            }
+        }
+    }
+}
+
+/// A running daemon. Dropping it kills it (`SIGKILL`).
+pub struct Daemon {
+    process: Process,
+    output: Output,
+    address: SocketAddr,
+}
+
+impl Daemon {
+    /// The address it listens on.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// The URL of a path, over plain HTTP.
+    pub fn url(&self, path: &str) -> String {
+        format!("http://{}{path}", self.address)
+    }
+
+    /// Waits for the next line on its standard output.
+    pub fn line(&self) -> String {
+        self.output.next("").expect("a line on standard output")
+    }
+
+    /// Waits for the next line of its log that contains `part`, passing over others.
+    pub fn log_line(&self, part: &str) -> String {
+        let log = self.process.log.as_ref().expect("the log is kept");
+        let line = log.next(part);
+        line.unwrap_or_else(|| panic!("no line with `{part}` in the log:\n{}", log.text()))
+    }
+
+    /// The log so far.
+    pub fn log(&self) -> String {
+        let log = self.process.log.as_ref();
+        log.expect("the log is kept").text()
+    }
+
+    /// Its process id.
+    pub fn pid(&self) -> u32 {
+        self.process.child.id()
+    }
+
+    /// Sends a signal, such as `-HUP`.
+    pub fn signal(&self, signal: &str) {
+        let sent = Command::new("kill")
+            .args([signal, &self.pid().to_string()])
+            .status()
+            .expect("kill runs");
+        assert!(sent.success(), "kill {signal} {}", self.pid());
+    }
+
+    /// Sends `SIGTERM`.
+    pub fn terminate(&self) {
+        self.signal("-TERM");
+    }
+
+    /// Waits for the process to end.
+    pub fn wait(&mut self) -> ExitStatus {
+        until("the daemon ends", || self.ended())
+    }
+
+    /// The status of a process that has ended.
+    pub fn ended(&mut self) -> Option<ExitStatus> {
+        self.process.child.try_wait().expect("a child")
+    }
+
+    /// A figure of `/proc/PID/status` in KiB, such as `VmRSS`; `None` where there is no `/proc`.
+    pub fn memory_kib(&self, figure: &str) -> Option<u64> {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.pid())).ok()?;
+        let value = status
+            .lines()
+            .find_map(|line| line.strip_prefix(figure)?.strip_prefix(':'))?;
+        value.trim().strip_suffix(" kB")?.parse().ok()
+    }
+
+    /// The processor time used so far, in clock ticks (usually hundredths of a second).
+    pub fn cpu_ticks(&self) -> u64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.pid())).expect("Linux");
+        // The name of the program, in parentheses, may contain spaces.
+        let (_, fields) = stat.rsplit_once(')').expect("a name");
+        let user_and_system = fields.split_whitespace().skip(11).take(2);
+        user_and_system
+            .map(|ticks| ticks.parse::<u64>().expect("a number"))
+            .sum()
+    }
+
+    /// The number of files and sockets it has open.
+    pub fn open_files(&self) -> usize {
+        let folder = format!("/proc/{}/fd", self.pid());
+        std::fs::read_dir(folder).expect("Linux").count()
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::{
+        os::unix::fs::PermissionsExt as _,
+        sync::{Mutex, PoisonError},
+    };
+
+    use super::*;
+
+    /// One test at a time: a program cannot be run while a child of another test, forked just now,
+    /// still has its file open for writing.
+    static ALONE: Mutex<()> = Mutex::new(());
+
+    /// A shell script in place of the program.
+    fn program(folder: &Path, script: &str) -> std::path::PathBuf {
+        let path = folder.join("program");
+        std::fs::write(&path, format!("#!/bin/sh\n{script}\n")).expect("writable");
+        let executable = std::fs::Permissions::from_mode(0o755);
+        std::fs::set_permissions(&path, executable).expect("a mode");
+        path
+    }
+
+    #[test]
+    fn a_daemon_is_ready_once_it_says_where_it_listens() {
+        let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let folder = tempfile::tempdir().expect("a folder");
+        let script = "echo first >&2; echo listening on https://127.0.0.1:81; echo \"$*\"; \
+                      echo last >&2; exec sleep 600";
+        let mut daemon = Launcher::new(program(folder.path(), script))
+            .settings(&["a=1", "b=2"])
+            .start()
+            .expect("ready");
+        assert_eq!(daemon.address().to_string(), "127.0.0.1:81");
+        assert_eq!(
+            daemon.line(),
+            "serve --set a=1 --set b=2 --listen 127.0.0.1:0"
+        );
+        assert_eq!(daemon.log_line("a"), "last");
+        assert_eq!(daemon.log(), "first\nlast\n");
+        assert!(daemon.ended().is_none());
+        daemon.terminate();
+        assert!(!daemon.wait().success());
+    }
+
+    #[test]
+    fn a_daemon_that_does_not_start_shows_its_status_and_its_log() {
+        let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let folder = tempfile::tempdir().expect("a folder");
+        let script = "echo the port is taken >&2; exit 3";
+        let started = Launcher::new(program(folder.path(), script)).start();
+        let text = started.err().expect("not ready").to_string();
+        assert!(text.contains("exit status: 3"), "{text}");
+        assert!(text.contains("the port is taken"), "{text}");
+        let script = "echo nonsense; exec sleep 600";
+        let started = Launcher::new(program(folder.path(), script)).start();
+        let text = started.err().expect("not ready").to_string();
+        assert!(text.contains("`nonsense`"), "{text}");
+    }
+}

@@ -1,0 +1,25 @@
+//! Waiting for a condition. Tests never wait for a fixed time.
+
+use std::time::{Duration, Instant};
+
+/// How long a test waits before it gives up: long enough for a busy machine.
+pub const PATIENCE: Duration = Duration::from_secs(30);
+
+/// The pause between two looks at a condition.
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// Calls `poll` until it returns a value, and returns that value.
+///
+/// # Panics
+///
+/// After [`PATIENCE`]; `what` completes the sentence "waited in vain until …".
+pub fn until<T>(what: &str, mut poll: impl FnMut() -> Option<T>) -> T {
+    let start = Instant::now();
+    loop {
+        if let Some(value) = poll() {
+            return value;
+        }
+        assert!(start.elapsed() < PATIENCE, "waited in vain until {what}");
+        std::thread::park_timeout(PAUSE);
+    }
+}

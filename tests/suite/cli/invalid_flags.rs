@@ -1,0 +1,196 @@
+//! Wrong flags and wrong files: the message and the exit code.
+
+use crate::support::command::run;
+
+/// (arguments, texts in the message).
+const WRONG: [(&str, &[&str]); 32] = [
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 -o trees.shp",
+        &["--output", ".shp", "--format", "parquet"],
+    ),
+    (
+        "nearest --at 0,0 --spacing 1 --radius 1000",
+        &["--radius 1000", "3141593", "10000"],
+    ),
+    ("sample", &["--bbox", "--query", "--min-distance"]),
+    (
+        "sample --spacing 1",
+        &["region is missing", "--chunk", "--region"],
+    ),
+    (
+        "sample --bbox 0,0,1,1",
+        &["amount is missing", "--density", "--count"],
+    ),
+    (
+        "sample --bbox 0,0,1 --spacing x --keep 3",
+        &[
+            "3 things",
+            "--bbox 0,0,1",
+            "--spacing x",
+            "--keep 3",
+            "1e-6",
+        ],
+    ),
+    (
+        "sample --bbox 0,0,1,1 --chunk 1/1/1 --spacing 1",
+        &["--bbox and --chunk"],
+    ),
+    (
+        "sample --chunk 64/1 --spacing 1",
+        &["--chunk 64/1", "SIZE/CX/CY"],
+    ),
+    (
+        "sample --chunk 0/1/1 --spacing 1",
+        &["--chunk 0", "above 0"],
+    ),
+    (
+        "sample --region /nowhere --spacing 1",
+        &["--region", "/nowhere", "No such file"],
+    ),
+    (
+        "sample --query /nowhere",
+        &["--query", "/nowhere", "No such file"],
+    ),
+    (
+        "sample --query - --seed 3 --chunk 1/1/1",
+        &["--seed, --chunk", "--query -", "--decimals"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --format cvs",
+        &["--format cvs", "ndjson", "parquet"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --format png --decimals 2",
+        &["--decimals 2", "png", "csv"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --attributes variant",
+        &["--variants is missing", "oak:3"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --attributes angel",
+        &["--attributes angel", "rank"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --scale-range 1",
+        &["--scale-range 1", "list"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --limit 0",
+        &["--limit 0"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --cursor 00",
+        &["--cursor 00", "earlier answer"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --table 00",
+        &["--table 00", "64 hexadecimal"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --profile mauve",
+        &["--profile mauve", "blue"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --profile step --min-distance 1",
+        &["--min-distance 1", "step", "no least distance"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --count 99999999999",
+        &["99999999999", "limits.max_points="],
+    ),
+    (
+        "count --circle 0,0,1e8 --spacing 1",
+        &["lattice rows", "limits.max_rows="],
+    ),
+    (
+        "count --bbox 0,0,9,9 --spacing 1 --format csv",
+        &["--format"],
+    ),
+    ("point abc --spacing 1", &["abc", "-31:52"]),
+    ("point 0:0", &["amount is missing"]),
+    ("nearest --spacing 1", &["--at is missing"]),
+    (
+        "nearest --spacing 1 --at 1",
+        &["--at 1", "two finite numbers"],
+    ),
+    (
+        "nearest --spacing 1 --at 1,1 --k 0",
+        &["--k 0", "1 to 10000"],
+    ),
+    ("split --bbox 0,0,9,9 --spacing 1", &["--parts is missing"]),
+    (
+        "split --bbox 0,0,9,9 --spacing 1 --parts 0",
+        &["--parts 0", "1 to 10000"],
+    ),
+];
+
+#[test]
+fn errors_name_the_flag_and_what_is_allowed() {
+    for (arguments, texts) in WRONG {
+        let arguments: Vec<&str> = arguments.split_whitespace().collect();
+        let output = run(&arguments, "{}");
+        let message = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(output.stdout.is_empty(), "{arguments:?}");
+        for text in texts {
+            assert!(
+                message.contains(text),
+                "{arguments:?}: no `{text}`: {message}"
+            );
+        }
+    }
+}
+
+#[test]
+fn errors_name_the_file_and_the_member() {
+    let line = r#"{"type": "Feature", "geometry": {"type": "LineString", "coordinates": []}}"#;
+    for (flag, input, texts) in [
+        ("--query=-", "{", &["--query -", "not JSON"][..]),
+        ("--query=-", "[]", &["--query -", "not an object"]),
+        ("--query=-", "{}", &["2 things", "`region`", "`density`"]),
+        (
+            "--query=-",
+            r#"{"region": {"bbox": [0, 0, 1, 1]}, "spacin": 1}"#,
+            &["`spacin` = `1`", "spacing"],
+        ),
+        (
+            "--query=-",
+            r#"{"bbox": [0, 0, 1, 1], "spacing": "1"}"#,
+            &["`bbox`", "the member region", "`spacing`", "not a number"],
+        ),
+        (
+            "--query=-",
+            r#"{"region": {"circle": [0, 0, 1]}, "layers": [{"spacing": 1}]}"#,
+            &[
+                "`region.circle`",
+                "center",
+                "`layers[0].name`: it is missing",
+            ],
+        ),
+        ("--region=-", "{", &["--region -", "not JSON"]),
+        ("--region=-", line, &["geometry is a LineString", "GeoJSON"]),
+        (
+            "--region=-",
+            r#"{"type": "Polygon", "coordinates": [[[0, 0], [1, 1]]]}"#,
+            &["--region", "vertices"],
+        ),
+    ] {
+        let mut arguments = vec!["sample", flag];
+        arguments.extend((flag == "--region=-").then_some("--spacing=1"));
+        let output = run(&arguments, input);
+        let message = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(2), "{input}: {message}");
+        for text in texts {
+            assert!(message.contains(text), "{input}: no `{text}`: {message}");
+        }
+    }
+}
+
+#[test]
+fn a_missing_point_is_not_a_usage_error() {
+    let output = run(&["point", "1:0", "--spacing=1"], "");
+    let message = String::from_utf8(output.stderr).expect("UTF-8");
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("1:0"), "{message}");
+}

@@ -1,0 +1,10 @@
+//! The commands: `sample`, `count`, `point`, `nearest` and `split` against the answers of REST,
+//! `forge` with interruptions, `config` and its layers, `probe` as health checks run it, what wrong
+//! flags and full disks lead to.
+
+mod config;
+mod forge;
+mod full_disk;
+mod invalid_flags;
+mod probe;
+mod queries;

@@ -1,0 +1,58 @@
+//! The daemon against its OpenAPI document, by a fuzzer that reads it (schemathesis): no request
+//! gets a 5xx, and every answer is one that the document describes.
+
+use std::time::Instant;
+
+use crate::support::{clients, daemon::Daemon};
+
+/// A check that no description can satisfy: it does not know which tables are loaded, nor that
+/// parameters exclude each other.
+const EXCLUDED: &str = "positive_data_acceptance";
+
+/// The folder of the hooks that make queries valid, so that answers with points are checked, too.
+const HOOKS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/docs");
+
+#[test]
+fn a_fuzzer_finds_no_breach_of_contract() {
+    let fuzzer = || {
+        let mut command = clients::python("schemathesis")?;
+        command.args(["-m", "schemathesis.cli"]);
+        Some(command)
+    };
+    let Some(mut version) = fuzzer() else {
+        return;
+    };
+    let version = version.arg("--version").output();
+    if !version.is_ok_and(|output| output.status.success()) {
+        eprintln!("skipped: schemathesis is not installed");
+        return;
+    }
+    let daemon = Daemon::start(&["limits.max_points=100000"]);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let start = Instant::now();
+    for in_order in [false, true] {
+        let mut command = fuzzer().expect("as above");
+        if in_order {
+            command
+                .env("SCHEMATHESIS_HOOKS", "api_contract")
+                .env("PYTHONPATH", HOOKS)
+                .env("PYTHONDONTWRITEBYTECODE", "1");
+        }
+        let mode = if in_order { "positive" } else { "all" };
+        let output = command
+            .args(["run", &daemon.url("/openapi.json"), "--no-color"])
+            .args(["--checks", "all", "--exclude-checks", EXCLUDED])
+            .args(["--mode", mode, "--max-examples", "25"])
+            .args(["--seed", "1", "--generation-deterministic"])
+            .args(["--request-timeout", "10"])
+            // It writes .schemathesis/ into the folder it runs in.
+            .current_dir(folder.path())
+            .output()
+            .expect("Python runs");
+        let report = String::from_utf8_lossy(&output.stdout);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{report}\n{errors}");
+    }
+    eprintln!("fuzzed for {:?}", start.elapsed());
+    assert_eq!(daemon.get("/livez").status, 200);
+}

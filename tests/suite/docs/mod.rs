@@ -1,0 +1,7 @@
+//! What is written about the daemon is true: the examples of docs/api.md, the OpenAPI document, and
+//! the settings, metrics and commands named in `deploy/`.
+
+mod api_contract;
+mod api_examples;
+mod deploy;
+mod openapi;

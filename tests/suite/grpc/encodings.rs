@@ -1,0 +1,80 @@
+//! Every encoding carries the library's points, in the library's order.
+
+use strew::grpc::proto::{
+    Encoding, StreamPointsRequest, point_service_client::PointServiceClient, region::Shape,
+    stream_points_request::Amount,
+};
+use strew_core::Point;
+
+use crate::support::{
+    daemon::{Daemon, PROFILE},
+    grpc::{boxed, collect},
+    library::{QUERY, assert_same, plan, points},
+};
+
+fn request(encoding: Encoding) -> StreamPointsRequest {
+    StreamPointsRequest {
+        region: boxed([-3.5, 1.0, 40.0, 33.25]),
+        amount: Some(Amount::Density(7.0)),
+        profile: Some(PROFILE.into()),
+        seed: Some(5),
+        encoding: encoding.into(),
+        ..StreamPointsRequest::default()
+    }
+}
+
+#[tokio::test]
+async fn the_default_encoding_has_fields_and_ids() {
+    let daemon = Daemon::start(&["limits.block_bytes=4096"]);
+    let mut client = PointServiceClient::new(daemon.channel().await);
+    let plan = plan();
+    for encoding in [Encoding::Unspecified, Encoding::Points] {
+        let whole = collect(&mut client, request(encoding)).await;
+        let (header, blocks) = (whole.header, whole.blocks);
+        assert_eq!(header.count, plan.count() as u64);
+        assert_eq!(whole.summary.count, header.count);
+        assert_eq!(whole.summary.next_cursor, "");
+        assert_eq!(header.algorithm, strew_core::ALGORITHM_VERSION);
+        assert_eq!((header.origin, header.columns.len()), (None, 0));
+        let query = header.query.expect("set");
+        assert_eq!(query.region, request(encoding).region);
+        let bbox = query.bbox.map(Shape::Bbox);
+        assert_eq!(query.region.as_ref().map(|r| r.shape.clone()), Some(bbox));
+        assert_eq!(query.encoding(), Encoding::Points);
+        let [set] = query.sets.as_slice() else {
+            panic!("there is one set of points");
+        };
+        assert_eq!(set.table, plan.table().digest().to_string());
+        assert_eq!(
+            (set.density, set.spacing),
+            (7.0, plan.placement().spacing.get())
+        );
+        assert_eq!((set.alpha.as_str(), set.seed), ("(5-sqrt(3))/2", 5));
+        assert!(blocks.len() > 10, "blocks are small");
+        let got: Vec<Point> = blocks
+            .iter()
+            .flat_map(|block| {
+                assert_eq!(block.x.len(), block.y.len());
+                assert_eq!(block.x.len(), block.id.len());
+                block.x.iter().zip(&block.y).zip(&block.id)
+            })
+            .map(|((&x, &y), id)| Point {
+                id: id.parse().expect("an id"),
+                x,
+                y,
+            })
+            .collect();
+        assert_same(&got, &points(&plan));
+    }
+}
+
+#[tokio::test]
+async fn packed_encodings_are_the_bytes_of_rest() {
+    let daemon = Daemon::start(&[]);
+    let mut client = PointServiceClient::new(daemon.channel().await);
+    for (encoding, format) in [(Encoding::F64Le, "f64"), (Encoding::F32Le, "f32")] {
+        let bytes = collect(&mut client, request(encoding)).await.bytes();
+        let rest = daemon.get(&format!("{QUERY}&format={format}"));
+        assert!(!bytes.is_empty() && bytes == rest.body, "{format}");
+    }
+}

@@ -1,0 +1,21 @@
+//! Running the daemon: starting, reloading and stopping it; who may use it and how much (keys,
+//! administrators, rates, limits, timeouts, TLS); what it withstands (connections, hostile clients,
+//! panics, long streams, a replica that fails); and what it reports (logs, metrics, spans).
+
+mod admin;
+mod connections;
+mod hostile_clients;
+mod keys;
+mod limits;
+mod logs;
+mod metrics;
+mod panics;
+mod rates;
+mod reload;
+mod replicas;
+mod shutdown;
+mod spans;
+mod startup;
+mod streaming;
+mod timeouts;
+mod tls;

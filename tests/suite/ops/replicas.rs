@@ -1,0 +1,176 @@
+//! Replicas share nothing and answer alike: behind a real proxy, a client that reads pages by
+//! cursors loses and repeats no point while one replica is killed and comes back.
+//!
+//! The proxies are HAProxy and nginx, which `.ci/run` installs; a missing one is skipped with a
+//! message.
+
+use std::{
+    net::{SocketAddr, TcpListener, TcpStream},
+    path::Path,
+    process::{Child, Command, Stdio},
+};
+
+use strew::service::{Answer, Catalog, Encoding, Output, Planned, query::read_body};
+use strew_testkit::{http1, wait::until};
+
+use crate::support::{
+    clients,
+    daemon::{Daemon, PROFILE, tables},
+};
+
+/// A running proxy; killed when dropped.
+struct Proxy {
+    child: Child,
+    address: SocketAddr,
+    _folder: tempfile::TempDir,
+}
+
+impl Drop for Proxy {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn haproxy(address: SocketAddr, replicas: &[SocketAddr]) -> String {
+    let servers: String = replicas
+        .iter()
+        .enumerate()
+        .map(|(i, replica)| format!("    server r{i} {replica} check inter 100ms fall 1 rise 1\n"))
+        .collect();
+    format!(
+        "global\n    maxconn 100\ndefaults\n    mode http\n    timeout connect 2s\n    \
+         timeout client 20s\n    timeout server 20s\n    retries 3\n    option redispatch 1\n    \
+         retry-on conn-failure empty-response 503\nfrontend in\n    bind {address}\n    \
+         default_backend strew\nbackend strew\n    balance roundrobin\n    \
+         option httpchk GET /readyz\n{servers}"
+    )
+}
+
+fn nginx(address: SocketAddr, replicas: &[SocketAddr], folder: &Path) -> String {
+    let servers: String = replicas
+        .iter()
+        .map(|replica| format!("server {replica} max_fails=1 fail_timeout=1s; "))
+        .collect();
+    let folder = folder.display();
+    format!(
+        "daemon off; master_process off; pid {folder}/pid; error_log {folder}/error.log;\n\
+         events {{ worker_connections 100; }}\n\
+         http {{ access_log off; client_body_temp_path {folder}/b; proxy_temp_path {folder}/p;\n\
+         fastcgi_temp_path {folder}/f; uwsgi_temp_path {folder}/u; scgi_temp_path {folder}/s;\n\
+         upstream strew {{ {servers} }}\n\
+         server {{ listen {address}; location / {{ proxy_pass http://strew; proxy_http_version 1.1;\n\
+         proxy_next_upstream error timeout http_503 non_idempotent; proxy_buffering off; }} }} }}\n"
+    )
+}
+
+/// Starts a proxy over replicas.
+fn proxy(program: &str, replicas: &[SocketAddr]) -> Proxy {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let free = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = free.local_addr().expect("bound");
+    drop(free);
+    let file = folder.path().join("proxy.conf");
+    let mut command = Command::new(program);
+    let settings = if program == "haproxy" {
+        command.args(["-db", "-q", "-f"]).arg(&file);
+        haproxy(address, replicas)
+    } else {
+        command.arg("-p").arg(folder.path()).arg("-c").arg(&file);
+        nginx(address, replicas, folder.path())
+    };
+    std::fs::write(&file, settings).expect("writable");
+    let child = command
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("the proxy runs");
+    until("the proxy listens", || TcpStream::connect(address).ok());
+    Proxy {
+        child,
+        address,
+        _folder: folder,
+    }
+}
+
+const QUERY: &str = "bbox=-200,-200,200,200&spacing=1&seed=5&profile=test&format=csv";
+
+/// The lines of the library's own answer, without the column names.
+fn expected() -> Vec<String> {
+    let tables = tables();
+    let catalog = Catalog::load(false, Some(tables.path())).expect("valid");
+    let body = format!(
+        r#"{{"region": {{"bbox": [-200, -200, 200, 200]}}, "spacing": 1, "seed": 5, "profile": "{PROFILE}"}}"#
+    );
+    let body = read_body(body.as_bytes()).expect("JSON");
+    let query = body.draft.check(&catalog, 100, body.faults).expect("valid");
+    let settings = strew::config::Layers::new().and_then(strew::config::Layers::finish);
+    let limits = settings.expect("valid").limits;
+    let planned = Planned::at_once(query, &limits).expect("planned");
+    let answer = Answer::new(&planned, &Output::new(Encoding::Csv), 1 << 16).expect("fits");
+    let blocks: Vec<u8> = answer.flat_map(|block| block.expect("encoded")).collect();
+    let text = String::from_utf8(blocks).expect("UTF-8");
+    text.lines().skip(1).map(Into::into).collect()
+}
+
+fn a_replica_may_fail_and_return(program: &str) {
+    let expected = expected();
+    let mut replicas: Vec<Option<Daemon>> = (0..3).map(|_| Some(Daemon::start(&[]))).collect();
+    let addresses: Vec<SocketAddr> = replicas.iter().flatten().map(|r| r.address()).collect();
+    let proxy = proxy(program, &addresses);
+    until("the proxy has found a replica", || {
+        let opened = http1::open(proxy.address, "GET", "/readyz", &[]);
+        (opened.status == 200).then_some(())
+    });
+    let mut points: Vec<String> = vec![];
+    let mut cursor = None;
+    let page = expected.len().div_ceil(40);
+    let mut pages = 0;
+    loop {
+        match pages {
+            // Dropping a daemon kills it (SIGKILL) at once.
+            10 => drop(replicas[1].take()),
+            // The killed one comes back at its address while another one is stopped (SIGTERM).
+            20 => {
+                replicas[1] = Some(until("the port is free", || Daemon::at(addresses[1])));
+                replicas[0].as_ref().expect("not yet").terminate();
+            }
+            _ => {}
+        }
+        let after = cursor
+            .as_ref()
+            .map_or(String::new(), |c| format!("&cursor={c}"));
+        let path = format!("/v1/points?{QUERY}&limit={page}{after}");
+        let answer = http1::get(proxy.address, &path, &[]);
+        assert_eq!(answer.status, 200, "page {pages}: {}", answer.text());
+        points.extend(answer.text().lines().skip(1).map(Into::into));
+        pages += 1;
+        match answer.header("strew-next") {
+            "" => break,
+            next => cursor = Some(next.to_owned()),
+        }
+    }
+    assert_eq!(pages, 40);
+    assert_eq!(points, expected);
+    // The proxy uses the replica that came back.
+    let returned = replicas[1].as_ref().expect("back");
+    until("the replica that came back answers", || {
+        http1::get(proxy.address, &format!("/v1/points?{QUERY}&limit=10"), &[]);
+        let text = returned.get("/metrics").text().to_owned();
+        text.contains("strew_requests_total{door=\"rest\",route=\"/v1/points\"")
+            .then_some(())
+    });
+}
+
+#[test]
+fn behind_haproxy_a_replica_may_fail_and_return() {
+    if clients::find("haproxy").is_some() {
+        a_replica_may_fail_and_return("haproxy");
+    }
+}
+
+#[test]
+fn behind_nginx_a_replica_may_fail_and_return() {
+    if clients::find("nginx").is_some() {
+        a_replica_may_fail_and_return("nginx");
+    }
+}

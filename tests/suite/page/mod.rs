@@ -1,0 +1,7 @@
+//! The page at `/` in headless Chromium: what it shows and how it moves (view), what can be set
+//! (controls), and the requests and files it offers (export). The tests are skipped where Chromium
+//! and ChromeDriver are not installed.
+
+mod controls;
+mod export;
+mod view;

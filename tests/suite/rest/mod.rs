@@ -1,0 +1,21 @@
+//! The REST API, a file for each subject: which points a query returns (amounts, regions, layers,
+//! single points, paging), how they are written (formats, and the same files read by other
+//! software), what HTTP adds (caching, compression, methods, headers for browsers), and which
+//! problem documents invalid queries, parameters and bodies get.
+
+mod amounts;
+mod browsers;
+mod caching;
+mod compression;
+mod curl;
+mod format_readers;
+mod formats;
+mod http;
+mod invalid_bodies;
+mod invalid_parameters;
+mod invalid_queries;
+mod layers;
+mod paging;
+mod profiles;
+mod regions;
+mod single_points;

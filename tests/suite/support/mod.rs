@@ -1,0 +1,14 @@
+//! What tests of several folders share. There are no tests here; parts that other test binaries and
+//! benches need as well are in `crates/testkit`.
+
+pub mod browser;
+pub mod clients;
+pub mod command;
+pub mod csv;
+pub mod daemon;
+pub mod grpc;
+pub mod keys;
+pub mod library;
+pub mod metrics;
+pub mod problem;
+pub mod queries;
