@@ -191,7 +191,11 @@ const PATHS: &[(&str, &str, &[&str])] = &[
     ("nearest?spacing=1", "at", &["missing"]),
     ("nearest?at=1&spacing=1", "at", &["1", "x,y"]),
     ("nearest?at=1,inf&spacing=1", "at", &["1,inf"]),
-    ("nearest?at=1e300,0&spacing=1", "at", &["1e+300", "too far from the origin"]),
+    (
+        "nearest?at=1e300,0&spacing=1",
+        "at",
+        &["1e+300", "too far from the origin"],
+    ),
     ("nearest?at=0,0&k=0&spacing=1", "k", &["0", "1 to 10000"]),
     ("nearest?at=0,0&k=10001&spacing=1", "k", &["10001"]),
     ("nearest?at=0,0&radius=-1&spacing=1", "radius", &["-1"]),

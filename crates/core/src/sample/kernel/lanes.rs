@@ -1,6 +1,6 @@
 //! Lanes: the vector operations that the row loops need, as one small trait.
 
-use crate::sample::{lattice::Point, warp::PATCH_CELLS};
+use crate::sample::{lattice::Point, warp::PatchShears};
 
 /// Vectors of one instruction set: [`WIDTH`](Self::WIDTH) integers, singles or doubles, in as many
 /// registers as that takes.
@@ -29,7 +29,7 @@ pub trait Lanes {
     unsafe fn sub_ints(a: Self::Ints, b: Self::Ints) -> Self::Ints;
     /// The cells of coordinates: `v >> CELL_BITS`.
     unsafe fn cells(v: Self::Ints) -> Self::Ints;
-    /// The places of coordinates in their cells: `v & PATCH_CELL_MASK`.
+    /// The places of coordinates in their cells: `v & PatchShears::CELL_MASK`.
     unsafe fn places(v: Self::Ints) -> Self::Ints;
 
     unsafe fn load_singles(from: *const f32) -> Self::Singles;
@@ -42,7 +42,7 @@ pub trait Lanes {
     /// Rounds toward zero.
     unsafe fn truncate(v: Self::Singles) -> Self::Ints;
     /// The entries of a table, by the lowest four bits of each index.
-    unsafe fn pick(table: &[f32; PATCH_CELLS], index: Self::Ints) -> Self::Singles;
+    unsafe fn pick(table: &[f32; PatchShears::CELLS], index: Self::Ints) -> Self::Singles;
 
     unsafe fn load_doubles(from: *const f64) -> Self::Doubles;
     unsafe fn splat_double(v: f64) -> Self::Doubles;

@@ -10,31 +10,31 @@
 //! each instruction set is a thin file of `arch`. `backend` finds out once which sets the machine has, and
 //! `dispatch` runs a loop by one of them. `tests` compares every backend with plain code.
 
-#[expect(
+#![expect(
     unsafe_code,
-    reason = "vector intrinsics, and loads and stores by pointer"
+    reason = "vector loops: intrinsics, and loads and stores whose bounds are checked before"
 )]
+#![cfg_attr(
+    not(any(
+        target_arch = "x86_64",
+        all(target_arch = "aarch64", target_feature = "neon"),
+        all(target_arch = "wasm32", target_feature = "simd128"),
+    )),
+    allow(
+        dead_code,
+        unused_imports,
+        reason = "without vectors the plain code does all"
+    )
+)]
+
 mod arch;
 mod backend;
-#[expect(
-    unsafe_code,
-    reason = "a backend is only named where the machine has it"
-)]
 mod dispatch;
-#[expect(unsafe_code, reason = "vector loops, bounds checked before")]
 mod doubles;
-#[expect(unsafe_code, reason = "declares the vector loops of formats")]
 mod format;
-#[expect(
-    unsafe_code,
-    reason = "functions of vectors exist only where the machine has them"
-)]
 mod lanes;
-#[expect(unsafe_code, reason = "vector loops, bounds checked before")]
 mod points;
-#[expect(unsafe_code, reason = "vector loops, bounds checked before")]
 mod rows;
-#[expect(unsafe_code, reason = "vector loops, bounds checked before")]
 mod singles;
 #[cfg(test)]
 mod tests;

@@ -20,7 +20,7 @@ mod strength;
 mod stretch;
 
 pub(super) use near::NearShears;
-pub(super) use patch::{PATCH_CELL_MASK, PATCH_CELLS, PatchShears};
+pub(super) use patch::PatchShears;
 pub(super) use shears::{CELL_BITS, Shears};
 pub use strength::Warp;
 pub(super) use stretch::Stretch;

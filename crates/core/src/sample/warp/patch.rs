@@ -2,10 +2,6 @@
 
 use super::shears::{CELL_BITS, KNOT_BITS, Shears, evaluate};
 
-/// The most cells that the points of a patch touch in a direction: one vector of numbers. A patch is
-/// 1024 × 256 grid units. With displacements below 127 and shears of 32 at most, coordinates across the
-/// diagonals span 1280 + 4·127 + 2·32 units, less than 15 cells of 128.
-pub(crate) const PATCH_CELLS: usize = 16;
 /// The first cell across each direction, relative to the patch's origin.
 const FIRST_CELLS: [i64; 4] = [-4, -4, -5, -3];
 
@@ -14,19 +10,27 @@ const FIRST_CELLS: [i64; 4] = [-4, -4, -5, -3];
 #[derive(Clone, Debug)]
 pub struct PatchShears {
     /// By direction, by power of u, by the lowest four bits of the cell's number.
-    pub(crate) cubics: [[[f32; PATCH_CELLS]; 4]; 4],
+    pub(crate) cubics: [[[f32; Self::CELLS]; 4]; 4],
 }
 
 impl PatchShears {
+    /// The most cells that the points of a patch touch in a direction: one vector of numbers. A patch is
+    /// 1024 × 256 grid units. With displacements below 127 and shears of 32 at most, coordinates across
+    /// the diagonals span 1280 + 4·127 + 2·32 units, less than 15 cells of 128.
+    pub(crate) const CELLS: usize = 16;
+
+    /// Selects the place of a coordinate in its cell.
+    pub(crate) const CELL_MASK: i32 = (1 << CELL_BITS) - 1;
+
     pub(crate) fn new(shears: &Shears, origin: [i64; 2]) -> Self {
         let [x, y] = origin.map(|v| v >> KNOT_BITS);
         let first = [y, x, x - y, x + y];
-        let mut cubics = [[[0.0; PATCH_CELLS]; 4]; 4];
+        let mut cubics = [[[0.0; Self::CELLS]; 4]; 4];
         for (direction, table) in cubics.iter_mut().enumerate() {
-            for relative in (FIRST_CELLS[direction]..).take(PATCH_CELLS) {
+            for relative in (FIRST_CELLS[direction]..).take(Self::CELLS) {
                 let cubic = shears.cubic(direction, first[direction] + relative);
                 for (of_power, coefficient) in table.iter_mut().zip(cubic) {
-                    of_power[relative.rem_euclid(PATCH_CELLS as i64) as usize] = coefficient;
+                    of_power[relative.rem_euclid(Self::CELLS as i64) as usize] = coefficient;
                 }
             }
         }
@@ -35,9 +39,9 @@ impl PatchShears {
 
     #[inline(always)]
     fn noise(&self, direction: usize, s: i32) -> i32 {
-        let cell = (s >> CELL_BITS) as usize % PATCH_CELLS;
+        let cell = (s >> CELL_BITS) as usize % Self::CELLS;
         let [a, b, c, d] = &self.cubics[direction];
-        evaluate(&[a[cell], b[cell], c[cell], d[cell]], s & PATCH_CELL_MASK)
+        evaluate(&[a[cell], b[cell], c[cell], d[cell]], s & Self::CELL_MASK)
     }
 
     /// [`Shears::apply`], relative to the origin.
@@ -51,9 +55,6 @@ impl PatchShears {
         [x + falling, y - falling]
     }
 }
-
-/// Selects the place of a coordinate in its cell.
-pub(crate) const PATCH_CELL_MASK: i32 = (1 << CELL_BITS) - 1;
 
 #[cfg(test)]
 mod tests {

@@ -3,7 +3,7 @@
 use core::arch::x86_64::*;
 
 use super::super::{dispatch::VectorLoop, lanes::Lanes};
-use crate::sample::warp::{CELL_BITS, PATCH_CELL_MASK, PATCH_CELLS};
+use crate::sample::warp::{CELL_BITS, PatchShears};
 
 /// Runs a loop.
 ///
@@ -57,7 +57,7 @@ impl Lanes for Avx2 {
 
     #[inline(always)]
     unsafe fn places(v: __m256i) -> __m256i {
-        unsafe { _mm256_and_si256(v, _mm256_set1_epi32(PATCH_CELL_MASK)) }
+        unsafe { _mm256_and_si256(v, _mm256_set1_epi32(PatchShears::CELL_MASK)) }
     }
 
     #[inline(always)]
@@ -96,7 +96,7 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    unsafe fn pick(table: &[f32; PATCH_CELLS], index: __m256i) -> __m256 {
+    unsafe fn pick(table: &[f32; PatchShears::CELLS], index: __m256i) -> __m256 {
         unsafe {
             let low = _mm256_loadu_ps(table.as_ptr());
             let high = _mm256_loadu_ps(table.as_ptr().add(8));

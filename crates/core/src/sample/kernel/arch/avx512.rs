@@ -5,7 +5,7 @@ use core::arch::x86_64::*;
 use super::super::{dispatch::VectorLoop, lanes::Lanes};
 use crate::sample::{
     lattice::Point,
-    warp::{CELL_BITS, PATCH_CELL_MASK, PATCH_CELLS},
+    warp::{CELL_BITS, PatchShears},
 };
 
 /// Runs a loop.
@@ -66,7 +66,7 @@ impl Lanes for Avx512 {
 
     #[inline(always)]
     unsafe fn places(v: __m512i) -> __m512i {
-        unsafe { _mm512_and_si512(v, _mm512_set1_epi32(PATCH_CELL_MASK)) }
+        unsafe { _mm512_and_si512(v, _mm512_set1_epi32(PatchShears::CELL_MASK)) }
     }
 
     #[inline(always)]
@@ -105,7 +105,7 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
-    unsafe fn pick(table: &[f32; PATCH_CELLS], index: __m512i) -> __m512 {
+    unsafe fn pick(table: &[f32; PatchShears::CELLS], index: __m512i) -> __m512 {
         unsafe { _mm512_permutexvar_ps(index, _mm512_loadu_ps(table.as_ptr())) }
     }
 

@@ -3,7 +3,7 @@
 use core::arch::aarch64::*;
 
 use super::super::{dispatch::VectorLoop, lanes::Lanes};
-use crate::sample::warp::{CELL_BITS, PATCH_CELL_MASK, PATCH_CELLS};
+use crate::sample::warp::{CELL_BITS, PatchShears};
 
 /// Runs a loop.
 ///
@@ -57,7 +57,7 @@ impl Lanes for Neon {
 
     #[inline(always)]
     unsafe fn places(v: int32x4_t) -> int32x4_t {
-        unsafe { vandq_s32(v, vdupq_n_s32(PATCH_CELL_MASK)) }
+        unsafe { vandq_s32(v, vdupq_n_s32(PatchShears::CELL_MASK)) }
     }
 
     #[inline(always)]
@@ -97,7 +97,7 @@ impl Lanes for Neon {
     }
 
     #[inline(always)]
-    unsafe fn pick(table: &[f32; PATCH_CELLS], index: int32x4_t) -> float32x4_t {
+    unsafe fn pick(table: &[f32; PatchShears::CELLS], index: int32x4_t) -> float32x4_t {
         unsafe {
             // The table is 64 bytes; entry i is bytes 4i to 4i + 3.
             let table = vld1q_u8_x4(table.as_ptr().cast());

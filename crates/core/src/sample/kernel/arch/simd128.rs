@@ -3,7 +3,7 @@
 use core::arch::wasm32::*;
 
 use super::super::{dispatch::VectorLoop, lanes::Lanes};
-use crate::sample::warp::{CELL_BITS, PATCH_CELL_MASK, PATCH_CELLS};
+use crate::sample::warp::{CELL_BITS, PatchShears};
 
 /// Runs a loop.
 ///
@@ -57,7 +57,7 @@ impl Lanes for Simd128 {
 
     #[inline(always)]
     unsafe fn places(v: v128) -> v128 {
-        v128_and(v, i32x4_splat(PATCH_CELL_MASK))
+        v128_and(v, i32x4_splat(PatchShears::CELL_MASK))
     }
 
     #[inline(always)]
@@ -97,7 +97,7 @@ impl Lanes for Simd128 {
     }
 
     #[inline(always)]
-    unsafe fn pick(table: &[f32; PATCH_CELLS], index: v128) -> v128 {
+    unsafe fn pick(table: &[f32; PatchShears::CELLS], index: v128) -> v128 {
         // Entry i is bytes 4i to 4i + 3. A swizzle returns 0 for bytes outside its 16, so the quarters of
         // the table can be combined.
         let index = v128_and(index, i32x4_splat(15));
