@@ -6,7 +6,7 @@
 //! [`Table`](strew_core::Table) with its history, which [`write_table`] puts on disk.
 //!
 //! Equal jobs give equal tables on every machine and with any number of threads: what reaches a
-//! table is computed with plain arithmetic in a fixed order (see [`energy::exp`]).
+//! table is computed with plain arithmetic in a fixed order (see [`numeric`]).
 //!
 //! ```
 //! use strew_forge::{Job, forge};
@@ -29,6 +29,7 @@ mod ground;
 mod job;
 pub mod judge;
 pub mod measure;
+pub mod numeric;
 pub mod optimize;
 mod picture;
 mod plan;

@@ -4,7 +4,8 @@
 //! about low frequencies alone. σ = 1 gives the least low-frequency power, σ = 0.8 a sharper set;
 //! at 0.6 and below sets crystallize.
 
-use super::{PairEnergy, exp::exp};
+use super::PairEnergy;
+use crate::numeric::exp;
 
 /// The Gaussian repulsion.
 #[derive(Clone, Copy, Debug)]

@@ -146,7 +146,7 @@ mod tests {
     use strew_core::{Map, Twin};
 
     use super::*;
-    use crate::{measure::Voronoi, optimize::SplitMix};
+    use crate::{measure::Voronoi, numeric::SplitMix};
 
     fn noise(count: usize) -> Torus {
         let mut random = SplitMix::new(4);

@@ -5,14 +5,11 @@
 //! at all (see [`crate::optimize::Pairs`]). A [`SetEnergy`] is anything else that can be computed
 //! on a periodic point set, such as an error of its spectrum. Every pair energy is a set energy.
 
-mod bessel;
-pub mod exp;
 mod gaussian;
 mod guard;
 mod lloyd;
 mod pairwise;
 
-pub use bessel::BesselJ0;
 pub use gaussian::Gaussian;
 pub use guard::Guard;
 pub use lloyd::{Cell, Lloyd};
@@ -27,7 +24,7 @@ pub trait PairEnergy: Sync {
 
     /// For the square of a distance: the energy of the pair, and twice its derivative by the
     /// square, so that this factor times (p − q) is the gradient at p. Both 0 from the cut-off on.
-    /// Plain arithmetic only (see [`exp`]): its bits reach the table.
+    /// Plain arithmetic only (see [`numeric`](crate::numeric)): its bits reach the table.
     fn pair(&self, distance_squared: f64) -> (f64, f64);
 }
 

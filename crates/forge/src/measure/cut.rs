@@ -9,7 +9,7 @@ use strew_core::{
 };
 
 use super::{Torus, Window};
-use crate::optimize::SplitMix;
+use crate::numeric::SplitMix;
 
 /// The displaced sites of one period of a twin, or `None` if it is no twin of the table's map.
 #[must_use]
@@ -88,7 +88,7 @@ mod tests {
     use strew_core::{Table, table::Provenance};
 
     use super::*;
-    use crate::optimize::SplitMix;
+    use crate::numeric::SplitMix;
 
     /// A table of random vectors of up to ±2 grid units.
     fn table() -> Table {

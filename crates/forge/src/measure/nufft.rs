@@ -12,7 +12,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use rustfft::{Fft, FftPlanner, num_complex::Complex};
 
-use crate::energy::exp::exp;
+use crate::numeric::exp;
 
 /// Width of the kernel, in grid cells.
 const WIDTH: usize = 12;
@@ -228,7 +228,7 @@ fn finish_columns<T: Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimize::SplitMix;
+    use crate::numeric::SplitMix;
 
     #[test]
     fn agrees_with_the_direct_sum() {

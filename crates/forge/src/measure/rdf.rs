@@ -75,7 +75,7 @@ impl Rdf {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimize::SplitMix;
+    use crate::numeric::SplitMix;
 
     #[test]
     fn a_random_set_has_1_everywhere_and_a_lattice_its_distances() {

@@ -193,7 +193,7 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::optimize::SplitMix;
+    use crate::numeric::SplitMix;
 
     fn noise(count: usize, seed: u64) -> Vec<[f64; 2]> {
         let mut random = SplitMix::new(seed);

@@ -121,7 +121,7 @@ impl Voronoi {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimize::SplitMix;
+    use crate::numeric::SplitMix;
 
     fn hexagonal(columns: usize, rows: usize) -> Torus {
         let points = (0..rows).flat_map(|j| {

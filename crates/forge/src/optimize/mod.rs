@@ -14,7 +14,7 @@ pub use pairs::Pairs;
 pub use radial::{Radial, RadialWeights, Reach};
 pub(crate) use rings::excess;
 pub use sets::Sets;
-pub use start::{SplitMix, jitter};
+pub use start::jitter;
 pub use watch::{Meter, Progress, Stage, Watch};
 
 /// An energy as a function of a table's vectors, in mean spacings (*moves*).

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use super::RadialWeights;
-use crate::{energy::BesselJ0, profile::Target};
+use crate::{numeric::BesselJ0, profile::Target};
 
 /// Bins of the histogram per mean spacing.
 pub(super) const BINS: f64 = 128.0;

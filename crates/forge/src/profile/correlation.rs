@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 
 use super::Target;
-use crate::{energy::BesselJ0, optimize::excess};
+use crate::{numeric::BesselJ0, optimize::excess};
 
 /// The pair correlation is looked at up to this distance, in mean spacings,
 const FAR: f64 = 20.0;
