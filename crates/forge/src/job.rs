@@ -6,8 +6,8 @@ use strew_core::Alpha;
 
 use crate::{
     ForgeError,
+    curve::{LeastCorrelation, Target},
     plan::Plan,
-    profile::{LeastCorrelation, Target},
 };
 
 /// The largest half-width a table is made for: 330 intervals at the default α, and about 200 MB of

@@ -22,6 +22,7 @@
 //! ```
 
 mod checkpoint;
+pub mod curve;
 pub mod energy;
 mod error;
 mod file;
@@ -39,12 +40,13 @@ mod twins;
 mod work;
 
 pub use checkpoint::Checkpoint;
+pub use curve::Target;
 pub use error::ForgeError;
 pub use file::{EXTENSION, file_name, read_table, write_table};
 pub use job::{DEFAULT_SEED, Estimate, Job, MAX_RADIUS, MAX_STEPS};
 pub use judge::{Complaint, Figure};
 pub use optimize::{Progress, Stage, Watch};
 pub use picture::{PictureError, picture};
-pub use profile::{Aim, Profile, Target};
+pub use profile::{Aim, Profile};
 pub use report::{Report, Resolution};
 pub use work::{Outcome, forge, resume};

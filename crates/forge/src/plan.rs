@@ -7,10 +7,11 @@ use strew_core::{
 
 use crate::{
     ForgeError, Job, MAX_RADIUS, MAX_STEPS,
+    curve::{LeastCorrelation, Target, to_parameters},
     ground::Ground,
     judge::{Bound, Panel, bounds_of_curve},
     optimize::{Descent, jitter},
-    profile::{LeastCorrelation, Phase, Profile, Recipe, Target, to_parameters},
+    profile::{Phase, Profile, Recipe},
 };
 
 /// The least side t of the set region (α = 1.1): below, a map of any half-width sees too few

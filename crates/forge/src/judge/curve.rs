@@ -5,8 +5,8 @@
 
 use super::{Figure, figure::round};
 use crate::{
+    curve::Target,
     measure::{Ring, Spectrum},
-    profile::Target,
 };
 
 /// The width of the rings, in ν.

@@ -16,9 +16,9 @@ pub use nearness::{Nearness, bounds_of_curve};
 use strew_core::{Map, Table, Twin, table::Figures};
 
 use crate::{
+    curve::Target,
     measure::{Spectrum, twin_set, window_set},
     optimize::Meter,
-    profile::Target,
     twins::{LARGE_TWIN, farthest, next_to_alpha},
 };
 

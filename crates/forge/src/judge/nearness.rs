@@ -7,7 +7,7 @@
 use strew_core::table::Figures;
 
 use super::{Bound, Figure, NU_MAX, TARGET_RING, curve::mean_over_ring};
-use crate::profile::Target;
+use crate::curve::Target;
 
 /// The error may be this part of the curve's departure from 1, as roots of mean squares.
 const PART: f64 = 0.1;

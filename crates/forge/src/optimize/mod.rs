@@ -12,7 +12,6 @@ mod watch;
 pub use descent::{Descended, Descent};
 pub use pairs::Pairs;
 pub use radial::{Radial, RadialWeights, Reach};
-pub(crate) use rings::excess;
 pub use sets::Sets;
 pub use start::jitter;
 pub use watch::{Meter, Progress, Stage, Watch};

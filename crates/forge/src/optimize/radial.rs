@@ -18,7 +18,7 @@ use super::{
     pairs::{CHUNK, LANES, Pair},
     rings::{BINS, RINGS, Rings},
 };
-use crate::{energy::PairEnergy, profile::Target};
+use crate::{curve::Target, energy::PairEnergy};
 
 /// The cost of the squared excess of a vector's length over the leash.
 const PULL: f64 = 0.3;

@@ -7,7 +7,10 @@
 use rayon::prelude::*;
 
 use super::RadialWeights;
-use crate::{numeric::BesselJ0, profile::Target};
+use crate::{
+    curve::{Target, total_correlation},
+    numeric::BesselJ0,
+};
 
 /// Bins of the histogram per mean spacing.
 pub(super) const BINS: f64 = 128.0;
@@ -15,9 +18,6 @@ pub(super) const BINS: f64 = 128.0;
 pub(super) const RINGS: f64 = 40.0;
 /// Below this ν power costs more than its area in the (νx, νy) plane.
 const LONG_WAVES: f64 = 0.2;
-/// Steps per unit of ν in the integral that gives a target's own distances.
-const TARGET_STEPS: f64 = 2000.0;
-
 /// Rings of ν from 0 on, each with its target and its own cost.
 pub(super) struct Rings {
     bins: usize,
@@ -55,7 +55,7 @@ impl Rings {
         // What the target's own set would have in each bin beyond a uniform density.
         let own: Vec<f64> = (0..bins)
             .into_par_iter()
-            .map(|bin| uniform[bin] * excess(target, &bessel, r(bin)))
+            .map(|bin| uniform[bin] * total_correlation(target, &bessel, r(bin)))
             .collect();
         let rings = waves
             .par_chunks_exact(bins)
@@ -143,19 +143,6 @@ fn taper(x: f64) -> f64 {
     rest * rest * rest
 }
 
-/// g(r) − 1 of a set with that spectrum: the transform of T − 1. It cannot be below −1.
-pub(crate) fn excess(target: &Target, bessel: &BesselJ0, r: f64) -> f64 {
-    let two_pi = 2.0 * std::f64::consts::PI;
-    let steps = (target.end() * TARGET_STEPS) as usize;
-    let sum: f64 = (0..=steps)
-        .map(|step| {
-            let nu = (step as f64 + 0.5) / TARGET_STEPS;
-            (target.at(nu) - 1.0) * nu * bessel.at(two_pi * nu * r)
-        })
-        .sum();
-    two_pi * sum / TARGET_STEPS
-}
-
 /// 1 well inside a band where the target is 0, falling to 0 over `edge` before the band's ends.
 fn quietness(target: &Target, nu: f64, edge: f64) -> f64 {
     if target.at(nu) > 0.0 {
@@ -168,26 +155,4 @@ fn quietness(target: &Target, nu: f64, edge: f64) -> f64 {
         .count();
     let u = free as f64 / f64::from(steps);
     u * u * (3.0 - 2.0 * u)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_step_leaves_no_room_for_a_pair_at_distance_zero() {
-        let bessel = BesselJ0::up_to(60.0);
-        let at_most: Target = "0 0\n0.5642 0\n0.5642 1".parse().expect("valid");
-        assert!((excess(&at_most, &bessel, 0.0) + 1.0).abs() < 1e-3);
-        let step: Target = "0 0\n0.5 0\n0.5 1".parse().expect("valid");
-        // −ν₀·J₁(2πν₀r)/r, the transform of a disk.
-        let (nu, r): (f64, f64) = (0.5, 1.7);
-        let turn = |node: i32| std::f64::consts::PI * (f64::from(node) + 0.5) / 400.0;
-        let x = std::f64::consts::TAU * nu * r;
-        let j1: f64 = (0..400)
-            .map(|node| (turn(node) - x * turn(node).sin()).cos())
-            .sum::<f64>()
-            / 400.0;
-        assert!((excess(&step, &bessel, r) + nu * j1 / r).abs() < 1e-3);
-    }
 }

@@ -4,27 +4,22 @@
 //! To add one: a constant in its family's file, its name in [`Profile::ALL`], and, for a new kind of
 //! energy, a file with a variant of [`Recipe`].
 
-mod correlation;
+mod aim;
 mod gaussian;
-mod history;
 mod lloyd;
 mod pattern;
-mod pieces;
 mod radial;
 mod spacing;
-mod target;
 
-pub use correlation::LeastCorrelation;
+pub use aim::Aim;
 pub use gaussian::GaussianRecipe;
-pub use history::Aim;
-pub(crate) use history::to_parameters;
 pub use lloyd::LloydRecipe;
 pub use radial::RadialRecipe;
 pub use spacing::{Push, SpacingRecipe};
-pub use target::{MAX_NU, MAX_POINTS, MAX_POWER, Target};
 
 use crate::{
     ForgeError,
+    curve::Target,
     ground::Ground,
     judge::Bound,
     optimize::{Descent, Objective},

@@ -2,8 +2,9 @@
 
 use std::slice;
 
-use super::{Phase, Profile, Recipe, Target, named};
+use super::{Phase, Profile, Recipe, named};
 use crate::{
+    curve::Target,
     energy::Gaussian,
     ground::Ground,
     judge::{Bound, Figure},
@@ -13,7 +14,7 @@ use crate::{
 /// Parameters of [`Recipe::Radial`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RadialRecipe {
-    /// The points (ν, power) of the curve; see [`Target`](super::Target).
+    /// The points (ν, power) of the curve; see [`Target`].
     pub curve: &'static [[f64; 2]],
     /// What its error costs.
     pub weights: RadialWeights,

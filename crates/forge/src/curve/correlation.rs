@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 
 use super::Target;
-use crate::{numeric::BesselJ0, optimize::excess};
+use crate::numeric::BesselJ0;
 
 /// The pair correlation is looked at up to this distance, in mean spacings,
 const FAR: f64 = 20.0;
@@ -17,6 +17,9 @@ const FAR: f64 = 20.0;
 const STEP: f64 = 0.01;
 /// What the integral may be wrong by where a curve jumps high.
 const TOLERANCE: f64 = 0.005;
+
+/// Steps per unit of ν in the integral that gives a target's own distances.
+const TARGET_STEPS: f64 = 2000.0;
 
 /// Where the pair correlation that belongs to a power curve is least.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +37,7 @@ impl LeastCorrelation {
         let bessel = BesselJ0::up_to(2.0 * std::f64::consts::PI * (target.end() + 1.0) * FAR);
         let at = |step: u32| {
             let r = f64::from(step) * STEP;
-            let g = 1.0 + excess(target, &bessel, r);
+            let g = 1.0 + total_correlation(target, &bessel, r);
             Self { g, r }
         };
         let all: Vec<Self> = (0..=(FAR / STEP) as u32).into_par_iter().map(at).collect();
@@ -52,6 +55,19 @@ impl LeastCorrelation {
     pub fn is_impossible(&self) -> bool {
         self.g < -TOLERANCE
     }
+}
+
+/// g(r) − 1 of a set with that spectrum: the transform of T − 1. It cannot be below −1.
+pub(crate) fn total_correlation(target: &Target, bessel: &BesselJ0, r: f64) -> f64 {
+    let two_pi = 2.0 * std::f64::consts::PI;
+    let steps = (target.end() * TARGET_STEPS) as usize;
+    let sum: f64 = (0..=steps)
+        .map(|step| {
+            let nu = (step as f64 + 0.5) / TARGET_STEPS;
+            (target.at(nu) - 1.0) * nu * bessel.at(two_pi * nu * r)
+        })
+        .sum();
+    two_pi * sum / TARGET_STEPS
 }
 
 #[cfg(test)]
@@ -87,5 +103,22 @@ mod tests {
             (spike.r - 3.8317 / std::f64::consts::TAU).abs() < 0.02,
             "{spike:?}"
         );
+    }
+
+    #[test]
+    fn a_step_leaves_no_room_for_a_pair_at_distance_zero() {
+        let bessel = BesselJ0::up_to(60.0);
+        let at_most: Target = "0 0\n0.5642 0\n0.5642 1".parse().expect("valid");
+        assert!((total_correlation(&at_most, &bessel, 0.0) + 1.0).abs() < 1e-3);
+        let step: Target = "0 0\n0.5 0\n0.5 1".parse().expect("valid");
+        // −ν₀·J₁(2πν₀r)/r, the transform of a disk.
+        let (nu, r): (f64, f64) = (0.5, 1.7);
+        let turn = |node: i32| std::f64::consts::PI * (f64::from(node) + 0.5) / 400.0;
+        let x = std::f64::consts::TAU * nu * r;
+        let j1: f64 = (0..400)
+            .map(|node| (turn(node) - x * turn(node).sin()).cos())
+            .sum::<f64>()
+            / 400.0;
+        assert!((total_correlation(&step, &bessel, r) + nu * j1 / r).abs() < 1e-3);
     }
 }
