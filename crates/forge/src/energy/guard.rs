@@ -39,19 +39,6 @@ impl PairEnergy for Guard {
     }
 }
 
-/// The sum of two pair energies.
-impl<A: PairEnergy, B: PairEnergy> PairEnergy for (A, B) {
-    fn cutoff(&self) -> f64 {
-        self.0.cutoff().max(self.1.cutoff())
-    }
-
-    #[inline]
-    fn pair(&self, distance_squared: f64) -> (f64, f64) {
-        let (a, b) = (self.0.pair(distance_squared), self.1.pair(distance_squared));
-        (a.0 + b.0, a.1 + b.1)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;

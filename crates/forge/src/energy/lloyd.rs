@@ -10,7 +10,7 @@
 use rayon::prelude::*;
 
 use super::SetEnergy;
-use crate::measure::{Torus, cells::Cells};
+use crate::measure::{CellList, Torus};
 
 /// The centroidal Voronoi energy.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,7 @@ impl Lloyd {
     /// The cells of a periodic set of at least 100 points, in the order of the points.
     #[must_use]
     pub fn cells(set: &Torus) -> Vec<Cell> {
-        let list = Cells::new(set.points(), set.side(), 1.0, true);
+        let list = CellList::new(set.points(), set.side(), 1.0, true);
         let found: Vec<Vec<(u32, Cell)>> = list
             .members()
             .par_chunks(CHUNK)
@@ -76,7 +76,7 @@ struct Cutter {
 }
 
 impl Cutter {
-    fn cell(&mut self, list: &Cells, own: u32, p: [f64; 2]) -> Cell {
+    fn cell(&mut self, list: &CellList, own: u32, p: [f64; 2]) -> Cell {
         self.corners.clear();
         self.corners.extend([
             [-START, -START],

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{PairEnergy, SetEnergy};
-use crate::measure::{Torus, cells::Cells};
+use crate::measure::{CellList, Torus};
 
 /// A pair energy summed over the pairs of a periodic point set. Slower than
 /// [`Pairs`](crate::optimize::Pairs), of which it is the oracle; for sets that have no table.
@@ -13,7 +13,7 @@ pub struct Pairwise<E>(pub E);
 impl<E: PairEnergy> SetEnergy for Pairwise<E> {
     fn evaluate(&self, set: &Torus, gradient: &mut [[f64; 2]]) -> f64 {
         let cutoff = self.0.cutoff();
-        let cells = Cells::new(set.points(), set.side(), (cutoff / 4.0).max(0.5), true);
+        let cells = CellList::new(set.points(), set.side(), (cutoff / 4.0).max(0.5), true);
         let rings = (cutoff / cells.width()).ceil() as i64;
         let each: Vec<(u32, f64, [f64; 2])> = cells
             .members()

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Torus, Window, cells::Cells};
+use super::{CellList, Torus, Window};
 
 /// Nearest-neighbor distances, in units of √(2/√3)·N^−½, the distance in a hexagonal lattice of
 /// the same density: at most 1.
@@ -24,7 +24,9 @@ impl Distances {
     /// Of a periodic set. A set of fewer than 2 points has distances to its own images.
     #[must_use]
     pub fn of_torus(set: &Torus) -> Self {
-        Self::of(&Cells::new(set.points(), set.side(), 1.0, true), |_| true)
+        Self::of(&CellList::new(set.points(), set.side(), 1.0, true), |_| {
+            true
+        })
     }
 
     /// Of a window: its points at least 4 mean spacings from the edge, to all points. Zeros for a
@@ -32,11 +34,11 @@ impl Distances {
     #[must_use]
     pub fn of_window(set: &Window) -> Self {
         let inner = MARGIN..set.side() - MARGIN;
-        let cells = Cells::new(set.points(), set.side(), 1.0, false);
+        let cells = CellList::new(set.points(), set.side(), 1.0, false);
         Self::of(&cells, |p| p.iter().all(|v| inner.contains(v)))
     }
 
-    fn of(cells: &Cells, counts: impl Fn(&[f64; 2]) -> bool + Sync) -> Self {
+    fn of(cells: &CellList, counts: impl Fn(&[f64; 2]) -> bool + Sync) -> Self {
         let parts: Vec<(f64, f64, usize)> = cells
             .members()
             .par_chunks(CHUNK)
@@ -72,7 +74,7 @@ impl Distances {
 }
 
 /// The distance from a point to its nearest neighbor; infinite if there is none.
-fn nearest(cells: &Cells, index: u32, p: [f64; 2]) -> f64 {
+fn nearest(cells: &CellList, index: u32, p: [f64; 2]) -> f64 {
     let mut least = f64::INFINITY;
     let rings = (cells.members().len() as f64).sqrt() as i64 * 2 + 2;
     for ring in 0..=rings {

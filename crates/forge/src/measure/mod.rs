@@ -4,10 +4,10 @@
 //! spacing, and white noise has power 1. Nothing here reaches a table but through figures rounded
 //! to four digits, so the platform's own functions may be used.
 
-pub(crate) mod cells;
+mod cell_list;
 mod crispness;
-mod cut;
 mod distance;
+mod from_table;
 mod nufft;
 mod rdf;
 mod set;
@@ -15,9 +15,10 @@ mod spectrum;
 mod taper;
 mod voronoi;
 
+pub(crate) use cell_list::CellList;
 pub use crispness::Crispness;
-pub use cut::{twin_set, window_set};
 pub use distance::Distances;
+pub use from_table::{twin_set, window_set};
 pub use rdf::Rdf;
 pub use set::{Torus, Window};
 pub use spectrum::{Ring, Spectrum, Summary};

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Torus, Window, cells::Cells};
+use super::{CellList, Torus, Window};
 
 /// Distances are counted up to this many mean spacings,
 const REACH: f64 = 5.0;
@@ -22,18 +22,20 @@ impl Rdf {
     /// Of a periodic set.
     #[must_use]
     pub fn of_torus(set: &Torus) -> Self {
-        Self::of(&Cells::new(set.points(), set.side(), 1.0, true), |_| true)
+        Self::of(&CellList::new(set.points(), set.side(), 1.0, true), |_| {
+            true
+        })
     }
 
     /// Of a window: from its points at least 5 mean spacings from the edge, to all points.
     #[must_use]
     pub fn of_window(set: &Window) -> Self {
         let inner = REACH..set.side() - REACH;
-        let cells = Cells::new(set.points(), set.side(), 1.0, false);
+        let cells = CellList::new(set.points(), set.side(), 1.0, false);
         Self::of(&cells, |p| p.iter().all(|v| inner.contains(v)))
     }
 
-    fn of(cells: &Cells, counts: impl Fn(&[f64; 2]) -> bool + Sync) -> Self {
+    fn of(cells: &CellList, counts: impl Fn(&[f64; 2]) -> bool + Sync) -> Self {
         let width = REACH / BINS as f64;
         let rings = (REACH / cells.width()).ceil() as i64;
         let (found, from) = cells

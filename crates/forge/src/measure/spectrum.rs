@@ -3,7 +3,7 @@
 //! Frequencies ν are in units of √N, so ν = 1 is one cycle per mean spacing; white noise has
 //! power 1.
 
-use super::{Torus, Window, cells::wrap, nufft::transform, taper};
+use super::{Torus, Window, cell_list::wrap, nufft::transform, taper};
 
 /// The power P(k) = |Σ exp(−2πi k·x)|²/N at every integer k up to a largest frequency.
 #[derive(Clone, Debug)]

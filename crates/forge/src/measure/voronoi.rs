@@ -5,7 +5,7 @@
 
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-use super::{Torus, Window, cells::wrap};
+use super::{Torus, Window, cell_list::wrap};
 
 /// The figures of a set's Voronoi diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! A cell list: which points are near a place, on a torus or in a box.
 
 /// Points sorted into square cells.
-pub(crate) struct Cells {
+pub(crate) struct CellList {
     per_axis: i64,
     side: f64,
     periodic: bool,
@@ -10,7 +10,7 @@ pub(crate) struct Cells {
     members: Vec<(u32, [f64; 2])>,
 }
 
-impl Cells {
+impl CellList {
     /// Cells at least `cell` wide over [0, `side`)². If `periodic`, positions are taken modulo the
     /// side.
     pub(crate) fn new(points: &[[f64; 2]], side: f64, cell: f64, periodic: bool) -> Self {
