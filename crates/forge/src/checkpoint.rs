@@ -12,7 +12,7 @@ use std::{fs, io::ErrorKind, path::Path};
 
 use strew_core::table::Digest;
 
-use crate::{ForgeError, Job, file, optimize::Descended, plan::Plan};
+use crate::{ForgeError, Job, file, optimize::DescentState, plan::Plan};
 
 /// The first bytes of a checkpoint file. The number rises with the layout.
 const MARK: &[u8; 8] = b"strewck1";
@@ -33,7 +33,7 @@ pub struct Checkpoint {
     /// Steps there are, over all phases.
     pub(crate) of: u32,
     /// The state of the phase.
-    pub(crate) state: Descended,
+    pub(crate) state: DescentState,
 }
 
 impl Checkpoint {
@@ -130,7 +130,7 @@ impl Checkpoint {
         let [job, moves, prepared] = [rest.u32()?, rest.u32()?, rest.u32()?].map(|n| n as usize);
         let job = String::from_utf8(rest.take(job)?.to_vec()).ok()?;
         let [energy, last, age, slowing] = [rest.f64()?, rest.f64()?, rest.f64()?, rest.f64()?];
-        let state = Descended {
+        let state = DescentState {
             energy,
             steps: own_steps,
             last,
@@ -228,7 +228,7 @@ mod tests {
     use super::*;
 
     fn some() -> Checkpoint {
-        let mut state = Descended::at(vec![[0.25, -1e-300], [3.0, f64::MIN_POSITIVE]]);
+        let mut state = DescentState::start(vec![[0.25, -1e-300], [3.0, f64::MIN_POSITIVE]]);
         state.prepared_for = vec![[1.0, 2.0], [3.0, 4.0]];
         state.slowing = 0.5;
         Checkpoint {

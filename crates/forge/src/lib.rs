@@ -37,6 +37,7 @@ mod plan;
 pub mod profile;
 mod report;
 mod twins;
+mod watch;
 mod work;
 
 pub use checkpoint::Checkpoint;
@@ -45,8 +46,8 @@ pub use error::ForgeError;
 pub use file::{EXTENSION, file_name, read_table, write_table};
 pub use job::{DEFAULT_SEED, Estimate, Job, MAX_RADIUS, MAX_STEPS};
 pub use judge::{Complaint, Figure};
-pub use optimize::{Progress, Stage, Watch};
 pub use picture::{PictureError, picture};
 pub use profile::{Aim, Profile};
 pub use report::{Report, Resolution};
+pub use watch::{Meter, Progress, Stage, Watch};
 pub use work::{Outcome, forge, resume};

@@ -5,8 +5,9 @@ use strew_core::{Table, table::Provenance};
 use crate::{
     Checkpoint, ForgeError, Job,
     judge::{Complaint, Nearness, complaints},
-    optimize::{Descended, Meter, Stage, Watch},
+    optimize::DescentState,
     plan::Plan,
+    watch::{Meter, Stage, Watch},
 };
 
 /// What became of a job.
@@ -88,13 +89,13 @@ fn optimize(
     let count = phases.len();
     let identity = plan.identity(job, &phases);
     let (first, mut state) = match from {
-        None => (0, Descended::at(plan.start(job.seed))),
+        None => (0, DescentState::start(plan.start(job.seed))),
         Some(from) => {
             from.check(&identity, plan.blocks())?;
             (from.phase as usize, from.state)
         }
     };
-    let checkpoint = |phase: usize, steps, state: &Descended| Checkpoint {
+    let checkpoint = |phase: usize, steps, state: &DescentState| Checkpoint {
         job: identity.clone(),
         phase: phase as u32,
         steps,
@@ -106,7 +107,7 @@ fn optimize(
     let mut meter = Meter::from(watch, Stage::Optimizing, plan.steps, steps + state.steps);
     for (at, mut phase) in phases.into_iter().enumerate().skip(first) {
         let mut keep =
-            |state: &Descended| watch.checkpoint(&checkpoint(at, steps + state.steps, state));
+            |state: &DescentState| watch.checkpoint(&checkpoint(at, steps + state.steps, state));
         state = phase
             .descent
             .run(&mut *phase.objective, state, &mut meter, &mut keep);
@@ -118,7 +119,7 @@ fn optimize(
                 interrupted: true,
             });
         }
-        state = Descended::at(state.moves);
+        state = DescentState::start(state.moves);
     }
     if count > 0 {
         watch.checkpoint(&checkpoint(count, steps, &state));

@@ -18,8 +18,8 @@ use strew_core::{Map, Table, Twin, table::Figures};
 use crate::{
     curve::Target,
     measure::{Spectrum, twin_set, window_set},
-    optimize::Meter,
     twins::{LARGE_TWIN, farthest, next_to_alpha},
+    watch::Meter,
 };
 
 /// The least number of points of a twin that a table is judged on.

@@ -1,6 +1,7 @@
 //! Descent with momentum.
 
-use super::{Meter, Objective};
+use super::{DescentState, Objective};
+use crate::watch::Meter;
 
 /// How a descent runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,48 +11,6 @@ pub struct Descent {
     /// Mean spacings moved per unit of gradient, at first; halved whenever a step without momentum
     /// raises the energy.
     pub rate: f64,
-}
-
-/// Everything a descent knows between two steps: going on from it gives what going on would have
-/// given, bit by bit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Descended {
-    /// The moves with the lowest energy that was seen.
-    pub moves: Vec<[f64; 2]>,
-    /// That energy, per point.
-    pub energy: f64,
-    /// How many evaluations were made.
-    pub steps: u32,
-    /// The last energy, unless the descent has begun anew since.
-    pub(crate) last: f64,
-    /// Steps since the momentum began.
-    pub(crate) age: f64,
-    /// The present rate as a part of the first.
-    pub(crate) slowing: f64,
-    /// Where the last step led.
-    pub(crate) at: Vec<[f64; 2]>,
-    /// The same, carried on by the momentum.
-    pub(crate) ahead: Vec<[f64; 2]>,
-    /// The moves for which the objective made its lists: see [`Objective::prepared_for`].
-    pub(crate) prepared_for: Vec<[f64; 2]>,
-}
-
-impl Descended {
-    /// A start, before any step.
-    #[must_use]
-    pub fn at(moves: Vec<[f64; 2]>) -> Self {
-        Self {
-            energy: f64::INFINITY,
-            steps: 0,
-            last: f64::INFINITY,
-            age: 0.0,
-            slowing: 1.0,
-            at: moves.clone(),
-            ahead: moves.clone(),
-            prepared_for: Vec::new(),
-            moves,
-        }
-    }
 }
 
 impl Descent {
@@ -64,10 +23,10 @@ impl Descent {
     pub fn run(
         &self,
         objective: &mut (impl Objective + ?Sized),
-        start: Descended,
+        start: DescentState,
         meter: &mut Meter<'_>,
-        keep: &mut dyn FnMut(&Descended),
-    ) -> Descended {
+        keep: &mut dyn FnMut(&DescentState),
+    ) -> DescentState {
         let masses = objective.masses().to_vec();
         let mut state = start;
         if !state.prepared_for.is_empty() {
@@ -92,56 +51,12 @@ impl Descent {
     }
 }
 
-impl Descended {
-    /// Takes the step that an energy and its gradient at `ahead` call for.
-    fn step(&mut self, first_rate: f64, energy: f64, gradient: &[[f64; 2]], masses: &[f64]) {
-        if energy < self.energy {
-            self.energy = energy;
-            self.moves.clone_from(&self.ahead);
-        }
-        // Should it ever rise, begin anew from the best; if momentum was not to blame, the step
-        // was too long.
-        let rose = energy > self.last || energy.is_nan();
-        self.last = energy;
-        if rose {
-            self.slowing *= if self.age <= 1.0 { 0.5 } else { 1.0 };
-            (self.age, self.last) = (0.0, f64::INFINITY);
-            self.at.clone_from(&self.moves);
-            self.ahead.clone_from(&self.moves);
-            return;
-        }
-        let rate = first_rate * self.slowing;
-        let mut uphill = 0.0;
-        self.age += 1.0;
-        let momentum = self.age / (self.age + 3.0);
-        for (((at, ahead), slope), mass) in self
-            .at
-            .iter_mut()
-            .zip(&mut self.ahead)
-            .zip(gradient)
-            .zip(masses)
-        {
-            for axis in 0..2 {
-                let next = ahead[axis] - rate * slope[axis];
-                let by = next - at[axis];
-                uphill += mass * slope[axis] * by;
-                at[axis] = next;
-                ahead[axis] = next + momentum * by;
-            }
-        }
-        if uphill > 0.0 {
-            self.age = 0.0;
-            self.ahead.clone_from(&self.at);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::sync::atomic::{AtomicU32, Ordering};
 
     use super::*;
-    use crate::optimize::{Progress, Stage, Watch};
+    use crate::watch::{Progress, Stage, Watch};
 
     /// A narrow valley: curvatures 1 and 0.002 per mass.
     struct Valley([f64; 2]);
@@ -161,9 +76,9 @@ mod tests {
         }
     }
 
-    fn run(descent: &Descent, watch: &dyn Watch) -> Descended {
+    fn run(descent: &Descent, watch: &dyn Watch) -> DescentState {
         let mut meter = Meter::new(watch, Stage::Optimizing, descent.steps);
-        let start = Descended::at(vec![[5.0, 5.0]; 2]);
+        let start = DescentState::start(vec![[5.0, 5.0]; 2]);
         descent.run(&mut Valley([0.25, 0.75]), start, &mut meter, &mut |_| {})
     }
 
