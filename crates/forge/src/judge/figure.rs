@@ -1,7 +1,5 @@
 //! Named figures and the bounds on them.
 
-use std::fmt;
-
 use strew_core::table::Figures;
 
 use crate::measure::{Crispness, Distances, Spectrum, Torus, Voronoi, Window};
@@ -9,6 +7,9 @@ use crate::measure::{Crispness, Distances, Spectrum, Torus, Voronoi, Window};
 /// The width of the rings that radial figures are taken on, in ν: as fine as the smallest twin of
 /// the default map resolves, and the same for sets of all sizes, so that their peaks compare.
 pub const RING_WIDTH: f64 = 1.0 / 64.0;
+
+/// The largest frequency measured.
+pub(super) const NU_MAX: f64 = 4.0;
 
 /// A figure measured on a point set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,130 +146,9 @@ pub fn figures_of_window(subject: String, seen: bool, set: &Window, nu_max: f64)
     }
 }
 
-/// What a figure must satisfy.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bound {
-    /// The figure.
-    pub figure: Figure,
-    /// The side on which it must stay.
-    pub side: Side,
-    /// Of this value, which is itself allowed.
-    pub limit: f64,
-}
-
-/// A side of a limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// Not above it.
-    AtMost,
-    /// Not below it.
-    AtLeast,
-}
-
-impl Bound {
-    /// `figure` ≤ `limit`.
-    #[must_use]
-    pub const fn at_most(figure: Figure, limit: f64) -> Self {
-        Self {
-            figure,
-            side: Side::AtMost,
-            limit,
-        }
-    }
-
-    /// `figure` ≥ `limit`.
-    #[must_use]
-    pub const fn at_least(figure: Figure, limit: f64) -> Self {
-        Self {
-            figure,
-            side: Side::AtLeast,
-            limit,
-        }
-    }
-
-    /// What is wrong with these figures, if anything; a missing figure is wrong.
-    #[must_use]
-    pub fn check(&self, figures: &Figures) -> Option<Complaint> {
-        let value = figures.value(self.figure.name()).unwrap_or(f64::NAN);
-        let holds = match self.side {
-            Side::AtMost => value <= self.limit,
-            Side::AtLeast => value >= self.limit,
-        };
-        (!holds).then(|| Complaint {
-            subject: figures.subject.clone(),
-            bound: *self,
-            value,
-        })
-    }
-}
-
-/// A figure that missed its bound.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Complaint {
-    /// The point set it was measured on.
-    pub subject: String,
-    /// The bound it missed.
-    pub bound: Bound,
-    /// What was measured.
-    pub value: f64,
-}
-
-impl fmt::Display for Side {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::AtMost => "at most",
-            Self::AtLeast => "at least",
-        })
-    }
-}
-
-impl fmt::Display for Complaint {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Bound {
-            figure,
-            side,
-            limit,
-        } = self.bound;
-        let (name, subject, value) = (figure.name(), &self.subject, self.value);
-        write!(
-            f,
-            "{name} on {subject} is {value}; it must be {side} {limit}"
-        )
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn bounds_say_which_figure_missed_what() {
-        let figures = Figures {
-            subject: "twin 683/418".into(),
-            seen: false,
-            points: 70_225,
-            values: vec![("low_power".into(), 3e-5), ("delta_min".into(), 0.62)],
-        };
-        assert_eq!(
-            Bound::at_least(Figure::DeltaMin, 0.62).check(&figures),
-            None
-        );
-        assert_eq!(Bound::at_most(Figure::LowPower, 3e-5).check(&figures), None);
-        let complaint = Bound::at_most(Figure::LowPower, 2e-5)
-            .check(&figures)
-            .expect("valid")
-            .to_string();
-        assert_eq!(
-            complaint,
-            "low_power on twin 683/418 is 0.00003; it must be at most 0.00002"
-        );
-        // What was not measured is not good.
-        assert!(
-            Bound::at_most(Figure::PeakPower, 9.0)
-                .check(&figures)
-                .is_some()
-        );
-    }
 
     #[test]
     fn figures_keep_four_digits() {

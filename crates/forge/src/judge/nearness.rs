@@ -6,7 +6,7 @@
 
 use strew_core::table::Figures;
 
-use super::{Bound, Figure, NU_MAX, TARGET_RING, curve::mean_over_ring};
+use super::{Bound, Figure, TARGET_RING, curve::mean_over_ring, figure::NU_MAX};
 use crate::curve::Target;
 
 /// The error may be this part of the curve's departure from 1, as roots of mean squares.
