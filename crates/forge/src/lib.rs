@@ -23,10 +23,10 @@
 
 mod checkpoint;
 pub mod curve;
+mod domain;
 pub mod energy;
 mod error;
 mod file;
-mod ground;
 mod job;
 pub mod judge;
 pub mod measure;

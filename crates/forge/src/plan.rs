@@ -8,7 +8,7 @@ use strew_core::{
 use crate::{
     ForgeError, Job, MAX_RADIUS, MAX_STEPS,
     curve::{LeastCorrelation, Target, to_parameters},
-    ground::Ground,
+    domain::Domain,
     judge::{Bound, Panel, bounds_of_curve},
     optimize::{Descent, jitter},
     profile::{Phase, Profile, Recipe},
@@ -31,7 +31,7 @@ pub(crate) struct Plan {
     name: String,
     /// The curve to follow, for profiles that do.
     target: Option<Target>,
-    ground: Ground,
+    domain: Domain,
     pub(crate) panel: Panel,
     /// What every unseen subject must satisfy.
     pub(crate) bounds: Vec<Bound>,
@@ -60,8 +60,8 @@ impl Plan {
         let most = target.as_ref().map_or(MAX_RADIUS, |_| MAX_RADIAL_RADIUS);
         in_range("R", job.radius, most)?;
         let map = Map::new(job.alpha, job.radius).map_err(|e| ForgeError::Table(e.into()))?;
-        let mut ground = Ground::new(map);
-        if ground.twins.is_empty() || ground.scale() < LEAST_SIDE {
+        let mut domain = Domain::new(map);
+        if domain.twins.is_empty() || domain.scale() < LEAST_SIDE {
             return Err(ForgeError::Field {
                 field: "alpha",
                 value: job.alpha.to_string(),
@@ -72,25 +72,25 @@ impl Plan {
         }
         if let Recipe::Radial(_) = profile.recipe {
             // It is optimized on unbounded patterns.
-            ground.twins.clear();
+            domain.twins.clear();
         }
-        let panel = Panel::new(&ground.map, &ground.twins);
+        let panel = Panel::new(&domain.map, &domain.twins);
         Ok(Self {
             profile,
             panel: match &target {
-                Some(target) => panel.with_target(target.clone(), &ground.map),
+                Some(target) => panel.with_target(target.clone(), &domain.map),
                 None => panel,
             },
             bounds,
             name: job.profile.clone(),
             target,
-            ground,
+            domain,
             steps,
         })
     }
 
     pub(crate) fn start(&self, seed: u64) -> Vec<[f64; 2]> {
-        jitter(self.ground.blocks(), self.profile.jitter, seed)
+        jitter(self.domain.blocks(), self.profile.jitter, seed)
     }
 
     /// Where the pair correlation of the curve is least, if there is a curve to follow.
@@ -101,12 +101,12 @@ impl Plan {
     pub(crate) fn phases(&self) -> Vec<Phase> {
         self.profile
             .recipe
-            .phases(&self.ground, self.target.as_ref(), self.steps)
+            .phases(&self.domain, self.target.as_ref(), self.steps)
     }
 
     /// How many vectors there are.
     pub(crate) fn blocks(&self) -> usize {
-        self.ground.blocks()
+        self.domain.blocks()
     }
 
     /// Everything that decides the result, as lines of `name = value`: two jobs whose lines agree
@@ -140,7 +140,7 @@ impl Plan {
         let (optimizer, mut parameters) = self.profile.recipe.describe();
         parameters.extend(self.target.iter().flat_map(to_parameters));
         if let Recipe::Radial(_) = self.profile.recipe {
-            let alphas = self.ground.spread().len();
+            let alphas = self.domain.spread().len();
             parameters.push(("alphas".into(), alphas.to_string()));
         }
         parameters.push(("jitter".into(), self.profile.jitter.to_string()));
@@ -152,7 +152,7 @@ impl Plan {
             optimizer: optimizer.into(),
             parameters,
             seed: job.seed,
-            twins: self.ground.twins.clone(),
+            twins: self.domain.twins.clone(),
             figures: Vec::new(),
         }
     }
@@ -162,7 +162,7 @@ impl Plan {
         moves: &[[f64; 2]],
         provenance: Provenance,
     ) -> Result<Table, ForgeError> {
-        let unit = 1.0 / self.ground.scale();
+        let unit = 1.0 / self.domain.scale();
         let too_long = || ForgeError::Field {
             field: "displacement",
             value: "too long".into(),
@@ -173,7 +173,7 @@ impl Plan {
             .map(|m| Some([from_grid_units(m[0] * unit)?, from_grid_units(m[1] * unit)?]))
             .collect::<Option<Vec<_>>>()
             .ok_or_else(too_long)?;
-        let table = Table::new(self.ground.map.clone(), &self.name, vectors, provenance)?;
+        let table = Table::new(self.domain.map.clone(), &self.name, vectors, provenance)?;
         Ok(table)
     }
 }

@@ -1,4 +1,4 @@
-//! What a table was made for, from its own history.
+//! What a table was made for, read from its history.
 
 use strew_core::table::Provenance;
 
@@ -8,20 +8,20 @@ use crate::{
     judge::{Bound, bounds_of_curve},
 };
 
-/// The target of a table: what it was made to be.
+/// What a table was made for, in words, bounds and, for some, a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aim {
-    /// In words.
+    /// The aim in words: the summary of the table's profile.
     pub statement: String,
-    /// What must be measured on sets that the table was not made on.
+    /// The bounds on figures of point sets that the table was not optimized on.
     pub bounds: Vec<Bound>,
-    /// The radial power curve to follow, if it is a curve.
+    /// The radial power curve to follow, if any.
     pub curve: Option<Target>,
 }
 
 impl Aim {
-    /// Of a table with that profile and history; `None` if they do not tell, as for tables that were
-    /// made elsewhere.
+    /// Returns the aim of a table with this profile and history, or `None` if they do not identify it,
+    /// as for imported tables.
     #[must_use]
     pub fn of(profile: &str, history: &Provenance) -> Option<Self> {
         let curve = from_parameters(&history.parameters);
@@ -36,7 +36,7 @@ impl Aim {
                 curve,
             }),
             (None, Some(curve)) => Some(Self {
-                statement: "A radial power curve that somebody drew".to_owned(),
+                statement: "A custom radial power curve".to_owned(),
                 bounds: bounds_of_curve(&curve),
                 curve: Some(curve),
             }),
@@ -59,21 +59,21 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_of_any_length_comes_back() {
+    fn a_curve_of_any_length_is_read_back() {
         for count in [1, 2, 40, 1000] {
             let nu = |i: u32| f64::from(i) * 0.003;
             let points = (0..count).map(|i| [nu(i), 1.0 / (1.0 + nu(i))]).collect();
             let target = Target::new(points).expect("valid");
             let parameters = to_parameters(&target);
             assert!(parameters.iter().all(|(_, text)| text.len() <= 1000));
-            let aim = Aim::of("mine", &history("radial", parameters)).expect("told");
+            let aim = Aim::of("mine", &history("radial", parameters)).expect("identified");
             assert_eq!(aim.curve, Some(target));
             assert_eq!(aim.bounds[0].figure.name(), "target_rms");
         }
     }
 
     #[test]
-    fn known_profiles_state_their_bounds_and_foreign_tables_nothing() {
+    fn known_profiles_have_an_aim_and_imported_tables_none() {
         let blue = Aim::of("blue", &history("gaussian", vec![])).expect("known");
         assert!(blue.statement.contains("Gaussian") && blue.curve.is_none());
         assert!(!blue.bounds.is_empty());
