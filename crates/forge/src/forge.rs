@@ -1,4 +1,4 @@
-//! The work on a job: optimizing phase by phase, then judging; from the start or from a checkpoint.
+//! Working off a job: optimizing phase by phase, then judging, from the start or from a checkpoint.
 
 use strew_core::{Table, table::Provenance};
 
@@ -10,38 +10,51 @@ use crate::{
     watch::{Meter, Stage, Watch},
 };
 
-/// What became of a job.
+/// The result of a job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// The table, with its history. Usable in any case.
+    /// The table with its history. It is usable in any case.
     pub table: Table,
-    /// Whether it was measured on unseen subjects and met every bound of its profile.
+    /// Whether the table was judged on unseen point sets and met every bound of its profile.
     pub accepted: bool,
-    /// Whether the watch stopped the work: the table is the best until then, and was not judged.
+    /// Whether the watch stopped the work. The table is then the best so far and was not judged.
     pub interrupted: bool,
-    /// The bounds it missed.
+    /// The bounds that the table missed.
     pub complaints: Vec<Complaint>,
-    /// How near it came to the power curve it should follow, if it was judged and follows one.
+    /// How near the table came to its power curve; `None` if it follows none or was not judged.
     pub nearness: Option<Nearness>,
 }
 
-/// Makes a table and judges it. A table that misses a bound is an outcome, not an error.
+/// Makes a table and judges it. A table that misses a bound is no error: see [`Outcome::accepted`].
 ///
 /// # Errors
 /// [`ForgeError::Field`] for a part of the job that is not allowed.
 pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
-    work(job, None, watch)
+    run(job, None, watch)
 }
 
-/// Goes on with a job from a checkpoint, to the same table as without the interruption.
+/// Resumes a job from a checkpoint. The table is the same as without the interruption.
 ///
 /// # Errors
-/// As [`forge`], and [`ForgeError::Field`] for a checkpoint of another job.
+/// [`ForgeError::Field`] for a part of the job that is not allowed, and for a checkpoint of another
+/// job.
 pub fn resume(job: &Job, from: Checkpoint, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
-    work(job, Some(from), watch)
+    run(job, Some(from), watch)
 }
 
-fn work(job: &Job, from: Option<Checkpoint>, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
+impl Checkpoint {
+    /// Checks that the checkpoint belongs to `job`.
+    ///
+    /// # Errors
+    /// [`ForgeError::Field`] with the first difference if it does not, and for a part of the job that
+    /// is not allowed.
+    pub fn is_of(&self, job: &Job) -> Result<(), ForgeError> {
+        let plan = Plan::new(job)?;
+        self.check(&plan.identity(job, &plan.phases()), plan.blocks())
+    }
+}
+
+fn run(job: &Job, from: Option<Checkpoint>, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
     let plan = Plan::new(job)?;
     let done = optimize(&plan, job, from, watch)?;
     let provenance = plan.provenance(job, done.steps);
@@ -71,10 +84,11 @@ fn work(job: &Job, from: Option<Checkpoint>, watch: &dyn Watch) -> Result<Outcom
     Ok(outcome)
 }
 
-/// What the optimizer found.
+/// The result of the optimizer.
 struct Optimized {
+    /// The vectors, in mean spacings.
     moves: Vec<[f64; 2]>,
-    /// Steps taken in all.
+    /// Steps done in all phases.
     steps: u32,
     interrupted: bool,
 }
@@ -164,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn the_history_tells_all() {
+    fn the_history_records_recipe_twins_and_figures() {
         let outcome = forge(&job(30), &()).expect("a good job");
         let history = outcome.table.provenance();
         assert_eq!((history.optimizer.as_str(), history.seed), ("gaussian", 17));
@@ -196,47 +210,49 @@ mod tests {
         assert_eq!(back, outcome.table);
     }
 
-    /// Notes all it is told, and stops the work at a step of a stage.
-    struct Observer {
+    /// Records all progress, and stops the work at a step of a stage.
+    struct Recorder {
         stop_at: (Stage, u32),
-        told: Mutex<Vec<Progress>>,
+        reported: Mutex<Vec<Progress>>,
     }
 
-    impl Watch for Observer {
+    impl Watch for Recorder {
         fn progress(&self, progress: &Progress) {
-            self.told.lock().expect("no panic").push(*progress);
+            self.reported.lock().expect("no panic").push(*progress);
         }
 
         fn stop(&self) -> bool {
-            let told = self.told.lock().expect("no panic");
-            told.last()
+            let reported = self.reported.lock().expect("no panic");
+            reported
+                .last()
                 .is_some_and(|p| (p.stage, p.step) == self.stop_at)
         }
     }
 
     #[test]
-    fn a_watch_is_told_every_step_and_can_stop_at_any() {
+    fn every_step_is_reported_and_can_be_the_last() {
         let stages = [
             (Stage::Optimizing, 0),
             (Stage::Optimizing, 5),
             (Stage::Optimizing, 11),
         ];
         for (stage, step) in stages.into_iter().chain([(Stage::Measuring, 2)]) {
-            let observer = Observer {
+            let recorder = Recorder {
                 stop_at: (stage, step),
-                told: Mutex::default(),
+                reported: Mutex::default(),
             };
-            let outcome = forge(&job(12), &observer).expect("a good job");
+            let outcome = forge(&job(12), &recorder).expect("a good job");
             assert!(outcome.interrupted && !outcome.accepted, "{stage:?} {step}");
             assert!(outcome.table.provenance().figures.is_empty());
             assert!(Table::from_bytes(&outcome.table.to_bytes()).is_ok());
-            let told = observer.told.into_inner().expect("no panic");
-            let optimizing = told.iter().filter(|p| p.stage == Stage::Optimizing);
+            let reported = recorder.reported.into_inner().expect("no panic");
+            let optimizing = reported.iter().filter(|p| p.stage == Stage::Optimizing);
             let steps: Vec<u32> = optimizing.map(|p| p.step).collect();
             let last = if stage == Stage::Optimizing { step } else { 12 };
             assert_eq!(steps, (0..=last).collect::<Vec<_>>());
             assert!(
-                told.iter()
+                reported
+                    .iter()
                     .all(|p| p.stage == Stage::Measuring || p.steps == 12)
             );
             let stopped_after = ("stopped_after".into(), step.to_string());
@@ -262,11 +278,10 @@ mod tests {
         }
     }
 
-    /// Keeps the last checkpoint, and stops the work after a number of steps.
+    /// Keeps the last checkpoint, and stops a stage after a number of steps.
     struct Stopper {
-        after: u32,
-        /// Whether measuring is to be stopped, too.
         stage: Stage,
+        after: u32,
         seen: Mutex<Option<Progress>>,
         kept: Mutex<Option<Checkpoint>>,
     }
@@ -274,8 +289,8 @@ mod tests {
     impl Stopper {
         fn new(stage: Stage, after: u32) -> Self {
             Self {
-                after,
                 stage,
+                after,
                 seen: Mutex::default(),
                 kept: Mutex::default(),
             }
@@ -300,13 +315,13 @@ mod tests {
     }
 
     #[test]
-    fn work_that_was_stopped_goes_on_to_the_same_table() {
+    fn resumed_work_makes_the_same_table() {
         let of = |profile: &str, radius, steps| Job {
             profile: profile.into(),
             radius,
             ..job(steps)
         };
-        // One of each kind of recipe, stopped in each phase and on a border of phases.
+        // One of each kind of recipe, stopped in each phase and between phases.
         for (job, stops) in [
             (of("blue", 15, 40), vec![1, 19, 20, 31]),
             (of("spaced", 15, 30), vec![1, 2, 11, 16, 29]),
@@ -314,10 +329,10 @@ mod tests {
             (of("step", 12, 12), vec![3, 11]),
             (of("single-peak", 12, 20), vec![4, 6, 17]),
         ] {
-            // Measuring tells nothing new, so it is stopped.
+            // The figures add nothing to the comparison, so measuring is stopped.
             let optimized = |from: Option<Checkpoint>| {
                 let stopper = Stopper::new(Stage::Measuring, 0);
-                let outcome = work(&job, from, &stopper).expect("a good job");
+                let outcome = run(&job, from, &stopper).expect("a good job");
                 (
                     outcome.table.digest(),
                     stopper.kept.into_inner().expect("no panic"),
@@ -337,23 +352,23 @@ mod tests {
     }
 
     #[test]
-    fn measuring_that_was_stopped_is_done_again_without_optimizing() {
+    fn resumed_measuring_does_not_optimize_again() {
         let whole = forge(&job(9), &()).expect("a good job");
         let stopper = Stopper::new(Stage::Measuring, 1);
         assert!(forge(&job(9), &stopper).expect("a good job").interrupted);
         let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
         assert!(kept.is_optimized());
-        let observer = Observer {
+        let recorder = Recorder {
             stop_at: (Stage::Measuring, u32::MAX),
-            told: Mutex::default(),
+            reported: Mutex::default(),
         };
-        assert_eq!(resume(&job(9), kept, &observer).expect("its own"), whole);
-        let told = observer.told.into_inner().expect("no panic");
-        assert_eq!(told[0].step, 9);
+        assert_eq!(resume(&job(9), kept, &recorder).expect("its own"), whole);
+        let reported = recorder.reported.into_inner().expect("no panic");
+        assert_eq!(reported[0].step, 9);
     }
 
     #[test]
-    fn any_difference_of_the_jobs_is_told() {
+    fn a_checkpoint_of_a_different_job_is_refused_with_the_difference() {
         let stopper = Stopper::new(Stage::Optimizing, 2);
         let _ = forge(&job(9), &stopper).expect("a good job");
         let kept = stopper.kept.into_inner().expect("no panic").expect("kept");
