@@ -1,4 +1,4 @@
-//! Bounds on figures.
+//! Bounds on figures, and the complaints about figures that miss them.
 
 use std::fmt;
 
@@ -6,28 +6,28 @@ use strew_core::table::Figures;
 
 use super::Figure;
 
-/// What a figure must satisfy.
+/// A limit on a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound {
     /// The figure.
     pub figure: Figure,
-    /// The side on which it must stay.
+    /// The side of the limit on which the figure must stay.
     pub side: Side,
-    /// Of this value, which is itself allowed.
+    /// The limit, which is itself allowed.
     pub limit: f64,
 }
 
 /// A side of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Not above it.
+    /// The limit and below.
     AtMost,
-    /// Not below it.
+    /// The limit and above.
     AtLeast,
 }
 
 impl Bound {
-    /// `figure` ≤ `limit`.
+    /// The bound `figure` ≤ `limit`.
     #[must_use]
     pub const fn at_most(figure: Figure, limit: f64) -> Self {
         Self {
@@ -37,7 +37,7 @@ impl Bound {
         }
     }
 
-    /// `figure` ≥ `limit`.
+    /// The bound `figure` ≥ `limit`.
     #[must_use]
     pub const fn at_least(figure: Figure, limit: f64) -> Self {
         Self {
@@ -47,7 +47,7 @@ impl Bound {
         }
     }
 
-    /// What is wrong with these figures, if anything; a missing figure is wrong.
+    /// Returns a complaint if these figures miss the bound or lack the figure.
     #[must_use]
     pub fn check(&self, figures: &Figures) -> Option<Complaint> {
         let value = figures.value(self.figure.name()).unwrap_or(f64::NAN);
@@ -66,11 +66,11 @@ impl Bound {
 /// A figure that missed its bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Complaint {
-    /// The point set it was measured on.
+    /// The point set that was measured.
     pub subject: String,
     /// The bound it missed.
     pub bound: Bound,
-    /// What was measured.
+    /// The measured value; NaN if the figure is missing.
     pub value: f64,
 }
 
@@ -98,8 +98,8 @@ impl fmt::Display for Complaint {
     }
 }
 
-/// What is wrong with a table by its figures on unseen subjects. Without any such figures,
-/// everything is.
+/// Returns the complaints about a table, given its figures. Only figures of unseen point sets count;
+/// without any, every bound is missed.
 #[must_use]
 pub fn complaints(bounds: &[Bound], figures: &[Figures]) -> Vec<Complaint> {
     let nothing = Figures {
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bounds_say_which_figure_missed_what() {
+    fn a_complaint_names_figure_subject_value_and_limit() {
         let figures = Figures {
             subject: "twin 683/418".into(),
             seen: false,
@@ -143,7 +143,7 @@ mod tests {
             complaint,
             "low_power on twin 683/418 is 0.00003; it must be at most 0.00002"
         );
-        // What was not measured is not good.
+        // A missing figure misses its bound.
         assert!(
             Bound::at_most(Figure::PeakPower, 9.0)
                 .check(&figures)
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_measured_is_not_accepted() {
+    fn without_unseen_figures_every_bound_is_missed() {
         let bounds = [Bound::at_most(Figure::LowPower, 1.0)];
         assert_eq!(complaints(&bounds, &[]).len(), 1);
         let seen = Figures {

@@ -1,8 +1,4 @@
-//! Acceptance: a table is judged on point sets it was not optimized on.
-//!
-//! A table can look perfect on the twins it was made on and hide pairs of blocks that meet only
-//! elsewhere. So it is measured on larger twins, on both sides of α, and on windows cut from the
-//! unbounded pattern of α itself.
+//! The panel: the point sets that a table is judged on.
 
 use strew_core::{Map, Table, Twin, table::Figures};
 
@@ -17,27 +13,30 @@ use crate::{
     watch::Meter,
 };
 
-/// The least number of points of a twin that a table is judged on.
+/// The least number of points of an unseen twin.
 pub const JUDGED_POINTS: u64 = 50_000;
-/// How many points a window has, about.
+/// The approximate number of points of a window.
 const WINDOW_POINTS: u64 = 80_000;
-/// Where the windows are: any places will do.
+/// The seeds of the windows' places, chosen arbitrarily.
 const WINDOW_SEEDS: [u64; 2] = [1, 2];
-/// unless this many modes along an axis end before: they need about 120 MB.
-const MODES_MAX: f64 = 1300.0;
+/// The largest number of modes along an axis of a twin's spectrum, which needs about 120 MB.
+const MAX_MODES: f64 = 1300.0;
 
-/// The point sets a table is judged on.
+/// The point sets that a table is judged on: some twins and two windows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
+    /// Twins that the table was optimized on: at most one.
     seen: Vec<Twin>,
+    /// Twins that it was not optimized on.
     unseen: Vec<Twin>,
+    /// The curve that the radial power is compared with.
     target: Option<Target>,
 }
 
 impl Panel {
-    /// For a table of `map` that was optimized on the twins `seen`: the smallest of those, to
-    /// compare with, the first unseen twins of at least 50,000, 100,000 and 200,000 points, and
-    /// two windows.
+    /// The panel for a table of `map` that was optimized on the twins `seen`: the smallest of these for
+    /// comparison, the first unseen twins of at least 50,000, 100,000 and 200,000 points, and two
+    /// windows.
     #[must_use]
     pub fn new(map: &Map, seen: &[Twin]) -> Self {
         let mut unseen: Vec<Twin> = Vec::new();
@@ -61,8 +60,9 @@ impl Panel {
         }
     }
 
-    /// Compares the radial power with a curve besides, on twins of enough points for it, and on
-    /// those of `map` farthest from its α, where a curve is missed first.
+    /// Returns this panel with a curve to compare the radial power with. Unseen twins too small for the
+    /// comparison are dropped, and those twins of `map` farthest from its α are added, where a curve
+    /// is missed first.
     #[must_use]
     pub fn with_target(mut self, target: Target, map: &Map) -> Self {
         self.target = Some(target);
@@ -75,6 +75,7 @@ impl Panel {
         self
     }
 
+    /// Adds the figures of the curve, if there is one.
     fn compared(&self, mut figures: Figures, spectrum: impl FnOnce() -> Spectrum) -> Figures {
         if let Some(target) = &self.target {
             figures.values.extend(curve_figures(&spectrum(), target));
@@ -82,13 +83,13 @@ impl Panel {
         figures
     }
 
-    /// How many point sets will be measured.
+    /// The number of point sets.
     #[must_use]
     pub fn subjects(&self) -> u32 {
         (self.seen.len() + self.unseen.len() + WINDOW_SEEDS.len()) as u32
     }
 
-    /// How many points they have in all, about.
+    /// The approximate number of points in all sets.
     #[must_use]
     pub fn points(&self) -> u64 {
         let twins = self
@@ -99,7 +100,7 @@ impl Panel {
         twins.sum::<u64>() + WINDOW_POINTS * WINDOW_SEEDS.len() as u64
     }
 
-    /// Measures all of them, or `None` if the watch stops it.
+    /// Measures `table` on all point sets, or returns `None` if the watch stops it.
     pub fn measure(&self, table: &Table, meter: &mut Meter<'_>) -> Option<Vec<Figures>> {
         let mut all = Vec::new();
         let twins = self.seen.iter().map(|twin| (twin, true));
@@ -108,7 +109,7 @@ impl Panel {
                 return None;
             }
             if let Some(set) = twin_set(table, *twin) {
-                let nu_max = NU_MAX.min(MODES_MAX / set.side());
+                let nu_max = NU_MAX.min(MAX_MODES / set.side());
                 let figures = figures_of_torus(format!("twin {twin}"), seen, &set, nu_max);
                 all.push(self.compared(figures, || Spectrum::of_torus(&set, nu_max)));
             }
@@ -132,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panel_is_unseen_and_large() {
+    fn unseen_twins_are_unseen_and_large() {
         let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 49).expect("valid");
         let first = Panel::new(&map, &[]).unseen[0];
         let seen = [map.twins().next().expect("valid"), first];

@@ -1,25 +1,27 @@
-//! Descent with momentum.
+//! Gradient descent with momentum.
 
 use super::{DescentState, Objective};
 use crate::watch::Meter;
 
-/// How a descent runs.
+/// The parameters of a descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Descent {
-    /// How many evaluations it takes.
+    /// The number of evaluations.
     pub steps: u32,
-    /// Mean spacings moved per unit of gradient, at first; halved whenever a step without momentum
-    /// raises the energy.
+    /// Mean spacings moved per unit of gradient, at first. It is halved whenever a step without
+    /// momentum raises the energy.
     pub rate: f64,
 }
 
 impl Descent {
-    /// Lowers the energy from a start, or goes on where a descent was stopped: Nesterov's momentum,
-    /// which begins anew whenever it points uphill (O'Donoghue, Candès 2015). The momentum grows to
-    /// what the energy's flat directions need, and nothing has to be tuned to them.
+    /// Lowers the energy of `objective`, from a start or from where a descent was stopped.
     ///
-    /// `keep` is handed the state between steps when the watch wants it, and when it stops the work.
-    /// It was stopped before its last step if fewer steps are done than were to be.
+    /// This is Nesterov's method with adaptive restart (O'Donoghue, Candès 2015): the momentum is
+    /// dropped whenever it points uphill. It grows to what the flat directions of the energy need, so
+    /// nothing has to be tuned to them.
+    ///
+    /// Calls `keep` with the state between two steps when the watch wants a checkpoint and when it stops
+    /// the descent. In the latter case the returned state has done fewer steps than `self.steps`.
     pub fn run(
         &self,
         objective: &mut (impl Objective + ?Sized),
@@ -96,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rate_that_is_too_large_is_mended() {
+    fn a_rate_that_is_too_large_is_lowered() {
         let found = run(
             &Descent {
                 steps: 600,
@@ -108,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn stops_when_told_with_the_best_so_far() {
+    fn a_stopped_descent_returns_the_best_so_far() {
         struct Impatient(AtomicU32);
         impl Watch for Impatient {
             fn progress(&self, progress: &Progress) {

@@ -1,29 +1,29 @@
-//! What a descent lowers.
+//! Objectives: what a descent lowers.
 
-/// An energy as a function of a table's vectors, in mean spacings (*moves*).
+/// An energy as a function of a table's vectors, which are in mean spacings and called *moves*.
 pub trait Objective {
-    /// The share of points that each block has; they sum to 1.
+    /// The share of the points that each block has. The shares sum to 1.
     fn masses(&self) -> &[f64];
 
-    /// The energy per point. Writes into `gradient` the derivative by the position of one instance
-    /// of each block, the mean over its instances; times its mass it is the derivative by the
-    /// block's vector.
+    /// Returns the energy per point. Writes into `gradient`, for each block, the derivative by the
+    /// position of one instance, averaged over its instances; the product with the mass of the block
+    /// is the derivative by its vector.
     ///
-    /// Gives the same bits whatever the number of threads.
+    /// Must return the same bits with any number of threads.
     fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64;
 
-    /// The moves that lists of neighbors were made for. The order of a sum follows those lists, so
-    /// they are part of what decides the next bits; empty if there are none.
+    /// The moves that the neighbor lists were built for; empty if there are no lists. The order of sums
+    /// follows the lists, so the bits of the next evaluation depend on them.
     fn prepared_for(&self) -> &[[f64; 2]] {
         &[]
     }
 
-    /// Makes the lists for these moves, as if they had been evaluated when the lists were made.
+    /// Builds the neighbor lists for these moves, to resume a descent with the same lists.
     fn prepare_for(&mut self, moves: &[[f64; 2]]) {
         let _ = moves;
     }
 
-    /// How many pairs one evaluation visits (after the first), if it visits pairs.
+    /// The number of pairs that an evaluation visits, known after the first; 0 if it visits none.
     fn pairs(&self) -> usize {
         0
     }

@@ -1,31 +1,32 @@
 //! The state of a descent between two steps.
 
-/// Everything a descent knows between two steps: going on from it gives what going on would have
-/// given, bit by bit.
+/// The state of a descent between two steps. A descent resumed from it takes the same steps, bit for
+/// bit, as one that was not stopped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DescentState {
-    /// The moves with the lowest energy that was seen.
+    /// The moves with the lowest energy so far.
     pub moves: Vec<[f64; 2]>,
-    /// That energy, per point.
+    /// The energy of `moves`, per point.
     pub energy: f64,
-    /// How many evaluations were made.
+    /// The number of evaluations done.
     pub steps: u32,
-    /// The last energy, unless the descent has begun anew since.
+    /// The energy of the last evaluation; infinite before the first and after a restart.
     pub(crate) last: f64,
-    /// Steps since the momentum began.
+    /// Steps since the momentum was last dropped.
     pub(crate) age: f64,
-    /// The present rate as a part of the first.
+    /// The current rate over the first one.
     pub(crate) slowing: f64,
-    /// Where the last step led.
+    /// The moves after the last step, without momentum.
     pub(crate) at: Vec<[f64; 2]>,
-    /// The same, carried on by the momentum.
+    /// The moves after the last step, with momentum: where the next evaluation takes place.
     pub(crate) ahead: Vec<[f64; 2]>,
-    /// The moves for which the objective made its lists: see [`Objective::prepared_for`](super::Objective::prepared_for).
+    /// The moves that the objective built its lists for; see
+    /// [`Objective::prepared_for`](super::Objective::prepared_for).
     pub(crate) prepared_for: Vec<[f64; 2]>,
 }
 
 impl DescentState {
-    /// A start, before any step.
+    /// The state before any step.
     #[must_use]
     pub fn start(moves: Vec<[f64; 2]>) -> Self {
         Self {
@@ -40,10 +41,8 @@ impl DescentState {
             moves,
         }
     }
-}
 
-impl DescentState {
-    /// Takes the step that an energy and its gradient at `ahead` call for.
+    /// Takes a step, given the energy and its gradient at `ahead`.
     pub(super) fn step(
         &mut self,
         first_rate: f64,
@@ -55,8 +54,8 @@ impl DescentState {
             self.energy = energy;
             self.moves.clone_from(&self.ahead);
         }
-        // Should it ever rise, begin anew from the best; if momentum was not to blame, the step
-        // was too long.
+        // If the energy rises, restart from the best moves. Without momentum to blame, the step was
+        // too long.
         let rose = energy > self.last || energy.is_nan();
         self.last = energy;
         if rose {
