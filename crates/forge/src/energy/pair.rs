@@ -1,13 +1,15 @@
-//! Energies that are sums over pairs of points.
+//! Energies that are sums over pairs of points, and sums of such energies.
 
 /// An energy that is a sum over unordered pairs of points, at unit density.
 pub trait PairEnergy: Sync {
-    /// The distance, in mean spacings, from which on the energy is exactly zero.
+    /// The cut-off: the distance in mean spacings from which on the energy is exactly 0.
     fn cutoff(&self) -> f64;
 
-    /// For the square of a distance: the energy of the pair, and twice its derivative by the
-    /// square, so that this factor times (p − q) is the gradient at p. Both 0 from the cut-off on.
-    /// Plain arithmetic only (see [`numeric`](crate::numeric)): its bits reach the table.
+    /// Returns the energy of a pair, given its squared distance, and twice the derivative of the energy
+    /// by the squared distance. The gradient at p is the second value times p − q. Both are 0 from the
+    /// cut-off on.
+    ///
+    /// The bits decide a table, so the arithmetic must be that of [`numeric`](crate::numeric).
     fn pair(&self, distance_squared: f64) -> (f64, f64);
 }
 

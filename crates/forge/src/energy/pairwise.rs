@@ -1,12 +1,12 @@
-//! A pair energy on a point set: the plain definition.
+//! A pair energy on a point set, summed over its pairs.
 
 use rayon::prelude::*;
 
 use super::{PairEnergy, SetEnergy};
 use crate::measure::{CellList, Torus};
 
-/// A pair energy summed over the pairs of a periodic point set. Slower than
-/// [`Pairs`](crate::optimize::Pairs), of which it is the oracle; for sets that have no table.
+/// A pair energy as a [`SetEnergy`]. It serves sets that have no table, and tests as the oracle of
+/// [`Pairs`](crate::optimize::Pairs), which is faster.
 #[derive(Clone, Copy, Debug)]
 pub struct Pairwise<E>(pub E);
 

@@ -18,7 +18,7 @@ pub enum Figure {
     QuietPower,
     /// Root mean square over rings of the radial power's error against the target.
     TargetRms,
-    /// Root mean square of the relative error, over the rings between the ends of the curve.
+    /// Root mean square of the relative error, over rings from the first to the last point of the curve.
     TargetRelative,
     /// The largest error of a ring.
     TargetWorst,

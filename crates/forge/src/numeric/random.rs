@@ -1,17 +1,17 @@
-//! The generator of random starts.
+//! The random number generator of starts, windows and tests.
 
-/// `splitmix64` (Steele, Lea, Flood 2014): the generator is pinned, because it decides a table.
+/// The generator `splitmix64` (Steele, Lea, Flood 2014). It is pinned, because it decides tables.
 #[derive(Clone, Debug)]
 pub struct SplitMix(u64);
 
 impl SplitMix {
-    /// The stream of a seed.
+    /// The generator with this seed.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 random bits.
     pub const fn next_u64(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -20,7 +20,7 @@ impl SplitMix {
         z ^ (z >> 31)
     }
 
-    /// The next number in [0, 1), a multiple of 2⁻⁵³.
+    /// Returns the next random number in [0, 1), a multiple of 2⁻⁵³.
     pub fn next_f64(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
