@@ -1,14 +1,14 @@
-//! Curves in a table's history.
+//! Curves as parameters of a table's history.
 
 use super::Target;
 
-/// The parameter that a curve is kept in; further parts are `target_2`, `target_3`, ….
+/// The name of the parameter that holds a curve. Further parts are `target_2`, `target_3`, ….
 const PARAMETER: &str = "target";
-/// Longer parameters are split.
+/// The length from which on a curve is split into parts.
 const PARAMETER_BYTES: usize = 800;
 
-/// A curve as parameters of a history: `nu power` separated by semicolons, in parts of moderate
-/// length.
+/// Writes a curve as parameters of a history, (name, value): `nu power` separated by semicolons, in
+/// parts of moderate length.
 pub(crate) fn to_parameters(target: &Target) -> Vec<(String, String)> {
     let mut parts = vec![String::new()];
     for [nu, power] in target.points() {
@@ -30,7 +30,7 @@ pub(crate) fn to_parameters(target: &Target) -> Vec<(String, String)> {
     named.map(|(part, text)| (name(part), text)).collect()
 }
 
-/// The curve of a history, if it has one that can be read.
+/// Reads the curve of a history. Returns `None` if there is none, or none that can be read.
 pub(crate) fn from_parameters(parameters: &[(String, String)]) -> Option<Target> {
     let is_part = |name: &str| {
         let rest = name.strip_prefix(PARAMETER);

@@ -1,18 +1,21 @@
-//! Radial power curves: what a spectrum should be.
+//! The radial power curve that a spectrum should follow.
 
 use std::borrow::Cow;
 
 use crate::ForgeError;
 
-/// A curve that a radial power spectrum should follow: straight pieces between points (ν, power),
-/// the first power before the first point, and 1 after the last, as in every set without order at
-/// large. Two points of equal ν are a jump.
+/// A curve that a radial power spectrum should follow.
 ///
-/// As text, one of two forms, told apart by what comes first: a number, or a name or bracket.
-/// - One point a line, ν and power, separated by spaces, tabs or a comma; `#` begins a comment.
-/// - TOML of pieces that follow one another without gap: `[[piece]]` with `from` and `to`, and
-///   `power = P` (level), `power = [P0, P1]` (straight) or `law = { power = P, at = N, exponent = E }`
-///   (P·(ν/N)^E, drawn in straight segments to within 0.3 %).
+/// It consists of straight lines between points (ν, power). Before the first point it has the power of
+/// that point, after the last it is 1, as for every set without long-range order. Two points of equal ν
+/// make a jump.
+///
+/// As text it has one of two forms. Text that begins with a number is the first, text that begins with
+/// a name or a bracket the second.
+/// - Each line holds a point: ν and power, separated by spaces, tabs or a comma. `#` begins a comment.
+/// - TOML with consecutive pieces: `[[piece]]` with `from` and `to`, and one of `power = P` (constant),
+///   `power = [P0, P1]` (linear) and `law = { power = P, at = N, exponent = E }`, which is P·(ν/N)^E,
+///   approximated by straight lines to within 0.3 %.
 ///
 /// ```
 /// use strew_forge::profile::Target;
@@ -29,18 +32,18 @@ pub struct Target {
     points: Cow<'static, [[f64; 2]]>,
 }
 
-/// No power is NaN.
+/// `Eq` holds because no power is NaN.
 impl Eq for Target {}
 
-/// The largest ν of a point.
+/// The largest ν of a point of a curve.
 pub const MAX_NU: f64 = 4.0;
-/// The largest power of a point.
+/// The largest power of a point of a curve.
 pub const MAX_POWER: f64 = 100.0;
-/// The largest number of points.
+/// The largest number of points of a curve.
 pub const MAX_POINTS: usize = 1_000;
 
 impl Target {
-    /// The curve through these points, which must be in order; for curves known beforehand.
+    /// The curve through these points, unchecked: ν must be in ascending order.
     #[must_use]
     pub const fn fixed(points: &'static [[f64; 2]]) -> Self {
         Self {
@@ -51,8 +54,8 @@ impl Target {
     /// The curve through these points.
     ///
     /// # Errors
-    /// [`ForgeError::Field`] unless there are 1 to [`MAX_POINTS`] points, their ν ascends within
-    /// 0 to [`MAX_NU`], and every power is within 0 to [`MAX_POWER`].
+    /// [`ForgeError::Field`] unless there are 1 to [`MAX_POINTS`] points, ν ascends from point to point
+    /// within 0 to [`MAX_NU`], and every power is within 0 to [`MAX_POWER`].
     pub fn new(points: Vec<[f64; 2]>) -> Result<Self, ForgeError> {
         let refuse = |value: String, allowed: String| ForgeError::Field {
             field: "target",
@@ -67,7 +70,7 @@ impl Target {
         for (at, &[nu, power]) in points.iter().enumerate() {
             let point = || format!("point {} ({nu}, {power})", at + 1);
             if !(last..=MAX_NU).contains(&nu) {
-                let allowed = format!("nu from {last}, its predecessor's, to {MAX_NU}");
+                let allowed = format!("nu from {last}, that of the point before, to {MAX_NU}");
                 return Err(refuse(point(), allowed));
             }
             if !(0.0..=MAX_POWER).contains(&power) {
@@ -86,7 +89,7 @@ impl Target {
         &self.points
     }
 
-    /// The power at ν; at a jump, that after it.
+    /// Returns the power at ν; at a jump, the power after it.
     #[must_use]
     pub fn at(&self, nu: f64) -> f64 {
         let after = self.points.partition_point(|p| p[0] <= nu);
@@ -98,20 +101,20 @@ impl Target {
             (Some([nu0, power0]), Some([nu1, power1])) => {
                 power0 + (power1 - power0) * ((nu - nu0) / (nu1 - nu0))
             }
-            // At the last point itself its own power, if that is meant to be one.
+            // The last point itself belongs to the curve.
             (Some([last, power]), None) if nu == last => power,
             _ => 1.0,
         }
     }
 
-    /// The end of the band without power from ν = 0 on, if there is one.
+    /// The end of the quiet band, which begins at ν = 0 and has power 0, if there is one.
     #[must_use]
     pub fn quiet_end(&self) -> Option<f64> {
         let quiet = self.points.iter().take_while(|p| p[1] == 0.0);
         quiet.last().map(|p| p[0])
     }
 
-    /// The ν from which on the power is 1.
+    /// The ν of the last point, beyond which the power is 1.
     #[must_use]
     pub fn end(&self) -> f64 {
         self.points.last().map_or(0.0, |p| p[0])
@@ -123,7 +126,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pieces_jumps_and_ends() {
+    fn a_curve_has_lines_jumps_and_an_end() {
         let target: Target = "0.1 4\n0.3, 2 # falls\n\n0.5\t2\n0.5 0.5\n"
             .parse()
             .expect("valid");

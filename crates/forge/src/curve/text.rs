@@ -1,4 +1,4 @@
-//! Curves as text: lines of two numbers, or TOML pieces.
+//! Curves as text: reading both forms, writing lines of two numbers.
 
 use std::{fmt, str::FromStr};
 
@@ -43,7 +43,7 @@ impl FromStr for Target {
                     return Err(ForgeError::Field {
                         field: "target",
                         value: format!("{shown:?} on line {}", number + 1),
-                        allowed: "two numbers a line: nu and power".into(),
+                        allowed: "two numbers in each line: nu and power".into(),
                     });
                 }
             }
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bad_curves_are_refused_by_line_or_point() {
+    fn bad_curves_are_refused_with_line_or_point() {
         for (text, words) in [
             ("", "0 points"),
             ("0 1\n0.5 x", "line 2"),

@@ -1,4 +1,4 @@
-//! Point sets made with a table: a twin's period, or a window of the unbounded pattern.
+//! Point sets made with a table: one period of a twin, or a window of the unbounded pattern.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use strew_core::{
 use super::{Torus, Window};
 use crate::numeric::SplitMix;
 
-/// The displaced sites of one period of a twin, or `None` if it is no twin of the table's map.
+/// Returns the displaced sites of one period of a twin, or `None` if it is no twin of the table's map.
 #[must_use]
 pub fn twin_set(table: &Table, twin: Twin) -> Option<Torus> {
     let n = table.map().intervals();
@@ -29,7 +29,7 @@ pub fn twin_set(table: &Table, twin: Twin) -> Option<Torus> {
     Some(Torus::new(twin.period() as f64, points))
 }
 
-/// A window of about `points` points, cut from the unbounded displaced pattern of the table's own α
+/// Returns a window of about `points` points of the unbounded displaced pattern of the table's own α,
 /// at a place chosen by `seed`.
 #[must_use]
 pub fn window_set(table: &Table, points: u64, seed: u64) -> Window {
@@ -64,7 +64,7 @@ pub fn window_set(table: &Table, points: u64, seed: u64) -> Window {
     Window::new(side, density, found)
 }
 
-/// The columns or rows of a class in a range, with their intervals.
+/// The columns (or rows, along [`Axis::Y`]) of a class in a range, each with its interval of the map.
 fn members(
     pattern: &Pattern,
     map: &Map,
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn a_window_is_complete() {
-        // Cut directly, point by point, from a wider piece of the lattice.
+        // The oracle: every lattice point of a wider box, tested one by one.
         let table = table();
         let (map, n) = (table.map(), table.map().intervals());
         let window = window_set(&table, 900, 5);
