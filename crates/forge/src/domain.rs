@@ -18,7 +18,7 @@ const SPREAD: [(f64, f64); 4] = [(-0.95, 0.2), (-0.5, 0.15), (0.5, 0.15), (0.95,
 const OWN_SHARE: f64 = 0.3;
 /// The denominator of the further α.
 const SPREAD_DENOMINATOR: f64 = (1u64 << 30) as f64;
-/// The largest half-width of a map that is spread: the pairs of larger ones would take several
+/// The largest half-width at which further α are used: the pairs of larger maps would take several
 /// gigabytes.
 const MAX_SPREAD_RADIUS: u32 = 100;
 
@@ -30,8 +30,7 @@ pub(crate) struct Domain {
 }
 
 impl Domain {
-    /// The map with its smallest useful twins. There are none for some α that are fractions of small
-    /// numbers.
+    /// The map with its smallest useful twins. An α that is a fraction of small integers may have none.
     pub(crate) fn new(map: Map) -> Self {
         let twins = next_to_alpha(&map)
             .filter(|twin| twin.is_uniform() && twin.points() >= MIN_TWIN_POINTS)

@@ -27,7 +27,7 @@ const ARITHMETIC: u32 = 2;
 /// A checked job.
 pub(crate) struct Plan {
     pub(crate) profile: &'static Profile,
-    /// The profile name that the table gets: for a custom curve not that of `profile`.
+    /// The name of the table's profile. For a custom curve it differs from that of `profile`.
     name: String,
     /// The radial power curve to follow, if any.
     target: Option<Target>,
@@ -91,7 +91,7 @@ impl Plan {
         })
     }
 
-    /// The random start of a seed.
+    /// The random start for a seed.
     pub(crate) fn start(&self, seed: u64) -> Vec<[f64; 2]> {
         jitter(self.domain.blocks(), self.profile.jitter, seed)
     }

@@ -10,8 +10,8 @@ use strew_core::{Alpha, Map, Twin};
 /// The largest side t of a twin that is considered: 17 million points.
 const MAX_SIDE: u64 = 4096;
 
-/// Returns the twins of a map next to its α, smallest first, up to [`MAX_SIDE`]. There may be none for
-/// an α that is a fraction of small numbers: its thresholds coincide, and those of no twin do.
+/// Returns the twins of a map next to its α, smallest first, up to [`MAX_SIDE`]. An α that is a fraction
+/// of small integers may have none: some of its thresholds coincide, which those of a twin must not.
 pub(crate) fn next_to_alpha(map: &Map) -> impl Iterator<Item = Twin> {
     let excess = map.alpha().to_f64() - 1.0;
     (1..=MAX_SIDE).flat_map(move |t| {

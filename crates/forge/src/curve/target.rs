@@ -18,7 +18,7 @@ use crate::ForgeError;
 ///   approximated by straight lines to within 0.3 %.
 ///
 /// ```
-/// use strew_forge::profile::Target;
+/// use strew_forge::Target;
 ///
 /// let step: Target = "# nu power\n0 0\n0.55 0\n0.55 1".parse()?;
 /// assert_eq!((step.at(0.3), step.at(0.6), step.at(9.0)), (0.0, 1.0, 1.0));
@@ -42,6 +42,15 @@ pub const MAX_POWER: f64 = 100.0;
 /// The largest number of points of a curve.
 pub const MAX_POINTS: usize = 1_000;
 
+/// The error for a curve that is not allowed.
+pub(super) fn refuse(value: String, allowed: String) -> ForgeError {
+    ForgeError::Field {
+        field: "target",
+        value,
+        allowed,
+    }
+}
+
 impl Target {
     /// The curve through these points, unchecked: ν must be in ascending order.
     #[must_use]
@@ -57,11 +66,6 @@ impl Target {
     /// [`ForgeError::Field`] unless there are 1 to [`MAX_POINTS`] points, ν ascends from point to point
     /// within 0 to [`MAX_NU`], and every power is within 0 to [`MAX_POWER`].
     pub fn new(points: Vec<[f64; 2]>) -> Result<Self, ForgeError> {
-        let refuse = |value: String, allowed: String| ForgeError::Field {
-            field: "target",
-            value,
-            allowed,
-        };
         if points.is_empty() || points.len() > MAX_POINTS {
             let value = format!("a curve of {} points", points.len());
             return Err(refuse(value, format!("1 to {MAX_POINTS} points")));

@@ -2,7 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-use super::{MAX_POINTS, Target, pieces};
+use super::{MAX_POINTS, Target, pieces, target::refuse};
 use crate::ForgeError;
 
 impl fmt::Display for Target {
@@ -40,11 +40,9 @@ impl FromStr for Target {
                 Some(&[nu, power]) => points.push([nu, power]),
                 _ => {
                     let shown: String = content.chars().take(60).collect();
-                    return Err(ForgeError::Field {
-                        field: "target",
-                        value: format!("{shown:?} on line {}", number + 1),
-                        allowed: "two numbers in each line: nu and power".into(),
-                    });
+                    let value = format!("{shown:?} on line {}", number + 1);
+                    let allowed = "two numbers in each line: nu and power";
+                    return Err(refuse(value, allowed.into()));
                 }
             }
             if points.len() > MAX_POINTS {

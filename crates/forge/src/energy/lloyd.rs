@@ -3,10 +3,10 @@
 //! E = Σ ∫ |x − p|² over the Voronoi cell of p. Its gradient at p is 2·area·(p − centroid), so at unit
 //! density a step of ½ against it leads to the centroid: Lloyd's relaxation.
 //!
-//! Each Voronoi cell is cut out of a square by the bisectors to its neighbors, the nearest squares of
-//! the cell list first. Plain arithmetic in a fixed order yields the same bits on every machine and with
-//! any number of threads. A triangulation, which would have to be built anew in every step, is not
-//! needed.
+//! Each Voronoi cell is cut out of a square by the bisectors to the points around, in the order of a
+//! cell list from the inside out. Plain arithmetic in this fixed order yields the same bits on every
+//! machine and with any number of threads. A triangulation, which would have to be built anew in every
+//! step, is not needed.
 
 use rayon::prelude::*;
 

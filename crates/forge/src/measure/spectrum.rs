@@ -64,8 +64,8 @@ impl Spectrum {
         Self { side, modes, power }
     }
 
-    /// Estimates the spectrum of an unbounded set from a window, at frequencies k/side. The taper of the
-    /// window blurs over about ±2 modes; of power 10 modes away less than 10⁻¹² leaks.
+    /// Estimates the spectrum of an unbounded set from a window, at frequencies k/side. The taper blurs
+    /// it over about ±2 modes; less than 10⁻¹² of a mode's power leaks 10 modes away.
     #[must_use]
     pub fn of_window(set: &Window, nu_max: f64) -> Self {
         let side = set.side();

@@ -1,8 +1,8 @@
 //! An exponential that vectorizes.
 //!
 //! Making a table spends most of its time in sums of exponentials over pairs. `libm`'s `exp` has the
-//! same bits on every machine, too, but its branches keep these sums from being vectorized. The `exp`
-//! of the standard library does not: its last bits depend on the platform.
+//! same bits on every machine, too, but its branches keep these sums from being vectorized. The last
+//! bits of the standard library's `exp` depend on the platform.
 
 /// 1.5·2⁵²: its sum with a number of moderate size has the nearest integer in the low bits.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;

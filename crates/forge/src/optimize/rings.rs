@@ -158,8 +158,8 @@ impl Rings {
     }
 }
 
-/// The circumference that a ring counts with, over 2π: more than ν where ν is small. Moves change
-/// power of a long wavelength only in proportion to ν, so with its own weight it would go last.
+/// The weight of a ring of power as such: its circumference over 2π, and more where ν is small. There
+/// moves change the power only in proportion to ν, so it would be the last to go.
 fn extent(nu: f64) -> f64 {
     nu + LONG_WAVES * LONG_WAVES / nu.max(1.0 / RINGS_PER_NU)
 }

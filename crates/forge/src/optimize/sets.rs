@@ -30,7 +30,7 @@ struct TwinPoints {
 }
 
 impl<E: SetEnergy> Sets<E> {
-    /// The energy on `twins`, without those that are no twins of the map.
+    /// The energy on `twins`; those that are not twins of `map` are ignored.
     #[must_use]
     pub fn new(energy: E, map: &Map, twins: &[Twin]) -> Self {
         let n = map.intervals();

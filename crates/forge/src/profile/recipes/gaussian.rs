@@ -1,4 +1,4 @@
-//! Gaussian repulsion, which the profiles `blue` and `sharp` are made by.
+//! Gaussian repulsion, which makes the tables of the profiles `blue` and `sharp`.
 
 use super::Phase;
 use crate::{

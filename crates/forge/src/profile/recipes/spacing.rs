@@ -1,4 +1,4 @@
-//! Push and pull, which the profile `spaced` is made by.
+//! Push and pull, which makes the tables of the profile `spaced`.
 
 use super::Phase;
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
 
 /// Push and pull in table space, after Ahmed, Guo, Yan, Franceschi, Zhang, Deussen (2017).
 ///
-/// A [`Guard`] that hardens from stage to stage pushes pairs in conflict apart. A Gaussian gives every
+/// A [`Guard`] that hardens from stage to stage pushes pairs in conflict apart. A Gaussian assigns every
 /// point its share of the plane, which also keeps holes closed. Both are pair energies, so their
 /// frequencies are known exactly and no triangulation is needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
