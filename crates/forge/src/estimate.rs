@@ -32,7 +32,7 @@ impl Job {
     /// that time.
     ///
     /// # Errors
-    /// [`ForgeError::Field`] for a part of the job that is not allowed.
+    /// [`ForgeError::Field`] or [`ForgeError::Table`] for a part of the job that is not allowed.
     pub fn estimate(&self) -> Result<Estimate, ForgeError> {
         let plan = Plan::new(self)?;
         let moves = plan.start(self.seed);

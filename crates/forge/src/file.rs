@@ -22,6 +22,12 @@ pub const EXTENSION: &str = "strew";
 ///
 /// α is its canonical text without parentheses, with `-over-` for `/`, `-plus-` for `+` and `-times-`
 /// for `*`. The size is `s` for R = 49, `m` for R = 100, `l` for R = 200, and `r` with R for others.
+///
+/// ```
+/// let name = strew_forge::file_name("blue", "sqrt(3)".parse()?, 100);
+/// assert_eq!(name, "blue-sqrt3-m.strew");
+/// # Ok::<(), strew_core::pattern::AlphaError>(())
+/// ```
 #[must_use]
 pub fn file_name(profile: &str, alpha: Alpha, radius: u32) -> String {
     let alpha = alpha

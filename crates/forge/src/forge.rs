@@ -28,7 +28,7 @@ pub struct Outcome {
 /// Makes a table and judges it. A table that misses a bound is no error: see [`Outcome::accepted`].
 ///
 /// # Errors
-/// [`ForgeError::Field`] for a part of the job that is not allowed.
+/// [`ForgeError::Field`] or [`ForgeError::Table`] for a part of the job that is not allowed.
 pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
     run(job, None, watch)
 }
@@ -36,8 +36,39 @@ pub fn forge(job: &Job, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
 /// Resumes a job from a checkpoint. The table is the same as without the interruption.
 ///
 /// # Errors
-/// [`ForgeError::Field`] for a part of the job that is not allowed, and for a checkpoint of another
-/// job.
+/// As [`forge()`], and [`ForgeError::Field`] for a checkpoint of another job.
+///
+/// ```
+/// use std::sync::Mutex;
+/// use strew_forge::{Checkpoint, Job, Progress, Watch, forge, resume};
+///
+/// /// Stops after five steps and keeps the checkpoint.
+/// #[derive(Default)]
+/// struct Stopper(Mutex<(u32, Option<Checkpoint>)>);
+///
+/// impl Watch for Stopper {
+///     fn progress(&self, progress: &Progress) {
+///         self.0.lock().unwrap().0 = progress.step;
+///     }
+///
+///     fn stop(&self) -> bool {
+///         self.0.lock().unwrap().0 == 5
+///     }
+///
+///     fn checkpoint(&self, checkpoint: &Checkpoint) {
+///         self.0.lock().unwrap().1 = Some(checkpoint.clone());
+///     }
+/// }
+///
+/// let mut job = Job::new("sqrt(3)".parse()?);
+/// (job.radius, job.steps) = (12, Some(20)); // tiny, for the example
+/// let stopper = Stopper::default();
+/// assert!(forge(&job, &stopper)?.interrupted);
+/// let (steps, checkpoint) = stopper.0.into_inner()?;
+/// let resumed = resume(&job, checkpoint.expect("kept when it stopped"), &())?;
+/// assert_eq!((steps, resumed), (5, forge(&job, &())?));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn resume(job: &Job, from: Checkpoint, watch: &dyn Watch) -> Result<Outcome, ForgeError> {
     run(job, Some(from), watch)
 }
@@ -46,8 +77,8 @@ impl Checkpoint {
     /// Checks that the checkpoint belongs to `job`.
     ///
     /// # Errors
-    /// [`ForgeError::Field`] with the first difference if it does not, and for a part of the job that
-    /// is not allowed.
+    /// [`ForgeError::Field`] with the first difference if it does not, [`ForgeError::Field`] or
+    /// [`ForgeError::Table`] for a part of the job that is not allowed.
     pub fn is_of(&self, job: &Job) -> Result<(), ForgeError> {
         let plan = Plan::new(job)?;
         self.check(&plan.identity(job, &plan.phases()), plan.blocks())

@@ -28,6 +28,18 @@ impl Default for Resolution {
 }
 
 /// A point set at unit density with all its figures and curves.
+///
+/// ```
+/// use strew_core::Table;
+/// use strew_forge::{Report, Resolution, measure::window_set};
+///
+/// // The AA pattern itself, in a window of about 2,000 points.
+/// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let window = window_set(&table, 2000, 1);
+/// let report = Report::of_window("pattern".into(), false, &window, Resolution::default());
+/// assert!(report.figures.value("delta_min").is_some_and(|delta| delta > 0.6));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Report {
     /// The named figures, rounded to four significant digits.
