@@ -1,9 +1,9 @@
 //! The import graph of a crate's files, read from their text, and its circles.
 //!
-//! A file depends on each file that defines an item it names, whether it imports the item or writes its
-//! path in the code. Paths are followed through `use` and `pub use` declarations to the definition. A
-//! re-export is a dependency only if the code of the same file uses the name. So an index, which is a
-//! `mod.rs` or `lib.rs` of modules and re-exports, depends on nothing.
+//! A file depends on each file that defines an item it names, whether it imports the item or writes
+//! its path in the code. Paths are followed through `use` and `pub use` declarations to the
+//! definition. A re-export is a dependency only if the code of the same file uses the name. So an
+//! index, which is a `mod.rs` or `lib.rs` of modules and re-exports, depends on nothing.
 //!
 //! Test modules do not count. A glob import is a dependency on its module; names are not looked up
 //! through it.
@@ -18,8 +18,8 @@ use modules::{Import, Module, Path, modules};
 /// The files of a crate: the path in its source folder, such as `judge/mod.rs`, and the text.
 pub type Files = BTreeMap<String, String>;
 
-/// Returns circles of imports, such as `a.rs -> b.rs -> a.rs`. Of circles that share files the shortest
-/// is returned.
+/// Returns circles of imports, such as `a.rs -> b.rs -> a.rs`. Of circles that share files the
+/// shortest is returned.
 pub fn circles(files: &Files) -> Vec<String> {
     let all = Crate::new(files);
     let edges = all.edges();
@@ -110,9 +110,9 @@ impl<'a> Crate<'a> {
         edges
     }
 
-    /// Adds the files that define what `path` means in the module `place` to `found`: none for other
-    /// crates, several if a module and an item have the same name. `open` holds the imports on the way,
-    /// none of which is followed twice.
+    /// Adds the files that define what `path` means in the module `place` to `found`: none for
+    /// other crates, several if a module and an item have the same name. `open` holds the imports
+    /// on the way, none of which is followed twice.
     fn follow<'b>(
         &'b self,
         place: &[String],

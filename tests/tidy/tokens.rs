@@ -1,7 +1,7 @@
 //! Rust source text cut into tokens.
 
-/// Returns names, numbers, `::` and single punctuation marks, without comments, string and character
-/// literals, and lifetimes.
+/// Returns names, numbers, `::` and single punctuation marks, without comments, string and
+/// character literals, and lifetimes.
 pub fn tokens(text: &str) -> Vec<String> {
     let mut tokens = Vec::new();
     let mut rest = text;

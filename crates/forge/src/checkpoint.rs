@@ -1,12 +1,12 @@
 //! Checkpoints: the state of a job between two steps, from which interrupted work is resumed.
 //!
-//! A checkpoint holds everything that decides the next step, down to the moves that the neighbor lists
-//! were built for, because the order of sums follows those lists. So a resumed job makes the same
-//! table, bit for bit, as one that was never interrupted. A checkpoint names its job in full and is
-//! refused by every other job.
+//! A checkpoint holds everything that decides the next step, down to the moves that the neighbor
+//! lists were built for, because the order of sums follows those lists. So a resumed job makes the
+//! same table, bit for bit, as one that was never interrupted. A checkpoint names its job in full
+//! and is refused by every other job.
 //!
-//! The file holds a magic number, seven counts, the job as lines of text, the state, and a digest of
-//! all of these. Numbers are little-endian.
+//! The file holds a magic number, seven counts, the job as lines of text, the state, and a digest
+//! of all of these. Numbers are little-endian.
 
 use std::{fs, io::ErrorKind, path::Path};
 
@@ -16,7 +16,7 @@ use crate::{ForgeError, file, optimize::DescentState};
 
 /// The first bytes of a checkpoint file. A change of the layout raises the digit.
 const MAGIC: &[u8; 8] = b"strewck1";
-/// The largest file that is read. A checkpoint has four vectors a block: 15 MB for the largest maps.
+/// The largest file that is read. A checkpoint has four vectors a block: at most 15 MB.
 const MAX_BYTES: u64 = 64 << 20;
 /// The length of the digest at the end of the file.
 const DIGEST_BYTES: usize = 32;
@@ -155,8 +155,8 @@ impl Checkpoint {
     /// Reads a file. Returns `None` if it does not exist.
     ///
     /// # Errors
-    /// [`ForgeError::File`] if it cannot be read, [`ForgeError::NotACheckpoint`] if it is larger than
-    /// any checkpoint or [`from_bytes`](Self::from_bytes) refuses it.
+    /// [`ForgeError::File`] if it cannot be read, [`ForgeError::NotACheckpoint`] if it is larger
+    /// than any checkpoint or [`from_bytes`](Self::from_bytes) refuses it.
     pub fn read_file(path: &Path) -> Result<Option<Self>, ForgeError> {
         let failed = |action| {
             move |source| ForgeError::File {

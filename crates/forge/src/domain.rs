@@ -7,18 +7,18 @@ use crate::twins::{farthest, fraction, map_of_twin, next_to_alpha};
 /// The number of twins a table is optimized on. They lie on both sides of α, so together they have
 /// nearly every pair of blocks that occurs in any twin of the map.
 const TWINS: usize = 6;
-/// The least number of points of such a twin. Smaller ones repeat within the neighborhood of a block.
+/// The least number of points of these twins. Smaller ones repeat within a block's neighborhood.
 const MIN_TWIN_POINTS: u64 = 4000;
 
-/// Further α that a curve is followed at, each with its share of the average. The first number is the
-/// position between the map's own α (0) and the α of its farthest large twin below (−1) or above (1).
-/// Between these α errors change slowly.
+/// Further α that a curve is followed at, each with its share of the average. The first number is
+/// the position between the map's own α (0) and the α of its farthest large twin below (−1) or
+/// above (1). Between these α errors change slowly.
 const SPREAD: [(f64, f64); 4] = [(-0.95, 0.2), (-0.5, 0.15), (0.5, 0.15), (0.95, 0.2)];
 /// The share of the map's own α.
 const OWN_SHARE: f64 = 0.3;
 /// The denominator of the further α.
 const SPREAD_DENOMINATOR: f64 = (1u64 << 30) as f64;
-/// The largest half-width at which further α are used: the pairs of larger maps would take several
+/// The largest half-width at which further α are used. The pairs of larger maps would take
 /// gigabytes.
 const MAX_SPREAD_RADIUS: u32 = 100;
 
@@ -30,7 +30,7 @@ pub(crate) struct Domain {
 }
 
 impl Domain {
-    /// The map with its smallest useful twins. An α that is a fraction of small integers may have none.
+    /// The map with its smallest useful twins, of which a fraction of small integers may have none.
     pub(crate) fn new(map: Map) -> Self {
         let twins = next_to_alpha(&map)
             .filter(|twin| twin.is_uniform() && twin.points() >= MIN_TWIN_POINTS)

@@ -4,7 +4,7 @@ use std::{io, path::PathBuf};
 
 use strew_core::table::{MAX_FILE_BYTES, TableError};
 
-/// An error of the forge. Messages about input state the value that was refused and what is allowed.
+/// An error of the forge. Messages about input state the refused value and what is allowed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ForgeError {

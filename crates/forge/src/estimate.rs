@@ -15,8 +15,8 @@ pub struct Estimate {
     pub steps: u32,
     /// The total number of points that the table will be judged on.
     pub measured_points: u64,
-    /// The least pair correlation of a set with the job's power curve, which shows whether any set can
-    /// have the curve; `None` for jobs without one.
+    /// The least pair correlation of a set with the job's power curve, which shows whether any set
+    /// can have the curve; `None` for jobs without one.
     pub correlation: Option<LeastCorrelation>,
     /// The run time on this machine, extrapolated from a few evaluations.
     pub time: Duration,
@@ -28,8 +28,7 @@ const LIST_BUILDS: u32 = 5;
 const MEASURING_A_POINT: Duration = Duration::from_nanos(5000);
 
 impl Job {
-    /// Estimates what the job will cost from a few evaluations, which take at most a few percent of
-    /// that time.
+    /// Estimates the cost of the job from a few evaluations, which take a few percent of its time.
     ///
     /// # Errors
     /// [`ForgeError::Field`] or [`ForgeError::Table`] for a part of the job that is not allowed.

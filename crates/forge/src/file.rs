@@ -20,8 +20,9 @@ pub const EXTENSION: &str = "strew";
 /// Returns the usual name of a table's file: profile, α and size, such as
 /// `blue-5-sqrt3-over-2-s.strew`.
 ///
-/// α is its canonical text without parentheses, with `-over-` for `/`, `-plus-` for `+` and `-times-`
-/// for `*`. The size is `s` for R = 49, `m` for R = 100, `l` for R = 200, and `r` with R for others.
+/// α is its canonical text without parentheses, with `-over-` for `/`, `-plus-` for `+` and
+/// `-times-` for `*`. The size is `s` for R = 49, `m` for R = 100, `l` for R = 200, and `r` with R
+/// for others.
 ///
 /// ```
 /// let name = strew_forge::file_name("blue", "sqrt(3)".parse()?, 100);
@@ -62,7 +63,7 @@ pub fn read_table(path: &Path) -> Result<Table, ForgeError> {
     if bytes > MAX_FILE_BYTES {
         return Err(too_large(bytes));
     }
-    // The file may grow meanwhile, or be a pipe without a size: one more byte than the limit shows it.
+    // The file may grow meanwhile, or be a pipe without a size: read one byte beyond the limit.
     let mut content = Vec::with_capacity(bytes as usize);
     file.take(MAX_FILE_BYTES + 1)
         .read_to_end(&mut content)
@@ -78,8 +79,8 @@ pub fn read_table(path: &Path) -> Result<Table, ForgeError> {
 
 /// Writes a table file, whole or not at all.
 ///
-/// It is written under a temporary name in the same folder, flushed to the disk and renamed. So readers
-/// see the old file or the new one and never a part of it.
+/// It is written under a temporary name in the same folder, flushed to the disk and renamed. So
+/// readers see the old file or the new one and never a part of it.
 ///
 /// # Errors
 /// [`ForgeError::File`] if a step fails; a file that was at `path` is then unchanged.

@@ -1,4 +1,4 @@
-//! Making a table: the phases of its optimization, then its judging, from the start or a checkpoint.
+//! Making a table from the start or a checkpoint: the phases of its optimization, then its judging.
 
 use strew_core::{Table, table::Provenance};
 

@@ -4,12 +4,11 @@ use strew_core::Alpha;
 
 use crate::curve::Target;
 
-/// The largest half-width R of a map: 330 intervals at the default α, and about 200 MB of neighbor
-/// lists.
+/// The largest half-width R: 330 intervals at the default α, about 200 MB of neighbor lists.
 pub const MAX_RADIUS: u32 = 256;
-/// The default seed. Of the first 18 seeds it yields the flattest spectra: Bragg peaks crowd into rings
-/// differently from seed to seed, and the largest radial power on twins far from α varies from 2.2 to
-/// 2.8. The other figures hardly depend on the seed.
+/// The default seed. Of the first 18 seeds it yields the flattest spectra: Bragg peaks crowd into
+/// rings differently from seed to seed, and the largest radial power on twins far from α varies
+/// from 2.2 to 2.8. The other figures hardly depend on the seed.
 pub const DEFAULT_SEED: u64 = 17;
 /// The largest number of optimizer steps.
 pub const MAX_STEPS: u32 = 1_000_000;
@@ -19,8 +18,8 @@ pub const MAX_STEPS: u32 = 1_000_000;
 pub struct Job {
     /// The number α.
     pub alpha: Alpha,
-    /// The half-width R of the map, 1 to [`MAX_RADIUS`], in grid units. Larger maps have more blocks:
-    /// every kind of error falls, and the run time grows, as the square of R.
+    /// The half-width R of the map, 1 to [`MAX_RADIUS`], in grid units. Larger maps have more
+    /// blocks: every kind of error falls, and the run time grows, as the square of R.
     pub radius: u32,
     /// The name of a [`Profile`](crate::Profile), or with a `target` a new name.
     pub profile: String,
@@ -28,9 +27,9 @@ pub struct Job {
     pub seed: u64,
     /// A custom radial power curve to follow; `None` for the built-in profiles.
     pub target: Option<Target>,
-    /// Steps of the optimizer, 1 to [`MAX_STEPS`]; `None` for the default of the profile. Run time is
-    /// proportional to it. Fewer steps leave power at low frequencies, more sharpen the peak of the
-    /// spectrum.
+    /// Steps of the optimizer, 1 to [`MAX_STEPS`]; `None` for the default of the profile. Run time
+    /// is proportional to it. Fewer steps leave power at low frequencies, more sharpen the peak of
+    /// the spectrum.
     pub steps: Option<u32>,
 }
 

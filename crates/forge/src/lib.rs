@@ -1,8 +1,8 @@
 //! Makes and judges the displacement tables of Strew.
 //!
-//! A [`Job`] says which table to make: α, the size of the neighborhood map, a [noise profile](profile)
-//! and a seed. [`forge()`] optimizes the vectors of the table and accepts it only after it has been
-//! [judged](judge) on point sets it was not optimized on. The result is a
+//! A [`Job`] says which table to make: α, the size of the neighborhood map, a
+//! [noise profile](profile) and a seed. [`forge()`] optimizes the vectors of the table and accepts
+//! it only after it has been [judged](judge) on point sets it was not optimized on. The result is a
 //! [`Table`](strew_core::Table) with its history, which [`write_table`] writes to disk.
 //!
 //! Equal jobs make the same table, bit for bit, on every machine and with any number of threads:
@@ -24,11 +24,11 @@
 //!
 //! # How a table is made
 //!
-//! A job is checked and becomes a plan: the recipe of its [`profile`], the map and the twins to optimize
-//! on, and the panel of point sets to judge on. The recipe runs in phases, each of which lowers an
-//! [`energy`] as a function of the table's vectors ([`optimize`]). Some profiles follow a radial power
-//! [`curve`]; their energy is the error against it. Then the panel is [measured](measure) and the
-//! figures are compared with the bounds of the profile ([`judge`]).
+//! A job is checked and becomes a plan: the recipe of its [`profile`], the map and the twins to
+//! optimize on, and the panel of point sets to judge on. The recipe runs in phases, each of which
+//! lowers an [`energy`] as a function of the table's vectors ([`optimize`]). Some profiles follow a
+//! radial power [`curve`]; their energy is the error against it. Then the panel is
+//! [measured](measure) and the figures are compared with the bounds of the profile ([`judge`]).
 //!
 //! Meanwhile a [`Watch`] follows the [`Progress`], keeps [`Checkpoint`]s and may stop the work;
 //! [`resume`] goes on from a checkpoint. Apart from jobs, a [`Report`] measures any point set, and

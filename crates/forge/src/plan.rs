@@ -18,7 +18,7 @@ use crate::{
 /// few neighbors, with too many grid points between them to list.
 const MIN_SIDE: f64 = 0.05;
 
-/// The largest half-width for a radial power curve. Its pairs reach far: 1 to 2 GB of neighbor lists.
+/// The largest half-width for a radial power curve: its neighbor lists take 1 to 2 GB there.
 const MAX_RADIAL_RADIUS: u32 = 200;
 /// The version of the optimizer's arithmetic. Any change of a step's result, down to the last bit,
 /// raises it, so that work begun before the change is not resumed after it.
@@ -113,8 +113,8 @@ impl Plan {
         self.domain.blocks()
     }
 
-    /// Everything that decides the result, as lines of `name = value`. Two jobs with equal lines take
-    /// the same steps.
+    /// Everything that decides the result, as lines of `name = value`. Two jobs with equal lines
+    /// take the same steps.
     pub(crate) fn identity(&self, job: &Job, phases: &[Phase]) -> String {
         let provenance = self.provenance(job, self.steps);
         let mut lines = vec![

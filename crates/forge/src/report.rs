@@ -55,8 +55,8 @@ pub struct Report {
 }
 
 impl Report {
-    /// Measures a periodic set. `subject` is its name in the figures, `seen` says whether its table was
-    /// optimized on it.
+    /// Measures a periodic set. `subject` is its name in the figures, `seen` says whether its table
+    /// was optimized on it.
     #[must_use]
     pub fn of_torus(subject: String, seen: bool, set: &Torus, at: Resolution) -> Self {
         let spectrum = Spectrum::of_torus(set, at.nu_max);
@@ -76,8 +76,8 @@ impl Report {
         )
     }
 
-    /// Measures a window of an unbounded set. `subject` is its name in the figures, `seen` says whether
-    /// its table was optimized on it.
+    /// Measures a window of an unbounded set. `subject` is its name in the figures, `seen` says
+    /// whether its table was optimized on it.
     #[must_use]
     pub fn of_window(subject: String, seen: bool, set: &Window, at: Resolution) -> Self {
         let spectrum = Spectrum::of_window(set, at.nu_max);

@@ -1,17 +1,18 @@
 //! The twins a table is optimized and judged on: those next to α.
 //!
 //! The twins of a map lie on the interval of α on which its thresholds keep their order. For small
-//! maps this interval is wide, and a twin far from α has another density and other frequencies. So of
-//! the twins with the same side t only the two fractions around α are considered. Maps of useful size
-//! have no other twins of moderate size.
+//! maps this interval is wide, and a twin far from α has another density and other frequencies. So
+//! of the twins with the same side t only the two fractions around α are considered. Maps of useful
+//! size have no other twins of moderate size.
 
 use strew_core::{Alpha, Map, Twin};
 
 /// The largest side t of a twin that is considered: 17 million points.
 const MAX_SIDE: u64 = 4096;
 
-/// Returns the twins of a map next to its α, smallest first, up to [`MAX_SIDE`]. An α that is a fraction
-/// of small integers may have none: some of its thresholds coincide, which those of a twin must not.
+/// Returns the twins of a map next to its α, smallest first, up to [`MAX_SIDE`]. An α that is a
+/// fraction of small integers may have none: some of its thresholds coincide, those of twins do
+/// not.
 pub(crate) fn next_to_alpha(map: &Map) -> impl Iterator<Item = Twin> {
     let excess = map.alpha().to_f64() - 1.0;
     (1..=MAX_SIDE).flat_map(move |t| {

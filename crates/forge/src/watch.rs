@@ -25,8 +25,9 @@ pub struct Progress {
     pub step: u32,
     /// The number of steps in this stage.
     pub steps: u32,
-    /// The energy per point; `None` while measuring and before the first step. It falls within a phase
-    /// of the optimization and jumps from one phase to the next, because their energies differ.
+    /// The energy per point; `None` while measuring and before the first step. It falls within a
+    /// phase of the optimization and jumps from one phase to the next, because their energies
+    /// differ.
     pub energy: Option<f64>,
     /// Time since the stage began or was resumed.
     pub elapsed: Duration,
@@ -45,14 +46,14 @@ pub trait Watch: Sync {
         false
     }
 
-    /// Called between steps of the optimizer: whether to make a checkpoint now, which copies the whole
-    /// state.
+    /// Called between steps of the optimizer: whether to make a checkpoint now, which copies the
+    /// whole state.
     fn wants_checkpoint(&self) -> bool {
         false
     }
 
-    /// Called with a checkpoint when one was wanted, when the optimizer is stopped, and when it is done
-    /// and only measuring is left.
+    /// Called with a checkpoint when one was wanted, when the optimizer is stopped, and when it is
+    /// done and only measuring is left.
     fn checkpoint(&self, checkpoint: &Checkpoint) {
         let _ = checkpoint;
     }

@@ -1,5 +1,5 @@
-//! The shipped tables that follow a radial power curve, judged again on twins and windows that their
-//! makers never saw.
+//! The shipped tables that follow a radial power curve, judged again on twins and windows that
+//! their makers never saw.
 
 use std::{path::PathBuf, sync::Arc};
 

@@ -1,5 +1,5 @@
-//! The shipped tables, judged again on twins and windows that their makers never saw. One of them is
-//! made again, bit for bit.
+//! The shipped tables, judged again on twins and windows that their makers never saw. One of them
+//! is made again, bit for bit.
 
 use std::path::PathBuf;
 

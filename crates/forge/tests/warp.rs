@@ -59,8 +59,8 @@ fn a_million_warped_points_are_isotropic() {
     assert!(value("delta_min") >= 0.60, "{figures:?}");
 }
 
-/// The correlation of two power spectra over 0.8 < ν < 2.5, with the power of each mode over the mean
-/// of its ring.
+/// The correlation of two power spectra over 0.8 < ν < 2.5, with the power of each mode over the
+/// mean of its ring.
 fn correlation(a: &Window, b: &Window) -> f64 {
     let spectra = [a, b].map(|set| Spectrum::of_window(set, 2.5));
     let side = a.side();

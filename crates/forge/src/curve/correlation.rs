@@ -1,10 +1,10 @@
-//! The pair correlation that belongs to a power curve, which shows whether any point set can have it.
+//! The pair correlation of a power curve, which shows whether any point set can have the curve.
 //!
 //! The pair correlation g(r) is the density of points at distance r from a point, over the mean
-//! density. It is 1 plus the Fourier transform of P − 1. A density is never negative, so no point set
-//! has a curve whose g is negative somewhere: an error remains that no optimizer removes. (g ≥ 0 and
-//! P ≥ 0 are necessary conditions. Whether they are sufficient is an open question, so the measured
-//! error decides in the end.)
+//! density. It is 1 plus the Fourier transform of P − 1. A density is never negative, so no point
+//! set has a curve whose g is negative somewhere: an error remains that no optimizer removes.
+//! (g ≥ 0 and P ≥ 0 are necessary conditions. Whether they are sufficient is an open question, so
+//! the measured error decides in the end.)
 
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use crate::numeric::BesselJ0;
 
 /// The largest distance at which g is evaluated, in mean spacings.
 const MAX_R: f64 = 20.0;
-/// The distance between evaluations of g. The shortest wave of a curve, at ν = 4, has a length of 1/4.
+/// The distance between evaluations of g. The shortest wave of a curve, at ν = 4, is 1/4 long.
 const STEP: f64 = 0.01;
 /// The error of the integral where a curve has a large jump.
 const TOLERANCE: f64 = 0.005;
@@ -60,8 +60,8 @@ impl LeastCorrelation {
     }
 }
 
-/// Returns the total correlation g(r) − 1 of a set with the power curve `target`: the Fourier transform
-/// of T − 1. It is at least −1 for curves that sets can have.
+/// Returns the total correlation g(r) − 1 of a set with the power curve `target`: the Fourier
+/// transform of T − 1. It is at least −1 for curves that sets can have.
 pub(crate) fn total_correlation(target: &Target, bessel: &BesselJ0, r: f64) -> f64 {
     let two_pi = 2.0 * std::f64::consts::PI;
     let steps = (target.end() * STEPS_PER_NU) as usize;

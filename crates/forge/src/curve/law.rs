@@ -49,7 +49,7 @@ impl Law {
             let allowed = "0 or more in a piece from nu = 0, where the law would be infinite";
             return wrong("exponent", exponent, allowed);
         }
-        // `libm` has the same bits on every machine, which a curve needs because it decides a table.
+        // A curve decides a table, so it needs the same bits on every machine: those of `libm`.
         let at = |nu: f64| {
             [
                 round(nu),

@@ -1,8 +1,8 @@
 //! Radial power curves: what a spectrum should be.
 //!
-//! A [`Target`] is read by `text`: from lines of two numbers, or through `pieces` from TOML, where `law`
-//! turns a power law into points. `parameters` records a curve in the history of a table and reads it
-//! back. [`LeastCorrelation`] shows before any work whether a point set can have the curve.
+//! A [`Target`] is read by `text`: from lines of two numbers, or through `pieces` from TOML, where
+//! `law` turns a power law into points. `parameters` records a curve in the history of a table and
+//! reads it back. [`LeastCorrelation`] shows whether a point set can have the curve at all.
 
 mod correlation;
 mod law;

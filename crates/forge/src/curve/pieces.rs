@@ -1,6 +1,6 @@
 //! Curves written as pieces, in TOML.
 //!
-//! As lines of two numbers a power law such as ν^(−3/4) takes many points. As a piece it takes one line:
+//! A power law such as ν^(−3/4) takes many lines of two numbers, but only one piece:
 //!
 //! ```toml
 //! [[piece]]            # no power
@@ -89,8 +89,8 @@ pub(super) fn read(text: &str) -> Result<Target, ForgeError> {
 }
 
 impl Piece {
-    /// Refuses a piece that does not begin where the last one ended, has a bad range, or does not state
-    /// its power in exactly one way. `number` counts pieces from 1.
+    /// Refuses a piece that does not begin where the last one ended, has a bad range, or does not
+    /// state its power in exactly one way. `number` counts pieces from 1.
     fn check(&self, number: usize, reached: Option<f64>) -> Result<(), ForgeError> {
         let Self { from, to, .. } = *self;
         let wrong = |value: String, allowed: String| {

@@ -6,16 +6,17 @@ use crate::ForgeError;
 
 /// A curve that a radial power spectrum should follow.
 ///
-/// It consists of straight lines between points (ν, power). Before the first point it has the power of
-/// that point, after the last it is 1, as for every set without long-range order. Two points of equal ν
-/// make a jump.
+/// It consists of straight lines between points (ν, power). Before the first point it has the power
+/// of that point, after the last it is 1, as for every set without long-range order. Two points of
+/// equal ν make a jump.
 ///
-/// As text it has one of two forms. Text that begins with a number is the first, text that begins with
-/// a name or a bracket the second.
-/// - Each line holds a point: ν and power, separated by spaces, tabs or a comma. `#` begins a comment.
-/// - TOML with consecutive pieces: `[[piece]]` with `from` and `to`, and one of `power = P` (constant),
-///   `power = [P0, P1]` (linear) and `law = { power = P, at = N, exponent = E }`, which is P·(ν/N)^E,
-///   approximated by straight lines to within 0.3 %.
+/// As text it has one of two forms. Text that begins with a number is the first, text that begins
+/// with a name or a bracket the second.
+/// - Each line holds a point: ν and power, separated by spaces, tabs or a comma. `#` begins a
+///   comment.
+/// - TOML with consecutive pieces: `[[piece]]` with `from` and `to`, and one of `power = P`
+///   (constant), `power = [P0, P1]` (linear) and `law = { power = P, at = N, exponent = E }`, which
+///   is P·(ν/N)^E, approximated by straight lines to within 0.3 %.
 ///
 /// ```
 /// use strew_forge::Target;
@@ -63,8 +64,8 @@ impl Target {
     /// The curve through these points.
     ///
     /// # Errors
-    /// [`ForgeError::Field`] unless there are 1 to [`MAX_POINTS`] points, ν ascends from point to point
-    /// within 0 to [`MAX_NU`], and every power is within 0 to [`MAX_POWER`].
+    /// [`ForgeError::Field`] unless there are 1 to [`MAX_POINTS`] points, ν ascends from point to
+    /// point within 0 to [`MAX_NU`], and every power is within 0 to [`MAX_POWER`].
     pub fn new(points: Vec<[f64; 2]>) -> Result<Self, ForgeError> {
         if points.is_empty() || points.len() > MAX_POINTS {
             let value = format!("a curve of {} points", points.len());

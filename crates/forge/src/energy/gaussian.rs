@@ -1,8 +1,8 @@
 //! Gaussian blue noise: E = Σ exp(−d²/2σ²) over pairs (Ahmed, Ren, Wonka 2022).
 //!
 //! In terms of the spectrum E is a sum of P(k)·exp(−2π²σ²ν²): the wider the Gaussian, the more low
-//! frequencies dominate. σ = 1 leaves the least power at low frequencies, σ = 0.8 makes a sharper set,
-//! and at σ ≤ 0.6 sets crystallize.
+//! frequencies dominate. σ = 1 leaves the least power at low frequencies, σ = 0.8 makes a sharper
+//! set, and at σ ≤ 0.6 sets crystallize.
 
 use super::PairEnergy;
 use crate::numeric::exp;

@@ -1,8 +1,8 @@
 //! A guard against close pairs: E = Σ s·(1 − d²/r²)³ over pairs closer than r.
 //!
-//! A Gaussian of σ = 1 hardly distinguishes a pair at 0.4 mean spacings from one at 0.6. It raises the
-//! smallest distance only by sharpening the whole set, which also raises the spectral peak. The guard
-//! acts on the few pairs that are too close and on nothing else.
+//! A Gaussian of σ = 1 hardly distinguishes a pair at 0.4 mean spacings from one at 0.6. It raises
+//! the smallest distance only by sharpening the whole set, which also raises the spectral peak. The
+//! guard acts on the few pairs that are too close and on nothing else.
 
 use super::PairEnergy;
 

@@ -1,12 +1,12 @@
 //! Centroidal Voronoi energy: the squared distance from each place to its nearest point.
 //!
-//! E = Σ ∫ |x − p|² over the Voronoi cell of p. Its gradient at p is 2·area·(p − centroid), so at unit
-//! density a step of ½ against it leads to the centroid: Lloyd's relaxation.
+//! E = Σ ∫ |x − p|² over the Voronoi cell of p. Its gradient at p is 2·area·(p − centroid), so at
+//! unit density a step of ½ against it leads to the centroid: Lloyd's relaxation.
 //!
-//! Each Voronoi cell is cut out of a square by the bisectors to the points around, in the order of a
-//! cell list from the inside out. Plain arithmetic in this fixed order yields the same bits on every
-//! machine and with any number of threads. A triangulation, which would have to be built anew in every
-//! step, is not needed.
+//! Each Voronoi cell is cut out of a square by the bisectors to the points around, in the order of
+//! a cell list from the inside out. Plain arithmetic in this fixed order yields the same bits on
+//! every machine and with any number of threads. A triangulation, which would have to be built anew
+//! in every step, is not needed.
 
 use rayon::prelude::*;
 
@@ -28,14 +28,14 @@ pub struct Cell {
     pub second: f64,
 }
 
-/// Half the side of the square that Voronoi cells are cut from, in mean spacings; far larger than any
-/// cell.
+/// Half the side of the square that cells are cut from, in mean spacings. No cell is nearly as
+/// large.
 const HALF_SIDE: f64 = 4.0;
 /// Points per parallel task.
 const CHUNK: usize = 256;
 
 impl Lloyd {
-    /// Returns the Voronoi cells of a periodic set of at least 100 points, in the order of the points.
+    /// Returns the Voronoi cells of a periodic set of at least 100 points, in order of the points.
     #[must_use]
     pub fn cells(set: &Torus) -> Vec<Cell> {
         let list = CellList::new(set.points(), set.side(), 1.0, true);
@@ -193,8 +193,8 @@ mod tests {
         }
     }
 
-    /// The largest difference between the displacements of two points of the same block after `steps`
-    /// steps to the centroid.
+    /// The largest difference between the displacements of two points of the same block after
+    /// `steps` steps to the centroid.
     fn disagreement(radius: u32, steps: u32) -> f64 {
         let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), radius).expect("small");
         let twin = Twin::new(683, 418).expect("coprime");

@@ -5,9 +5,9 @@ pub trait PairEnergy: Sync {
     /// The cut-off: the distance in mean spacings from which on the energy is exactly 0.
     fn cutoff(&self) -> f64;
 
-    /// Returns the energy of a pair, given its squared distance, and twice the derivative of the energy
-    /// by the squared distance. The gradient at p is the second value times p − q. Both are 0 from the
-    /// cut-off on.
+    /// Returns the energy of a pair, given its squared distance, and twice the derivative of the
+    /// energy by the squared distance. The gradient at p is the second value times p − q. Both are
+    /// 0 from the cut-off on.
     ///
     /// The bits decide a table, so the arithmetic must be that of [`numeric`](crate::numeric).
     fn pair(&self, distance_squared: f64) -> (f64, f64);

@@ -98,8 +98,8 @@ impl fmt::Display for Complaint {
     }
 }
 
-/// Returns the complaints about a table, given its figures. Only figures of unseen point sets count;
-/// without any, every bound is missed.
+/// Returns the complaints about a table, given its figures. Only figures of unseen point sets
+/// count; without any, every bound is missed.
 #[must_use]
 pub fn complaints(bounds: &[Bound], figures: &[Figures]) -> Vec<Complaint> {
     let nothing = Figures {

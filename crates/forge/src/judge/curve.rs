@@ -1,7 +1,7 @@
 //! The error of a radial power spectrum against its target.
 //!
-//! Each ring compares the mean power of its modes with the mean of the target over its area. Narrower
-//! rings than [`TARGET_RING`] would show the speckle of one point set rather than its noise.
+//! Each ring compares the mean power of its modes with the mean of the target over its area.
+//! Rings narrower than [`TARGET_RING`] would show the speckle of one point set, not its noise.
 
 use super::{Figure, figure::round};
 use crate::{
@@ -13,15 +13,15 @@ use crate::{
 pub const TARGET_RING: f64 = 0.1;
 /// The gap in ν between the end of a curve and the rings that are compared with 1.
 const TAIL_GAP: f64 = 0.1;
-/// The part of a quiet band that [`Figure::QuietPower`] covers: the edge is as blurred as the spectrum.
+/// The part of a quiet band that [`Figure::QuietPower`] covers, without its blurred edge.
 const QUIET_PART: f64 = 0.9;
 /// The width in ν of the rings that the power of a quiet band is averaged over.
 const FINE_RING: f64 = 0.005;
 
 /// Returns the figures (name, value) of a spectrum that should follow `target`:
 /// [`Figure::TargetRms`], [`Figure::TargetRelative`], [`Figure::TargetWorst`],
-/// [`Figure::TargetWorstNu`], [`Figure::TailWorst`], and [`Figure::QuietPower`] if the target begins
-/// with a band of power 0.
+/// [`Figure::TargetWorstNu`], [`Figure::TailWorst`], and [`Figure::QuietPower`] if the target
+/// begins with a band of power 0.
 #[must_use]
 pub fn curve_figures(spectrum: &Spectrum, target: &Target) -> Vec<(String, f64)> {
     let rings = spectrum.rings(TARGET_RING);

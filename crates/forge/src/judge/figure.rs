@@ -4,21 +4,23 @@ use strew_core::table::Figures;
 
 use crate::measure::{Crispness, Distances, Spectrum, Torus, Voronoi, Window};
 
-/// The width in ν of the rings that radial figures are taken over. It is as fine as the smallest twin
-/// of the default map resolves, and the same for sets of all sizes, so that their peaks compare.
+/// The width in ν of the rings that radial figures are taken over. It is as fine as the smallest
+/// twin of the default map resolves, and the same for sets of all sizes, so that their peaks
+/// compare.
 pub const RING_WIDTH: f64 = 1.0 / 64.0;
 
 /// The largest frequency measured.
 pub(super) const NU_MAX: f64 = 4.0;
 
 /// A figure measured on a point set. Frequencies ν are in units of √N; white noise has power 1.
+/// Distances are over the nearest-neighbor distance of the hexagonal lattice, areas over the mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
     /// Mean power over the band from ν = 0 where the target is 0, up to 0.9 of its width.
     QuietPower,
     /// Root mean square over rings of the radial power's error against the target.
     TargetRms,
-    /// Root mean square of the relative error, over rings from the first to the last point of the curve.
+    /// Root mean square of the relative error, over rings between the ends of the curve.
     TargetRelative,
     /// The largest error of a ring.
     TargetWorst,
@@ -36,18 +38,17 @@ pub enum Figure {
     Anisotropy,
     /// The largest power of a single mode.
     Tallest,
-    /// The smallest nearest-neighbor distance, over that of the hexagonal lattice (see [`Distances`]).
+    /// The smallest nearest-neighbor distance (see [`Distances`]).
     DeltaMin,
-    /// The mean nearest-neighbor distance, over that of the hexagonal lattice (see [`Distances`]).
+    /// The mean nearest-neighbor distance (see [`Distances`]).
     DeltaAvg,
     /// The effective Nyquist frequency ν_eff after Heck et al. (see [`Crispness`]).
     NuEff,
     /// The oscillation Ω after Heck et al. (see [`Crispness`]).
     Omega,
-    /// The largest relative deviation of a Voronoi cell's area (see [`Voronoi`]).
+    /// The largest deviation of a Voronoi cell's area (see [`Voronoi`]).
     AreaDeviation,
-    /// The radius of the largest empty circle, over the nearest-neighbor distance of the hexagonal
-    /// lattice (see [`Voronoi`]).
+    /// The radius of the largest empty circle (see [`Voronoi`]).
     LargestHole,
     /// Bond-orientational order (see [`Voronoi`]).
     Q6,
@@ -116,8 +117,8 @@ pub(super) fn round(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(0.0)
 }
 
-/// Measures a periodic set up to the frequency `nu_max`. `seen` says whether the table was optimized
-/// on it.
+/// Measures a periodic set up to the frequency `nu_max`. `seen` says whether the table was
+/// optimized on it.
 #[must_use]
 pub fn figures_of_torus(subject: String, seen: bool, set: &Torus, nu_max: f64) -> Figures {
     Figures {
@@ -133,7 +134,8 @@ pub fn figures_of_torus(subject: String, seen: bool, set: &Torus, nu_max: f64) -
     }
 }
 
-/// Measures a window up to the frequency `nu_max`. `seen` says whether the table was optimized on it.
+/// Measures a window up to the frequency `nu_max`. `seen` says whether the table was optimized on
+/// it.
 #[must_use]
 pub fn figures_of_window(subject: String, seen: bool, set: &Window, nu_max: f64) -> Figures {
     Figures {

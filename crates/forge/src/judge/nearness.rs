@@ -1,8 +1,8 @@
 //! Whether a custom curve was met, and how near a table came to it.
 //!
-//! The error counts in relation to what the curve demands, so that a random set does not meet a curve
-//! that hardly differs from 1. The bounds follow from the root mean square of the curve's departure
-//! from 1, over the same rings as the error ([`TARGET_RING`] wide, to ν = 4).
+//! The error counts in relation to what the curve demands, so that a random set does not meet a
+//! curve that hardly differs from 1. The bounds follow from the root mean square of the curve's
+//! departure from 1, over the same rings as the error ([`TARGET_RING`] wide, to ν = 4).
 
 use strew_core::table::Figures;
 
@@ -11,11 +11,11 @@ use crate::curve::Target;
 
 /// The largest error allowed, over the curve's departure from 1; both are root mean squares.
 const ERROR_SHARE: f64 = 0.1;
-/// The least bound on the error: a smaller error cannot be distinguished from the speckle of the point
-/// sets that are measured.
+/// The least bound on the error: a smaller error cannot be distinguished from the speckle of the
+/// point sets that are measured.
 const SPECKLE: f64 = 0.02;
-/// The largest error of a single ring, over the bound on the root mean square. (An error in one ring of
-/// forty alone is 6.3 times the root mean square.)
+/// The largest error of a single ring, over the bound on the root mean square. (An error in one
+/// ring of forty alone is 6.3 times the root mean square.)
 const WORST_RATIO: f64 = 4.0;
 /// A band of power 0 from ν = 0 has a bound of its own if it reaches at least to this ν.
 const QUIET_END: f64 = 0.1;
@@ -23,7 +23,8 @@ const QUIET_END: f64 = 0.1;
 const QUIET_POWER: f64 = 0.01;
 
 /// Returns the bounds on a table that should follow `target`: on [`Figure::TargetRms`], on
-/// [`Figure::TargetWorst`], and on [`Figure::QuietPower`] if the curve begins with a band of power 0.
+/// [`Figure::TargetWorst`], and on [`Figure::QuietPower`] if the curve begins with a band of power
+/// 0.
 #[must_use]
 pub fn bounds_of_curve(target: &Target) -> Vec<Bound> {
     let rings = (NU_MAX / TARGET_RING).round() as u32;
@@ -57,7 +58,7 @@ pub struct Nearness {
 }
 
 impl Nearness {
-    /// Returns the largest errors in `figures`, or `None` if no unseen figures compare with a curve.
+    /// Returns the largest unseen errors in `figures`, or `None` if none are compared with a curve.
     #[must_use]
     pub fn of(figures: &[Figures]) -> Option<Self> {
         let unseen = figures.iter().filter(|figures| !figures.seen);

@@ -34,9 +34,9 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// The panel for a table of `map` that was optimized on the twins `seen`: the smallest of these for
-    /// comparison, the first unseen twins of at least 50,000, 100,000 and 200,000 points, and two
-    /// windows.
+    /// The panel for a table of `map` that was optimized on the twins `seen`: the smallest of these
+    /// for comparison, the first unseen twins of at least 50,000, 100,000 and 200,000 points, and
+    /// two windows.
     #[must_use]
     pub fn new(map: &Map, seen: &[Twin]) -> Self {
         let mut unseen: Vec<Twin> = Vec::new();
@@ -60,9 +60,9 @@ impl Panel {
         }
     }
 
-    /// Returns this panel with a curve to compare the radial power with. Unseen twins too small for the
-    /// comparison are dropped, and those twins of `map` farthest from its α are added, where a curve
-    /// is missed first.
+    /// Returns this panel with a curve to compare the radial power with. Unseen twins too small for
+    /// the comparison are dropped, and those twins of `map` farthest from its α are added, where a
+    /// curve is missed first.
     #[must_use]
     pub fn with_target(mut self, target: Target, map: &Map) -> Self {
         self.target = Some(target);

@@ -13,8 +13,8 @@ pub(crate) struct CellList {
 }
 
 impl CellList {
-    /// Sorts `points` into cells at least `cell` wide over [0, `side`)². If `periodic`, positions are
-    /// taken modulo the side.
+    /// Sorts `points` into cells at least `cell` wide over [0, `side`)². If `periodic`, positions
+    /// are taken modulo the side.
     pub(crate) fn new(points: &[[f64; 2]], side: f64, cell: f64, periodic: bool) -> Self {
         // However small `cell` is, there are at most about twice as many cells as points.
         let most = (2.0 * points.len() as f64).sqrt().ceil().max(1.0);
@@ -66,9 +66,9 @@ impl CellList {
         &self.members
     }
 
-    /// Calls `visit` for each point in the square ring of cells at distance `ring` from the cell of `p`,
-    /// with the index of the point and the vector from it to `p`. If `p` is a point, it is visited,
-    /// too. On a torus all images of a point are visited.
+    /// Calls `visit` for each point in the square ring of cells at distance `ring` from the cell of
+    /// `p`, with the index of the point and the vector from it to `p`. If `p` is a point, it is
+    /// visited, too. On a torus all images of a point are visited.
     pub(crate) fn ring(&self, p: [f64; 2], ring: i64, mut visit: impl FnMut(u32, [f64; 2])) {
         let [cx, cy] =
             p.map(|v| ((v / self.side * self.per_axis as f64) as i64).min(self.per_axis - 1));

@@ -6,12 +6,12 @@ use super::Ring;
 /// The two figures of Heck et al.: how far a spectrum is empty, and how much it oscillates beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crispness {
-    /// The effective Nyquist frequency ν_eff: the radius in ν of the largest disc around 0 whose mean
-    /// power is at most 0.1. The square lattice has about 1. Frequencies up to ν_eff/2 are sampled
-    /// nearly without aliasing.
+    /// The effective Nyquist frequency ν_eff: the radius in ν of the largest disc around 0 whose
+    /// mean power is at most 0.1. The square lattice has about 1. Frequencies up to ν_eff/2 are
+    /// sampled nearly without aliasing.
     pub nu_eff: f64,
-    /// The oscillation Ω: ten times the root mean square of P − 1, from the frequency where the power
-    /// first reaches 1 over five units of ν, or as far as the rings extend.
+    /// The oscillation Ω: ten times the root mean square of P − 1, from the frequency where the
+    /// power first reaches 1 over five units of ν, or as far as the rings extend.
     pub omega: f64,
 }
 
@@ -37,8 +37,8 @@ impl Crispness {
 }
 
 fn effective_nyquist(rings: &[Ring], width: f64) -> f64 {
-    // `sum` over the squared radius is the mean power of the disc up to the edge of a ring. From one
-    // edge to the next the disc grows with the power of the ring.
+    // `sum` over the squared radius is the mean power of the disc up to the edge of a ring. From
+    // one edge to the next the disc grows with the power of the ring.
     let (mut found, mut inner, mut sum) = (0.0, 0.0f64, 0.0);
     for ring in rings {
         let outer = ((ring.nu / width).floor() + 1.0) * width;

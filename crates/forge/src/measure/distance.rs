@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::{CellList, Torus, Window};
 
-/// Nearest-neighbor distances in units of √(2/√3)·N^−½, the nearest-neighbor distance of the hexagonal
-/// lattice of the same density. The smallest distance is at most 1.
+/// Nearest-neighbor distances in units of √(2/√3)·N^−½, the nearest-neighbor distance of the
+/// hexagonal lattice of the same density. The smallest distance is at most 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distances {
     /// The smallest distance.
@@ -14,8 +14,8 @@ pub struct Distances {
     pub delta_avg: f64,
 }
 
-/// The margin of a window, in mean spacings. The nearest neighbor of a point in it may lie outside the
-/// window, so its distance is not counted.
+/// The margin of a window, in mean spacings. The nearest neighbor of a point in it may lie outside
+/// the window, so its distance is not counted.
 const MARGIN: f64 = 4.0;
 /// Points per parallel task. It fixes the order of the sum.
 const CHUNK: usize = 4096;
@@ -73,7 +73,7 @@ impl Distances {
     }
 }
 
-/// The distance from the point `p` of this index to its nearest neighbor; infinite if there is none.
+/// The distance from the point `p` to its nearest neighbor; infinite if it has none.
 fn nearest(cells: &CellList, index: u32, p: [f64; 2]) -> f64 {
     let mut least = f64::INFINITY;
     let rings = (cells.members().len() as f64).sqrt() as i64 * 2 + 2;

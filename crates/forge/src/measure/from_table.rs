@@ -11,7 +11,7 @@ use strew_core::{
 use super::{Torus, Window};
 use crate::numeric::SplitMix;
 
-/// Returns the displaced sites of one period of a twin, or `None` if it is no twin of the table's map.
+/// Returns one period of a twin, displaced, or `None` if it is no twin of the table's map.
 #[must_use]
 pub fn twin_set(table: &Table, twin: Twin) -> Option<Torus> {
     let n = table.map().intervals();
@@ -29,8 +29,8 @@ pub fn twin_set(table: &Table, twin: Twin) -> Option<Torus> {
     Some(Torus::new(twin.period() as f64, points))
 }
 
-/// Returns a window of about `points` points of the unbounded displaced pattern of the table's own α,
-/// at a place chosen by `seed`.
+/// Returns a window of about `points` points of the unbounded displaced pattern of the table's own
+/// α, at a place chosen by `seed`.
 #[must_use]
 pub fn window_set(table: &Table, points: u64, seed: u64) -> Window {
     let map = table.map();
@@ -64,7 +64,7 @@ pub fn window_set(table: &Table, points: u64, seed: u64) -> Window {
     Window::new(side, density, found)
 }
 
-/// The columns (or rows, along [`Axis::Y`]) of a class in a range, each with its interval of the map.
+/// The columns (or rows, along [`Axis::Y`]) of a class in a range, each with its interval.
 fn members(
     pattern: &Pattern,
     map: &Map,

@@ -1,13 +1,13 @@
 //! Measuring point sets: spectrum, distances and Voronoi cells of whole periods and of windows.
 //!
 //! A set is a [`Torus`] (one period of a periodic set) or a [`Window`] (a box of an unbounded one);
-//! [`twin_set`] and [`window_set`] make them from a table. [`Spectrum`] is computed by `nufft`, windows
-//! with the weights of `taper`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
+//! [`twin_set`] and [`window_set`] make them from a table. [`Spectrum`] is computed by `nufft`,
+//! windows with the weights of `taper`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
 //! [`Distances`] and [`Rdf`] look up neighbors in a `cell_list`, [`Voronoi`] in a triangulation.
 //!
 //! Everything is at unit density: lengths are in mean spacings, frequencies ν in cycles per mean
-//! spacing, and white noise has power 1. Of these results only figures rounded to four digits reach a
-//! table, so the platform's own math functions may be used.
+//! spacing, and white noise has power 1. Of these results only figures rounded to four digits reach
+//! a table, so the platform's own math functions may be used.
 
 mod cell_list;
 mod crispness;

@@ -1,12 +1,12 @@
 //! Fourier sums over scattered points: a non-uniform FFT of type 1 in two dimensions.
 //!
 //! Each point is spread onto a regular grid, twice as fine as the frequencies need, with the kernel
-//! exp(β(√(1 − z²) − 1)) (Barnett, Magland, af Klinteberg 2019). Then the grid is transformed by an FFT
-//! and the transform of the kernel is divided out. With a kernel 12 cells wide the error is about
-//! 10⁻¹¹ of √Σw².
+//! exp(β(√(1 − z²) − 1)) (Barnett, Magland, af Klinteberg 2019). Then the grid is transformed by an
+//! FFT and the transform of the kernel is divided out. With a kernel 12 cells wide the error is
+//! about 10⁻¹¹ of √Σw².
 //!
-//! The grid is never in memory as a whole: bands of rows are spread, transformed along x and cut to the
-//! requested frequencies. Then the columns are transformed one by one.
+//! The grid is never in memory as a whole: bands of rows are spread, transformed along x and cut to
+//! the requested frequencies. Then the columns are transformed one by one.
 
 use std::sync::Arc;
 
@@ -63,8 +63,8 @@ fn grid_size(modes: usize) -> usize {
     (least..).find(|&m| smooth(m)).unwrap_or(least) * BAND
 }
 
-/// The first grid cell under the kernel of a coordinate in [0, 1), and the values of the kernel from
-/// there on.
+/// The first grid cell under the kernel of a coordinate in [0, 1), and the values of the kernel
+/// from there on.
 fn kernel(coordinate: f64, size: usize) -> (i64, [f64; WIDTH]) {
     let at = coordinate * size as f64;
     let half = WIDTH as f64 / 2.0;
@@ -78,8 +78,8 @@ fn kernel(coordinate: f64, size: usize) -> (i64, [f64; WIDTH]) {
     (first as i64, values)
 }
 
-/// The transform of the kernel at k cycles per side of the torus: its integral with a cosine, by the
-/// trapezoid rule in the angle arcsin z, in which the integrand is smooth and vanishes at both ends.
+/// The transform of the kernel at k cycles per side of the torus: its integral with a cosine, by
+/// the trapezoid rule in the angle arcsin z, where the integrand is smooth and ends at 0.
 fn kernel_transform(k: usize, size: usize) -> f64 {
     const NODES: i32 = 256;
     let step = std::f64::consts::PI / f64::from(NODES);

@@ -1,7 +1,7 @@
 //! Point sets to measure: one period of a periodic set, or a window of an unbounded set.
 
-/// A periodic point set at unit density, on a torus whose side is √N mean spacings. Coordinates may lie
-/// outside [0, side); they are taken modulo the side.
+/// A periodic point set at unit density, on a torus whose side is √N mean spacings. Coordinates may
+/// lie outside [0, side); they are taken modulo the side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Torus {
     side: f64,
@@ -49,8 +49,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// Rescales the points in the box [0, `side`)² of a set with `density` points per unit area to unit
-    /// density. Points outside the box are dropped; none inside may be missing.
+    /// Rescales the points in the box [0, `side`)² of a set with `density` points per unit area to
+    /// unit density. Points outside the box are dropped; none inside may be missing.
     #[must_use]
     pub fn new(side: f64, density: f64, mut points: Vec<[f64; 2]>) -> Self {
         points.retain(|p| p.iter().all(|v| (0.0..side).contains(v)));

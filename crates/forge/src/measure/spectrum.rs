@@ -48,8 +48,8 @@ const LOW_END: f64 = 0.5;
 const ANISOTROPY_RANGE: std::ops::Range<f64> = 0.8..4.0;
 
 impl Spectrum {
-    /// Computes the spectrum of a periodic set for |k| ≤ `nu_max`·√N along either axis, with an error in
-    /// amplitude of 10⁻¹⁰·√N. Memory grows as N·`nu_max`².
+    /// Computes the spectrum of a periodic set for |k| ≤ `nu_max`·√N along either axis, with an
+    /// error in amplitude of 10⁻¹⁰·√N. Memory grows as N·`nu_max`².
     #[must_use]
     pub fn of_torus(set: &Torus, nu_max: f64) -> Self {
         let side = set.side();
@@ -64,8 +64,8 @@ impl Spectrum {
         Self { side, modes, power }
     }
 
-    /// Estimates the spectrum of an unbounded set from a window, at frequencies k/side. The taper blurs
-    /// it over about ±2 modes; less than 10⁻¹² of a mode's power leaks 10 modes away.
+    /// Estimates the spectrum of an unbounded set from a window, at frequencies k/side. The taper
+    /// blurs it over about ±2 modes; less than 10⁻¹² of a mode's power leaks 10 modes away.
     #[must_use]
     pub fn of_window(set: &Window, nu_max: f64) -> Self {
         let side = set.side();
@@ -126,8 +126,8 @@ impl Spectrum {
         })
     }
 
-    /// Returns the rings of width `width` in ν, or one mode if that is wider, from ν = 0 outwards up to
-    /// the last whole one. Rings without modes are left out.
+    /// Returns the rings of width `width` in ν, or one mode if that is wider, from ν = 0 outwards
+    /// up to the last whole one. Rings without modes are left out.
     #[must_use]
     pub fn rings(&self, width: f64) -> Vec<Ring> {
         let width = width.max(self.finest_ring());
@@ -284,8 +284,8 @@ mod tests {
 
     #[test]
     fn a_window_resolves_a_power_of_a_millionth() {
-        // A lattice has no power below ν = 0.5. Neither its tall peaks nor the edge of the window may
-        // leak there.
+        // A lattice has no power below ν = 0.5. Neither its tall peaks nor the edge of the window
+        // may leak there.
         let lattice: Vec<[f64; 2]> = (-1..102)
             .flat_map(|j| (-1..102).map(move |i| [f64::from(i) + 0.3, f64::from(j) + 0.8]))
             .collect();

@@ -2,7 +2,7 @@
 //!
 //! The taper is a sum of five cosines. So at integer frequencies its transform, and with it the
 //! spectrum of the window's mean density, is 0 except for |k| ≤ 4, where it is known exactly and
-//! subtracted. Between integers it falls as k⁻⁹, so the tall peaks of a quasi-periodic set do not leak.
+//! subtracted. Between integers it falls as k⁻⁹, so tall peaks of a quasi-periodic set do not leak.
 
 /// The mean of the taper's square: C(16, 8)/2¹⁶.
 pub(super) const MEAN_SQUARE: f64 = 12_870.0 / 65_536.0;

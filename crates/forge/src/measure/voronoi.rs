@@ -1,7 +1,7 @@
 //! Figures from the Delaunay triangulation: Voronoi cells, holes and bonds.
 //!
-//! The triangulation library has no torus, so a periodic set gets a border: copies of the points near
-//! the opposite edge. Of a window only inner points count.
+//! The triangulation library has no torus, so a periodic set gets a border: copies of the points
+//! near the opposite edge. Of a window only inner points count.
 
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
@@ -14,24 +14,24 @@ pub struct Voronoi {
     pub area_deviation: f64,
     /// The standard deviation of the areas, over the mean area.
     pub area_spread: f64,
-    /// The radius of the largest empty circle (the largest circumradius of a Delaunay triangle), over
-    /// the nearest-neighbor distance of the hexagonal lattice of the same density. The hexagonal
-    /// lattice has 1/√3.
+    /// The radius of the largest empty circle (the largest circumradius of a Delaunay triangle),
+    /// over the nearest-neighbor distance of the hexagonal lattice of the same density. The
+    /// hexagonal lattice has 1/√3.
     pub largest_hole: f64,
-    /// Bond-orientational order: the mean over points of |mean of exp(6iθ) over the point's bonds|. It
-    /// is 1 for a hexagonal lattice, 0 for a square one, about 0.37 for a random set.
+    /// Bond-orientational order: the mean over points of |mean of exp(6iθ) over the point's bonds|.
+    /// It is 1 for a hexagonal lattice, 0 for a square one, about 0.37 for a random set.
     pub q6: f64,
 }
 
-/// The width, in mean spacings, of the border of a torus and of the margin of a window that does not
-/// count. Cells farther inside are whole unless there is a hole of half this radius.
+/// The width, in mean spacings, of the border of a torus and of the margin of a window that does
+/// not count. Cells farther inside are whole unless there is a hole of half this radius.
 const BORDER: f64 = 6.0;
 /// The nearest-neighbor distance of the hexagonal lattice of unit density.
 const HEX: f64 = 1.074_569_931_823_542;
 
 impl Voronoi {
-    /// Measures a periodic set. All figures are 0 for a set too small to have a triangulation. If points
-    /// coincide, the deviation and the spread of areas are 1 and the other figures 0.
+    /// Measures a periodic set. All figures are 0 for a set too small to have a triangulation. If
+    /// points coincide, the deviation and the spread of areas are 1 and the other figures 0.
     #[must_use]
     pub fn of_torus(set: &Torus) -> Self {
         let side = set.side();

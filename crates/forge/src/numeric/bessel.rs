@@ -1,12 +1,13 @@
 //! The Bessel function J₀, tabulated.
 //!
-//! The radial power of an isotropic set is a sum of J₀(2πνr) over its pairs, which takes millions of
-//! values. `libm`'s `j0` has the same bits on every machine, too, but branches and evaluates sines and
-//! cosines; interpolation in a table is straight-line arithmetic and about eight times as fast.
+//! The radial power of an isotropic set is a sum of J₀(2πνr) over its pairs, which takes millions
+//! of values. `libm`'s `j0` has the same bits on every machine, too, but branches and evaluates
+//! sines and cosines; interpolation in a table is straight-line arithmetic and about eight times as
+//! fast.
 //!
-//! The nodes are computed by Miller's backward recurrence, which is stable and needs no other function.
-//! Between nodes a cubic Hermite polynomial with the exact slopes (J₀' = −J₁) has an error below
-//! 2·10⁻⁹.
+//! The nodes are computed by Miller's backward recurrence, which is stable and needs no other
+//! function. Between nodes a cubic Hermite polynomial with the exact slopes (J₀' = −J₁) has an
+//! error below 2·10⁻⁹.
 
 use rayon::prelude::*;
 
@@ -48,8 +49,8 @@ impl BesselJ0 {
     }
 }
 
-/// Returns J₀(x) and J₁(x) by Miller's recurrence J_(k−1) = (2k/x)·J_k − J_(k+1), started where J_k is
-/// nearly 0 and scaled so that J₀ + 2·(J₂ + J₄ + …) = 1.
+/// Returns J₀(x) and J₁(x) by Miller's recurrence J_(k−1) = (2k/x)·J_k − J_(k+1), started where J_k
+/// is nearly 0 and scaled so that J₀ + 2·(J₂ + J₄ + …) = 1.
 fn by_recurrence(x: f64) -> [f64; 2] {
     if x == 0.0 {
         return [1.0, 0.0];

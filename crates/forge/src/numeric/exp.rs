@@ -1,8 +1,8 @@
 //! An exponential that vectorizes.
 //!
-//! Making a table spends most of its time in sums of exponentials over pairs. `libm`'s `exp` has the
-//! same bits on every machine, too, but its branches keep these sums from being vectorized. The last
-//! bits of the standard library's `exp` depend on the platform.
+//! Making a table spends most of its time in sums of exponentials over pairs. `libm`'s `exp` has
+//! the same bits on every machine, too, but its branches keep these sums from being vectorized. The
+//! last bits of the standard library's `exp` depend on the platform.
 
 /// 1.5·2⁵²: its sum with a number of moderate size has the nearest integer in the low bits.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -10,8 +10,8 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0;
 const LN_2_HIGH: f64 = f64::from_bits(0x3fe6_2e42_fee0_0000);
 const LN_2_LOW: f64 = f64::from_bits(0x3dea_39ef_3579_3c76);
 
-/// Returns eˣ for −700 ≤ x ≤ 700, to about one unit in the last place. For other arguments the result
-/// is arbitrary. Without branches and tables, so that loops over it vectorize.
+/// Returns eˣ for −700 ≤ x ≤ 700, to about one unit in the last place. For other arguments the
+/// result is arbitrary. Without branches and tables, so that loops over it vectorize.
 #[inline]
 #[must_use]
 pub fn exp(x: f64) -> f64 {

@@ -1,8 +1,8 @@
 //! Functions and random numbers with the same bits on every machine, because they decide tables.
 //!
-//! They use +, −, ×, ÷ and √ on `f64` in a fixed order. IEEE 754 defines these operations to the last
-//! bit, and Rust neither contracts nor reorders them. Where speed does not matter, `libm` serves as
-//! well: the pieces of a [curve](crate::curve) use its `pow`.
+//! They use +, −, ×, ÷ and √ on `f64` in a fixed order. IEEE 754 defines these operations to the
+//! last bit, and Rust neither contracts nor reorders them. Where speed does not matter, `libm`
+//! serves as well: the pieces of a [curve](crate::curve) use its `pow`.
 
 mod bessel;
 mod exp;

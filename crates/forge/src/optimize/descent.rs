@@ -17,11 +17,11 @@ impl Descent {
     /// Lowers the energy of `objective`, from a start or from where a descent was stopped.
     ///
     /// This is Nesterov's method with adaptive restart (O'Donoghue, Candès 2015): the momentum is
-    /// dropped whenever it points uphill. It grows to what the flat directions of the energy need, so
-    /// nothing has to be tuned to them.
+    /// dropped whenever it points uphill. It grows to what the flat directions of the energy need,
+    /// so nothing has to be tuned to them.
     ///
-    /// Calls `keep` with the state between two steps when the watch wants a checkpoint and when it stops
-    /// the descent. In the latter case the returned state has done fewer steps than `self.steps`.
+    /// Calls `keep` with the state between two steps when the watch wants a checkpoint and when it
+    /// stops the descent, which then returns with fewer than `self.steps` steps done.
     pub fn run(
         &self,
         objective: &mut (impl Objective + ?Sized),

@@ -1,11 +1,11 @@
 //! Optimizing in table space: the unknowns are the n² vectors of a table, not points.
 //!
 //! An [`Objective`] is an energy as a function of the vectors, which are called *moves* here. Three
-//! objectives exist. [`Pairs`] (a pair energy) and [`Radial`] (the error of a radial power curve) are
-//! sums over pairs of blocks and need no points: `neighbors` lists the pairs with their exact
-//! frequencies, which `overlap` computes. [`Sets`] evaluates any other energy on twins. For [`Radial`],
-//! `rings` turns a histogram of distances into radial power. A [`Descent`] lowers an objective from the
-//! random start of [`jitter`]; its [`DescentState`] can be kept and resumed.
+//! objectives exist. [`Pairs`] (a pair energy) and [`Radial`] (the error of a radial power curve)
+//! are sums over pairs of blocks and need no points: `neighbors` lists the pairs with their exact
+//! frequencies, which `overlap` computes. [`Sets`] evaluates any other energy on twins. For
+//! [`Radial`], `rings` turns a histogram of distances into radial power. A [`Descent`] lowers an
+//! objective from the random start of [`jitter`]; its [`DescentState`] can be kept and resumed.
 
 mod descent;
 mod neighbors;

@@ -3,8 +3,8 @@
 //! The frequency with which block A meets block B across a lattice offset is the product of two
 //! interval overlaps (see [`overlap`](super::overlap)). So the lists need no point set. Built for a
 //! fraction, they hold the pairs of its periodic twin *of any size*, at a cost that depends on the
-//! table alone: about 150 pairs a block for a Gaussian of σ = 1. Lists for several twins at once are
-//! hardly longer, because twins share nearly all pairs of blocks.
+//! table alone: about 150 pairs a block for a Gaussian of σ = 1. Lists for several twins at once
+//! are hardly longer, because twins share nearly all pairs of blocks.
 
 use rayon::prelude::*;
 use strew_core::Map;

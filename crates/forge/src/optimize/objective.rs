@@ -6,14 +6,14 @@ pub trait Objective {
     fn masses(&self) -> &[f64];
 
     /// Returns the energy per point. Writes into `gradient`, for each block, the derivative by the
-    /// position of one instance, averaged over its instances; the product with the mass of the block
-    /// is the derivative by its vector.
+    /// position of one instance, averaged over its instances; the product with the mass of the
+    /// block is the derivative by its vector.
     ///
     /// Must return the same bits with any number of threads.
     fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64;
 
-    /// The moves that the neighbor lists were built for; empty if there are no lists. The order of sums
-    /// follows the lists, so the bits of the next evaluation depend on them.
+    /// The moves that the neighbor lists were built for; empty if there are no lists. The order of
+    /// sums follows the lists, so the bits of the next evaluation depend on them.
     fn prepared_for(&self) -> &[[f64; 2]] {
         &[]
     }

@@ -86,8 +86,8 @@ impl Overlaps {
         }
     }
 
-    /// The overlaps of the interval `from` at offset `own` along the axis and, across it, an offset of
-    /// the parity of `other`.
+    /// The overlaps of the interval `from` at offset `own` along the axis and, across it, an offset
+    /// of the parity of `other`.
     pub(super) fn of(&self, own: i64, other: i64, from: usize) -> &[Overlap] {
         let offset = (own + self.reach) as usize * 2 + (other & 1) as usize;
         let at = offset * self.intervals + from;

@@ -1,8 +1,8 @@
 //! Pair energies in table space: sums over pairs of blocks, weighted by exact frequencies.
 //!
 //! A pair energy of a displaced pattern is a sum of frequency × energy over pairs of blocks and
-//! lattice offsets. [Neighbor lists](super::neighbors) hold these pairs with their frequencies, of one
-//! pattern or merged over several. So optimizing over a twin of a million points costs what the
+//! lattice offsets. [Neighbor lists](super::neighbors) hold these pairs with their frequencies, of
+//! one pattern or merged over several. So optimizing over a twin of a million points costs what the
 //! smallest twin costs, and every pair of blocks that occurs in any of the patterns is visited in
 //! every step, with its weight. That keeps pairs that seldom meet from collapsing unseen.
 

@@ -2,13 +2,13 @@
 //!
 //! The radial power follows from the histogram of distances (see [`Rings`]). Exact pair frequencies
 //! (see [`neighbors`](super::neighbors)) yield the histogram of the unbounded pattern, without a
-//! sample of points. One evaluation is a pass over the pairs for the histogram, a product with a table
-//! of J₀, and a second pass with the resulting force, which depends on the distance alone.
+//! sample of points. One evaluation is a pass over the pairs for the histogram, a product with a
+//! table of J₀, and a second pass with the resulting force, which depends on the distance alone.
 //!
-//! A map serves an interval of α, and across it the frequencies of far pairs change completely: blocks
-//! shrink to nothing, others begin to meet. A table that follows its curve at one α misses it at the
-//! ends of the interval, where some twins lie. So the error is evaluated at several α and averaged.
-//! Averaging the histograms instead would let opposite errors cancel.
+//! A map serves an interval of α, and across it the frequencies of far pairs change completely:
+//! blocks shrink to nothing, others begin to meet. A table that follows its curve at one α misses
+//! it at the ends of the interval, where some twins lie. So the error is evaluated at several α and
+//! averaged. Averaging the histograms instead would let opposite errors cancel.
 
 use rayon::prelude::*;
 use strew_core::Map;
@@ -42,7 +42,8 @@ struct WeightedPattern {
 
 impl Radial {
     /// The error against `target`, averaged over the patterns of `maps` by their shares, which sum
-    /// to 1. The maps are one map for slightly different α; the mean spacing of the first is the unit.
+    /// to 1. The maps are one map for slightly different α; lengths are in mean
+    /// spacings of the first.
     #[must_use]
     pub fn new(maps: &[(Map, f64)], target: &Target, weights: &RadialWeights) -> Self {
         let scale = maps[0].0.alpha().set_side_f64();
@@ -135,8 +136,8 @@ impl WeightedPattern {
         sum
     }
 
-    /// Adds the slope of all blocks under a force to `to`. `force` is by distance bin, `mean` holds the
-    /// masses of the blocks averaged over all patterns.
+    /// Adds the slope of all blocks under a force to `to`. `force` is by distance bin, `mean` holds
+    /// the masses of the blocks averaged over all patterns.
     fn add_slope(&self, force: &[f64], moves: &[[f64; 2]], mean: &[f64], to: &mut [[f64; 2]]) {
         let masses = self.neighbors.masses();
         to.par_chunks_mut(CHUNK)
@@ -166,9 +167,9 @@ impl WeightedPattern {
             });
     }
 
-    /// Calls `visit` for each pair in the list of a point with its weight, its distance in bins, and
-    /// the vector from the neighbor to the point. Distances beyond the last bin are clamped to it,
-    /// where the taper is 0.
+    /// Calls `visit` for each pair in the list of a point with its weight, its distance in bins,
+    /// and the vector from the neighbor to the point. Distances beyond the last bin are clamped to
+    /// it, where the taper is 0.
     #[inline]
     fn each_pair(
         &self,

@@ -31,13 +31,14 @@ pub struct RadialWeights {
     /// The cost of the squared error, per unit of ν. Where the target T is above 1 it is divided by
     /// T: a compromise between absolute and relative error.
     pub fit: f64,
-    /// The cost of power as such where the target is 0, per unit area of the (νx, νy) plane, and more
-    /// at the lowest ν. The slope of the squared error alone vanishes long before such power is gone.
+    /// The cost of power as such where the target is 0, per unit area of the (νx, νy) plane, and
+    /// more at the lowest ν. The slope of the squared error alone vanishes long before such power
+    /// is gone.
     pub quiet: f64,
     /// Vectors longer than this are pulled back, because a sampler has to look as far around every
     /// region as the longest vector reaches.
     pub leash: f64,
-    /// The width in ν over which `quiet` falls to 0 towards the ends of a band where the target is 0.
+    /// The width in ν over which `quiet` falls to 0 at the ends of a band where the target is 0.
     pub edge: f64,
 }
 
@@ -136,8 +137,8 @@ impl Rings {
         costs.sum()
     }
 
-    /// The derivative of the cost by the distance of a pair, seen from one end, for each distance bin;
-    /// 0 in the last.
+    /// The derivative of the cost by the distance of a pair, seen from one end, for each distance
+    /// bin; 0 in the last.
     pub(super) fn force(&self, power: &[f64]) -> Vec<f64> {
         let slopes = self.rings.iter().zip(power);
         let slopes: Vec<f64> = slopes
@@ -158,14 +159,14 @@ impl Rings {
     }
 }
 
-/// The weight of a ring of power as such: its circumference over 2π, and more where ν is small. There
-/// moves change the power only in proportion to ν, so it would be the last to go.
+/// The weight of a ring of power as such: its circumference over 2π, and more where ν is small.
+/// There moves change the power only in proportion to ν, so it would be the last to go.
 fn extent(nu: f64) -> f64 {
     nu + LONG_WAVES * LONG_WAVES / nu.max(1.0 / RINGS_PER_NU)
 }
 
-/// The taper (1 − x²)³, with x the distance over the reach. It is smooth to the second derivative at
-/// x = 1, so the blur has low tails.
+/// The taper (1 − x²)³, with x the distance over the reach. It is smooth to the second derivative
+/// at x = 1, so the blur has low tails.
 fn taper(x: f64) -> f64 {
     let rest = (1.0 - x * x).max(0.0);
     rest * rest * rest

@@ -9,8 +9,8 @@ use crate::{energy::SetEnergy, measure::Torus};
 /// An energy of point sets as a function of a table's vectors: its mean over the points of several
 /// twins.
 ///
-/// Blocks that are neighbors on none of the twins do not interact. So there should be several twins,
-/// none of them very small. [`Pairs`](super::Pairs) has no such limit.
+/// Blocks that are neighbors on none of the twins do not interact. So there should be several
+/// twins, none of them very small. [`Pairs`](super::Pairs) has no such limit.
 pub struct Sets<E> {
     energy: E,
     twins: Vec<TwinPoints>,

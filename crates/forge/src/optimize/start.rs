@@ -2,10 +2,10 @@
 
 use crate::numeric::SplitMix;
 
-/// Returns a random vector for each block, uniformly distributed in a square of half-width `jitter`.
+/// Returns a vector for each block, uniformly random in a square of half-width `jitter`.
 ///
-/// The half-width should be small: from a large random start, pairs of blocks that seldom meet settle
-/// on top of each other.
+/// The half-width should be small: from a large random start, pairs of blocks that seldom meet
+/// settle on top of each other.
 #[must_use]
 pub fn jitter(blocks: usize, jitter: f64, seed: u64) -> Vec<[f64; 2]> {
     let mut random = SplitMix::new(seed);

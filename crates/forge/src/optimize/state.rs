@@ -1,7 +1,7 @@
 //! The state of a descent between two steps.
 
-/// The state of a descent between two steps. A descent resumed from it takes the same steps, bit for
-/// bit, as one that was not stopped.
+/// The state of a descent between two steps. A descent resumed from it takes the same steps, bit
+/// for bit, as one that was not stopped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DescentState {
     /// The moves with the lowest energy so far.

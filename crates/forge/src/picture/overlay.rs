@@ -1,5 +1,5 @@
-//! Thousands of dots as one SVG path, thousands of gray cells as one embedded PNG. The plotting library
-//! would write an element for each.
+//! Thousands of dots as one SVG path, thousands of gray cells as one embedded PNG. The plotting
+//! library would write an element for each.
 
 use std::{fmt::Write as _, ops::Range};
 

@@ -118,7 +118,7 @@ fn spectrum_end(report: &Report) -> f64 {
     SPECTRUM_END.min(report.spectrum.nu_max())
 }
 
-/// The mean power of the modes in each cell of the frequency plane, as a gray value; rows from the top.
+/// The mean power in each cell of the frequency plane, as a gray value; rows from the top.
 fn shades(report: &Report) -> Vec<u8> {
     let end = spectrum_end(report);
     let modes = (report.points.len() as f64).sqrt();

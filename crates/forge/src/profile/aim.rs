@@ -20,8 +20,8 @@ pub struct Aim {
 }
 
 impl Aim {
-    /// Returns the aim of a table with this profile and history, or `None` if they do not identify it,
-    /// as for imported tables.
+    /// Returns the aim of a table with this profile and history, or `None` if they do not identify
+    /// it, as for imported tables.
     #[must_use]
     pub fn of(profile: &str, history: &Provenance) -> Option<Self> {
         let curve = from_parameters(&history.parameters);

@@ -48,7 +48,8 @@ pub(super) const SHARP: Profile = Profile {
     ],
 };
 
-/// A large minimum distance, like farthest-point optimization (FPO), with low power and small holes.
+/// A large minimum distance, like farthest-point optimization (FPO), with low power and small
+/// holes.
 ///
 /// Goal: δ_min ≥ 0.93 of the hexagonal distance. The first stage makes ordinary blue noise. With a
 /// hard push from the start, conflicts would freeze before holes close.

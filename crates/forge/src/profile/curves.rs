@@ -17,8 +17,8 @@ const WEIGHTS: RadialWeights = RadialWeights {
 };
 
 /// No power up to ν₀ = 0.56 and the power of a random set beyond. The largest possible ν₀ of a step
-/// is 1/√π = 0.5642, where the pair correlation at distance 0 reaches 0; for a larger ν₀ it would have
-/// to be negative.
+/// is 1/√π = 0.5642, where the pair correlation at distance 0 reaches 0; for a larger ν₀ it would
+/// have to be negative.
 pub(super) const STEP: Profile = Profile {
     name: "step",
     summary: "Step blue noise: no power up to nu 0.56, flat beyond",
@@ -37,8 +37,8 @@ pub(super) const STEP: Profile = Profile {
     ],
 };
 
-/// Power rises from 0 to a broad peak at ν = 0.62, in the middle frequencies. Unlike most sets called
-/// green noise, this one has no power below ν = 0.42.
+/// Power rises from 0 to a broad peak at ν = 0.62, in the middle frequencies. Unlike most sets
+/// called green noise, this one has no power below ν = 0.42.
 pub(super) const GREEN: Profile = Profile {
     name: "green",
     summary: "Green noise: silent up to nu 0.42, a broad peak at 0.62, flat from 0.9 on",
@@ -102,8 +102,8 @@ pub(super) const PINK: Profile = Profile {
 };
 
 /// No power up to ν = 0.67, one peak, a shallow dip, flat from ν = 1.9 on: quiet farther out than a
-/// step can be, without the oscillations of sharper sets. A steeper rise cannot be reached: either the
-/// error grows to 0.1, or power returns at low frequencies.
+/// step can be, without the oscillations of sharper sets. A steeper rise cannot be reached: either
+/// the error grows to 0.1, or power returns at low frequencies.
 pub(super) const SINGLE_PEAK: Profile = Profile {
     name: "single-peak",
     summary: "Single-peak blue noise: no power up to nu 0.67, one peak, a shallow dip, flat from nu 1.9 on",

@@ -1,12 +1,12 @@
 //! Noise profiles: what a name such as `blue` stands for.
 //!
-//! A [`Profile`] says how a table is optimized and which bounds its figures must satisfy before it is
-//! accepted. `blue.rs`, `curves.rs` and `pattern.rs` hold the profiles as constants, `known.rs` lists
-//! them and finds them by name. Each has a [`Recipe`], one of the optimizers in `recipes/`. An [`Aim`]
-//! is read back from a finished table: the statement, bounds and curve it was made for.
+//! A [`Profile`] says how a table is optimized and which bounds its figures must satisfy before it
+//! is accepted. `blue.rs`, `curves.rs` and `pattern.rs` hold the profiles as constants, `known.rs`
+//! lists them and finds them by name. Each has a [`Recipe`], one of the optimizers in `recipes/`.
+//! An [`Aim`] is read back from a finished table: the statement, bounds and curve it was made for.
 //!
-//! To add a profile, add a constant in the file of its family and its name to [`Profile::ALL`]. For a
-//! new kind of optimizer, also add a file in `recipes/` and a variant of [`Recipe`].
+//! To add a profile, add a constant in the file of its family and its name to [`Profile::ALL`]. For
+//! a new kind of optimizer, also add a file in `recipes/` and a variant of [`Recipe`].
 
 mod aim;
 mod blue;

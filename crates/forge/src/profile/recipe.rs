@@ -31,8 +31,8 @@ impl Recipe {
         }
     }
 
-    /// The phases in order, with `steps` steps in all. `target` is the curve for [`Recipe::Radial`],
-    /// which has no phases without one; the others ignore it.
+    /// The phases in order, with `steps` steps in all. `target` is the curve for
+    /// [`Recipe::Radial`], which has no phases without one; the others ignore it.
     pub(crate) fn phases(
         &self,
         domain: &Domain,

@@ -13,9 +13,9 @@ use crate::{
 pub struct GaussianRecipe {
     /// The width of the Gaussian in the first phase.
     pub sigma: f64,
-    /// The width of the Gaussian in the second phase. A wider Gaussian goes on lowering the power at
-    /// low frequencies and leaves the rest as it is. The first phase alone, run until the power there
-    /// is as low, also sharpens the set and raises its spectral peak.
+    /// The width of the Gaussian in the second phase. A wider Gaussian goes on lowering the power
+    /// at low frequencies and leaves the rest as it is. The first phase alone, run until the power
+    /// there is as low, also sharpens the set and raises its spectral peak.
     pub polish_sigma: f64,
     /// The share of the steps that the second phase takes.
     pub polish_share: f64,

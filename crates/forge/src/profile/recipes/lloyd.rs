@@ -7,7 +7,7 @@ use crate::{
     optimize::{Descent, Sets},
 };
 
-/// Lloyd's relaxation on the points of all twins at once. A block moves by the mean of its instances.
+/// Lloyd's relaxation on all twins at once. A block moves by the mean of its instances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LloydRecipe {
     /// Mean spacings moved per unit of gradient: ½ is a step to the centroid.

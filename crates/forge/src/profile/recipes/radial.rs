@@ -43,9 +43,9 @@ impl RadialRecipe {
         parameters
     }
 
-    /// The repulsion, if it has any steps, then the descent on the curve's error. The repulsion uses
-    /// the pattern of α alone. The error is averaged over several α of the same map, so that the
-    /// table follows its curve on every twin.
+    /// The repulsion, if it has any steps, then the descent on the curve's error. The repulsion
+    /// uses the pattern of α alone. The error is averaged over several α of the same map, so that
+    /// the table follows its curve on every twin.
     pub(crate) fn phases(&self, domain: &Domain, target: &Target, steps: u32) -> Vec<Phase> {
         let warm = (self.warm_share * f64::from(steps)) as u32;
         let map = slice::from_ref(&domain.map);

@@ -9,9 +9,9 @@ use crate::{
 
 /// Push and pull in table space, after Ahmed, Guo, Yan, Franceschi, Zhang, Deussen (2017).
 ///
-/// A [`Guard`] that hardens from stage to stage pushes pairs in conflict apart. A Gaussian assigns every
-/// point its share of the plane, which also keeps holes closed. Both are pair energies, so their
-/// frequencies are known exactly and no triangulation is needed.
+/// A [`Guard`] that hardens from stage to stage pushes pairs in conflict apart. A Gaussian assigns
+/// every point its share of the plane, which also keeps holes closed. Both are pair energies, so
+/// their frequencies are known exactly and no triangulation is needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpacingRecipe {
     /// The width of the Gaussian, in mean spacings.
@@ -20,8 +20,8 @@ pub struct SpacingRecipe {
     pub pushes: &'static [Push],
 }
 
-/// A stage of the push. Lengths are in mean spacings; the upper limit for a smallest distance is that
-/// of the hexagonal lattice, 1.0746.
+/// A stage of the push. Lengths are in mean spacings; the upper limit for a smallest distance is
+/// that of the hexagonal lattice, 1.0746.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
     /// Pairs closer than this are in conflict. Above 1.02 sets crystallize: the spectral peak grows
