@@ -5,6 +5,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
+#[path = "tidy/imports.rs"]
+mod imports;
+
 /// Every source file of the workspace, as (path from the root, text).
 fn sources() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -175,6 +178,25 @@ fn libraries_print_nothing() {
     ] {
         never_names(room, &["println!", "eprintln!", "print!(", "dbg!"]);
     }
+}
+
+/// Fails if files of the crate with this source folder import each other in a circle.
+fn never_imports_in_circles(folder: &str) {
+    let inside = |(name, text): (String, String)| {
+        let name = name.strip_prefix(folder)?.strip_prefix('/')?;
+        Some((name.to_owned(), text))
+    };
+    let circles = imports::circles(&sources().into_iter().filter_map(inside).collect());
+    assert!(
+        circles.is_empty(),
+        "files of {folder} import each other:\n{}",
+        circles.join("\n")
+    );
+}
+
+#[test]
+fn no_import_circles() {
+    never_imports_in_circles("crates/forge/src");
 }
 
 #[test]

@@ -1,67 +1,58 @@
-//! Checkpoints: where a job stands, so that interrupted work can go on.
+//! Checkpoints: the state of a job between two steps, from which interrupted work is resumed.
 //!
-//! A checkpoint holds all that decides what comes next, down to the moves that lists of neighbors
-//! were made for, because the order of sums follows those lists. So a job that goes on from one makes
-//! the table, bit by bit, that it would have made at one go. It names its job in full; no other job
-//! takes it.
+//! A checkpoint holds everything that decides the next step, down to the moves that the neighbor
+//! lists were built for, because the order of sums follows those lists. So a resumed job makes the
+//! same table, bit for bit, as one that was never interrupted. A checkpoint names its job in full
+//! and is refused by every other job.
 //!
-//! As a file: a mark, the job as lines of text, the state in little-endian numbers, and a digest of
-//! it all.
+//! The file holds a magic number, seven counts, the job as lines of text, the state, and a digest
+//! of all of these. Numbers are little-endian.
 
 use std::{fs, io::ErrorKind, path::Path};
 
 use strew_core::table::Digest;
 
-use crate::{ForgeError, Job, file, optimize::Descended, plan::Plan};
+use crate::{ForgeError, file, optimize::DescentState};
 
-/// The first bytes of a checkpoint file. The number rises with the layout.
-const MARK: &[u8; 8] = b"strewck1";
-/// No checkpoint is larger: it has four vectors a block, 15 MB for the largest maps.
+/// The first bytes of a checkpoint file. A change of the layout raises the digit.
+const MAGIC: &[u8; 8] = b"strewck1";
+/// The largest file that is read. A checkpoint has four vectors a block: at most 15 MB.
 const MAX_BYTES: u64 = 64 << 20;
-/// The bytes of the digest at the end.
-const DIGEST: usize = 32;
+/// The length of the digest at the end of the file.
+const DIGEST_BYTES: usize = 32;
 
-/// Where a job stands between two steps.
+/// The state of a job between two steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
-    /// The job, everything that decides its result: lines of `name = value`.
+    /// Everything that decides the result of the job, as lines of `name = value`.
     pub(crate) job: String,
-    /// The phase under way, from 0; equal to their number when only measuring is left.
+    /// The current phase, from 0; the number of phases if only measuring is left.
     pub(crate) phase: u32,
-    /// Steps done, over all phases.
+    /// Steps done in all phases.
     pub(crate) steps: u32,
-    /// Steps there are, over all phases.
+    /// Steps of all phases.
     pub(crate) of: u32,
-    /// The state of the phase.
-    pub(crate) state: Descended,
+    /// The state of the current phase.
+    pub(crate) state: DescentState,
 }
 
 impl Checkpoint {
-    /// Steps that are done.
+    /// The number of optimizer steps done.
     #[must_use]
     pub const fn steps(&self) -> u32 {
         self.steps
     }
 
-    /// Whether only measuring is left.
+    /// Whether the optimizer is done, so that only measuring is left.
     #[must_use]
     pub const fn is_optimized(&self) -> bool {
         self.steps >= self.of
     }
 
-    /// Whether it belongs to a job.
-    ///
-    /// # Errors
-    /// [`ForgeError::Field`] with what differs, or for a part of the job that is not allowed.
-    pub fn is_of(&self, job: &Job) -> Result<(), ForgeError> {
-        let plan = Plan::new(job)?;
-        self.check(&plan.identity(job, &plan.phases()), plan.blocks())
-    }
-
-    /// Whether it belongs to the job that these lines describe.
+    /// Refuses a job whose lines differ from those of the checkpoint.
     pub(crate) fn check(&self, job: &str, blocks: usize) -> Result<(), ForgeError> {
         if self.job == job {
-            // The digest has vouched for the rest; a state of another size would be our own fault.
+            // The digest rules out damage; only a fault of the forge makes a state of another size.
             return match self.state.moves.len() == blocks {
                 true => Ok(()),
                 false => Err(wrong(format!(
@@ -74,16 +65,16 @@ impl Checkpoint {
         let (theirs, ours) = differs.unwrap_or(("longer or shorter", "as described"));
         Err(ForgeError::Field {
             field: "checkpoint",
-            value: format!("that of another job ({theirs})"),
+            value: format!("one of another job ({theirs})"),
             allowed: format!("one of this job ({ours})"),
         })
     }
 
-    /// The content of its file.
+    /// The content of a checkpoint file.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let state = &self.state;
-        let mut bytes = MARK.to_vec();
+        let mut bytes = MAGIC.to_vec();
         let mut number = |value: u32| bytes.extend(value.to_le_bytes());
         for value in [
             self.phase,
@@ -108,29 +99,30 @@ impl Checkpoint {
         bytes
     }
 
-    /// Reads the content of a file.
+    /// Parses the content of a checkpoint file.
     ///
     /// # Errors
-    /// [`ForgeError::Field`] if it is no checkpoint, or damaged.
+    /// [`ForgeError::Field`] if it is not a checkpoint of this version, or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ForgeError> {
-        if !bytes.starts_with(MARK) {
-            return Err(wrong("no checkpoint, or one of another version".into()));
+        if !bytes.starts_with(MAGIC) {
+            return Err(wrong("of an unknown format".into()));
         }
-        let length = bytes.len().saturating_sub(DIGEST);
+        let length = bytes.len().saturating_sub(DIGEST_BYTES);
         let (content, digest) = bytes.split_at(length);
         if Digest::of(content).as_bytes() != digest {
             return Err(wrong("damaged".into()));
         }
-        let mut rest = Reader(&content[MARK.len()..]);
+        let mut rest = Reader(&content[MAGIC.len()..]);
         Self::read(&mut rest).ok_or_else(|| wrong("damaged".into()))
     }
 
+    /// Reads what is between the magic number and the digest.
     fn read(rest: &mut Reader<'_>) -> Option<Self> {
         let [phase, steps, of, own_steps] = [rest.u32()?, rest.u32()?, rest.u32()?, rest.u32()?];
         let [job, moves, prepared] = [rest.u32()?, rest.u32()?, rest.u32()?].map(|n| n as usize);
         let job = String::from_utf8(rest.take(job)?.to_vec()).ok()?;
         let [energy, last, age, slowing] = [rest.f64()?, rest.f64()?, rest.f64()?, rest.f64()?];
-        let state = Descended {
+        let state = DescentState {
             energy,
             steps: own_steps,
             last,
@@ -155,16 +147,16 @@ impl Checkpoint {
     /// Writes a file, whole or not at all; see [`write_table`](crate::write_table).
     ///
     /// # Errors
-    /// [`ForgeError::File`]; what stood at `path` stands there still.
+    /// [`ForgeError::File`] if a step fails; a file that was at `path` is then unchanged.
     pub fn write(&self, path: &Path) -> Result<(), ForgeError> {
         file::write_whole(path, &self.to_bytes())
     }
 
-    /// Reads a file; `None` if there is none.
+    /// Reads a file. Returns `None` if it does not exist.
     ///
     /// # Errors
-    /// [`ForgeError::File`] if it cannot be read, [`ForgeError::NotACheckpoint`] with what is wrong
-    /// in it.
+    /// [`ForgeError::File`] if it cannot be read, [`ForgeError::NotACheckpoint`] if it is larger
+    /// than any checkpoint or [`from_bytes`](Self::from_bytes) refuses it.
     pub fn read_file(path: &Path) -> Result<Option<Self>, ForgeError> {
         let failed = |action| {
             move |source| ForgeError::File {
@@ -193,11 +185,11 @@ fn wrong(value: String) -> ForgeError {
     ForgeError::Field {
         field: "checkpoint",
         value,
-        allowed: "one that this version of the forge has written".into(),
+        allowed: "one written by this version of the forge".into(),
     }
 }
 
-/// What is left of a file.
+/// Takes values off the front of a file's content.
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
@@ -227,8 +219,8 @@ impl<'a> Reader<'a> {
 mod tests {
     use super::*;
 
-    fn some() -> Checkpoint {
-        let mut state = Descended::at(vec![[0.25, -1e-300], [3.0, f64::MIN_POSITIVE]]);
+    fn checkpoint() -> Checkpoint {
+        let mut state = DescentState::start(vec![[0.25, -1e-300], [3.0, f64::MIN_POSITIVE]]);
         state.prepared_for = vec![[1.0, 2.0], [3.0, 4.0]];
         state.slowing = 0.5;
         Checkpoint {
@@ -241,26 +233,29 @@ mod tests {
     }
 
     #[test]
-    fn a_file_holds_all_of_it() {
+    fn a_written_file_reads_back() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("x.checkpoint");
         assert_eq!(Checkpoint::read_file(&path).expect("none"), None);
-        some().write(&path).expect("written");
-        assert_eq!(Checkpoint::read_file(&path).expect("read"), Some(some()));
+        checkpoint().write(&path).expect("written");
+        assert_eq!(
+            Checkpoint::read_file(&path).expect("read"),
+            Some(checkpoint())
+        );
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1);
     }
 
     #[test]
     fn damage_anywhere_is_found() {
-        let good = some().to_bytes();
+        let good = checkpoint().to_bytes();
         for at in 0..good.len() {
             let mut bad = good.clone();
             bad[at] ^= 0x10;
             assert!(Checkpoint::from_bytes(&bad).is_err(), "byte {at}");
             assert!(Checkpoint::from_bytes(&good[..at]).is_err(), "cut at {at}");
         }
-        // Counts that promise more than there is, with a digest that agrees.
-        let mut bad = good[..good.len() - DIGEST].to_vec();
+        // A count beyond the end of the file, under a valid digest.
+        let mut bad = good[..good.len() - DIGEST_BYTES].to_vec();
         bad[8 + 5 * 4..8 + 6 * 4].copy_from_slice(&u32::MAX.to_le_bytes());
         let digest = Digest::of(&bad);
         bad.extend(digest.as_bytes());
@@ -269,11 +264,11 @@ mod tests {
     }
 
     #[test]
-    fn another_jobs_is_refused_with_the_difference() {
-        let some = some();
-        some.check("profile = blue\nseed = 17\n", 2)
+    fn a_checkpoint_of_another_job_is_refused_with_the_difference() {
+        let kept = checkpoint();
+        kept.check("profile = blue\nseed = 17\n", 2)
             .expect("its own");
-        let error = some
+        let error = kept
             .check("profile = blue\nseed = 18\n", 2)
             .expect_err("refused");
         let text = error.to_string();
@@ -281,6 +276,6 @@ mod tests {
             text.contains("seed = 17") && text.contains("seed = 18"),
             "{text}"
         );
-        assert!(some.check(&some.job, 3).is_err());
+        assert!(kept.check(&kept.job, 3).is_err());
     }
 }

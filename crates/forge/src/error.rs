@@ -1,24 +1,24 @@
-//! What can go wrong while making, reading and writing tables.
+//! Errors of making, reading and writing tables.
 
 use std::{io, path::PathBuf};
 
 use strew_core::table::MAX_FILE_BYTES;
 
-/// Why the forge refused or failed. Every message says what was asked, and what is allowed.
+/// An error of the forge. Messages about input state the refused value and what is allowed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ForgeError {
-    /// A part of a job has a value that is not allowed.
+    /// A part of a job, a curve or a checkpoint has a value that is not allowed.
     #[error("{field} is {value}; allowed: {allowed}")]
     Field {
-        /// Which part.
+        /// The name of the part.
         field: &'static str,
-        /// Its value.
+        /// The value of the part.
         value: String,
         /// What is allowed.
         allowed: String,
     },
-    /// The parts do not make a table.
+    /// The parts of a job do not make a table.
     #[error(transparent)]
     Table(#[from] strew_core::Error),
     /// A file is not a table.
@@ -29,12 +29,12 @@ pub enum ForgeError {
         /// What is wrong with it.
         source: strew_core::Error,
     },
-    /// A file is larger than any table; it was not read.
+    /// A file is larger than any table.
     #[error("{}: {bytes} bytes; a table file has at most {MAX_FILE_BYTES}", path.display())]
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// Its size.
+        /// The size of the file, or of the part that was read.
         bytes: u64,
     },
     /// A file is not a checkpoint.
@@ -45,14 +45,14 @@ pub enum ForgeError {
         /// What is wrong with it.
         error: Box<ForgeError>,
     },
-    /// The file system refused.
+    /// An operation on a file or folder failed.
     #[error("cannot {action} {}: {source}", path.display())]
     File {
-        /// What was being done.
+        /// The operation, as a verb.
         action: &'static str,
-        /// To which file or folder.
+        /// The file or folder.
         path: PathBuf,
-        /// Why it failed.
+        /// The cause.
         source: io::Error,
     },
 }

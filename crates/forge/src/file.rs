@@ -1,4 +1,4 @@
-//! Table files on disk: written whole or not at all, read with their path in every error.
+//! Table files on disk: their names, reading, and writing whole or not at all.
 
 use std::{
     fs::File,
@@ -13,10 +13,18 @@ use crate::ForgeError;
 /// The extension of table files.
 pub const EXTENSION: &str = "strew";
 
-/// The usual name of a table's file: profile, α and size, such as `blue-5-sqrt3-over-2-s.strew`.
+/// Returns the usual name of a table's file: profile, α and size, such as
+/// `blue-5-sqrt3-over-2-s.strew`.
 ///
-/// α is its canonical text without parentheses, with `/` as `-over-`, `+` as `-plus-`, `*` as
-/// `-times-`. The size is `s` for R = 49, `m` for R = 100, `l` for R = 200, else `r` and R.
+/// α is its canonical text without parentheses, with `-over-` for `/`, `-plus-` for `+` and
+/// `-times-` for `*`. The size is `s` for R = 49, `m` for R = 100, `l` for R = 200, and `r` with R
+/// for others.
+///
+/// ```
+/// let name = strew_forge::file_name("blue", "sqrt(3)".parse()?, 100);
+/// assert_eq!(name, "blue-sqrt3-m.strew");
+/// # Ok::<(), strew_core::pattern::AlphaError>(())
+/// ```
 #[must_use]
 pub fn file_name(profile: &str, alpha: Alpha, radius: u32) -> String {
     let alpha = alpha
@@ -29,11 +37,11 @@ pub fn file_name(profile: &str, alpha: Alpha, radius: u32) -> String {
     format!("{profile}-{alpha}-{size}.{EXTENSION}")
 }
 
-/// Reads a table file and checks everything in it.
+/// Reads and checks a table file.
 ///
 /// # Errors
 /// [`ForgeError::File`] if it cannot be read, [`ForgeError::TooLarge`] if it has more than
-/// [`MAX_FILE_BYTES`] (it is not read then), [`ForgeError::NotATable`] with what is wrong in it.
+/// [`MAX_FILE_BYTES`], [`ForgeError::NotATable`] if its content is not a valid table.
 pub fn read_table(path: &Path) -> Result<Table, ForgeError> {
     let failed = |action| {
         move |source| ForgeError::File {
@@ -51,7 +59,7 @@ pub fn read_table(path: &Path) -> Result<Table, ForgeError> {
     if bytes > MAX_FILE_BYTES {
         return Err(too_large(bytes));
     }
-    // The file may grow meanwhile, or be a pipe without a size: one byte too many tells.
+    // The file may grow meanwhile, or be a pipe without a size: read one byte beyond the limit.
     let mut content = Vec::with_capacity(bytes as usize);
     file.take(MAX_FILE_BYTES + 1)
         .read_to_end(&mut content)
@@ -66,16 +74,18 @@ pub fn read_table(path: &Path) -> Result<Table, ForgeError> {
     })
 }
 
-/// Writes a table file: under a temporary name in the same folder, flushed to the disk, then
-/// renamed, so that a reader sees the old file or the new one and never a part.
+/// Writes a table file, whole or not at all.
+///
+/// It is written under a temporary name in the same folder, flushed to the disk and renamed. So
+/// readers see the old file or the new one and never a part of it.
 ///
 /// # Errors
-/// [`ForgeError::File`] if a step fails; what stood at `path` stands there still.
+/// [`ForgeError::File`] if a step fails; a file that was at `path` is then unchanged.
 pub fn write_table(path: &Path, table: &Table) -> Result<(), ForgeError> {
     write_whole(path, &table.to_bytes())
 }
 
-/// Writes any file in that way.
+/// Writes any file as [`write_table`] does.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ForgeError> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -94,7 +104,7 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ForgeError> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // A table is no secret; the umask still applies.
+        // Readable for others, unlike other temporary files; the umask still applies.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     let mut file = builder
@@ -104,7 +114,7 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), ForgeError> {
     file.as_file().sync_all().map_err(failed("flush", path))?;
     file.persist(path)
         .map_err(|e| failed("replace", path)(e.error))?;
-    // The new name is safe only once the folder is. Windows cannot flush a folder, nor needs to.
+    // The rename is on the disk only once the folder is. Windows cannot flush folders and need not.
     #[cfg(unix)]
     File::open(folder)
         .and_then(|folder| folder.sync_all())
@@ -149,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_name_the_file_and_the_fault() {
+    fn errors_name_the_file_and_the_cause() {
         let folder = tempfile::tempdir().expect("valid");
         let path = folder.path().join("bad.strew");
         let missing = read_table(&path).expect_err("refused").to_string();
@@ -161,7 +171,7 @@ mod tests {
         };
         assert_eq!(source.kind(), ErrorKind::TableTruncated);
         assert!(damaged.to_string().contains("bad.strew"), "{damaged}");
-        // A file of that size with no content on the disk: refused by its size alone.
+        // A sparse file, refused by its size alone.
         let huge = File::create(&path).expect("valid");
         huge.set_len(MAX_FILE_BYTES + 1).expect("valid");
         assert!(matches!(
@@ -171,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn file_names_say_profile_alpha_and_size() {
+    fn file_names_have_profile_alpha_and_size() {
         for (alpha, radius, name) in [
             ("(5-sqrt(3))/2", 49, "blue-5-sqrt3-over-2-s.strew"),
             ("sqrt(3)", 100, "blue-sqrt3-m.strew"),

@@ -1,12 +1,13 @@
 //! Makes and judges the displacement tables of Strew.
 //!
-//! A [`Job`] says which table: α, the size of the neighborhood map, a [noise profile](profile), a
-//! seed. [`forge`] optimizes the table's vectors — not points — and accepts the table only after it
-//! has been [measured](measure) on point sets it was not optimized on. The result is a
-//! [`Table`](strew_core::Table) with its history, which [`write_table`] puts on disk.
+//! A [`Job`] says which table to make: α, the size of the neighborhood map, a
+//! [noise profile](profile) and a seed. [`forge()`] optimizes the vectors of the table and accepts
+//! it only after it has been [judged](judge) on point sets it was not optimized on. The result is a
+//! [`Table`](strew_core::Table) with its history, which [`write_table`] writes to disk.
 //!
-//! Equal jobs give equal tables on every machine and with any number of threads: what reaches a
-//! table is computed with plain arithmetic in a fixed order (see [`energy::exp`]).
+//! Equal jobs make the same table, bit for bit, on every machine and with any number of threads:
+//! everything that reaches a table is computed with plain arithmetic in a fixed order (see
+//! [`numeric`]).
 //!
 //! ```
 //! use strew_forge::{Job, forge};
@@ -15,35 +16,53 @@
 //! (job.radius, job.steps) = (12, Some(20)); // tiny, for the example
 //! let outcome = forge(&job, &())?;
 //! assert_eq!(outcome.table.profile(), "blue");
-//! // So few steps and blocks do not make a good table, and it says so.
+//! // So few steps and blocks do not make a good table.
 //! assert!(!outcome.accepted);
 //! assert!(outcome.complaints[0].to_string().contains("low_power"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # How a table is made
+//!
+//! A job is checked and becomes a plan: the recipe of its [`profile`], the map and the twins to
+//! optimize on, and the panel of point sets to judge on. The recipe runs in phases, each of which
+//! lowers an [`energy`] as a function of the table's vectors ([`optimize`]). Some profiles follow a
+//! radial power [`curve`]; their energy is the error against it. Then the panel is
+//! [measured](measure) and the figures are compared with the bounds of the profile ([`judge`]).
+//!
+//! Meanwhile a [`Watch`] follows the [`Progress`], keeps [`Checkpoint`]s and may stop the work;
+//! [`resume`] goes on from a checkpoint. Apart from jobs, a [`Report`] measures any point set, and
+//! [`picture()`] draws it.
 
 mod checkpoint;
+pub mod curve;
+mod domain;
 pub mod energy;
 mod error;
+mod estimate;
 mod file;
-mod ground;
+mod forge;
 mod job;
 pub mod judge;
 pub mod measure;
+pub mod numeric;
 pub mod optimize;
 mod picture;
 mod plan;
 pub mod profile;
 mod report;
 mod twins;
-mod work;
+mod watch;
 
 pub use checkpoint::Checkpoint;
+pub use curve::Target;
 pub use error::ForgeError;
+pub use estimate::Estimate;
 pub use file::{EXTENSION, file_name, read_table, write_table};
-pub use job::{DEFAULT_SEED, Estimate, Job, MAX_RADIUS, MAX_STEPS};
+pub use forge::{Outcome, forge, resume};
+pub use job::{DEFAULT_SEED, Job, MAX_RADIUS, MAX_STEPS};
 pub use judge::{Complaint, Figure};
-pub use optimize::{Progress, Stage, Watch};
 pub use picture::{PictureError, picture};
-pub use profile::{Aim, Profile, Target};
+pub use profile::{Aim, Profile};
 pub use report::{Report, Resolution};
-pub use work::{Outcome, forge, resume};
+pub use watch::{Meter, Progress, Stage, Watch};

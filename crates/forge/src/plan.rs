@@ -1,4 +1,4 @@
-//! A checked job: its map, its twins, and the phases of its optimization.
+//! A checked job: its profile, the domain it is optimized on, and the panel it is judged on.
 
 use strew_core::{
     ALGORITHM_VERSION, Map, Table,
@@ -7,37 +7,40 @@ use strew_core::{
 
 use crate::{
     ForgeError, Job, MAX_RADIUS, MAX_STEPS,
-    ground::Ground,
+    curve::{LeastCorrelation, Target, to_parameters},
+    domain::Domain,
     judge::{Bound, Panel, bounds_of_curve},
     optimize::{Descent, jitter},
-    profile::{LeastCorrelation, Phase, Profile, Recipe, Target, to_parameters},
+    profile::{Phase, Profile, Recipe},
 };
 
-/// The least side t of the set region (α = 1.1): below, a map of any half-width sees too few
-/// neighbors, and there are too many grid points between them to list.
-const LEAST_SIDE: f64 = 0.05;
+/// The least side t of the set region, that of α = 1.1. Below it a map of any half-width covers too
+/// few neighbors, with too many grid points between them to list.
+const MIN_SIDE: f64 = 0.05;
 
-/// The largest half-width for a radial power curve, whose pairs reach far: 1 to 2 GB of neighbor lists.
+/// The largest half-width for a radial power curve: its neighbor lists take 1 to 2 GB there.
 const MAX_RADIAL_RADIUS: u32 = 200;
-/// To be raised with any change of what a step computes, down to the last bit: work that was begun
-/// before must not go on after.
+/// The version of the optimizer's arithmetic. Any change of a step's result, down to the last bit,
+/// raises it, so that work begun before the change is not resumed after it.
 const ARITHMETIC: u32 = 2;
 
 /// A checked job.
 pub(crate) struct Plan {
     pub(crate) profile: &'static Profile,
-    /// The name of the table's profile.
+    /// The name of the table's profile. For a custom curve it differs from that of `profile`.
     name: String,
-    /// The curve to follow, for profiles that do.
+    /// The radial power curve to follow, if any.
     target: Option<Target>,
-    ground: Ground,
+    domain: Domain,
     pub(crate) panel: Panel,
-    /// What every unseen subject must satisfy.
+    /// The bounds that the figures of every unseen subject must satisfy.
     pub(crate) bounds: Vec<Bound>,
+    /// Steps of all phases.
     pub(crate) steps: u32,
 }
 
 impl Plan {
+    /// Checks every part of a job.
     pub(crate) fn new(job: &Job) -> Result<Self, ForgeError> {
         let (profile, target, bounds) = match &job.target {
             None => {
@@ -46,7 +49,7 @@ impl Plan {
             }
             Some(target) => {
                 let profile = Profile::custom(&job.profile)?;
-                // A table must be able to bear the name: better known now than at the end.
+                // Refuses a name that a table cannot have before any work is done.
                 Table::undisplaced(job.alpha, 1, &job.profile)?;
                 (profile, Some(target.clone()), bounds_of_curve(target))
             }
@@ -59,56 +62,58 @@ impl Plan {
         let most = target.as_ref().map_or(MAX_RADIUS, |_| MAX_RADIAL_RADIUS);
         in_range("R", job.radius, most)?;
         let map = Map::new(job.alpha, job.radius).map_err(|e| ForgeError::Table(e.into()))?;
-        let mut ground = Ground::new(map);
-        if ground.twins.is_empty() || ground.scale() < LEAST_SIDE {
+        let mut domain = Domain::new(map);
+        if domain.twins.is_empty() || domain.scale() < MIN_SIDE {
             return Err(ForgeError::Field {
                 field: "alpha",
                 value: job.alpha.to_string(),
-                allowed: "at least 1.1, and not a fraction of small numbers, whose map has ties \
+                allowed: "at least 1.1, and not a fraction of small integers: its map has ties \
                           that no periodic twin has"
                     .into(),
             });
         }
         if let Recipe::Radial(_) = profile.recipe {
-            // It is optimized on unbounded patterns.
-            ground.twins.clear();
+            // Curves are followed on unbounded patterns.
+            domain.twins.clear();
         }
-        let panel = Panel::new(&ground.map, &ground.twins);
+        let panel = Panel::new(&domain.map, &domain.twins);
         Ok(Self {
             profile,
             panel: match &target {
-                Some(target) => panel.with_target(target.clone(), &ground.map),
+                Some(target) => panel.with_target(target.clone(), &domain.map),
                 None => panel,
             },
             bounds,
             name: job.profile.clone(),
             target,
-            ground,
+            domain,
             steps,
         })
     }
 
+    /// The random start for a seed.
     pub(crate) fn start(&self, seed: u64) -> Vec<[f64; 2]> {
-        jitter(self.ground.blocks(), self.profile.jitter, seed)
+        jitter(self.domain.blocks(), self.profile.jitter, seed)
     }
 
-    /// Where the pair correlation of the curve is least, if there is a curve to follow.
+    /// The least pair correlation of a set with the curve, if there is a curve to follow.
     pub(crate) fn least_correlation(&self) -> Option<LeastCorrelation> {
         self.target.as_ref().map(LeastCorrelation::of)
     }
 
+    /// The phases of the optimization.
     pub(crate) fn phases(&self) -> Vec<Phase> {
         self.profile
             .recipe
-            .phases(&self.ground, self.target.as_ref(), self.steps)
+            .phases(&self.domain, self.target.as_ref(), self.steps)
     }
 
-    /// How many vectors there are.
+    /// The number of vectors.
     pub(crate) fn blocks(&self) -> usize {
-        self.ground.blocks()
+        self.domain.blocks()
     }
 
-    /// Everything that decides the result, as lines of `name = value`: two jobs whose lines agree
+    /// Everything that decides the result, as lines of `name = value`. Two jobs with equal lines
     /// take the same steps.
     pub(crate) fn identity(&self, job: &Job, phases: &[Phase]) -> String {
         let provenance = self.provenance(job, self.steps);
@@ -135,11 +140,12 @@ impl Plan {
         lines.into_iter().map(line).collect()
     }
 
+    /// The history of a table after `steps` steps, without figures.
     pub(crate) fn provenance(&self, job: &Job, steps: u32) -> Provenance {
         let (optimizer, mut parameters) = self.profile.recipe.describe();
         parameters.extend(self.target.iter().flat_map(to_parameters));
         if let Recipe::Radial(_) = self.profile.recipe {
-            let alphas = self.ground.spread().len();
+            let alphas = self.domain.spread().len();
             parameters.push(("alphas".into(), alphas.to_string()));
         }
         parameters.push(("jitter".into(), self.profile.jitter.to_string()));
@@ -151,28 +157,29 @@ impl Plan {
             optimizer: optimizer.into(),
             parameters,
             seed: job.seed,
-            twins: self.ground.twins.clone(),
+            twins: self.domain.twins.clone(),
             figures: Vec::new(),
         }
     }
 
+    /// The table with these vectors, which are in mean spacings.
     pub(crate) fn table(
         &self,
         moves: &[[f64; 2]],
         provenance: Provenance,
     ) -> Result<Table, ForgeError> {
-        let unit = 1.0 / self.ground.scale();
+        let unit = 1.0 / self.domain.scale();
         let too_long = || ForgeError::Field {
             field: "displacement",
             value: "too long".into(),
-            allowed: "vectors that a table can hold; a smaller start or fewer steps".into(),
+            allowed: "vectors short enough for a table, as after fewer steps".into(),
         };
         let vectors = moves
             .iter()
             .map(|m| Some([from_grid_units(m[0] * unit)?, from_grid_units(m[1] * unit)?]))
             .collect::<Option<Vec<_>>>()
             .ok_or_else(too_long)?;
-        let table = Table::new(self.ground.map.clone(), &self.name, vectors, provenance)?;
+        let table = Table::new(self.domain.map.clone(), &self.name, vectors, provenance)?;
         Ok(table)
     }
 }
@@ -186,4 +193,81 @@ fn in_range(field: &'static str, value: u32, most: u32) -> Result<(), ForgeError
         value: value.to_string(),
         allowed: format!("1 to {most}"),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use strew_core::Alpha;
+
+    use super::*;
+    use crate::forge;
+
+    #[test]
+    fn bad_parts_are_refused_with_name_value_and_allowed_range() {
+        let good = Job {
+            radius: 15,
+            steps: Some(1),
+            ..Job::new("(5-sqrt(3))/2".parse().expect("valid"))
+        };
+        let of = |alpha: &str| alpha.parse::<Alpha>().expect("valid");
+        for (job, words) in [
+            (
+                Job {
+                    alpha: of("3/2"),
+                    ..good.clone()
+                },
+                ["alpha", "3/2", "1.1"],
+            ),
+            (
+                Job {
+                    alpha: of("1.01"),
+                    ..good.clone()
+                },
+                ["alpha", "101/100", "1.1"],
+            ),
+            (
+                Job {
+                    steps: Some(0),
+                    ..good.clone()
+                },
+                ["steps", "0", "1 to 1000000"],
+            ),
+            (
+                Job {
+                    steps: Some(u32::MAX),
+                    ..good.clone()
+                },
+                ["steps", "4294967295", "1000000"],
+            ),
+            (
+                Job {
+                    radius: 0,
+                    ..good.clone()
+                },
+                ["R", "0", "1 to 256"],
+            ),
+            (
+                Job {
+                    radius: 257,
+                    ..good.clone()
+                },
+                ["R", "257", "1 to 256"],
+            ),
+            (
+                Job {
+                    profile: "bleu".into(),
+                    ..good.clone()
+                },
+                ["profile", "bleu", "blue"],
+            ),
+        ] {
+            let refused = [
+                forge(&job, &()).expect_err("refused"),
+                job.estimate().expect_err("refused"),
+            ];
+            for error in refused.map(|e| e.to_string()) {
+                assert!(words.iter().all(|word| error.contains(word)), "{error}");
+            }
+        }
+    }
 }

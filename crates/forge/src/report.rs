@@ -1,4 +1,4 @@
-//! Everything that is measured on one point set, for people and for plots.
+//! Reports: everything that is measured on a point set, for readers and plots.
 
 use strew_core::table::Figures;
 
@@ -8,17 +8,17 @@ use crate::{
     measure::{Distances, Rdf, Ring, Spectrum, Torus, Voronoi, Window},
 };
 
-/// How far and how finely a spectrum is looked at.
+/// The range and the ring width of a report's spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
-    /// Frequencies are measured up to this ν.
+    /// The largest ν that is measured.
     pub nu_max: f64,
-    /// The width of rings, in ν; those of 0 are one mode wide.
+    /// The width of rings in ν; 0 for rings one mode wide.
     pub ring_width: f64,
 }
 
 impl Default for Resolution {
-    /// To ν = 4, in rings of [`RING_WIDTH`].
+    /// Up to ν = 4, in rings of [`RING_WIDTH`].
     fn default() -> Self {
         Self {
             nu_max: 4.0,
@@ -27,12 +27,24 @@ impl Default for Resolution {
     }
 }
 
-/// A point set with all its figures and curves, at unit density.
+/// A point set at unit density with all its figures and curves.
+///
+/// ```
+/// use strew_core::Table;
+/// use strew_forge::{Report, Resolution, measure::window_set};
+///
+/// // The AA pattern itself, in a window of about 2,000 points.
+/// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let window = window_set(&table, 2000, 1);
+/// let report = Report::of_window("pattern".into(), false, &window, Resolution::default());
+/// assert!(report.figures.value("delta_min").is_some_and(|delta| delta > 0.6));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Report {
     /// The named figures, rounded to four significant digits.
     pub figures: Figures,
-    /// Radial power and anisotropy, in the rings that the figures were taken on.
+    /// Radial power and anisotropy, in the rings that the figures are taken over.
     pub rings: Vec<Ring>,
     /// The radial distribution function.
     pub rdf: Rdf,
@@ -43,7 +55,8 @@ pub struct Report {
 }
 
 impl Report {
-    /// Of a periodic set, looked at so far and so finely.
+    /// Measures a periodic set. `subject` is its name in the figures, `seen` says whether its table
+    /// was optimized on it.
     #[must_use]
     pub fn of_torus(subject: String, seen: bool, set: &Torus, at: Resolution) -> Self {
         let spectrum = Spectrum::of_torus(set, at.nu_max);
@@ -63,7 +76,8 @@ impl Report {
         )
     }
 
-    /// Of a window of an unbounded set, looked at so far and so finely.
+    /// Measures a window of an unbounded set. `subject` is its name in the figures, `seen` says
+    /// whether its table was optimized on it.
     #[must_use]
     pub fn of_window(subject: String, seen: bool, set: &Window, at: Resolution) -> Self {
         let spectrum = Spectrum::of_window(set, at.nu_max);
@@ -105,7 +119,8 @@ impl Report {
             points: points.to_vec(),
         }
     }
-    /// With the figures of a curve that the radial power should follow.
+
+    /// Returns this report with the figures of a curve that the radial power should follow.
     #[must_use]
     pub fn compared(mut self, target: &Target) -> Self {
         let more = curve_figures(&self.spectrum, target);

@@ -1,17 +1,18 @@
-//! The twins a table is made and judged on: those next to α.
+//! The twins a table is optimized and judged on: those next to α.
 //!
-//! A map's twins may lie anywhere on the interval of α on which its thresholds keep their order.
-//! For small maps that interval is wide, and a twin far from α has another density and other
-//! frequencies. So of each numerator only the two fractions around α are looked at. For maps of
-//! useful size these are all the twins of moderate size there are.
+//! The twins of a map lie on the interval of α on which its thresholds keep their order. For small
+//! maps this interval is wide, and a twin far from α has another density and other frequencies. So
+//! of the twins with the same side t only the two fractions around α are considered. Maps of useful
+//! size have no other twins of moderate size.
 
 use strew_core::{Alpha, Map, Twin};
 
-/// The largest side t of a twin that is looked for: 17 million points.
+/// The largest side t of a twin that is considered: 17 million points.
 const MAX_SIDE: u64 = 4096;
 
-/// The twins of a map next to its α, smallest first. The list ends; for a fraction of small
-/// numbers, whose thresholds coincide as no twin's do, it may be empty.
+/// Returns the twins of a map next to its α, smallest first, up to [`MAX_SIDE`]. An α that is a
+/// fraction of small integers may have none: some of its thresholds coincide, those of twins do
+/// not.
 pub(crate) fn next_to_alpha(map: &Map) -> impl Iterator<Item = Twin> {
     let excess = map.alpha().to_f64() - 1.0;
     (1..=MAX_SIDE).flat_map(move |t| {
@@ -19,18 +20,18 @@ pub(crate) fn next_to_alpha(map: &Map) -> impl Iterator<Item = Twin> {
         [q, q + 1]
             .into_iter()
             .filter_map(move |q| Twin::new(t + q, q))
-            .filter(|&twin| map.has_twin(twin) && of_fraction(map, twin).is_some())
+            .filter(|&twin| map.has_twin(twin) && map_of_twin(map, twin).is_some())
     })
 }
 
-/// Twins with fewer points have so few Bragg peaks that the mean power of a ring tells their
-/// speckle.
+/// The least number of points of a large twin. In smaller ones a ring holds so few Bragg peaks that
+/// its mean power shows their speckle.
 pub(crate) const LARGE_TWIN: u64 = 65_000;
-/// Of so many large twins the farthest are looked for: for the default map, those of up to 200,000
-/// points. Still larger ones hardly reach farther.
+/// The number of large twins that the farthest are chosen from: for the default map, all of up to
+/// 200,000 points. Larger ones hardly lie farther out.
 const LARGE_TWINS: usize = 40;
 
-/// Of the first large twins of a map, those with the least and the greatest α.
+/// Returns the large twins of a map with the least and the greatest α.
 pub(crate) fn farthest(map: &Map) -> Option<[Twin; 2]> {
     let large = next_to_alpha(map).filter(|twin| twin.points() >= LARGE_TWIN);
     let twins: Vec<Twin> = large.take(LARGE_TWINS).collect();
@@ -43,13 +44,13 @@ pub(crate) fn farthest(map: &Map) -> Option<[Twin; 2]> {
     Some([*least, *greatest])
 }
 
-/// A twin's own α.
+/// The α of a twin, p/q.
 pub(crate) fn fraction(twin: &Twin) -> f64 {
     twin.p() as f64 / twin.q() as f64
 }
 
-/// The map for a twin's fraction, or `None` if its intervals are not this map's after all.
-pub(crate) fn of_fraction(map: &Map, twin: Twin) -> Option<Map> {
+/// The map at the α of a twin, or `None` if it has other intervals.
+pub(crate) fn map_of_twin(map: &Map, twin: Twin) -> Option<Map> {
     let alpha = Alpha::from_fraction(twin.p(), twin.q()).ok()?;
     let same = |found: &Map| found.intervals() == map.intervals();
     Map::new(alpha, map.radius()).ok().filter(same)
@@ -60,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn for_maps_of_useful_size_they_are_all_the_twins_there_are() {
+    fn maps_of_useful_size_have_no_other_twins() {
         for alpha in ["(5-sqrt(3))/2", "sqrt(3)", "(1+sqrt(5))/2"] {
             let map = Map::new(alpha.parse().expect("valid"), 49).expect("small");
             let all: Vec<Twin> = map.twins().take(60).collect();
@@ -70,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn they_are_near_alpha_and_the_list_ends() {
+    fn they_are_near_alpha_and_finitely_many() {
         for (alpha, radius) in [("1.1", 1), ("1.95", 1), ("sqrt(2)", 3), ("3/2", 4)] {
             let map = Map::new(alpha.parse().expect("valid"), radius).expect("small");
             for twin in next_to_alpha(&map)
@@ -82,7 +83,7 @@ mod tests {
                     (fraction - map.alpha().to_f64()).abs() < 0.02,
                     "{alpha} {twin}"
                 );
-                let finer = of_fraction(&map, twin).expect("the same map");
+                let finer = map_of_twin(&map, twin).expect("the same map");
                 assert_eq!(finer.intervals(), map.intervals());
             }
         }

@@ -1,4 +1,4 @@
-//! The shipped tables that follow a radial power curve: judged again on twins and windows that
+//! The shipped tables that follow a radial power curve, judged again on twins and windows that
 //! their makers never saw.
 
 use std::{path::PathBuf, sync::Arc};
@@ -30,7 +30,7 @@ fn profiles() -> impl Iterator<Item = (&'static Profile, Target)> {
     Profile::ALL.iter().filter_map(|p| Some((p, p.target()?)))
 }
 
-/// The figures that bounds of curves ask for.
+/// The figures that the bounds of these profiles use.
 fn judged(subject: String, spectrum: &Spectrum, target: &Target) -> Figures {
     let summary = spectrum.summary(RING_WIDTH);
     let crispness = Crispness::of_rings(&spectrum.rings(RING_WIDTH), RING_WIDTH);
@@ -49,8 +49,8 @@ fn judged(subject: String, spectrum: &Spectrum, target: &Target) -> Figures {
     }
 }
 
-/// Of the twins of 65,000 to 200,000 points, which are all over the interval of α that the map
-/// serves, the two next to each of its ends, where curves are missed first, and four between.
+/// Eight of the twins of 65,000 to 200,000 points, which spread over the interval of α that the map
+/// serves: the two next to each of its ends, where curves are missed first, and four in between.
 fn far_and_near(table: &Table) -> Vec<Twin> {
     let large = table.map().twins().take_while(|t| t.points() <= 200_000);
     let mut large: Vec<Twin> = large.filter(|t| t.points() >= 65_000).collect();
@@ -80,7 +80,7 @@ fn on_twins(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
     far_and_near(table).into_par_iter().map(measure).collect()
 }
 
-/// Windows of the unbounded pattern, and a region as it is served with a seed.
+/// Two windows of the unbounded pattern, and two regions with the warp, as a server returns them.
 fn on_windows(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
     let windows =
         [100, 101].map(|seed| (format!("window {seed}"), window_set(table, 75_000, seed)));
@@ -92,7 +92,7 @@ fn on_windows(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
     windows.into_iter().chain(warped).map(measure).collect()
 }
 
-/// 300² mean spacings with the warp on, somewhere off the origin.
+/// 300² mean spacings with the warp on, away from the origin.
 fn warped(table: &Table, seed: u64) -> Window {
     let sampler = Arc::new(Sampler::new(table.clone()));
     let (side, corner) = (300.0, 1000.0 * seed as f64);
@@ -113,7 +113,7 @@ fn shipped_tables_follow_their_curves_on_far_twins_and_windows() {
         let mut all = on_twins(&table, &target);
         all.extend(on_windows(&table, &target));
         if profile.name == "pink" {
-            // From 4 and more at nu 0.1, however that is read.
+            // Strong long waves: power of at least 4 in the ring from ν = 0.1 to 0.2.
             for (figures, spectrum) in &all {
                 let rings = spectrum.rings(0.1);
                 assert!(rings[1].power >= 4.0, "{}: {:?}", figures.subject, rings[1]);
@@ -142,8 +142,8 @@ fn curves_make_the_same_table_with_any_number_of_threads() {
 }
 
 #[test]
-fn an_impossible_curve_is_answered_with_how_near_it_came() {
-    // A band of nothing around nu 1 and below: no set has so few close pairs.
+fn an_impossible_curve_is_refused_with_its_error() {
+    // No power up to ν = 1.2: no set has so few close pairs.
     let target: Target = "0 0\n1.2 0\n1.2 1".parse().expect("valid");
     let job = |profile: &str| Job {
         radius: 15,
@@ -154,14 +154,14 @@ fn an_impossible_curve_is_answered_with_how_near_it_came() {
     };
     let outcome = forge(&job("mine"), &()).expect("a good job");
     assert!(!outcome.accepted);
-    let said: String = outcome
+    let complaints: String = outcome
         .complaints
         .iter()
         .map(|c| format!("{c}; "))
         .collect();
     assert!(
-        said.contains("target_rms") && said.contains("target_worst"),
-        "{said}"
+        complaints.contains("target_rms") && complaints.contains("target_worst"),
+        "{complaints}"
     );
     let history = outcome.table.provenance();
     let drawn = ("target".to_owned(), "0 0; 1.2 0; 1.2 1".to_owned());

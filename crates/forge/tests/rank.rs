@@ -1,4 +1,4 @@
-//! Thinning by rank against random thinning: what is left is more even.
+//! Thinning by rank leaves more even sets than random thinning.
 
 use std::{path::PathBuf, sync::Arc};
 
@@ -29,7 +29,7 @@ fn points(sampler: &Arc<Sampler>, placement: Placement, side: f64) -> Vec<Point>
     points
 }
 
-/// Mean power below ν = 0.5, ν in units of the kept density.
+/// Mean power below ν = 0.5, in the units of the density after thinning.
 fn low_power(points: impl Iterator<Item = Point>, keep: f64, side: f64) -> f64 {
     let set = Window::new(side, keep, points.map(|p| [p.x, p.y]).collect());
     Spectrum::of_window(&set, 0.6).summary(0.05).low_power
@@ -42,7 +42,7 @@ fn ranks_thin_more_evenly_than_chance() {
     let attributes = Attributes::new(vec!["u1".parse().expect("plain")]).expect("one");
     for warp in [Warp::OFF, Warp::ON] {
         let placement = Placement::new(spacing, Seed(3)).with_warp(warp);
-        // Share, side, and the most power relative to random thinning.
+        // Share kept, side, and the largest power allowed, relative to random thinning.
         for (keep, side, most) in [(0.5, 360.0, 0.8), (0.25, 500.0, 0.5), (0.0625, 800.0, 0.35)] {
             let share = Keep::new(keep).expect("a share");
             let ranked = points(&sampler, placement.with_keep(share), side);

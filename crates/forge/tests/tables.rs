@@ -1,5 +1,5 @@
-//! The tables that ship: judged again, on twins and windows that their makers never saw, and made
-//! again, bit by bit.
+//! The shipped tables, judged again on twins and windows that their makers never saw. One of them
+//! is made again, bit for bit.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,8 @@ fn shipped(profile: &str, alpha: &str, radius: u32) -> Table {
     read_table(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Figures on twins and windows that the table's maker never saw, up to ν = 1.5.
+/// Figures, up to ν = 1.5, on up to `most` twins and on windows that neither the optimizer nor the
+/// judge of the table saw.
 fn unseen(table: &Table, most: usize) -> Vec<Figures> {
     let judged = table.provenance().figures.iter().map(|f| f.subject.clone());
     let judged: Vec<String> = judged.collect();
@@ -35,7 +36,7 @@ fn unseen(table: &Table, most: usize) -> Vec<Figures> {
     all
 }
 
-/// Twins of up to `most` points that the table was not optimized on.
+/// Twins of 50,000 to `most` points that the table was not optimized on.
 fn large_twins(table: &Table, most: u64) -> impl Iterator<Item = Twin> {
     let seen = &table.provenance().twins;
     let twins = table
@@ -104,7 +105,7 @@ fn larger_maps_are_as_good_on_windows_and_unseen_twins() {
         ("spaced", 200, &spaced),
     ] {
         let table = shipped(profile, DEFAULT, radius);
-        // Large maps have few twins, and the judge has seen the smaller ones.
+        // Large maps have few twins, and the judge saw the smaller ones.
         let twins = large_twins(&table, 500_000).take(1);
         let mut all = on_twins(&table, twins);
         assert_eq!(all.len(), 1);
@@ -146,7 +147,7 @@ fn the_lloyd_table_is_at_rest_on_unseen_twins() {
     let large = |t: &Twin| t.points() > 70_000 && !seen.contains(t);
     let twin = table.map().twins().find(large).expect("endless");
     let set = twin_set(&table, twin).expect("a twin");
-    // Points are as near the centroids of their cells as a table of this size can have them.
+    // Points are about as near to the centroids of their cells as a table of this size allows.
     let cells = Lloyd::cells(&set);
     let away = |c: &Cell| (c.first[0] * c.first[0] + c.first[1] * c.first[1]).sqrt() / c.area;
     let mean = cells.iter().map(away).sum::<f64>() / cells.len() as f64;

@@ -1,4 +1,4 @@
-//! What the seeded warp is for: isotropic sets, and seeds whose sets are unrelated.
+//! The seeded warp makes sets isotropic, and sets of different seeds unrelated.
 
 use std::{path::PathBuf, sync::Arc};
 
@@ -10,7 +10,7 @@ use strew_forge::{
     read_table,
 };
 
-/// A window of `side`² mean spacings, somewhere off the origin.
+/// A window of `side`² mean spacings away from the origin.
 fn window(seed: u64, warp: Warp, side: f64) -> Window {
     let alpha = "(5-sqrt(3))/2".parse().expect("valid");
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -41,7 +41,7 @@ fn warped_sets_are_isotropic_and_keep_their_noise() {
         assert!(value("low_power") <= 1e-5, "{figures:?}");
         assert!(value("delta_min") >= 0.60, "{figures:?}");
     }
-    // What it remedies.
+    // Without the warp they are not.
     let plain = figures_of_window("plain".into(), false, &window(1, Warp::OFF, 362.0), 4.0);
     assert!(
         plain.value("anisotropy_db").expect("measured") > 2.0,
@@ -59,12 +59,13 @@ fn a_million_warped_points_are_isotropic() {
     assert!(value("delta_min") >= 0.60, "{figures:?}");
 }
 
-/// The correlation of two power spectra over 0.8 < ν < 2.5, each mode over its ring's mean.
+/// The correlation of two power spectra over 0.8 < ν < 2.5, with the power of each mode over the
+/// mean of its ring.
 fn correlation(a: &Window, b: &Window) -> f64 {
     let spectra = [a, b].map(|set| Spectrum::of_window(set, 2.5));
     let side = a.side();
     let modes = (2.5 * side) as i64;
-    // The taper blurs neighbors together: every fifth mode is a sample of its own.
+    // The taper blurs neighboring modes; every fifth mode is an independent sample.
     let samples = (0..=modes).step_by(5).flat_map(|kx| {
         let spectra = &spectra;
         (-modes..=modes).step_by(5).filter_map(move |ky| {
@@ -101,6 +102,6 @@ fn seeds_are_unrelated_sets() {
     let plain = correlation(&set(1, Warp::OFF), &set(2, Warp::OFF));
     assert!(
         plain > 0.3,
-        "without warp the same peaks stand everywhere: {plain}"
+        "without the warp all sets have the same peaks: {plain}"
     );
 }

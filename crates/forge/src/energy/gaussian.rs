@@ -1,25 +1,28 @@
 //! Gaussian blue noise: E = Σ exp(−d²/2σ²) over pairs (Ahmed, Ren, Wonka 2022).
 //!
-//! In the spectrum this is a sum of P(k)·exp(−2π²σ²ν²): the wider the Gaussian, the more it cares
-//! about low frequencies alone. σ = 1 gives the least low-frequency power, σ = 0.8 a sharper set;
-//! at 0.6 and below sets crystallize.
+//! In terms of the spectrum E is a sum of P(k)·exp(−2π²σ²ν²): the wider the Gaussian, the more low
+//! frequencies dominate. σ = 1 leaves the least power at low frequencies, σ = 0.8 makes a sharper
+//! set, and at σ ≤ 0.6 sets crystallize.
 
-use super::{PairEnergy, exp::exp};
+use super::PairEnergy;
+use crate::numeric::exp;
 
-/// The Gaussian repulsion.
+/// Gaussian repulsion.
 #[derive(Clone, Copy, Debug)]
 pub struct Gaussian {
+    /// −1/(2σ²).
     rate: f64,
+    /// −1/σ².
     slope: f64,
     cutoff_squared: f64,
     cutoff: f64,
 }
 
-/// In units of σ: the Gaussian is 3·10⁻⁷ there.
+/// The cut-off in units of σ, where the Gaussian is 3·10⁻⁷.
 const CUTOFF: f64 = 5.5;
 
 impl Gaussian {
-    /// The Gaussian of width `sigma`, in mean spacings. Useful are 0.65 to 1.2.
+    /// The Gaussian of width `sigma` in mean spacings; 0.65 to 1.2 are useful.
     #[must_use]
     pub fn new(sigma: f64) -> Self {
         let cutoff = CUTOFF * sigma;
@@ -39,7 +42,8 @@ impl PairEnergy for Gaussian {
 
     #[inline]
     fn pair(&self, distance_squared: f64) -> (f64, f64) {
-        // Beyond the cut-off the argument is clamped, for `exp`'s range, and the result dropped.
+        // Selections instead of branches, so that loops vectorize. The argument stays within the
+        // range of `exp`.
         let inside = distance_squared < self.cutoff_squared;
         let clamped = if inside { distance_squared } else { 0.0 };
         let value = exp(self.rate * clamped);

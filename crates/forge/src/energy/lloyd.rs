@@ -1,42 +1,44 @@
 //! Centroidal Voronoi energy: the squared distance from each place to its nearest point.
 //!
-//! E = Σ ∫ |x − p|² over the cell of p. Its gradient at p is 2·area·(p − centroid), so at unit
-//! density a step of ½ against it goes to the centroid: Lloyd's relaxation.
+//! E = Σ ∫ |x − p|² over the Voronoi cell of p. Its gradient at p is 2·area·(p − centroid), so at
+//! unit density a step of ½ against it leads to the centroid: Lloyd's relaxation.
 //!
-//! A cell is cut out of a square by the bisectors to the neighbors, nearest cells of the list first,
-//! in plain arithmetic and a fixed order: the same bits on every machine and with any number of
-//! threads, and without a triangulation, of which a twin would need a new one each step.
+//! Each Voronoi cell is cut out of a square by the bisectors to the points around, in the order of
+//! a cell list from the inside out. Plain arithmetic in this fixed order yields the same bits on
+//! every machine and with any number of threads. A triangulation, which would have to be built anew
+//! in every step, is not needed.
 
 use rayon::prelude::*;
 
 use super::SetEnergy;
-use crate::measure::{Torus, cells::Cells};
+use crate::measure::{CellList, Torus};
 
 /// The centroidal Voronoi energy.
 #[derive(Clone, Copy, Debug)]
 pub struct Lloyd;
 
-/// Moments of a Voronoi cell about its point.
+/// The moments of a Voronoi cell about its point p.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cell {
-    /// ∫ 1.
+    /// The area, ∫ 1.
     pub area: f64,
-    /// ∫ x − p: the area times the way to the centroid.
+    /// The first moment, ∫ x − p: the area times the vector from p to the centroid.
     pub first: [f64; 2],
-    /// ∫ |x − p|².
+    /// The second moment, ∫ |x − p|².
     pub second: f64,
 }
 
-/// Half the side of the square that cells are cut from, in mean spacings. Cells never come near.
-const START: f64 = 4.0;
+/// Half the side of the square that cells are cut from, in mean spacings. No cell is nearly as
+/// large.
+const HALF_SIDE: f64 = 4.0;
 /// Points per parallel task.
 const CHUNK: usize = 256;
 
 impl Lloyd {
-    /// The cells of a periodic set of at least 100 points, in the order of the points.
+    /// Returns the Voronoi cells of a periodic set of at least 100 points, in order of the points.
     #[must_use]
     pub fn cells(set: &Torus) -> Vec<Cell> {
-        let list = Cells::new(set.points(), set.side(), 1.0, true);
+        let list = CellList::new(set.points(), set.side(), 1.0, true);
         let found: Vec<Vec<(u32, Cell)>> = list
             .members()
             .par_chunks(CHUNK)
@@ -66,27 +68,30 @@ impl SetEnergy for Lloyd {
     }
 }
 
-/// A polygon being cut, around its point as the origin.
+/// Cuts Voronoi cells, one at a time.
 #[derive(Default)]
 struct Cutter {
+    /// The corners of the cell so far, counterclockwise, relative to its point.
     corners: Vec<[f64; 2]>,
+    /// The corners of the next cut.
     spare: Vec<[f64; 2]>,
-    /// The largest squared distance of a corner.
+    /// The largest squared distance of a corner from the point.
     reach: f64,
 }
 
 impl Cutter {
-    fn cell(&mut self, list: &Cells, own: u32, p: [f64; 2]) -> Cell {
+    /// The cell of the point `p`, which has the index `own`.
+    fn cell(&mut self, list: &CellList, own: u32, p: [f64; 2]) -> Cell {
         self.corners.clear();
         self.corners.extend([
-            [-START, -START],
-            [START, -START],
-            [START, START],
-            [-START, START],
+            [-HALF_SIDE, -HALF_SIDE],
+            [HALF_SIDE, -HALF_SIDE],
+            [HALF_SIDE, HALF_SIDE],
+            [-HALF_SIDE, HALF_SIDE],
         ]);
-        self.reach = 2.0 * START * START;
+        self.reach = 2.0 * HALF_SIDE * HALF_SIDE;
         for ring in 0.. {
-            // Whatever lies in this ring is at least this far; its bisector half as far.
+            // Bisectors to points in this ring are at least this far away.
             let far = 0.5 * f64::from((ring - 1).max(0)) * list.width();
             if far * far > self.reach {
                 break;
@@ -101,7 +106,7 @@ impl Cutter {
         self.moments()
     }
 
-    /// Keeps what satisfies x·n ≤ limit.
+    /// Keeps the part of the cell where x·n ≤ `limit`.
     fn cut(&mut self, n: [f64; 2], limit: f64) {
         let excess = |c: &[f64; 2]| c[0] * n[0] + c[1] * n[1] - limit;
         if self.corners.iter().all(|c| excess(c) <= 0.0) {
@@ -125,6 +130,7 @@ impl Cutter {
         self.reach = self.corners.iter().map(squared).fold(0.0, f64::max);
     }
 
+    /// The moments of the polygon, as sums over the triangles of its edges and its point.
     fn moments(&self) -> Cell {
         let mut cell = Cell::default();
         for (at, a) in self.corners.iter().enumerate() {
@@ -146,7 +152,7 @@ mod tests {
     use strew_core::{Map, Twin};
 
     use super::*;
-    use crate::{measure::Voronoi, optimize::SplitMix};
+    use crate::{measure::Voronoi, numeric::SplitMix};
 
     fn noise(count: usize) -> Torus {
         let mut random = SplitMix::new(4);
@@ -187,8 +193,8 @@ mod tests {
         }
     }
 
-    /// After so many steps to the centroid, the largest difference between the ways of two points of
-    /// the same block.
+    /// The largest difference between the displacements of two points of the same block after
+    /// `steps` steps to the centroid.
     fn disagreement(radius: u32, steps: u32) -> f64 {
         let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), radius).expect("small");
         let twin = Twin::new(683, 418).expect("coprime");
@@ -218,14 +224,15 @@ mod tests {
     }
 
     #[test]
-    fn after_k_steps_points_with_equal_k_ring_neighborhoods_have_moved_equally() {
-        // A cell reaches 0.9 spacings and so sees 1.8; a block of half-width 49 fixes 15 of them.
+    fn points_of_a_block_move_alike_while_the_block_fixes_their_neighborhood() {
+        // A cell reaches 0.9 mean spacings, so a step depends on points up to 1.8 away. A block of
+        // half-width 49 fixes the neighborhood up to 15.
         for steps in [2, 6] {
             let found = disagreement(49, steps);
             assert!(found < 1e-9, "{steps}: {found}");
         }
         assert!(disagreement(7, 1) < 1e-9);
-        // Five more steps see farther than the block of half-width 7 does.
+        // Six steps depend on points farther away than a block of half-width 7 fixes.
         assert!(disagreement(7, 6) > 1e-4);
     }
 }

@@ -1,19 +1,19 @@
-//! A pair energy on a point set: the plain definition.
+//! A pair energy on a point set, summed over its pairs.
 
 use rayon::prelude::*;
 
 use super::{PairEnergy, SetEnergy};
-use crate::measure::{Torus, cells::Cells};
+use crate::measure::{CellList, Torus};
 
-/// A pair energy summed over the pairs of a periodic point set. Slower than
-/// [`Pairs`](crate::optimize::Pairs), of which it is the oracle; for sets that have no table.
+/// A pair energy as a [`SetEnergy`]. It serves sets that have no table, and tests as the oracle of
+/// [`Pairs`](crate::optimize::Pairs), which is faster.
 #[derive(Clone, Copy, Debug)]
 pub struct Pairwise<E>(pub E);
 
 impl<E: PairEnergy> SetEnergy for Pairwise<E> {
     fn evaluate(&self, set: &Torus, gradient: &mut [[f64; 2]]) -> f64 {
         let cutoff = self.0.cutoff();
-        let cells = Cells::new(set.points(), set.side(), (cutoff / 4.0).max(0.5), true);
+        let cells = CellList::new(set.points(), set.side(), (cutoff / 4.0).max(0.5), true);
         let rings = (cutoff / cells.width()).ceil() as i64;
         let each: Vec<(u32, f64, [f64; 2])> = cells
             .members()

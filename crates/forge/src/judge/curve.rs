@@ -1,47 +1,53 @@
-//! How near a radial power spectrum came to its target.
+//! The error of a radial power spectrum against its target.
 //!
-//! Ring by ring, [`TARGET_RING`] wide: the mean power of its modes against the mean of the target
-//! over its area. Narrower rings would tell the speckle of one set rather than its noise.
+//! Each ring compares the mean power of its modes with the mean of the target over its area.
+//! Rings narrower than [`TARGET_RING`] would show the speckle of one point set, not its noise.
 
 use super::{Figure, figure::round};
 use crate::{
+    curve::Target,
     measure::{Ring, Spectrum},
-    profile::Target,
 };
 
 /// The width of the rings, in ν.
 pub const TARGET_RING: f64 = 0.1;
-/// Rings begin this far beyond a curve's end when they are compared with 1.
+/// The gap in ν between the end of a curve and the rings that are compared with 1.
 const TAIL_GAP: f64 = 0.1;
-/// The part of a band without power that counts: its edge is as blurred as the spectrum.
+/// The part of a quiet band that [`Figure::QuietPower`] covers, without its blurred edge.
 const QUIET_PART: f64 = 0.9;
-/// The width of the rings that the power of such a band is summed over.
+/// The width in ν of the rings that the power of a quiet band is averaged over.
 const FINE_RING: f64 = 0.005;
 
-/// The figures of a spectrum that should follow `target`.
+/// Returns the figures (name, value) of a spectrum that should follow `target`:
+/// [`Figure::TargetRms`], [`Figure::TargetRelative`], [`Figure::TargetWorst`],
+/// [`Figure::TargetWorstNu`], [`Figure::TailWorst`], and [`Figure::QuietPower`] if the target
+/// begins with a band of power 0.
 #[must_use]
 pub fn curve_figures(spectrum: &Spectrum, target: &Target) -> Vec<(String, f64)> {
     let rings = spectrum.rings(TARGET_RING);
-    let errors: Vec<Error> = rings.iter().map(|ring| Error::of(ring, target)).collect();
+    let errors: Vec<RingError> = rings
+        .iter()
+        .map(|ring| RingError::of(ring, target))
+        .collect();
     let first = target.points().first().map_or(0.0, |p| p[0]);
-    let drawn = |error: &&Error| {
+    let drawn = |error: &&RingError| {
         error.from >= first && error.from < target.end() - 1e-9 && error.wanted > 0.0
     };
     let worst = errors
         .iter()
-        .max_by(|a, b| a.by().abs().total_cmp(&b.by().abs()));
+        .max_by(|a, b| a.error().abs().total_cmp(&b.error().abs()));
     let tail = errors
         .iter()
         .filter(|error| error.from >= target.end() + TAIL_GAP - 1e-9);
     let mut figures = vec![
-        (Figure::TargetRms, rms(errors.iter().map(Error::by))),
+        (Figure::TargetRms, rms(errors.iter().map(RingError::error))),
         (
             Figure::TargetRelative,
-            rms(errors.iter().filter(drawn).map(|e| e.by() / e.wanted)),
+            rms(errors.iter().filter(drawn).map(|e| e.error() / e.wanted)),
         ),
         (
             Figure::TargetWorst,
-            worst.map_or(f64::NAN, |e| e.by().abs()),
+            worst.map_or(f64::NAN, |e| e.error().abs()),
         ),
         (Figure::TargetWorstNu, worst.map_or(f64::NAN, |e| e.nu)),
         (
@@ -58,16 +64,17 @@ pub fn curve_figures(spectrum: &Spectrum, target: &Target) -> Vec<(String, f64)>
         .collect()
 }
 
-/// A ring and what it should be.
-struct Error {
-    /// Where the ring begins.
+/// The power of a ring beside that of the target.
+struct RingError {
+    /// The inner edge of the ring.
     from: f64,
+    /// The mean frequency of its modes.
     nu: f64,
     found: f64,
     wanted: f64,
 }
 
-impl Error {
+impl RingError {
     fn of(ring: &Ring, target: &Target) -> Self {
         let from = (ring.nu / TARGET_RING).floor() * TARGET_RING;
         Self {
@@ -78,12 +85,12 @@ impl Error {
         }
     }
 
-    fn by(&self) -> f64 {
+    fn error(&self) -> f64 {
         self.found - self.wanted
     }
 }
 
-/// The mean of a curve over a ring's area.
+/// The mean of a curve over the area of the ring that begins at `from`.
 pub(super) fn mean_over_ring(target: &Target, from: f64) -> f64 {
     let steps = 200;
     let (mut sum, mut area) = (0.0, 0.0);
@@ -104,7 +111,7 @@ fn rms(errors: impl Iterator<Item = f64>) -> f64 {
     (sum / f64::from(count.max(1))).sqrt()
 }
 
-/// Mean power over the area of the band from 0 on where the target is 0, if there is one.
+/// Mean power over the area of the target's quiet band, if it has one.
 fn quiet_power(spectrum: &Spectrum, target: &Target) -> Option<f64> {
     let end = QUIET_PART * target.quiet_end()?;
     let (mut sum, mut area) = (0.0, 0.0);

@@ -1,27 +1,30 @@
-//! Named figures and the bounds on them.
-
-use std::fmt;
+//! Named figures of point sets.
 
 use strew_core::table::Figures;
 
 use crate::measure::{Crispness, Distances, Spectrum, Torus, Voronoi, Window};
 
-/// The width of the rings that radial figures are taken on, in ν: as fine as the smallest twin of
-/// the default map resolves, and the same for sets of all sizes, so that their peaks compare.
+/// The width in ν of the rings that radial figures are taken over. It is as fine as the smallest
+/// twin of the default map resolves, and the same for sets of all sizes, so that their peaks
+/// compare.
 pub const RING_WIDTH: f64 = 1.0 / 64.0;
 
-/// A figure measured on a point set.
+/// The largest frequency measured.
+pub(super) const NU_MAX: f64 = 4.0;
+
+/// A figure measured on a point set. Frequencies ν are in units of √N; white noise has power 1.
+/// Distances are over the nearest-neighbor distance of the hexagonal lattice, areas over the mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
-    /// Mean power where the target is 0, up to 0.9 of where that ends.
+    /// Mean power over the band from ν = 0 where the target is 0, up to 0.9 of its width.
     QuietPower,
-    /// The root of the mean squared error of the radial power, ring by ring.
+    /// Root mean square over rings of the radial power's error against the target.
     TargetRms,
-    /// The same, of the error over the target, as far as the curve is drawn.
+    /// Root mean square of the relative error, over rings between the ends of the curve.
     TargetRelative,
     /// The largest error of a ring.
     TargetWorst,
-    /// Where that ring is.
+    /// The frequency of the ring with the largest error.
     TargetWorstNu,
     /// The largest difference from 1 of a ring beyond the end of the curve.
     TailWorst,
@@ -33,21 +36,21 @@ pub enum Figure {
     PeakNu,
     /// Median anisotropy over 0.8 < ν < 4, in dB.
     Anisotropy,
-    /// The largest power of a single frequency.
+    /// The largest power of a single mode.
     Tallest,
-    /// The smallest nearest-neighbor distance, over that of the hexagonal lattice.
+    /// The smallest nearest-neighbor distance (see [`Distances`]).
     DeltaMin,
-    /// The mean nearest-neighbor distance, over that of the hexagonal lattice.
+    /// The mean nearest-neighbor distance (see [`Distances`]).
     DeltaAvg,
-    /// The effective Nyquist frequency after Heck et al. (see [`Crispness`]).
+    /// The effective Nyquist frequency ν_eff after Heck et al. (see [`Crispness`]).
     NuEff,
-    /// The oscillation after Heck et al.
+    /// The oscillation Ω after Heck et al. (see [`Crispness`]).
     Omega,
-    /// The largest relative deviation of a Voronoi cell's area (see [`Voronoi`]).
+    /// The largest deviation of a Voronoi cell's area (see [`Voronoi`]).
     AreaDeviation,
-    /// The radius of the largest empty circle, over the hexagonal lattice's distance of neighbors.
+    /// The radius of the largest empty circle (see [`Voronoi`]).
     LargestHole,
-    /// Bond-orientational order.
+    /// Bond-orientational order (see [`Voronoi`]).
     Q6,
 }
 
@@ -78,9 +81,10 @@ impl Figure {
     }
 }
 
-/// All figures of a set, radial ones on rings of width `ring_width`, rounded to four significant
-/// digits: far more than they mean, and few enough that another order of a sum inside an FFT does
-/// not show.
+/// Returns all figures of a point set, (name, value), radial ones over rings of width `ring_width`.
+///
+/// They are rounded to four significant digits: far more than they mean, and few enough to hide
+/// another order of a sum inside an FFT.
 pub(crate) fn figures_of_spectrum(
     spectrum: &Spectrum,
     ring_width: f64,
@@ -108,12 +112,13 @@ pub(crate) fn figures_of_spectrum(
     .into()
 }
 
-/// The nearest decimal of four significant digits.
+/// Rounds to four significant decimal digits.
 pub(super) fn round(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(0.0)
 }
 
-/// Measures a periodic set up to the frequency `nu_max`.
+/// Measures a periodic set up to the frequency `nu_max`. `seen` says whether the table was
+/// optimized on it.
 #[must_use]
 pub fn figures_of_torus(subject: String, seen: bool, set: &Torus, nu_max: f64) -> Figures {
     Figures {
@@ -129,7 +134,8 @@ pub fn figures_of_torus(subject: String, seen: bool, set: &Torus, nu_max: f64) -
     }
 }
 
-/// Measures a window up to the frequency `nu_max`.
+/// Measures a window up to the frequency `nu_max`. `seen` says whether the table was optimized on
+/// it.
 #[must_use]
 pub fn figures_of_window(subject: String, seen: bool, set: &Window, nu_max: f64) -> Figures {
     Figures {
@@ -145,133 +151,12 @@ pub fn figures_of_window(subject: String, seen: bool, set: &Window, nu_max: f64)
     }
 }
 
-/// What a figure must satisfy.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bound {
-    /// The figure.
-    pub figure: Figure,
-    /// The side on which it must stay.
-    pub side: Side,
-    /// Of this value, which is itself allowed.
-    pub limit: f64,
-}
-
-/// A side of a limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// Not above it.
-    AtMost,
-    /// Not below it.
-    AtLeast,
-}
-
-impl Bound {
-    /// `figure` ≤ `limit`.
-    #[must_use]
-    pub const fn at_most(figure: Figure, limit: f64) -> Self {
-        Self {
-            figure,
-            side: Side::AtMost,
-            limit,
-        }
-    }
-
-    /// `figure` ≥ `limit`.
-    #[must_use]
-    pub const fn at_least(figure: Figure, limit: f64) -> Self {
-        Self {
-            figure,
-            side: Side::AtLeast,
-            limit,
-        }
-    }
-
-    /// What is wrong with these figures, if anything; a missing figure is wrong.
-    #[must_use]
-    pub fn check(&self, figures: &Figures) -> Option<Complaint> {
-        let value = figures.value(self.figure.name()).unwrap_or(f64::NAN);
-        let holds = match self.side {
-            Side::AtMost => value <= self.limit,
-            Side::AtLeast => value >= self.limit,
-        };
-        (!holds).then(|| Complaint {
-            subject: figures.subject.clone(),
-            bound: *self,
-            value,
-        })
-    }
-}
-
-/// A figure that missed its bound.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Complaint {
-    /// The point set it was measured on.
-    pub subject: String,
-    /// The bound it missed.
-    pub bound: Bound,
-    /// What was measured.
-    pub value: f64,
-}
-
-impl fmt::Display for Side {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::AtMost => "at most",
-            Self::AtLeast => "at least",
-        })
-    }
-}
-
-impl fmt::Display for Complaint {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Bound {
-            figure,
-            side,
-            limit,
-        } = self.bound;
-        let (name, subject, value) = (figure.name(), &self.subject, self.value);
-        write!(
-            f,
-            "{name} on {subject} is {value}; it must be {side} {limit}"
-        )
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn bounds_say_which_figure_missed_what() {
-        let figures = Figures {
-            subject: "twin 683/418".into(),
-            seen: false,
-            points: 70_225,
-            values: vec![("low_power".into(), 3e-5), ("delta_min".into(), 0.62)],
-        };
-        assert_eq!(
-            Bound::at_least(Figure::DeltaMin, 0.62).check(&figures),
-            None
-        );
-        assert_eq!(Bound::at_most(Figure::LowPower, 3e-5).check(&figures), None);
-        let complaint = Bound::at_most(Figure::LowPower, 2e-5)
-            .check(&figures)
-            .expect("valid")
-            .to_string();
-        assert_eq!(
-            complaint,
-            "low_power on twin 683/418 is 0.00003; it must be at most 0.00002"
-        );
-        // What was not measured is not good.
-        assert!(
-            Bound::at_most(Figure::PeakPower, 9.0)
-                .check(&figures)
-                .is_some()
-        );
-    }
-
-    #[test]
-    fn figures_keep_four_digits() {
+    fn figures_have_four_digits() {
         assert_eq!(round(0.123_456), 0.1235);
         assert_eq!(round(5.555_55e-6), 5.556e-6);
         assert_eq!(round(0.0), 0.0);

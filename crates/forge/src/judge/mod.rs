@@ -1,194 +1,23 @@
 //! Acceptance: a table is judged on point sets it was not optimized on.
 //!
-//! A table can look perfect on the twins it was made on and hide pairs of blocks that meet only
-//! elsewhere. So it is measured on larger twins, on both sides of α, and on windows cut from the
-//! unbounded pattern of α itself.
+//! A table can look perfect on the twins it was optimized on and hide pairs of blocks that meet
+//! only elsewhere. So it is measured on larger twins, on both sides of α, and on windows cut from
+//! the unbounded pattern of α itself.
+//!
+//! A [`Panel`] holds these point sets and measures a table on each: the figures of `figure`, and
+//! those of `curve` if there is a power curve to follow. A [`Bound`] limits a figure; a table is
+//! accepted if there are no [`complaints`]. The bounds of custom curves, and how near a table came
+//! to its curve, are computed in `nearness`.
 
+mod bound;
 mod curve;
 mod figure;
 mod nearness;
+mod panel;
 
+pub use bound::{Bound, Complaint, Side, complaints};
 pub use curve::{TARGET_RING, curve_figures};
 pub(crate) use figure::figures_of_spectrum;
-pub use figure::{Bound, Complaint, Figure, RING_WIDTH, Side, figures_of_torus, figures_of_window};
+pub use figure::{Figure, RING_WIDTH, figures_of_torus, figures_of_window};
 pub use nearness::{Nearness, bounds_of_curve};
-
-use strew_core::{Map, Table, Twin, table::Figures};
-
-use crate::{
-    measure::{Spectrum, twin_set, window_set},
-    optimize::Meter,
-    profile::Target,
-    twins::{LARGE_TWIN, farthest, next_to_alpha},
-};
-
-/// The least number of points of a twin that a table is judged on.
-pub const JUDGED_POINTS: u64 = 50_000;
-/// How many points a window has, about.
-const WINDOW_POINTS: u64 = 80_000;
-/// Where the windows are: any places will do.
-const WINDOW_SEEDS: [u64; 2] = [1, 2];
-/// The largest frequency measured,
-const NU_MAX: f64 = 4.0;
-/// unless this many modes along an axis end before: they need about 120 MB.
-const MODES_MAX: f64 = 1300.0;
-
-/// The point sets a table is judged on.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Panel {
-    seen: Vec<Twin>,
-    unseen: Vec<Twin>,
-    target: Option<Target>,
-}
-
-impl Panel {
-    /// For a table of `map` that was optimized on the twins `seen`: the smallest of those, to
-    /// compare with, the first unseen twins of at least 50,000, 100,000 and 200,000 points, and
-    /// two windows.
-    #[must_use]
-    pub fn new(map: &Map, seen: &[Twin]) -> Self {
-        let mut unseen: Vec<Twin> = Vec::new();
-        for factor in [1, 2, 4] {
-            let next = next_to_alpha(map).find(|twin| {
-                twin.points() >= factor * JUDGED_POINTS
-                    && !seen.contains(twin)
-                    && !unseen.contains(twin)
-            });
-            unseen.extend(next);
-        }
-        Self {
-            seen: seen
-                .iter()
-                .copied()
-                .min_by_key(|t| t.points())
-                .into_iter()
-                .collect(),
-            unseen,
-            target: None,
-        }
-    }
-
-    /// Compares the radial power with a curve besides, on twins of enough points for it, and on
-    /// those of `map` farthest from its α, where a curve is missed first.
-    #[must_use]
-    pub fn with_target(mut self, target: Target, map: &Map) -> Self {
-        self.target = Some(target);
-        self.unseen.retain(|twin| twin.points() >= LARGE_TWIN);
-        for twin in farthest(map).into_iter().flatten() {
-            if !self.unseen.contains(&twin) && !self.seen.contains(&twin) {
-                self.unseen.push(twin);
-            }
-        }
-        self
-    }
-
-    fn compared(&self, mut figures: Figures, spectrum: impl FnOnce() -> Spectrum) -> Figures {
-        if let Some(target) = &self.target {
-            figures.values.extend(curve_figures(&spectrum(), target));
-        }
-        figures
-    }
-
-    /// How many point sets will be measured.
-    #[must_use]
-    pub fn subjects(&self) -> u32 {
-        (self.seen.len() + self.unseen.len() + WINDOW_SEEDS.len()) as u32
-    }
-
-    /// How many points they have in all, about.
-    #[must_use]
-    pub fn points(&self) -> u64 {
-        let twins = self
-            .seen
-            .iter()
-            .chain(&self.unseen)
-            .map(|twin| twin.points());
-        twins.sum::<u64>() + WINDOW_POINTS * WINDOW_SEEDS.len() as u64
-    }
-
-    /// Measures all of them, or `None` if the watch stops it.
-    pub fn measure(&self, table: &Table, meter: &mut Meter<'_>) -> Option<Vec<Figures>> {
-        let mut all = Vec::new();
-        let twins = self.seen.iter().map(|twin| (twin, true));
-        for (twin, seen) in twins.chain(self.unseen.iter().map(|twin| (twin, false))) {
-            if meter.stop() {
-                return None;
-            }
-            if let Some(set) = twin_set(table, *twin) {
-                let nu_max = NU_MAX.min(MODES_MAX / set.side());
-                let figures = figures_of_torus(format!("twin {twin}"), seen, &set, nu_max);
-                all.push(self.compared(figures, || Spectrum::of_torus(&set, nu_max)));
-            }
-            meter.advance(None);
-        }
-        for seed in WINDOW_SEEDS {
-            if meter.stop() {
-                return None;
-            }
-            let set = window_set(table, WINDOW_POINTS, seed);
-            let figures = figures_of_window(format!("window seed {seed}"), false, &set, NU_MAX);
-            all.push(self.compared(figures, || Spectrum::of_window(&set, NU_MAX)));
-            meter.advance(None);
-        }
-        Some(all)
-    }
-}
-
-/// What is wrong with a table by its figures on unseen subjects. Without any such figures,
-/// everything is.
-#[must_use]
-pub fn complaints(bounds: &[Bound], figures: &[Figures]) -> Vec<Complaint> {
-    let nothing = Figures {
-        subject: "no unseen subject".into(),
-        ..Figures::default()
-    };
-    let unseen: Vec<&Figures> = figures.iter().filter(|f| !f.seen).collect();
-    let judged = if unseen.is_empty() {
-        vec![&nothing]
-    } else {
-        unseen
-    };
-    judged
-        .into_iter()
-        .flat_map(|figures| bounds.iter().filter_map(|bound| bound.check(figures)))
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_panel_is_unseen_and_large() {
-        let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 49).expect("valid");
-        let first = Panel::new(&map, &[]).unseen[0];
-        let seen = [map.twins().next().expect("valid"), first];
-        let panel = Panel::new(&map, &seen);
-        assert_eq!(panel.seen, [seen[0]]);
-        assert_eq!(panel.unseen.len(), 3);
-        assert!(
-            panel
-                .unseen
-                .iter()
-                .all(|t| t.points() >= JUDGED_POINTS && !seen.contains(t))
-        );
-        assert_eq!(panel.subjects(), 6);
-    }
-
-    #[test]
-    fn nothing_measured_is_not_accepted() {
-        let bounds = [Bound::at_most(Figure::LowPower, 1.0)];
-        assert_eq!(complaints(&bounds, &[]).len(), 1);
-        let seen = Figures {
-            seen: true,
-            values: vec![("low_power".into(), 0.0)],
-            ..Figures::default()
-        };
-        assert_eq!(complaints(&bounds, std::slice::from_ref(&seen)).len(), 1);
-        let unseen = Figures {
-            seen: false,
-            ..seen
-        };
-        assert!(complaints(&bounds, &[unseen]).is_empty());
-    }
-}
+pub use panel::{JUDGED_POINTS, Panel};

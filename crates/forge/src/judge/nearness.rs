@@ -1,29 +1,30 @@
-//! Whether a curve that somebody drew was met.
+//! Whether a custom curve was met, and how near a table came to it.
 //!
-//! What counts is the error against what the curve asks for: a curve that hardly differs from a
-//! random set's is not met by a random set. So the bounds follow from the curve's own departure
-//! from 1, taken over the same rings as the error ([`TARGET_RING`] wide, to ν = 4).
+//! The error counts in relation to what the curve demands, so that a random set does not meet a
+//! curve that hardly differs from 1. The bounds follow from the root mean square of the curve's
+//! departure from 1, over the same rings as the error ([`TARGET_RING`] wide, to ν = 4).
 
 use strew_core::table::Figures;
 
-use super::{Bound, Figure, NU_MAX, TARGET_RING, curve::mean_over_ring};
-use crate::profile::Target;
+use super::{Bound, Figure, TARGET_RING, curve::mean_over_ring, figure::NU_MAX};
+use crate::curve::Target;
 
-/// The error may be this part of the curve's departure from 1, as roots of mean squares.
-const PART: f64 = 0.1;
-/// No error below this can be told from the speckle of the sets that are measured.
+/// The largest error allowed, over the curve's departure from 1; both are root mean squares.
+const ERROR_SHARE: f64 = 0.1;
+/// The least bound on the error: a smaller error cannot be distinguished from the speckle of the
+/// point sets that are measured.
 const SPECKLE: f64 = 0.02;
-/// A single ring may be this many times as far off as the root of the mean square. (One ring of
-/// forty alone cannot be more than 6.3 times off.)
-const PEAK: f64 = 4.0;
-/// Where the curve is 0 from the start, up to this ν at least,
+/// The largest error of a single ring, over the bound on the root mean square. (An error in one
+/// ring of forty alone is 6.3 times the root mean square.)
+const WORST_RATIO: f64 = 4.0;
+/// A band of power 0 from ν = 0 has a bound of its own if it reaches at least to this ν.
 const QUIET_END: f64 = 0.1;
-/// the mean power may be this much: a band that should be silent is not met by a low murmur, which
-/// the error alone would let pass.
+/// The largest mean power in such a band. The bound on the error alone would let a low power pass.
 const QUIET_POWER: f64 = 0.01;
 
-/// The bounds on a table that should follow `target`: [`Figure::TargetRms`],
-/// [`Figure::TargetWorst`], and [`Figure::QuietPower`] if it begins with a silent band.
+/// Returns the bounds on a table that should follow `target`: on [`Figure::TargetRms`], on
+/// [`Figure::TargetWorst`], and on [`Figure::QuietPower`] if the curve begins with a band of power
+/// 0.
 #[must_use]
 pub fn bounds_of_curve(target: &Target) -> Vec<Bound> {
     let rings = (NU_MAX / TARGET_RING).round() as u32;
@@ -32,12 +33,12 @@ pub fn bounds_of_curve(target: &Target) -> Vec<Bound> {
         departure * departure
     });
     let departure = (departures.sum::<f64>() / f64::from(rings)).sqrt();
-    // Two digits say as much as it means, and are the same on every machine.
+    // Two digits are as much as it means, and the same on every machine.
     let round = |value: f64| format!("{value:.1e}").parse().unwrap_or(value);
-    let limit: f64 = round(SPECKLE.max(PART * departure));
+    let limit: f64 = round(SPECKLE.max(ERROR_SHARE * departure));
     let mut bounds = vec![
         Bound::at_most(Figure::TargetRms, limit),
-        Bound::at_most(Figure::TargetWorst, round(PEAK * limit)),
+        Bound::at_most(Figure::TargetWorst, round(WORST_RATIO * limit)),
     ];
     if target.quiet_end().is_some_and(|end| end >= QUIET_END) {
         bounds.push(Bound::at_most(Figure::QuietPower, QUIET_POWER));
@@ -45,19 +46,19 @@ pub fn bounds_of_curve(target: &Target) -> Vec<Bound> {
     bounds
 }
 
-/// How near a table came to a curve: the largest errors among the subjects it had not seen.
+/// How near a table came to its curve: the largest errors on unseen point sets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nearness {
-    /// The root of the mean squared error of the radial power.
+    /// Root mean square over rings of the radial power's error.
     pub rms: f64,
-    /// The largest error of a ring,
+    /// The largest error of a ring.
     pub worst: f64,
-    /// and the frequency where that ring is.
+    /// The frequency of the ring with the largest error.
     pub worst_nu: f64,
 }
 
 impl Nearness {
-    /// From measured figures; `None` if none of them compares with a curve.
+    /// Returns the largest unseen errors in `figures`, or `None` if none are compared with a curve.
     #[must_use]
     pub fn of(figures: &[Figures]) -> Option<Self> {
         let unseen = figures.iter().filter(|figures| !figures.seen);
@@ -100,7 +101,7 @@ mod tests {
         bounds.iter().map(|bound| bound.limit).collect()
     }
 
-    /// What a random set is off.
+    /// The error of a random set.
     fn departure(text: &str) -> f64 {
         let target: Target = text.parse().expect("valid");
         let rings = (0..40).map(|ring| mean_over_ring(&target, f64::from(ring) * 0.1) - 1.0);
@@ -108,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_random_set_meets_no_curve_that_can_be_told_from_its_own() {
+    fn a_random_set_meets_no_curve_that_differs_from_1() {
         for curve in [
             "0 0\n0.56 0\n0.56 1",
             "0.1 1\n0.2 1.3\n0.4 1.3\n0.5 1",
@@ -124,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_errors_of_unseen_subjects_count() {
+    fn the_largest_errors_of_unseen_sets_count() {
         let of = |seen, rms, worst, nu| Figures {
             seen,
             values: [

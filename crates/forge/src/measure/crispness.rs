@@ -1,32 +1,32 @@
-//! How sharp and how calm a spectrum is: effective Nyquist frequency and oscillation, after Heck,
-//! Schlömer, Deussen, "Blue Noise Sampling with Controlled Aliasing" (2013).
+//! Effective Nyquist frequency and oscillation of a spectrum, after Heck, Schlömer, Deussen, "Blue
+//! Noise Sampling with Controlled Aliasing" (2013).
 
 use super::Ring;
 
-/// The two figures of Heck et al.
+/// The two figures of Heck et al.: how far a spectrum is empty, and how much it oscillates beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crispness {
-    /// ν_eff: the radius of the largest disc around 0 whose mean power stays below 0.1, in units of
-    /// half the sampling rate (√N/2 in pixels of the unit square), so that the square lattice has
-    /// about 1. A frequency up to ν_eff/2 is sampled nearly without aliasing.
+    /// The effective Nyquist frequency ν_eff: the radius in ν of the largest disc around 0 whose
+    /// mean power is at most 0.1. The square lattice has about 1. Frequencies up to ν_eff/2 are
+    /// sampled nearly without aliasing.
     pub nu_eff: f64,
-    /// Ω: ten times the root mean square of P − 1 from the frequency where the power first comes
-    /// to 1, over five units of ν, or as far as the rings go.
+    /// The oscillation Ω: ten times the root mean square of P − 1, from the frequency where the
+    /// power first reaches 1 over five units of ν, or as far as the rings extend.
     pub omega: f64,
 }
 
-/// The mean power at which a disc has too much,
-const CLEAN: f64 = 0.1;
-/// and that at which the spectrum has certainly risen.
+/// The largest mean power of the disc of ν_eff.
+const MAX_DISC_POWER: f64 = 0.1;
+/// The mean power of a disc at which the search for a larger one ends: the spectrum has risen.
 const RISEN: f64 = 0.5;
-/// "About 1", where oscillation begins.
+/// The power, about 1, at which the range of Ω begins.
 const ABOUT_ONE: f64 = 0.98;
-/// The length of the range of Ω.
+/// The length of the range of Ω, in ν.
 const OSCILLATION_RANGE: f64 = 5.0;
 
 impl Crispness {
-    /// Of equally wide rings, from 0 outwards. The power is taken as linear between the rings'
-    /// middles in the disc's mean, as a function of the radius.
+    /// Computes the figures from rings of the given width in ν, from 0 outwards. Within a ring the
+    /// power is taken as constant.
     #[must_use]
     pub fn of_rings(rings: &[Ring], width: f64) -> Self {
         Self {
@@ -37,16 +37,16 @@ impl Crispness {
 }
 
 fn effective_nyquist(rings: &[Ring], width: f64) -> f64 {
-    // The mean power of the disc up to the outer edge of each ring; the disc grows from one edge
-    // to the next with the ring's own power.
+    // `sum` over the squared radius is the mean power of the disc up to the edge of a ring. From
+    // one edge to the next the disc grows with the power of the ring.
     let (mut found, mut inner, mut sum) = (0.0, 0.0f64, 0.0);
     for ring in rings {
         let outer = ((ring.nu / width).floor() + 1.0) * width;
         let next = sum + ring.power * (outer * outer - inner * inner);
-        if sum <= CLEAN * inner * inner && next > CLEAN * outer * outer {
-            // sum + P·(x² − inner²) = CLEAN·x²
-            found = ((ring.power * inner * inner - sum) / (ring.power - CLEAN)).sqrt();
-        } else if next <= CLEAN * outer * outer {
+        if sum <= MAX_DISC_POWER * inner * inner && next > MAX_DISC_POWER * outer * outer {
+            // sum + P·(x² − inner²) = MAX_DISC_POWER·x²
+            found = ((ring.power * inner * inner - sum) / (ring.power - MAX_DISC_POWER)).sqrt();
+        } else if next <= MAX_DISC_POWER * outer * outer {
             found = outer;
         }
         (inner, sum) = (outer, next);
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn a_step_at_half_has_its_known_figures() {
-        // The disc's mean 1 − 0.25/ν² is 0.1 at ν = 0.5/√0.9.
+        // The mean power of the disc, 1 − 0.25/ν², is 0.1 at ν = 0.5/√0.9.
         let step = rings(|nu| if nu < 0.5 { 0.0 } else { 1.0 });
         let found = Crispness::of_rings(&step, 1.0 / 64.0);
         assert!(
@@ -100,21 +100,21 @@ mod tests {
     }
 
     #[test]
-    fn oscillations_are_measured_from_where_the_power_comes_to_one() {
+    fn oscillations_are_measured_from_where_the_power_reaches_one() {
         let wave = |nu: f64| match nu {
             nu if nu < 1.0 => 0.0,
             nu if nu < 3.0 => 1.5,
             _ => 1.0,
         };
         let found = Crispness::of_rings(&rings(wave), 1.0 / 64.0);
-        // 0.25 over the ring 1..3 of 1..6: 10·√(0.25·8/35).
+        // (P − 1)² is 0.25 over 1..3 and 0 over 3..6: 10·√(0.25·8/35).
         let expected = 10.0 * (0.25f64 * 8.0 / 35.0).sqrt();
         assert!((found.omega - expected).abs() < 0.03, "{found:?}");
         assert!(found.nu_eff > 1.0 && found.nu_eff < 1.05, "{found:?}");
     }
 
     #[test]
-    fn white_noise_is_not_crisp_at_all() {
+    fn white_noise_has_neither() {
         let found = Crispness::of_rings(&rings(|_| 1.0), 1.0 / 64.0);
         assert_eq!(
             found,

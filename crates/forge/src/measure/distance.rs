@@ -2,41 +2,43 @@
 
 use rayon::prelude::*;
 
-use super::{Torus, Window, cells::Cells};
+use super::{CellList, Torus, Window};
 
-/// Nearest-neighbor distances, in units of √(2/√3)·N^−½, the distance in a hexagonal lattice of
-/// the same density: at most 1.
+/// Nearest-neighbor distances in units of √(2/√3)·N^−½, the nearest-neighbor distance of the
+/// hexagonal lattice of the same density. The smallest distance is at most 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distances {
-    /// The smallest.
+    /// The smallest distance.
     pub delta_min: f64,
-    /// The mean.
+    /// The mean distance.
     pub delta_avg: f64,
 }
 
-/// Points of a window closer than this to its edge, in mean spacings, may have their nearest
-/// neighbor outside and are left out.
+/// The margin of a window, in mean spacings. The nearest neighbor of a point in it may lie outside
+/// the window, so its distance is not counted.
 const MARGIN: f64 = 4.0;
-/// Points per parallel task; fixes the order of the sum.
+/// Points per parallel task. It fixes the order of the sum.
 const CHUNK: usize = 4096;
 
 impl Distances {
-    /// Of a periodic set. A set of fewer than 2 points has distances to its own images.
+    /// Measures a periodic set. A single point has its own images as neighbors.
     #[must_use]
     pub fn of_torus(set: &Torus) -> Self {
-        Self::of(&Cells::new(set.points(), set.side(), 1.0, true), |_| true)
+        Self::of(&CellList::new(set.points(), set.side(), 1.0, true), |_| {
+            true
+        })
     }
 
-    /// Of a window: its points at least 4 mean spacings from the edge, to all points. Zeros for a
-    /// window with fewer than 2 points.
+    /// Measures a window: the distances from points at least 4 mean spacings from its edge to all
+    /// points. Both figures are 0 if there are none.
     #[must_use]
     pub fn of_window(set: &Window) -> Self {
         let inner = MARGIN..set.side() - MARGIN;
-        let cells = Cells::new(set.points(), set.side(), 1.0, false);
+        let cells = CellList::new(set.points(), set.side(), 1.0, false);
         Self::of(&cells, |p| p.iter().all(|v| inner.contains(v)))
     }
 
-    fn of(cells: &Cells, counts: impl Fn(&[f64; 2]) -> bool + Sync) -> Self {
+    fn of(cells: &CellList, counts: impl Fn(&[f64; 2]) -> bool + Sync) -> Self {
         let parts: Vec<(f64, f64, usize)> = cells
             .members()
             .par_chunks(CHUNK)
@@ -71,12 +73,12 @@ impl Distances {
     }
 }
 
-/// The distance from a point to its nearest neighbor; infinite if there is none.
-fn nearest(cells: &Cells, index: u32, p: [f64; 2]) -> f64 {
+/// The distance from the point `p` to its nearest neighbor; infinite if it has none.
+fn nearest(cells: &CellList, index: u32, p: [f64; 2]) -> f64 {
     let mut least = f64::INFINITY;
     let rings = (cells.members().len() as f64).sqrt() as i64 * 2 + 2;
     for ring in 0..=rings {
-        // Whatever lies in this ring is at least this far.
+        // Points in this ring are at least this far away.
         let far = (ring - 1).max(0) as f64 * cells.width();
         if far * far > least {
             break;
@@ -113,7 +115,7 @@ mod tests {
         let square = Distances::of_torus(&Torus::new(1.0, lattice(32, 32, 0.0)));
         assert!((square.delta_min - 0.930_604_859_102_1).abs() < 1e-12);
         assert!((square.delta_avg - 0.930_604_859_102_1).abs() < 1e-12);
-        // 56 × 97/… : rows √3/2 apart, 97/56 ≈ √3.
+        // 97 columns and 112 rows: 97/56 ≈ √3, so rows are √3/2 columns apart.
         let hexagonal = Distances::of_torus(&Torus::new(1.0, lattice(97, 112, 0.5)));
         assert!((hexagonal.delta_min - 1.0).abs() < 1e-3, "{hexagonal:?}");
         assert!(hexagonal.delta_avg <= 1.001);
@@ -121,7 +123,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn agrees_with_all_pairs(points in proptest::collection::vec([0.0f64..1.0, 0.0f64..1.0], 2..120)) {
+        fn agrees_with_the_search_of_all_pairs(points in proptest::collection::vec([0.0f64..1.0, 0.0f64..1.0], 2..120)) {
             let set = Torus::new(1.0, points);
             let side = set.side();
             let gap = |a: f64, b: f64| {
@@ -143,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_window_counts_its_inner_points_only() {
+    fn only_inner_points_of_a_window_count() {
         let mut points = lattice(40, 40, 0.0);
         points.push([0.001, 0.0005]); // near the edge, close to a neighbor
         let window = Window::new(1.0, 1600.0, points);

@@ -1,13 +1,18 @@
-//! Measuring point sets: spectrum, distances and cells, of whole periods and of windows.
+//! Measuring point sets: spectrum, distances and Voronoi cells of whole periods and of windows.
+//!
+//! A set is a [`Torus`] (one period of a periodic set) or a [`Window`] (a box of an unbounded one);
+//! [`twin_set`] and [`window_set`] make them from a table. [`Spectrum`] is computed by `nufft`,
+//! windows with the weights of `taper`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
+//! [`Distances`] and [`Rdf`] look up neighbors in a `cell_list`, [`Voronoi`] in a triangulation.
 //!
 //! Everything is at unit density: lengths are in mean spacings, frequencies ν in cycles per mean
-//! spacing, and white noise has power 1. Nothing here reaches a table but through figures rounded
-//! to four digits, so the platform's own functions may be used.
+//! spacing, and white noise has power 1. Of these results only figures rounded to four digits reach
+//! a table, so the platform's own math functions may be used.
 
-pub(crate) mod cells;
+mod cell_list;
 mod crispness;
-mod cut;
 mod distance;
+mod from_table;
 mod nufft;
 mod rdf;
 mod set;
@@ -15,9 +20,10 @@ mod spectrum;
 mod taper;
 mod voronoi;
 
+pub(crate) use cell_list::CellList;
 pub use crispness::Crispness;
-pub use cut::{twin_set, window_set};
 pub use distance::Distances;
+pub use from_table::{twin_set, window_set};
 pub use rdf::Rdf;
 pub use set::{Torus, Window};
 pub use spectrum::{Ring, Spectrum, Summary};

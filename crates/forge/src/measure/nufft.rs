@@ -1,28 +1,31 @@
-//! Fourier sums over scattered points (a non-uniform FFT of type 1, in two dimensions).
+//! Fourier sums over scattered points: a non-uniform FFT of type 1 in two dimensions.
 //!
 //! Each point is spread onto a regular grid, twice as fine as the frequencies need, with the kernel
-//! exp(β(√(1 − z²) − 1)) (Barnett, Magland, af Klinteberg 2019); an FFT follows; the kernel's own
-//! transform is divided out. With a kernel 12 cells wide the error is about 10⁻¹¹ of √Σw².
+//! exp(β(√(1 − z²) − 1)) (Barnett, Magland, af Klinteberg 2019). Then the grid is transformed by an
+//! FFT and the transform of the kernel is divided out. With a kernel 12 cells wide the error is
+//! about 10⁻¹¹ of √Σw².
 //!
-//! The grid is never held as a whole: bands of rows are spread, transformed along x and cut to the
-//! frequencies asked for, then the columns are transformed one by one.
+//! The grid is never in memory as a whole: bands of rows are spread, transformed along x and cut to
+//! the requested frequencies. Then the columns are transformed one by one.
 
 use std::sync::Arc;
 
 use rayon::prelude::*;
 use rustfft::{Fft, FftPlanner, num_complex::Complex};
 
-use crate::energy::exp::exp;
+use crate::numeric::exp;
 
-/// Width of the kernel, in grid cells.
+/// The width of the kernel, in grid cells.
 const WIDTH: usize = 12;
-/// β: as wide a kernel as `WIDTH` cells allow at this upsampling.
+/// β, in the ratio to the width that Barnett et al. recommend for an upsampling of 2.
 const SHARPNESS: f64 = 2.30 * WIDTH as f64;
 /// Grid rows that are spread and transformed together.
 const BAND: usize = 32;
 
-/// Σ w·exp(−2πi k·x) over the points, for kx in 0..=`modes` and ky in −`modes`..=`modes`, mapped by
-/// `each(kx, ky, sum)`; row by row of kx. Points are in turns, [0, 1)²; without weights w = 1.
+/// Computes Σ w·exp(−2πi k·x) over the points for kx in 0..=`modes` and ky in −`modes`..=`modes`.
+///
+/// Returns the sums in this order, ky fastest, each mapped by `each(kx, ky, sum)`. Points are in
+/// [0, 1)², where 1 is the side of the torus; without weights w = 1.
 pub(super) fn transform<T: Send>(
     points: &[[f64; 2]],
     weights: Option<&[f64]>,
@@ -33,7 +36,7 @@ pub(super) fn transform<T: Send>(
     let fft = FftPlanner::new().plan_fft_forward(size);
     let rows = RowIndex::new(points, size);
     let columns = modes + 1;
-    // By band, then kx, then row of the band.
+    // Indexed by band, then kx, then row of the band.
     let mut half_done = vec![Complex::default(); columns * size];
     half_done
         .par_chunks_mut(columns * BAND)
@@ -45,7 +48,8 @@ pub(super) fn transform<T: Send>(
     finish_columns(&half_done, &fft, modes, &each)
 }
 
-/// The least multiple of the band, with no prime factor above 5, that is twice as fine as needed.
+/// The side of the grid: the least multiple of [`BAND`] that is twice as fine as needed and has no
+/// prime factor above 5, for the FFT.
 fn grid_size(modes: usize) -> usize {
     let smooth = |mut m: usize| {
         for p in [2usize, 3, 5] {
@@ -59,10 +63,10 @@ fn grid_size(modes: usize) -> usize {
     (least..).find(|&m| smooth(m)).unwrap_or(least) * BAND
 }
 
-/// The first grid cell under the kernel of a coordinate in turns, and the kernel's values from
-/// there on.
-fn kernel(turns: f64, size: usize) -> (i64, [f64; WIDTH]) {
-    let at = turns * size as f64;
+/// The first grid cell under the kernel of a coordinate in [0, 1), and the values of the kernel
+/// from there on.
+fn kernel(coordinate: f64, size: usize) -> (i64, [f64; WIDTH]) {
+    let at = coordinate * size as f64;
     let half = WIDTH as f64 / 2.0;
     let first = (at - half).ceil();
     let mut values = [0.0; WIDTH];
@@ -74,8 +78,8 @@ fn kernel(turns: f64, size: usize) -> (i64, [f64; WIDTH]) {
     (first as i64, values)
 }
 
-/// The kernel's transform at k cycles per torus: its integral against cos, by the trapezoid rule
-/// in the angle arcsin z, where the integrand is smooth and vanishes at both ends.
+/// The transform of the kernel at k cycles per side of the torus: its integral with a cosine, by
+/// the trapezoid rule in the angle arcsin z, where the integrand is smooth and ends at 0.
 fn kernel_transform(k: usize, size: usize) -> f64 {
     const NODES: i32 = 256;
     let step = std::f64::consts::PI / f64::from(NODES);
@@ -92,7 +96,9 @@ fn kernel_transform(k: usize, size: usize) -> f64 {
 
 /// Points sorted by the first grid row under their kernel.
 struct RowIndex {
+    /// Where the points of each row start in `order`, and the end of the last.
     starts: Vec<u32>,
+    /// Indices of points.
     order: Vec<u32>,
 }
 
@@ -119,7 +125,7 @@ impl RowIndex {
         Self { starts, order }
     }
 
-    /// The grid rows `first_row`.. of one band.
+    /// Spreads the points onto the band of grid rows from `first_row` on.
     fn spread(
         &self,
         points: &[[f64; 2]],
@@ -153,7 +159,7 @@ impl RowIndex {
     }
 }
 
-/// Adds the kernel times a factor to a cyclic row.
+/// Adds the kernel times a factor to a cyclic row, from the cell `start` on.
 fn add_wrapped(row: &mut [f64], start: usize, kernel: &[f64; WIDTH], factor: f64) {
     if let Some(cells) = row.get_mut(start..start + WIDTH) {
         for (cell, value) in cells.iter_mut().zip(kernel) {
@@ -179,7 +185,7 @@ fn transform_rows(grid: &[f64], fft: &dyn Fft<f64>, columns: usize, out: &mut [C
         }
         fft.process_with_scratch(&mut line, &mut scratch);
         for kx in 0..columns {
-            // The transforms of real rows are Hermitian: even and odd part take them apart.
+            // Transforms of real rows are Hermitian, so the sum's even and odd parts separate them.
             let (plus, minus) = (line[kx], line[(size - kx) % size].conj());
             out[kx * BAND + even] = (plus + minus) * 0.5;
             out[kx * BAND + odd] = (plus - minus) * Complex::new(0.0, -0.5);
@@ -187,7 +193,7 @@ fn transform_rows(grid: &[f64], fft: &dyn Fft<f64>, columns: usize, out: &mut [C
     }
 }
 
-/// Transforms along y and divides the kernel out.
+/// Transforms the columns along y and divides by the transform of the kernel.
 fn finish_columns<T: Send>(
     half_done: &[Complex<f64>],
     fft: &Arc<dyn Fft<f64>>,
@@ -228,7 +234,7 @@ fn finish_columns<T: Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimize::SplitMix;
+    use crate::numeric::SplitMix;
 
     #[test]
     fn agrees_with_the_direct_sum() {
@@ -237,7 +243,7 @@ mod tests {
             let mut points: Vec<[f64; 2]> = (0..count)
                 .map(|_| [random.next_f64(), random.next_f64()])
                 .collect();
-            points[0] = [0.0, 1.0 - f64::EPSILON]; // both edges of the torus
+            points[0] = [0.0, 1.0 - f64::EPSILON]; // both ends of the range
             let weights: Vec<f64> = (0..count).map(|_| random.next_f64() - 0.3).collect();
             let size: f64 = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
             let found = transform(&points, Some(&weights), modes, |kx, ky, v| (kx, ky, v));

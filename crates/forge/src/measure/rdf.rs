@@ -1,39 +1,43 @@
-//! The radial distribution function: how often a distance occurs, against a random set.
+//! The radial distribution function: how often a distance occurs, compared with a random set.
 
 use rayon::prelude::*;
 
-use super::{Torus, Window, cells::Cells};
+use super::{CellList, Torus, Window};
 
-/// Distances are counted up to this many mean spacings,
+/// The largest distance counted, in mean spacings.
 const REACH: f64 = 5.0;
-/// in this many bins.
+/// The number of bins.
 const BINS: usize = 250;
 /// Points per parallel task.
 const CHUNK: usize = 4096;
 
-/// g(r) in bins of equal width: 1 for a random set, the middle of each bin in mean spacings first.
+/// The radial distribution function g(r), which is 1 for a random set, in bins of equal width up to
+/// 5 mean spacings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rdf {
-    /// (r, g(r)), ascending.
+    /// (r, g(r)), ascending; r is the middle of the bin in mean spacings.
     pub bins: Vec<[f64; 2]>,
 }
 
 impl Rdf {
-    /// Of a periodic set.
+    /// Measures a periodic set.
     #[must_use]
     pub fn of_torus(set: &Torus) -> Self {
-        Self::of(&Cells::new(set.points(), set.side(), 1.0, true), |_| true)
+        Self::of(&CellList::new(set.points(), set.side(), 1.0, true), |_| {
+            true
+        })
     }
 
-    /// Of a window: from its points at least 5 mean spacings from the edge, to all points.
+    /// Measures a window: the distances from points at least 5 mean spacings from its edge to all
+    /// points.
     #[must_use]
     pub fn of_window(set: &Window) -> Self {
         let inner = REACH..set.side() - REACH;
-        let cells = Cells::new(set.points(), set.side(), 1.0, false);
+        let cells = CellList::new(set.points(), set.side(), 1.0, false);
         Self::of(&cells, |p| p.iter().all(|v| inner.contains(v)))
     }
 
-    fn of(cells: &Cells, counts: impl Fn(&[f64; 2]) -> bool + Sync) -> Self {
+    fn of(cells: &CellList, counts: impl Fn(&[f64; 2]) -> bool + Sync) -> Self {
         let width = REACH / BINS as f64;
         let rings = (REACH / cells.width()).ceil() as i64;
         let (found, from) = cells
@@ -75,10 +79,10 @@ impl Rdf {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimize::SplitMix;
+    use crate::numeric::SplitMix;
 
     #[test]
-    fn a_random_set_has_1_everywhere_and_a_lattice_its_distances() {
+    fn a_random_set_has_one_everywhere_and_a_lattice_its_distances() {
         let mut random = SplitMix::new(5);
         let mut next = || (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64 * 200.0;
         let points: Vec<[f64; 2]> = (0..40_000).map(|_| [next(), next()]).collect();

@@ -1,7 +1,7 @@
-//! Point sets to be measured: a whole period, or a window of an unbounded set.
+//! Point sets to measure: one period of a periodic set, or a window of an unbounded set.
 
-/// A periodic point set at unit density: `points` in units of the mean spacing, on a torus whose
-/// side is √N. Coordinates may lie outside [0, side); they are taken modulo the side.
+/// A periodic point set at unit density, on a torus whose side is √N mean spacings. Coordinates may
+/// lie outside [0, side); they are taken modulo the side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Torus {
     side: f64,
@@ -9,7 +9,7 @@ pub struct Torus {
 }
 
 impl Torus {
-    /// The set of these points of a torus of side `side`, rescaled to unit density.
+    /// Rescales the points of a torus of side `side` to unit density.
     #[must_use]
     pub fn new(side: f64, mut points: Vec<[f64; 2]>) -> Self {
         let unit_side = (points.len() as f64).sqrt();
@@ -23,7 +23,7 @@ impl Torus {
         }
     }
 
-    /// √N, in mean spacings.
+    /// The side of the torus, √N mean spacings.
     #[must_use]
     pub const fn side(&self) -> f64 {
         self.side
@@ -35,13 +35,13 @@ impl Torus {
         &self.points
     }
 
-    /// The points, for moving them.
+    /// The points for moving them, in mean spacings.
     pub fn points_mut(&mut self) -> &mut [[f64; 2]] {
         &mut self.points
     }
 }
 
-/// All points of an unbounded set of unit density that lie in the box [0, side)².
+/// The points of an unbounded set at unit density that lie in the box [0, side)².
 #[derive(Clone, Debug, PartialEq)]
 pub struct Window {
     side: f64,
@@ -49,8 +49,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// The points of a box [0, `side`)² of a set with `density` points per unit area; rescaled to
-    /// unit density. Points outside the box are dropped.
+    /// Rescales the points in the box [0, `side`)² of a set with `density` points per unit area to
+    /// unit density. Points outside the box are dropped; none inside may be missing.
     #[must_use]
     pub fn new(side: f64, density: f64, mut points: Vec<[f64; 2]>) -> Self {
         points.retain(|p| p.iter().all(|v| (0.0..side).contains(v)));

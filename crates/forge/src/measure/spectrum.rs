@@ -1,55 +1,55 @@
-//! The power spectrum of a point set, and the figures drawn from it.
+//! The power spectrum of a point set, its rings, and a summary.
 //!
-//! Frequencies ν are in units of √N, so ν = 1 is one cycle per mean spacing; white noise has
-//! power 1.
+//! Frequencies ν are in units of √N: ν = 1 is one cycle per mean spacing. White noise has power 1.
 
-use super::{Torus, Window, cells::wrap, nufft::transform, taper};
+use super::{Torus, Window, cell_list::wrap, nufft::transform, taper};
 
 /// The power P(k) = |Σ exp(−2πi k·x)|²/N at every integer k up to a largest frequency.
 #[derive(Clone, Debug)]
 pub struct Spectrum {
-    /// The side of the set, in mean spacings: ν = |k| / side.
+    /// The side of the set in mean spacings: ν = |k| / side.
     side: f64,
+    /// The largest kx and ky.
     modes: usize,
-    /// By kx in 0..=modes, then ky in −modes..=modes.
+    /// Indexed by kx in 0..=modes, then ky in −modes..=modes.
     power: Vec<f64>,
 }
 
-/// The modes of one ring of frequencies.
+/// The power of the modes in a ring of frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ring {
-    /// The mean frequency of its modes.
+    /// The mean frequency of the modes.
     pub nu: f64,
-    /// Their mean power.
+    /// The mean power of the modes.
     pub power: f64,
-    /// 10·log10(variance / mean²) of their power: 0 for a random isotropic set, −200 for a ring of
-    /// equal powers.
+    /// The anisotropy 10·log10(variance / mean²) of the power of the modes, in dB: 0 for a random
+    /// isotropic set, at least −200.
     pub anisotropy_db: f64,
 }
 
-/// The figures of a spectrum.
+/// A spectrum in five figures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
     /// Mean power over 0 < ν < 0.5.
     pub low_power: f64,
     /// The largest mean power of a ring.
     pub peak_power: f64,
-    /// Where that ring is.
+    /// The frequency of the ring with the largest mean power.
     pub peak_nu: f64,
     /// The largest power of a single mode.
     pub tallest: f64,
-    /// The median anisotropy of the rings with 0.8 < ν < 4 (as far as measured), in dB.
+    /// The median anisotropy of the rings with 0.8 < ν < 4, as far as they are measured, in dB.
     pub anisotropy_db: f64,
 }
 
-/// Where low power ends.
+/// The upper end of low frequencies.
 const LOW_END: f64 = 0.5;
-/// The range of the anisotropy figure.
+/// The range of ν of the median anisotropy.
 const ANISOTROPY_RANGE: std::ops::Range<f64> = 0.8..4.0;
 
 impl Spectrum {
-    /// Of a periodic set, exact up to 10⁻¹⁰ of √N in amplitude, for |k| ≤ `nu_max`·√N along either
-    /// axis. Memory grows as N·`nu_max`².
+    /// Computes the spectrum of a periodic set for |k| ≤ `nu_max`·√N along either axis, with an
+    /// error in amplitude of 10⁻¹⁰·√N. Memory grows as N·`nu_max`².
     #[must_use]
     pub fn of_torus(set: &Torus, nu_max: f64) -> Self {
         let side = set.side();
@@ -64,8 +64,8 @@ impl Spectrum {
         Self { side, modes, power }
     }
 
-    /// An estimate from a window of an unbounded set, at frequencies k/side. Its taper lets through
-    /// less than 10⁻¹² of the power 10 modes away, and blurs over about ±2 modes.
+    /// Estimates the spectrum of an unbounded set from a window, at frequencies k/side. The taper
+    /// blurs it over about ±2 modes; less than 10⁻¹² of a mode's power leaks 10 modes away.
     #[must_use]
     pub fn of_window(set: &Window, nu_max: f64) -> Self {
         let side = set.side();
@@ -75,7 +75,7 @@ impl Spectrum {
             .iter()
             .map(|p| taper::value(p[0]) * taper::value(p[1]))
             .collect();
-        // At unit density the window holds side² points on average.
+        // At unit density a window has side² points on average.
         let area = side * side;
         let unit = 1.0 / (area * taper::MEAN_SQUARE * taper::MEAN_SQUARE);
         let power = transform(&turns, Some(&weights), modes, |kx, ky, sum| {
@@ -91,7 +91,7 @@ impl Spectrum {
         self.modes as f64 / self.side
     }
 
-    /// The least width of a ring: one mode.
+    /// The least width of a ring in ν: one mode.
     #[must_use]
     pub fn finest_ring(&self) -> f64 {
         1.0 / self.side
@@ -107,7 +107,7 @@ impl Spectrum {
             .then(|| self.power[(kx * (2 * modes + 1) + ky + modes) as usize])
     }
 
-    /// One of every pair k, −k, without k = 0 and within the circle ν ≤ ν_max: (ν, power).
+    /// (ν, power) of one mode of every pair k, −k within the circle ν ≤ ν_max, without k = 0.
     fn half_plane(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let modes = self.modes as i64;
         let rows = self.power.chunks_exact(2 * self.modes + 1);
@@ -126,8 +126,8 @@ impl Spectrum {
         })
     }
 
-    /// Rings of width `width` (in ν, at least one mode), from ν = 0 outwards, as far as they are
-    /// whole.
+    /// Returns the rings of width `width` in ν, or one mode if that is wider, from ν = 0 outwards
+    /// up to the last whole one. Rings without modes are left out.
     #[must_use]
     pub fn rings(&self, width: f64) -> Vec<Ring> {
         let width = width.max(self.finest_ring());
@@ -156,7 +156,7 @@ impl Spectrum {
             .collect()
     }
 
-    /// The figures, with rings of width `width`.
+    /// Returns the summary, with rings of width `width` in ν.
     #[must_use]
     pub fn summary(&self, width: f64) -> Summary {
         let (mut low, mut low_count, mut tallest) = (0.0, 0u64, 0.0f64);
@@ -193,7 +193,7 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::optimize::SplitMix;
+    use crate::numeric::SplitMix;
 
     fn noise(count: usize, seed: u64) -> Vec<[f64; 2]> {
         let mut random = SplitMix::new(seed);
@@ -202,7 +202,7 @@ mod tests {
             .collect()
     }
 
-    /// One point in every cell of a square grid, evenly distributed in it.
+    /// A random point in every cell of a square grid.
     fn jittered(per_axis: usize, seed: u64) -> Vec<[f64; 2]> {
         let corners = (0..per_axis).flat_map(|j| (0..per_axis).map(move |i| [i as f64, j as f64]));
         corners
@@ -238,7 +238,7 @@ mod tests {
             .collect();
         let mut worst: f64 = 0.0;
         for ring in 1..30 {
-            // Means over small squares of modes, clear of the lattice's own peaks.
+            // Means over rectangles of modes, clear of the peaks of the lattice.
             let (mut found, mut expected, mut modes) = (0.0, 0.0, 0.0);
             for kx in ring * 4 + 1..ring * 4 + 4 {
                 for ky in 65..=120 {
@@ -284,15 +284,15 @@ mod tests {
 
     #[test]
     fn a_window_resolves_a_power_of_a_millionth() {
-        // A lattice has no power below ν = 0.5 at all. Neither the tall peaks nor the window's own
-        // edge may leak into it.
+        // A lattice has no power below ν = 0.5. Neither its tall peaks nor the edge of the window
+        // may leak there.
         let lattice: Vec<[f64; 2]> = (-1..102)
             .flat_map(|j| (-1..102).map(move |i| [f64::from(i) + 0.3, f64::from(j) + 0.8]))
             .collect();
         let window = Window::new(100.5, 1.0, lattice);
         let summary = Spectrum::of_window(&window, 0.9).summary(0.02);
         assert!(summary.low_power < 1e-12, "{summary:?}");
-        // The right density is part of the answer.
+        // With a wrong density the mean is not subtracted exactly.
         let wrong = Window::new(100.5, 1.01, window.points().to_vec());
         assert!(Spectrum::of_window(&wrong, 0.9).summary(0.02).low_power > 1e-6);
     }

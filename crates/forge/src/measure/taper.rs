@@ -1,8 +1,8 @@
 //! The taper of a window: sin⁸(πu) along each axis.
 //!
-//! It is a sum of five cosines, so at integer frequencies its transform, and with it the spectrum
-//! of the window's mean density, is zero but for |k| ≤ 4, where it is known exactly and subtracted.
-//! In between, it falls as k⁻⁹: the tall peaks of a quasi-periodic set stay where they are.
+//! The taper is a sum of five cosines. So at integer frequencies its transform, and with it the
+//! spectrum of the window's mean density, is 0 except for |k| ≤ 4, where it is known exactly and
+//! subtracted. Between integers it falls as k⁻⁹, so tall peaks of a quasi-periodic set do not leak.
 
 /// The mean of the taper's square: C(16, 8)/2¹⁶.
 pub(super) const MEAN_SQUARE: f64 = 12_870.0 / 65_536.0;
@@ -14,7 +14,7 @@ pub(super) fn value(u: f64) -> f64 {
     fourth * fourth
 }
 
-/// Its Fourier coefficient: (−1)ᵏ·C(8, 4 + k)/2⁸.
+/// The Fourier coefficient of the taper at integer k: (−1)ᵏ·C(8, 4 + k)/2⁸.
 pub(super) fn coefficient(k: i64) -> f64 {
     let binomial = match k.unsigned_abs() {
         0 => 70.0,

@@ -1,36 +1,37 @@
-//! Voronoi cells, holes and bonds: what the Delaunay triangulation of a set tells.
+//! Figures from the Delaunay triangulation: Voronoi cells, holes and bonds.
 //!
-//! The triangulation itself knows no torus, so a periodic set is given a border: copies of the
-//! points of a band on the other side. Of a window only the inner points are looked at.
+//! The triangulation library has no torus, so a periodic set gets a border: copies of the points
+//! near the opposite edge. Of a window only inner points count.
 
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-use super::{Torus, Window, cells::wrap};
+use super::{Torus, Window, cell_list::wrap};
 
-/// The figures of a set's Voronoi diagram.
+/// The figures of a Voronoi diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Voronoi {
-    /// The largest deviation of a cell's area from the mean area, as a part of the mean.
+    /// The largest deviation of a cell's area from the mean area, over the mean area.
     pub area_deviation: f64,
-    /// The standard deviation of the cells' areas, as a part of the mean.
+    /// The standard deviation of the areas, over the mean area.
     pub area_spread: f64,
     /// The radius of the largest empty circle (the largest circumradius of a Delaunay triangle),
-    /// over the distance of neighbors in a hexagonal lattice of the same density, which itself has
-    /// 1/√3.
+    /// over the nearest-neighbor distance of the hexagonal lattice of the same density. The
+    /// hexagonal lattice has 1/√3.
     pub largest_hole: f64,
-    /// Bond-orientational order: the mean over all points of |mean over its bonds of exp(6iθ)|; 1
-    /// for a hexagonal lattice, 0 for a square one, about 0.37 for a random set.
+    /// Bond-orientational order: the mean over points of |mean of exp(6iθ) over the point's bonds|.
+    /// It is 1 for a hexagonal lattice, 0 for a square one, about 0.37 for a random set.
     pub q6: f64,
 }
 
-/// The width of the border, in mean spacings, and what is left out of a window: cells farther in
-/// than this are whole unless there is a hole of half this radius.
+/// The width, in mean spacings, of the border of a torus and of the margin of a window that does
+/// not count. Cells farther inside are whole unless there is a hole of half this radius.
 const BORDER: f64 = 6.0;
-/// The distance of neighbors in a hexagonal lattice of unit density.
+/// The nearest-neighbor distance of the hexagonal lattice of unit density.
 const HEX: f64 = 1.074_569_931_823_542;
 
 impl Voronoi {
-    /// Of a periodic set. All figures are 0 for a set too small to have a triangulation.
+    /// Measures a periodic set. All figures are 0 for a set too small to have a triangulation. If
+    /// points coincide, the deviation and the spread of areas are 1 and the other figures 0.
     #[must_use]
     pub fn of_torus(set: &Torus) -> Self {
         let side = set.side();
@@ -54,7 +55,7 @@ impl Voronoi {
         Self::of(&points, |index, _| index < counted)
     }
 
-    /// Of a window: its points at least 6 mean spacings from the edge.
+    /// Measures a window: its points at least 6 mean spacings from the edge.
     #[must_use]
     pub fn of_window(set: &Window) -> Self {
         let inner = BORDER..set.side() - BORDER;
@@ -72,7 +73,7 @@ impl Voronoi {
         let Ok(mesh) = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(vertices) else {
             return none;
         };
-        // Coincident points share a vertex; then the numbers differ and no cell is anyone's.
+        // Coincident points share a vertex; then vertices and points no longer correspond.
         if mesh.num_vertices() != points.len() {
             return Self {
                 area_deviation: 1.0,
@@ -121,7 +122,7 @@ impl Voronoi {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimize::SplitMix;
+    use crate::numeric::SplitMix;
 
     fn hexagonal(columns: usize, rows: usize) -> Torus {
         let points = (0..rows).flat_map(|j| {
@@ -136,7 +137,7 @@ mod tests {
 
     #[test]
     fn a_hexagonal_lattice_has_equal_cells_and_the_smallest_holes() {
-        // 97 columns, 112 rows: their ratio is √3/2 to 10⁻⁵.
+        // 97 columns and 112 rows: the ratio is √3/2 to within 10⁻⁴.
         let found = Voronoi::of_torus(&hexagonal(97, 112));
         assert!(found.area_deviation < 1e-9, "{found:?}");
         assert!(
@@ -154,13 +155,13 @@ mod tests {
         assert!((whole.largest_hole - 1.0 / 3f64.sqrt()).abs() < 1e-3);
         points.remove(97 * 56 + 48);
         let holed = Voronoi::of_window(&Window::new(104.0, 1.0, points));
-        // The empty circle reaches the six neighbors, which each inherit a sixth of the cell.
+        // The empty circle reaches the six neighbors, each of which gains a sixth of the cell.
         assert!((holed.largest_hole - 1.0).abs() < 1e-3, "{holed:?}");
         assert!((holed.area_deviation - 1.0 / 6.0).abs() < 1e-3, "{holed:?}");
     }
 
     #[test]
-    fn cells_of_a_random_set_add_up_to_the_torus_and_vary_as_known() {
+    fn cells_of_a_random_set_vary_as_known() {
         let mut random = SplitMix::new(3);
         let points = (0..20_000).map(|_| [random.next_f64(), random.next_f64()]);
         let found = Voronoi::of_torus(&Torus::new(1.0, points.collect()));

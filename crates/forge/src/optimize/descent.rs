@@ -1,73 +1,34 @@
-//! Descent with momentum.
+//! Gradient descent with momentum.
 
-use super::{Meter, Objective};
+use super::{DescentState, Objective};
+use crate::watch::Meter;
 
-/// How a descent runs.
+/// The parameters of a descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Descent {
-    /// How many evaluations it takes.
+    /// The number of evaluations.
     pub steps: u32,
-    /// Mean spacings moved per unit of gradient, at first; halved whenever a step without momentum
-    /// raises the energy.
+    /// Mean spacings moved per unit of gradient, at first. It is halved whenever a step without
+    /// momentum raises the energy.
     pub rate: f64,
 }
 
-/// Everything a descent knows between two steps: going on from it gives what going on would have
-/// given, bit by bit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Descended {
-    /// The moves with the lowest energy that was seen.
-    pub moves: Vec<[f64; 2]>,
-    /// That energy, per point.
-    pub energy: f64,
-    /// How many evaluations were made.
-    pub steps: u32,
-    /// The last energy, unless the descent has begun anew since.
-    pub(crate) last: f64,
-    /// Steps since the momentum began.
-    pub(crate) age: f64,
-    /// The present rate as a part of the first.
-    pub(crate) slowing: f64,
-    /// Where the last step led.
-    pub(crate) at: Vec<[f64; 2]>,
-    /// The same, carried on by the momentum.
-    pub(crate) ahead: Vec<[f64; 2]>,
-    /// The moves for which the objective made its lists: see [`Objective::prepared_for`].
-    pub(crate) prepared_for: Vec<[f64; 2]>,
-}
-
-impl Descended {
-    /// A start, before any step.
-    #[must_use]
-    pub fn at(moves: Vec<[f64; 2]>) -> Self {
-        Self {
-            energy: f64::INFINITY,
-            steps: 0,
-            last: f64::INFINITY,
-            age: 0.0,
-            slowing: 1.0,
-            at: moves.clone(),
-            ahead: moves.clone(),
-            prepared_for: Vec::new(),
-            moves,
-        }
-    }
-}
-
 impl Descent {
-    /// Lowers the energy from a start, or goes on where a descent was stopped: Nesterov's momentum,
-    /// which begins anew whenever it points uphill (O'Donoghue, Candès 2015). The momentum grows to
-    /// what the energy's flat directions need, and nothing has to be tuned to them.
+    /// Lowers the energy of `objective`, from a start or from where a descent was stopped.
     ///
-    /// `keep` is handed the state between steps when the watch wants it, and when it stops the work.
-    /// It was stopped before its last step if fewer steps are done than were to be.
+    /// This is Nesterov's method with adaptive restart (O'Donoghue, Candès 2015): the momentum is
+    /// dropped whenever it points uphill. It grows to what the flat directions of the energy need,
+    /// so nothing has to be tuned to them.
+    ///
+    /// Calls `keep` with the state between two steps when the watch wants a checkpoint and when it
+    /// stops the descent, which then returns with fewer than `self.steps` steps done.
     pub fn run(
         &self,
         objective: &mut (impl Objective + ?Sized),
-        start: Descended,
+        start: DescentState,
         meter: &mut Meter<'_>,
-        keep: &mut dyn FnMut(&Descended),
-    ) -> Descended {
+        keep: &mut dyn FnMut(&DescentState),
+    ) -> DescentState {
         let masses = objective.masses().to_vec();
         let mut state = start;
         if !state.prepared_for.is_empty() {
@@ -92,56 +53,12 @@ impl Descent {
     }
 }
 
-impl Descended {
-    /// Takes the step that an energy and its gradient at `ahead` call for.
-    fn step(&mut self, first_rate: f64, energy: f64, gradient: &[[f64; 2]], masses: &[f64]) {
-        if energy < self.energy {
-            self.energy = energy;
-            self.moves.clone_from(&self.ahead);
-        }
-        // Should it ever rise, begin anew from the best; if momentum was not to blame, the step
-        // was too long.
-        let rose = energy > self.last || energy.is_nan();
-        self.last = energy;
-        if rose {
-            self.slowing *= if self.age <= 1.0 { 0.5 } else { 1.0 };
-            (self.age, self.last) = (0.0, f64::INFINITY);
-            self.at.clone_from(&self.moves);
-            self.ahead.clone_from(&self.moves);
-            return;
-        }
-        let rate = first_rate * self.slowing;
-        let mut uphill = 0.0;
-        self.age += 1.0;
-        let momentum = self.age / (self.age + 3.0);
-        for (((at, ahead), slope), mass) in self
-            .at
-            .iter_mut()
-            .zip(&mut self.ahead)
-            .zip(gradient)
-            .zip(masses)
-        {
-            for axis in 0..2 {
-                let next = ahead[axis] - rate * slope[axis];
-                let by = next - at[axis];
-                uphill += mass * slope[axis] * by;
-                at[axis] = next;
-                ahead[axis] = next + momentum * by;
-            }
-        }
-        if uphill > 0.0 {
-            self.age = 0.0;
-            self.ahead.clone_from(&self.at);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::sync::atomic::{AtomicU32, Ordering};
 
     use super::*;
-    use crate::optimize::{Progress, Stage, Watch};
+    use crate::watch::{Progress, Stage, Watch};
 
     /// A narrow valley: curvatures 1 and 0.002 per mass.
     struct Valley([f64; 2]);
@@ -161,9 +78,9 @@ mod tests {
         }
     }
 
-    fn run(descent: &Descent, watch: &dyn Watch) -> Descended {
+    fn run(descent: &Descent, watch: &dyn Watch) -> DescentState {
         let mut meter = Meter::new(watch, Stage::Optimizing, descent.steps);
-        let start = Descended::at(vec![[5.0, 5.0]; 2]);
+        let start = DescentState::start(vec![[5.0, 5.0]; 2]);
         descent.run(&mut Valley([0.25, 0.75]), start, &mut meter, &mut |_| {})
     }
 
@@ -181,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rate_that_is_too_large_is_mended() {
+    fn a_rate_that_is_too_large_is_lowered() {
         let found = run(
             &Descent {
                 steps: 600,
@@ -193,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn stops_when_told_with_the_best_so_far() {
+    fn a_stopped_descent_returns_the_best_so_far() {
         struct Impatient(AtomicU32);
         impl Watch for Impatient {
             fn progress(&self, progress: &Progress) {

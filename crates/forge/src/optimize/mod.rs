@@ -1,47 +1,28 @@
 //! Optimizing in table space: the unknowns are the n² vectors of a table, not points.
+//!
+//! An [`Objective`] is an energy as a function of the vectors, which are called *moves* here. Three
+//! objectives exist. [`Pairs`] (a pair energy) and [`Radial`] (the error of a radial power curve)
+//! are sums over pairs of blocks and need no points: `neighbors` lists the pairs with their exact
+//! frequencies, which `overlap` computes. [`Sets`] evaluates any other energy on twins. For
+//! [`Radial`], `rings` turns a histogram of distances into radial power. A [`Descent`] lowers an
+//! objective from the random start of [`jitter`]; its [`DescentState`] can be kept and resumed.
 
 mod descent;
+mod neighbors;
+mod objective;
 mod overlap;
 mod pairs;
 mod radial;
 mod rings;
 mod sets;
 mod start;
-mod watch;
+mod state;
 
-pub use descent::{Descended, Descent};
+pub use descent::Descent;
+pub use objective::Objective;
 pub use pairs::Pairs;
-pub use radial::{Radial, RadialWeights, Reach};
-pub(crate) use rings::excess;
+pub use radial::Radial;
+pub use rings::RadialWeights;
 pub use sets::Sets;
-pub use start::{SplitMix, jitter};
-pub use watch::{Meter, Progress, Stage, Watch};
-
-/// An energy as a function of a table's vectors, in mean spacings (*moves*).
-pub trait Objective {
-    /// The share of points that each block has; they sum to 1.
-    fn masses(&self) -> &[f64];
-
-    /// The energy per point. Writes into `gradient` the derivative by the position of one instance
-    /// of each block, the mean over its instances; times its mass it is the derivative by the
-    /// block's vector.
-    ///
-    /// Gives the same bits whatever the number of threads.
-    fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64;
-
-    /// The moves that lists of neighbors were made for. The order of a sum follows those lists, so
-    /// they are part of what decides the next bits; empty if there are none.
-    fn prepared_for(&self) -> &[[f64; 2]] {
-        &[]
-    }
-
-    /// Makes the lists for these moves, as if they had been evaluated when the lists were made.
-    fn prepare_for(&mut self, moves: &[[f64; 2]]) {
-        let _ = moves;
-    }
-
-    /// How many pairs one evaluation visits (after the first), if it visits pairs.
-    fn pairs(&self) -> usize {
-        0
-    }
-}
+pub use start::jitter;
+pub use state::DescentState;

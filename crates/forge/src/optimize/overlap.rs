@@ -2,37 +2,39 @@
 //!
 //! A neighbor at offset (i, j) has its index shifted by a = (αi + j)/2 along X and (αj + i)/2 along
 //! Y. So interval u of one point meets interval v of the other on the part of u that the shift
-//! carries into v: an overlap of two partitions of [0, t), one of them moved. The frequency of a
-//! pair of *blocks* is the product of the two axes' overlaps.
+//! carries into v: an overlap of two partitions of [0, t), one of them shifted. The frequency of a
+//! pair of *blocks* is the product of the overlaps along the two axes.
 
 use strew_core::{Map, Pattern};
 
-/// Overlaps shorter than this (2⁻⁴⁰ of the torus) are rounding of a fraction's thresholds, which
-/// coincide in truth.
-const DUST: u64 = 1 << 24;
+/// Overlaps shorter than this, 2⁻⁴⁰ of the torus, are dropped: they are rounding errors between
+/// thresholds of a fraction that coincide.
+const ROUNDING: u64 = 1 << 24;
 
-/// A part of an interval that an offset carries into another interval.
+/// The part of an interval that an offset carries into another interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Overlap {
-    /// The interval of the neighbor.
+    /// The other interval, which is the neighbor's.
     pub(super) to: u32,
-    /// The length, as a part of the torus.
+    /// Its length, as a fraction of the torus.
     pub(super) length: f64,
 }
 
-/// All overlaps of one map along one axis, for all offsets up to a reach.
+/// All overlaps of a map along an axis, for all offsets up to a reach.
 ///
-/// The axes are alike: the shift of X by (i, j) is that of Y by (j, i).
+/// They serve both axes: the shift of X by (i, j) is that of Y by (j, i).
 pub(super) struct Overlaps {
     reach: i64,
     intervals: usize,
-    /// By offset (own, parity of the other) and interval: a range of `items`.
+    /// Where the items of each offset along the axis, parity across it, and interval start; and the
+    /// end of the last.
     starts: Vec<u32>,
     items: Vec<Overlap>,
-    /// The length of each interval, as a part of the torus.
+    /// The length of each interval, as a fraction of the torus.
     lengths: Vec<f64>,
 }
 
+/// The unit of indices, 2⁻⁶⁴ of the torus.
 const UNIT: f64 = 1.0 / 18_446_744_073_709_551_616.0;
 
 impl Overlaps {
@@ -61,7 +63,7 @@ impl Overlaps {
     fn add(&mut self, map: &Map, shift: i64) {
         for from in 0..self.intervals {
             let own = map.interval(from);
-            // The interval as seen by the neighbor, cut to the set region; i128 has room for all.
+            // The shifted interval, cut to the set region. In i128 nothing overflows.
             let side = i128::from(map.alpha().set_side());
             let start = (i128::from(own.start) + i128::from(shift)).max(0);
             let end = (i128::from(own.end) + i128::from(shift)).min(side);
@@ -72,7 +74,7 @@ impl Overlaps {
                 };
                 let next = i128::from(map.interval(to).end).min(end);
                 let length = (next - at) as u64;
-                if length > DUST {
+                if length > ROUNDING {
                     self.items.push(Overlap {
                         to: to as u32,
                         length: length as f64 * UNIT,
@@ -84,7 +86,8 @@ impl Overlaps {
         }
     }
 
-    /// What an interval meets at the offset `own` along the axis, across it one of parity `other`.
+    /// The overlaps of the interval `from` at offset `own` along the axis and, across it, an offset
+    /// of the parity of `other`.
     pub(super) fn of(&self, own: i64, other: i64, from: usize) -> &[Overlap] {
         let offset = (own + self.reach) as usize * 2 + (other & 1) as usize;
         let at = offset * self.intervals + from;
@@ -96,7 +99,7 @@ impl Overlaps {
         self.reach
     }
 
-    /// The length of an interval, as a part of the torus.
+    /// The length of an interval, as a fraction of the torus.
     pub(super) fn length(&self, interval: usize) -> f64 {
         self.lengths[interval]
     }

@@ -1,94 +1,62 @@
-//! A radial power curve as an energy in table space: no point set, only frequencies of pairs.
+//! A radial power curve as an energy in table space.
 //!
-//! The histogram of distances that decides the radial power (see [`Rings`]) comes exactly from the
-//! frequencies of block pairs (see [`Pairs`]): of the unbounded pattern, not of a sample of it. One
-//! evaluation is a pass over the pairs for the histogram, a product with a table of J₀, and a second
-//! pass with the resulting force, a function of the distance alone.
+//! The radial power follows from the histogram of distances (see [`Rings`]). Exact pair frequencies
+//! (see [`neighbors`](super::neighbors)) yield the histogram of the unbounded pattern, without a
+//! sample of points. One evaluation is a pass over the pairs for the histogram, a product with a
+//! table of J₀, and a second pass with the resulting force, which depends on the distance alone.
 //!
-//! A map serves an interval of α, on which the frequencies of far pairs change altogether: blocks
-//! shrink to nothing, others meet. A table that follows its curve at one α alone misses it at the
-//! interval's ends, where some twins lie. So the error is taken of several α apart, never of the mean
-//! of their histograms, in which opposite errors would cancel.
+//! A map serves an interval of α, and across it the frequencies of far pairs change completely:
+//! blocks shrink to nothing, others begin to meet. A table that follows its curve at one α misses
+//! it at the ends of the interval, where some twins lie. So the error is evaluated at several α and
+//! averaged. Averaging the histograms instead would let opposite errors cancel.
 
 use rayon::prelude::*;
 use strew_core::Map;
 
 use super::{
-    Objective, Pairs,
-    pairs::{CHUNK, LANES, Pair},
-    rings::{BINS, RINGS, Rings},
+    Objective,
+    neighbors::{CHUNK, LANES, Neighbors, Pair},
+    rings::{BINS_PER_SPACING, RINGS_PER_NU, RadialWeights, Rings},
 };
-use crate::{energy::PairEnergy, profile::Target};
+use crate::curve::Target;
 
 /// The cost of the squared excess of a vector's length over the leash.
 const PULL: f64 = 0.3;
 
-/// What a curve's error costs; see [`Radial`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RadialWeights {
-    /// Pairs up to this distance count, in mean spacings. Resolution is about 1/reach; cost grows
-    /// as its square or faster.
-    pub reach: f64,
-    /// The largest ν that is fitted.
-    pub nu_max: f64,
-    /// The cost of the squared error, per unit of ν; where the target T is above 1, over T: between
-    /// the absolute and the relative error.
-    pub fit: f64,
-    /// The cost of power as such, per unit area of the (νx, νy) plane, where the target is 0; more
-    /// at the lowest ν. The square alone would lose its slope long before such power is gone.
-    pub quiet: f64,
-    /// Vectors longer than this, in mean spacings, are pulled back: what samples the set looks that
-    /// far around every region.
-    pub leash: f64,
-    /// Power as such costs less and less over this width in ν before the target leaves 0.
-    pub edge: f64,
-}
-
-/// The error of a radial power curve: Σ fit·(P − T)² + quiet·P over rings, the mean over patterns.
+/// The error of a radial power curve: Σ fit·(P − T)² + quiet·P over rings, averaged over patterns.
 pub struct Radial {
-    patterns: Vec<One>,
+    patterns: Vec<WeightedPattern>,
     masses: Vec<f64>,
     leash: f64,
     rings: Rings,
 }
 
-/// The map at one α.
-struct One {
-    pairs: Pairs<Reach>,
-    /// Its own mean spacings per mean spacing of the table.
+/// The pattern of the map at one α.
+struct WeightedPattern {
+    neighbors: Neighbors,
+    /// Mean spacings of this pattern per mean spacing of the table.
     stretch: f64,
+    /// Its weight in the average.
     share: f64,
 }
 
-/// No energy of its own; it tells how far pairs matter.
-pub struct Reach(pub f64);
-
-impl PairEnergy for Reach {
-    fn cutoff(&self) -> f64 {
-        self.0
-    }
-
-    fn pair(&self, _: f64) -> (f64, f64) {
-        (0.0, 0.0)
-    }
-}
-
 impl Radial {
-    /// The error of `target`, the mean over the patterns of `maps` with their shares, which sum
-    /// to 1. They are one map for slightly different α; the first one's mean spacing is the unit.
+    /// The error against `target`, averaged over the patterns of `maps` by their shares, which sum
+    /// to 1. The maps are one map for slightly different α; lengths are in mean
+    /// spacings of the first.
     #[must_use]
     pub fn new(maps: &[(Map, f64)], target: &Target, weights: &RadialWeights) -> Self {
         let scale = maps[0].0.alpha().set_side_f64();
-        let one = |(map, share): &(Map, f64)| One {
-            pairs: Pairs::new(Reach(weights.reach), std::slice::from_ref(map), scale),
+        let pattern = |(map, share): &(Map, f64)| WeightedPattern {
+            neighbors: Neighbors::new(weights.reach, std::slice::from_ref(map), scale),
             stretch: map.alpha().set_side_f64() / scale,
             share: *share,
         };
-        let patterns: Vec<One> = maps.iter().map(one).collect();
-        let mut masses = vec![0.0; patterns[0].pairs.masses().len()];
-        for one in &patterns {
-            for (sum, mass) in masses.iter_mut().zip(one.pairs.masses()) {
-                *sum += one.share * mass;
+        let patterns: Vec<WeightedPattern> = maps.iter().map(pattern).collect();
+        let mut masses = vec![0.0; patterns[0].neighbors.masses().len()];
+        for pattern in &patterns {
+            for (sum, mass) in masses.iter_mut().zip(pattern.neighbors.masses()) {
+                *sum += pattern.share * mass;
             }
         }
         Self {
@@ -99,20 +67,20 @@ impl Radial {
         }
     }
 
-    /// The blurred target and the blurred power for the given moves, of the first map:
-    /// (ν, target, power).
+    /// Target and power of the first map's pattern for the given moves, both blurred:
+    /// (ν, target, power), ascending in ν.
     pub fn curves(&mut self, moves: &[[f64; 2]]) -> Vec<[f64; 3]> {
-        let one = &mut self.patterns[0];
-        one.pairs.refresh(moves);
-        let power = self.rings.power(&one.histogram(&self.rings, moves));
-        let nus = (0..power.len()).map(|ring| ring as f64 / RINGS);
+        let first = &mut self.patterns[0];
+        first.neighbors.refresh(moves);
+        let power = self.rings.power(&first.histogram(&self.rings, moves));
+        let nus = (0..power.len()).map(|ring| ring as f64 / RINGS_PER_NU);
         nus.zip(self.rings.targets())
             .zip(power)
             .map(|((nu, target), power)| [nu, target, power])
             .collect()
     }
 
-    /// The cost of vectors that are too long; adds its slope.
+    /// Returns the cost of vectors longer than the leash and adds its slope to `gradient`.
     fn pull(&self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64 {
         let mut cost = 0.0;
         for ((m, slope), mass) in moves.iter().zip(gradient).zip(&self.masses) {
@@ -129,10 +97,10 @@ impl Radial {
     }
 }
 
-impl One {
-    /// Neighbors per point and bin, in excess of a uniform density.
+impl WeightedPattern {
+    /// The mean number of neighbors of a point, by distance bin, in excess of a uniform density.
     fn histogram(&self, rings: &Rings, moves: &[[f64; 2]]) -> Vec<f64> {
-        let masses = self.pairs.masses();
+        let masses = self.neighbors.masses();
         let partial: Vec<Vec<f64>> = moves
             .par_chunks(CHUNK)
             .enumerate()
@@ -140,8 +108,9 @@ impl One {
                 let mut bins = vec![0.0; rings.bins() + 1];
                 for (at, &own) in own.iter().enumerate() {
                     let block = chunk * CHUNK + at;
-                    let list = self.pairs.list(block);
-                    // A pair stands in the lists of both its blocks, with opposite offsets.
+                    let list = self.neighbors.of(block);
+                    // A pair is in the lists of both its blocks, with opposite offsets: half of
+                    // each list, counted twice, covers all pairs.
                     let half = list.partition_point(|pair| (pair.j, pair.i) < (0, 0));
                     let mass = 2.0 * masses[block];
                     self.each_pair(
@@ -167,16 +136,17 @@ impl One {
         sum
     }
 
-    /// Adds the slope under a force, by bin, to that of all blocks, whose mean masses are given.
+    /// Adds the slope of all blocks under a force to `to`. `force` is by distance bin, `mean` holds
+    /// the masses of the blocks averaged over all patterns.
     fn add_slope(&self, force: &[f64], moves: &[[f64; 2]], mean: &[f64], to: &mut [[f64; 2]]) {
-        let masses = self.pairs.masses();
+        let masses = self.neighbors.masses();
         to.par_chunks_mut(CHUNK)
             .enumerate()
             .for_each(|(chunk, out)| {
                 for (at, out) in out.iter_mut().enumerate() {
                     let block = chunk * CHUNK + at;
                     let mut slope = [0.0; 2];
-                    let list = self.pairs.list(block);
+                    let list = self.neighbors.of(block);
                     self.each_pair(
                         list,
                         moves[block],
@@ -189,17 +159,17 @@ impl One {
                         },
                     );
                     let part = self.share * masses[block] / mean[block];
-                    // The distance is `stretch` times that of the moves.
-                    let part = part * BINS * self.stretch * self.stretch;
+                    // Distances are in mean spacings of this pattern, moves in those of the table.
+                    let part = part * BINS_PER_SPACING * self.stretch * self.stretch;
                     out[0] += part * slope[0];
                     out[1] += part * slope[1];
                 }
             });
     }
 
-    /// Calls `visit` with the weight of each pair of a point, its distance in bins, and the vector
-    /// from the neighbor to the point. Whatever is beyond the last bin is told to be in it, where
-    /// nothing counts any more.
+    /// Calls `visit` for each pair in the list of a point with its weight, its distance in bins,
+    /// and the vector from the neighbor to the point. Distances beyond the last bin are clamped to
+    /// it, where the taper is 0.
     #[inline]
     fn each_pair(
         &self,
@@ -209,8 +179,8 @@ impl One {
         bins: usize,
         mut visit: impl FnMut(f64, f64, f64, f64),
     ) {
-        let scale = self.pairs.scale();
-        let (per_spacing, last) = (BINS * self.stretch, (bins - 1) as f64);
+        let scale = self.neighbors.scale();
+        let (per_spacing, last) = (BINS_PER_SPACING * self.stretch, (bins - 1) as f64);
         let apart = |pair: &Pair| {
             let to = moves[pair.to as usize];
             let dx = own[0] - (scale * f64::from(pair.i) + to[0]);
@@ -242,29 +212,30 @@ impl Objective for Radial {
     fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64 {
         gradient.fill([0.0; 2]);
         let mut cost = 0.0;
-        for one in &mut self.patterns {
-            one.pairs.refresh(moves);
-            let power = self.rings.power(&one.histogram(&self.rings, moves));
-            cost += one.share * self.rings.cost(&power);
+        for pattern in &mut self.patterns {
+            pattern.neighbors.refresh(moves);
+            let power = self.rings.power(&pattern.histogram(&self.rings, moves));
+            cost += pattern.share * self.rings.cost(&power);
             let force = self.rings.force(&power);
-            one.add_slope(&force, moves, &self.masses, gradient);
+            pattern.add_slope(&force, moves, &self.masses, gradient);
         }
         cost + self.pull(moves, gradient)
     }
 
-    /// The patterns make their lists for the same moves.
+    /// The lists of all patterns are built for the same moves.
     fn prepared_for(&self) -> &[[f64; 2]] {
-        self.patterns[0].pairs.prepared_for()
+        self.patterns[0].neighbors.built_for()
     }
 
     fn prepare_for(&mut self, moves: &[[f64; 2]]) {
-        for one in &mut self.patterns {
-            one.pairs.prepare_for(moves);
+        for pattern in &mut self.patterns {
+            pattern.neighbors.build(moves);
         }
     }
 
     fn pairs(&self) -> usize {
-        self.patterns.iter().map(|one| one.pairs.pairs()).sum()
+        let all = self.patterns.iter();
+        all.map(|pattern| pattern.neighbors.pairs()).sum()
     }
 }
 

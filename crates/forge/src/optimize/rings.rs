@@ -1,35 +1,60 @@
-//! What a radial power curve asks of the distances between points, and what missing it costs.
+//! The radial power of a histogram of distances, and the cost of its error against a target.
 //!
-//! The radial power of a set is P(ν) = 1 + Σ J₀(2πνr) over the distances r from a point to all
-//! others, less what a uniform density gives: it is linear in the histogram of distances. Distances
-//! beyond a reach are tapered away, which blurs P by about 1/reach; the target is blurred alike.
+//! The radial power of a set is P(ν) = 1 + Σ J₀(2πνr), where r runs over the distances from a point
+//! to all others, less the same sum for a uniform density. So P is linear in the histogram of
+//! distances. Distances are tapered off towards a reach, which blurs P by about 1/reach. The target
+//! is blurred in the same way.
 
 use rayon::prelude::*;
 
-use super::RadialWeights;
-use crate::{energy::BesselJ0, profile::Target};
+use crate::{
+    curve::{Target, total_correlation},
+    numeric::BesselJ0,
+};
 
 /// Bins of the histogram per mean spacing.
-pub(super) const BINS: f64 = 128.0;
+pub(super) const BINS_PER_SPACING: f64 = 128.0;
 /// Rings per unit of ν: about twice as many as the reach resolves.
-pub(super) const RINGS: f64 = 40.0;
-/// Below this ν power costs more than its area in the (νx, νy) plane.
+pub(super) const RINGS_PER_NU: f64 = 40.0;
+/// Below this ν, power as such costs more than its area in the (νx, νy) plane; see [`extent`].
 const LONG_WAVES: f64 = 0.2;
-/// Steps per unit of ν in the integral that gives a target's own distances.
-const TARGET_STEPS: f64 = 2000.0;
 
-/// Rings of ν from 0 on, each with its target and its own cost.
+/// The weights in the cost of a power curve's error, and the range it is taken over; see
+/// [`Radial`](super::Radial). Lengths are in mean spacings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RadialWeights {
+    /// Pairs up to this distance count. The resolution in ν is about 1/reach; run time grows as the
+    /// square of the reach or faster.
+    pub reach: f64,
+    /// The largest ν that is fitted.
+    pub nu_max: f64,
+    /// The cost of the squared error, per unit of ν. Where the target T is above 1 it is divided by
+    /// T: a compromise between absolute and relative error.
+    pub fit: f64,
+    /// The cost of power as such where the target is 0, per unit area of the (νx, νy) plane, and
+    /// more at the lowest ν. The slope of the squared error alone vanishes long before such power
+    /// is gone.
+    pub quiet: f64,
+    /// Vectors longer than this are pulled back, because a sampler has to look as far around every
+    /// region as the longest vector reaches.
+    pub leash: f64,
+    /// The width in ν over which `quiet` falls to 0 at the ends of a band where the target is 0.
+    pub edge: f64,
+}
+
+/// Rings from ν = 0 on, each with its target and its weights.
 pub(super) struct Rings {
     bins: usize,
     rings: Vec<Ring>,
     /// By ring, then bin: J₀ times the taper.
     waves: Vec<f64>,
-    /// What a uniform density gives, by bin.
+    /// The histogram of a uniform density, by bin.
     uniform: Vec<f64>,
 }
 
 #[derive(Clone, Debug)]
 struct Ring {
+    /// Blurred.
     target: f64,
     fit: f64,
     quiet: f64,
@@ -37,13 +62,13 @@ struct Ring {
 
 impl Rings {
     pub(super) fn new(target: &Target, weights: &RadialWeights) -> Self {
-        let bins = (weights.reach * BINS) as usize + 1;
-        let count = (weights.nu_max * RINGS) as usize + 1;
+        let bins = (weights.reach * BINS_PER_SPACING) as usize + 1;
+        let count = (weights.nu_max * RINGS_PER_NU) as usize + 1;
         let two_pi = 2.0 * std::f64::consts::PI;
         let bessel =
             BesselJ0::up_to(two_pi * (weights.nu_max.max(target.end()) + 1.0) * weights.reach);
-        let nu = |ring: usize| ring as f64 / RINGS;
-        let r = |bin: usize| bin as f64 / BINS;
+        let nu = |ring: usize| ring as f64 / RINGS_PER_NU;
+        let r = |bin: usize| bin as f64 / BINS_PER_SPACING;
         let waves: Vec<f64> = (0..count * bins)
             .into_par_iter()
             .map(|at| {
@@ -51,11 +76,13 @@ impl Rings {
                 taper(r(bin) / weights.reach) * bessel.at(two_pi * nu(ring) * r(bin))
             })
             .collect();
-        let uniform: Vec<f64> = (0..bins).map(|bin| two_pi * r(bin) / BINS).collect();
-        // What the target's own set would have in each bin beyond a uniform density.
+        let uniform: Vec<f64> = (0..bins)
+            .map(|bin| two_pi * r(bin) / BINS_PER_SPACING)
+            .collect();
+        // The histogram of a set with the target's power, in excess of a uniform density.
         let own: Vec<f64> = (0..bins)
             .into_par_iter()
-            .map(|bin| uniform[bin] * excess(target, &bessel, r(bin)))
+            .map(|bin| uniform[bin] * total_correlation(target, &bessel, r(bin)))
             .collect();
         let rings = waves
             .par_chunks_exact(bins)
@@ -64,8 +91,8 @@ impl Rings {
                 let blurred = 1.0 + wave.iter().zip(&own).map(|(w, h)| w * h).sum::<f64>();
                 Ring {
                     target: blurred,
-                    fit: weights.fit / (RINGS * blurred.max(1.0)),
-                    quiet: weights.quiet * two_pi * extent(nu(ring)) / RINGS
+                    fit: weights.fit / (RINGS_PER_NU * blurred.max(1.0)),
+                    quiet: weights.quiet * two_pi * extent(nu(ring)) / RINGS_PER_NU
                         * quietness(target, nu(ring), weights.edge),
                 }
             })
@@ -78,12 +105,12 @@ impl Rings {
         }
     }
 
-    /// How many bins a histogram has.
+    /// The number of bins of a histogram.
     pub(super) const fn bins(&self) -> usize {
         self.bins
     }
 
-    /// A histogram without any neighbors: in excess of a uniform density, less than none.
+    /// The histogram of a point without neighbors, in excess of a uniform density: negative.
     pub(super) fn empty(&self) -> Vec<f64> {
         self.uniform.iter().map(|u| -u).collect()
     }
@@ -110,7 +137,8 @@ impl Rings {
         costs.sum()
     }
 
-    /// The slope of the cost by the distance of a pair seen from one end, by bin; none in the last.
+    /// The derivative of the cost by the distance of a pair, seen from one end, for each distance
+    /// bin; 0 in the last.
     pub(super) fn force(&self, power: &[f64]) -> Vec<f64> {
         let slopes = self.rings.iter().zip(power);
         let slopes: Vec<f64> = slopes
@@ -125,38 +153,26 @@ impl Rings {
         // A pair is seen from both of its ends.
         potential
             .windows(2)
-            .map(|ends| 2.0 * BINS * (ends[1] - ends[0]))
+            .map(|ends| 2.0 * BINS_PER_SPACING * (ends[1] - ends[0]))
             .chain([0.0])
             .collect()
     }
 }
 
-/// What counts as a ring's circumference, over 2π: more than ν where ν is small. There power yields
-/// to moves by its wavelength's inverse only, and would be gone last.
+/// The weight of a ring of power as such: its circumference over 2π, and more where ν is small.
+/// There moves change the power only in proportion to ν, so it would be the last to go.
 fn extent(nu: f64) -> f64 {
-    nu + LONG_WAVES * LONG_WAVES / nu.max(1.0 / RINGS)
+    nu + LONG_WAVES * LONG_WAVES / nu.max(1.0 / RINGS_PER_NU)
 }
 
-/// (1 − x²)³: smooth to the second derivative at the reach, so that the blur has low tails.
+/// The taper (1 − x²)³, with x the distance over the reach. It is smooth to the second derivative
+/// at x = 1, so the blur has low tails.
 fn taper(x: f64) -> f64 {
     let rest = (1.0 - x * x).max(0.0);
     rest * rest * rest
 }
 
-/// g(r) − 1 of a set with that spectrum: the transform of T − 1. It cannot be below −1.
-pub(crate) fn excess(target: &Target, bessel: &BesselJ0, r: f64) -> f64 {
-    let two_pi = 2.0 * std::f64::consts::PI;
-    let steps = (target.end() * TARGET_STEPS) as usize;
-    let sum: f64 = (0..=steps)
-        .map(|step| {
-            let nu = (step as f64 + 0.5) / TARGET_STEPS;
-            (target.at(nu) - 1.0) * nu * bessel.at(two_pi * nu * r)
-        })
-        .sum();
-    two_pi * sum / TARGET_STEPS
-}
-
-/// 1 well inside a band where the target is 0, falling to 0 over `edge` before the band's ends.
+/// 1 well inside a band where the target is 0, falling to 0 within `edge` of the band's ends.
 fn quietness(target: &Target, nu: f64, edge: f64) -> f64 {
     if target.at(nu) > 0.0 {
         return 0.0;
@@ -168,26 +184,4 @@ fn quietness(target: &Target, nu: f64, edge: f64) -> f64 {
         .count();
     let u = free as f64 / f64::from(steps);
     u * u * (3.0 - 2.0 * u)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_step_leaves_no_room_for_a_pair_at_distance_zero() {
-        let bessel = BesselJ0::up_to(60.0);
-        let at_most: Target = "0 0\n0.5642 0\n0.5642 1".parse().expect("valid");
-        assert!((excess(&at_most, &bessel, 0.0) + 1.0).abs() < 1e-3);
-        let step: Target = "0 0\n0.5 0\n0.5 1".parse().expect("valid");
-        // −ν₀·J₁(2πν₀r)/r, the transform of a disk.
-        let (nu, r): (f64, f64) = (0.5, 1.7);
-        let turn = |node: i32| std::f64::consts::PI * (f64::from(node) + 0.5) / 400.0;
-        let x = std::f64::consts::TAU * nu * r;
-        let j1: f64 = (0..400)
-            .map(|node| (turn(node) - x * turn(node).sin()).cos())
-            .sum::<f64>()
-            / 400.0;
-        assert!((excess(&step, &bessel, r) + nu * j1 / r).abs() < 1e-3);
-    }
 }

@@ -1,4 +1,4 @@
-//! Energies of point sets in table space: evaluated on twins, averaged over instances of blocks.
+//! Energies of point sets in table space, evaluated on twins.
 
 use rayon::prelude::*;
 use strew_core::{Map, Twin, map::Site};
@@ -7,50 +7,55 @@ use super::Objective;
 use crate::{energy::SetEnergy, measure::Torus};
 
 /// An energy of point sets as a function of a table's vectors: its mean over the points of several
-/// twins. What meets on none of the twins is not seen (see [`Pairs`](super::Pairs), which sees all),
-/// so there should be several, and none very small.
+/// twins.
+///
+/// Blocks that are neighbors on none of the twins do not interact. So there should be several
+/// twins, none of them very small. [`Pairs`](super::Pairs) has no such limit.
 pub struct Sets<E> {
     energy: E,
-    sets: Vec<Instances>,
+    twins: Vec<TwinPoints>,
     masses: Vec<f64>,
 }
 
 /// The points of one twin.
-struct Instances {
+struct TwinPoints {
     /// Undisplaced, in mean spacings.
     sites: Vec<[f64; 2]>,
+    /// The block of each site.
     blocks: Vec<u32>,
+    /// Displaced.
     set: Torus,
+    /// Of the energy, by each point.
     gradient: Vec<[f64; 2]>,
 }
 
 impl<E: SetEnergy> Sets<E> {
-    /// The energy on those of the twins that are twins of the map.
+    /// The energy on `twins`; those that are not twins of `map` are ignored.
     #[must_use]
     pub fn new(energy: E, map: &Map, twins: &[Twin]) -> Self {
         let n = map.intervals();
-        let instances = |twin: &Twin| {
+        let points = |twin: &Twin| {
             let sites = twin.sites(map)?;
             let place = |site: &Site| [f64::from(site.x), f64::from(site.y)];
             let set = Torus::new(twin.period() as f64, sites.iter().map(place).collect());
             let block = |site: &Site| site.block_y * n as u32 + site.block_x;
-            Some(Instances {
+            Some(TwinPoints {
                 sites: set.points().to_vec(),
                 blocks: sites.iter().map(block).collect(),
                 gradient: vec![[0.0; 2]; sites.len()],
                 set,
             })
         };
-        let sets: Vec<Instances> = twins.iter().filter_map(instances).collect();
+        let twins: Vec<TwinPoints> = twins.iter().filter_map(points).collect();
         let mut masses = vec![0.0; n * n];
-        for &block in sets.iter().flat_map(|set| &set.blocks) {
+        for &block in twins.iter().flat_map(|twin| &twin.blocks) {
             masses[block as usize] += 1.0;
         }
         let total: f64 = masses.iter().sum();
         masses.iter_mut().for_each(|mass| *mass /= total);
         Self {
             energy,
-            sets,
+            twins,
             masses,
         }
     }
@@ -64,10 +69,10 @@ impl<E: SetEnergy> Objective for Sets<E> {
     fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64 {
         let energy = &self.energy;
         let energies: Vec<f64> = self
-            .sets
+            .twins
             .par_iter_mut()
             .map(
-                |Instances {
+                |TwinPoints {
                      sites,
                      blocks,
                      set,
@@ -84,13 +89,13 @@ impl<E: SetEnergy> Objective for Sets<E> {
             .collect();
         gradient.fill([0.0; 2]);
         let (mut sum, mut points) = (0.0, 0.0);
-        for (set, energy) in self.sets.iter().zip(energies) {
-            for (&block, slope) in set.blocks.iter().zip(&set.gradient) {
+        for (twin, energy) in self.twins.iter().zip(energies) {
+            for (&block, slope) in twin.blocks.iter().zip(&twin.gradient) {
                 let out = &mut gradient[block as usize];
                 *out = [out[0] + slope[0], out[1] + slope[1]];
             }
-            sum += energy * set.sites.len() as f64;
-            points += set.sites.len() as f64;
+            sum += energy * twin.sites.len() as f64;
+            points += twin.sites.len() as f64;
         }
         for (out, mass) in gradient.iter_mut().zip(&self.masses) {
             let instances = f64::max(mass * points, 1.0);
@@ -109,7 +114,7 @@ mod tests {
     };
 
     #[test]
-    fn a_pair_energy_on_sets_is_that_of_exact_frequencies() {
+    fn a_pair_energy_on_a_twin_is_that_of_exact_frequencies() {
         let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 9).expect("small");
         let mut twins = map.twins().filter(|t| t.is_uniform() && t.points() > 600);
         let twin = twins.next().expect("endless");

@@ -1,50 +1,14 @@
 //! The random start of a table.
 
-/// `splitmix64` (Steele, Lea, Flood 2014): the generator is pinned, because it decides a table.
-#[derive(Clone, Debug)]
-pub struct SplitMix(u64);
+use crate::numeric::SplitMix;
 
-impl SplitMix {
-    /// The stream of a seed.
-    #[must_use]
-    pub const fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// The next 64 bits.
-    pub const fn next_u64(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// The next number in [0, 1), a multiple of 2⁻⁵³.
-    pub fn next_f64(&mut self) -> f64 {
-        (self.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
-    }
-}
-
-/// One small vector a block, evenly distributed in a square of half-width `jitter`.
+/// Returns a vector for each block, uniformly random in a square of half-width `jitter`.
 ///
-/// Small: a large random start lets pairs of blocks that seldom meet settle on top of each other.
+/// The half-width should be small: from a large random start, pairs of blocks that seldom meet
+/// settle on top of each other.
 #[must_use]
 pub fn jitter(blocks: usize, jitter: f64, seed: u64) -> Vec<[f64; 2]> {
     let mut random = SplitMix::new(seed);
     let mut next = || (2.0 * random.next_f64() - 1.0) * jitter;
     (0..blocks).map(|_| [next(), next()]).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_generator_is_the_published_one() {
-        // Reference values of splitmix64 for the seed 1234567.
-        let mut random = SplitMix::new(1_234_567);
-        assert_eq!(random.next_u64(), 6_457_827_717_110_365_317);
-        assert_eq!(random.next_u64(), 3_203_168_211_198_807_973);
-    }
 }

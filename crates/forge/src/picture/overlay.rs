@@ -1,5 +1,5 @@
-//! The parts of a picture that a plotting library draws one mark at a time: thousands of dots as one
-//! path, thousands of gray cells as one embedded PNG.
+//! Thousands of dots as one SVG path, thousands of gray cells as one embedded PNG. The plotting
+//! library would write an element for each.
 
 use std::{fmt::Write as _, ops::Range};
 
@@ -8,13 +8,13 @@ use base64::{Engine as _, prelude::BASE64_STANDARD};
 /// The diameter of a dot, in pixels.
 const DOT: f64 = 4.0;
 
-/// Where a panel's plot is, in pixels from the upper left corner of the picture.
+/// The extent of a panel's plot, in pixels from the upper left corner of the picture.
 pub(super) struct Frame {
     pub(super) x: Range<f64>,
     pub(super) y: Range<f64>,
 }
 
-/// Dots at places given in parts of the frame, from its lower left corner.
+/// Returns a path of dots. Places are in [0, 1]² from the lower left corner of the frame.
 pub(super) fn dots(frame: &Frame, places: impl Iterator<Item = [f64; 2]>) -> String {
     let mut path = String::new();
     for [x, y] in places {
@@ -28,7 +28,7 @@ pub(super) fn dots(frame: &Frame, places: impl Iterator<Item = [f64; 2]>) -> Str
     )
 }
 
-/// Gray cells, rows from the top, over the whole frame.
+/// Returns an image of gray cells over the whole frame; rows of `columns` cells from the top.
 pub(super) fn gray(
     frame: &Frame,
     columns: u32,
@@ -38,8 +38,8 @@ pub(super) fn gray(
     let mut encoder = png::Encoder::new(&mut bytes, columns, cells.len() as u32 / columns.max(1));
     encoder.set_color(png::ColorType::Grayscale);
     encoder.set_depth(png::BitDepth::Eight);
-    // This level has one implementation, whatever other parts of the program ask of a compressor:
-    // the same picture has the same bytes.
+    // This level has a single implementation, whichever features of the compressor other parts of a
+    // program enable. So the same picture has the same bytes.
     encoder.set_compression(png::Compression::Fast);
     encoder.write_header()?.write_image_data(cells)?;
     let (width, height) = (frame.x.end - frame.x.start, frame.y.end - frame.y.start);
@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dots_and_cells_stand_in_their_frame() {
+    fn dots_and_cells_are_in_their_frame() {
         let frame = Frame {
             x: 10.0..110.0,
             y: 20.0..70.0,

@@ -1,9 +1,8 @@
-//! The profile `pattern`: no displacement.
+//! The profile `pattern`, without displacement.
 
 use super::{Profile, Recipe};
 
-/// The AA pattern itself: points of a lattice. It is what it is, so nothing bounds its figures;
-/// they stand in its history for comparison.
+/// The AA pattern itself. Its figures have no bounds; they are recorded for comparison.
 pub(super) const PATTERN: Profile = Profile {
     name: "pattern",
     summary: "the AA pattern itself, without displacement",

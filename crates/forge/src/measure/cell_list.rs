@@ -1,20 +1,22 @@
-//! A cell list: which points are near a place, on a torus or in a box.
+//! A cell list, which finds the points near a place on a torus or in a box.
 
 /// Points sorted into square cells.
-pub(crate) struct Cells {
+pub(crate) struct CellList {
+    /// The number of cells along an axis.
     per_axis: i64,
     side: f64,
     periodic: bool,
+    /// Where the members of each cell start, and the end of the last.
     starts: Vec<u32>,
-    /// Index and position, cell by cell; positions are taken into [0, side).
+    /// Index and position of each point, cell by cell; positions are within [0, side).
     members: Vec<(u32, [f64; 2])>,
 }
 
-impl Cells {
-    /// Cells at least `cell` wide over [0, `side`)². If `periodic`, positions are taken modulo the
-    /// side.
+impl CellList {
+    /// Sorts `points` into cells at least `cell` wide over [0, `side`)². If `periodic`, positions
+    /// are taken modulo the side.
     pub(crate) fn new(points: &[[f64; 2]], side: f64, cell: f64, periodic: bool) -> Self {
-        // Never many more cells than points, however small the cell asked for.
+        // However small `cell` is, there are at most about twice as many cells as points.
         let most = (2.0 * points.len() as f64).sqrt().ceil().max(1.0);
         let per_axis = (side / cell).floor().clamp(1.0, most) as i64;
         let home: Vec<[f64; 2]> = points
@@ -64,9 +66,9 @@ impl Cells {
         &self.members
     }
 
-    /// Calls `visit` with the index of each point in the ring of cells `ring` cells away from the
-    /// cell of `p`, and with the vector from it to `p`. On a torus every image of a point is a
-    /// point; `p` itself is among them.
+    /// Calls `visit` for each point in the square ring of cells at distance `ring` from the cell of
+    /// `p`, with the index of the point and the vector from it to `p`. If `p` is a point, it is
+    /// visited, too. On a torus all images of a point are visited.
     pub(crate) fn ring(&self, p: [f64; 2], ring: i64, mut visit: impl FnMut(u32, [f64; 2])) {
         let [cx, cy] =
             p.map(|v| ((v / self.side * self.per_axis as f64) as i64).min(self.per_axis - 1));
@@ -94,7 +96,7 @@ impl Cells {
     }
 }
 
-/// `v` modulo `side`, in [0, side).
+/// Returns `v` modulo `side`, in [0, side).
 pub(crate) fn wrap(v: f64, side: f64) -> f64 {
     let wrapped = v - (v / side).floor() * side;
     if wrapped < side {

@@ -1,4 +1,4 @@
-//! Point sets made with a table: a twin's period, or a window of the unbounded pattern.
+//! Point sets made with a table: one period of a twin, or a window of the unbounded pattern.
 
 use std::ops::Range;
 
@@ -9,9 +9,9 @@ use strew_core::{
 };
 
 use super::{Torus, Window};
-use crate::optimize::SplitMix;
+use crate::numeric::SplitMix;
 
-/// The displaced sites of one period of a twin, or `None` if it is no twin of the table's map.
+/// Returns one period of a twin, displaced, or `None` if it is no twin of the table's map.
 #[must_use]
 pub fn twin_set(table: &Table, twin: Twin) -> Option<Torus> {
     let n = table.map().intervals();
@@ -29,8 +29,8 @@ pub fn twin_set(table: &Table, twin: Twin) -> Option<Torus> {
     Some(Torus::new(twin.period() as f64, points))
 }
 
-/// A window of about `points` points, cut from the unbounded displaced pattern of the table's own α
-/// at a place chosen by `seed`.
+/// Returns a window of about `points` points of the unbounded displaced pattern of the table's own
+/// α, at a place chosen by `seed`.
 #[must_use]
 pub fn window_set(table: &Table, points: u64, seed: u64) -> Window {
     let map = table.map();
@@ -64,7 +64,7 @@ pub fn window_set(table: &Table, points: u64, seed: u64) -> Window {
     Window::new(side, density, found)
 }
 
-/// The columns or rows of a class in a range, with their intervals.
+/// The columns (or rows, along [`Axis::Y`]) of a class in a range, each with its interval.
 fn members(
     pattern: &Pattern,
     map: &Map,
@@ -88,7 +88,7 @@ mod tests {
     use strew_core::{Table, table::Provenance};
 
     use super::*;
-    use crate::optimize::SplitMix;
+    use crate::numeric::SplitMix;
 
     /// A table of random vectors of up to ±2 grid units.
     fn table() -> Table {
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn a_window_is_complete() {
-        // Cut directly, point by point, from a wider piece of the lattice.
+        // The oracle: every lattice point of a wider box, tested one by one.
         let table = table();
         let (map, n) = (table.map(), table.map().intervals());
         let window = window_set(&table, 900, 5);

@@ -1,14 +1,14 @@
-//! Power curves written in pieces, as TOML.
+//! Curves written as pieces, in TOML.
 //!
-//! A curve of two columns says a law such as ν^(−3/4) only in many points. Pieces say it in a line:
+//! A power law such as ν^(−3/4) takes many lines of two numbers, but only one piece:
 //!
 //! ```toml
-//! [[piece]]            # silent
+//! [[piece]]            # no power
 //! from = 0
 //! to = 0.1
 //! power = 0
 //!
-//! [[piece]]            # a straight rise; where pieces meet, the curve may jump
+//! [[piece]]            # a linear rise; where pieces meet, the curve may jump
 //! from = 0.1
 //! to = 0.2
 //! power = [0.5, 2]
@@ -21,18 +21,10 @@
 
 use serde::Deserialize;
 
-use super::{MAX_NU, MAX_POINTS, MAX_POWER, Target};
+use super::{MAX_NU, MAX_POINTS, MAX_POWER, Target, law::Law, target::refuse};
 use crate::ForgeError;
 
-/// Exponents of a law are within ± this.
-const MAX_EXPONENT: f64 = 8.0;
-/// The relative error that the straight segments drawn for a law may have.
-const SEGMENT_ERROR: f64 = 1e-3;
-/// No law is drawn in more segments.
-const MAX_SEGMENTS: f64 = 200.0;
-/// A law that begins at ν = 0 is drawn from this part of the piece's end on, and straight before.
-const FIRST_PART: f64 = 1e-3;
-/// What a piece must say.
+/// The ways to state the power of a piece.
 const KINDS: &str = "one of `power = P`, `power = [P0, P1]` and \
                      `law = { power = P, at = NU, exponent = E }`";
 
@@ -59,26 +51,18 @@ enum Power {
     Ramp([f64; 2]),
 }
 
-#[derive(Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Law {
-    power: f64,
-    at: f64,
-    exponent: f64,
-}
-
-/// Reads a curve in pieces.
+/// Parses a curve written as pieces.
 ///
 /// # Errors
-/// [`ForgeError::Field`] for what is not TOML or has other keys, for gaps and overlaps, and for
-/// numbers out of range, each with the piece.
+/// [`ForgeError::Field`] for text that is not TOML or has unknown keys, with the line; for gaps,
+/// overlaps and numbers out of range, with the piece.
 pub(super) fn read(text: &str) -> Result<Target, ForgeError> {
     let document: Document = toml::from_str(text).map_err(|error| {
         let before = error.span().and_then(|span| text.get(..span.start));
         let line = before.map_or(1, |before| before.matches('\n').count() + 1);
         let message = error.message().trim().replace('\n', "; ");
         refuse(
-            format!("no curve in pieces (line {line}: {message})"),
+            format!("not a curve in pieces (line {line}: {message})"),
             format!("`[[piece]]` with `from`, `to` and {KINDS}; or lines of two numbers"),
         )
     })?;
@@ -89,7 +73,7 @@ pub(super) fn read(text: &str) -> Result<Target, ForgeError> {
         piece.check(number, reached)?;
         reached = Some(piece.to);
         for point in piece.points(number)? {
-            // Where the curve does not jump, one point is enough.
+            // Pieces that meet without a jump share a point.
             if points.last() != Some(&point) {
                 points.push(point);
             }
@@ -104,16 +88,9 @@ pub(super) fn read(text: &str) -> Result<Target, ForgeError> {
     Target::new(points)
 }
 
-fn refuse(value: String, allowed: String) -> ForgeError {
-    ForgeError::Field {
-        field: "target",
-        value,
-        allowed,
-    }
-}
-
 impl Piece {
-    /// Whether the piece begins where the last one ended and says one thing.
+    /// Refuses a piece that does not begin where the last one ended, has a bad range, or does not
+    /// state its power in exactly one way. `number` counts pieces from 1.
     fn check(&self, number: usize, reached: Option<f64>) -> Result<(), ForgeError> {
         let Self { from, to, .. } = *self;
         let wrong = |value: String, allowed: String| {
@@ -138,6 +115,7 @@ impl Piece {
         }
     }
 
+    /// The points of the curve in this piece.
     fn points(&self, number: usize) -> Result<Vec<[f64; 2]>, ForgeError> {
         let points = match (&self.power, self.law) {
             (Some(Power::Level(power)), _) => vec![[self.from, *power], [self.to, *power]],
@@ -155,54 +133,6 @@ impl Piece {
     }
 }
 
-impl Law {
-    /// The law in straight segments: denser where it bends more.
-    fn points(self, from: f64, to: f64, number: usize) -> Result<Vec<[f64; 2]>, ForgeError> {
-        let wrong = |name: &str, value: f64, allowed: &str| {
-            let value = format!("piece {number} with law.{name} = {value}");
-            Err(refuse(value, allowed.into()))
-        };
-        let exponent = self.exponent;
-        if !(-MAX_EXPONENT..=MAX_EXPONENT).contains(&exponent) {
-            let allowed = format!("-{MAX_EXPONENT} to {MAX_EXPONENT}");
-            return wrong("exponent", exponent, &allowed);
-        }
-        if !(self.at > 0.0 && self.at <= MAX_NU) {
-            let allowed = format!("more than 0, at most {MAX_NU}");
-            return wrong("at", self.at, &allowed);
-        }
-        if from == 0.0 && exponent < 0.0 {
-            let allowed = "0 or more in a piece from nu = 0, where the law has no value otherwise";
-            return wrong("exponent", exponent, allowed);
-        }
-        // A pure software library: a curve decides a table, which no platform's libm may.
-        let at = |nu: f64| {
-            [
-                round(nu),
-                round(self.power * libm::pow(nu / self.at, exponent)),
-            ]
-        };
-        let first = if from == 0.0 { to * FIRST_PART } else { from };
-        let bend = (exponent * (exponent - 1.0)).abs() / (8.0 * SEGMENT_ERROR);
-        let span = libm::log(to / first);
-        let segments = (span * bend.sqrt()).ceil().clamp(1.0, MAX_SEGMENTS);
-        let mut points = Vec::new();
-        if from == 0.0 {
-            points.push([0.0, if exponent > 0.0 { 0.0 } else { self.power }]);
-        }
-        points.push([first, at(first)[1]]);
-        let inner = (1..segments as u32).map(|k| first * libm::exp(span * f64::from(k) / segments));
-        points.extend(inner.map(at));
-        points.push([to, at(to)[1]]);
-        Ok(points)
-    }
-}
-
-/// The nearest decimal of six significant digits, which reads well in a table's history.
-fn round(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(f64::NAN)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -212,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn levels_ramps_and_laws_are_joined() {
+    fn levels_ramps_and_laws_join() {
         let text = piece("from = 0.0\nto = 0.5\npower = 0")
             + &piece("from = 0.5\nto = 1\npower = [0.5, 2.0]")
             + &piece("from = 1\nto = 3\nlaw = { power = 2, at = 1, exponent = -0.75 }");
@@ -234,21 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn laws_are_drawn_closely_also_from_zero_on() {
-        for exponent in [0.0, 0.3, 1.0, 2.0, 4.0] {
-            let law = format!("law = {{ power = 1.0, at = 2.0, exponent = {exponent} }}");
-            let target: Target = piece(&format!("from = 0.0\nto = 2.0\n{law}"))
-                .parse()
-                .expect("valid");
-            for nu in [0.01, 0.1, 0.5, 1.0, 1.7, 1.99] {
-                let (found, wanted) = (target.at(nu), (nu / 2.0_f64).powf(exponent));
-                assert!((found - wanted).abs() < 3e-3 * wanted, "{exponent} {nu}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_level_needs_two_points_and_a_step_four() {
+    fn pieces_that_meet_without_a_jump_share_a_point() {
         let text = piece("from = 0\nto = 0.5\npower = 0") + &piece("from = 0.5\nto = 1\npower = 1");
         let target: Target = text.parse().expect("valid");
         assert_eq!(
@@ -260,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_pieces_are_refused_by_number_value_and_what_is_allowed() {
+    fn bad_pieces_are_refused_with_number_value_and_allowed_range() {
         let first = piece("from = 0\nto = 0.5\npower = 0");
         for (text, words) in [
             (
@@ -341,7 +257,7 @@ mod tests {
             ),
             (
                 "[piece".into(),
-                ["line 1", "no curve in pieces", "[[piece]]"],
+                ["line 1", "not a curve in pieces", "[[piece]]"],
             ),
             ("hue = 3".into(), ["line 1", "hue", "[[piece]]"]),
             ("[curve]\n".into(), ["line 1", "curve", "[[piece]]"]),

@@ -1,69 +1,74 @@
-//! How a caller follows and stops the work.
+//! How a caller follows the work and stops it.
+//!
+//! The caller implements [`Watch`]. The optimizer and the judge count their steps with a [`Meter`],
+//! which reports [`Progress`] to it.
 
 use std::time::{Duration, Instant};
 
 use crate::Checkpoint;
 
-/// What is being done.
+/// A stage of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// The energy is being lowered, step by step.
+    /// The optimizer lowers the energy, step by step.
     Optimizing,
-    /// The table is being judged, subject by subject.
+    /// The judge measures the table, one point set a step.
     Measuring,
 }
 
 /// How far the work has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// What is being done.
+    /// The current stage.
     pub stage: Stage,
-    /// Steps of this stage that are done.
+    /// The number of steps done in this stage.
     pub step: u32,
-    /// Steps that this stage will take.
+    /// The number of steps in this stage.
     pub steps: u32,
-    /// While optimizing, the energy per point. It falls within a phase and jumps between phases,
-    /// whose energies differ.
+    /// The energy per point; `None` while measuring and before the first step. It falls within a
+    /// phase of the optimization and jumps from one phase to the next, because their energies
+    /// differ.
     pub energy: Option<f64>,
-    /// Time since the stage began, or went on.
+    /// Time since the stage began or was resumed.
     pub elapsed: Duration,
-    /// Time the stage will still take, if it goes on as it went.
+    /// Time until the stage ends, at the average speed so far.
     pub left: Duration,
 }
 
-/// Follows the work. Nothing it does changes the result, except stopping; and work that was stopped
-/// and [goes on](crate::Checkpoint) has the same result, too.
+/// Follows the work and may stop it. Nothing else it does affects the result. Work that was stopped
+/// and [resumed](crate::resume) has the same result as work that was not.
 pub trait Watch: Sync {
-    /// Told before the first step and after every step; must be quick.
+    /// Called before the first step and after every step of a stage. Must be quick.
     fn progress(&self, progress: &Progress);
 
-    /// Asked before every step; once it answers yes, the work ends with the best so far.
+    /// Called before every step. Once it returns true, the work ends with the best result so far.
     fn stop(&self) -> bool {
         false
     }
 
-    /// Asked between steps: whether a checkpoint is wanted now. Each is a copy of all state.
+    /// Called between steps of the optimizer: whether to make a checkpoint now, which copies the
+    /// whole state.
     fn wants_checkpoint(&self) -> bool {
         false
     }
 
-    /// Handed a checkpoint: when one was wanted, when the work is stopped, and when only measuring
-    /// is left.
+    /// Called with a checkpoint when one was wanted, when the optimizer is stopped, and when it is
+    /// done and only measuring is left.
     fn checkpoint(&self, checkpoint: &Checkpoint) {
         let _ = checkpoint;
     }
 }
 
-/// Nobody watches.
+/// Ignores progress and never stops.
 impl Watch for () {
     fn progress(&self, _: &Progress) {}
 }
 
-/// Counts the steps of a stage for a watch.
+/// Counts the steps of a stage and reports them to a watch.
 pub struct Meter<'a> {
     watch: &'a dyn Watch,
     stage: Stage,
-    /// Steps that were done before.
+    /// The steps done before the work was resumed.
     first: u32,
     step: u32,
     steps: u32,
@@ -71,13 +76,13 @@ pub struct Meter<'a> {
 }
 
 impl<'a> Meter<'a> {
-    /// A stage of `steps` steps begins.
+    /// Begins a stage of `steps` steps.
     #[must_use]
     pub fn new(watch: &'a dyn Watch, stage: Stage, steps: u32) -> Self {
         Self::from(watch, stage, steps, 0)
     }
 
-    /// A stage of `steps` steps goes on, `first` of which are done.
+    /// Resumes a stage of `steps` steps, of which `first` are done.
     #[must_use]
     pub fn from(watch: &'a dyn Watch, stage: Stage, steps: u32, first: u32) -> Self {
         let meter = Self {
@@ -88,11 +93,11 @@ impl<'a> Meter<'a> {
             steps,
             began: Instant::now(),
         };
-        meter.tell(None);
+        meter.report(None);
         meter
     }
 
-    /// Whether the watch wants the work to end.
+    /// Whether the watch stops the work.
     #[must_use]
     pub fn stop(&self) -> bool {
         self.watch.stop()
@@ -104,13 +109,13 @@ impl<'a> Meter<'a> {
         self.watch.wants_checkpoint()
     }
 
-    /// A step is done.
+    /// Counts a step and reports it, with the energy that it evaluated, if any.
     pub fn advance(&mut self, energy: Option<f64>) {
         self.step += 1;
-        self.tell(energy);
+        self.report(energy);
     }
 
-    fn tell(&self, energy: Option<f64>) {
+    fn report(&self, energy: Option<f64>) {
         let elapsed = self.began.elapsed();
         self.watch.progress(&Progress {
             stage: self.stage,

@@ -1,35 +1,32 @@
-//! A picture of a measured set: points, 2-D spectrum, radial power, anisotropy, RDF.
+//! The six panels of a picture: points, 2-D spectrum, radial power, anisotropy, RDF, figures.
 
-mod overlay;
-
-use std::ops::Range;
+use std::{error::Error, ops::Range};
 
 use plotters::{coord::Shift, prelude::*};
 
+use super::overlay::{self, Frame};
 use crate::{Report, Target};
-use overlay::Frame;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Drawn = Result<(), Box<dyn std::error::Error>>;
 
-/// A picture cannot be drawn.
+/// The plotting library failed.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot draw the picture: {0}")]
 pub struct PictureError(String);
 
-/// Mean spacings along the side of the panel with points.
-const SHOWN: f64 = 32.0;
-/// The 2-D spectrum is shown up to this frequency, in this many cells.
+/// The side of the panel of points, in mean spacings.
+const POINTS_SIDE: f64 = 32.0;
+/// The largest ν along an axis of the panel of the 2-D spectrum.
 const SPECTRUM_END: f64 = 2.5;
+/// The number of cells along an axis of that panel.
 const SPECTRUM_CELLS: i64 = 100;
-/// Power that is shown white.
+/// The power that is drawn white.
 const WHITE_POWER: f64 = 2.5;
-
-/// Shades of gray that are told apart: more would only be noise to be stored.
+/// The number of shades of gray. More would only store noise.
 const SHADES: f64 = 32.0;
 
-/// An SVG picture of a report; `title` stands above it. The power curve that the points should have,
-/// if there is one, is drawn over their own.
+/// Draws a report as SVG, under `title`. If there is a power curve that the points should follow,
+/// `target`, it is drawn over their own.
 ///
 /// # Errors
 /// [`PictureError`] if the plotting library fails.
@@ -38,11 +35,11 @@ pub fn picture(
     title: &str,
     target: Option<&Target>,
 ) -> Result<String, PictureError> {
-    let failed = |error: &dyn std::error::Error| PictureError(error.to_string());
+    let failed = |error: &dyn Error| PictureError(error.to_string());
     let mut svg = String::new();
     let [dotted, shaded] =
         draw(report, title, target, &mut svg).map_err(|error| failed(&*error))?;
-    let shown = report.points.iter().map(|p| p.map(|v| v / SHOWN));
+    let shown = report.points.iter().map(|p| p.map(|v| v / POINTS_SIDE));
     let inside = shown.filter(|p| p.iter().all(|v| (0.0..1.0).contains(v)));
     let mut marks = overlay::dots(&dotted, inside);
     let cells = shades(report);
@@ -53,18 +50,18 @@ pub fn picture(
     Ok(svg)
 }
 
-/// Draws all but the dots and the shades, which go to the frames that it gives back.
+/// Draws everything but the dots and the shades of gray. Returns the frames for these two.
 fn draw(
     report: &Report,
     title: &str,
     target: Option<&Target>,
     svg: &mut String,
-) -> Result<[Frame; 2], Box<dyn std::error::Error>> {
+) -> Result<[Frame; 2], Box<dyn Error>> {
     let root = SVGBackend::with_string(svg, (1200, 830)).into_drawing_area();
     root.fill(&WHITE)?;
     let root = root.titled(title, ("sans-serif", 22))?;
     let panels = root.split_evenly((2, 3));
-    let dotted = frame(&panels[0], "points (in mean spacings)", 0.0..SHOWN)?;
+    let dotted = frame(&panels[0], "points (in mean spacings)", 0.0..POINTS_SIDE)?;
     let end = spectrum_end(report);
     let shaded = frame(&panels[1], "power spectrum", -end..end)?;
     let power: Vec<[f64; 2]> = report
@@ -99,12 +96,8 @@ fn draw(
     Ok([dotted, shaded])
 }
 
-/// A square panel with axes, and where its plot is.
-fn frame(
-    area: &Area<'_>,
-    caption: &str,
-    range: Range<f64>,
-) -> Result<Frame, Box<dyn std::error::Error>> {
+/// Draws a square panel with axes. Returns the frame of its plot.
+fn frame(area: &Area<'_>, caption: &str, range: Range<f64>) -> Result<Frame, Box<dyn Error>> {
     let mut chart = ChartBuilder::on(area)
         .caption(caption, ("sans-serif", 16))
         .margin(10)
@@ -120,11 +113,12 @@ fn frame(
     })
 }
 
+/// The largest ν along an axis that is both shown and measured.
 fn spectrum_end(report: &Report) -> f64 {
     SPECTRUM_END.min(report.spectrum.nu_max())
 }
 
-/// The mean power of the modes in each cell of the plane, as gray, rows from the top.
+/// The mean power in each cell of the frequency plane, as a gray value; rows from the top.
 fn shades(report: &Report) -> Vec<u8> {
     let end = spectrum_end(report);
     let modes = (report.points.len() as f64).sqrt();
@@ -149,8 +143,13 @@ fn shades(report: &Report) -> Vec<u8> {
     cells
 }
 
-/// Curves, with at least `range` of the vertical axis shown.
-fn curve(area: &Area<'_>, caption: &str, curves: &[&[[f64; 2]]], range: (f64, f64)) -> Drawn {
+/// Draws a panel with curves. The vertical axis shows at least `range`.
+fn curve(
+    area: &Area<'_>,
+    caption: &str,
+    curves: &[&[[f64; 2]]],
+    range: (f64, f64),
+) -> Result<(), Box<dyn Error>> {
     let values = || curves.iter().flat_map(|curve| curve.iter());
     let end = values().map(|v| v[0]).fold(0.0, f64::max);
     let low = values().map(|v| v[1]).fold(range.0, f64::min);
@@ -173,7 +172,8 @@ fn curve(area: &Area<'_>, caption: &str, curves: &[&[[f64; 2]]], range: (f64, f6
     Ok(())
 }
 
-fn figures(area: &Area<'_>, report: &Report) -> Drawn {
+/// Writes the figures, one a line.
+fn figures(area: &Area<'_>, report: &Report) -> Result<(), Box<dyn Error>> {
     let of = &report.figures;
     let lines = [format!("{} points", of.points)];
     let named = of

@@ -1,74 +1,12 @@
 //! Profiles that follow a radial power curve.
 
-use std::slice;
-
-use super::{Phase, Profile, Recipe, Target, named};
+use super::{Profile, RadialRecipe, Recipe};
 use crate::{
-    energy::Gaussian,
-    ground::Ground,
     judge::{Bound, Figure},
-    optimize::{Descent, Objective, Pairs, Radial, RadialWeights},
+    optimize::RadialWeights,
 };
 
-/// Parameters of [`Recipe::Radial`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RadialRecipe {
-    /// The points (ν, power) of the curve; see [`Target`](super::Target).
-    pub curve: &'static [[f64; 2]],
-    /// What its error costs.
-    pub weights: RadialWeights,
-    /// The share of the steps that Gaussian repulsion (σ = 1) takes before: it empties the low
-    /// frequencies fast, for curves that are 0 nearly as far as that reaches.
-    pub warm_share: f64,
-    /// Spacings moved per unit of gradient, at first.
-    pub rate: f64,
-}
-
-impl RadialRecipe {
-    /// The parameters but the curve, for a table's history.
-    pub(super) fn describe(&self) -> Vec<(String, String)> {
-        let weights = &self.weights;
-        let mut parameters = vec![
-            ("reach", weights.reach),
-            ("nu_max", weights.nu_max),
-            ("fit", weights.fit),
-            ("quiet", weights.quiet),
-            ("edge", weights.edge),
-            ("leash", weights.leash),
-            ("rate", self.rate),
-        ];
-        if self.warm_share > 0.0 {
-            parameters.push(("warm_share", self.warm_share));
-        }
-        named(&parameters)
-    }
-
-    /// All steps, on unbounded patterns: that of α, whose pairs have exact frequencies too, and for
-    /// the curve also those of other α of the same map, so that it holds on every twin.
-    pub(super) fn phases(&self, ground: &Ground, target: &Target, steps: u32) -> Vec<Phase> {
-        let warm = (self.warm_share * f64::from(steps)) as u32;
-        let map = slice::from_ref(&ground.map);
-        let repulsion: Box<dyn Objective> =
-            Box::new(Pairs::new(Gaussian::new(1.0), map, ground.scale()));
-        let curve: Box<dyn Objective> =
-            Box::new(Radial::new(&ground.spread(), target, &self.weights));
-        let phase = |objective, steps, rate| Phase {
-            objective,
-            descent: Descent { steps, rate },
-        };
-        let phases = [
-            phase(repulsion, warm, WARM_RATE),
-            phase(curve, steps - warm, self.rate),
-        ];
-        let some = phases.into_iter().filter(|phase| phase.descent.steps > 0);
-        some.collect()
-    }
-}
-
-/// Spacings moved per unit of gradient of the repulsion.
-const WARM_RATE: f64 = 0.2;
-
-/// What serves every curve.
+/// The weights that suit most curves.
 const WEIGHTS: RadialWeights = RadialWeights {
     reach: 18.0,
     nu_max: 5.0,
@@ -78,9 +16,9 @@ const WEIGHTS: RadialWeights = RadialWeights {
     leash: 2.5,
 };
 
-/// No power up to ν₀ = 0.56, all of a random set's beyond. A step is possible up to
-/// ν₀ = 1/√π = 0.5642 at most: there two points never coincide, and beyond, the number of close
-/// pairs would have to be negative.
+/// No power up to ν₀ = 0.56 and the power of a random set beyond. The largest possible ν₀ of a step
+/// is 1/√π = 0.5642, where the pair correlation at distance 0 reaches 0; for a larger ν₀ it would
+/// have to be negative.
 pub(super) const STEP: Profile = Profile {
     name: "step",
     summary: "Step blue noise: no power up to nu 0.56, flat beyond",
@@ -99,8 +37,8 @@ pub(super) const STEP: Profile = Profile {
     ],
 };
 
-/// Power rises from nothing to a broad peak at ν = 0.62: the tone of the middle frequencies. Unlike
-/// most sets of that name it is also silent below.
+/// Power rises from 0 to a broad peak at ν = 0.62, in the middle frequencies. Unlike most sets
+/// called green noise, this one has no power below ν = 0.42.
 pub(super) const GREEN: Profile = Profile {
     name: "green",
     summary: "Green noise: silent up to nu 0.42, a broad peak at 0.62, flat from 0.9 on",
@@ -124,7 +62,7 @@ pub(super) const GREEN: Profile = Profile {
     ],
 };
 
-/// Power falls as 1/ν, from 5.5 at ν = 0.127 to 1 at 0.7: clusters of all sizes.
+/// Power falls as 1/ν from 5.5 at ν = 0.127 to 1 at ν = 0.7: clusters of all sizes.
 pub(super) const PINK: Profile = Profile {
     name: "pink",
     summary: "Pink noise: power falls as 1/nu from 5.5 at nu 0.127 to 1 at nu 0.7, flat beyond",
@@ -163,9 +101,9 @@ pub(super) const PINK: Profile = Profile {
     ],
 };
 
-/// No power up to ν = 0.67, one peak, a shallow dip, flat from 1.9 on: quiet farther out than a step
-/// can be, without the oscillations of sharper sets. The curve is one that sets can have: drawn
-/// steeper, it is missed by 0.1, or power comes back at low frequencies.
+/// No power up to ν = 0.67, one peak, a shallow dip, flat from ν = 1.9 on: quiet farther out than a
+/// step can be, without the oscillations of sharper sets. A steeper rise cannot be reached: either
+/// the error grows to 0.1, or power returns at low frequencies.
 pub(super) const SINGLE_PEAK: Profile = Profile {
     name: "single-peak",
     summary: "Single-peak blue noise: no power up to nu 0.67, one peak, a shallow dip, flat from nu 1.9 on",
@@ -213,11 +151,10 @@ pub(super) const SINGLE_PEAK: Profile = Profile {
     ],
 };
 
-/// A curve that somebody drew: judged by how near it came, within the
-/// [bounds](crate::judge::bounds_of_curve) that the curve itself gives.
+/// A custom curve, whose [bounds](crate::judge::bounds_of_curve) follow from the curve itself.
 pub(super) const CUSTOM: Profile = Profile {
     name: "custom",
-    summary: "A radial power curve of your own",
+    summary: "A custom radial power curve",
     recipe: Recipe::Radial(RadialRecipe {
         curve: &[],
         weights: WEIGHTS,

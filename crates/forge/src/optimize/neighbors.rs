@@ -1,0 +1,210 @@
+//! Neighbor lists in table space: which blocks meet, at which offsets, and how often.
+//!
+//! The frequency with which block A meets block B across a lattice offset is the product of two
+//! interval overlaps (see [`overlap`](super::overlap)). So the lists need no point set. Built for a
+//! fraction, they hold the pairs of its periodic twin *of any size*, at a cost that depends on the
+//! table alone: about 150 pairs a block for a Gaussian of σ = 1. Lists for several twins at once
+//! are hardly longer, because twins share nearly all pairs of blocks.
+
+use rayon::prelude::*;
+use strew_core::Map;
+
+use super::overlap::Overlaps;
+
+/// Lists have whole groups of this many pairs, so that the compiler can vectorize sums over them.
+/// The number also fixes the order of summation, so tables depend on it.
+pub(super) const LANES: usize = 8;
+/// Blocks per parallel task. It fixes an order of summation, too.
+pub(super) const CHUNK: usize = 64;
+/// Lists reach this far beyond the cut-off, in mean spacings, and stay valid until some block has
+/// moved by half of it.
+const SKIN: f64 = 0.7;
+/// Displacements up to half of this, in mean spacings, find all their neighbors.
+const MAX_APPROACH: f64 = 8.0;
+
+/// A neighbor of a block: an instance of block `to` at lattice offset (i, j).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pair {
+    pub(super) to: u32,
+    pub(super) i: i16,
+    pub(super) j: i16,
+    /// The mean number of such neighbors of an instance of the block.
+    pub(super) weight: f32,
+}
+
+/// Identifies a pair in the list of its block, and sorts the list: (j, i, to).
+type Key = (i16, i16, u32);
+
+/// The pairs of all blocks up to a cut-off, valid near the moves they were built for.
+pub(super) struct Neighbors {
+    /// In mean spacings.
+    cutoff: f64,
+    /// Intervals of the map along an axis.
+    intervals: usize,
+    /// One for each pattern.
+    patterns: Vec<Overlaps>,
+    /// Mean spacings per grid unit.
+    scale: f64,
+    masses: Vec<f64>,
+    built_for: Vec<[f64; 2]>,
+    /// Where the pairs of each block start, and the end of the last.
+    starts: Vec<usize>,
+    pairs: Vec<Pair>,
+}
+
+impl Neighbors {
+    /// Empty lists for the patterns of `maps`, which are one map for slightly different α. `scale`
+    /// is the number of mean spacings per grid unit. Weights are means over the patterns.
+    pub(super) fn new(cutoff: f64, maps: &[Map], scale: f64) -> Self {
+        let intervals = maps[0].intervals();
+        let reach = ((cutoff + SKIN + MAX_APPROACH) / scale).ceil() as i64;
+        let patterns: Vec<Overlaps> = maps.iter().map(|map| Overlaps::new(map, reach)).collect();
+        let mut masses: Vec<f64> = (0..intervals * intervals)
+            .map(|block| area(&patterns, block, intervals))
+            .collect();
+        let total: f64 = masses.iter().sum();
+        masses.iter_mut().for_each(|m| *m /= total);
+        Self {
+            cutoff,
+            intervals,
+            patterns,
+            scale,
+            masses,
+            built_for: Vec::new(),
+            starts: Vec::new(),
+            pairs: Vec::new(),
+        }
+    }
+
+    /// Mean spacings per grid unit.
+    pub(super) const fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The share of points that each block has.
+    pub(super) fn masses(&self) -> &[f64] {
+        &self.masses
+    }
+
+    /// The moves that the lists were built for; empty before that.
+    pub(super) fn built_for(&self) -> &[[f64; 2]] {
+        &self.built_for
+    }
+
+    /// The number of pairs in all lists.
+    pub(super) fn pairs(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// The pairs of a block, valid for the moves of the last [`refresh`](Self::refresh).
+    pub(super) fn of(&self, block: usize) -> &[Pair] {
+        &self.pairs[self.starts[block]..self.starts[block + 1]]
+    }
+
+    /// Builds the lists again if they are not valid for these moves.
+    pub(super) fn refresh(&mut self, moves: &[[f64; 2]]) {
+        if self.is_stale(moves) {
+            self.build(moves);
+        }
+    }
+
+    fn is_stale(&self, moves: &[[f64; 2]]) -> bool {
+        let limit = SKIN * SKIN / 4.0;
+        self.built_for.len() != moves.len()
+            || moves.iter().zip(&self.built_for).any(|(a, b)| {
+                let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
+                dx * dx + dy * dy > limit
+            })
+    }
+
+    /// Builds the lists for these moves.
+    pub(super) fn build(&mut self, moves: &[[f64; 2]]) {
+        let longest = moves
+            .iter()
+            .map(|m| m[0] * m[0] + m[1] * m[1])
+            .fold(0.0, f64::max)
+            .sqrt();
+        let range = self.cutoff + SKIN;
+        let of_block: Vec<Vec<Pair>> = (0..moves.len())
+            .into_par_iter()
+            .map(|block| self.pairs_of(block, moves, range, longest))
+            .collect();
+        self.built_for = moves.to_vec();
+        self.starts = vec![0];
+        self.pairs = Vec::with_capacity(of_block.iter().map(Vec::len).sum());
+        for list in of_block {
+            self.pairs.extend(list);
+            self.starts.push(self.pairs.len());
+        }
+    }
+
+    /// The pairs of one block within `range`, merged over the patterns and sorted by key. `longest`
+    /// is the length of the longest move.
+    fn pairs_of(&self, block: usize, moves: &[[f64; 2]], range: f64, longest: f64) -> Vec<Pair> {
+        let (n, scale) = (self.intervals, self.scale);
+        let (bx, by) = (block % n, block / n);
+        let own = moves[block];
+        let lattice_range = (range + 2.0 * longest) / scale;
+        let reach = (lattice_range as i64).min(self.patterns[0].reach());
+        let mut found: Vec<(Key, f64)> = Vec::new();
+        for overlaps in &self.patterns {
+            for j in -reach..=reach {
+                for i_parity in 0..2 {
+                    let rows = overlaps.of(j, i_parity, by);
+                    if rows.is_empty() {
+                        continue;
+                    }
+                    let first = -reach + ((reach + i_parity) & 1);
+                    for i in (first..=reach).step_by(2) {
+                        if (i, j) == (0, 0) {
+                            continue;
+                        }
+                        for column in overlaps.of(i, j, bx) {
+                            for row in rows {
+                                let to = row.to as usize * n + column.to as usize;
+                                let dx = scale * i as f64 + moves[to][0] - own[0];
+                                let dy = scale * j as f64 + moves[to][1] - own[1];
+                                if dx * dx + dy * dy < range * range {
+                                    let key = (j as i16, i as i16, to as u32);
+                                    found.push((key, column.length * row.length));
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        merge(found, area(&self.patterns, block, n))
+    }
+}
+
+/// One pair for each key, whose weight is the sum of its areas over that of the block. Pairs of
+/// weight 0 fill the last group of [`LANES`].
+fn merge(mut found: Vec<(Key, f64)>, area: f64) -> Vec<Pair> {
+    found.sort_by_key(|&(key, _)| key);
+    let mut pairs: Vec<Pair> = Vec::with_capacity(found.len() / 2);
+    let mut sum = 0.0;
+    for (at, &(key, part)) in found.iter().enumerate() {
+        sum += part;
+        if found.get(at + 1).is_none_or(|next| next.0 != key) {
+            let (j, i, to) = key;
+            let weight = (sum / area) as f32;
+            pairs.push(Pair { to, i, j, weight });
+            sum = 0.0;
+        }
+    }
+    let filler = Pair {
+        to: 0,
+        i: 0,
+        j: 0,
+        weight: 0.0,
+    };
+    pairs.resize(pairs.len().next_multiple_of(LANES), filler);
+    pairs
+}
+
+/// The area of a block in index space, summed over the patterns.
+fn area(patterns: &[Overlaps], block: usize, intervals: usize) -> f64 {
+    let (bx, by) = (block % intervals, block / intervals);
+    patterns.iter().map(|p| p.length(bx) * p.length(by)).sum()
+}
