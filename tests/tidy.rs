@@ -196,6 +196,7 @@ fn never_imports_in_circles(folder: &str) {
 
 #[test]
 fn no_import_circles() {
+    never_imports_in_circles("crates/core/src");
     never_imports_in_circles("crates/forge/src");
 }
 

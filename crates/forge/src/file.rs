@@ -23,7 +23,7 @@ pub const EXTENSION: &str = "strew";
 /// ```
 /// let name = strew_forge::file_name("blue", "sqrt(3)".parse()?, 100);
 /// assert_eq!(name, "blue-sqrt3-m.strew");
-/// # Ok::<(), strew_core::pattern::AlphaError>(())
+/// # Ok::<(), strew_core::Error>(())
 /// ```
 #[must_use]
 pub fn file_name(profile: &str, alpha: Alpha, radius: u32) -> String {

@@ -61,7 +61,7 @@ impl Plan {
         }
         let most = target.as_ref().map_or(MAX_RADIUS, |_| MAX_RADIAL_RADIUS);
         in_range("R", job.radius, most)?;
-        let map = Map::new(job.alpha, job.radius).map_err(|e| ForgeError::Table(e.into()))?;
+        let map = Map::new(job.alpha, job.radius).map_err(ForgeError::Table)?;
         let mut domain = Domain::new(map);
         if domain.twins.is_empty() || domain.scale() < MIN_SIDE {
             return Err(ForgeError::Field {

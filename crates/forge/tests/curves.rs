@@ -1,28 +1,22 @@
 //! The shipped tables that follow a radial power curve, judged again on twins and windows that
 //! their makers never saw.
 
-use std::{path::PathBuf, sync::Arc};
+mod shipped;
 
 use rayon::prelude::*;
-use strew_core::{
-    Alpha, Placement, Region, Sampler, Seed, Spacing, Table, Twin, Warp, table::Figures,
-};
+use strew_core::{Alpha, PointSet, Table, Twin, table::Figures};
 use strew_forge::{
-    Job, Profile, Target, file_name, forge,
+    Job, Profile, Target, forge,
     judge::{Figure, RING_WIDTH, complaints, curve_figures},
     measure::{Crispness, Spectrum, Window, twin_set, window_set},
-    read_table,
 };
 
 fn alpha() -> Alpha {
     "(5-sqrt(3))/2".parse().expect("valid")
 }
 
-fn shipped(profile: &Profile) -> Table {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../tables")
-        .join(file_name(profile.name, alpha(), 49));
-    read_table(&path).unwrap_or_else(|e| panic!("{e}"))
+fn table_of(profile: &Profile) -> Table {
+    shipped::table(profile.name, "(5-sqrt(3))/2", 49)
 }
 
 /// All profiles that follow a curve.
@@ -94,22 +88,14 @@ fn on_windows(table: &Table, target: &Target) -> Vec<(Figures, Spectrum)> {
 
 /// 300² mean spacings with the warp on, away from the origin.
 fn warped(table: &Table, seed: u64) -> Window {
-    let sampler = Arc::new(Sampler::new(table.clone()));
-    let (side, corner) = (300.0, 1000.0 * seed as f64);
-    let region = Region::new([corner; 2], [corner + side; 2]).expect("ordered");
-    let spacing = Spacing::new(1.0).expect("valid");
-    let placement = Placement::new(spacing, Seed(seed)).with_warp(Warp::ON);
-    let plan = sampler.plan(placement, region).expect("near");
-    let mut points = vec![[0.0; 2]; plan.count() as usize];
-    plan.blocks_f64().fill(&mut points);
-    let moved = points.iter().map(|p| p.map(|v| v - corner));
-    Window::new(side, 1.0, moved.collect())
+    let set = PointSet::new(table.clone()).seed(seed);
+    shipped::window(&set, [1000.0 * seed as f64; 2], 300.0)
 }
 
 #[test]
 fn shipped_tables_follow_their_curves_on_far_twins_and_windows() {
     for (profile, target) in profiles() {
-        let table = shipped(profile);
+        let table = table_of(profile);
         let mut all = on_twins(&table, &target);
         all.extend(on_windows(&table, &target));
         if profile.name == "pink" {

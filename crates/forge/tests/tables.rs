@@ -1,27 +1,18 @@
 //! The shipped tables, judged again on twins and windows that their makers never saw. One of them
 //! is made again, bit for bit.
 
-use std::path::PathBuf;
+mod shipped;
 
 use strew_core::{Table, Twin, table::Figures};
 use strew_forge::{
     Figure, Job,
     energy::{Cell, Lloyd},
-    file_name, forge,
+    forge,
     judge::{Bound, RING_WIDTH, complaints, figures_of_torus, figures_of_window},
     measure::{Spectrum, twin_set, window_set},
-    read_table,
 };
 
 const DEFAULT: &str = "(5-sqrt(3))/2";
-
-fn shipped(profile: &str, alpha: &str, radius: u32) -> Table {
-    let name = file_name(profile, alpha.parse().expect("valid"), radius);
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../tables")
-        .join(name);
-    read_table(&path).unwrap_or_else(|e| panic!("{e}"))
-}
 
 /// Figures, up to ν = 1.5, on up to `most` twins and on windows that neither the optimizer nor the
 /// judge of the table saw.
@@ -75,7 +66,7 @@ fn hold(table: &Table, figures: &[Figures], bounds: &[Bound]) {
 #[test]
 fn blue_tables_are_good_on_unseen_twins_and_windows() {
     for alpha in [DEFAULT, "sqrt(3)", "(1+sqrt(5))/2"] {
-        let table = shipped("blue", alpha, 49);
+        let table = shipped::table("blue", alpha, 49);
         let bounds = [
             Bound::at_most(Figure::LowPower, 1e-5),
             Bound::at_least(Figure::DeltaMin, 0.62),
@@ -104,7 +95,7 @@ fn larger_maps_are_as_good_on_windows_and_unseen_twins() {
         ("spaced", 100, &spaced),
         ("spaced", 200, &spaced),
     ] {
-        let table = shipped(profile, DEFAULT, radius);
+        let table = shipped::table(profile, DEFAULT, radius);
         // Large maps have few twins, and the judge saw the smaller ones.
         let twins = large_twins(&table, 500_000).take(1);
         let mut all = on_twins(&table, twins);
@@ -116,7 +107,7 @@ fn larger_maps_are_as_good_on_windows_and_unseen_twins() {
 
 #[test]
 fn the_sharp_table_is_crisper_than_bnot_on_unseen_twins_and_windows() {
-    let table = shipped("sharp", DEFAULT, 49);
+    let table = shipped::table("sharp", DEFAULT, 49);
     let bounds = [
         Bound::at_least(Figure::NuEff, 0.93),
         Bound::at_most(Figure::LowPower, 1e-5),
@@ -130,7 +121,7 @@ fn the_sharp_table_is_crisper_than_bnot_on_unseen_twins_and_windows() {
 #[test]
 fn spaced_tables_have_neither_close_pairs_nor_wide_holes() {
     for alpha in [DEFAULT, "sqrt(3)", "(1+sqrt(5))/2"] {
-        let table = shipped("spaced", alpha, 49);
+        let table = shipped::table("spaced", alpha, 49);
         let bounds = [
             Bound::at_least(Figure::DeltaMin, 0.93),
             Bound::at_most(Figure::LowPower, 5e-3),
@@ -142,7 +133,7 @@ fn spaced_tables_have_neither_close_pairs_nor_wide_holes() {
 
 #[test]
 fn the_lloyd_table_is_at_rest_on_unseen_twins() {
-    let table = shipped("lloyd", DEFAULT, 49);
+    let table = shipped::table("lloyd", DEFAULT, 49);
     let seen = &table.provenance().twins;
     let large = |t: &Twin| t.points() > 70_000 && !seen.contains(t);
     let twin = table.map().twins().find(large).expect("endless");
@@ -161,13 +152,13 @@ fn the_lloyd_table_is_at_rest_on_unseen_twins() {
 
 #[test]
 fn the_pattern_is_undisplaced() {
-    let table = shipped("pattern", DEFAULT, 49);
+    let table = shipped::table("pattern", DEFAULT, 49);
     assert!(table.displacements().iter().all(|v| *v == [0, 0]));
 }
 
 #[test]
 fn a_million_points_are_as_good_as_few() {
-    let table = shipped("blue", DEFAULT, 49);
+    let table = shipped::table("blue", DEFAULT, 49);
     let twin = Twin::new(989 + 1560, 1560).expect("coprime");
     let set = twin_set(&table, twin).expect("a twin");
     assert_eq!(set.points().len(), 978_121);
@@ -177,7 +168,7 @@ fn a_million_points_are_as_good_as_few() {
 
 #[test]
 fn the_default_job_makes_the_shipped_table_again() {
-    let table = shipped("blue", DEFAULT, 49);
+    let table = shipped::table("blue", DEFAULT, 49);
     let outcome = forge(&Job::new(table.alpha()), &()).expect("a good job");
     assert!(outcome.accepted, "{:?}", outcome.complaints);
     assert_eq!(outcome.table.to_bytes(), table.to_bytes());

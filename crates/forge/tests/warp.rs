@@ -1,39 +1,28 @@
 //! The seeded warp makes sets isotropic, and sets of different seeds unrelated.
 
-use std::{path::PathBuf, sync::Arc};
+mod shipped;
 
-use strew_core::{Placement, Region, Sampler, Seed, Spacing, Warp};
+use strew_core::PointSet;
 use strew_forge::{
-    file_name,
     judge::figures_of_window,
     measure::{Spectrum, Window},
-    read_table,
 };
 
+const OFF: f64 = 0.0;
+const ON: f64 = 1.0;
+
 /// A window of `side`² mean spacings away from the origin.
-fn window(seed: u64, warp: Warp, side: f64) -> Window {
-    let alpha = "(5-sqrt(3))/2".parse().expect("valid");
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("../../tables")
-        .join(file_name("blue", alpha, 49));
-    let table = read_table(&path).unwrap_or_else(|e| panic!("{e}"));
-    let sampler = Arc::new(Sampler::new(table));
-    let spacing = Spacing::new(1.0).expect("valid");
+fn window(seed: u64, warp: f64, side: f64) -> Window {
+    let table = shipped::table("blue", "(5-sqrt(3))/2", 49);
+    let set = PointSet::new(table).seed(seed).warp(warp);
     let corner = 1000.0 * seed as f64;
-    let region = Region::new([corner, -corner], [corner + side, side - corner]).expect("ordered");
-    let placement = Placement::new(spacing, Seed(seed)).with_warp(warp);
-    let plan = sampler.plan(placement, region).expect("near");
-    let mut points = vec![[0.0; 2]; plan.count() as usize];
-    let filled = plan.blocks_f64().fill(&mut points);
-    assert_eq!(filled, points.len());
-    let moved = points.iter().map(|[x, y]| [x - corner, y + corner]);
-    Window::new(side, 1.0, moved.collect())
+    shipped::window(&set.expect("in range"), [corner, -corner], side)
 }
 
 #[test]
 fn warped_sets_are_isotropic_and_keep_their_noise() {
     for seed in [1, 2, 77] {
-        let set = window(seed, Warp::ON, 362.0);
+        let set = window(seed, ON, 362.0);
         let figures = figures_of_window(format!("seed {seed}"), false, &set, 4.0);
         let value = |name| figures.value(name).expect("measured");
         assert!(value("anisotropy_db") <= 0.2, "{figures:?}");
@@ -42,7 +31,7 @@ fn warped_sets_are_isotropic_and_keep_their_noise() {
         assert!(value("delta_min") >= 0.60, "{figures:?}");
     }
     // Without the warp they are not.
-    let plain = figures_of_window("plain".into(), false, &window(1, Warp::OFF, 362.0), 4.0);
+    let plain = figures_of_window("plain".into(), false, &window(1, OFF, 362.0), 4.0);
     assert!(
         plain.value("anisotropy_db").expect("measured") > 2.0,
         "{plain:?}"
@@ -51,7 +40,7 @@ fn warped_sets_are_isotropic_and_keep_their_noise() {
 
 #[test]
 fn a_million_warped_points_are_isotropic() {
-    let set = window(3, Warp::ON, 1000.0);
+    let set = window(3, ON, 1000.0);
     let figures = figures_of_window("seed 3".into(), false, &set, 2.0);
     let value = |name| figures.value(name).expect("measured");
     assert!(value("anisotropy_db") <= 0.2, "{figures:?}");
@@ -96,10 +85,10 @@ fn correlation(a: &Window, b: &Window) -> f64 {
 #[test]
 fn seeds_are_unrelated_sets() {
     let set = |seed, warp| window(seed, warp, 362.0);
-    let warped = correlation(&set(1, Warp::ON), &set(2, Warp::ON));
+    let warped = correlation(&set(1, ON), &set(2, ON));
     // About 50,000 modes: independent sets stay within a few hundredths.
     assert!(warped.abs() < 0.03, "{warped}");
-    let plain = correlation(&set(1, Warp::OFF), &set(2, Warp::OFF));
+    let plain = correlation(&set(1, OFF), &set(2, OFF));
     assert!(
         plain > 0.3,
         "without the warp all sets have the same peaks: {plain}"

@@ -1,16 +1,6 @@
 //! Running a loop by a backend.
 
-use super::{Backend, arch, lanes::Lanes};
-
-/// A loop over vectors, written once for all instruction sets.
-pub(super) trait VectorLoop {
-    /// Writes items from the front in whole vectors. Returns the number written: all of them, or none if
-    /// there are fewer than fill a vector.
-    ///
-    /// # Safety
-    /// The machine has the instructions of `L`.
-    unsafe fn run<L: Lanes>(&mut self) -> usize;
-}
+use super::{Backend, arch, lanes::VectorLoop};
 
 /// Runs a vector loop by a backend. Returns the number of items written; the caller's plain code writes
 /// the rest.

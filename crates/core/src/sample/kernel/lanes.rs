@@ -1,4 +1,4 @@
-//! Lanes: the vector operations that the row loops need, as one small trait.
+//! Lanes: the vector operations that the row loops need, as one small trait, and the loops over them.
 
 use crate::sample::{lattice::Point, warp::PatchShears};
 
@@ -67,4 +67,14 @@ pub trait Lanes {
         let _ = (to, columns, row, y);
         unreachable!("HAS_POINTS is false");
     }
+}
+
+/// A loop over vectors, written once for all instruction sets.
+pub(super) trait VectorLoop {
+    /// Writes items from the front in whole vectors. Returns the number written: all of them, or none if
+    /// there are fewer than fill a vector.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `L`.
+    unsafe fn run<L: Lanes>(&mut self) -> usize;
 }

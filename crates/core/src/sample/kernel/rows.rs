@@ -2,9 +2,9 @@
 
 use super::{
     Backend,
-    dispatch::{VectorLoop, run_vectors},
+    dispatch::run_vectors,
     format::{Emit, Row},
-    lanes::Lanes,
+    lanes::{Lanes, VectorLoop},
 };
 use crate::sample::warp::{CELL_BITS, PatchShears};
 

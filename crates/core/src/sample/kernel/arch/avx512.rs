@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::super::{dispatch::VectorLoop, lanes::Lanes};
+use super::super::lanes::{Lanes, VectorLoop};
 use crate::sample::{
     lattice::Point,
     warp::{CELL_BITS, PatchShears},

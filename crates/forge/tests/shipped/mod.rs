@@ -1,0 +1,29 @@
+//! The shipped tables, and windows of the sets that are served from them.
+
+#![allow(dead_code, reason = "each test uses what it needs")]
+
+use std::path::Path;
+
+use strew_core::{PointSet, Region, Table};
+use strew_forge::{file_name, measure::Window, read_table};
+
+/// A table of the repository.
+pub fn table(profile: &str, alpha: &str, radius: u32) -> Table {
+    let name = file_name(profile, alpha.parse().expect("valid"), radius);
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let places = [crates.join("core/tables"), crates.join("../tables")];
+    let path = places.map(|place| place.join(&name));
+    let path = path.iter().find(|path| path.exists()).expect("shipped");
+    read_table(path).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A square window of a set with mean spacing 1, away from the origin.
+pub fn window(set: &PointSet, corner: [f64; 2], side: f64) -> Window {
+    let region = Region::new(corner, corner.map(|v| v + side)).expect("ordered");
+    let plan = set.within(region).expect("near");
+    let moved = plan.iter().map(|member| {
+        let [x, y] = member.at();
+        [x - corner[0], y - corner[1]]
+    });
+    Window::new(side, 1.0, moved.collect())
+}
