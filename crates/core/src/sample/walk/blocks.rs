@@ -6,6 +6,7 @@ use core::ops::Range;
 use super::{
     template::{Check, Kept, Part, Template, Templates, displaced, sift, write_row},
     tile::{Tile, bands},
+    window::Window,
 };
 use crate::{
     pattern::{Axis, Class},
@@ -20,19 +21,6 @@ use crate::{
 
 /// The number of lattice rows from which a band keeps its templates.
 const TALL: i64 = 512;
-
-/// A part of the points of a scope: from a place on, up to a number.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Window {
-    /// The lattice address of the first point, unless that is the scope's first.
-    pub(crate) start: Option<PointId>,
-    /// The number of points before the window.
-    pub(crate) offset: u128,
-    /// The number of points of the window.
-    pub(crate) count: u128,
-    /// The number of points of the scope.
-    pub(crate) total: u128,
-}
 
 /// The points of a plan, or of one of its tiles, in order, in blocks of any size.
 ///
