@@ -5,25 +5,55 @@ use crate::sample::{cursor::Cursor, seek::locate, walk::Window};
 
 impl Plan {
     /// The number of points of the whole request, of which the plan may be a window.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(20.0, [0, 0])?;
+    /// let page = plan.window(50, Some(10));
+    /// assert_eq!((page.count(), page.total()), (10, plan.count()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn total(&self) -> u128 {
         self.window.total
     }
 
     /// The number of points of the request that come before the plan's.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(20.0, [0, 0])?;
+    /// assert_eq!(plan.offset(), 0);
+    /// assert_eq!(plan.window(50, None).window(5, None).offset(), 55);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn offset(&self) -> u128 {
         self.window.offset
     }
 
     /// Whether the plan leaves out points of its request.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(20.0, [0, 0])?;
+    /// assert!(plan.window(0, Some(10)).is_window());
+    /// assert!(!plan.window(0, None).is_window());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn is_window(&self) -> bool {
         self.window.count < self.window.total
     }
 
-    /// The points from number `offset` of this plan on, at most `limit`. The place is found in O(log) in a
-    /// box without warp, elsewhere in time proportional to the rows.
+    /// The points from number `offset` of this plan on, at most `limit`; none from its end on. The place is
+    /// found in O(log) in a box without warp, elsewhere in time proportional to the rows.
     ///
     /// ```
     /// use strew_core::{PointSet, Region, Table};
@@ -57,7 +87,17 @@ impl Plan {
         self.with_window(window)
     }
 
-    /// The points from a [cursor](Cursor) of the same request on.
+    /// The points of the request from one of its [cursors](Cursor) on, found without counting.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(20.0, [0, 0])?;
+    /// let cursor = plan.window(50, None).cursor().expect("not empty");
+    /// assert_eq!(plan.from_cursor(cursor).to_vec(), plan.to_vec()[50..]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn from_cursor(&self, cursor: Cursor) -> Self {
         let total = self.window.total;
@@ -78,6 +118,17 @@ impl Plan {
     }
 
     /// The place of the first point, or `None` if there are no points.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(20.0, [0, 0])?;
+    /// let cursor = plan.window(50, None).cursor().expect("not empty");
+    /// assert_eq!((cursor.offset, cursor.at), (50, plan.to_vec()[50].id));
+    /// assert_eq!(plan.window(plan.count(), None).cursor(), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         let Window {
@@ -94,6 +145,18 @@ impl Plan {
     }
 
     /// The place of the first point of the request after the plan's last, or `None` at the end.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(20.0, [0, 0])?;
+    /// let page = plan.window(0, Some(50));
+    /// let next = page.next_cursor().expect("there are more");
+    /// assert_eq!(plan.from_cursor(next).offset(), 50);
+    /// assert_eq!(plan.next_cursor(), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn next_cursor(&self) -> Option<Cursor> {
         let total = self.window.total;
@@ -102,7 +165,20 @@ impl Plan {
         Some(Cursor { offset, total, at })
     }
 
-    /// The plan cut into `parts` windows, one after another, whose sizes differ by at most one.
+    /// The plan cut into `parts` windows, one after another, whose sizes differ by at most one. 0 parts
+    /// count as 1.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(20.0, [0, 0])?.window(0, Some(10));
+    /// let counts: Vec<u128> = plan.split(4).map(|part| part.count()).collect();
+    /// assert_eq!(counts, [3, 3, 2, 2]);
+    /// let points: Vec<_> = plan.split(4).flatten().collect();
+    /// assert!(points.into_iter().eq(plan.iter()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn split(&self, parts: u32) -> impl Iterator<Item = Self> {
         let parts = u128::from(parts.max(1));
         let start = move |i: u128| {

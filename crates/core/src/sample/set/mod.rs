@@ -93,6 +93,18 @@ impl PointSet {
     ///
     /// # Errors
     /// [`ErrorKind::Spacing`](crate::ErrorKind::Spacing) outside 10⁻¹⁰⁰ to 10¹⁰⁰.
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// // A square of side 1000 at spacing 2.
+    /// let count = set.clone().spacing(2.0)?.chunk(1000.0, [0, 0])?.count();
+    /// assert!((count as f64 / (500.0 * 500.0) - 1.0).abs() < 0.01);
+    /// assert_eq!(set.spacing(0.0).unwrap_err().kind(), ErrorKind::Spacing);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn spacing(self, spacing: f64) -> Result<Self, Error> {
         let spacing = Spacing::new(spacing)?;
         Ok(self.replaced(|placement| Placement {
@@ -105,6 +117,15 @@ impl PointSet {
     ///
     /// # Errors
     /// [`ErrorKind::Density`](crate::ErrorKind::Density) outside 10⁻²⁰⁰ to 10²⁰⁰.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).density(25.0)?;
+    /// assert_eq!(set.placement().spacing.get(), 0.2);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn density(self, density: f64) -> Result<Self, Error> {
         let spacing = Spacing::from_density(density)?;
         Ok(self.replaced(|placement| Placement {
@@ -139,6 +160,17 @@ impl PointSet {
 
     /// Sets the seed. Seed 0 is the plain pattern, whose large windows show its quasi-periodic structure;
     /// every other seed warps the plane, unless [`warp`](Self::warp) says otherwise.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// let first = |seed| set.clone().seed(seed).chunk(8.0, [0, 0]).map(|plan| plan.to_vec()[0]);
+    /// assert_eq!(first(7)?, first(7)?);
+    /// assert_ne!(first(7)?, first(8)?);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn seed(self, seed: u64) -> Self {
         let own = self.has_own_warp.then(|| self.placement().warp);
@@ -154,6 +186,18 @@ impl PointSet {
     ///
     /// # Errors
     /// [`ErrorKind::Warp`](crate::ErrorKind::Warp) outside that range.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let plain = set.clone().warp(0.0)?;
+    /// assert!(plain.placement().warp.is_off());
+    /// // Without warp, distances are guaranteed in full.
+    /// assert!(plain.least_distance() > set.least_distance());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn warp(mut self, strength: f64) -> Result<Self, Error> {
         let warp = Warp::new(strength)?;
         self.has_own_warp = true;
@@ -165,12 +209,36 @@ impl PointSet {
     ///
     /// # Errors
     /// [`ErrorKind::Keep`](crate::ErrorKind::Keep) outside that range.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let all = PointSet::new(table).seed(7);
+    /// let half = all.clone().keep(0.5)?;
+    /// for point in half.chunk(20.0, [0, 0])? {
+    ///     // Points that stay do not move.
+    ///     assert_eq!(all.point(point.id()), Some(point));
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn keep(self, share: f64) -> Result<Self, Error> {
         let keep = Keep::new(share)?;
         Ok(self.replaced(|placement| placement.with_keep(keep)))
     }
 
     /// Sets spacing, seed, warp and share at once.
+    ///
+    /// ```
+    /// use strew_core::{Placement, PointSet, Seed, Spacing, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let placement = Placement::new(Spacing::new(4.0)?, Seed(7));
+    /// let set = PointSet::new(table.clone()).placed(placement);
+    /// let same = PointSet::new(table).spacing(4.0)?.seed(7);
+    /// assert_eq!(set.chunk(64.0, [0, 0])?.to_vec(), same.chunk(64.0, [0, 0])?.to_vec());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn placed(mut self, placement: Placement) -> Self {
         self.has_own_warp = true;
@@ -230,12 +298,30 @@ impl PointSet {
     }
 
     /// The table.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// assert_eq!(PointSet::new(table).table().profile(), "pattern");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn table(&self) -> &Table {
         &self.lattice.table
     }
 
     /// Spacing, seed, warp and share.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Seed, Table, Warp};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let placement = PointSet::new(table).spacing(4.0)?.seed(7).placement();
+    /// assert_eq!((placement.spacing.get(), placement.seed), (4.0, Seed(7)));
+    /// assert_eq!(placement.warp, Warp::ON);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn placement(&self) -> Placement {
         self.lattice.placement

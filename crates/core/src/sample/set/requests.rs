@@ -22,6 +22,18 @@ impl PointSet {
     /// # Errors
     /// [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the area reaches beyond ±2⁵² lattice units at
     /// this spacing, [`ErrorKind::Unbounded`](crate::ErrorKind::Unbounded) if it is not bounded.
+    ///
+    /// ```
+    /// use strew_core::{Circle, ErrorKind, PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let lake = Circle::new([100.0, 40.0], 9.0)?;
+    /// assert!(set.within(lake)?.iter().all(|point| lake.contains(point.at())));
+    /// let far = Region::new([0.0, 0.0], [1e20, 1.0])?;
+    /// assert_eq!(set.within(far).unwrap_err().kind(), ErrorKind::TooFar);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn within(&self, area: impl Into<Area>) -> Result<Plan, Error> {
         self.within_until(area.into(), Stop::default())
     }
@@ -31,6 +43,19 @@ impl PointSet {
     ///
     /// # Errors
     /// As [`Region::chunk`] and [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let mut parts = 0;
+    /// for at in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+    ///     parts += set.chunk(32.0, at)?.count();
+    /// }
+    /// assert_eq!(parts, set.chunk(64.0, [0, 0])?.count());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn chunk(&self, size: f64, at: [i64; 2]) -> Result<Plan, Error> {
         self.within(Region::chunk(size, at)?)
     }
@@ -61,6 +86,21 @@ impl PointSet {
     ///
     /// # Errors
     /// As [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let (set, region) = (PointSet::new(table).seed(7), Region::chunk(64.0, [0, 0])?);
+    /// let mut page = set.within(region)?.window(0, Some(1000));
+    /// let mut points = page.to_vec();
+    /// while let Some(cursor) = page.next_cursor() {
+    ///     page = set.resume(region, cursor)?.window(0, Some(1000));
+    ///     points.extend(page.to_vec());
+    /// }
+    /// assert_eq!(points, set.within(region)?.to_vec());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn resume(&self, area: impl Into<Area>, cursor: Cursor) -> Result<Plan, Error> {
         let (area, stop) = (area.into(), Stop::default());
         let plan = Plan::new(&self.lattice, &self.mask, area, stop, Some(cursor.total))?;
@@ -71,11 +111,35 @@ impl PointSet {
     ///
     /// # Errors
     /// As [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::{Area, Circle, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let [outer, inner] = [Circle::new([0.0, 0.0], 50.0)?, Circle::new([0.0, 0.0], 40.0)?];
+    /// let ring = Area::from(outer).without([inner.into()]);
+    /// // At mean spacing 1 the count is near the area.
+    /// let area = std::f64::consts::PI * (50.0 * 50.0 - 40.0 * 40.0);
+    /// assert!((set.count(ring)? as f64 - area).abs() < 30.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn count(&self, area: impl Into<Area>) -> Result<u128, Error> {
         self.within(area).map(|plan| plan.count())
     }
 
-    /// The largest absolute coordinate of a requested area: ±2⁵² lattice units.
+    /// The largest absolute coordinate of a requested area, in world units: 2⁵² lattice units.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).spacing(0.001)?;
+    /// let limit = set.limit();
+    /// assert!(set.within(Region::new([limit - 1.0, 0.0], [limit, 1.0])?).is_ok());
+    /// assert!(set.within(Region::new([limit, 0.0], [2.0 * limit, 1.0])?).is_err());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn limit(&self) -> f64 {
         self.lattice.limit()

@@ -27,20 +27,12 @@ const TALL: i64 = 512;
 /// It owns all it needs, so it can move between threads from block to block.
 ///
 /// ```
-/// use strew_core::{PointSet, Region, Table};
+/// use strew_core::{PointSet, Table};
 ///
 /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-/// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [100.0, 50.0])?)?;
+/// let plan = PointSet::new(table).chunk(10.0, [0, 0])?;
 /// let (mut blocks, mut block) = (plan.blocks_f32(), [[0.0; 2]; 512]);
-/// let mut total = 0;
-/// loop {
-///     let filled = blocks.fill(&mut block);
-///     total += filled;
-///     if filled < block.len() {
-///         break;
-///     }
-/// }
-/// assert_eq!(total as u128, plan.count());
+/// assert_eq!(blocks.fill(&mut block) as u128, plan.count());
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Debug)]
@@ -175,7 +167,18 @@ impl<F: Format> Blocks<F> {
         }
     }
 
-    /// The same points by another backend than the machine's best.
+    /// Fills rows by a backend other than the machine's best. The points have the same bits.
+    ///
+    /// ```
+    /// use strew_core::{Backend, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(10.0, [0, 0])?;
+    /// let mut block = [[0.0; 2]; 50];
+    /// plan.blocks_f64().with_backend(Backend::Scalar).fill(&mut block);
+    /// assert_eq!(block[49], plan.to_vec()[49].at());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn with_backend(mut self, backend: Backend) -> Self {
         self.backend = backend;
@@ -184,6 +187,19 @@ impl<F: Format> Blocks<F> {
 
     /// Writes the next points into `out`. Returns the number written; fewer than `out` holds, down to 0,
     /// only at the end.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [100.0, 50.0])?)?;
+    /// let (mut blocks, mut block, mut total) = (plan.blocks_f64(), [[0.0; 2]; 512], 0);
+    /// while let filled @ 1.. = blocks.fill(&mut block) {
+    ///     total += filled;
+    /// }
+    /// assert_eq!(total as u128, plan.count());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
         let most = usize::try_from(self.left).map_or(out.len(), |left| left.min(out.len()));
         let out = &mut out[..most];
@@ -212,6 +228,18 @@ impl<F: Format> Blocks<F> {
     ///
     /// Its lattice address lies after that of the last point written, and may lie before that of the
     /// next.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let (set, region) = (PointSet::new(table), Region::chunk(10.0, [0, 0])?);
+    /// let (mut blocks, mut block) = (set.within(region)?.blocks_f64(), [[0.0; 2]; 40]);
+    /// blocks.fill(&mut block);
+    /// let cursor = blocks.cursor().expect("not a tile");
+    /// assert_eq!(set.resume(region, cursor)?.offset(), 40);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         let window = self.window.filter(|window| window.count > 0)?;

@@ -1,7 +1,7 @@
 //! The walk: makes the points of a plan, in order, no faster than they are taken.
 //!
-//! `blocks` walks bands, rows and columns and fills blocks of points of a `window`; `template` holds what the rows of a
-//! band share. `tile` cuts a plan into parts that threads fill independently.
+//! `blocks` walks the bands, rows and columns of a `window` and fills blocks of points; `template` holds
+//! what the rows of a band share. `tile` cuts a plan into parts that threads fill independently.
 
 mod blocks;
 mod template;
