@@ -19,7 +19,8 @@
 //! Ask for one chunk at a time, in any order and as often as you like. Chunks are half-open: neighbors
 //! share no point and lose none, and a chunk is the same whenever it is loaded.
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use strew_core::PointSet;
 //!
 //! let trees = PointSet::blue().spacing(4.0)?.seed(7);
@@ -42,7 +43,8 @@
 //! An id is a lattice address. It finds its point again, so a saved game keeps ids and nothing else. Ids
 //! belong to a set: another spacing, seed or table has other points under them.
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use std::collections::HashSet;
 //! use strew_core::{PointId, PointSet};
 //!
@@ -61,7 +63,8 @@
 //!
 //! # The nearest points
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use strew_core::PointSet;
 //!
 //! let wells = PointSet::blue().spacing(500.0)?.seed(3);
@@ -79,7 +82,8 @@
 //! The number of points in an area is known before any is made. To place a given number, let the spacing
 //! follow from it.
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use strew_core::{Circle, PointSet};
 //!
 //! let samples = PointSet::blue().seed(5);
@@ -95,7 +99,8 @@
 //! A distance that no two points undercut, anywhere. The profile `spaced` has more points for the same
 //! distance than `blue`.
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use strew_core::PointSet;
 //!
 //! let posts = PointSet::blue().seed(1).min_distance(2.0)?;
@@ -110,7 +115,8 @@
 //! A rotation, a scale, a kind and further random numbers for each point. They depend on the id and the
 //! seed alone, so the same tree looks the same in every query.
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use strew_core::{PointSet, Variants};
 //!
 //! let trees = PointSet::blue().spacing(4.0)?.seed(7);
@@ -125,13 +131,15 @@
 //!
 //! As columns, for many points at once:
 //!
-//! ```
-//! use strew_core::{Attribute, Attributes, PointSet};
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
+//! use strew_core::{Attribute, Attributes, PointId, PointSet};
 //!
 //! let trees = PointSet::blue().spacing(4.0)?.seed(7);
 //! let plan = trees.chunk(64.0, [0, 0])?;
 //! let attributes = Attributes::new(vec![Attribute::Angle, Attribute::scale(0.8, 1.2)?])?;
-//! let columns = plan.attributes(&attributes).columns(plan.iter().map(|tree| tree.id()));
+//! let ids: Vec<PointId> = plan.iter().map(|tree| tree.id()).collect();
+//! let columns = plan.attributes(&attributes).columns(ids);
 //! let angles = columns[0].numbers().expect("angles are numbers");
 //! assert_eq!(angles.len() as u128, plan.count());
 //! # Ok::<(), strew_core::Error>(())
@@ -142,7 +150,8 @@
 //! Rocks first, then trees at least 3 m from any rock, then grass that avoids both. Whether a point stays
 //! is decided by its surroundings in the unbounded plane, so chunks agree.
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use strew_core::PointSet;
 //!
 //! let rocks = PointSet::blue().spacing(20.0)?.seed(1);
@@ -156,7 +165,8 @@
 //!
 //! # A polygon with holes
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use strew_core::{Area, Circle, PointSet, Polygon};
 //!
 //! let meadow = Polygon::new(&[[[0.0, 0.0], [90.0, 10.0], [60.0, 80.0]]])?;
@@ -173,7 +183,8 @@
 //! Each point has a rank in [0, 1). Those of rank below λ are an evenly spread share λ of all, and shares
 //! nest, so nothing jumps when the share changes.
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use strew_core::PointSet;
 //!
 //! let near = PointSet::blue().spacing(4.0)?.seed(7);
@@ -188,7 +199,8 @@
 //!
 //! Points have a fixed order, so a part of them is well defined. A cursor resumes without counting.
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use strew_core::{PointSet, Region};
 //!
 //! let set = PointSet::blue().seed(7);
@@ -209,7 +221,8 @@
 //! Blocks in a buffer of your own are the fastest way: a billion points take half a second on one core.
 //! Coordinates come as `f32` from the region's corner, as `f64`, or with ids.
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use strew_core::{PointSet, Region};
 //!
 //! let plan = PointSet::blue().within(Region::new([0.0, 0.0], [300.0, 300.0])?)?;
@@ -229,7 +242,8 @@
 //! Tiles are filled independently; this uses [rayon](https://docs.rs/rayon). One tile after another, the
 //! points have the order of the plan, with any number of threads.
 //!
-//! ```
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
 //! use rayon::prelude::*;
 //! use strew_core::{F32, PointSet, Region};
 //!

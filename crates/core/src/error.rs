@@ -35,6 +35,18 @@ struct Parts {
 }
 
 /// The cause of an [`Error`], for programs.
+///
+/// ```
+/// use strew_core::{ErrorKind, Spacing};
+///
+/// let error = Spacing::new(0.0).unwrap_err();
+/// let advice = match error.kind() {
+///     ErrorKind::Spacing | ErrorKind::Density => "choose another spacing",
+///     ErrorKind::TooFar => "move closer to the origin",
+///     _ => "see the message",
+/// };
+/// assert_eq!(advice, "choose another spacing");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -81,7 +93,7 @@ pub enum ErrorKind {
     Radius,
     /// More neighbors requested than one search returns.
     Neighbors,
-    /// A search that would visit more points than allowed.
+    /// A search that would visit more points than allowed; [`limit`](Error::limit) is their number.
     TooMany,
     /// A distance to keep clear of other points; [`limit`](Error::limit) is the largest.
     Clearance,
@@ -91,7 +103,8 @@ pub enum ErrorKind {
     NoLeastDistance,
     /// A number of points to place.
     Count,
-    /// A number of points that needs a smaller spacing than the caller allows.
+    /// A number of points that needs a smaller spacing than the caller allows, which is the
+    /// [`limit`](Error::limit).
     TooDense,
     /// The name, range or number of an attribute.
     Attribute,
@@ -131,37 +144,81 @@ impl Error {
         self
     }
 
-    /// The cause.
+    /// The cause, for programs that react to it.
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, PointId};
+    ///
+    /// let error = "1:2:3".parse::<PointId>().unwrap_err();
+    /// assert_eq!(error.kind(), ErrorKind::PointId);
+    /// ```
     #[must_use]
     pub fn kind(&self) -> ErrorKind {
         self.0.kind
     }
 
     /// The name of what was wrong: `spacing`, `min_x`, `ring 2`.
+    ///
+    /// ```
+    /// use strew_core::Region;
+    ///
+    /// let error = Region::new([0.0, 0.0], [10.0, -1.0]).unwrap_err();
+    /// assert_eq!(error.field(), "max_y");
+    /// ```
     #[must_use]
     pub fn field(&self) -> &str {
         &self.0.field
     }
 
     /// The value it had, as text. Long texts are cut.
+    ///
+    /// ```
+    /// use strew_core::Keep;
+    ///
+    /// assert_eq!(Keep::new(1.5).unwrap_err().value(), "1.5");
+    /// ```
     #[must_use]
     pub fn value(&self) -> &str {
         &self.0.value
     }
 
     /// What is wrong with the value; empty where [`allowed`](Self::allowed) says it all.
+    ///
+    /// ```
+    /// use strew_core::{Variants, Warp};
+    ///
+    /// let error = "oak,birch,oak".parse::<Variants>().unwrap_err();
+    /// assert_eq!(error.problem(), "listed twice");
+    /// assert_eq!(Warp::new(3.0).unwrap_err().problem(), "");
+    /// ```
     #[must_use]
     pub fn problem(&self) -> &str {
         &self.0.problem
     }
 
     /// What is allowed: `a number from 1e-100 to 1e100`.
+    ///
+    /// ```
+    /// use strew_core::Warp;
+    ///
+    /// assert_eq!(Warp::new(3.0).unwrap_err().allowed(), "a number from 0 (off) to 2");
+    /// ```
     #[must_use]
     pub fn allowed(&self) -> &str {
         &self.0.allowed
     }
 
-    /// The largest value allowed, for the kinds that document one.
+    /// The limit as a number, for the [kinds](ErrorKind) that document one.
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let rocks = PointSet::new(table).spacing(2.0)?;
+    /// let error = rocks.clone().clear_of(&rocks, 100.0).unwrap_err();
+    /// assert_eq!((error.kind(), error.limit()), (ErrorKind::Clearance, Some(32.0)));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn limit(&self) -> Option<f64> {
         self.0.limit

@@ -67,4 +67,12 @@ pub use table::Table;
 
 /// The version of the algorithm that turns a table, a density, a seed and a lattice address into a point,
 /// and that orders the points of a region. Any change of any output raises it.
+///
+/// ```
+/// use strew_core::{ALGORITHM_VERSION, PointId};
+///
+/// // A saved game that keeps ids keeps the version with them.
+/// let saved = (1, PointId { x: -31, y: 52 });
+/// assert_eq!(saved.0, ALGORITHM_VERSION, "made with other points");
+/// ```
 pub const ALGORITHM_VERSION: u32 = 1;

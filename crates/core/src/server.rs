@@ -26,6 +26,17 @@ pub use crate::sample::Stop;
 ///
 /// # Errors
 /// As [`PointSet::within`], and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table, server::{self, Stop}};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let (set, region) = (PointSet::new(table), Region::chunk(64.0, [0, 0])?);
+/// // A default flag is never raised, so the plan is the ordinary one.
+/// let plan = server::within(&set, region, &Stop::default())?;
+/// assert_eq!(plan.count(), set.count(region)?);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 pub fn within(set: &PointSet, area: impl Into<Area>, stop: &Stop) -> Result<Plan, Error> {
     set.within_until(area.into(), stop.clone())
 }
@@ -36,6 +47,19 @@ pub fn within(set: &PointSet, area: impl Into<Area>, stop: &Stop) -> Result<Plan
 /// # Errors
 /// As [`PointSet::exactly`], and [`ErrorKind::TooDense`](crate::ErrorKind::TooDense) or
 /// [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+///
+/// ```
+/// use strew_core::{ErrorKind, PointSet, Region, Table, server::{self, Stop}};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let (set, area) = (PointSet::new(table), Region::chunk(10.0, [0, 0])?.into());
+/// let stop = Stop::new();
+/// assert_eq!(server::exactly(&set, 100, &area, 0.5, &stop)?.count(), 100);
+/// // 10⁶ points in a square of side 10 take a spacing of 0.01.
+/// let error = server::exactly(&set, 1_000_000, &area, 0.5, &stop).unwrap_err();
+/// assert_eq!((error.kind(), error.limit()), (ErrorKind::TooDense, Some(0.5)));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 pub fn exactly(
     set: &PointSet,
     count: u128,
@@ -48,24 +72,61 @@ pub fn exactly(
 
 /// The plan with another flag: its windows and cursors, which may have to count, stop once that is raised.
 /// What they return then is meaningless.
+///
+/// ```
+/// use strew_core::{Circle, PointSet, Table, server::{self, Stop}};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let stop = Stop::new();
+/// let plan = PointSet::new(table).within(Circle::new([0.0, 0.0], 50.0)?)?;
+/// let plan = server::stopped_by(plan, stop.clone());
+/// // Windows of the plan stop once `stop` is raised.
+/// let page = plan.window(1000, Some(100));
+/// assert!(!stop.is_raised() && page.count() == 100);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[must_use]
 pub fn stopped_by(plan: Plan, stop: Stop) -> Plan {
     plan.with_stop(stop)
 }
 
-/// About half the length, along the axes, of the outlines of all shapes of an area inside `within`: width
-/// + height for a box. Counting an area takes time in proportion to this and to its height.
+/// About half the length, along the axes and in world units, of the outlines of all shapes of an area
+/// inside `within`: width + height for a box. Counting an area takes time in proportion to this and to
+/// its height.
+///
+/// ```
+/// use strew_core::{Area, Circle, Region, server::outline};
+///
+/// let view = Region::new([0.0, 0.0], [30.0, 10.0])?;
+/// assert_eq!(outline(&view.into(), view), 40.0);
+/// // A circle inside counts as the box around it.
+/// let pond = Area::from(Circle::new([5.0, 5.0], 3.0)?);
+/// assert!((outline(&pond, view) - 12.0).abs() < 1e-9);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[must_use]
 pub fn outline(area: &Area, within: Region) -> f64 {
     area.outline(within)
 }
 
-/// The sum, over strips of a height from the bottom of `within` up, of the [`outline`] in the strip times
-/// the number of edges, boxes and circles that touch it. Points beside an outline are compared with all
-/// of these, so it is what an area of many edges costs besides.
+/// The sum, over strips of height `strip` from the bottom of `within` up, of the [`outline`] in the strip
+/// times the number of edges, boxes and circles that touch it, in world units. Points beside an outline
+/// are compared with all of these: a further cost of areas with many edges.
 ///
 /// Takes time in proportion to the edges and to the outline in strips. There are at most 65,536 strips,
 /// higher ones if need be.
+///
+/// ```
+/// use strew_core::{Area, Circle, Region, server::comparisons};
+///
+/// let view = Region::chunk(100.0, [0, 0])?;
+/// let pond = Area::from(Circle::new([50.0, 50.0], 9.0)?);
+/// let ponds = Area::any_of(vec![pond.clone(); 50]);
+/// // Fifty times the outline, and points beside it are compared with fifty circles.
+/// let ratio = comparisons(&ponds, view, 1.0) / comparisons(&pond, view, 1.0);
+/// assert!((ratio - 2500.0).abs() < 1e-6);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[must_use]
 pub fn comparisons(area: &Area, within: Region, strip: f64) -> f64 {
     area.comparisons(within, strip)

@@ -41,6 +41,15 @@ impl Map {
     ///
     /// # Errors
     /// [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is greater than [`MAX_RADIUS`](super::MAX_RADIUS).
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, Map};
+    ///
+    /// let map = Map::new("sqrt(3)".parse()?, 49)?;
+    /// assert_eq!(map.intervals(), 73);
+    /// assert_eq!(Map::new(map.alpha(), 5000).unwrap_err().kind(), ErrorKind::MapSize);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn new(alpha: Alpha, radius: u32) -> Result<Self, Error> {
         check_radius(radius)?;
         let side = alpha.set_side();
@@ -63,37 +72,89 @@ impl Map {
         })
     }
 
-    /// The number α.
+    /// The α of the pattern.
+    ///
+    /// ```
+    /// use strew_core::Map;
+    ///
+    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
+    /// assert_eq!(map.alpha().to_string(), "(5-sqrt(3))/2");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn alpha(&self) -> Alpha {
         self.alpha
     }
 
-    /// The size.
+    /// The half-width as a named size.
+    ///
+    /// ```
+    /// use strew_core::{Map, map::Size};
+    ///
+    /// assert_eq!(Map::new("sqrt(3)".parse()?, 49)?.size(), Size::S);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn size(&self) -> Size {
         Size::of_radius(self.radius)
     }
 
     /// The half-width R, in grid units.
+    ///
+    /// ```
+    /// use strew_core::Map;
+    ///
+    /// assert_eq!(Map::new("sqrt(3)".parse()?, 49)?.radius(), 49);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn radius(&self) -> u32 {
         self.radius
     }
 
     /// n, the number of intervals per axis.
+    ///
+    /// ```
+    /// use strew_core::Map;
+    ///
+    /// // n grows in proportion to R: about 1.27·R for this α.
+    /// let alpha = "(5-sqrt(3))/2".parse()?;
+    /// for (radius, intervals) in [(20, 27), (49, 63), (100, 129), (200, 255)] {
+    ///     assert_eq!(Map::new(alpha, radius)?.intervals(), intervals);
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn intervals(&self) -> usize {
         self.bounds.len() - 1
     }
 
     /// The n − 1 thresholds inside (0, t), ascending, in units of 2⁻⁶⁴.
+    ///
+    /// ```
+    /// use strew_core::Map;
+    ///
+    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
+    /// assert_eq!(map.thresholds().len(), 62);
+    /// assert!(map.thresholds().is_sorted());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn thresholds(&self) -> &[u64] {
         &self.bounds[1..self.bounds.len() - 1]
     }
 
     /// Interval number `i`, in units of 2⁻⁶⁴, or an empty range past the last.
+    ///
+    /// ```
+    /// use strew_core::Map;
+    ///
+    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
+    /// assert_eq!(map.interval(0), 0..map.thresholds()[0]);
+    /// assert_eq!(map.interval(62).end, map.alpha().set_side());
+    /// assert!(map.interval(63).is_empty());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn interval(&self, i: usize) -> Range<u64> {
         match self.bounds.get(i..i + 2) {
@@ -108,6 +169,18 @@ impl Map {
     }
 
     /// The interval that holds an index, or `None` outside the set region [0, t).
+    ///
+    /// ```
+    /// use strew_core::{Map, Pattern};
+    ///
+    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
+    /// let pattern = Pattern::new(map.alpha());
+    /// // The block of the point (0, 0); (1, 0) is no point.
+    /// let ((dx, dy), (beside, _)) = (pattern.index(0, 0), pattern.index(1, 0));
+    /// assert_eq!([map.interval_of(dx), map.interval_of(dy)], [Some(0), Some(0)]);
+    /// assert_eq!(map.interval_of(beside), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn interval_of(&self, index: u64) -> Option<usize> {
         (index < self.alpha.set_side()).then(|| self.locate(index))
@@ -128,6 +201,18 @@ impl Map {
     ///
     /// # Errors
     /// [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is greater than [`MAX_RADIUS`](super::MAX_RADIUS).
+    ///
+    /// ```
+    /// use strew_core::Map;
+    ///
+    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
+    /// let (finer, parents) = map.refine(100)?;
+    /// for (i, &parent) in parents.iter().enumerate() {
+    ///     let (part, whole) = (finer.interval(i), map.interval(parent));
+    ///     assert!(whole.start <= part.start && part.end <= whole.end);
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn refine(&self, radius: u32) -> Result<(Self, Vec<usize>), Error> {
         let finer = Self::new(self.alpha, radius.max(self.radius))?;
         let parents = finer.bounds[..finer.intervals()]
@@ -143,6 +228,17 @@ impl Map {
     ///
     /// The order of the thresholds holds on an open interval of α whose ends are ratios of small
     /// integers. The twins are the fractions inside it.
+    ///
+    /// ```
+    /// use strew_core::Map;
+    ///
+    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
+    /// let twin = map.twins().find(|twin| twin.t() == 71 && twin.r() == 41).expect("a twin");
+    /// assert_eq!((twin.to_string().as_str(), twin.points()), ("183/112", 5041));
+    /// // Its thresholds have the order of the map's own.
+    /// assert!(map.has_twin(twin));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn twins(&self) -> impl Iterator<Item = Twin> + use<> {
         let cell = Cell::new(self.alpha, self.radius);
         (1..MAX_Q).flat_map(move |t| {
@@ -152,6 +248,15 @@ impl Map {
     }
 
     /// Whether p/q is a periodic twin of this map (see [`twins`](Self::twins)).
+    ///
+    /// ```
+    /// use strew_core::{Map, map::Twin};
+    ///
+    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
+    /// let [near, far] = [Twin::new(683, 418), Twin::new(7, 4)].map(|twin| twin.expect("reduced"));
+    /// assert!(map.has_twin(near) && !map.has_twin(far));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn has_twin(&self, twin: Twin) -> bool {
         Cell::new(self.alpha, self.radius).contains(twin.p(), twin.q())

@@ -5,6 +5,18 @@ use alloc::vec::Vec;
 use super::{Map, Twin};
 
 /// A point of a twin's period: its lattice address in [0, 2q)² and its block.
+///
+/// ```
+/// use strew_core::{Table, map::Twin};
+///
+/// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+/// let twin = Twin::new(183, 112).expect("reduced and between 1 and 2");
+/// let site = twin.sites(table.map()).expect("a twin of the map")[17];
+/// // The vector of a point is that of its block.
+/// let place = site.block_y as usize * table.map().intervals() + site.block_x as usize;
+/// assert_eq!(table.displacements()[place], [0, 0]);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Site {
     /// The column, in [0, 2q).
@@ -26,6 +38,17 @@ impl Twin {
 
     /// The points of one period with their blocks, row by row, or `None` if this is not a twin of the
     /// map.
+    ///
+    /// ```
+    /// use strew_core::{Map, map::Twin};
+    ///
+    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
+    /// let twin = Twin::new(183, 112).expect("reduced and between 1 and 2");
+    /// let sites = twin.sites(&map).expect("a twin of the map");
+    /// assert_eq!(sites.len() as u64, twin.points());
+    /// assert!(sites.iter().all(|site| u64::from(site.x) < twin.period()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn sites(self, map: &Map) -> Option<Vec<Site>> {
         if !map.has_twin(self) {

@@ -6,6 +6,14 @@ use crate::error::{Error, ErrorKind, shown};
 
 /// The largest half-width of a map. At 1024 a table has about 1.7 million vectors; the largest shipped
 /// half-width is 200, with 255 intervals at the default α.
+///
+/// ```
+/// use strew_core::{Map, map::MAX_RADIUS};
+///
+/// let alpha = "sqrt(3)".parse()?;
+/// assert!(Map::new(alpha, MAX_RADIUS).is_ok() && Map::new(alpha, MAX_RADIUS + 1).is_err());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 pub const MAX_RADIUS: u32 = 1024;
 
 /// What the text of a size must be.
@@ -46,13 +54,26 @@ impl Size {
     /// R = 200.
     pub const L: Self = Self(200);
 
-    /// The size of a map of half-width R.
+    /// The size of a map of half-width R, in grid units. Values above [`MAX_RADIUS`] have a size but no map.
+    ///
+    /// ```
+    /// use strew_core::map::Size;
+    ///
+    /// assert_eq!(Size::of_radius(49), Size::S);
+    /// assert_eq!(Size::of_radius(50).to_string(), "r50");
+    /// ```
     #[must_use]
     pub const fn of_radius(radius: u32) -> Self {
         Self(radius)
     }
 
     /// The half-width R, in grid units.
+    ///
+    /// ```
+    /// use strew_core::map::Size;
+    ///
+    /// assert_eq!([Size::S, Size::M, Size::L].map(Size::radius), [49, 100, 200]);
+    /// ```
     #[must_use]
     pub const fn radius(self) -> u32 {
         self.0

@@ -9,6 +9,17 @@ use core::ops::Range;
 use super::{Alpha, first_hit::first_hit, floor_sum::count_hits};
 
 /// A lattice axis.
+///
+/// ```
+/// use strew_core::{Pattern, pattern::Axis};
+///
+/// let pattern = Pattern::new("sqrt(3)".parse()?);
+/// let (dx, dy) = pattern.index(3, 8);
+/// // Row 8 is even, column 3 odd.
+/// assert_eq!(dx, pattern.axis_index(Axis::X, 3, 0));
+/// assert_eq!(dy, pattern.axis_index(Axis::Y, 8, 1));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Axis {
     /// Columns.
@@ -18,6 +29,18 @@ pub enum Axis {
 }
 
 /// A pair of parities: one of the four Cartesian products that make up a pattern.
+///
+/// ```
+/// use strew_core::{Pattern, pattern::{Axis, Class}};
+///
+/// let pattern = Pattern::new("sqrt(3)".parse()?);
+/// for (x, y) in (-9..9).flat_map(|x| (-9..9).map(move |y| (x, y))) {
+///     let class = Class::of(x, y);
+///     let [columns, rows] = [Axis::X, Axis::Y].map(|axis| pattern.axis_set(axis, class));
+///     assert_eq!(pattern.contains(x, y), columns.contains(x) && rows.contains(y));
+/// }
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Class {
     /// The parity of x (0 or 1).
@@ -35,7 +58,13 @@ impl Class {
         Self { x: 1, y: 1 },
     ];
 
-    /// The class of a lattice point.
+    /// The class of a lattice address.
+    ///
+    /// ```
+    /// use strew_core::pattern::Class;
+    ///
+    /// assert_eq!(Class::of(-3, 8), Class { x: 1, y: 0 });
+    /// ```
     #[must_use]
     pub const fn of(x: i64, y: i64) -> Self {
         Self {
@@ -45,6 +74,12 @@ impl Class {
     }
 
     /// The position in [`Class::ALL`].
+    ///
+    /// ```
+    /// use strew_core::pattern::Class;
+    ///
+    /// assert!(Class::ALL.iter().enumerate().all(|(i, class)| class.ordinal() == i));
+    /// ```
     #[must_use]
     pub const fn ordinal(self) -> usize {
         self.x as usize + 2 * self.y as usize
@@ -52,6 +87,17 @@ impl Class {
 }
 
 /// The lattice coordinates of one parity whose index lies in one interval of the circle.
+///
+/// ```
+/// use strew_core::{Pattern, pattern::{Axis, Class}};
+///
+/// let pattern = Pattern::new("sqrt(3)".parse()?);
+/// let columns = pattern.axis_set(Axis::X, Class { x: 0, y: 0 });
+/// let listed: Vec<i64> = columns.iter(0..100).collect();
+/// assert_eq!(listed.len() as u64, columns.count(0..100));
+/// assert_eq!(columns.select(0, 5), Some(listed[5]));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AxisSet {
     /// A = α/2, in units of 2⁻⁶⁴.
@@ -66,6 +112,16 @@ impl AxisSet {
     /// The coordinates v ≡ `parity` (mod 2) with (A·v + `zero`) mod 1 in `interval`. `zero` is the
     /// index of coordinate 0: the origin, plus one half if the other coordinate is odd. `zero` and
     /// `interval` are in units of 2⁻⁶⁴.
+    ///
+    /// ```
+    /// use strew_core::{Alpha, Pattern, pattern::{Axis, AxisSet, Class}};
+    ///
+    /// let alpha: Alpha = "sqrt(3)".parse()?;
+    /// // The even columns of the pattern that have points in odd rows.
+    /// let columns = AxisSet::new(alpha, 1 << 63, 0, 0..alpha.set_side());
+    /// assert_eq!(columns, Pattern::new(alpha).axis_set(Axis::X, Class { x: 0, y: 1 }));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn new(alpha: Alpha, zero: u64, parity: u8, interval: Range<u64>) -> Self {
         Self {
@@ -105,12 +161,32 @@ impl AxisSet {
     }
 
     /// Whether `v` belongs to the set.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::{Axis, Class}};
+    ///
+    /// let even = Class { x: 0, y: 0 };
+    /// let columns = Pattern::new("sqrt(3)".parse()?).axis_set(Axis::X, even);
+    /// assert!(columns.contains(0) && !columns.contains(1));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn contains(&self, v: i64) -> bool {
         (v & 1) as u8 == self.parity && self.index(v) < self.width
     }
 
     /// The number of members in `range`: a floor sum, O(log).
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::{Axis, Class}};
+    ///
+    /// let pattern = Pattern::new("sqrt(3)".parse()?);
+    /// let columns = pattern.axis_set(Axis::X, Class { x: 0, y: 0 });
+    /// // Half of the coordinates are even, and a share t of these belong to the set.
+    /// let count = columns.count(0..1_000_000_000_000);
+    /// assert!((count as f64 / 5e11 - pattern.alpha().set_side_f64()).abs() < 1e-10);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn count(&self, range: Range<i64>) -> u64 {
         let candidates = self.candidates(&range);
@@ -123,6 +199,16 @@ impl AxisSet {
     }
 
     /// The first member ≥ `from`, or `None` if there is none within `i64`. O(log).
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::{Axis, Class}};
+    ///
+    /// let columns = Pattern::new("sqrt(3)".parse()?).axis_set(Axis::X, Class { x: 0, y: 0 });
+    /// let first = columns.first(1_000_000_007).expect("far from the end");
+    /// assert!(columns.contains(first));
+    /// assert_eq!(columns.count(1_000_000_007..first), 0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn first(&self, from: i64) -> Option<i64> {
         let first = self.align(from)?;
@@ -132,6 +218,16 @@ impl AxisSet {
 
     /// Member number `k` (from 0) among those ≥ `from`, or `None` if `i64` holds fewer. A bisection on
     /// [`count`](Self::count).
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::{Axis, Class}};
+    ///
+    /// let columns = Pattern::new("sqrt(3)".parse()?).axis_set(Axis::X, Class { x: 0, y: 0 });
+    /// let at = columns.select(0, 1_000_000).expect("far from the end");
+    /// assert!(columns.contains(at));
+    /// assert_eq!(columns.count(0..at), 1_000_000);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn select(&self, from: i64, k: u64) -> Option<i64> {
         let need = k.checked_add(1)?;
@@ -174,6 +270,15 @@ impl AxisSet {
 
     /// The members in `range`, ascending. Each step costs a comparison: a rotation returns to an
     /// interval after one of at most three gaps (the three-gap theorem).
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::{Axis, Class}};
+    ///
+    /// let columns = Pattern::new("sqrt(3)".parse()?).axis_set(Axis::X, Class { x: 0, y: 0 });
+    /// let by_test = (-50..50).filter(|&v| columns.contains(v));
+    /// assert!(columns.iter(-50..50).eq(by_test));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn iter(&self, range: Range<i64>) -> impl Iterator<Item = i64> + use<> {
         let (set, gaps) = (*self, Gaps::new(self.step(), self.width));
         let mut next = set.first(range.start).filter(|&v| v < range.end);

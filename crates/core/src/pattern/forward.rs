@@ -7,7 +7,17 @@
 
 use super::Alpha;
 
-/// M(x, y) = ⌊½ [α −1; 1 α] (x, y)⌋, or `None` where the result leaves `i64`.
+/// M(x, y) = ⌊½ [α −1; 1 α] (x, y)⌋ (Ahmed, Huang, Deussen 2015, Eq. 1), or `None` where the result
+/// leaves `i64`.
+///
+/// ```
+/// use strew_core::pattern::forward_map;
+///
+/// // At α = √3, M rotates by 30° and rounds down.
+/// assert_eq!(forward_map("sqrt(3)".parse()?, 10, 0), Some((8, 5)));
+/// assert_eq!(forward_map("sqrt(3)".parse()?, i64::MAX, i64::MIN), None);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[must_use]
 pub fn forward_map(alpha: Alpha, x: i64, y: i64) -> Option<(i64, i64)> {
     let half = i128::from(alpha.half());
@@ -18,9 +28,24 @@ pub fn forward_map(alpha: Alpha, x: i64, y: i64) -> Option<(i64, i64)> {
     Some((i64::try_from(column).ok()?, i64::try_from(row).ok()?))
 }
 
-/// Whether M sends no grid point to a target pixel, by brute force over the nearest candidates.
+/// Whether M, the [`forward_map`], sends no grid point to a target pixel, by brute force over the nearest
+/// candidates. The pixels that stay vacant are M(x − 1, y − 1) + (0, 1) for the points (x, y) of the
+/// pattern with index origin (½, 0).
 ///
 /// Requires |column|, |row| ≤ 2⁴⁰: farther out `f64` cannot locate the candidates.
+///
+/// ```
+/// use strew_core::{Alpha, Pattern, pattern::{IndexOrigin, forward_map, is_vacant}};
+///
+/// let alpha: Alpha = "sqrt(3)".parse()?;
+/// let pattern = Pattern::with_origin(alpha, IndexOrigin { x: 1 << 63, y: 0 });
+/// // Points of the pattern have holes, other places have not.
+/// for x in 0..99 {
+///     let (column, row) = forward_map(alpha, x - 1, 4).expect("small");
+///     assert_eq!(is_vacant(alpha, column, row + 1), pattern.contains(x, 5));
+/// }
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[must_use]
 pub fn is_vacant(alpha: Alpha, column: i64, row: i64) -> bool {
     let a = alpha.to_f64();

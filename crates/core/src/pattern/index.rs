@@ -6,6 +6,16 @@ use super::{Alpha, Axis, AxisSet, Class};
 
 /// The index of the lattice origin, in units of 2⁻⁶⁴ of the torus. Another origin shows another piece
 /// of the same unbounded pattern.
+///
+/// ```
+/// use strew_core::{Alpha, Pattern, pattern::IndexOrigin};
+///
+/// let alpha: Alpha = "sqrt(3)".parse()?;
+/// let moved = Pattern::with_origin(alpha, IndexOrigin { x: alpha.set_side(), y: 0 });
+/// // (0, 0) is a point of one piece and not of the other.
+/// assert!(Pattern::new(alpha).contains(0, 0) && !moved.contains(0, 0));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct IndexOrigin {
     /// dX of the lattice point (0, 0).
@@ -15,7 +25,14 @@ pub struct IndexOrigin {
 }
 
 impl IndexOrigin {
-    /// dX or dY.
+    /// dX for [`Axis::X`], dY for [`Axis::Y`], in units of 2⁻⁶⁴.
+    ///
+    /// ```
+    /// use strew_core::pattern::{Axis, IndexOrigin};
+    ///
+    /// let origin = IndexOrigin { x: 3, y: 4 };
+    /// assert_eq!([Axis::X, Axis::Y].map(|axis| origin.along(axis)), [3, 4]);
+    /// ```
     #[must_use]
     pub const fn along(self, axis: Axis) -> u64 {
         match axis {
@@ -48,12 +65,31 @@ pub struct Pattern {
 
 impl Pattern {
     /// The pattern whose lattice origin has the index (0, 0).
+    ///
+    /// ```
+    /// use strew_core::Pattern;
+    ///
+    /// let pattern = Pattern::new("sqrt(3)".parse()?);
+    /// assert_eq!(pattern.index(0, 0), (0, 0));
+    /// assert!(pattern.contains(0, 0));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn new(alpha: Alpha) -> Self {
         Self::with_origin(alpha, IndexOrigin { x: 0, y: 0 })
     }
 
-    /// The same pattern with the lattice origin at another index.
+    /// The pattern whose lattice origin has the index `origin`.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, Seed};
+    ///
+    /// let alpha = "sqrt(3)".parse()?;
+    /// // The piece of the pattern that a seed chooses.
+    /// let pattern = Pattern::with_origin(alpha, Seed(7).origin());
+    /// assert_ne!(pattern.index(0, 0), Pattern::new(alpha).index(0, 0));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn with_origin(alpha: Alpha, origin: IndexOrigin) -> Self {
         Self {
@@ -69,6 +105,16 @@ impl Pattern {
     /// The smaller set region lies at a corner that depends on the class: dX in [0, `side`) in even
     /// rows and in [t − `side`, t) in odd ones; dY likewise by columns. One corner for all classes
     /// would keep the classes in step with each other, and the remaining points would clump.
+    ///
+    /// ```
+    /// use strew_core::Pattern;
+    ///
+    /// let all = Pattern::new("sqrt(3)".parse()?);
+    /// let quarter = all.thinned(all.alpha().set_side() / 2);
+    /// let [all, quarter] = [all, quarter].map(|pattern| pattern.count(0..1 << 40, 0..1 << 40));
+    /// assert!((quarter as f64 / all as f64 - 0.25).abs() < 1e-9);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn thinned(self, side: u64) -> Self {
         let side = if side < self.side { side } else { self.side };
@@ -76,13 +122,30 @@ impl Pattern {
     }
 
     /// The number α.
+    ///
+    /// ```
+    /// use strew_core::Pattern;
+    ///
+    /// assert_eq!(Pattern::new("sqrt(3)".parse()?).alpha().to_string(), "sqrt(3)");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn alpha(&self) -> Alpha {
         self.alpha
     }
 
     /// The index of a coordinate along an axis, given the parity of the other coordinate:
-    /// {(α·v + parity)/2}.
+    /// {origin + (α·v + parity)/2}, in units of 2⁻⁶⁴.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Axis};
+    ///
+    /// let pattern = Pattern::new("1.5".parse()?);
+    /// // {1.5·1/2} = 3/4, and {(1.5·1 + 1)/2} = 1/4.
+    /// assert_eq!(pattern.axis_index(Axis::X, 1, 0), 3 << 62);
+    /// assert_eq!(pattern.axis_index(Axis::X, 1, 1), 1 << 62);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn axis_index(&self, axis: Axis, v: i64, other_parity: u8) -> u64 {
         self.alpha
@@ -93,6 +156,15 @@ impl Pattern {
     }
 
     /// The index (dX, dY) of a lattice point, in units of 2⁻⁶⁴ (paper, Eqs. 2 and 3).
+    ///
+    /// ```
+    /// use strew_core::Pattern;
+    ///
+    /// let pattern = Pattern::new("1.5".parse()?);
+    /// // dX = {(1.5·1 + 2)/2} = 3/4, dY = {(1.5·2 + 1)/2} = 0.
+    /// assert_eq!(pattern.index(1, 2), (3 << 62, 0));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn index(&self, x: i64, y: i64) -> (u64, u64) {
         let class = Class::of(x, y);
@@ -104,6 +176,18 @@ impl Pattern {
 
     /// Whether a lattice point belongs to the pattern: dX < t and dY < t (paper, Eq. 4), and in a
     /// thinned pattern its depth is below the side.
+    ///
+    /// ```
+    /// use strew_core::Pattern;
+    ///
+    /// let pattern = Pattern::new("sqrt(3)".parse()?);
+    /// let mark = |x, y| if pattern.contains(x, y) { 'o' } else { '.' };
+    /// let row = |y| (0..16).map(|x| mark(x, y)).collect::<String>();
+    /// assert_eq!(row(2), ".....o.o.....o..");
+    /// assert_eq!(row(4), "................");
+    /// assert_eq!(row(6), "o.....o.......o.");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn contains(&self, x: i64, y: i64) -> bool {
         self.depth(x, y) < self.side
@@ -112,6 +196,15 @@ impl Pattern {
     /// The depth of a lattice point, in units of 2⁻⁶⁴: the point belongs to
     /// [`thinned(side)`](Self::thinned) iff its depth is below `side`. It is below t for the points of
     /// the pattern and t or more for all others.
+    ///
+    /// ```
+    /// use strew_core::Pattern;
+    ///
+    /// let pattern = Pattern::new("sqrt(3)".parse()?);
+    /// let t = pattern.alpha().set_side();
+    /// assert!((0..99).all(|x| pattern.contains(x, 4) == (pattern.depth(x, 4) < t)));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn depth(&self, x: i64, y: i64) -> u64 {
         let class = Class::of(x, y);
@@ -142,12 +235,39 @@ impl Pattern {
 
     /// The columns (`Axis::X`) or rows (`Axis::Y`) of one class: the pattern is the union, over the
     /// four classes, of columns × rows.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::{Axis, Class}};
+    ///
+    /// let pattern = Pattern::new("sqrt(3)".parse()?);
+    /// let points: u64 = Class::ALL
+    ///     .map(|class| {
+    ///         let [columns, rows] = [Axis::X, Axis::Y].map(|axis| pattern.axis_set(axis, class));
+    ///         columns.count(0..1000) * rows.count(0..500)
+    ///     })
+    ///     .into_iter()
+    ///     .sum();
+    /// assert_eq!(u128::from(points), pattern.count(0..1000, 0..500));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn axis_set(&self, axis: Axis, class: Class) -> AxisSet {
         self.axis_subset(axis, class, 0..self.alpha.set_side())
     }
 
-    /// The part of [`axis_set`](Self::axis_set) whose index lies in `interval`.
+    /// The part of [`axis_set`](Self::axis_set) whose index lies in `interval`, in units of 2⁻⁶⁴.
+    ///
+    /// ```
+    /// use strew_core::{Map, Pattern, pattern::{Axis, Class}};
+    ///
+    /// let map = Map::new("sqrt(3)".parse()?, 20)?;
+    /// let (pattern, class) = (Pattern::new(map.alpha()), Class { x: 0, y: 0 });
+    /// // The columns of each interval of a map are a set of their own.
+    /// let parts = (0..map.intervals()).map(|i| pattern.axis_subset(Axis::X, class, map.interval(i)));
+    /// let counts: u64 = parts.map(|part| part.count(0..10_000)).sum();
+    /// assert_eq!(counts, pattern.axis_set(Axis::X, class).count(0..10_000));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn axis_subset(&self, axis: Axis, class: Class, interval: Range<u64>) -> AxisSet {
         let (own, other) = match axis {
@@ -162,6 +282,17 @@ impl Pattern {
     /// The class and the index of a column (`Axis::X`) or row (`Axis::Y`), or `None` if it holds no
     /// points. A coordinate has two indices, by the parity of the other one; at most one of them lies
     /// in the set region, so a column or row belongs to one class only.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::{Axis, Class}};
+    ///
+    /// let pattern = Pattern::new("sqrt(3)".parse()?);
+    /// // Row 0 has its points in even columns.
+    /// assert_eq!(pattern.visit(Axis::Y, 0), Some((Class { x: 0, y: 0 }, 0)));
+    /// let empty = (0..).find(|&y| pattern.visit(Axis::Y, y).is_none()).expect("one in four");
+    /// assert_eq!(pattern.count(-1_000_000..1_000_000, empty..empty + 1), 0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn visit(&self, axis: Axis, v: i64) -> Option<(Class, u64)> {
         let even = self.axis_index(axis, v, 0);
@@ -182,6 +313,15 @@ impl Pattern {
     }
 
     /// The number of points in a half-open lattice box, in O(log).
+    ///
+    /// ```
+    /// use strew_core::Pattern;
+    ///
+    /// let pattern = Pattern::new("sqrt(3)".parse()?);
+    /// let row = |y| (0..50).filter(|&x| pattern.contains(x, y)).count() as u128;
+    /// assert_eq!(pattern.count(0..50, 0..20), (0..20).map(row).sum::<u128>());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn count(&self, x: Range<i64>, y: Range<i64>) -> u128 {
         Class::ALL

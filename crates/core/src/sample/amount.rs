@@ -31,14 +31,10 @@ pub(super) fn exactly(
         return Err(Error::new(ErrorKind::Count, "count", 0, "at least 1"));
     }
     let bounds = mask.clone().and_within(area.clone()).area;
-    let bounds = bounds.as_ref().and_then(Area::bounds).ok_or_else(|| {
-        Error::new(
-            ErrorKind::Unbounded,
-            "the area",
-            "unbounded",
-            "within a box",
-        )
-    })?;
+    let bounds = bounds
+        .as_ref()
+        .and_then(Area::bounds)
+        .ok_or_else(|| Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box"))?;
     let [width, height] = [0, 1].map(|i| bounds.max()[i] - bounds.min()[i]);
     let share = lattice.placement.keep.get();
     let wanted = count as f64;

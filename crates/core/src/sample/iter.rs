@@ -9,7 +9,19 @@ use super::{kernel::Points, lattice::Point, member::Member, seed::Seed, walk::Bl
 ///
 /// They are made in blocks, so iterating costs little more than filling blocks. [`ExactSizeIterator::len`]
 /// panics if more than `usize::MAX` points are left.
-#[derive(Debug)]
+///
+/// ```
+/// use strew_core::{PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let mut members = PointSet::new(table).chunk(10.0, [0, 0])?.iter();
+/// let all = members.len();
+/// let first = members.next().expect("not empty");
+/// assert!(members.all(|member| member.id() != first.id()));
+/// assert!(all > 90 && members.len() == 0);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
 pub struct Members {
     blocks: Blocks<Points>,
     block: Box<[Point]>,

@@ -37,7 +37,7 @@ impl Scope {
         let mask = mask.clone().and_within(area);
         let area = mask.area.as_ref();
         let region = area.and_then(Area::bounds).ok_or_else(|| {
-            let (field, value) = ("the area", "unbounded");
+            let (field, value) = ("area", "unbounded");
             Error::new(ErrorKind::Unbounded, field, value, "within a box")
         })?;
         let limit = lattice.limit();

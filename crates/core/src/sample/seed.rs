@@ -4,11 +4,28 @@ use crate::pattern::IndexOrigin;
 
 /// A seed chooses a piece of the unbounded pattern: it moves the lattice origin in index space. Seed 0
 /// leaves it at index (0, 0).
+///
+/// ```
+/// use strew_core::{Placement, Seed, Spacing};
+///
+/// let [a, b] = [7, 8].map(|seed| Placement::new(Spacing::ONE, Seed(seed)));
+/// assert_ne!(a.seed.origin(), b.seed.origin());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Seed(pub u64);
 
 impl Seed {
     /// The index of the lattice origin.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, Seed, pattern::IndexOrigin};
+    ///
+    /// assert_eq!(Seed(0).origin(), IndexOrigin::default());
+    /// // The pattern that a set of seed 7 consists of.
+    /// let pattern = Pattern::with_origin("sqrt(3)".parse()?, Seed(7).origin());
+    /// assert_eq!(pattern.index(0, 0), (Seed(7).origin().x, Seed(7).origin().y));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn origin(self) -> IndexOrigin {
         if self.0 == 0 {

@@ -3,17 +3,32 @@
 use alloc::sync::Arc;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// Tells the counting of a plan to stop. Clones share the flag; the default one is never raised.
+/// A flag that stops the counting of a plan. Clones share it; the default one is never raised.
 ///
 /// Counting looks at the flag at least every few hundred lattice rows. Once it is raised the results of a
 /// plan are meaningless.
+///
+/// ```
+/// use strew_core::server::Stop;
+///
+/// let stop = Stop::new();
+/// let shared = stop.clone();
+/// std::thread::spawn(move || shared.raise()).join().expect("does not panic");
+/// assert!(stop.is_raised());
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Stop {
     flag: Option<Arc<AtomicBool>>,
 }
 
 impl Stop {
-    /// A flag that can be raised.
+    /// A flag that is not raised and can be.
+    ///
+    /// ```
+    /// use strew_core::server::Stop;
+    ///
+    /// assert!(!Stop::new().is_raised());
+    /// ```
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -21,7 +36,16 @@ impl Stop {
         }
     }
 
-    /// Raises the flag. Does nothing to the default one.
+    /// Raises the flag and all its clones. Does nothing to the default one.
+    ///
+    /// ```
+    /// use strew_core::server::Stop;
+    ///
+    /// let (stop, never) = (Stop::new(), Stop::default());
+    /// stop.raise();
+    /// never.raise();
+    /// assert!(stop.is_raised() && !never.is_raised());
+    /// ```
     pub fn raise(&self) {
         if let Some(flag) = &self.flag {
             flag.store(true, Ordering::Relaxed);
@@ -29,6 +53,20 @@ impl Stop {
     }
 
     /// Whether the flag is raised.
+    ///
+    /// ```
+    /// use strew_core::server::Stop;
+    ///
+    /// let stop = Stop::new();
+    /// let mut steps = 0;
+    /// while !stop.is_raised() {
+    ///     steps += 1;
+    ///     if steps == 3 {
+    ///         stop.raise();
+    ///     }
+    /// }
+    /// assert_eq!(steps, 3);
+    /// ```
     #[must_use]
     pub fn is_raised(&self) -> bool {
         self.flag

@@ -17,19 +17,44 @@ use crate::error::{Error, ErrorKind, shown};
 pub struct Digest([u8; 32]);
 
 impl Digest {
-    /// The digest of `bytes`.
+    /// The BLAKE3 digest of `bytes`.
+    ///
+    /// ```
+    /// use strew_core::{Table, table::Digest};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let file = table.to_bytes();
+    /// // A table file ends with the digest of all before it.
+    /// let (body, digest) = file.split_last_chunk::<32>().expect("longer");
+    /// assert_eq!(Digest::of(body).as_bytes(), digest);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         Self(*blake3::hash(bytes).as_bytes())
     }
 
     /// The digest with these bytes.
+    ///
+    /// ```
+    /// use strew_core::table::Digest;
+    ///
+    /// assert_eq!(Digest::from_bytes([0xab; 32]).to_string(), "ab".repeat(32));
+    /// ```
     #[must_use]
     pub const fn from_bytes(bytes: [u8; 32]) -> Self {
         Self(bytes)
     }
 
     /// The 32 bytes.
+    ///
+    /// ```
+    /// use strew_core::table::Digest;
+    ///
+    /// let digest: Digest = "0f".repeat(32).parse()?;
+    /// assert_eq!(digest.as_bytes(), &[0x0f; 32]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn as_bytes(&self) -> &[u8; 32] {
         &self.0
@@ -55,7 +80,7 @@ impl FromStr for Digest {
         let hash = blake3::Hash::from_hex(text).map_err(|_| {
             Error::new(
                 ErrorKind::Digest,
-                "the digest",
+                "digest",
                 shown(text),
                 "64 hexadecimal digits",
             )

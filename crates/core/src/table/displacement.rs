@@ -39,6 +39,18 @@ impl Table {
     /// [`ErrorKind::Table`](crate::ErrorKind::Table) for a wrong number of vectors, a component of
     /// [`MAX_DISPLACEMENT`](super::MAX_DISPLACEMENT) or more, a profile name that is not 1 to 32 of
     /// `a-z 0-9 -`, or a history beyond the format's limits.
+    ///
+    /// ```
+    /// use strew_core::{Map, Table, table::{Provenance, from_grid_units}};
+    ///
+    /// let map = Map::new("sqrt(3)".parse()?, 20)?;
+    /// let n = map.intervals();
+    /// // Every point moves by (0.5, −0.25) grid units.
+    /// let vector = [0.5, -0.25].map(|v| from_grid_units(v).expect("short"));
+    /// let table = Table::new(map, "moved", vec![vector; n * n], Provenance::default())?;
+    /// assert_eq!(table.displacements().len(), n * n);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn new(
         map: Map,
         profile: &str,
@@ -77,6 +89,18 @@ impl Table {
     /// # Errors
     /// As [`new`](Self::new), and [`ErrorKind::MapSize`](crate::ErrorKind::MapSize) if `radius` is too
     /// large.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let step = table.alpha().set_side_f64();
+    /// for member in PointSet::new(table).chunk(10.0, [0, 0])? {
+    ///     // Points are at their lattice addresses, in units of t mean spacings.
+    ///     assert!((member.at()[0] - member.id().x as f64 * step).abs() < 1e-12);
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn undisplaced(alpha: Alpha, radius: u32, profile: &str) -> Result<Self, Error> {
         let map = Map::new(alpha, radius)?;
         let blocks = map.intervals() * map.intervals();
@@ -92,54 +116,135 @@ impl Table {
     /// # Errors
     /// One of the `Table…` kinds, [`ErrorKind::Alpha`](crate::ErrorKind::Alpha) or
     /// [`ErrorKind::MapSize`](crate::ErrorKind::MapSize), naming the part of the file that is wrong.
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let file = table.to_bytes();
+    /// assert_eq!(Table::from_bytes(&file)?.digest(), table.digest());
+    /// let cut = Table::from_bytes(&file[..100]).unwrap_err();
+    /// assert_eq!(cut.kind(), ErrorKind::TableTruncated);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         let (parts, digest) = file::read(bytes)?;
         Ok(Self::checked(parts, digest))
     }
 
     /// The table as a file. Equal tables have equal bytes.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// assert!(table.to_bytes().starts_with(b"\x89STREW\r\n"));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         file::write(&self.0.parts)
     }
 
     /// The neighborhood map whose blocks the vectors belong to.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// assert_eq!(table.map().radius(), 20);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn map(&self) -> &Map {
         &self.0.parts.map
     }
 
-    /// The number α.
+    /// The α of the pattern that the table displaces.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// assert_eq!(table.alpha().to_string(), "sqrt(3)");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn alpha(&self) -> Alpha {
         self.map().alpha()
     }
 
-    /// The name of the noise profile.
+    /// The name of the noise profile: 1 to 32 characters of a-z, 0-9 and -.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// assert_eq!(table.profile(), "pattern");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn profile(&self) -> &str {
         &self.0.parts.profile
     }
 
     /// All n² vectors, row = interval of dY, column = interval of dX, in units of 2⁻²⁰ grid units.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table, table::to_grid_units};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// let [column, row] = set.block(set.nearest([0.0, 0.0], 1)?[0].member.id()).expect("a point");
+    /// let vector = set.table().displacements()[row * set.table().map().intervals() + column];
+    /// assert_eq!(vector.map(to_grid_units), [0.0, 0.0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn displacements(&self) -> &[Displacement] {
         &self.0.parts.displacements
     }
 
     /// How the table was made, and what was measured on it.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// assert_eq!(table.provenance().optimizer, "none");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn provenance(&self) -> &Provenance {
         &self.0.parts.provenance
     }
 
-    /// The BLAKE3 digest of the file, which names the table in answers.
+    /// The BLAKE3 digest of the file without its last 32 bytes, which hold it. It names the table.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// // Tables with equal content have equal digests, others have not.
+    /// let table = |profile| Table::undisplaced("sqrt(3)".parse()?, 20, profile);
+    /// assert_eq!(table("a")?.digest(), table("a")?.digest());
+    /// assert_ne!(table("a")?.digest(), table("b")?.digest());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn digest(&self) -> Digest {
         self.0.digest
     }
 
-    /// The memory that the table holds, in bytes.
+    /// About the memory that the table holds, in bytes.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// // Mostly the vectors, of 8 bytes each.
+    /// assert!(table.memory_bytes() > 8 * table.displacements().len());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
         // A bound, a label and about two buckets for each interval.

@@ -3,6 +3,19 @@
 //! A table and the pattern of its α make a point set: position = scale · ((x, y) +
 //! D\[block(dY)\]\[block(dX)\]). Vectors are fixed point, so a table means the same on every machine.
 //!
+//! ```
+//! use strew_core::{Map, PointId, PointSet, Table, table::{Provenance, from_grid_units}};
+//!
+//! let map = Map::new("sqrt(3)".parse()?, 20)?;
+//! let blocks = map.intervals() * map.intervals();
+//! let vector = [0.5, -0.25].map(|v| from_grid_units(v).expect("short"));
+//! let table = Table::new(map, "moved", vec![vector; blocks], Provenance::default())?;
+//! let scale = table.alpha().set_side_f64();
+//! let point = PointSet::new(table).point(PointId { x: 0, y: 0 }).expect("in the pattern");
+//! assert_eq!(point.at(), [0.5 * scale, -0.25 * scale]);
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
 //! `displacement` has the [`Table`], made of the `parts` that a `file` holds; `units` the fixed point,
 //! `provenance` the history, `digest` the name, `text` the published text form. `shipped` has the
 //! tables built into this crate.

@@ -8,6 +8,21 @@ use crate::{
 };
 
 /// The history of a table, sufficient to make it again.
+///
+/// ```
+/// use strew_core::{Map, Table, table::{Provenance, Figures}};
+///
+/// let map = Map::new("sqrt(3)".parse()?, 5)?;
+/// let vectors = vec![[0, 0]; map.intervals() * map.intervals()];
+/// let history = Provenance {
+///     optimizer: "by-hand".into(),
+///     parameters: vec![("steps".into(), "3".into())],
+///     ..Provenance::default()
+/// };
+/// let table = Table::new(map, "mine", vectors, history.clone())?;
+/// assert_eq!(Table::from_bytes(&table.to_bytes())?.provenance(), &history);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Provenance {
     /// The name of the optimizer (`gaussian`, …), or `none`.
@@ -23,6 +38,18 @@ pub struct Provenance {
 }
 
 /// Figures measured on one point set of a table.
+///
+/// ```
+/// use strew_core::table::Figures;
+///
+/// let figures = Figures {
+///     subject: "twin 683/418".into(),
+///     seen: false,
+///     points: 70_225,
+///     values: vec![("delta_min".into(), 0.66)],
+/// };
+/// assert_eq!(figures.value("delta_min"), Some(0.66));
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figures {
     /// What was measured: `twin 683/418`, `window seed 7`.
@@ -41,7 +68,16 @@ const MAX_ITEMS: usize = 1000;
 const MAX_TEXT: usize = 1000;
 
 impl Figures {
-    /// The figure with a name.
+    /// The figure with a name, or `None` if it was not measured.
+    ///
+    /// ```
+    /// use strew_core::table::Figures;
+    ///
+    /// let values = vec![("low_power".into(), 4e-6), ("delta_min".into(), 0.66)];
+    /// let figures = Figures { values, ..Figures::default() };
+    /// assert_eq!(figures.value("low_power"), Some(4e-6));
+    /// assert_eq!(figures.value("hue"), None);
+    /// ```
     #[must_use]
     pub fn value(&self, name: &str) -> Option<f64> {
         self.values

@@ -4,6 +4,15 @@ use super::Table;
 use crate::{error::Error, once::Once};
 
 /// The file of the default table: profile `blue`, α = (5−√3)/2, R = 49.
+///
+/// ```
+/// use strew_core::{PointSet, Table, table::BLUE};
+///
+/// let table = Table::from_bytes(BLUE)?;
+/// assert_eq!(table.map().intervals(), 63);
+/// assert_eq!(PointSet::blue().table(), &table);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 pub const BLUE: &[u8] = include_bytes!("../../tables/blue-5-sqrt3-over-2-s.strew");
 
 /// The default table.

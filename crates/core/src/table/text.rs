@@ -15,6 +15,16 @@ impl Table {
     ///
     /// # Errors
     /// Those of `out`.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 0, "pattern")?;
+    /// let mut text = String::new();
+    /// table.write_text(&mut text).expect("strings take all");
+    /// assert!(text.lines().all(|line| line == "0 0"));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn write_text(&self, out: &mut impl fmt::Write) -> fmt::Result {
         self.displacements()
             .iter()
@@ -26,6 +36,18 @@ impl Table {
     ///
     /// # Errors
     /// [`ErrorKind::TableText`] naming the line that is wrong, or as [`new`](Self::new).
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, Map, Table};
+    ///
+    /// let map = Map::new("sqrt(3)".parse()?, 0)?;
+    /// let n = map.intervals();
+    /// let table = Table::from_text(map.clone(), "mine", &"0.5 -0.25\n".repeat(n * n))?;
+    /// assert_eq!(table.displacements()[0], [1 << 19, -1 << 18]);
+    /// let error = Table::from_text(map, "mine", "0.5 north").unwrap_err();
+    /// assert_eq!((error.kind(), error.field()), (ErrorKind::TableText, "line 1 of the text"));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn from_text(map: Map, profile: &str, text: &str) -> Result<Self, Error> {
         let blocks = map.intervals() * map.intervals();
         let mut vectors = Vec::with_capacity(blocks.min(text.len()));

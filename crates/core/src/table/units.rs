@@ -4,13 +4,33 @@
 ///
 /// Rounding to it adds less than 10⁻¹² to the low-frequency power, and the coordinates of a patch fit
 /// 32-bit lanes.
+///
+/// ```
+/// use strew_core::table::{FRACTION_BITS, from_grid_units};
+///
+/// assert_eq!(from_grid_units(1.0), Some(1 << FRACTION_BITS));
+/// ```
 pub const FRACTION_BITS: u32 = 20;
 
 /// The bound of a displacement along an axis, in grid units (exclusive). Published tables stay within
 /// 13. A vector longer than the map's half-width would leave the surroundings that its block knows.
+///
+/// ```
+/// use strew_core::table::{MAX_DISPLACEMENT, from_grid_units};
+///
+/// assert_eq!(from_grid_units(MAX_DISPLACEMENT), None);
+/// assert!(from_grid_units(MAX_DISPLACEMENT.next_down()).is_some());
+/// ```
 pub const MAX_DISPLACEMENT: f64 = 127.0;
 
 /// A displacement in units of 2⁻²⁰ grid units.
+///
+/// ```
+/// use strew_core::table::{Displacement, to_grid_units};
+///
+/// let vector: Displacement = [1 << 20, -1 << 19];
+/// assert_eq!(vector.map(to_grid_units), [1.0, -0.5]);
+/// ```
 pub type Displacement = [i32; 2];
 
 /// A lattice coordinate in fixed point.

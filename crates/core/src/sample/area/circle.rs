@@ -23,35 +23,68 @@ pub struct Circle {
 }
 
 impl Circle {
-    /// The disk around a center.
+    /// The disk around a center, with a radius in world units.
     ///
     /// # Errors
     /// [`ErrorKind::Area`] if a number is not finite or the radius is not positive.
+    ///
+    /// ```
+    /// use strew_core::{Circle, ErrorKind};
+    ///
+    /// let circle = Circle::new([10.0, 0.0], 5.0)?;
+    /// assert_eq!((circle.center(), circle.radius()), ([10.0, 0.0], 5.0));
+    /// assert_eq!(Circle::new([10.0, 0.0], 0.0).unwrap_err().kind(), ErrorKind::Area);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn new(center: [f64; 2], radius: f64) -> Result<Self, Error> {
         if let Some(&value) = center.iter().find(|value| !value.is_finite()) {
             let value = alloc::format!("at {}", number(value));
-            return Err(Error::new(ErrorKind::Area, "the center", value, "finite"));
+            return Err(Error::new(ErrorKind::Area, "center", value, "finite"));
         }
         if !(radius > 0.0 && radius.is_finite()) {
             let (value, allowed) = (number(radius), "a positive finite number");
-            return Err(Error::new(ErrorKind::Area, "the radius", value, allowed));
+            return Err(Error::new(ErrorKind::Area, "radius", value, allowed));
         }
         Ok(Self { center, radius })
     }
 
-    /// The center.
+    /// The center, in world coordinates.
+    ///
+    /// ```
+    /// use strew_core::Circle;
+    ///
+    /// assert_eq!(Circle::new([10.0, 0.0], 5.0)?.center(), [10.0, 0.0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn center(&self) -> [f64; 2] {
         self.center
     }
 
-    /// The radius.
+    /// The radius, in world units.
+    ///
+    /// ```
+    /// use strew_core::Circle;
+    ///
+    /// assert_eq!(Circle::new([10.0, 0.0], 5.0)?.radius(), 5.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Whether a point lies inside.
+    /// Whether a place lies inside. The rim does not.
+    ///
+    /// ```
+    /// use strew_core::Circle;
+    ///
+    /// let circle = Circle::new([0.0, 0.0], 5.0)?;
+    /// assert!(circle.contains([3.0, 3.9]));
+    /// // The rim is outside.
+    /// assert!(!circle.contains([3.0, 4.0]));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn contains(&self, p: [f64; 2]) -> bool {
         let [dx, dy] = [p[0] - self.center[0], p[1] - self.center[1]];

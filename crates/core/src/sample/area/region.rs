@@ -26,11 +26,20 @@ impl Region {
     /// The largest absolute column or row of a chunk.
     pub const MAX_CHUNK: i64 = 1 << 52;
 
-    /// The box from `min` (included) to `max` (excluded).
+    /// The box from `min` (included) to `max` (excluded), in world coordinates.
     ///
     /// # Errors
     /// [`ErrorKind::Region`] unless all four numbers are finite and max ≥ min along both axes. The
     /// [field](Error::field) is `min_x`, `min_y`, `max_x` or `max_y`.
+    ///
+    /// ```
+    /// use strew_core::Region;
+    ///
+    /// let region = Region::new([-1.0, 0.0], [1.0, 0.5])?;
+    /// assert_eq!((region.min(), region.max()), ([-1.0, 0.0], [1.0, 0.5]));
+    /// assert_eq!(Region::new([0.0, 0.0], [f64::NAN, 1.0]).unwrap_err().field(), "max_x");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn new(min: [f64; 2], max: [f64; 2]) -> Result<Self, Error> {
         for (value, name) in min.into_iter().chain(max).zip(CORNERS) {
             if !value.is_finite() {
@@ -60,6 +69,16 @@ impl Region {
     /// # Errors
     /// [`ErrorKind::Chunk`] unless `size` is a positive finite number, column and row are within
     /// ±[`MAX_CHUNK`](Self::MAX_CHUNK), and the corners are finite and differ in `f64`.
+    ///
+    /// ```
+    /// use strew_core::Region;
+    ///
+    /// let [a, b] = [Region::chunk(0.1, [2, 0])?, Region::chunk(0.1, [3, 0])?];
+    /// // 3 · 0.1 is not 0.3 in `f64`, but both chunks end at the same number.
+    /// assert_eq!(a.max()[0], b.min()[0]);
+    /// assert!(Region::chunk(0.1, [i64::MAX, 0]).is_err());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn chunk(size: f64, at: [i64; 2]) -> Result<Self, Error> {
         const ALLOWED: &str = "a size above 0 and two integers within ±4503599627370496";
         let refused = |problem: &'static str| {
@@ -86,19 +105,42 @@ impl Region {
         Self { min, max }
     }
 
-    /// The lower corner, included.
+    /// The lower corner, included, in world coordinates.
+    ///
+    /// ```
+    /// use strew_core::Region;
+    ///
+    /// assert_eq!(Region::chunk(64.0, [3, -2])?.min(), [192.0, -128.0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn min(&self) -> [f64; 2] {
         self.min
     }
 
-    /// The upper corner, excluded.
+    /// The upper corner, excluded, in world coordinates.
+    ///
+    /// ```
+    /// use strew_core::Region;
+    ///
+    /// assert_eq!(Region::chunk(64.0, [3, -2])?.max(), [256.0, -64.0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn max(&self) -> [f64; 2] {
         self.max
     }
 
     /// The intersection of two boxes; empty if they do not meet.
+    ///
+    /// ```
+    /// use strew_core::Region;
+    ///
+    /// let [a, b] = [Region::new([0.0, 0.0], [4.0, 4.0])?, Region::new([3.0, 1.0], [9.0, 2.0])?];
+    /// assert_eq!(a.and(b), Region::new([3.0, 1.0], [4.0, 2.0])?);
+    /// assert!(a.and(Region::new([4.0, 0.0], [9.0, 4.0])?).is_empty());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn and(&self, other: Self) -> Self {
         let [min, max] = [
@@ -123,13 +165,29 @@ impl Region {
         }
     }
 
-    /// Whether the box has no extent along an axis.
+    /// Whether the box has no extent along an axis, and so no points.
+    ///
+    /// ```
+    /// use strew_core::Region;
+    ///
+    /// assert!(Region::new([0.0, 0.0], [5.0, 0.0])?.is_empty());
+    /// assert!(!Region::new([0.0, 0.0], [5.0, 1e-9])?.is_empty());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.max[0] <= self.min[0] || self.max[1] <= self.min[1]
     }
 
-    /// Whether a point lies inside.
+    /// Whether a place lies inside.
+    ///
+    /// ```
+    /// use strew_core::Region;
+    ///
+    /// let region = Region::new([0.0, 0.0], [4.0, 4.0])?;
+    /// assert!(region.contains([0.0, 3.9]) && !region.contains([0.0, 4.0]));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn contains(&self, p: [f64; 2]) -> bool {
         (0..2).all(|i| self.min[i] <= p[i] && p[i] < self.max[i])

@@ -54,7 +54,18 @@ impl From<Polygon> for Area {
 }
 
 impl Area {
-    /// The union of areas. A single area stays as it is.
+    /// The union of areas: a single area itself, and the empty area if there are none.
+    ///
+    /// ```
+    /// use strew_core::{Area, Circle, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// let [a, b] = [Circle::new([0.0, 0.0], 4.0)?, Circle::new([30.0, 5.0], 4.0)?];
+    /// let both = Area::any_of([a.into(), b.into()]);
+    /// assert_eq!(set.count(both)?, set.count(a)? + set.count(b)?);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn any_of(areas: impl IntoIterator<Item = Self>) -> Self {
         let mut areas: Vec<Self> = areas.into_iter().collect();
@@ -68,6 +79,16 @@ impl Area {
     }
 
     /// The intersection of two areas.
+    ///
+    /// ```
+    /// use strew_core::{Area, Circle, Region};
+    ///
+    /// let view = Area::from(Region::new([0.0, 0.0], [10.0, 10.0])?);
+    /// let lamp = Area::from(Circle::new([0.0, 0.0], 5.0)?);
+    /// let lit = view.and(lamp);
+    /// assert!(lit.contains([1.0, 1.0]) && !lit.contains([-1.0, 1.0]));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         match (self, other) {
@@ -82,6 +103,17 @@ impl Area {
     }
 
     /// This area without others.
+    ///
+    /// ```
+    /// use strew_core::{Area, Circle, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let disk = |radius| Circle::new([0.0, 0.0], radius).map(Area::from);
+    /// let ring = disk(9.0)?.without([disk(6.0)?]);
+    /// let set = PointSet::new(table);
+    /// assert_eq!(set.count(ring)?, set.count(disk(9.0)?)? - set.count(disk(6.0)?)?);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn without(self, excluded: impl IntoIterator<Item = Self>) -> Self {
         let excluded: Vec<Self> = excluded.into_iter().collect();
@@ -91,7 +123,16 @@ impl Area {
         self.and(Self::Outside(Box::new(Self::any_of(excluded))))
     }
 
-    /// Whether a point lies inside.
+    /// Whether a place lies inside.
+    ///
+    /// ```
+    /// use strew_core::{Area, Circle};
+    ///
+    /// let pond = Area::from(Circle::new([0.0, 0.0], 5.0)?);
+    /// let shore = Area::Outside(Box::new(pond));
+    /// assert!(shore.contains([9.0, 0.0]) && !shore.contains([0.0, 0.0]));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn contains(&self, p: [f64; 2]) -> bool {
         match self {
@@ -106,6 +147,16 @@ impl Area {
 
     /// A box around the area, or `None` if it is unbounded. The box of an area that is plainly empty is
     /// empty.
+    ///
+    /// ```
+    /// use strew_core::{Area, Region};
+    ///
+    /// let field = Area::from(Region::new([0.0, 0.0], [4.0, 2.0])?);
+    /// assert_eq!(field.bounds(), Some(Region::new([0.0, 0.0], [4.0, 2.0])?));
+    /// // Points can be requested in bounded areas only.
+    /// assert_eq!(Area::Outside(Box::new(field)).bounds(), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn bounds(&self) -> Option<Region> {
         let corners = |area: &Self| area.bounds().map(|b| (b.min(), b.max()));
@@ -145,7 +196,16 @@ impl Area {
         }
     }
 
-    /// The number of vertices of all its polygons.
+    /// The number of vertices of all polygons in the area.
+    ///
+    /// ```
+    /// use strew_core::{Area, Circle, Polygon};
+    ///
+    /// let field = Area::from(Polygon::new(&[[[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]]])?);
+    /// let pond = Area::from(Circle::new([2.0, 2.0], 1.0)?);
+    /// assert_eq!(field.without([pond]).vertices(), 3);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn vertices(&self) -> usize {
         match self {

@@ -15,16 +15,34 @@ use crate::{
 };
 
 /// The values of one attribute for some points.
+///
+/// ```
+/// use strew_core::{Attribute, Attributes, Column, PointId, PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let list = vec![Attribute::Rank, Attribute::Variant("oak:3,birch".parse()?)];
+/// let attributes = PointSet::new(table).attributes(&Attributes::new(list)?);
+/// let columns = attributes.columns([PointId { x: 4, y: 9 }]);
+/// assert!(matches!(columns[..], [Column::Numbers(_), Column::Variants(_)]));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Column {
     /// Of angle, scale, rank and uniform numbers.
     Numbers(Vec<f64>),
-    /// Indices into the names of the [`Variants`].
+    /// Indices into the names of the [`Variants`](crate::Variants).
     Variants(Vec<u32>),
 }
 
 impl Column {
     /// The numbers, unless this is a column of variants.
+    ///
+    /// ```
+    /// use strew_core::Column;
+    ///
+    /// assert_eq!(Column::Numbers(vec![0.5]).numbers(), Some(&[0.5][..]));
+    /// assert_eq!(Column::Variants(vec![1]).numbers(), None);
+    /// ```
     #[must_use]
     pub fn numbers(&self) -> Option<&[f64]> {
         match self {
@@ -34,6 +52,16 @@ impl Column {
     }
 
     /// The indices of variants, unless this is a column of numbers.
+    ///
+    /// ```
+    /// use strew_core::{Column, Variants};
+    ///
+    /// let kinds: Variants = "oak:3,birch:1".parse()?;
+    /// let column = Column::Variants(vec![1, 0]);
+    /// let indices = column.variants().expect("a column of variants");
+    /// assert_eq!(kinds.name(indices[0]), Some("birch"));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn variants(&self) -> Option<&[u32]> {
         match self {
@@ -45,6 +73,19 @@ impl Column {
 
 /// The attributes of one point set; see [`PointSet::attributes`](crate::PointSet::attributes). Cheap to
 /// clone, and it holds no table.
+///
+/// ```
+/// use strew_core::{Attributes, PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let set = PointSet::new(table).seed(7);
+/// let attributes = set.attributes(&Attributes::new(vec!["angle".parse()?, "u1".parse()?])?);
+/// let member = set.nearest([10.0, 3.0], 1)?[0].member;
+/// // The values are those that the point itself has.
+/// assert_eq!(attributes.value(0, member.id()), Some(member.angle()));
+/// assert_eq!(attributes.value(1, member.id()), Some(member.uniform(1)));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct BoundAttributes {
     pattern: Pattern,
@@ -76,6 +117,18 @@ impl BoundAttributes {
     /// its index as a number.
     ///
     /// An id without a point has values as well; its rank is the greatest, 1 − 2⁻⁵³.
+    ///
+    /// ```
+    /// use strew_core::{Attribute, Attributes, PointId, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let scale = Attributes::new(vec![Attribute::scale(0.8, 1.2)?])?;
+    /// let scale = PointSet::new(table).attributes(&scale);
+    /// let id = PointId { x: 4, y: 9 };
+    /// assert!(scale.value(0, id).is_some_and(|factor| (0.8..=1.2).contains(&factor)));
+    /// assert_eq!(scale.value(1, id), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn value(&self, i: usize, id: PointId) -> Option<f64> {
         let bound = self.list.get(i)?;
@@ -86,6 +139,18 @@ impl BoundAttributes {
     }
 
     /// One column per attribute, one value per id.
+    ///
+    /// ```
+    /// use strew_core::{Attributes, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).seed(7).chunk(20.0, [0, 0])?;
+    /// let points = plan.to_vec();
+    /// let angle = plan.attributes(&Attributes::new(vec!["angle".parse()?])?);
+    /// let columns = angle.columns(points.iter().map(|point| point.id));
+    /// assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(points.len()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn columns<I>(&self, ids: I) -> Vec<Column>
     where
@@ -97,7 +162,22 @@ impl BoundAttributes {
         columns
     }
 
-    /// Replaces `columns` by one column per attribute, one value per id, in the memory they have.
+    /// Replaces `columns` by one column per attribute, one value per id, reusing their memory. Faster than
+    /// [`columns`](Self::columns) for block after block.
+    ///
+    /// ```
+    /// use strew_core::{Attributes, PointId, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let rank = Attributes::new(vec!["rank".parse()?])?;
+    /// let rank = PointSet::new(table).attributes(&rank);
+    /// let mut columns = Vec::new();
+    /// for x in 0..3 {
+    ///     rank.write((0..4).map(|y| PointId { x, y }), &mut columns);
+    ///     assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(4));
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn write(&self, ids: impl Iterator<Item = PointId> + Clone, columns: &mut Vec<Column>) {
         columns.resize_with(self.list.len(), || Column::Numbers(Vec::new()));
         for (bound, column) in self.list.iter().zip(columns) {
@@ -131,7 +211,20 @@ impl BoundAttributes {
         }
     }
 
-    /// [`write`](Self::write) for points.
+    /// Replaces `columns` by the values of some points; see [`write`](Self::write).
+    ///
+    /// ```
+    /// use strew_core::{Attributes, Point, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).seed(7).chunk(20.0, [0, 0])?;
+    /// let angle = plan.attributes(&Attributes::new(vec!["angle".parse()?])?);
+    /// let (mut block, mut columns) = ([Point::default(); 64], Vec::new());
+    /// let filled = plan.blocks_points().fill(&mut block);
+    /// angle.write_points(&block[..filled], &mut columns);
+    /// assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(64));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn write_points(&self, points: &[Point], columns: &mut Vec<Column>) {
         self.write(points.iter().map(|point| point.id), columns);
     }

@@ -6,6 +6,16 @@ use super::Variants;
 use crate::error::{Error, ErrorKind, number, shown};
 
 /// A value that every point has.
+///
+/// ```
+/// use strew_core::Attribute;
+///
+/// let parsed: Attribute = "u3".parse()?;
+/// assert_eq!(parsed, Attribute::uniform(3)?);
+/// // Scales and variants have parameters, so they are not read from a name.
+/// assert!("scale".parse::<Attribute>().is_err());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Attribute {
@@ -23,6 +33,14 @@ pub enum Attribute {
 }
 
 /// The range of a scale: 0 ≤ min ≤ max.
+///
+/// ```
+/// use strew_core::{Attribute, ScaleRange};
+///
+/// let range = ScaleRange::new(0.8, 1.2)?;
+/// assert_eq!(Attribute::Scale(range), Attribute::scale(0.8, 1.2)?);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaleRange {
     min: f64,
@@ -30,6 +48,13 @@ pub struct ScaleRange {
 }
 
 /// The number of a uniform attribute, from 1 to 16.
+///
+/// ```
+/// use strew_core::{Attribute, UniformNumber};
+///
+/// assert_eq!(Attribute::Uniform(UniformNumber::new(16)?).name(), "u16");
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UniformNumber(u8);
 
@@ -41,6 +66,15 @@ impl ScaleRange {
     ///
     /// # Errors
     /// [`ErrorKind::Attribute`] unless 0 ≤ min ≤ max ≤ [`LIMIT`](Self::LIMIT).
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, ScaleRange};
+    ///
+    /// let range = ScaleRange::new(0.8, 1.2)?;
+    /// assert_eq!((range.min(), range.max()), (0.8, 1.2));
+    /// assert_eq!(ScaleRange::new(1.2, 0.8).unwrap_err().kind(), ErrorKind::Attribute);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn new(min: f64, max: f64) -> Result<Self, Error> {
         if 0.0 <= min && min <= max && max <= Self::LIMIT {
             Ok(Self { min, max })
@@ -57,12 +91,26 @@ impl ScaleRange {
     }
 
     /// The least scale, included.
+    ///
+    /// ```
+    /// use strew_core::ScaleRange;
+    ///
+    /// assert_eq!(ScaleRange::new(0.8, 1.2)?.min(), 0.8);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn min(self) -> f64 {
         self.min
     }
 
     /// The greatest scale, included.
+    ///
+    /// ```
+    /// use strew_core::ScaleRange;
+    ///
+    /// assert_eq!(ScaleRange::new(0.8, 1.2)?.max(), 1.2);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn max(self) -> f64 {
         self.max
@@ -77,16 +125,31 @@ impl UniformNumber {
     ///
     /// # Errors
     /// [`ErrorKind::Attribute`] for any other.
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, UniformNumber};
+    ///
+    /// assert_eq!(UniformNumber::new(16)?.get(), 16);
+    /// assert_eq!(UniformNumber::new(0).unwrap_err().kind(), ErrorKind::Attribute);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn new(n: u8) -> Result<Self, Error> {
         if (1..=Self::MAX).contains(&n) {
             Ok(Self(n))
         } else {
-            let field = "the uniform number";
+            let field = "uniform";
             Err(Error::new(ErrorKind::Attribute, field, n, "from 1 to 16"))
         }
     }
 
     /// The number, from 1 to 16.
+    ///
+    /// ```
+    /// use strew_core::UniformNumber;
+    ///
+    /// assert_eq!(UniformNumber::new(3)?.get(), 3);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn get(self) -> u8 {
         self.0
@@ -104,6 +167,14 @@ impl Attribute {
     ///
     /// # Errors
     /// As [`ScaleRange::new`].
+    ///
+    /// ```
+    /// use strew_core::Attribute;
+    ///
+    /// assert_eq!(Attribute::scale(0.8, 1.2)?.name(), "scale");
+    /// assert!(Attribute::scale(-1.0, 1.0).is_err());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn scale(min: f64, max: f64) -> Result<Self, Error> {
         ScaleRange::new(min, max).map(Self::Scale)
     }
@@ -112,11 +183,27 @@ impl Attribute {
     ///
     /// # Errors
     /// As [`UniformNumber::new`].
+    ///
+    /// ```
+    /// use strew_core::Attribute;
+    ///
+    /// assert_eq!(Attribute::uniform(2)?, "u2".parse()?);
+    /// assert!(Attribute::uniform(17).is_err());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn uniform(n: u8) -> Result<Self, Error> {
         UniformNumber::new(n).map(Self::Uniform)
     }
 
     /// The name: `angle`, `scale`, `variant`, `rank`, `u1` to `u16`.
+    ///
+    /// ```
+    /// use strew_core::Attribute;
+    ///
+    /// assert_eq!(Attribute::Rank.name(), "rank");
+    /// assert_eq!(Attribute::scale(0.8, 1.2)?.to_string(), "scale");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {

@@ -48,13 +48,23 @@ impl Variants {
     /// [`ErrorKind::Variants`] unless there are 1 to [`MAX`](Self::MAX), with different names of 1 to
     /// [`MAX_NAME`](Self::MAX_NAME) ASCII letters, digits, `_`, `-`, `.`, and weights from
     /// [`MIN_WEIGHT`](Self::MIN_WEIGHT) to [`MAX_WEIGHT`](Self::MAX_WEIGHT).
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, Variants};
+    ///
+    /// // Only the ratios matter: three in four are oaks.
+    /// let trees = Variants::new([("oak", 0.75), ("birch", 0.25)])?;
+    /// assert_eq!(trees.count(), 2);
+    /// assert_eq!(Variants::new([("oak", 0.0)]).unwrap_err().kind(), ErrorKind::Variants);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn new<'a>(variants: impl IntoIterator<Item = (&'a str, f64)>) -> Result<Self, Error> {
         let mut entries: Vec<Entry> = Vec::new();
         let mut more = variants.into_iter();
         for (name, weight) in more.by_ref().take(Self::MAX) {
             check_name(name)?;
             if entries.iter().any(|entry| entry.name == name) {
-                let error = Error::new(ErrorKind::Variants, "variant name", name, "listed once");
+                let error = Error::new(ErrorKind::Variants, "variants", name, "listed once");
                 return Err(error.because("listed twice"));
             }
             if !(Self::MIN_WEIGHT..=Self::MAX_WEIGHT).contains(&weight) {
@@ -69,7 +79,7 @@ impl Variants {
         if entries.is_empty() || beyond > 0 {
             let count = entries.len() + beyond;
             let allowed = alloc::format!("from 1 to {}", Self::MAX);
-            let field = "the number of variants";
+            let field = "variants";
             return Err(Error::new(ErrorKind::Variants, field, count, allowed));
         }
         Ok(Self {
@@ -79,22 +89,53 @@ impl Variants {
     }
 
     /// The number of variants.
+    ///
+    /// ```
+    /// use strew_core::Variants;
+    ///
+    /// assert_eq!("oak:3,birch".parse::<Variants>()?.count(), 2);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn count(&self) -> usize {
         self.entries.len()
     }
 
     /// The names, in order of the indices.
+    ///
+    /// ```
+    /// use strew_core::Variants;
+    ///
+    /// let trees: Variants = "oak:3,birch".parse()?;
+    /// assert_eq!(trees.names().collect::<Vec<_>>(), ["oak", "birch"]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.entries.iter().map(|entry| entry.name.as_str())
     }
 
     /// The names and weights, in order of the indices.
+    ///
+    /// ```
+    /// use strew_core::Variants;
+    ///
+    /// let trees: Variants = "oak:3,birch".parse()?;
+    /// assert_eq!(trees.weights().collect::<Vec<_>>(), [("oak", 3.0), ("birch", 1.0)]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn weights(&self) -> impl ExactSizeIterator<Item = (&str, f64)> {
         self.entries.iter().map(|e| (e.name.as_str(), e.weight))
     }
 
     /// The name of an index, or `None` past the last.
+    ///
+    /// ```
+    /// use strew_core::Variants;
+    ///
+    /// let trees: Variants = "oak:3,birch".parse()?;
+    /// assert_eq!((trees.name(1), trees.name(2)), (Some("birch"), None));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn name(&self, index: u32) -> Option<&str> {
         let entry = self.entries.get(usize::try_from(index).ok()?)?;
@@ -137,12 +178,7 @@ fn check_name(name: &str) -> Result<(), Error> {
     let value = alloc::format!("{:?}", shown(name));
     let most = Variants::MAX_NAME;
     let allowed = alloc::format!("1 to {most} characters of a-z, A-Z, 0-9, `_`, `-` and `.`");
-    Err(Error::new(
-        ErrorKind::Variants,
-        "variant name",
-        value,
-        allowed,
-    ))
+    Err(Error::new(ErrorKind::Variants, "variants", value, allowed).because("not a name"))
 }
 
 impl FromStr for Variants {
@@ -208,9 +244,9 @@ mod tests {
     #[test]
     fn bad_lists_are_refused_with_their_reason() {
         for (text, part) in [
-            ("", "name is \"\""),
-            ("a,,b", "name is \"\""),
-            ("a b:1", "name is \"a b\""),
+            ("", "variants is \"\": not a name"),
+            ("a,,b", "not a name"),
+            ("a b:1", "\"a b\": not a name"),
             ("a:0", "weight of variant `a` is 0"),
             ("a:-1", "must be a number from 1e-9 to 1e9"),
             ("a:NaN", "NaN"),

@@ -6,10 +6,18 @@
 /// program is compiled for.
 ///
 /// ```
-/// use strew_core::Backend;
+/// use strew_core::{Backend, PointSet, Table};
 ///
-/// assert_eq!(Backend::available().next(), Some(Backend::Scalar));
-/// println!("rows are filled by {:?}", Backend::best());
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).seed(7).chunk(8.0, [0, 0])?;
+/// let filled_by = |backend| {
+///     let mut block = [[0f32; 2]; 100];
+///     plan.blocks_f32().with_backend(backend).fill(&mut block);
+///     block
+/// };
+/// let plain = filled_by(Backend::Scalar);
+/// assert!(Backend::available().all(|backend| filled_by(backend) == plain));
+/// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -44,6 +52,14 @@ macro_rules! has {
 
 impl Backend {
     /// The backends of this machine, the fastest last.
+    ///
+    /// ```
+    /// use strew_core::Backend;
+    ///
+    /// // Plain code runs everywhere.
+    /// assert_eq!(Backend::available().next(), Some(Backend::Scalar));
+    /// assert_eq!(Backend::available().last(), Some(Backend::best()));
+    /// ```
     pub fn available() -> impl DoubleEndedIterator<Item = Self> {
         let all = [
             Some(Self::Scalar),
@@ -61,6 +77,12 @@ impl Backend {
     }
 
     /// The fastest backend of this machine.
+    ///
+    /// ```
+    /// use strew_core::Backend;
+    ///
+    /// assert!(Backend::available().any(|backend| backend == Backend::best()));
+    /// ```
     #[must_use]
     pub fn best() -> Self {
         Self::available().next_back().unwrap_or(Self::Scalar)

@@ -9,6 +9,18 @@ use super::{
 use crate::table::fixed;
 
 /// Pairs of `f64` world coordinates.
+///
+/// ```
+/// use strew_core::{F64, PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
+/// let mut block = [[0.0; 2]; 100];
+/// let filled = plan.blocks::<F64>().fill(&mut block);
+/// let points = plan.iter().map(|member| member.at());
+/// assert!(points.eq(block[..filled].iter().copied()));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct F64 {
     pub(super) step: f64,

@@ -9,6 +9,17 @@ use super::{
 use crate::sample::lattice::{Point, PointId};
 
 /// Points with ids, in `f64` world coordinates.
+///
+/// ```
+/// use strew_core::{Point, PointSet, Points, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
+/// let mut block = [Point::default(); 100];
+/// let filled = plan.blocks::<Points>().fill(&mut block);
+/// assert_eq!(block[..filled], plan.to_vec());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Points(pub(super) F64);
 

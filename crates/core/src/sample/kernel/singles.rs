@@ -14,6 +14,18 @@ use crate::table::fixed;
 /// The offset from the first fixed-point place inside the region is exact in integers, scaled in `f64`
 /// and rounded once to `f32`. What would round up to the region's extent becomes the largest `f32` below
 /// it, so relative coordinates lie in \[0, extent).
+///
+/// ```
+/// use strew_core::{F32, PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// // A chunk so far out that `f32` world coordinates would be 64 units apart.
+/// let plan = PointSet::new(table).chunk(8.0, [100_000_000, 0])?;
+/// let mut block = [[0.0; 2]; 100];
+/// let filled = plan.blocks::<F32>().fill(&mut block);
+/// assert!(block[..filled].iter().flatten().all(|offset| (0.0..8.0).contains(offset)));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct F32 {
     pub(super) step: f64,

@@ -8,10 +8,14 @@ use crate::error::{Error, ErrorKind, number};
 /// Shares nest: a smaller one keeps a part of what a larger one keeps.
 ///
 /// ```
-/// use strew_core::Keep;
+/// use strew_core::{Keep, Placement, PointSet, Seed, Spacing, Table};
 ///
-/// assert_eq!(Keep::new(0.25)?.get(), 0.25);
-/// assert!(Keep::new(0.0).is_err());
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let placement = Placement::new(Spacing::ONE, Seed(7)).with_keep(Keep::new(0.25)?);
+/// let quarter = PointSet::new(table).placed(placement);
+/// for point in quarter.chunk(20.0, [0, 0])? {
+///     assert!(quarter.rank(point.id()) < 0.25);
+/// }
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
@@ -28,6 +32,14 @@ impl Keep {
     ///
     /// # Errors
     /// [`ErrorKind::Keep`] outside [`MIN`](Self::MIN) to 1 and for NaN.
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, Keep};
+    ///
+    /// assert_eq!(Keep::new(1.0)?, Keep::ALL);
+    /// assert_eq!(Keep::new(0.0).unwrap_err().kind(), ErrorKind::Keep);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn new(share: f64) -> Result<Self, Error> {
         if (Self::MIN..=1.0).contains(&share) {
             Ok(Self(share))
@@ -37,7 +49,15 @@ impl Keep {
         }
     }
 
-    /// The share.
+    /// The share, from [`MIN`](Self::MIN) to 1.
+    ///
+    /// ```
+    /// use strew_core::Keep;
+    ///
+    /// assert_eq!(Keep::new(0.25)?.get(), 0.25);
+    /// assert_eq!(Keep::default().get(), 1.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn get(self) -> f64 {
         self.0

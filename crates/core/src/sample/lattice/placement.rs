@@ -29,6 +29,14 @@ pub struct Placement {
 impl Placement {
     /// The default for a seed: all points, without warp for seed 0 and with [`Warp::ON`] for every
     /// other.
+    ///
+    /// ```
+    /// use strew_core::{Keep, Placement, Seed, Spacing, Warp};
+    ///
+    /// let placement = Placement::new(Spacing::ONE, Seed(7));
+    /// assert_eq!((placement.warp, placement.keep), (Warp::ON, Keep::ALL));
+    /// assert_eq!(Placement::new(Spacing::ONE, Seed(0)).warp, Warp::OFF);
+    /// ```
     #[must_use]
     pub const fn new(spacing: Spacing, seed: Seed) -> Self {
         Self {
@@ -39,19 +47,41 @@ impl Placement {
         }
     }
 
-    /// The warp of a seed by default.
+    /// The default warp of a seed: off for seed 0, [`Warp::ON`] for every other.
+    ///
+    /// ```
+    /// use strew_core::{Placement, Seed, Warp};
+    ///
+    /// assert_eq!(Placement::default_warp(Seed(0)), Warp::OFF);
+    /// assert_eq!(Placement::default_warp(Seed(7)), Warp::ON);
+    /// ```
     #[must_use]
     pub const fn default_warp(seed: Seed) -> Warp {
         if seed.0 == 0 { Warp::OFF } else { Warp::ON }
     }
 
     /// This placement with another share.
+    ///
+    /// ```
+    /// use strew_core::{Keep, Placement, Seed, Spacing};
+    ///
+    /// let half = Placement::new(Spacing::ONE, Seed(7)).with_keep(Keep::new(0.5)?);
+    /// assert_eq!((half.seed, half.keep.get()), (Seed(7), 0.5));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn with_keep(self, keep: Keep) -> Self {
         Self { keep, ..self }
     }
 
     /// This placement with another warp.
+    ///
+    /// ```
+    /// use strew_core::{Placement, Seed, Spacing, Warp};
+    ///
+    /// let plain = Placement::new(Spacing::ONE, Seed(7)).with_warp(Warp::OFF);
+    /// assert_eq!((plain.seed, plain.warp), (Seed(7), Warp::OFF));
+    /// ```
     #[must_use]
     pub const fn with_warp(self, warp: Warp) -> Self {
         Self { warp, ..self }

@@ -26,6 +26,17 @@ pub struct PointId {
 }
 
 /// A point with its id, in world coordinates.
+///
+/// ```
+/// use strew_core::{Point, PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).chunk(8.0, [0, 0])?;
+/// let Point { id, x, y } = plan.to_vec()[0];
+/// assert!((0.0..8.0).contains(&x) && (0.0..8.0).contains(&y));
+/// assert_eq!(plan.iter().next().map(|member| member.id()), Some(id));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Point {
@@ -39,6 +50,13 @@ pub struct Point {
 
 impl Point {
     /// The world coordinates.
+    ///
+    /// ```
+    /// use strew_core::{Point, PointId};
+    ///
+    /// let point = Point { id: PointId { x: 4, y: 9 }, x: 1.5, y: -2.0 };
+    /// assert_eq!(point.at(), [1.5, -2.0]);
+    /// ```
     #[must_use]
     pub const fn at(&self) -> [f64; 2] {
         [self.x, self.y]

@@ -55,6 +55,16 @@ const GREATEST: f64 = 1.0 - f64::EPSILON / 2.0;
 /// all depths below `side`, [`rank`] < `keep` ⟺ depth < `side_for(keep, side)`.
 ///
 /// It is the whole side for `keep` ≥ 1, and 0, which keeps nothing, for `keep` ≤ 0 and NaN.
+///
+/// ```
+/// use strew_core::{rank, side_for};
+///
+/// let t = 1 << 62;
+/// // Ranks go as the square of the depth: up to half of the side they are below a quarter.
+/// assert_eq!(rank(t / 2, t), 0.25);
+/// let side = side_for(0.25, t);
+/// assert!(rank(side - 1, t) < 0.25 && rank(side, t) >= 0.25);
+/// ```
 #[must_use]
 pub fn side_for(keep: f64, side: u64) -> u64 {
     if keep >= 1.0 {

@@ -8,8 +8,19 @@ use crate::{
     table::{FRACTION_BITS, Table, fixed},
 };
 
-/// Lattice coordinates of a region stay within ±2⁵². There `f64` still tells lattice points apart, and
-/// no intermediate value overflows or rounds twice.
+/// The largest absolute lattice coordinate of a region and of an id, 2⁵². Up to there `f64` separates
+/// lattice points, and no intermediate value overflows or rounds twice.
+///
+/// ```
+/// use strew_core::{LATTICE_LIMIT, PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let set = PointSet::new(table).spacing(4.0)?;
+/// // A lattice unit is t mean spacings.
+/// let unit = set.table().alpha().set_side_f64() * 4.0;
+/// assert_eq!(set.limit(), LATTICE_LIMIT as f64 * unit);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 pub const LATTICE_LIMIT: i64 = 1 << 52;
 
 /// A table at a placement: which lattice addresses have points, and where these are.

@@ -22,7 +22,7 @@ pub(crate) fn limit(lattice: &Lattice) -> f64 {
 
 /// Refuses a place that is not finite.
 pub(super) fn check_place(at: [f64; 2]) -> Result<(), Error> {
-    for (name, value) in ["x of the place", "y of the place"].into_iter().zip(at) {
+    for (name, value) in ["x", "y"].into_iter().zip(at) {
         if !value.is_finite() {
             let value = number(value);
             return Err(Error::new(ErrorKind::Place, name, value, "a finite number"));
@@ -34,7 +34,7 @@ pub(super) fn check_place(at: [f64; 2]) -> Result<(), Error> {
 /// Refuses a search that leaves the lattice's limit.
 pub(super) fn check_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> Result<(), Error> {
     let limit = limit(lattice);
-    for (name, value) in ["x of the place", "y of the place"].into_iter().zip(at) {
+    for (name, value) in ["x", "y"].into_iter().zip(at) {
         if value.abs() + radius > limit {
             let allowed = alloc::format!(
                 "within ±{limit:e}, with the radius searched, where f64 coordinates with this spacing \
@@ -94,11 +94,6 @@ pub(super) fn check_number(
 pub(super) fn too_many(radius: f64, about: f64, limit: usize) -> Error {
     let problem = alloc::format!("about {about:.0} points lie within");
     let allowed = alloc::format!("a radius with at most {limit} points");
-    let error = Error::new(
-        ErrorKind::TooMany,
-        "the radius searched",
-        number(radius),
-        allowed,
-    );
+    let error = Error::new(ErrorKind::TooMany, "radius", number(radius), allowed);
     error.because(problem).with_limit(limit as f64)
 }

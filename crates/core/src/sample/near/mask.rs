@@ -83,12 +83,7 @@ impl ClearOf {
                 number(limit),
                 Self::MAX_SPACINGS
             );
-            let error = Error::new(
-                ErrorKind::Clearance,
-                "the distance",
-                number(distance),
-                allowed,
-            );
+            let error = Error::new(ErrorKind::Clearance, "distance", number(distance), allowed);
             error.with_limit(limit)
         };
         if !(distance > 0.0 && distance <= limit) {
@@ -141,6 +136,19 @@ impl Guard {
 
 /// Tests whether a point of a set lies near a place, for many places. It keeps memory from one place to
 /// the next, so each thread has its own; see [`PointSet::clearance`](crate::PointSet::clearance).
+///
+/// ```
+/// use strew_core::{PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let rocks = PointSet::new(table).spacing(5.0)?.seed(3);
+/// let mut clearance = rocks.clearance(2.0)?;
+/// for rock in rocks.chunk(20.0, [0, 0])? {
+///     let [x, y] = rock.at();
+///     assert!(clearance.is_any_near([x + 1.9, y], |_| true));
+/// }
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Clearance {
     lattice: Lattice,
@@ -150,7 +158,7 @@ pub struct Clearance {
 }
 
 impl Clearance {
-    /// The most points within the distance on average.
+    /// The largest number of points within the distance, on average.
     pub const MAX_CANDIDATES: usize = 100_000;
 
     pub(crate) fn new(lattice: Lattice, mask: &Mask, distance: f64) -> Result<Self, Error> {
@@ -170,7 +178,15 @@ impl Clearance {
         check_work(lattice, distance, 4 * Self::MAX_CANDIDATES)
     }
 
-    /// The distance in world units.
+    /// The distance that is tested, in world units.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// assert_eq!(PointSet::new(table).clearance(2.0)?.distance(), 2.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn distance(&self) -> f64 {
         self.distance
@@ -182,6 +198,19 @@ impl Clearance {
     ///
     /// Nothing is near a place that is not finite, or whose surroundings leave the
     /// [limit](crate::PointSet::search_limit) of searches.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let trees = PointSet::new(table).spacing(5.0)?.seed(3);
+    /// let tree = trees.nearest([0.0, 0.0], 1)?[0].member;
+    /// let mut clearance = trees.clearance(0.1)?;
+    /// // Is there a tree at the place? One other than this?
+    /// assert!(clearance.is_any_near(tree.at(), |_| true));
+    /// assert!(!clearance.is_any_near(tree.at(), |other| other.id != tree.id()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn is_any_near(&mut self, at: [f64; 2], mut accept: impl FnMut(&Point) -> bool) -> bool {
         let Self {
             lattice,

@@ -6,6 +6,7 @@ use core::ops::Range;
 use super::{
     template::{Check, Kept, Part, Template, Templates, displaced, sift, write_row},
     tile::{Tile, bands},
+    window::Window,
 };
 use crate::{
     pattern::{Axis, Class},
@@ -21,41 +22,20 @@ use crate::{
 /// The number of lattice rows from which a band keeps its templates.
 const TALL: i64 = 512;
 
-/// A part of the points of a scope: from a place on, up to a number.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Window {
-    /// The lattice address of the first point, unless that is the scope's first.
-    pub(crate) start: Option<PointId>,
-    /// The number of points before the window.
-    pub(crate) offset: u128,
-    /// The number of points of the window.
-    pub(crate) count: u128,
-    /// The number of points of the scope.
-    pub(crate) total: u128,
-}
-
 /// The points of a plan, or of one of its tiles, in order, in blocks of any size.
 ///
 /// It owns all it needs, so it can move between threads from block to block.
 ///
 /// ```
-/// use strew_core::{PointSet, Region, Table};
+/// use strew_core::{PointSet, Table};
 ///
 /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-/// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [100.0, 50.0])?)?;
+/// let plan = PointSet::new(table).chunk(10.0, [0, 0])?;
 /// let (mut blocks, mut block) = (plan.blocks_f32(), [[0.0; 2]; 512]);
-/// let mut total = 0;
-/// loop {
-///     let filled = blocks.fill(&mut block);
-///     total += filled;
-///     if filled < block.len() {
-///         break;
-///     }
-/// }
-/// assert_eq!(total as u128, plan.count());
+/// assert_eq!(blocks.fill(&mut block) as u128, plan.count());
 /// # Ok::<(), strew_core::Error>(())
 /// ```
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Blocks<F: Format> {
     scope: Arc<Scope>,
     /// What the walk covers of the scope; `None` for a tile.
@@ -92,7 +72,7 @@ struct Place {
 }
 
 /// The state of a walk through a sieve.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Sifting {
     /// The sieve for the band, and for the patch.
     band: LocalSieve,
@@ -187,7 +167,18 @@ impl<F: Format> Blocks<F> {
         }
     }
 
-    /// The same points by another backend than the machine's best.
+    /// Fills rows by a backend other than the machine's best. The points have the same bits.
+    ///
+    /// ```
+    /// use strew_core::{Backend, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(10.0, [0, 0])?;
+    /// let mut block = [[0.0; 2]; 50];
+    /// plan.blocks_f64().with_backend(Backend::Scalar).fill(&mut block);
+    /// assert_eq!(block[49], plan.to_vec()[49].at());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub const fn with_backend(mut self, backend: Backend) -> Self {
         self.backend = backend;
@@ -196,6 +187,19 @@ impl<F: Format> Blocks<F> {
 
     /// Writes the next points into `out`. Returns the number written; fewer than `out` holds, down to 0,
     /// only at the end.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [100.0, 50.0])?)?;
+    /// let (mut blocks, mut block, mut total) = (plan.blocks_f64(), [[0.0; 2]; 512], 0);
+    /// while let filled @ 1.. = blocks.fill(&mut block) {
+    ///     total += filled;
+    /// }
+    /// assert_eq!(total as u128, plan.count());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
         let most = usize::try_from(self.left).map_or(out.len(), |left| left.min(out.len()));
         let out = &mut out[..most];
@@ -224,6 +228,18 @@ impl<F: Format> Blocks<F> {
     ///
     /// Its lattice address lies after that of the last point written, and may lie before that of the
     /// next.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let (set, region) = (PointSet::new(table), Region::chunk(10.0, [0, 0])?);
+    /// let (mut blocks, mut block) = (set.within(region)?.blocks_f64(), [[0.0; 2]; 40]);
+    /// blocks.fill(&mut block);
+    /// let cursor = blocks.cursor().expect("not a tile");
+    /// assert_eq!(set.resume(region, cursor)?.offset(), 40);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         let window = self.window.filter(|window| window.count > 0)?;

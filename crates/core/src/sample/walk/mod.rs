@@ -1,13 +1,14 @@
 //! The walk: makes the points of a plan, in order, no faster than they are taken.
 //!
-//! `blocks` walks bands, rows and columns and fills blocks of points; `template` holds what the rows of a
-//! band share. `tile` cuts a plan into parts that threads fill independently.
+//! `blocks` walks the bands, rows and columns of a `window` and fills blocks of points; `template` holds
+//! what the rows of a band share. `tile` cuts a plan into parts that threads fill independently.
 
 mod blocks;
 mod template;
 mod tile;
+mod window;
 
 pub use blocks::Blocks;
-pub(super) use blocks::Window;
 pub use tile::Tile;
 pub(super) use tile::{bands, tiles};
+pub(super) use window::Window;

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// The columns of a row.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Template<F: Format> {
     /// What each column contributes; without warp only.
     columns: Vec<F::Column>,
@@ -310,7 +310,7 @@ impl Kept {
 }
 
 /// The templates of a band by class and block, or only the last one.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Templates<F: Format> {
     slots: Vec<Template<F>>,
     intervals: usize,

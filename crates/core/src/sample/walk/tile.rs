@@ -11,6 +11,17 @@ use crate::{
 };
 
 /// Some rows of one band of a plan; see [`Plan::tiles`](crate::Plan::tiles).
+///
+/// ```
+/// use strew_core::{F64, PointSet, Region, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [90.0, 90.0])?)?;
+/// let mut points = [[0.0; 2]; 1000];
+/// let fill = |tile| plan.tile_blocks::<F64>(&tile).fill(&mut points);
+/// assert_eq!(plan.tiles(1000).map(fill).sum::<usize>() as u128, plan.count());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tile {
     pub(super) band: i64,

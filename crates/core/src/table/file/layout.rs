@@ -5,9 +5,25 @@ use alloc::format;
 use crate::error::{Error, ErrorKind};
 
 /// The version of the file format that this release writes and reads.
+///
+/// ```
+/// use strew_core::{Table, table::FORMAT_VERSION};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// assert_eq!(table.to_bytes()[8..12], FORMAT_VERSION.to_le_bytes());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 pub const FORMAT_VERSION: u32 = 1;
 
 /// The size of the largest table file, in bytes: more than the largest map needs.
+///
+/// ```
+/// use strew_core::{Table, map::MAX_RADIUS, table::MAX_FILE_BYTES};
+///
+/// let largest = Table::undisplaced("sqrt(3)".parse()?, MAX_RADIUS, "pattern")?;
+/// assert!((largest.to_bytes().len() as u64) < MAX_FILE_BYTES);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
 
 pub(super) const MAGIC: [u8; 8] = *b"\x89STREW\r\n";

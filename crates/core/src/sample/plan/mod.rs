@@ -1,0 +1,394 @@
+//! Plans: requests made ready, before any point is made.
+
+mod windows;
+
+use alloc::{sync::Arc, vec, vec::Vec};
+
+use super::{
+    area::{Area, Region},
+    attribute::{Attributes, BoundAttributes},
+    count::count,
+    iter::Members,
+    kernel::{F32, F64, Format, Points},
+    lattice::{Lattice, Placement, Point},
+    near::Mask,
+    scope::Scope,
+    stop::Stop,
+    walk::{Blocks, Tile, Window, tiles},
+};
+use crate::{
+    error::{Error, ErrorKind},
+    table::Table,
+};
+
+/// The points of a set in an area: their exact number is known, the points come on demand, in a fixed
+/// order.
+///
+/// The order: bands of 1024 lattice columns at multiples of 1024, ascending; in a band rows ascending; in
+/// a row columns ascending. It is the same whatever the area, so the points of a part of an area come in
+/// the order they have in the whole.
+///
+/// A plan may be a [window](Self::window) of the requested points: those from a place in the order on, up
+/// to a number. Plans are cheap to clone and can be sent between threads.
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [20.0, 10.0])?)?;
+/// assert_eq!(plan.iter().len() as u128, plan.count());
+/// for member in &plan {
+///     let [x, y] = member.at();
+///     assert!((0.0..20.0).contains(&x) && (0.0..10.0).contains(&y));
+/// }
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Plan {
+    scope: Arc<Scope>,
+    window: Window,
+}
+
+impl Plan {
+    /// The points of a set, given by its lattice and mask, in an area. They are counted unless their
+    /// number is known.
+    pub(crate) fn new(
+        lattice: &Lattice,
+        mask: &Mask,
+        area: Area,
+        stop: Stop,
+        known: Option<u128>,
+    ) -> Result<Self, Error> {
+        let scope = Scope::new(lattice, mask, area, stop)?;
+        let total = known.unwrap_or_else(|| count(&scope, &scope.x.all, &scope.y.all));
+        if scope.stop.is_raised() {
+            let (field, value) = ("the count", "not finished");
+            return Err(Error::new(ErrorKind::Stopped, field, value, "").because("stopped"));
+        }
+        Ok(Self {
+            scope: Arc::new(scope),
+            window: Window {
+                start: None,
+                offset: 0,
+                count: total,
+                total,
+            },
+        })
+    }
+
+    /// The number of points.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// // Counted in closed form, in microseconds.
+    /// let plan = PointSet::new(table).within(Region::new([-5e8, -5e8], [5e8, 5e8])?)?;
+    /// assert!((plan.count() as f64 / 1e18 - 1.0).abs() < 1e-6);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn count(&self) -> u128 {
+        self.window.count
+    }
+
+    /// The number of points, or `None` if it does not fit `usize`.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// let plan = set.within(Region::chunk(8.0, [0, 0])?)?;
+    /// assert_eq!(plan.len(), Some(plan.to_vec().len()));
+    /// // 10²⁰ points are more than memory can number.
+    /// assert_eq!(set.within(Region::chunk(1e10, [0, 0])?)?.len(), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn len(&self) -> Option<usize> {
+        usize::try_from(self.count()).ok()
+    }
+
+    /// Whether there are no points.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// assert!(set.within(Region::new([5.0, 5.0], [5.0, 9.0])?)?.is_empty());
+    /// assert!(!set.chunk(8.0, [0, 0])?.is_empty());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.window.count == 0
+    }
+
+    /// The points, one by one.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).seed(7).chunk(8.0, [0, 0])?;
+    /// let tallest = plan.iter().max_by(|a, b| a.uniform(1).total_cmp(&b.uniform(1)));
+    /// assert!(tallest.is_some_and(|tree| tree.uniform(1) > 0.9));
+    /// // `for` works on a plan and on a reference to it.
+    /// assert!((&plan).into_iter().eq(plan.iter()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn iter(&self) -> Members {
+        Members::new(self.blocks(), self.window.count, self.placement().seed)
+    }
+
+    /// All points as a vector, in order.
+    ///
+    /// # Panics
+    /// If they exceed the address space or the memory, as all vectors do; see [`len`](Self::len).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(8.0, [0, 0])?;
+    /// let points = plan.to_vec();
+    /// assert_eq!(points.len() as u128, plan.count());
+    /// assert_eq!(plan.iter().next().map(|member| member.point()), points.first().copied());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn to_vec(&self) -> Vec<Point> {
+        let mut points = vec![Point::default(); self.len().unwrap_or(usize::MAX)];
+        let filled = self.blocks_points().fill(&mut points);
+        points.truncate(filled);
+        points
+    }
+
+    /// The points in one of the formats [`F32`], [`F64`] and [`Points`], block by block: the fastest way
+    /// to make many.
+    ///
+    /// ```
+    /// use strew_core::{Point, PointSet, Points, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(8.0, [0, 0])?;
+    /// let (mut blocks, mut block) = (plan.blocks::<Points>(), [Point::default(); 10]);
+    /// // Blocks have any size. What does not fit comes with the next.
+    /// assert_eq!(blocks.fill(&mut block), 10);
+    /// assert_eq!(block, plan.to_vec()[..10]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn blocks<F: Format>(&self) -> Blocks<F> {
+        Blocks::of_window(self.scope.clone(), self.window)
+    }
+
+    /// The points as `f32` pairs relative to [`origin`](Self::origin), block by block; see
+    /// [`blocks`](Self::blocks).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
+    /// let mut block = vec![[0f32; 2]; plan.len().expect("small")];
+    /// plan.blocks_f32().fill(&mut block);
+    /// let (offset, place) = (block[0], plan.to_vec()[0].at());
+    /// assert!((plan.origin()[0] + f64::from(offset[0]) - place[0]).abs() < 1e-5);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn blocks_f32(&self) -> Blocks<F32> {
+        self.blocks()
+    }
+
+    /// The points as `f64` pairs in world coordinates, block by block; see [`blocks`](Self::blocks).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(8.0, [3, -2])?;
+    /// let mut block = vec![[0f64; 2]; plan.len().expect("small")];
+    /// plan.blocks_f64().fill(&mut block);
+    /// assert_eq!(block[0], plan.to_vec()[0].at());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn blocks_f64(&self) -> Blocks<F64> {
+        self.blocks()
+    }
+
+    /// The points with their ids, block by block; see [`blocks`](Self::blocks).
+    ///
+    /// ```
+    /// use strew_core::{Point, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// let mut block = [Point::default(); 10];
+    /// set.chunk(8.0, [3, -2])?.blocks_points().fill(&mut block);
+    /// assert!(block.iter().all(|point| set.point(point.id).is_some()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn blocks_points(&self) -> Blocks<Points> {
+        self.blocks()
+    }
+
+    /// The whole request cut into tiles of at most `max_points` points each, or one lattice row of a band
+    /// if that has more. The points of the tiles, one tile after another, come in order. Tiles can be
+    /// filled independently: [`tile_blocks`](Self::tile_blocks).
+    ///
+    /// ```
+    /// use rayon::prelude::*;
+    /// use strew_core::{F64, PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).within(Region::new([0.0, 0.0], [200.0, 200.0])?)?;
+    /// let tiles: Vec<_> = plan.tiles(10_000).collect();
+    /// let fill = |tile| {
+    ///     let mut points = vec![[0.0; 2]; 10_000];
+    ///     let filled = plan.tile_blocks::<F64>(tile).fill(&mut points);
+    ///     points.truncate(filled);
+    ///     points
+    /// };
+    /// let points: Vec<Vec<[f64; 2]>> = tiles.par_iter().map(fill).collect();
+    /// assert_eq!(points.concat().len() as u128, plan.count());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn tiles(&self, max_points: usize) -> impl Iterator<Item = Tile> + use<> {
+        tiles(&self.scope, max_points)
+    }
+
+    /// The points of a tile of this plan, block by block.
+    ///
+    /// ```
+    /// use strew_core::{Point, PointSet, Points, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).chunk(64.0, [0, 0])?;
+    /// let tile = plan.tiles(1000).next().expect("not empty");
+    /// let mut block = vec![Point::default(); 1000];
+    /// let filled = plan.tile_blocks::<Points>(&tile).fill(&mut block);
+    /// assert_eq!(block[..filled], plan.to_vec()[..filled]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn tile_blocks<F: Format>(&self, tile: &Tile) -> Blocks<F> {
+        Blocks::of_tile(self.scope.clone(), tile)
+    }
+
+    /// A box around all points: the requested region, if that was a box.
+    ///
+    /// ```
+    /// use strew_core::{Circle, PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// let chunk = Region::chunk(8.0, [3, -2])?;
+    /// assert_eq!(set.within(chunk)?.region(), chunk);
+    /// let around = set.within(Circle::new([0.0, 0.0], 5.0)?)?.region();
+    /// assert!(around.contains([-5.0, 0.0]) && !around.contains([-5.1, 0.0]));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn region(&self) -> Region {
+        self.scope.region
+    }
+
+    /// The lower corner of the [region](Self::region), in world coordinates. [`F32`] coordinates are
+    /// relative to it.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// assert_eq!(PointSet::new(table).chunk(8.0, [3, -2])?.origin(), [24.0, -16.0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn origin(&self) -> [f64; 2] {
+        self.region().min()
+    }
+
+    /// The table of the set.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// assert_eq!(PointSet::new(table.clone()).chunk(8.0, [0, 0])?.table(), &table);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn table(&self) -> &Table {
+        &self.scope.lattice.table
+    }
+
+    /// Spacing, seed, warp and share of the set.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let region = Region::chunk(8.0, [0, 0])?;
+    /// let spacing = PointSet::new(table).exactly(16, region)?.placement().spacing;
+    /// // Sixteen points in a square of side 8 are about 2 apart.
+    /// assert!((1.8..2.2).contains(&spacing.get()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn placement(&self) -> Placement {
+        self.scope.lattice.placement
+    }
+
+    /// Attributes of the plan's points; see [`PointSet::attributes`](crate::PointSet::attributes).
+    ///
+    /// ```
+    /// use strew_core::{Attribute, Attributes, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).seed(7).chunk(8.0, [0, 0])?;
+    /// let scale = plan.attributes(&Attributes::new(vec![Attribute::scale(0.8, 1.2)?])?);
+    /// for tree in &plan {
+    ///     assert_eq!(scale.value(0, tree.id()), Some(tree.scale(0.8..=1.2)));
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn attributes(&self, attributes: &Attributes) -> BoundAttributes {
+        BoundAttributes::new(attributes, &self.scope.lattice)
+    }
+
+    /// This plan with another flag that stops its further counting.
+    pub(crate) fn with_stop(self, stop: Stop) -> Self {
+        let mut scope = Arc::unwrap_or_clone(self.scope);
+        scope.stop = stop;
+        Self {
+            scope: Arc::new(scope),
+            window: self.window,
+        }
+    }
+}
+
+impl IntoIterator for Plan {
+    type Item = super::Member;
+    type IntoIter = Members;
+
+    fn into_iter(self) -> Members {
+        self.iter()
+    }
+}
+
+impl IntoIterator for &Plan {
+    type Item = super::Member;
+    type IntoIter = Members;
+
+    fn into_iter(self) -> Members {
+        self.iter()
+    }
+}

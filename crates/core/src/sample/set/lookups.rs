@@ -1,0 +1,244 @@
+//! Single points of a set: by id and near a place, with the values they have.
+
+use alloc::vec::Vec;
+
+use super::PointSet;
+use crate::{
+    error::Error,
+    sample::{
+        attribute::{Attributes, BoundAttributes},
+        lattice::{Placement, PointId, rank},
+        member::Member,
+        near::{Clearance, limits, search},
+    },
+};
+
+/// A point of a set near a place, and its distance.
+///
+/// ```
+/// use strew_core::{Neighbor, PointSet, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let set = PointSet::new(table).seed(7);
+/// let Neighbor { member, distance } = set.nearest([10.0, 3.0], 1)?[0];
+/// let [dx, dy] = [member.at()[0] - 10.0, member.at()[1] - 3.0];
+/// assert_eq!(distance, (dx * dx + dy * dy).sqrt());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbor {
+    /// The point.
+    pub member: Member,
+    /// The distance from the place, in world units.
+    pub distance: f64,
+}
+
+impl PointSet {
+    /// The largest number of points that [`nearest`](Self::nearest) returns.
+    pub const MAX_NEAREST: usize = limits::MAX_NEAREST;
+    /// The largest number of points that a search visits: a few hundred milliseconds of work.
+    pub const MAX_CANDIDATES: usize = limits::MAX_CANDIDATES;
+
+    /// The point of an id, or `None` if the set has none there.
+    ///
+    /// ```
+    /// use strew_core::{PointId, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let trees = PointSet::new(table).spacing(4.0)?.seed(7);
+    /// let tree = trees.nearest([10.0, 3.0], 1)?[0].member;
+    /// let saved = tree.id().to_string();
+    /// assert_eq!(trees.point(saved.parse()?), Some(tree));
+    /// // Neighbors on the lattice are never both in the pattern.
+    /// assert_eq!(trees.point(PointId { x: tree.id().x + 1, ..tree.id() }), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn point(&self, id: PointId) -> Option<Member> {
+        let point = self.lattice.point(id)?;
+        let is_plain = self.mask.area.is_none() && self.mask.clear.is_empty();
+        (is_plain || self.mask.guards().permit(point.at()))
+            .then(|| Member::new(point, self.placement().seed))
+    }
+
+    /// The block of the neighborhood map of a point: the intervals of its two indices, each below
+    /// [`Map::intervals`](crate::Map::intervals), or `None` if the lattice has no point there. The points
+    /// of a block have the same displacement and, as far as the map reaches, the same neighbors in the
+    /// pattern.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// let id = set.nearest([10.0, 3.0], 1)?[0].member.id();
+    /// let [column, row] = set.block(id).expect("a point of the set");
+    /// let n = set.table().map().intervals();
+    /// assert!(column < n && row < n);
+    /// assert_eq!(set.table().displacements()[row * n + column], [0, 0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn block(&self, id: PointId) -> Option<[usize; 2]> {
+        self.lattice.block(id)
+    }
+
+    /// The rank of a point: a number in [0, 1), uniform over the pattern. [`keep`](Self::keep) keeps the
+    /// points whose rank is below the share. An id without a point has the greatest rank, 1 − 2⁻⁵³.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let all = PointSet::new(table).seed(7);
+    /// let third = all.clone().keep(1.0 / 3.0)?;
+    /// for point in all.chunk(20.0, [0, 0])? {
+    ///     let id = point.id();
+    ///     assert_eq!(third.point(id).is_some(), all.rank(id) < 1.0 / 3.0);
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn rank(&self, id: PointId) -> f64 {
+        let pattern = self.lattice.pattern;
+        rank(pattern.depth(id.x, id.y), pattern.alpha().set_side())
+    }
+
+    /// The `k` nearest points of a place, nearest first; of equally near ones the smaller id first. Takes
+    /// microseconds for small `k`.
+    ///
+    /// Distances are those of the reported coordinates, compared as dx·dx + dy·dy in `f64`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Neighbors`](crate::ErrorKind::Neighbors) if `k` is above
+    /// [`MAX_NEAREST`](Self::MAX_NEAREST), [`ErrorKind::Place`](crate::ErrorKind::Place) if the place is
+    /// not finite, [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the search leaves the
+    /// [limit](Self::search_limit), and [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if the set has so
+    /// few points that more than [`MAX_CANDIDATES`](Self::MAX_CANDIDATES) would be visited.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let wells = PointSet::new(table).spacing(500.0)?.seed(3);
+    /// let near = wells.nearest([1234.5, -99.0], 3)?;
+    /// assert!(near.len() == 3 && near.is_sorted_by_key(|well| well.distance));
+    /// assert!(near[0].distance < 500.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn nearest(&self, at: [f64; 2], k: usize) -> Result<Vec<Neighbor>, Error> {
+        let found = search::nearest(&self.lattice, &self.mask, at, k)?;
+        Ok(self.neighbors(found))
+    }
+
+    /// All points within `radius` of a place (dx·dx + dy·dy ≤ radius·radius in `f64`), nearest first; of
+    /// equally near ones the smaller id first.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Radius`](crate::ErrorKind::Radius) unless the radius is a finite number from 0 on,
+    /// [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if more than `limit` points lie within it (at most
+    /// [`MAX_CANDIDATES`](Self::MAX_CANDIDATES)), and as [`nearest`](Self::nearest).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let near = set.around([1000.5, -3.25], 2.0, 100)?;
+    /// assert!(near.iter().all(|neighbor| neighbor.distance <= 2.0));
+    /// assert_eq!(set.nearest([1000.5, -3.25], near.len())?, near);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn around(&self, at: [f64; 2], radius: f64, limit: usize) -> Result<Vec<Neighbor>, Error> {
+        let limit = limit.min(Self::MAX_CANDIDATES);
+        let found = search::within(&self.lattice, &self.mask, at, radius, limit)?;
+        Ok(self.neighbors(found))
+    }
+
+    fn neighbors(&self, found: Vec<search::Found>) -> Vec<Neighbor> {
+        let seed = self.placement().seed;
+        let neighbor = |(squared, point)| Neighbor {
+            member: Member::new(point, seed),
+            distance: libm::sqrt(squared),
+        };
+        found.into_iter().map(neighbor).collect()
+    }
+
+    /// A test whether any point lies nearer than `distance` to a place, for many places.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Radius`](crate::ErrorKind::Radius) or [`ErrorKind::TooMany`](crate::ErrorKind::TooMany)
+    /// unless the distance is a finite number from 0 on within which at most
+    /// [`Clearance::MAX_CANDIDATES`] points lie on average.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let mut clearance = PointSet::new(table).spacing(3.0)?.clearance(6.0)?;
+    /// assert!(clearance.is_any_near([10.0, 10.0], |_| true));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn clearance(&self, distance: f64) -> Result<Clearance, Error> {
+        Clearance::new(self.lattice.clone(), &self.mask, distance)
+    }
+
+    /// The least distance between any two points, in world units: a guarantee for all of the plane. It is 0
+    /// for profiles that guarantee none.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).spacing(4.0)?.seed(7);
+    /// for point in set.chunk(40.0, [0, 0])? {
+    ///     // The nearest is the point itself.
+    ///     let next = set.nearest(point.at(), 2)?[1];
+    ///     assert!(next.distance >= set.least_distance());
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn least_distance(&self) -> f64 {
+        let Placement { spacing, warp, .. } = self.placement();
+        self.table().least_distance().with_warp(warp) * spacing.get()
+    }
+
+    /// The values that the points of this set have for some attributes. They depend on ids and the seed
+    /// alone.
+    ///
+    /// ```
+    /// use strew_core::{Attributes, PointId, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let angle = Attributes::new(vec!["angle".parse()?])?;
+    /// let value = |set: &PointSet| set.attributes(&angle).value(0, PointId { x: 4, y: 9 });
+    /// let set = PointSet::new(table).seed(7);
+    /// // The seed changes the values, spacing and warp do not.
+    /// assert_ne!(value(&set), value(&set.clone().seed(8)));
+    /// assert_eq!(value(&set), value(&set.clone().spacing(3.0)?.warp(0.0)?));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn attributes(&self, attributes: &Attributes) -> BoundAttributes {
+        BoundAttributes::new(attributes, &self.lattice)
+    }
+
+    /// The largest absolute coordinate that a search may reach, in world units.
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// let limit = set.search_limit();
+    /// assert!(set.around([limit - 10.0, 0.0], 10.0, 1000).is_ok());
+    /// let error = set.around([limit, 0.0], 10.0, 1000).unwrap_err();
+    /// assert_eq!((error.kind(), error.limit()), (ErrorKind::TooFar, Some(limit)));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn search_limit(&self) -> f64 {
+        limits::limit(&self.lattice)
+    }
+}

@@ -1,0 +1,352 @@
+//! The point set.
+//!
+//! This file has what a set is: a table, a placement and a mask, and the methods that change them.
+//! `requests` has the plans of areas, `lookups` single points.
+
+mod lookups;
+mod requests;
+
+pub use lookups::Neighbor;
+
+use super::{
+    area::Area,
+    lattice::{Keep, Lattice, Placement, Spacing},
+    near::{ClearOf, Mask},
+    seed::Seed,
+    warp::Warp,
+};
+use crate::{error::Error, table::Table};
+
+/// An unbounded set of points: a table at a spacing, with a seed and a warp.
+///
+/// Nothing of it is stored. A point is a pure function of these parameters and its lattice address, so
+/// the same set has the same points wherever and in whatever order they are requested. Everything to ask
+/// of a set is a method: points [within](Self::within) an area, of a [chunk](Self::chunk), by
+/// [id](Self::point), [near](Self::nearest) a place; their [count](Self::count) and their [least
+/// distance](Self::least_distance).
+///
+/// A set is made from a table, with mean spacing 1 and seed 0; methods that take `self` change that. Sets
+/// are cheap to clone and can be shared between threads.
+///
+#[cfg_attr(feature = "tables", doc = "```")]
+#[cfg_attr(not(feature = "tables"), doc = "```ignore")]
+/// use strew_core::PointSet;
+/// # fn spawn(_: strew_core::PointId, _: [f64; 2], _: f64, _: f64) {}
+///
+/// let trees = PointSet::blue().spacing(4.0)?.seed(7);
+/// for p in trees.chunk(64.0, [3, -2])? {
+///     spawn(p.id(), p.at(), p.angle(), p.scale(0.8..=1.2));
+/// }
+/// let near = trees.nearest([10.0, 3.0], 5)?;
+/// let id = near[0].member.id();
+/// let same = trees.point(id);
+/// assert_eq!(same, Some(near[0].member));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PointSet {
+    lattice: Lattice,
+    mask: Mask,
+    /// Whether the warp was chosen, and so stays when the seed changes.
+    has_own_warp: bool,
+}
+
+impl PointSet {
+    /// The set of a table, with mean spacing 1 and seed 0.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// // A table without displacements: the AA pattern itself. Others come from files.
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// assert_eq!(set.placement().spacing.get(), 1.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn new(table: Table) -> Self {
+        Self {
+            lattice: Lattice::new(table, Placement::new(Spacing::ONE, Seed(0))),
+            mask: Mask::default(),
+            has_own_warp: false,
+        }
+    }
+
+    /// The blue-noise set of the table built into the crate (feature `tables`): evenly spread points
+    /// without visible structure.
+    ///
+    /// ```
+    /// use strew_core::PointSet;
+    ///
+    /// let set = PointSet::blue();
+    /// assert_eq!(set.table().profile(), "blue");
+    /// // No two points are nearer than this many mean spacings.
+    /// assert!(set.least_distance() > 0.7);
+    /// ```
+    #[cfg(feature = "tables")]
+    #[must_use]
+    pub fn blue() -> Self {
+        Self::new(crate::table::shipped::blue())
+    }
+
+    /// Sets the mean spacing, in world units: density^−½.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Spacing`](crate::ErrorKind::Spacing) outside 10⁻¹⁰⁰ to 10¹⁰⁰.
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// // A square of side 1000 at spacing 2.
+    /// let count = set.clone().spacing(2.0)?.chunk(1000.0, [0, 0])?.count();
+    /// assert!((count as f64 / (500.0 * 500.0) - 1.0).abs() < 0.01);
+    /// assert_eq!(set.spacing(0.0).unwrap_err().kind(), ErrorKind::Spacing);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn spacing(self, spacing: f64) -> Result<Self, Error> {
+        let spacing = Spacing::new(spacing)?;
+        Ok(self.replaced(|placement| Placement {
+            spacing,
+            ..placement
+        }))
+    }
+
+    /// Sets the density, in points per world unit squared.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Density`](crate::ErrorKind::Density) outside 10⁻²⁰⁰ to 10²⁰⁰.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).density(25.0)?;
+    /// assert_eq!(set.placement().spacing.get(), 0.2);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn density(self, density: f64) -> Result<Self, Error> {
+        let spacing = Spacing::from_density(density)?;
+        Ok(self.replaced(|placement| Placement {
+            spacing,
+            ..placement
+        }))
+    }
+
+    /// Sets the spacing at which no two points are nearer than `distance` world units, for the warp that
+    /// the set has; so choose seed and warp first.
+    ///
+    /// # Errors
+    /// As [`LeastDistance::spacing_for`](crate::LeastDistance::spacing_for).
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7).min_distance(2.0)?;
+    /// assert!(set.least_distance() >= 2.0);
+    /// assert_eq!(set.min_distance(-1.0).unwrap_err().kind(), ErrorKind::Distance);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn min_distance(self, distance: f64) -> Result<Self, Error> {
+        let least = self.table().least_distance();
+        let spacing = least.spacing_for(distance, self.placement().warp)?;
+        Ok(self.replaced(|placement| Placement {
+            spacing,
+            ..placement
+        }))
+    }
+
+    /// Sets the seed. Seed 0 is the plain pattern, whose large windows show its quasi-periodic structure;
+    /// every other seed warps the plane, unless [`warp`](Self::warp) says otherwise.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table);
+    /// let first = |seed| set.clone().seed(seed).chunk(8.0, [0, 0]).map(|plan| plan.to_vec()[0]);
+    /// assert_eq!(first(7)?, first(7)?);
+    /// assert_ne!(first(7)?, first(8)?);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn seed(self, seed: u64) -> Self {
+        let own = self.has_own_warp.then(|| self.placement().warp);
+        let seed = Seed(seed);
+        self.replaced(|placement| Placement {
+            seed,
+            warp: own.unwrap_or_else(|| Placement::default_warp(seed)),
+            ..placement
+        })
+    }
+
+    /// Sets the strength of the warp, from 0 (off) to 2; 1 is the default of seeds other than 0.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Warp`](crate::ErrorKind::Warp) outside that range.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let plain = set.clone().warp(0.0)?;
+    /// assert!(plain.placement().warp.is_off());
+    /// // Without warp, distances are guaranteed in full.
+    /// assert!(plain.least_distance() > set.least_distance());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn warp(mut self, strength: f64) -> Result<Self, Error> {
+        let warp = Warp::new(strength)?;
+        self.has_own_warp = true;
+        Ok(self.replaced(|placement| placement.with_warp(warp)))
+    }
+
+    /// Keeps a share of the points, from 10⁻⁶ to 1. Shares nest: a smaller one keeps a part of what a
+    /// larger one keeps.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Keep`](crate::ErrorKind::Keep) outside that range.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let all = PointSet::new(table).seed(7);
+    /// let half = all.clone().keep(0.5)?;
+    /// for point in half.chunk(20.0, [0, 0])? {
+    ///     // Points that stay do not move.
+    ///     assert_eq!(all.point(point.id()), Some(point));
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn keep(self, share: f64) -> Result<Self, Error> {
+        let keep = Keep::new(share)?;
+        Ok(self.replaced(|placement| placement.with_keep(keep)))
+    }
+
+    /// Sets spacing, seed, warp and share at once.
+    ///
+    /// ```
+    /// use strew_core::{Placement, PointSet, Seed, Spacing, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let placement = Placement::new(Spacing::new(4.0)?, Seed(7));
+    /// let set = PointSet::new(table.clone()).placed(placement);
+    /// let same = PointSet::new(table).spacing(4.0)?.seed(7);
+    /// assert_eq!(set.chunk(64.0, [0, 0])?.to_vec(), same.chunk(64.0, [0, 0])?.to_vec());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn placed(mut self, placement: Placement) -> Self {
+        self.has_own_warp = true;
+        self.replaced(|_| placement)
+    }
+
+    /// Removes the points outside an area.
+    ///
+    /// ```
+    /// use strew_core::{Circle, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let island = PointSet::new(table).limited_to(Circle::new([0.0, 0.0], 9.0)?);
+    /// for p in island.chunk(16.0, [0, 0])? {
+    ///     assert!(p.at()[0].hypot(p.at()[1]) < 9.0);
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn limited_to(mut self, area: impl Into<Area>) -> Self {
+        self.mask = self.mask.and_within(area.into());
+        self
+    }
+
+    /// Removes the points nearer than `distance` world units to any point of another set.
+    ///
+    /// The points of the other set near a point decide, wherever points are requested, so neighboring
+    /// regions agree.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Clearance`](crate::ErrorKind::Clearance) unless the distance is above 0 and at most 16
+    /// mean spacings of the other set.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let trees = PointSet::new(table.clone()).spacing(5.0)?.seed(1);
+    /// let flowers = PointSet::new(table).seed(2).clear_of(&trees, 1.5)?;
+    /// for flower in flowers.chunk(20.0, [0, 0])? {
+    ///     assert!(trees.nearest(flower.at(), 1)?[0].distance >= 1.5);
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn clear_of(mut self, other: &Self, distance: f64) -> Result<Self, Error> {
+        let other = ClearOf::new(&other.lattice, &other.mask, distance)?;
+        self.mask = self.mask.and_clear_of(other);
+        Ok(self)
+    }
+
+    fn replaced(mut self, change: impl FnOnce(Placement) -> Placement) -> Self {
+        let placement = change(self.lattice.placement);
+        if placement != self.lattice.placement {
+            self.lattice = Lattice::new(self.lattice.table, placement);
+        }
+        self
+    }
+
+    /// The table.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// assert_eq!(PointSet::new(table).table().profile(), "pattern");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn table(&self) -> &Table {
+        &self.lattice.table
+    }
+
+    /// Spacing, seed, warp and share.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Seed, Table, Warp};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let placement = PointSet::new(table).spacing(4.0)?.seed(7).placement();
+    /// assert_eq!((placement.spacing.get(), placement.seed), (4.0, Seed(7)));
+    /// assert_eq!(placement.warp, Warp::ON);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn placement(&self) -> Placement {
+        self.lattice.placement
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::Plan;
+
+    const fn is_shared<T: Clone + Send + Sync>() {}
+
+    const _: () = is_shared::<PointSet>();
+    const _: () = is_shared::<Plan>();
+    const _: () = is_shared::<Table>();
+
+    #[test]
+    fn a_chosen_warp_stays() {
+        let table = Table::undisplaced("sqrt(3)".parse().expect("valid"), 3, "pattern");
+        let set = PointSet::new(table.expect("small"));
+        assert_eq!(set.placement().warp, Warp::OFF);
+        assert_eq!(set.clone().seed(3).placement().warp, Warp::ON);
+        assert_eq!(set.clone().seed(3).seed(0).placement().warp, Warp::OFF);
+        let own = set.warp(0.5).expect("in range");
+        assert_eq!(own.seed(3).placement().warp.strength(), 0.5);
+    }
+}

@@ -1,0 +1,163 @@
+//! The points of an area: plans of a set, and their counts.
+
+use super::PointSet;
+use crate::{
+    error::Error,
+    sample::{
+        amount,
+        area::{Area, Region},
+        cursor::Cursor,
+        plan::Plan,
+        stop::Stop,
+    },
+};
+
+impl PointSet {
+    /// The points in an area.
+    ///
+    /// A box without warp is counted in some ten microseconds, whatever it holds; a warped box in time
+    /// proportional to its circumference; other areas in time proportional to their outline and height;
+    /// a set that keeps [clear](Self::clear_of) of others in time proportional to its points.
+    ///
+    /// # Errors
+    /// [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the area reaches beyond ±2⁵² lattice units at
+    /// this spacing, [`ErrorKind::Unbounded`](crate::ErrorKind::Unbounded) if it is not bounded.
+    ///
+    /// ```
+    /// use strew_core::{Circle, ErrorKind, PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let lake = Circle::new([100.0, 40.0], 9.0)?;
+    /// assert!(set.within(lake)?.iter().all(|point| lake.contains(point.at())));
+    /// let far = Region::new([0.0, 0.0], [1e20, 1.0])?;
+    /// assert_eq!(set.within(far).unwrap_err().kind(), ErrorKind::TooFar);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn within(&self, area: impl Into<Area>) -> Result<Plan, Error> {
+        self.within_until(area.into(), Stop::default())
+    }
+
+    /// The points of the chunk in column `at[0]` and row `at[1]` of a grid of squares with a side of `size`
+    /// world units. Chunks share no point and lose none.
+    ///
+    /// # Errors
+    /// As [`Region::chunk`] and [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let mut parts = 0;
+    /// for at in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+    ///     parts += set.chunk(32.0, at)?.count();
+    /// }
+    /// assert_eq!(parts, set.chunk(64.0, [0, 0])?.count());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn chunk(&self, size: f64, at: [i64; 2]) -> Result<Plan, Error> {
+        self.within(Region::chunk(size, at)?)
+    }
+
+    /// Exactly `count` points in an area, at the spacing that takes: the spacing of the set is ignored, and
+    /// that of the plan's [placement](Plan::placement) is what was found.
+    ///
+    /// Without warp two points may enter a box at the same spacing. Then the last one is left out.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Count`](crate::ErrorKind::Count) if the count is 0 or no spacing places it, and as
+    /// [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::{Circle, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let plan = PointSet::new(table).exactly(1000, Circle::new([5.0, 5.0], 1.0)?)?;
+    /// assert_eq!(plan.to_vec().len(), 1000);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn exactly(&self, count: u128, area: impl Into<Area>) -> Result<Plan, Error> {
+        self.exactly_until(count, &area.into(), 0.0, &Stop::default())
+    }
+
+    /// The points in an area from a cursor on, found without counting. The cursor belongs to the same area
+    /// of the same set.
+    ///
+    /// # Errors
+    /// As [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let (set, region) = (PointSet::new(table).seed(7), Region::chunk(64.0, [0, 0])?);
+    /// let mut page = set.within(region)?.window(0, Some(1000));
+    /// let mut points = page.to_vec();
+    /// while let Some(cursor) = page.next_cursor() {
+    ///     page = set.resume(region, cursor)?.window(0, Some(1000));
+    ///     points.extend(page.to_vec());
+    /// }
+    /// assert_eq!(points, set.within(region)?.to_vec());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn resume(&self, area: impl Into<Area>, cursor: Cursor) -> Result<Plan, Error> {
+        let (area, stop) = (area.into(), Stop::default());
+        let plan = Plan::new(&self.lattice, &self.mask, area, stop, Some(cursor.total))?;
+        Ok(plan.from_cursor(cursor))
+    }
+
+    /// The number of points in an area; see [`within`](Self::within) for what it costs.
+    ///
+    /// # Errors
+    /// As [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::{Area, Circle, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let [outer, inner] = [Circle::new([0.0, 0.0], 50.0)?, Circle::new([0.0, 0.0], 40.0)?];
+    /// let ring = Area::from(outer).without([inner.into()]);
+    /// // At mean spacing 1 the count is near the area.
+    /// let area = std::f64::consts::PI * (50.0 * 50.0 - 40.0 * 40.0);
+    /// assert!((set.count(ring)? as f64 - area).abs() < 30.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn count(&self, area: impl Into<Area>) -> Result<u128, Error> {
+        self.within(area).map(|plan| plan.count())
+    }
+
+    /// The largest absolute coordinate of a requested area, in world units: 2⁵² lattice units.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).spacing(0.001)?;
+    /// let limit = set.limit();
+    /// assert!(set.within(Region::new([limit - 1.0, 0.0], [limit, 1.0])?).is_ok());
+    /// assert!(set.within(Region::new([limit, 0.0], [2.0 * limit, 1.0])?).is_err());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn limit(&self) -> f64 {
+        self.lattice.limit()
+    }
+
+    /// [`within`](Self::within), whose counting a flag stops.
+    pub(crate) fn within_until(&self, area: Area, stop: Stop) -> Result<Plan, Error> {
+        Plan::new(&self.lattice, &self.mask, area, stop, None)
+    }
+
+    /// [`exactly`](Self::exactly) without spacings below `least`, whose counting a flag stops.
+    pub(crate) fn exactly_until(
+        &self,
+        count: u128,
+        area: &Area,
+        least: f64,
+        stop: &Stop,
+    ) -> Result<Plan, Error> {
+        amount::exactly(&self.lattice, &self.mask, area, count, least, stop)
+    }
+}
