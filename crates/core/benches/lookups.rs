@@ -14,8 +14,8 @@ mod rounds;
 struct Subject {
     /// The plain and a warped set.
     sets: [PointSet; 2],
-    /// Ids of points of the plain pattern.
-    ids: Vec<PointId>,
+    /// Ids of points of each.
+    ids: [Vec<PointId>; 2],
     /// A box of 10¹⁴ points.
     huge: Plan,
     state: u64,
@@ -24,11 +24,12 @@ struct Subject {
 impl Subject {
     fn new() -> Self {
         let sets = sets();
-        let mut ids = vec![];
-        for i in 0..200 {
-            let at = [f64::from(i * 7919), f64::from(i * 104_729)];
-            ids.extend(boxed(&sets[0], at, 20.0).iter().map(|member| member.id()));
-        }
+        let ids_of = |set: &PointSet| {
+            let corner = |i: i32| [f64::from(i * 7919), f64::from(i * 104_729)];
+            let plans = (0..200).map(|i| boxed(set, corner(i), 20.0));
+            plans.flatten().map(|member| member.id()).collect()
+        };
+        let ids = [ids_of(&sets[0]), ids_of(&sets[1])];
         Self {
             huge: boxed(&sets[0], [-1e6, -1e6], 1e7),
             sets,
@@ -85,7 +86,7 @@ impl Subject {
 
     fn point(&mut self, set: usize) {
         let place = self.random() as usize;
-        let id = self.ids[place % self.ids.len()];
+        let id = self.ids[set][place % self.ids[set].len()];
         black_box(self.sets[set].point(id));
     }
 
