@@ -23,8 +23,7 @@ COPY . .
 RUN --mount=type=cache,target=/usr/local/cargo/registry \
     --mount=type=cache,target=/src/target \
     cargo build --release --locked --bin strew \
-    && cp target/release/strew /strew \
-    && strip /strew
+    && cp target/release/strew /strew
 
 FROM ${RUN_IMAGE}
 ARG VERSION=0.1.0

@@ -1,8 +1,11 @@
-//! Strew, the daemon and the command line: points of any region, by REST, by gRPC, or to a file.
+//! Strew, the daemon and the command line: points of any region, over REST, over gRPC, or into a file.
 //!
-//! The floors: [`access`] says who asks and how much; [`service`] answers checked queries and knows no wire; [`rest`] and [`grpc`] are
-//! thin doors to it that never name each other; [`ops`] runs them on one port; [`cli`] is what a
-//! shell sees. [`config`] holds the settings, [`error_map`] what every error is on the wire.
+//! - [`cli`] is the command line.
+//! - [`ops`] runs the daemon: one port, its connections, limits, metrics and shutdown.
+//! - [`rest`] and [`grpc`] translate requests and responses; neither uses the other.
+//! - [`service`] answers checked queries and knows no protocol.
+//! - [`access`] identifies clients and limits how much each may take.
+//! - [`config`] holds the settings, [`error_map`] maps each error to its status on both protocols.
 
 pub mod access;
 pub mod cli;
@@ -12,3 +15,8 @@ pub mod grpc;
 pub mod ops;
 pub mod rest;
 pub mod service;
+
+/// Compiles and runs the Rust example in the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -1,9 +1,9 @@
-//! The examples of docs/api.md are run against a daemon, and must print what the document shows.
+//! The examples of docs/api.md and README.md run against a daemon and must print what the documents show.
 //!
-//! An example is a fenced `sh` block that begins with `curl` or `strew`; the block right after it
-//! shows its output. There, a line `…` stands for any number of lines, and a line that ends in `…`
-//! for a longer one. `UPDATE_GOLDEN=1` writes the current output, shortened in the same places; an
-//! empty block is filled.
+//! An example is a fenced `sh` block that begins with `curl`, `grpcurl` or `strew`, and the block right
+//! after it shows its output; or a `console` block of `$ `, such a command and its output. In an output a
+//! line `…` stands for any number of lines, and a line that ends in `…` for a longer one.
+//! `UPDATE_GOLDEN=1` writes the current output, shortened in the same places; an empty block is filled.
 
 use std::{path::Path, process::Command};
 
@@ -12,9 +12,8 @@ use crate::support::{
     daemon::{Daemon, strew},
 };
 
-const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/api.md");
-/// The daemon's address in the document.
-const ADDRESS: &str = "http://127.0.0.1:8080";
+/// The daemon's address in the documents.
+const ADDRESS: &str = "127.0.0.1:8080";
 const MORE: &str = "…";
 
 /// A fenced block: the lines of the document between its fences.
@@ -53,16 +52,17 @@ fn run(script: &str, daemon: &Daemon, folder: &Path) -> Vec<String> {
     for (name, _) in program.get_envs() {
         command.env_remove(name);
     }
-    let address = daemon.url("");
+    let url = daemon.url("");
+    let address = url.strip_prefix("http://").expect("no TLS");
     let output = command
-        .args(["-ec", &script.replace(ADDRESS, &address)])
+        .args(["-ec", &script.replace(ADDRESS, address)])
         .current_dir(folder)
         .output()
         .expect("sh runs");
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{script}\n{message}");
     let text = String::from_utf8(output.stdout).unwrap_or_else(|e| panic!("{script}\n{e}"));
-    let text = text.replace(&address, ADDRESS).replace('\r', "");
+    let text = text.replace(address, ADDRESS).replace('\r', "");
     text.lines().map(unnamed).collect()
 }
 
@@ -99,47 +99,88 @@ fn shortened(printed: &[String], shown: &[String]) -> Vec<String> {
     before.chain([MORE.into()]).chain(after).collect()
 }
 
-#[test]
-fn the_examples_print_what_the_document_shows() {
-    if clients::find("curl").is_none() {
-        return;
+/// An example: its command, and the lines that show its output.
+struct Example {
+    script: String,
+    shown: std::ops::Range<usize>,
+}
+
+/// The examples of a document that can be run here.
+fn examples(lines: &[String]) -> Vec<Example> {
+    let blocks = blocks(lines);
+    let mut examples = vec![];
+    for (i, block) in blocks.iter().enumerate() {
+        if block.language == "console" {
+            examples.extend(dialogue(lines, block));
+        } else if block.language == "sh" {
+            let next = blocks.get(i + 1).filter(|next| {
+                let between = &lines[block.end + 1..next.first - 1];
+                next.language != "sh" && between.iter().all(String::is_empty)
+            });
+            examples.push(Example {
+                script: lines[block.first..block.end].join("\n"),
+                shown: next.map_or(block.end..block.end, |next| next.first..next.end),
+            });
+        }
     }
+    examples.retain(|example| {
+        let program = example.script.split(' ').next().unwrap_or_default();
+        match program {
+            "curl" | "grpcurl" => clients::find(program).is_some(),
+            other => other == "strew",
+        }
+    });
+    examples
+}
+
+/// The commands of a `console` block, which begin with `$ ` and may be continued, with their output.
+fn dialogue(lines: &[String], block: &Block) -> Vec<Example> {
+    let mut examples: Vec<Example> = vec![];
+    let mut is_command = false;
+    for (i, line) in lines.iter().enumerate().take(block.end).skip(block.first) {
+        if let Some(command) = line.strip_prefix("$ ") {
+            examples.push(Example {
+                script: command.into(),
+                shown: i + 1..i + 1,
+            });
+            is_command = true;
+        } else if let Some(example) = examples.last_mut() {
+            if is_command {
+                example.script = format!("{}\n{line}", example.script);
+                example.shown = i + 1..i + 1;
+            } else {
+                example.shown.end = i + 1;
+            }
+        }
+        is_command &= line.ends_with('\\');
+    }
+    examples
+}
+
+/// Fails unless the examples of a document print what it shows.
+fn check(name: &str) {
     let folder = tempfile::tempdir().expect("a folder");
     let daemon = Daemon::built_in();
-    let text = std::fs::read_to_string(FILE).expect("readable");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    let text = std::fs::read_to_string(&file).expect("readable");
     let lines: Vec<String> = text.lines().map(Into::into).collect();
     let mut written: Vec<String> = vec![];
     let mut copied = 0;
     let mut differences = vec![];
-    let blocks = blocks(&lines);
-    for (i, block) in blocks.iter().enumerate() {
-        let script = lines[block.first..block.end].join("\n");
-        let is_run = script.starts_with("curl ") || script.starts_with("strew ");
-        if block.language != "sh" || !is_run {
-            continue;
-        }
+    for Example { script, shown } in examples(&lines) {
         let printed = run(&script, &daemon, folder.path());
-        let next = blocks.get(i + 1).filter(|next| {
-            let between = &lines[block.end + 1..next.first - 1];
-            next.language != "sh" && between.iter().all(String::is_empty)
-        });
-        let Some(next) = next else {
-            assert!(printed.is_empty(), "{script}\nprints {printed:?}");
-            continue;
-        };
-        let shown = &lines[next.first..next.end];
-        let now = shortened(&printed, shown);
-        if now != shown {
-            let (now, shown) = (now.join("\n"), shown.join("\n"));
+        let now = shortened(&printed, &lines[shown.clone()]);
+        if now != lines[shown.clone()] {
+            let (now, shown) = (now.join("\n"), lines[shown.clone()].join("\n"));
             differences.push(format!("{script}\nprints\n{now}\nand not\n{shown}"));
         }
-        written.extend_from_slice(&lines[copied..next.first]);
+        written.extend_from_slice(&lines[copied..shown.start]);
         written.extend(now);
-        copied = next.end;
+        copied = shown.end;
     }
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
         written.extend_from_slice(&lines[copied..]);
-        std::fs::write(FILE, written.join("\n") + "\n").expect("writable");
+        std::fs::write(file, written.join("\n") + "\n").expect("writable");
         return;
     }
     let advice = "UPDATE_GOLDEN=1 cargo test --test suite api_examples";
@@ -148,4 +189,14 @@ fn the_examples_print_what_the_document_shows() {
         "{advice} accepts:\n\n{}",
         differences.join("\n\n")
     );
+}
+
+#[test]
+fn the_api_document_shows_what_its_examples_print() {
+    check("docs/api.md");
+}
+
+#[test]
+fn the_readme_shows_what_its_examples_print() {
+    check("README.md");
 }
