@@ -20,19 +20,19 @@ lint:
     cargo fmt --all
     cargo clippy --workspace --all-targets -- -D warnings
 
-# How fast a box is filled, beside the published row scanner and a plain fill.
+# The benches of the library: filling boxes, beside the published row scanner and a plain fill; regions; lookups.
 bench:
     cargo bench -p strew-core
 
-# The unsafe code of the kernel under a memory checker, with every instruction set of this machine, and
-# once more under valgrind, which knows AVX2. (Miri needs a nightly toolchain and knows no vectors.)
+# The unsafe code of the kernel under AddressSanitizer, with every instruction set of this machine, and
+# under valgrind, which supports AVX2. (Miri needs a nightly toolchain and lacks most vector instructions.)
 sanitize:
     RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Zsanitizer=address CARGO_TARGET_DIR=target/sanitize \
         cargo test -p strew-core --lib --target x86_64-unknown-linux-gnu sample::
     CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER="valgrind -q --error-exitcode=9" \
         cargo test -p strew-core --lib kernel::
 
-# Mixed questions by all doors with faults injected, every answer checked: `just soak 1800`.
+# Mixed queries over REST and gRPC with injected faults, every answer checked: `just soak 1800`.
 soak seconds="300" *args:
     cargo test --release --test soak -- --seconds {{seconds}} {{args}}
 
@@ -47,6 +47,10 @@ fuzz subject seconds="3600":
 # The library without the standard library.
 no-std:
     cargo build -p strew-core --no-default-features
+
+# The library on arm64 (under qemu) and WebAssembly (in Node), as far as these are installed.
+targets:
+    .ci/targets
 
 # Licenses, bans and sources of all dependencies; the advisories need a network.
 deny:
@@ -72,3 +76,4 @@ tables:
         target/release/strew forge --profile "$1" --alpha "$2" --radius "$3" \
             --out-dir tables --force || exit 1; \
     done
+    mv tables/blue-5-sqrt3-over-2-s.strew crates/core/tables/

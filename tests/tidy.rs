@@ -1,4 +1,4 @@
-//! The invariants of ARCHITECTURE.md, told as absences.
+//! The invariants listed in ARCHITECTURE.md, checked by searching the sources.
 
 use std::{
     fs,
