@@ -8,6 +8,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::query::Faults;
 use crate::access::Denied;
 
 /// One thing that is wrong with a query.
@@ -44,7 +45,7 @@ impl Fault {
         Self {
             field: field.into(),
             value: None,
-            detail: "it is missing".into(),
+            detail: "missing".into(),
             allowed: allowed.into(),
         }
     }
@@ -80,8 +81,8 @@ fn cut(text: &str, most: usize) -> String {
 #[non_exhaustive]
 pub enum Error {
     /// The query is not valid; every fault that was found.
-    #[error("{}", joined(.0))]
-    Invalid(Vec<Fault>),
+    #[error("{}", joined(.0.as_slice()))]
+    Invalid(Faults),
     /// The region holds more points than one answer may have.
     #[error(
         "the region holds {count} points; this server gives at most {limit} in one answer: ask \
@@ -321,7 +322,7 @@ impl Error {
     #[must_use]
     pub fn faults(&self) -> &[Fault] {
         match self {
-            Self::Invalid(faults) => faults,
+            Self::Invalid(faults) => faults.as_slice(),
             _ => &[],
         }
     }

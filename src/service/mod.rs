@@ -33,11 +33,11 @@ use tokio::sync::Mutex;
 pub use budget::{Budget, Held};
 pub use cache::Ready;
 pub use catalog::{Catalog, Entry, Key, Reload};
-pub use encode::{Answer, Encoding, Output};
+pub use encode::{Answer, Encoding, Options, Output};
 pub use error::{Error, Fault, Kind};
 pub use planned::{Placed, Planned, PlannedSet};
 pub use portrait::Portrait;
-pub use query::{Draft, Query, Set, Token};
+pub use query::{Draft, Nearest, Query, Set, Token};
 pub use record::Record;
 pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
@@ -163,6 +163,39 @@ impl Service {
         &self.budget
     }
 
+    /// Checks a query against the tables that are loaded and the limits.
+    ///
+    /// # Errors
+    /// As [`Draft::check`], and [`Error::Invalid`] for a format that is for files only.
+    pub fn check(&self, draft: &Draft) -> Result<(Query, Options), Error> {
+        let (query, options) = draft.check(&self.catalog(), self.limits.max_vertices)?;
+        match options.encoding {
+            Some(encoding) if !encoding.is_streamed() => {
+                let format = &query::parameters::FORMAT;
+                let detail = "written by `strew sample` only";
+                Err(draft.values.fault(format, detail).into())
+            }
+            _ => Ok((query, options)),
+        }
+    }
+
+    /// Admits a caller and plans a query whose points are to be made, charging them.
+    ///
+    /// # Errors
+    /// As [`admit`](Self::admit) and [`plan`](Self::plan), and [`Error::Denied`] if the caller takes
+    /// points too fast.
+    pub async fn open(
+        &self,
+        caller: &Caller,
+        query: Query,
+        picture: Option<u32>,
+    ) -> Result<(Permit, Planned), Error> {
+        let permit = self.admit(caller, picture)?;
+        let planned = self.plan(caller, query).await?;
+        caller.charge(planned.count())?;
+        Ok((permit, planned))
+    }
+
     /// Plans a query on the workers, whatever it counts.
     ///
     /// # Errors
@@ -190,7 +223,7 @@ impl Service {
     /// # Errors
     /// As [`Streams::admit`], [`Error::Denied`] if the caller has as many as it may have, and
     /// [`Error::TooManyBytes`] if there is no room.
-    pub fn admit(&self, caller: &Caller, picture: Option<u32>) -> Result<Permit, Error> {
+    fn admit(&self, caller: &Caller, picture: Option<u32>) -> Result<Permit, Error> {
         /// Rows and text are made in so much, besides blocks.
         const ROWS: usize = 2 << 20;
         let side = picture.map_or(0, |side| usize::try_from(side).unwrap_or(usize::MAX));
@@ -226,13 +259,31 @@ impl Service {
         self.workers.run_while_wanted(split).await?
     }
 
-    /// Lays a set into the world, to ask for single points.
+    /// Lays a set into the world, to look up single points.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for an amount that cannot be had.
+    /// [`Error::Invalid`] for an amount that the table cannot have.
     pub async fn place(&self, set: Set) -> Result<Placed, Error> {
         let ready = self.samplers.get(&set.entry, &self.workers).await?;
         Placed::new(set, ready)
+    }
+
+    /// The points of a set nearest to a place, charging them.
+    ///
+    /// # Errors
+    /// As [`place`](Self::place) and [`Placed::nearest`], and [`Error::Denied`] if the caller takes
+    /// points too fast.
+    pub async fn nearest(
+        &self,
+        caller: &Caller,
+        set: Set,
+        nearest: Nearest,
+    ) -> Result<(Placed, Vec<Found>), Error> {
+        let placed = self.place(set).await?;
+        let finder = placed.clone();
+        let found = self.workers.run(move || finder.nearest(nearest)).await??;
+        caller.charge(found.len() as u128)?;
+        Ok((placed, found))
     }
 
     /// What the points of a table look like.

@@ -80,7 +80,7 @@ impl Placed {
     /// [`Error::Invalid`] for a distance that cannot be kept, or a count.
     pub fn new(set: Set, ready: Ready) -> Result<Self, Error> {
         let Some((spacing, density)) = planner::resolve(&set, &ready)? else {
-            return Err(set.fault("count", "", "it needs a region", super::query::AMOUNT));
+            return Err(set.fault("count", "", "needs a region", "density, spacing or min_distance"));
         };
         let least = planner::least_distance(&set, &ready, spacing);
         Ok(Self {
@@ -122,9 +122,8 @@ impl Planned {
         let identity = OnceLock::new();
         if let Some(token) = query.window.cursor {
             let digests: Vec<&str> = tables.iter().map(|t| t.entry.digest.as_str()).collect();
-            let fault = |fault| Error::Invalid(vec![fault]);
             let identity = identity.get_or_init(|| query.identity(&digests));
-            token.check(identity).map_err(fault)?;
+            token.check(identity)?;
         }
         let mut planner = Planner::new(&query, limits, stop);
         let mut sets = vec![];

@@ -9,7 +9,7 @@ use super::{
     Error, Limits, PlannedSet,
     cache::Ready,
     effort::{self, Selection},
-    query::{self, Amount, Query, Set, Token},
+    query::{Amount, Parameter, Query, Set, Token, parameters},
 };
 
 /// Plans sets one after another.
@@ -142,7 +142,7 @@ impl<'a> Planner<'a> {
         let plan = server::exactly(points, count.into(), area, least, self.stop);
         plan.map_err(|error| match error.kind() {
             ErrorKind::Count | ErrorKind::TooDense => {
-                set.fault("count", count, error.problem(), query::AMOUNT)
+                set.fault("count", count, error.problem(), parameters::COUNT.allowed())
             }
             _ => {
                 let spacing = points.placement().spacing;
@@ -189,16 +189,19 @@ const fn nothing() -> Cursor {
 
 /// What an amount is on its table; `None` for a count, which needs a region.
 pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>, Error> {
-    let fault = |field, value: f64, detail: String| set.fault(field, value, detail, query::AMOUNT);
-    let wrong =
-        |field, value: f64| move |error: strew_core::Error| fault(field, value, error.to_string());
+    let fault = |parameter: &Parameter, value: f64, detail: String| {
+        set.fault(parameter.name, value, detail, parameter.allowed())
+    };
+    let wrong = |parameter, value: f64| {
+        move |error: strew_core::Error| fault(parameter, value, error.to_string())
+    };
     match set.amount {
         Amount::Density(density) => {
-            let spacing = Spacing::from_density(density).map_err(wrong("density", density))?;
+            let spacing = Spacing::from_density(density).map_err(wrong(&parameters::DENSITY, density))?;
             Ok(Some((spacing, density)))
         }
         Amount::Spacing(value) => {
-            let spacing = Spacing::new(value).map_err(wrong("spacing", value))?;
+            let spacing = Spacing::new(value).map_err(wrong(&parameters::SPACING, value))?;
             Ok(Some((spacing, spacing.density())))
         }
         Amount::MinDistance(distance) => {
@@ -210,7 +213,7 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>
                     }
                     _ => error.to_string(),
                 };
-                fault("min_distance", distance, detail)
+                fault(&parameters::MIN_DISTANCE, distance, detail)
             })?;
             Ok(Some((spacing, spacing.density())))
         }

@@ -6,7 +6,7 @@ use strew_core::{Attribute, ErrorKind, Member, Neighbor, PointId};
 
 use super::{
     Error, Fault, Placed,
-    query::{Around, number},
+    query::{Nearest, number, parameters},
 };
 
 /// A point with its attributes.
@@ -42,7 +42,7 @@ impl Placed {
         const ID: &str = "two integers joined by a colon, such as -31:52";
         let read = id
             .parse::<PointId>()
-            .map_err(|_| Error::Invalid(vec![Fault::new("id", id, "it is not a point id", ID)]))?;
+            .map_err(|_| Fault::new("id", id, "not a point id", ID))?;
         let member = self.points.point(read);
         let member = member.ok_or_else(|| Error::NoSuchPoint { id: id.into() })?;
         let mut found = self.found(&member, None);
@@ -55,8 +55,8 @@ impl Placed {
     ///
     /// # Errors
     /// [`Error::Invalid`] for a place too far out or too many points.
-    pub fn nearest(&self, around: Around) -> Result<Vec<Found>, Error> {
-        let Around { at, k, radius } = around;
+    pub fn nearest(&self, nearest: Nearest) -> Result<Vec<Found>, Error> {
+        let Nearest { at, k, radius } = nearest;
         let points = &self.points;
         let found = match (k, radius) {
             (k, None) => points.nearest(at, k.unwrap_or(1)),
@@ -66,7 +66,7 @@ impl Placed {
                 found
             }),
         };
-        let found = found.map_err(|error| fault(around, &error))?;
+        let found = found.map_err(|error| fault(nearest, &error))?;
         let found = found
             .iter()
             .map(|Neighbor { member, distance }| self.found(member, Some(*distance)));
@@ -96,36 +96,27 @@ impl Placed {
     }
 }
 
-fn fault(Around { at, k, radius }: Around, error: &strew_core::Error) -> Error {
-    let (field, value, allowed): (_, _, String) = match error.kind() {
-        ErrorKind::Radius => (
-            "radius",
-            error.value().to_owned(),
-            "a finite number from 0 on".into(),
-        ),
-        ErrorKind::Neighbors => (
-            "k",
-            error.value().to_owned(),
-            "an integer from 1 to 10000".into(),
-        ),
-        ErrorKind::TooMany => match (radius, k) {
-            (Some(radius), None) => {
-                let detail = error.problem();
-                let allowed = format!("a radius with at most {MOST_WITHIN} points within");
-                let fault = Fault::new("radius", number(radius), detail, allowed);
-                return Error::Invalid(vec![fault]);
-            }
-            (_, k) => (
-                "k",
-                k.unwrap_or(1).to_string(),
-                "fewer neighbors, or a larger share to keep".into(),
-            ),
-        },
-        _ => (
-            "at",
-            format!("{},{}", number(at[0]), number(at[1])),
-            "a place near enough to the origin for points to be told apart".into(),
-        ),
+fn fault(nearest: Nearest, error: &strew_core::Error) -> Error {
+    let Nearest { at, k, radius } = nearest;
+    let k = k.unwrap_or(1);
+    let fault = match (error.kind(), radius) {
+        (ErrorKind::Radius, Some(radius)) => {
+            let allowed = parameters::RADIUS.allowed();
+            Fault::new("radius", number(radius), error.to_string(), allowed)
+        }
+        (ErrorKind::Neighbors, _) => Fault::new("k", k, error.to_string(), parameters::K.allowed()),
+        (ErrorKind::TooMany, Some(radius)) if nearest.k.is_none() => {
+            let allowed = format!("a radius with at most {MOST_WITHIN} points within");
+            Fault::new("radius", number(radius), error.problem(), allowed)
+        }
+        (ErrorKind::TooMany, _) => {
+            Fault::new("k", k, error.to_string(), "fewer neighbors, or a larger share to keep")
+        }
+        _ => {
+            let value = format!("{},{}", number(at[0]), number(at[1]));
+            let allowed = "a place near enough to the origin for points to be told apart";
+            Fault::new("at", value, error.to_string(), allowed)
+        }
     };
-    Error::Invalid(vec![Fault::new(field, value, error.to_string(), allowed)])
+    fault.into()
 }

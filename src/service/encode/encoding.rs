@@ -68,12 +68,17 @@ impl Encoding {
         }
     }
 
-    /// The streamed format of a name.
+    /// The format with a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|encoding| encoding.name() == name)
+        let mut all = Self::ALL.into_iter().chain([Self::Parquet]);
+        all.find(|encoding| encoding.name() == name)
+    }
+
+    /// Whether the daemon streams it; other formats are for files only.
+    #[must_use]
+    pub fn is_streamed(self) -> bool {
+        Self::ALL.contains(&self)
     }
 
     /// The content type, when the format is asked for by name. NumPy's and PLY are registered by

@@ -1,16 +1,13 @@
 //! How an answer is to look: the format and its options.
 
-use super::{
-    Encoding,
-    preview::{DEFAULT_SIZE, LEAST_SIZE, MOST_SIZE, SIZE},
+use super::{Encoding, preview::DEFAULT_SIZE};
+use crate::service::{
+    Error, Fault,
+    query::{Faults, Parameter, Together as _, parameters},
 };
-use crate::service::{Error, Fault};
 
 /// More decimals than this say nothing: an `f64` has 17 significant digits.
 pub const MOST_DECIMALS: u8 = 17;
-
-/// What `decimals` may be.
-pub const DECIMALS: &str = "an integer from 0 to 17";
 
 /// What a query asks of its answer's looks, before the format is settled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,31 +24,20 @@ impl Options {
     /// The output in a format, the one asked for by name or another if none was.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if an option is out of range or means nothing in that format.
+    /// [`Error::Invalid`] if an option has no effect in that format.
     pub fn output(self, encoding: Encoding) -> Result<Output, Error> {
-        let mut faults = vec![];
-        let mut check =
-            |name: &str, value: u32, range: bool, fits: fn(Encoding) -> bool, allowed| {
-                if !range {
-                    faults.push(Fault::new(name, value, "it is out of range", allowed));
-                }
-                if !fits(encoding) {
-                    let detail = format!("it means nothing in the format {}", encoding.name());
-                    let allowed = format!("the formats {}", Encoding::names_where(fits));
-                    faults.push(Fault::new(name, value, detail, allowed));
-                }
-            };
-        if let Some(n) = self.decimals {
-            let range = n <= MOST_DECIMALS;
-            check("decimals", n.into(), range, Encoding::is_text, DECIMALS);
-        }
-        if let Some(n) = self.size {
-            let range = (LEAST_SIZE..=MOST_SIZE).contains(&n);
-            check("size", n, range, Encoding::is_picture, SIZE);
-        }
-        if !faults.is_empty() {
-            return Err(Error::Invalid(faults));
-        }
+        let check = |parameter: &Parameter, value: Option<u32>, fits: fn(Encoding) -> bool| {
+            let value = value.filter(|_| !fits(encoding));
+            let fault = value.map(|value| {
+                let detail = format!("has no effect in the format {}", encoding.name());
+                let allowed = format!("the formats {}", Encoding::names_where(fits));
+                Faults::from(Fault::new(parameter.name, value, detail, allowed))
+            });
+            fault.map_or(Ok(()), Err)
+        };
+        let decimals = check(&parameters::DECIMALS, self.decimals.map(Into::into), Encoding::is_text);
+        let size = check(&parameters::SIZE, self.size, Encoding::is_picture);
+        (decimals, size).together()?;
         Ok(Output {
             decimals: self.decimals,
             size: self.size.unwrap_or(DEFAULT_SIZE),

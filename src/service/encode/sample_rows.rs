@@ -11,7 +11,7 @@ use super::{
 };
 use crate::service::{
     Catalog, Draft, Limits, Planned,
-    query::{AmountDraft, RegionDraft, SetDraft, ShapeDraft},
+    query::{RegionDraft, ShapeDraft, Value, Values, groups, parameters},
 };
 
 /// An angle for every point and a name out of a list; the angle is half the id's column.
@@ -52,22 +52,14 @@ impl Attributes for Marks {
 pub(super) fn planned(bbox: [f64; 4], spacing: f64, seed: u64) -> Planned {
     static CATALOG: LazyLock<Catalog> =
         LazyLock::new(|| Catalog::load(true, None).expect("embedded tables"));
-    let draft = Draft {
-        region: Some(RegionDraft {
-            path: "bbox".into(),
-            shape: ShapeDraft::Box(bbox),
-        }),
-        set: SetDraft {
-            amount: AmountDraft {
-                spacing: Some(spacing),
-                ..AmountDraft::default()
-            },
-            seed: Some(seed),
-            ..SetDraft::default()
-        },
-        ..Draft::default()
-    };
-    let query = draft.check(&CATALOG, 100, vec![]).expect("a query");
+    let mut values = Values::new(groups::QUERY, "");
+    values.add_value(&parameters::SPACING, Value::Number(spacing));
+    values.add_value(&parameters::SEED, Value::Integer(seed));
+    let draft = Draft::new(values).within(Ok(RegionDraft {
+        path: "bbox".into(),
+        shape: ShapeDraft::Box(bbox),
+    }));
+    let (query, _) = draft.check(&CATALOG, 100).expect("a query");
     let limits = Limits {
         max_points: 1_000_000,
         max_rows: 1_000_000,

@@ -1,31 +1,21 @@
 //! How densely points lie, in one of four ways.
 
 use serde::Serialize;
-use strew_core::Spacing;
 
-use super::{AMOUNT, number};
+use super::{
+    Checked, Parameter, Values,
+    parameter::Group,
+    parameters::{COUNT, DENSITY, MIN_DISTANCE, SPACING},
+};
 use crate::service::Fault;
-
-/// The amount as it was asked for, not checked; exactly one must be there.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct AmountDraft {
-    /// Points per unit of area.
-    pub density: Option<f64>,
-    /// The mean spacing.
-    pub spacing: Option<f64>,
-    /// The least distance of any two points.
-    pub min_distance: Option<f64>,
-    /// The number of points in the region.
-    pub count: Option<u64>,
-}
 
 /// A checked amount. The last two become a spacing with the table at hand.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Amount {
-    /// A density, and the spacing it is.
+    /// Points per unit of area.
     Density(f64),
-    /// A spacing.
+    /// The mean spacing.
     Spacing(f64),
     /// The least distance of any two points.
     MinDistance(f64),
@@ -33,45 +23,46 @@ pub enum Amount {
     Count(u64),
 }
 
-impl AmountDraft {
-    /// Checks it; `path` is put before the names of fields.
-    pub(super) fn check(self, path: &str) -> Result<Amount, Fault> {
-        let field = |name: &str| format!("{path}{name}");
-        let given = [
-            self.density
-                .map(|v| ("density", number(v), Amount::Density(v))),
-            self.spacing
-                .map(|v| ("spacing", number(v), Amount::Spacing(v))),
-            self.min_distance
-                .map(|v| ("min_distance", number(v), Amount::MinDistance(v))),
-            self.count
-                .map(|v| ("count", v.to_string(), Amount::Count(v))),
-        ];
-        let mut given = given.into_iter().flatten();
-        let Some((name, value, amount)) = given.next() else {
-            return Err(Fault::missing(&field("density"), AMOUNT));
-        };
-        if let Some((other, second, _)) = given.next() {
-            let detail = format!("{name} is given, too, as {value}");
-            return Err(Fault::new(&field(other), second, detail, AMOUNT));
-        }
-        let out_of_range =
-            |allowed: String| Fault::new(&field(name), &value, "it is out of range", allowed);
-        let spacing = match amount {
-            Amount::Density(density) => Spacing::from_density(density),
-            Amount::Spacing(spacing) => Spacing::new(spacing),
-            Amount::MinDistance(distance) => {
-                // Spacings are wider than the distances they keep, but not by much.
-                Spacing::new(distance)
+impl Amount {
+    /// The one amount among some values.
+    ///
+    /// # Errors
+    /// Faults if there is none, or more than one.
+    pub(super) fn of(values: &Values) -> Checked<Self> {
+        let given: Vec<&Parameter> = taken(values).filter(|amount| values.has(amount)).collect();
+        match given.as_slice() {
+            [] => Err(Fault::missing(&format!("{}spacing", values.path()), one_of(values)).into()),
+            [only] if **only == DENSITY => values.require(only).map(Self::Density),
+            [only] if **only == SPACING => values.require(only).map(Self::Spacing),
+            [only] if **only == MIN_DISTANCE => values.require(only).map(Self::MinDistance),
+            [only] => values.require(only).map(Self::Count),
+            [first, second, ..] => {
+                let field = format!("{}{}", values.path(), second.name);
+                let detail = format!("{} is given, too", first.name);
+                Err(Fault::new(&field, values.text(second), detail, one_of(values)).into())
             }
-            Amount::Count(0) => return Err(out_of_range(COUNT.into())),
-            Amount::Count(_) => return Ok(amount),
-        };
-        spacing
-            .map(|_| amount)
-            .map_err(|error| out_of_range(error.allowed().to_owned()))
+        }
+    }
+
+    /// The parameter that says it.
+    #[must_use]
+    pub fn parameter(self) -> &'static Parameter {
+        match self {
+            Self::Density(_) => &DENSITY,
+            Self::Spacing(_) => &SPACING,
+            Self::MinDistance(_) => &MIN_DISTANCE,
+            Self::Count(_) => &COUNT,
+        }
     }
 }
 
-/// What a count may be.
-pub(super) const COUNT: &str = "an integer from 1 to 18446744073709551615";
+/// The amounts that a request takes.
+pub(super) fn taken(values: &Values) -> impl Iterator<Item = &'static Parameter> {
+    let is_amount = |parameter: &&Parameter| [Group::Amount, Group::Count].contains(&parameter.group);
+    values.takes().filter(is_amount)
+}
+
+fn one_of(values: &Values) -> String {
+    let names: Vec<&str> = taken(values).map(|parameter| parameter.name).collect();
+    format!("one of {}", names.join(", "))
+}

@@ -59,7 +59,7 @@ impl Token {
     /// # Errors
     /// A [`Fault`] of `cursor`.
     pub(super) fn parse(text: &str) -> Result<Self, Fault> {
-        let fault = || Fault::new("cursor", text, "it is not a cursor", CURSOR);
+        let fault = || Fault::new("cursor", text, "not a cursor", CURSOR);
         let bytes = from_hex(text).ok_or_else(fault)?;
         let mut rest = bytes.as_slice();
         let mut read = || -> Option<Self> {
@@ -101,7 +101,7 @@ impl Token {
         if self.seal == self.sealed(identity) {
             return Ok(());
         }
-        let detail = "it belongs to another query, or to another table";
+        let detail = "belongs to another query or to another table";
         Err(Fault::new("cursor", self, detail, CURSOR))
     }
 

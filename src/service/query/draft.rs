@@ -1,285 +1,392 @@
-//! Drafts: queries as typed fields, not checked yet.
+//! Drafts: queries as they were read, with their faults in their places, not checked yet.
 
+use std::sync::Arc;
+
+use serde_json::{Map, Value as Json};
 use strew_core::{Keep, Placement, Seed, Warp};
 
 use super::{
-    AmountDraft, AttributesDraft, KEEP, MOST_LAYERS, Query, RegionDraft, Set, TableDraft, WARP,
-    Window,
+    Amount, Checked, Faults, MOST_LAYERS, Query, QueryRegion, RegionDraft, Set, Together as _,
+    Values, Window, attributes,
     cursor::Token,
-    faults::Faults,
+    faults::all,
     number,
-    region::{Budget, REGION},
+    parameter::{Group, groups},
+    parameters::{
+        BBOX, COUNT, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, PARTS, SEED, SIZE, WARP,
+    },
+    region::REGION,
+    table,
 };
-use crate::service::{Catalog, Error, Fault};
+use crate::service::{
+    Catalog, Encoding, Entry, Error, Fault,
+    encode::Options,
+};
 
-/// A query as typed fields. What is absent takes its default; a region and an amount, its own or of
-/// every layer, must be there.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// A query as it was read.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Draft {
-    /// Where.
-    pub region: Option<RegionDraft>,
-    /// The points, if there are no layers.
-    pub set: SetDraft,
-    /// The layers, if there are any.
-    pub layers: Vec<LayerDraft>,
-    /// Which of the points.
-    pub window: WindowDraft,
+    /// Where; it must be there.
+    pub region: Checked<Option<RegionDraft>>,
+    /// The set of points, if there are no layers; the window, and what the answer looks like.
+    pub values: Values,
+    /// The layers; none if there is one set.
+    pub layers: Checked<Vec<LayerDraft>>,
 }
 
-/// A set of points.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SetDraft {
-    /// How many.
-    pub amount: AmountDraft,
-    /// The table.
-    pub table: TableDraft,
-    /// The seed; 0 by default.
-    pub seed: Option<u64>,
-    /// The strength of the warp; by default 0 for seed 0 and 1 for every other.
-    pub warp: Option<f64>,
-    /// The share of points to keep; all by default.
-    pub keep: Option<f64>,
-    /// The further values of points.
-    pub attributes: AttributesDraft,
-}
-
-/// A layer.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// A layer as it was read.
+#[derive(Clone, Debug, PartialEq)]
 pub struct LayerDraft {
-    /// Its name.
-    pub name: String,
+    /// Its name; it must be there.
+    pub name: Checked<Option<String>>,
     /// Where it is; everywhere by default.
-    pub region: Option<RegionDraft>,
+    pub region: Checked<Option<RegionDraft>>,
     /// Its points.
-    pub set: SetDraft,
+    pub values: Values,
     /// Names of earlier layers and the distances kept from their points.
-    pub clear_of: Vec<(String, f64)>,
-}
-
-/// Which part of the points is asked for.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct WindowDraft {
-    /// How many are left out at the beginning.
-    pub offset: Option<u64>,
-    /// How many are wanted at most.
-    pub limit: Option<u64>,
-    /// Where an earlier answer ended.
-    pub cursor: Option<String>,
+    pub clear_of: Checked<Vec<(String, f64)>>,
 }
 
 /// What layers may be called.
-const NAME: &str = "1 to 64 ASCII letters, digits, _, - and ., another name for each layer";
+pub(super) const NAME: &str = "1 to 64 ASCII letters, digits, _, - and ., another name for each layer";
 /// What clear_of may be.
-const CLEAR_OF: &str = "names of layers before this one, each with a distance above 0";
+const CLEAR_OF: &str = "names of layers before this one, each with a finite distance above 0";
 
 impl Draft {
-    /// Checks everything against what is loaded. `found` are the faults found on the way here; a
-    /// field that one of them names is not faulted again. `most_vertices` bounds polygons.
+    /// A query of one set, without a region yet.
+    #[must_use]
+    pub const fn new(values: Values) -> Self {
+        Self {
+            region: Ok(None),
+            values,
+            layers: Ok(vec![]),
+        }
+    }
+
+    /// A query by the parameters of an address, which may hold its region.
+    #[must_use]
+    pub fn of(values: Values) -> Self {
+        Self {
+            region: RegionDraft::of(&values),
+            ..Self::new(values)
+        }
+    }
+
+    /// The same query in another region.
+    #[must_use]
+    pub fn within(mut self, region: Checked<RegionDraft>) -> Self {
+        self.region = region.map(Some);
+        self
+    }
+
+    /// Checks everything against what is loaded; `most_vertices` bounds the polygons of all regions.
     ///
     /// # Errors
     /// [`Error::Invalid`] with every fault, [`Error::OtherTable`] if a pinned table is not loaded.
-    pub fn check(
-        &self,
-        catalog: &Catalog,
-        most_vertices: usize,
-        found: Vec<Fault>,
-    ) -> Result<Query, Error> {
-        let mut faults = Faults::new(found);
-        let mut budget = Budget {
-            vertices: most_vertices,
+    pub fn check(&self, catalog: &Catalog, most_vertices: usize) -> Result<(Query, Options), Error> {
+        self.check_vertices(most_vertices)?;
+        let sets = match &self.layers {
+            Ok(layers) if layers.is_empty() => Set::of(&self.values, catalog).map(|set| vec![set]),
+            Ok(layers) => self.layers(layers, catalog),
+            Err(faults) => Err(faults.clone()),
         };
-        let region = match &self.region {
-            Some(region) => region.check(&mut budget, &mut faults),
-            None => {
-                faults.add(Fault::missing("region", REGION));
-                None
-            }
-        };
-        let window = self.window.check(&mut faults);
-        let is_layered = !self.layers.is_empty();
-        let sets = if is_layered {
-            self.layers(catalog, &mut budget, &mut faults)
-        } else {
-            let set = self.set.check(catalog, String::new(), &mut faults);
-            set.into_iter().collect()
-        };
-        let (Some(region), Some(window), true) = (region, window, faults.is_empty()) else {
-            return Err(faults.into_error());
-        };
-        let drafts = self.layers.iter().map(|layer| &layer.set);
-        let drafts = drafts.chain((!is_layered).then_some(&self.set));
-        for (set, draft) in sets.iter().zip(drafts) {
-            draft.table.hold(&set.entry)?;
+        let (read, region, sets, window, options) = (
+            self.values.read(),
+            self.region(),
+            sets,
+            window(&self.values),
+            options(&self.values),
+        );
+        let ((), region, sets, window, options) = (read, region, sets, window, options).together()?;
+        for set in &sets {
+            table::hold(&set.entry, set.pin.as_deref())?;
         }
-        Ok(Query {
+        let query = Query {
             region,
             sets: sets.into(),
-            is_layered,
+            is_layered: !matches!(&self.layers, Ok(layers) if layers.is_empty()),
             window,
-        })
+        };
+        Ok((query, options))
     }
 
-    fn layers(&self, catalog: &Catalog, budget: &mut Budget, faults: &mut Faults) -> Vec<Set> {
-        if self.layers.len() > MOST_LAYERS {
-            let detail = "there are too many layers";
+    /// Polygons are only read if there are not too many vertices.
+    fn check_vertices(&self, most: usize) -> Result<(), Fault> {
+        let layers = self.layers.iter().flatten().map(|layer| &layer.region);
+        let regions = [&self.region].into_iter().chain(layers).flatten().flatten();
+        let with_any = regions.filter(|region| region.vertices() > 0);
+        let vertices: usize = with_any.clone().map(RegionDraft::vertices).sum();
+        match with_any.clone().next() {
+            Some(first) if vertices > most => Err(Fault::new(
+                &first.path,
+                format!("{vertices} vertices"),
+                "the regions of the query have too many vertices in all",
+                format!("at most {most}"),
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    fn region(&self) -> Checked<QueryRegion> {
+        match &self.region {
+            Ok(Some(region)) => region.check(),
+            Ok(None) if self.values.takes().any(|p| p.group == Group::Region) => {
+                Err(Fault::missing(BBOX.name, "one of bbox, circle and polygon").into())
+            }
+            Ok(None) => Err(Fault::missing("region", REGION).into()),
+            Err(faults) => Err(faults.clone()),
+        }
+    }
+
+    fn layers(&self, layers: &[LayerDraft], catalog: &Catalog) -> Checked<Vec<Set>> {
+        if layers.len() > MOST_LAYERS {
             let allowed = format!("at most {MOST_LAYERS} layers");
-            faults.add(Fault::new("layers", self.layers.len(), detail, allowed));
-            return vec![];
+            return Err(Fault::new("layers", layers.len(), "too many layers", allowed).into());
         }
-        for (name, value) in self.set.given() {
-            let detail = "it means nothing beside layers: each layer has its own";
-            faults.add(Fault::new(name, value, detail, "either layers or one set"));
+        let is_of_set = |group: &Group| groups::SET.contains(group);
+        let own = self.values.given().filter(|(parameter, _)| is_of_set(&parameter.group));
+        let beside = own.map(|(parameter, _)| {
+            let detail = "has no effect beside layers: each layer has its own";
+            let field = format!("{}{}", self.values.path(), parameter.name);
+            let text = self.values.text(parameter);
+            Err::<(), _>(Fault::new(&field, text, detail, "either layers or one set").into())
+        });
+        let sets = layers.iter().enumerate();
+        let sets = sets.map(|(i, layer)| layer.check(&layers[..i], catalog));
+        let (_, sets) = (all(beside), all(sets)).together()?;
+        Ok(sets)
+    }
+
+    /// The body of `POST /v1/points:query` that asks for this.
+    #[must_use]
+    pub fn to_body(&self) -> Map<String, Json> {
+        let mut body = Map::new();
+        if let Ok(Some(region)) = &self.region {
+            body.insert("region".into(), region.echo());
         }
-        let mut sets = vec![];
-        for (i, layer) in self.layers.iter().enumerate() {
-            let path = format!("layers[{i}].");
-            let earlier: Vec<&str> = self.layers[..i].iter().map(|l| l.name.as_str()).collect();
-            let field = |name: &str| format!("{path}{name}");
-            if !is_name(&layer.name) || earlier.contains(&layer.name.as_str()) {
-                let detail = if earlier.contains(&layer.name.as_str()) {
-                    "an earlier layer has this name"
-                } else {
-                    "it is not such a name"
-                };
-                faults.add(match layer.name.as_str() {
-                    "" => Fault::missing(&field("name"), NAME),
-                    name => Fault::new(&field("name"), name, detail, NAME),
-                });
-            }
-            let own = layer.region.as_ref();
-            let region = own.map(|region| region.check(budget, faults));
-            let mut clear_of = vec![];
-            for (name, distance) in &layer.clear_of {
-                let wrong = match earlier.iter().position(|earlier| earlier == name) {
-                    Some(place) if *distance > 0.0 && distance.is_finite() => {
-                        clear_of.push((place, *distance));
-                        continue;
-                    }
-                    Some(_) => "the distance is not a finite number above 0",
-                    None => "no earlier layer has this name",
-                };
-                let value = format!("{name}: {}", number(*distance));
-                faults.add(Fault::new(&field("clear_of"), value, wrong, CLEAR_OF));
-            }
-            if let (Some(count), false) = (layer.set.amount.count, clear_of.is_empty()) {
-                let detail = "a layer that keeps clear of others has as many points as they leave";
-                let allowed = "density, spacing or min_distance";
-                faults.add(Fault::new(&field("count"), count, detail, allowed));
-            }
-            if let Some(set) = layer.set.check(catalog, path.clone(), faults) {
-                sets.push(Set {
-                    name: layer.name.clone(),
-                    region: region.flatten(),
-                    clear_of,
-                    ..set
-                });
-            }
+        if let Ok(layers) = &self.layers
+            && !layers.is_empty()
+        {
+            let layers: Vec<Json> = layers.iter().map(LayerDraft::to_json).collect();
+            body.insert("layers".into(), layers.into());
         }
-        sets
+        body.extend(written(&self.values));
+        body
     }
 }
 
-impl SetDraft {
-    /// Checks a set without a region. `found` are the faults found on the way here.
-    ///
-    /// # Errors
-    /// As [`Draft::check`].
-    pub fn check_alone(&self, catalog: &Catalog, found: Vec<Fault>) -> Result<Set, Error> {
-        let mut faults = Faults::new(found);
-        let set = self.check(catalog, String::new(), &mut faults);
-        let (Some(set), true) = (set, faults.is_empty()) else {
-            return Err(faults.into_error());
-        };
-        self.table.hold(&set.entry)?;
-        Ok(set)
+impl LayerDraft {
+    /// A layer without a name yet.
+    #[must_use]
+    pub const fn new(values: Values) -> Self {
+        Self {
+            name: Ok(None),
+            region: Ok(None),
+            values,
+            clear_of: Ok(vec![]),
+        }
     }
 
-    fn check(&self, catalog: &Catalog, path: String, faults: &mut Faults) -> Option<Set> {
-        let seed = Seed(self.seed.unwrap_or(0));
-        let amount = faults.take(self.amount.check(&path));
-        let field = |name: &str| format!("{path}{name}");
-        let warp = self.warp.map(|strength| {
-            let detail = "it is out of range";
-            let fault = |_| Fault::new(&field("warp"), number(strength), detail, WARP);
-            Warp::new(strength).map_err(fault)
-        });
-        let warp = faults.take(warp.transpose());
-        let keep = self.keep.map(|share| {
-            let detail = "it is out of range";
-            let fault = |_| Fault::new(&field("keep"), number(share), detail, KEEP);
-            Keep::new(share).map_err(fault)
-        });
-        let keep = faults.take(keep.transpose());
-        let attributes = faults.take(self.attributes.check(&path));
-        let entry = faults.take_all(self.table.check(catalog, &path));
-        let by_default = || Placement::default_warp(seed);
-        Some(Set {
-            amount: amount?,
-            warp: warp?.unwrap_or_else(by_default),
-            keep: keep?.unwrap_or(Keep::ALL),
-            attributes: attributes?,
-            entry: entry?,
-            is_pinned: self.table.table.is_some(),
-            path,
+    /// Checks the layer after some others.
+    fn check(&self, before: &[Self], catalog: &Catalog) -> Checked<Set> {
+        let names: Vec<Option<&str>> = before.iter().map(Self::known_name).collect();
+        let region = match &self.region {
+            Ok(region) => region.as_ref().map(RegionDraft::check).transpose(),
+            Err(faults) => Err(faults.clone()),
+        };
+        let (read, set, name, region, clear_of) = (
+            self.values.read(),
+            Set::of(&self.values, catalog),
+            self.name(&names),
+            region,
+            self.clear_of(&names),
+        );
+        let ((), set, name, region, clear_of) = (read, set, name, region, clear_of).together()?;
+        Ok(Set {
+            name,
+            region,
+            clear_of,
+            ..set
+        })
+    }
+
+    fn known_name(&self) -> Option<&str> {
+        self.name.as_ref().ok()?.as_deref()
+    }
+
+    fn field(&self, name: &str) -> String {
+        format!("{}{name}", self.values.path())
+    }
+
+    fn name(&self, before: &[Option<&str>]) -> Checked<String> {
+        let Some(name) = self.name.clone()? else {
+            return Err(Fault::missing(&self.field("name"), NAME).into());
+        };
+        let is_allowed = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
+        let detail = if before.contains(&Some(&name)) {
+            "an earlier layer has this name"
+        } else if !(1..=64).contains(&name.len()) || !name.chars().all(is_allowed) {
+            "not a name of layers"
+        } else {
+            return Ok(name);
+        };
+        Err(Fault::new(&self.field("name"), name, detail, NAME).into())
+    }
+
+    fn clear_of(&self, before: &[Option<&str>]) -> Checked<Vec<(usize, f64)>> {
+        let pairs = self.clear_of.clone()?;
+        let field = self.field("clear_of");
+        let place = |(name, distance): &(String, f64)| {
+            let fault = |detail: &str| {
+                let value = format!("{name}: {}", number(*distance));
+                Faults::from(Fault::new(&field, value, detail, CLEAR_OF))
+            };
+            let place = before.iter().position(|earlier| *earlier == Some(name));
+            let place = place.ok_or_else(|| fault("no earlier layer has this name"))?;
+            if *distance > 0.0 && distance.is_finite() {
+                return Ok((place, *distance));
+            }
+            Err(fault("the distance must be finite and above 0"))
+        };
+        let places = all(pairs.iter().map(place))?;
+        if !places.is_empty() && self.values.has(&COUNT) {
+            let detail = "not with clear_of: such a layer has as many points as the others leave";
+            let text = self.values.text(&COUNT);
+            let allowed = "density, spacing or min_distance";
+            return Err(Fault::new(&self.field(COUNT.name), text, detail, allowed).into());
+        }
+        Ok(places)
+    }
+
+    fn to_json(&self) -> Json {
+        let mut members = written(&self.values);
+        members.extend(self.known_name().map(|name| ("name".into(), name.into())));
+        if let Ok(Some(region)) = &self.region {
+            members.insert("region".into(), region.echo());
+        }
+        if let Ok(pairs) = &self.clear_of
+            && !pairs.is_empty()
+        {
+            let pairs = pairs.iter().map(|(name, distance)| (name.clone(), (*distance).into()));
+            members.insert("clear_of".into(), Json::Object(pairs.collect()));
+        }
+        members.into()
+    }
+}
+
+/// Values as members of JSON.
+fn written(values: &Values) -> Map<String, Json> {
+    let in_body = |group: &Group| groups::QUERY.contains(group);
+    let given = values.given().filter(|(parameter, _)| in_body(&parameter.group));
+    let member = given.filter_map(|(parameter, value)| {
+        Some((parameter.name.to_owned(), serde_json::to_value(value).ok()?))
+    });
+    member.collect()
+}
+
+impl Set {
+    /// Checks the set of some values.
+    fn of(values: &Values, catalog: &Catalog) -> Checked<Self> {
+        let checked = (
+            Amount::of(values),
+            values.get::<u64>(&SEED),
+            warp(values),
+            keep(values),
+            attributes::check(values),
+            table::check(values, None, catalog),
+        );
+        let (amount, seed, warp, keep, attributes, (entry, pin)) = checked.together()?;
+        let seed = Seed(seed.unwrap_or(0));
+        Ok(Self {
+            path: values.path().into(),
             name: String::new(),
+            entry,
+            pin,
+            amount,
             seed,
+            warp: warp.unwrap_or_else(|| Placement::default_warp(seed)),
+            keep: keep.unwrap_or(Keep::ALL),
+            attributes,
             region: None,
             clear_of: vec![],
         })
     }
 
-    /// The fields that are given, by name, with their values.
-    fn given(&self) -> Vec<(&'static str, String)> {
-        let AmountDraft {
-            density,
-            spacing,
-            min_distance,
-            count,
-        } = self.amount;
-        let TableDraft {
-            profile,
-            alpha,
-            map,
-            table,
-        } = self.table.clone();
-        let names = &self.attributes.names;
-        let all = [
-            ("density", density.map(number)),
-            ("spacing", spacing.map(number)),
-            ("min_distance", min_distance.map(number)),
-            ("count", count.map(|v| v.to_string())),
-            ("profile", profile),
-            ("alpha", alpha),
-            ("map", map),
-            ("table", table),
-            ("seed", self.seed.map(|v| v.to_string())),
-            ("warp", self.warp.map(number)),
-            ("keep", self.keep.map(number)),
-            ("attributes", (!names.is_empty()).then(|| names.join(","))),
-        ];
-        let given = all
-            .into_iter()
-            .filter_map(|(name, value)| Some((name, value?)));
-        given.collect()
+    /// Checks a set without a region.
+    ///
+    /// # Errors
+    /// As [`Draft::check`].
+    pub fn single(values: &Values, catalog: &Catalog) -> Result<Self, Error> {
+        let ((), set) = (values.read(), Self::of(values, catalog)).together()?;
+        table::hold(&set.entry, set.pin.as_deref())?;
+        Ok(set)
     }
 }
 
-impl WindowDraft {
-    fn check(&self, faults: &mut Faults) -> Option<Window> {
-        if self.limit == Some(0) {
-            let allowed = "an integer from 1 on";
-            faults.add(Fault::new("limit", 0, "it is out of range", allowed));
-        }
-        let cursor = self.cursor.as_deref().map(Token::parse).transpose();
-        Some(Window {
-            offset: self.offset.unwrap_or(0),
-            limit: self.limit,
-            cursor: faults.take(cursor)?,
-        })
-    }
+fn warp(values: &Values) -> Checked<Option<Warp>> {
+    let warp = values.get(&WARP)?.map(Warp::new).transpose();
+    warp.map_err(|error| values.fault(&WARP, error.to_string()).into())
 }
 
-fn is_name(text: &str) -> bool {
-    let fine = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
-    (1..=64).contains(&text.len()) && text.chars().all(fine)
+fn keep(values: &Values) -> Checked<Option<Keep>> {
+    let keep = values.get(&KEEP)?.map(Keep::new).transpose();
+    keep.map_err(|error| values.fault(&KEEP, error.to_string()).into())
+}
+
+fn window(values: &Values) -> Checked<Window> {
+    let cursor = values.get::<String>(&CURSOR).and_then(|text| {
+        let token = text.as_deref().map(Token::parse).transpose();
+        token.map_err(Into::into)
+    });
+    let (offset, limit, cursor) = (values.get(&OFFSET), values.get(&LIMIT), cursor).together()?;
+    Ok(Window {
+        offset: offset.unwrap_or(0),
+        limit,
+        cursor,
+    })
+}
+
+/// What the answer looks like.
+///
+/// # Errors
+/// Every fault.
+pub fn options(values: &Values) -> Checked<Options> {
+    let encoding = values.get::<String>(&FORMAT).and_then(|name| {
+        let Some(name) = name else { return Ok(None) };
+        let encoding = Encoding::from_name(&name);
+        let encoding = encoding.ok_or_else(|| values.fault(&FORMAT, "unknown format"))?;
+        Ok(Some(encoding))
+    });
+    // Their shapes bound both.
+    let (encoding, decimals, size) = (
+        encoding,
+        values.get::<u64>(&DECIMALS),
+        values.get::<u64>(&SIZE),
+    )
+        .together()?;
+    Ok(Options {
+        encoding,
+        decimals: decimals.and_then(|decimals| decimals.try_into().ok()),
+        size: size.and_then(|size| size.try_into().ok()),
+    })
+}
+
+/// The table of a profile that some values choose.
+///
+/// # Errors
+/// As [`Draft::check`].
+pub fn entry(values: &Values, profile: &str, catalog: &Catalog) -> Result<Arc<Entry>, Error> {
+    let table = table::check(values, Some(profile), catalog);
+    let ((), (entry, pin)) = (values.read(), table).together()?;
+    table::hold(&entry, pin.as_deref())?;
+    Ok(entry)
+}
+
+/// How many parts some values ask for.
+///
+/// # Errors
+/// Every fault.
+pub fn parts(values: &Values) -> Checked<u32> {
+    let ((), parts) = (values.read(), values.require::<u64>(&PARTS)).together()?;
+    Ok(u32::try_from(parts).unwrap_or(u32::MAX))
 }

@@ -1,10 +1,10 @@
 //! What answers say of the query they answer, and what tells queries apart.
 
-use serde::Serialize;
-use serde_json::{Value, json};
+use serde::{Serialize, Serializer, ser::SerializeMap as _};
+use serde_json::{Map, Value as Json, json};
 use strew_core::{ALGORITHM_VERSION, Spacing};
 
-use super::{Query, Set, attributes};
+use super::{Parameter, Query, QueryRegion, Set, Value, parameters::PARAMETERS};
 
 /// A query as answers echo it, with everything filled in.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -13,7 +13,7 @@ pub struct Resolved {
     pub bbox: [f64; 4],
     /// The region, unless it is that box.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub region: Option<Value>,
+    pub region: Option<Json>,
     /// The points, if there are no layers.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub set: Option<ResolvedSet>,
@@ -23,53 +23,59 @@ pub struct Resolved {
     /// How many points of the region come before those of the answer, if any.
     #[serde(skip_serializing_if = "is_zero")]
     pub offset: u128,
-    /// How many were wanted at most.
+    /// The greatest number of points of the answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit: Option<u64>,
 }
 
 /// A set of points as answers echo it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ResolvedSet {
     /// The name of the layer.
-    #[serde(skip_serializing_if = "String::is_empty")]
     pub name: String,
     /// Where the layer is.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub region: Option<Value>,
+    pub region: Option<Json>,
     /// Points per unit of area, before a share of them is kept and layers are kept clear of.
     pub density: f64,
     /// The mean spacing, density^−½.
     pub spacing: f64,
     /// No two points are nearer than this.
     pub least_distance: f64,
-    /// The name of the noise profile.
-    pub profile: String,
-    /// The number α in its canonical form.
-    pub alpha: String,
-    /// The size of the map.
-    pub map: String,
-    /// The seed.
-    pub seed: u64,
-    /// The strength of the warp; 0 is off.
-    pub warp: f64,
-    /// The share of points that is kept, if not all are.
-    #[serde(skip_serializing_if = "is_one")]
-    pub keep: f64,
-    /// The further values of points.
-    #[serde(skip_serializing_if = "Value::is_null")]
-    pub attributes: Value,
+    /// The parameters that say which points, with everything filled in.
+    pub values: Vec<(&'static Parameter, Value)>,
     /// The layers that are kept clear of, with the distances.
-    #[serde(skip_serializing_if = "Value::is_null")]
-    pub clear_of: Value,
+    pub clear_of: Vec<(String, f64)>,
+}
+
+impl Serialize for ResolvedSet {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        if !self.name.is_empty() {
+            map.serialize_entry("name", &self.name)?;
+        }
+        if let Some(region) = &self.region {
+            map.serialize_entry("region", region)?;
+        }
+        map.serialize_entry("density", &self.density)?;
+        map.serialize_entry("spacing", &self.spacing)?;
+        map.serialize_entry("least_distance", &self.least_distance)?;
+        for (parameter, value) in &self.values {
+            map.serialize_entry(parameter.name, value)?;
+        }
+        if !self.clear_of.is_empty() {
+            map.serialize_entry("clear_of", &distances(&self.clear_of))?;
+        }
+        map.end()
+    }
 }
 
 fn is_zero(value: &u128) -> bool {
     *value == 0
 }
 
-fn is_one(value: &f64) -> bool {
-    *value == 1.0
+fn distances(pairs: &[(String, f64)]) -> Map<String, Json> {
+    let pairs = pairs.iter();
+    pairs.map(|(name, distance)| (name.clone(), (*distance).into())).collect()
 }
 
 impl Set {
@@ -81,58 +87,46 @@ impl Set {
         spacing: Spacing,
         least_distance: f64,
     ) -> ResolvedSet {
-        let has_attributes = !self.attributes.as_slice().is_empty();
         ResolvedSet {
             name: self.name.clone(),
-            region: self.region.as_ref().map(super::Asked::full_echo),
+            region: self.region.as_ref().map(QueryRegion::full_echo),
             density,
             spacing: spacing.get(),
             least_distance,
-            profile: self.entry.key.profile.as_ref().into(),
-            alpha: self.entry.key.alpha.to_string(),
-            map: self.entry.key.size.to_string(),
-            seed: self.seed.0,
-            warp: self.warp.strength(),
-            keep: self.keep.get(),
-            attributes: if has_attributes {
-                attributes::echo(&self.attributes)
-            } else {
-                Value::Null
-            },
-            clear_of: self.clear_of(all),
+            values: self.echoes().collect(),
+            clear_of: self.named_clear_of(all),
         }
     }
 
-    fn clear_of(&self, all: &[Self]) -> Value {
-        if self.clear_of.is_empty() {
-            return Value::Null;
-        }
-        let pair = |(place, distance): &(usize, f64)| {
-            let name = all.get(*place).map(|set| set.name.clone());
-            (name.unwrap_or_default(), json!(distance))
-        };
-        Value::Object(self.clear_of.iter().map(pair).collect())
+    /// The parameters with their values.
+    fn echoes(&self) -> impl Iterator<Item = (&'static Parameter, Value)> {
+        let echo = |parameter: &&'static Parameter| Some((*parameter, parameter.echo?(self)?));
+        PARAMETERS.iter().filter_map(echo)
     }
 
-    fn asked(&self, all: &[Self]) -> Value {
-        json!({
+    fn named_clear_of(&self, all: &[Self]) -> Vec<(String, f64)> {
+        let pairs = self.clear_of.iter();
+        let named = pairs.filter_map(|&(place, distance)| Some((all.get(place)?.name.clone(), distance)));
+        named.collect()
+    }
+
+    /// All that its points depend on.
+    fn identity(&self, all: &[Self]) -> Json {
+        let mut identity = json!({
             "name": self.name,
-            "region": self.region.as_ref().map(super::Asked::full_echo),
+            "region": self.region.as_ref().map(QueryRegion::full_echo),
             "amount": self.amount,
-            "profile": self.entry.key.profile.as_ref(),
-            "alpha": self.entry.key.alpha.to_string(),
-            "map": self.entry.key.size.to_string(),
-            "seed": self.seed.0,
-            "warp": self.warp.strength(),
-            "keep": self.keep.get(),
-            "attributes": attributes::echo(&self.attributes),
-            "clear_of": self.clear_of(all),
-        })
+            "clear_of": distances(&self.named_clear_of(all)),
+        });
+        for (parameter, value) in self.echoes() {
+            identity[parameter.name] = json!(value);
+        }
+        identity
     }
 }
 
-impl super::Asked {
-    fn full_echo(&self) -> Value {
+impl QueryRegion {
+    fn full_echo(&self) -> Json {
         self.echo
             .clone()
             .unwrap_or_else(|| json!({ "bbox": self.bbox() }))
@@ -141,14 +135,14 @@ impl super::Asked {
 
 impl Query {
     /// What tells this query's points from those of every other one, whatever part of them is
-    /// asked for and in whatever format: everything a point depends on, hashed. `digests` are those
+    /// wanted and in whatever format: everything a point depends on, hashed. `digests` are those
     /// of the sets' tables.
     #[must_use]
     pub fn identity(&self, digests: &[&str]) -> [u8; 32] {
         let document = json!({
             "algorithm": ALGORITHM_VERSION,
             "region": self.region.full_echo(),
-            "sets": self.sets.iter().map(|set| set.asked(&self.sets)).collect::<Vec<_>>(),
+            "sets": self.sets.iter().map(|set| set.identity(&self.sets)).collect::<Vec<_>>(),
             "tables": digests,
         });
         *blake3::hash(document.to_string().as_bytes()).as_bytes()

@@ -1,25 +1,25 @@
 //! Queries: from raw parameters, a JSON body or typed fields to a checked [`Query`].
 //!
-//! There is one way in, [`Draft::check`]; beyond it nothing is checked again. It reports every
-//! fault it finds, so that a client needs one round to learn them all. Text parameters, of an
-//! address or a command line, become [`Parameters`] first; bodies are read by [`read_body`].
+//! [`parameters`] is the table of all parameters. Addresses ([`parse_pairs`]), bodies ([`read_body`]),
+//! flags and messages become [`Values`], each read by the parameter's [`Shape`]; with a region and
+//! layers they are a [`Draft`]. The one way on is [`Draft::check`]; beyond it nothing is checked again.
+//! It reports every fault it finds, so that a client needs one round to learn them all.
 
 mod amount;
-mod around;
 mod attributes;
-mod body;
 mod cursor;
 mod draft;
 mod echo;
 mod faults;
-mod geojson;
-mod parameters;
-mod pin;
+mod json;
+mod nearest;
+mod parameter;
+pub mod parameters;
 mod region;
+mod shape;
 mod table;
 mod text;
 mod values;
-mod written;
 
 use std::{fmt, sync::Arc};
 
@@ -27,21 +27,18 @@ use strew_core::{Area, Attributes, ErrorKind, Keep, Placement, Seed, Spacing, Wa
 
 use super::{Entry, Error, Fault};
 
-pub use amount::{Amount, AmountDraft};
-pub use around::{Around, AroundDraft};
-pub use attributes::AttributesDraft;
-pub use body::{Body, read_body};
+pub use amount::Amount;
 pub use cursor::Token;
-pub use draft::{Draft, LayerDraft, SetDraft, WindowDraft};
+pub use draft::{Draft, LayerDraft, entry, options, parts};
 pub use echo::{Resolved, ResolvedSet};
-pub use geojson::read_region;
-pub use parameters::{
-    LOOKS_NAMES, PARAMETERS, Parameter, REGION_NAMES, SET_NAMES, Shape, WINDOW_NAMES,
-};
-pub use region::{Asked, RegionDraft, Rings, ShapeDraft};
-pub use table::TableDraft;
-pub use text::{Parameters, parse_pairs};
-pub use values::read_bbox;
+pub use faults::{Checked, Faults, Together};
+pub use json::{read_body, read_region, region_schema};
+pub use nearest::Nearest;
+pub use parameter::{Group, Parameter, groups, of};
+pub use region::{QueryRegion, RegionDraft, Rings, ShapeDraft};
+pub use shape::{Shape, Value};
+pub use text::parse_pairs;
+pub use values::Values;
 
 /// The profile of a query that names none.
 pub const DEFAULT_PROFILE: &str = "blue";
@@ -50,27 +47,16 @@ pub const DEFAULT_ALPHA: &str = "(5-sqrt(3))/2";
 /// The most layers of a query.
 pub const MOST_LAYERS: usize = 16;
 /// The most parts that a query is split into.
-pub const MOST_PARTS: u32 = 10_000;
+pub const MOST_PARTS: u64 = 10_000;
 
-/// Regions in regions in regions are enough: so many levels of lists.
+/// The most levels of regions in regions, and of collections in GeoJSON.
 pub const MOST_LEVELS: usize = 8;
 
-/// What a box must be.
-const BOX: &str =
-    "four finite numbers min_x,min_y,max_x,max_y with min_x < max_x and min_y < max_y";
-/// How to say how densely points lie.
-pub(in crate::service) const AMOUNT: &str = "one of density (points per unit of area), spacing (the mean, density^-1/2), \
-                      min_distance (of any two points) and count (of the region)";
-/// What a warp may be.
-const WARP: &str = "off, on, or a strength from 0 (off) over 1 (on) to 2";
-/// What a share to keep may be.
-const KEEP: &str = "a number from 1e-6 to 1";
-
-/// A checked query: what is asked for can be answered.
+/// A checked query.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Query {
     /// Where.
-    pub region: Asked,
+    pub region: QueryRegion,
     /// The sets of points: one, or one for each layer.
     pub sets: Arc<[Set]>,
     /// Whether the sets are named layers.
@@ -100,8 +86,8 @@ pub struct Set {
     /// The table. It is found once, when the query is checked, and answers to the end, whatever is
     /// loaded in its place meanwhile.
     pub entry: Arc<Entry>,
-    /// Whether the query names its digest.
-    pub is_pinned: bool,
+    /// The digest that the query wants it to have, in lower case.
+    pub pin: Option<String>,
     /// How many points.
     pub amount: Amount,
     /// The seed.
@@ -113,7 +99,7 @@ pub struct Set {
     /// The further values of points.
     pub attributes: Attributes,
     /// Where the layer is; everywhere if `None`.
-    pub region: Option<Asked>,
+    pub region: Option<QueryRegion>,
     /// The layers that are kept clear of, by position, with the distance; all before this one.
     pub clear_of: Vec<(usize, f64)>,
 }
@@ -122,7 +108,7 @@ impl Query {
     /// Whether it names the digests of all of its tables, so that its answer never changes.
     #[must_use]
     pub fn is_pinned(&self) -> bool {
-        self.sets.iter().all(|set| set.is_pinned)
+        self.sets.iter().all(|set| set.pin.is_some())
     }
 
     /// Whether planning it and making its points takes no longer than handing it to another
@@ -153,11 +139,11 @@ impl Set {
             .with_keep(self.keep)
     }
 
-    /// The part of the region that is asked for in which the layer is.
-    pub(super) fn area(&self, asked: &Asked) -> Area {
+    /// The part of the query's region in which the layer lies.
+    pub(super) fn area(&self, query: &QueryRegion) -> Area {
         match &self.region {
-            Some(own) => asked.and(own),
-            None => asked.area.clone(),
+            Some(own) => query.and(own),
+            None => query.area.clone(),
         }
     }
 
@@ -170,16 +156,16 @@ impl Set {
         allowed: impl Into<String>,
     ) -> Error {
         let field = format!("{}{field}", self.path);
-        Error::Invalid(vec![Fault::new(&field, value, detail, allowed)])
+        Fault::new(&field, value, detail, allowed).into()
     }
 }
 
-impl Asked {
+impl QueryRegion {
     /// The error of a region that reaches too far for a spacing.
     pub(super) fn too_far(&self, spacing: Spacing, error: &strew_core::Error) -> Error {
         let listed = || region::listed(&self.bbox());
         let value = self.echo.as_ref().map_or_else(listed, ToString::to_string);
-        Error::Invalid(vec![match (error.kind(), error.limit()) {
+        let fault = match (error.kind(), error.limit()) {
             (ErrorKind::TooFar, Some(limit)) => Fault::new(
                 &self.path,
                 value,
@@ -195,20 +181,9 @@ impl Asked {
                 ),
             ),
             _ => Fault::new(&self.path, value, error.to_string(), region::REGION),
-        }])
+        };
+        fault.into()
     }
-}
-
-/// Checks how many parts a query is to be split into.
-///
-/// # Errors
-/// A [`Fault`] of `parts`.
-pub fn check_parts(parts: u32) -> Result<u32, Fault> {
-    if (1..=MOST_PARTS).contains(&parts) {
-        return Ok(parts);
-    }
-    let detail = "it is out of range";
-    Err(Fault::new("parts", parts, detail, parameters::PARTS))
 }
 
 /// The shortest digits of any number.

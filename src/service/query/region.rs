@@ -1,29 +1,28 @@
 //! Regions: boxes, circles, polygons, chunks, and lists of them.
 
-use serde_json::{Value, json};
+use serde_json::{Value as Json, json};
 use strew_core::{Area, Circle, Polygon, Region};
 
-use super::{BOX, faults::Faults, geojson::GEOJSON, number};
+use super::{
+    Checked, Faults, Together as _, Values,
+    faults::all,
+    number,
+    parameter::Group,
+    parameters::{BBOX, CIRCLE, POLYGON},
+};
 use crate::service::Fault;
 
-/// What a circle must be.
-pub(super) const CIRCLE: &str = "three finite numbers x,y,radius with a radius above 0";
-/// What a polygon must be.
-pub(super) const POLYGON: &str =
-    "at least 3 different vertices x,y as x1,y1,x2,y2,…; holes and several polygons: POST a query";
-/// The pattern of a polygon's vertices: numbers joined by commas, six or more.
-pub(super) const VERTICES: &str = "^[^,]+(,[^,]+){5,}$";
 /// What a chunk must be.
-pub(super) const CHUNK: &str =
+const CHUNK: &str =
     "a size above 0 and two integers within ±4503599627370496, the chunk's column and row";
 /// What a region must be.
 pub(super) const REGION: &str =
-    "one of bbox, circle, polygon (GeoJSON Polygon or MultiPolygon), chunk, or include and exclude";
+    "one of bbox, circle, polygon (GeoJSON), chunk, or include with exclude";
 
 /// The rings of a polygon: the outer one, then holes.
 pub type Rings = Vec<Vec<[f64; 2]>>;
 
-/// A region as it was asked for, not checked. `path` names it in faults.
+/// A region as it was given, not checked. `path` names it in faults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegionDraft {
     /// The field it came from.
@@ -44,14 +43,12 @@ pub enum ShapeDraft {
     /// A square of the world grid of this size; answers are relative to its lower corner.
     Chunk(f64, [i64; 2]),
     /// What lies in any region of the first list and in none of the second.
-    Combined(Vec<RegionDraft>, Vec<RegionDraft>),
-    /// Something that could not be read, as has been said.
-    Unread,
+    Combined(Vec<Checked<RegionDraft>>, Vec<Checked<RegionDraft>>),
 }
 
 /// A checked region.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Asked {
+pub struct QueryRegion {
     /// The field it came from.
     pub path: String,
     /// The area; it has a box around it, which is not empty.
@@ -59,12 +56,12 @@ pub struct Asked {
     /// That box.
     pub bounds: Region,
     /// As answers echo it, unless it is just that box.
-    pub echo: Option<Value>,
+    pub echo: Option<Json>,
     /// The corner that answers are relative to, for a chunk.
     pub corner: Option<[f64; 2]>,
 }
 
-impl Asked {
+impl QueryRegion {
     /// min x, min y, max x, max y of the box around it.
     #[must_use]
     pub fn bbox(&self) -> [f64; 4] {
@@ -72,30 +69,53 @@ impl Asked {
         [min_x, min_y, max_x, max_y]
     }
 
-    /// What exists in both regions, as one that is asked for by the first one's name.
+    /// The area that lies in both regions.
     #[must_use]
     pub fn and(&self, own: &Self) -> Area {
         own.area.clone().and(self.area.clone())
     }
 }
 
-/// What all regions of a query may have together.
-pub(super) struct Budget {
-    /// Vertices of polygons.
-    pub(super) vertices: usize,
-}
-
 impl RegionDraft {
+    /// The region among the parameters of an address or a command line.
+    ///
+    /// # Errors
+    /// Faults if there are several, or one that cannot be read.
+    pub fn of(values: &Values) -> Checked<Option<Self>> {
+        let shapes = values.takes().filter(|parameter| parameter.group == Group::Region);
+        let given: Vec<_> = shapes.filter(|parameter| values.has(parameter)).collect();
+        let shape = match given.as_slice() {
+            [] => return Ok(None),
+            [first, second, ..] => {
+                let detail = format!("a query has one region, and {} is given", first.name);
+                let allowed = "one of bbox, circle and polygon";
+                return Err(Fault::new(second.name, values.text(second), detail, allowed).into());
+            }
+            [only] if **only == BBOX => values.get(&BBOX)?.map(ShapeDraft::Box),
+            [only] if **only == CIRCLE => {
+                let circle = values.get(&CIRCLE)?;
+                circle.map(|[x, y, radius]| ShapeDraft::Circle([x, y], radius))
+            }
+            [_] => values.get::<Vec<f64>>(&POLYGON)?.map(|numbers| {
+                let (pairs, _) = numbers.as_chunks::<2>();
+                ShapeDraft::Polygons(vec![vec![pairs.to_vec()]])
+            }),
+        };
+        Ok(shape.map(|shape| Self {
+            path: given[0].name.into(),
+            shape,
+        }))
+    }
+
     /// Checks it and everything in it.
-    pub(super) fn check(&self, budget: &mut Budget, faults: &mut Faults) -> Option<Asked> {
-        let area = self.area(budget, faults)?;
-        let bounds = area.bounds()?;
-        if bounds.is_empty() {
-            let detail = "it is empty: nothing is left of what it includes";
-            faults.add(Fault::new(&self.path, self.echo(), detail, REGION));
-            return None;
-        }
-        Some(Asked {
+    pub(super) fn check(&self) -> Checked<QueryRegion> {
+        let area = self.area()?;
+        let bounds = area.bounds().filter(|bounds| !bounds.is_empty());
+        let bounds = bounds.ok_or_else(|| {
+            let detail = "empty: nothing is left of what it includes";
+            Faults::from(Fault::new(&self.path, self.echo(), detail, REGION))
+        })?;
+        Ok(QueryRegion {
             path: self.path.clone(),
             bounds,
             echo: (!matches!(self.shape, ShapeDraft::Box(_))).then(|| self.echo()),
@@ -104,55 +124,56 @@ impl RegionDraft {
         })
     }
 
-    fn area(&self, budget: &mut Budget, faults: &mut Faults) -> Option<Area> {
+    /// How many vertices its polygons have.
+    pub(super) fn vertices(&self) -> usize {
         match &self.shape {
-            ShapeDraft::Box(corners) => faults.take(self.region(*corners)).map(Area::from),
-            ShapeDraft::Circle(center, radius) => {
-                let fault = |error: strew_core::Error| {
-                    let value = listed(&[center[0], center[1], *radius]);
-                    Fault::new(&self.path, value, error.to_string(), CIRCLE)
-                };
-                let circle = Circle::new(*center, *radius).map_err(fault);
-                let circle = circle.and_then(|circle| {
-                    let area = Area::from(circle);
-                    let value = || listed(&[center[0], center[1], *radius]);
-                    match area.bounds() {
-                        Some(_) => Ok(area),
-                        None => Err(Fault::new(&self.path, value(), "it is too large", CIRCLE)),
-                    }
-                });
-                faults.take(circle)
-            }
-            ShapeDraft::Polygons(polygons) => faults.take(self.polygons(polygons, budget)),
-            ShapeDraft::Chunk(size, at) => faults.take(self.chunk(*size, *at)).map(Area::from),
-            ShapeDraft::Unread => None,
+            ShapeDraft::Polygons(polygons) => polygons.iter().flatten().map(Vec::len).sum(),
             ShapeDraft::Combined(include, exclude) => {
+                let all = include.iter().chain(exclude);
+                all.flatten().map(Self::vertices).sum()
+            }
+            _ => 0,
+        }
+    }
+
+    fn area(&self) -> Checked<Area> {
+        match &self.shape {
+            ShapeDraft::Box(corners) => Ok(self.region(*corners)?.into()),
+            ShapeDraft::Circle(center, radius) => {
+                let value = || listed(&[center[0], center[1], *radius]);
+                let fault = |detail| Fault::new(&self.path, value(), detail, CIRCLE.allowed());
+                let circle = Circle::new(*center, *radius).map_err(|error| fault(error.to_string()))?;
+                let area = Area::from(circle);
+                match area.bounds() {
+                    Some(_) => Ok(area),
+                    None => Err(fault("too large".into()).into()),
+                }
+            }
+            ShapeDraft::Polygons(polygons) => Ok(self.polygons(polygons)?),
+            ShapeDraft::Chunk(size, at) => Ok(self.chunk(*size, *at)?.into()),
+            ShapeDraft::Combined(include, exclude) => {
+                let areas = |list: &[Checked<Self>]| {
+                    all(list.iter().map(|region| region.as_ref().map_err(Clone::clone)?.area()))
+                };
+                let (include, exclude) = (areas(include), areas(exclude)).together()?;
                 if include.is_empty() {
                     let field = format!("{}.include", self.path);
-                    faults.add(Fault::missing(&field, "at least one region"));
+                    return Err(Fault::missing(&field, "at least one region").into());
                 }
-                let mut areas = |list: &[Self]| -> Vec<Option<Area>> {
-                    let areas = list.iter().map(|region| region.area(budget, faults));
-                    areas.collect()
-                };
-                let (include, exclude) = (areas(include), areas(exclude));
-                let include: Vec<Area> = include.into_iter().collect::<Option<_>>()?;
-                let exclude: Vec<Area> = exclude.into_iter().collect::<Option<_>>()?;
-                let some = !include.is_empty();
-                some.then(|| Area::any_of(include).without(exclude))
+                Ok(Area::any_of(include).without(exclude))
             }
         }
     }
 
     fn region(&self, corners: [f64; 4]) -> Result<Region, Fault> {
         let [min_x, min_y, max_x, max_y] = corners;
-        let fault = |detail: String| Fault::new(&self.path, listed(&corners), detail, BOX);
+        let fault = |detail: String| Fault::new(&self.path, listed(&corners), detail, BBOX.allowed());
         let region = Region::new([min_x, min_y], [max_x, max_y]).map_err(|error| {
             let (corner, value) = (error.field(), error.value());
             let is_reversed = corners.iter().all(|v| v.is_finite());
             fault(if is_reversed {
                 let lower = if corner == "max_x" { min_x } else { min_y };
-                format!("it is reversed: {corner} is {value}, below the lower bound {lower}")
+                format!("reversed: {corner} is {value}, below the lower bound {lower}")
             } else {
                 format!("{corner} is {value}")
             })
@@ -160,45 +181,26 @@ impl RegionDraft {
         for (axis, i) in [("x", 0), ("y", 1)] {
             let (min, max) = (region.min()[i], region.max()[i]);
             if min >= max {
-                let detail = format!("it is empty: min_{axis} and max_{axis} are both {min}");
-                return Err(fault(detail));
+                return Err(fault(format!("empty: min_{axis} and max_{axis} are both {min}")));
             }
         }
         Ok(region)
     }
 
-    fn polygons(&self, polygons: &[Rings], budget: &mut Budget) -> Result<Area, Fault> {
-        let vertices: usize = polygons.iter().flatten().map(Vec::len).sum();
-        let fault = |detail: String, allowed: String| {
-            let value = format!("{} polygons of {vertices} vertices", polygons.len());
-            Fault::new(&self.path, value, detail, allowed)
+    fn polygons(&self, polygons: &[Rings]) -> Result<Area, Fault> {
+        let fault = |detail: String| {
+            let value = format!("{} polygons of {} vertices", polygons.len(), self.vertices());
+            Fault::new(&self.path, value, detail, POLYGON.allowed())
         };
-        let Some(left) = budget.vertices.checked_sub(vertices) else {
-            let detail = "all regions of the query together have too many vertices".into();
-            return Err(fault(detail, format!("{} more at most", budget.vertices)));
-        };
-        budget.vertices = left;
         let read = |(i, rings): (usize, &Rings)| {
-            Polygon::new(rings).map(Area::from).map_err(|error| {
-                let which = if polygons.len() > 1 {
-                    format!("polygon {i}: ")
-                } else {
-                    String::new()
-                };
-                let allowed = match self.path.as_str() {
-                    "polygon" => POLYGON,
-                    _ => GEOJSON,
-                };
-                fault(format!("{which}{error}"), allowed.into())
+            Polygon::new(rings).map(Area::from).map_err(|error| match polygons.len() {
+                1 => fault(error.to_string()),
+                _ => fault(format!("polygon {i}: {error}")),
             })
         };
-        let areas: Vec<Area> = polygons
-            .iter()
-            .enumerate()
-            .map(read)
-            .collect::<Result<_, _>>()?;
+        let areas: Vec<Area> = (polygons.iter().enumerate()).map(read).collect::<Result<_, _>>()?;
         if areas.is_empty() {
-            return Err(fault("there is no polygon".into(), REGION.into()));
+            return Err(fault("there is no polygon".into()));
         }
         Ok(Area::any_of(areas))
     }
@@ -212,8 +214,10 @@ impl RegionDraft {
 
     /// As answers echo it, and as a query's body has it.
     #[must_use]
-    pub fn echo(&self) -> Value {
-        let list = |regions: &[Self]| regions.iter().map(Self::echo).collect::<Vec<_>>();
+    pub fn echo(&self) -> Json {
+        let list = |regions: &[Checked<Self>]| {
+            regions.iter().flatten().map(Self::echo).collect::<Vec<_>>()
+        };
         match &self.shape {
             ShapeDraft::Box(corners) => json!({ "bbox": corners }),
             ShapeDraft::Circle(center, radius) => {
@@ -226,7 +230,6 @@ impl RegionDraft {
             ShapeDraft::Chunk(size, [x, y]) => {
                 json!({ "chunk": { "size": size, "x": x, "y": y } })
             }
-            ShapeDraft::Unread => Value::Null,
             ShapeDraft::Combined(include, exclude) => {
                 json!({ "include": list(include), "exclude": list(exclude) })
             }

@@ -4,85 +4,91 @@ use std::sync::{Arc, LazyLock};
 
 use strew_core::{Alpha, map::Size};
 
-use super::{DEFAULT_ALPHA, DEFAULT_PROFILE, pin};
+use super::{
+    Checked, DEFAULT_ALPHA, DEFAULT_PROFILE, Faults, Parameter, Together as _, Values,
+    parameters::{ALPHA, MAP, PROFILE, TABLE},
+};
 use crate::service::{Catalog, Entry, Error, Fault, Key};
 
-/// The table as it was asked for, not checked. What is absent takes its default.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct TableDraft {
-    /// The name of the noise profile.
-    pub profile: Option<String>,
-    /// The number α, in any form that is read.
-    pub alpha: Option<String>,
-    /// The size of the map: `s`, `m`, `l`; the size S if it is loaded, else the smallest, by
-    /// default.
-    pub map: Option<String>,
-    /// The digest that the table must have.
-    pub table: Option<String>,
+/// The table of some values; `profile` where it is not among them.
+pub(super) fn check(
+    values: &Values,
+    profile: Option<&str>,
+    catalog: &Catalog,
+) -> Checked<(Arc<Entry>, Option<String>)> {
+    let (named, text, map, pin) = (
+        values.get::<String>(&PROFILE),
+        values.get::<String>(&ALPHA),
+        values.get::<String>(&MAP),
+        pin(values),
+    )
+        .together()?;
+    let profile = profile.map(Into::into).or(named);
+    let profile = profile.unwrap_or_else(|| DEFAULT_PROFILE.into());
+    let text = text.unwrap_or_else(|| DEFAULT_ALPHA.into());
+    let fault = |parameter: &Parameter, value: &str, detail: String, allowed: String| -> Faults {
+        let field = format!("{}{}", values.path(), parameter.name);
+        Fault::new(&field, value, detail, allowed).into()
+    };
+    let is_loaded = (catalog.entries()).any(|entry| *entry.key.profile == *profile);
+    let allowed = || match is_loaded {
+        true => some(catalog.alphas(&profile).iter().map(ToString::to_string)),
+        false => loaded(catalog),
+    };
+    let alpha = parse(&text).map_err(|error| fault(&ALPHA, &text, error.to_string(), allowed()));
+    let known = match is_loaded {
+        true => Ok(()),
+        false => Err(fault(&PROFILE, &profile, "no such profile is loaded".into(), loaded(catalog))),
+    };
+    let (alpha, ()) = (alpha, known).together()?;
+    let sizes = catalog.sizes(&profile, alpha);
+    let Some(&smallest) = sizes.first() else {
+        let detail = format!("the profile `{profile}` is not loaded for this alpha");
+        return Err(fault(&ALPHA, &text, detail, allowed()));
+    };
+    let size = match map.as_deref() {
+        Some(text) => {
+            let size = text.parse::<Size>().ok();
+            size.filter(|size| sizes.contains(size)).ok_or_else(|| {
+                let detail = format!("the profile `{profile}` is not loaded with this map size");
+                fault(&MAP, text, detail, some(sizes.iter().map(ToString::to_string)))
+            })?
+        }
+        None if sizes.contains(&Size::S) => Size::S,
+        None => smallest,
+    };
+    let key = Key {
+        profile: profile.as_str().into(),
+        alpha,
+        size,
+    };
+    let entry = catalog.entry(&key);
+    let gone = || fault(&PROFILE, &profile, "no such profile is loaded".into(), loaded(catalog));
+    Ok((entry.ok_or_else(gone)?, pin))
 }
 
-impl TableDraft {
-    /// The table that is asked for; `path` is put before the names of fields.
-    pub(super) fn check(&self, catalog: &Catalog, path: &str) -> Result<Arc<Entry>, Vec<Fault>> {
-        let fault = |name: &str, value: &str, detail: String, allowed: String| {
-            Fault::new(&format!("{path}{name}"), value, detail, allowed)
-        };
-        let profile = self.profile.as_deref().unwrap_or(DEFAULT_PROFILE);
-        let text = self.alpha.as_deref().unwrap_or(DEFAULT_ALPHA);
-        let is_loaded = catalog
-            .entries()
-            .any(|entry| *entry.key.profile == *profile);
-        let mut faults = vec![];
-        faults.extend(pin::read(self.table.as_deref(), path).err());
-        if !is_loaded {
-            let detail = "no such profile is loaded".into();
-            faults.push(fault("profile", profile, detail, loaded(catalog)));
-        }
-        let allowed = || {
-            if is_loaded {
-                some(catalog.alphas(profile).iter().map(ToString::to_string))
-            } else {
-                loaded(catalog)
-            }
-        };
-        let alpha = parse(text).map_err(|error| {
-            faults.push(fault("alpha", text, error.to_string(), allowed()));
-        });
-        let (Ok(alpha), true) = (alpha, faults.is_empty()) else {
-            return Err(faults);
-        };
-        let sizes = catalog.sizes(profile, alpha);
-        let Some(&smallest) = sizes.first() else {
-            let detail = format!("the profile `{profile}` is not loaded for this alpha");
-            return Err(vec![fault("alpha", text, detail, allowed())]);
-        };
-        let size = match self.map.as_deref() {
-            Some(text) => {
-                let size = text.parse::<Size>().ok();
-                size.filter(|size| sizes.contains(size)).ok_or_else(|| {
-                    let detail =
-                        format!("the profile `{profile}` is not loaded with this map size");
-                    let allowed = some(sizes.iter().map(ToString::to_string));
-                    vec![fault("map", text, detail, allowed)]
-                })?
-            }
-            None if sizes.contains(&Size::S) => Size::S,
-            None => smallest,
-        };
-        let entry = catalog.entry(&Key {
-            profile: profile.into(),
-            alpha,
-            size,
-        });
-        entry.ok_or_else(Vec::new)
+/// The digest that the table must have, in lower case.
+fn pin(values: &Values) -> Checked<Option<String>> {
+    let Some(text) = values.get::<String>(&TABLE)? else {
+        return Ok(None);
+    };
+    if text.len() == 64 && text.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+        return Ok(Some(text.to_ascii_lowercase()));
     }
+    Err(values.fault(&TABLE, "not a digest").into())
+}
 
-    /// Checks that a table is the pinned one.
-    ///
-    /// # Errors
-    /// [`Error::OtherTable`] if it is not.
-    pub(super) fn hold(&self, entry: &Entry) -> Result<(), Error> {
-        pin::compare(self.table.as_deref(), entry)
+/// Checks that a table is the pinned one.
+///
+/// # Errors
+/// [`Error::OtherTable`] if it is not.
+pub(super) fn hold(entry: &Entry, pin: Option<&str>) -> Result<(), Error> {
+    match pin {
+        Some(pin) if pin != entry.digest => Err(Error::OtherTable {
+            pinned: pin.into(),
+            loaded: entry.digest.clone(),
+        }),
+        _ => Ok(()),
     }
 }
 

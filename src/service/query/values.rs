@@ -1,99 +1,237 @@
-//! Values of parameters as text: numbers, lists of numbers, names with weights.
+//! The values of a request's parameters, as far as they could be read.
 
-use std::str::FromStr;
+use std::borrow::Cow;
 
-use super::BOX;
-use crate::service::{Encoding, Fault};
+use serde_json::value::RawValue;
 
-/// The box `min_x,min_y,max_x,max_y` of a text, as far as it is four numbers.
-///
-/// # Errors
-/// A [`Fault`] of `bbox`.
-pub fn read_bbox(text: Option<&str>) -> Result<Option<[f64; 4]>, Fault> {
-    let Some(text) = text else { return Ok(None) };
-    let fault = |detail: String| Fault::new("bbox", text, detail, BOX);
-    let parts: Vec<&str> = text.split(',').collect();
-    let parts: [&str; 4] = parts
-        .try_into()
-        .map_err(|parts: Vec<&str>| fault(format!("it has {} parts, not 4", parts.len())))?;
-    let mut corners = [0.0; 4];
-    for ((corner, part), name) in corners
-        .iter_mut()
-        .zip(parts)
-        .zip(["min_x", "min_y", "max_x", "max_y"])
+use super::{
+    Checked, Faults, Parameter, Value,
+    parameter::{self, Group, names, unknown},
+};
+use crate::service::Fault;
+
+/// The values of parameters, each read or with its fault in its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Values {
+    /// Which parameters the request takes.
+    groups: &'static [Group],
+    /// What is put before their names in faults: nothing, or `layers[3].`.
+    path: String,
+    given: Vec<(&'static Parameter, Checked<Value>)>,
+    /// The faults of what is no parameter.
+    others: Checked<()>,
+}
+
+impl Values {
+    /// No values, of a request that takes these groups; `path` is put before names in faults.
+    #[must_use]
+    pub fn new(groups: &'static [Group], path: &str) -> Self {
+        Self {
+            groups,
+            path: path.into(),
+            given: vec![],
+            others: Ok(()),
+        }
+    }
+
+    /// What is put before the names of fields in faults.
+    #[must_use]
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The parameters that the request takes.
+    pub fn takes(&self) -> impl Iterator<Item = &'static Parameter> + Clone {
+        parameter::of(self.groups)
+    }
+
+    /// Adds a value as text, under a name that may not be a parameter's.
+    pub fn add_text(&mut self, name: &str, text: &str) {
+        let Some(parameter) = self.parameter("parameter", name, || text.into()) else {
+            return;
+        };
+        let value = parameter.shape.read(text);
+        let fault = |detail| self.described(parameter, text, detail);
+        self.add(parameter, value.map_err(fault), || text.into());
+    }
+
+    /// Adds a member of JSON, under a name that may not be a parameter's. A null is as good as an absent
+    /// member.
+    pub fn add_json(&mut self, name: &str, json: &RawValue) {
+        let Some(parameter) = self.parameter("member", name, || shown(json).into()) else {
+            return;
+        };
+        if json.get() == "null" {
+            return;
+        }
+        let value = parameter.shape.read_json(json);
+        let fault = |detail| self.described(parameter, shown(json), detail);
+        self.add(parameter, value.map_err(fault), || shown(json).into());
+    }
+
+    /// Adds a typed value.
+    pub fn add_value(&mut self, parameter: &'static Parameter, value: Value) {
+        let checked = parameter.shape.check(value.clone());
+        let fault = |detail| self.described(parameter, &value.to_text(), detail);
+        self.add(parameter, checked.map_err(fault), || value.to_text());
+    }
+
+    /// Adds the fault of a field that is no parameter.
+    pub fn refuse(&mut self, fault: Fault) {
+        Faults::add(&mut self.others, fault);
+    }
+
+    /// Whether as many faults are known as are reported: nothing needs to be read any more.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        let faulty = self.given.iter().filter(|(_, value)| value.is_err());
+        faulty.count() >= super::faults::MOST_FAULTS
+            || self.others.as_ref().is_err_and(Faults::is_full)
+    }
+
+    /// The parameter with a name, if the request takes it; else notes the fault.
+    fn parameter(
+        &mut self,
+        what: &str,
+        name: &str,
+        value: impl FnOnce() -> String,
+    ) -> Option<&'static Parameter> {
+        let named = self.takes().find(|parameter| parameter.name == name);
+        if named.is_none() {
+            let detail = match Parameter::named(name) {
+                Some(_) => "not allowed here".into(),
+                None => unknown(what, name, self.takes().map(|parameter| parameter.name)),
+            };
+            let field = format!("{}{name}", self.path);
+            self.refuse(Fault::new(&field, value(), detail, names(self.groups)));
+        }
+        named
+    }
+
+    fn add(
+        &mut self,
+        parameter: &'static Parameter,
+        value: Result<Value, Fault>,
+        text: impl FnOnce() -> String,
+    ) {
+        let Some((_, first)) = self.given.iter().find(|(known, _)| *known == parameter) else {
+            self.given.push((parameter, value.map_err(Into::into)));
+            return;
+        };
+        let first = match first {
+            Ok(value) => Some(value.to_text()),
+            Err(faults) => faults.as_slice()[0].value.clone(),
+        };
+        let first = first.unwrap_or_default();
+        let detail = format!("given twice (first as `{first}`)");
+        let field = format!("{}{}", self.path, parameter.name);
+        self.refuse(Fault::new(&field, text(), detail, "each parameter once"));
+    }
+
+    fn described(&self, parameter: &Parameter, text: &str, detail: Cow<'_, str>) -> Fault {
+        let field = format!("{}{}", self.path, parameter.name);
+        Fault::new(&field, text, detail, parameter.allowed())
+    }
+
+    /// Nothing, or the faults of all that could not be read.
+    ///
+    /// # Errors
+    /// These faults.
+    pub fn read(&self) -> Checked<()> {
+        let unread = self.given.iter().filter_map(|(_, value)| value.as_ref().err());
+        unread.fold(self.others.clone(), |all, faults| match all {
+            Ok(()) => Err(faults.clone()),
+            Err(others) => Err(others.and(faults.clone())),
+        })
+    }
+
+    /// Whether a parameter is given.
+    #[must_use]
+    pub fn has(&self, parameter: &Parameter) -> bool {
+        self.given.iter().any(|(known, _)| *known == parameter)
+    }
+
+    /// The value of a parameter, if it is given.
+    ///
+    /// # Errors
+    /// Its faults.
+    pub fn get<T>(&self, parameter: &Parameter) -> Checked<Option<T>>
+    where
+        T: for<'a> TryFrom<&'a Value, Error = &'static str>,
     {
-        *corner = number(part).map_err(|detail| fault(format!("{name} is `{part}`, {detail}")))?;
+        let Some((parameter, value)) = self.given.iter().find(|(known, _)| *known == parameter)
+        else {
+            return Ok(None);
+        };
+        let value = value.as_ref().map_err(Clone::clone)?;
+        match T::try_from(value) {
+            Ok(value) => Ok(Some(value)),
+            Err(detail) => Err(self.fault(parameter, detail).into()),
+        }
     }
-    Ok(Some(corners))
-}
 
-/// The fault of a format that queries do not have.
-pub(super) fn no_format(field: &str, text: &str) -> Fault {
-    let allowed = Encoding::ALL.map(Encoding::name).join(", ");
-    let detail = if text == Encoding::Parquet.name() {
-        "it is made by `strew sample` only"
-    } else {
-        "there is no such format"
-    };
-    Fault::new(field, text, detail, allowed)
-}
+    /// The value of a parameter that must be given.
+    ///
+    /// # Errors
+    /// Its faults; that it is missing is one.
+    pub fn require<T>(&self, parameter: &Parameter) -> Checked<T>
+    where
+        T: for<'a> TryFrom<&'a Value, Error = &'static str>,
+    {
+        self.get(parameter)?
+            .ok_or_else(|| self.missing(parameter).into())
+    }
 
-/// `off`, `on` or a number.
-pub(super) fn strength(text: &str) -> Option<f64> {
-    match text {
-        "off" => Some(0.0),
-        "on" => Some(1.0),
-        _ => finite(text),
+    /// The fault of a given value.
+    #[must_use]
+    pub fn fault(&self, parameter: &Parameter, detail: impl Into<String>) -> Fault {
+        let field = format!("{}{}", self.path, parameter.name);
+        Fault::new(&field, self.text(parameter), detail, parameter.allowed())
+    }
+
+    /// The fault of a value that is not given.
+    #[must_use]
+    pub fn missing(&self, parameter: &Parameter) -> Fault {
+        let field = format!("{}{}", self.path, parameter.name);
+        Fault::missing(&field, parameter.allowed())
+    }
+
+    /// The text of a value; empty if it is not given or could not be read.
+    #[must_use]
+    pub fn text(&self, parameter: &Parameter) -> String {
+        let mut given = self.given();
+        let value = given.find(|(known, _)| *known == parameter);
+        value.map_or_else(String::new, |(_, value)| value.to_text())
+    }
+
+    /// The values that could be read, in the order in which they were given.
+    pub fn given(&self) -> impl Iterator<Item = (&'static Parameter, &Value)> {
+        let given = self.given.iter();
+        given.filter_map(|(parameter, value)| Some((*parameter, value.as_ref().ok()?)))
+    }
+
+    /// Replaces a value, or removes it.
+    pub fn replace(&mut self, parameter: &'static Parameter, value: Option<Value>) {
+        self.given.retain(|(known, _)| *known != parameter);
+        let value = value.map(|value| (parameter, Ok(value)));
+        self.given.extend(value);
+    }
+
+    /// Takes over the values that others have and these lack.
+    pub fn fill_from(&mut self, others: &Self) {
+        for (parameter, value) in &others.given {
+            if !self.has(parameter) {
+                self.given.push((parameter, value.clone()));
+            }
+        }
     }
 }
 
-/// Names with weights, as `oak:3,birch:1`; a weight that is not given is 1.
-pub(super) fn variants_of(text: &str) -> Option<Vec<(String, f64)>> {
-    let variant = |part: &str| {
-        let (name, weight) = part.split_once(':').unwrap_or((part, "1"));
-        Some((name.to_owned(), finite(weight)?))
-    };
-    text.split(',').map(variant).collect()
-}
-
-pub(super) fn vertices(text: &str) -> Option<Vec<[f64; 2]>> {
-    let values: Vec<f64> = text.split(',').map(finite).collect::<Option<_>>()?;
-    let (pairs, []) = values.as_chunks::<2>() else {
-        return None;
-    };
-    Some(pairs.to_vec())
-}
-
-/// So many finite numbers joined by commas.
-pub(super) fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
-    let values: Vec<f64> = text.split(',').map(finite).collect::<Option<_>>()?;
-    values.try_into().ok()
-}
-
-pub(super) fn integer<T: FromStr>(text: &str) -> Option<T> {
-    text.parse().ok()
-}
-
-pub(super) fn finite(text: &str) -> Option<f64> {
-    number(text).ok()
-}
-
-/// What is wrong with a text that cannot be read.
-pub(super) fn wrong(text: &str) -> &'static str {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_infinite() => "not finite",
-        Ok(value) if !value.is_nan() => "it is not such a number",
-        _ if text.contains(',') => "it is not such a list",
-        _ => "not a number",
-    }
-}
-
-/// A finite number; otherwise what it is instead.
-fn number(text: &str) -> Result<f64, &'static str> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(value) if value.is_nan() => Err("not a number"),
-        Ok(_) => Err("not finite"),
-        Err(_) => Err("not a number"),
+/// The beginning of JSON, as much as a fault shows.
+pub(super) fn shown(json: &RawValue) -> &str {
+    let text = json.get();
+    match text.char_indices().nth(200) {
+        Some((end, _)) => &text[..end],
+        None => text,
     }
 }

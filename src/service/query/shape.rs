@@ -1,0 +1,426 @@
+//! The values of parameters: read from text and from JSON, checked against what is allowed, written.
+
+use std::{borrow::Cow, str::FromStr};
+
+use serde::{Serialize, Serializer, ser::SerializeMap as _};
+use serde_json::value::RawValue;
+
+use super::{json, number};
+use crate::service::Encoding;
+
+/// The values that a parameter takes.
+#[derive(Clone, Copy, Debug)]
+pub enum Shape {
+    /// A number within bounds, both included.
+    Number {
+        /// The least.
+        min: f64,
+        /// The greatest.
+        max: f64,
+    },
+    /// An integer within bounds, both included.
+    Integer {
+        /// The least.
+        min: u64,
+        /// The greatest.
+        max: u64,
+    },
+    /// `off` for 0, `on` for 1, or a number from 0 to a greatest one.
+    Strength {
+        /// The greatest.
+        max: f64,
+    },
+    /// Several numbers, by what each is called.
+    Numbers(&'static [&'static str]),
+    /// x and y of vertices by turns.
+    Vertices,
+    /// An integer whose absolute value is bounded.
+    Signed {
+        /// The bound.
+        limit: i64,
+    },
+    /// Names, each once.
+    Names {
+        /// A regular expression that each of them matches.
+        pattern: &'static str,
+    },
+    /// Names with weights.
+    Weights,
+    /// The name of a format.
+    Format,
+    /// A number as a decimal, a fraction or a quadratic irrational.
+    Quadratic,
+    /// Text that matches a regular expression.
+    Pattern(&'static str),
+    /// Any text: whether it is right shows when it is looked up.
+    Text,
+}
+
+/// A value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number, not NaN and not infinite.
+    Number(f64),
+    /// An integer.
+    Integer(u64),
+    /// An integer with a sign.
+    Signed(i64),
+    /// Several numbers, none of them NaN or infinite.
+    Numbers(Vec<f64>),
+    /// Names.
+    Names(Vec<String>),
+    /// Names with weights.
+    Weights(Vec<(String, f64)>),
+    /// Text.
+    Text(String),
+}
+
+/// What is wrong with a value that is not of the shape's type: only programs can make one.
+const OTHER_TYPE: &str = "has another type";
+
+/// What is wrong with a value.
+type Detail = Cow<'static, str>;
+
+/// The longest value of a parameter in JSON, in bytes: far longer than any that is in order.
+const LONGEST: usize = 1 << 16;
+
+impl Shape {
+    /// What is allowed, in words.
+    #[must_use]
+    pub fn allowed(self) -> String {
+        let integers = |max: u64| match max {
+            u64::MAX => "18446744073709551615".into(),
+            max => max.to_string(),
+        };
+        match self {
+            Self::Number { min, max } if max == f64::MAX => {
+                format!("a finite number of at least {}", number(min))
+            }
+            Self::Number { min, max } => {
+                format!("a number from {} to {}", number(min), number(max))
+            }
+            Self::Integer { min, max } => format!("an integer from {min} to {}", integers(max)),
+            Self::Strength { max } => format!("off, on, or a number from 0 to {}", number(max)),
+            Self::Numbers(names) => format!("{} finite numbers: {}", names.len(), names.join(",")),
+            Self::Vertices => "the coordinates of at least 3 vertices: x1,y1,x2,y2,x3,y3,…".into(),
+            Self::Signed { limit } => format!("an integer within ±{limit}"),
+            Self::Names { .. } => "different names, joined by commas".into(),
+            Self::Weights => "name:weight pairs, joined by commas".into(),
+            Self::Format => Encoding::ALL.map(Encoding::name).join(", "),
+            Self::Quadratic => {
+                "a decimal, a fraction or a quadratic irrational, such as (5-sqrt(3))/2".into()
+            }
+            Self::Pattern(pattern) => format!("text that matches {pattern}"),
+            Self::Text => "text".into(),
+        }
+    }
+
+    /// Reads a value from text.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn read(self, text: &str) -> Result<Value, Detail> {
+        let text = text.trim();
+        let value = match self {
+            Self::Number { .. } => Value::Number(finite(text)?),
+            Self::Integer { .. } => Value::Integer(integer(text)?),
+            Self::Strength { .. } => Value::Number(match text {
+                "off" => 0.0,
+                "on" => 1.0,
+                text => finite(text).map_err(|_| "must be off, on or a number")?,
+            }),
+            Self::Numbers(_) | Self::Vertices => Value::Numbers(numbers(text)?),
+            Self::Signed { .. } => Value::Signed(integer(text)?),
+            Self::Names { .. } => Value::Names(text.split(',').map(|name| name.trim().into()).collect()),
+            Self::Weights => Value::Weights(weights(text)?),
+            Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text => {
+                Value::Text(text.into())
+            }
+        };
+        self.check(value)
+    }
+
+    /// Reads a value from JSON. Lists may also be written as in an address; long integers, and numbers that
+    /// are not decimals, are written as text.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn read_json(self, json: &RawValue) -> Result<Value, Detail> {
+        if json.get().len() > LONGEST {
+            return Err(format!("is {} bytes long, the most is {LONGEST}", json.get().len()).into());
+        }
+        let text = serde_json::from_str::<String>(json.get());
+        let is_number = json.get().starts_with(|c: char| c == '-' || c.is_ascii_digit());
+        let value = match (self, text) {
+            (Self::Number { .. } | Self::Strength { .. }, Err(_)) if is_number => {
+                Value::Number(finite(json.get())?)
+            }
+            (Self::Number { .. }, _) => return Err("must be a number".into()),
+            (_, Ok(text)) => return self.read(&text),
+            (Self::Strength { .. }, _) => return Err("must be \"off\", \"on\" or a number".into()),
+            (Self::Integer { .. }, _) => Value::Integer(integer(json.get())?),
+            (Self::Signed { .. }, _) => Value::Signed(integer(json.get())?),
+            (Self::Numbers(_) | Self::Vertices, _) => {
+                let values = serde_json::from_str(json.get());
+                Value::Numbers(values.map_err(|_| "must be an array of numbers")?)
+            }
+            (Self::Names { .. }, _) => {
+                let names = serde_json::from_str(json.get());
+                Value::Names(names.map_err(|_| "must be an array of names")?)
+            }
+            (Self::Weights, _) => {
+                Value::Weights(json::weights(json)?)
+            }
+            (Self::Quadratic, _) if is_number => Value::Text(json.get().into()),
+            (Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text, _) => {
+                return Err("must be text".into());
+            }
+        };
+        self.check(value)
+    }
+
+    /// Checks that a value is of this shape.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn check(self, value: Value) -> Result<Value, Detail> {
+        const RANGE: Detail = Cow::Borrowed("out of range");
+        match (self, &value) {
+            (Self::Number { .. } | Self::Strength { .. }, Value::Number(n)) if !n.is_finite() => {
+                Err("must be finite".into())
+            }
+            (Self::Number { min, max }, Value::Number(n)) => {
+                if (min..=max).contains(n) {
+                    Ok(value)
+                } else {
+                    Err(RANGE)
+                }
+            }
+            (Self::Strength { max }, Value::Number(n)) => {
+                if (0.0..=max).contains(n) {
+                    Ok(value)
+                } else {
+                    Err(RANGE)
+                }
+            }
+            (Self::Integer { min, max }, Value::Integer(n)) => {
+                if (min..=max).contains(n) {
+                    Ok(value)
+                } else {
+                    Err(RANGE)
+                }
+            }
+            (Self::Signed { limit }, Value::Signed(n)) => {
+                if n.unsigned_abs() <= limit.unsigned_abs() {
+                    Ok(value)
+                } else {
+                    Err(RANGE)
+                }
+            }
+            (Self::Numbers(_) | Self::Vertices, Value::Numbers(values)) => {
+                if values.iter().any(|value| !value.is_finite()) {
+                    return Err("must be finite".into());
+                }
+                let count = values.len();
+                match self {
+                    Self::Numbers(names) if names.len() != count => {
+                        let expected = names.len();
+                        Err(format!("expected {expected} numbers, got {count}").into())
+                    }
+                    Self::Vertices if count % 2 == 1 => {
+                        Err(format!("expected pairs of numbers, got {count} numbers").into())
+                    }
+                    _ => Ok(value),
+                }
+            }
+            (Self::Names { .. }, Value::Names(_))
+            | (Self::Weights, Value::Weights(_))
+            | (
+                Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text,
+                Value::Text(_),
+            ) => Ok(value),
+            // Messages, whose fields have types of their own, are read by these names.
+            _ => Err(OTHER_TYPE.into()),
+        }
+    }
+}
+
+fn finite(text: &str) -> Result<f64, &'static str> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(value) if value.is_nan() => Err("must be a number"),
+        Ok(_) => Err("must be finite"),
+        Err(_) => Err("must be a number"),
+    }
+}
+
+fn integer<T: FromStr>(text: &str) -> Result<T, &'static str> {
+    text.parse().map_err(|_| {
+        let digits = text.strip_prefix('-').unwrap_or(text);
+        let is_integer = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+        if is_integer {
+            "out of range"
+        } else {
+            "must be an integer"
+        }
+    })
+}
+
+fn numbers(text: &str) -> Result<Vec<f64>, Detail> {
+    let part = |part: &str| {
+        let part = part.trim();
+        finite(part).map_err(|detail| match part {
+            "" => "a number is missing".into(),
+            part => format!("`{part}` {detail}").into(),
+        })
+    };
+    text.split(',').map(part).collect()
+}
+
+/// Names with weights, such as `oak:3,birch:1`; the weight of a name without one is 1.
+fn weights(text: &str) -> Result<Vec<(String, f64)>, Detail> {
+    let pair = |part: &str| {
+        let (name, weight) = part.split_once(':').unwrap_or((part, "1"));
+        let weight = weight.trim();
+        let read = finite(weight).map_err(|detail| format!("the weight `{weight}` {detail}"))?;
+        Ok((name.trim().to_owned(), read))
+    };
+    text.split(',').map(pair).collect()
+}
+
+impl Value {
+    /// As text, in the way an address has it.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        let listed = |parts: Vec<String>| parts.join(",");
+        match self {
+            Self::Number(value) => number(*value),
+            Self::Integer(value) => value.to_string(),
+            Self::Signed(value) => value.to_string(),
+            Self::Numbers(values) => listed(values.iter().map(|value| number(*value)).collect()),
+            Self::Names(names) => names.join(","),
+            Self::Weights(pairs) => {
+                let pair = |(name, weight): &(String, f64)| format!("{name}:{}", number(*weight));
+                listed(pairs.iter().map(pair).collect())
+            }
+            Self::Text(text) => text.clone(),
+        }
+    }
+}
+
+/// Types that values are read as.
+macro_rules! read_as {
+    ($($variant:ident as $kind:ty;)+) => {$(
+        impl TryFrom<&Value> for $kind {
+            type Error = &'static str;
+
+            fn try_from(value: &Value) -> Result<Self, Self::Error> {
+                match value {
+                    Value::$variant(value) => Ok(value.clone()),
+                    _ => Err(OTHER_TYPE),
+                }
+            }
+        }
+    )+};
+}
+
+read_as! {
+    Number as f64;
+    Integer as u64;
+    Signed as i64;
+    Numbers as Vec<f64>;
+    Names as Vec<String>;
+    Weights as Vec<(String, f64)>;
+    Text as String;
+}
+
+impl<const N: usize> TryFrom<&Value> for [f64; N] {
+    type Error = &'static str;
+
+    fn try_from(value: &Value) -> Result<Self, Self::Error> {
+        let values = Vec::try_from(value)?;
+        values.try_into().map_err(|_| OTHER_TYPE)
+    }
+}
+
+impl Serialize for Value {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Number(value) => value.serialize(serializer),
+            Self::Integer(value) => value.serialize(serializer),
+            Self::Signed(value) => value.serialize(serializer),
+            Self::Numbers(values) => values.serialize(serializer),
+            Self::Names(names) => names.serialize(serializer),
+            Self::Weights(pairs) => {
+                let mut map = serializer.serialize_map(Some(pairs.len()))?;
+                for (name, weight) in pairs {
+                    map.serialize_entry(name, weight)?;
+                }
+                map.end()
+            }
+            Self::Text(text) => text.serialize(serializer),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn json(text: &str) -> Box<RawValue> {
+        RawValue::from_string(text.into()).expect("JSON")
+    }
+
+    #[test]
+    fn text_and_json_say_the_same() {
+        let bounds = Shape::Number { min: 0.5, max: 2.0 };
+        let seed = Shape::Integer { min: 0, max: u64::MAX };
+        let warp = Shape::Strength { max: 2.0 };
+        let range = Shape::Numbers(&["min", "max"]);
+        for (shape, text, other, expected) in [
+            (bounds, " 1.5 ", "1.5", Ok(Value::Number(1.5))),
+            (bounds, "3", "3", Err("out of range")),
+            (bounds, "1e999", "1e999", Err("must be finite")),
+            (bounds, "x", "\"x\"", Err("must be a number")),
+            (seed, "18446744073709551615", "\"18446744073709551615\"", Ok(Value::Integer(u64::MAX))),
+            (seed, "18446744073709551616", "18446744073709551616", Err("out of range")),
+            (seed, "1.5", "1.5", Err("must be an integer")),
+            (seed, "-1", "-1", Err("out of range")),
+            (warp, "on", "\"on\"", Ok(Value::Number(1.0))),
+            (warp, "0.25", "0.25", Ok(Value::Number(0.25))),
+            (range, "1, 2", "[1, 2]", Ok(Value::Numbers(vec![1.0, 2.0]))),
+            (range, "1,2,3", "[1, 2, 3]", Err("expected 2 numbers, got 3")),
+            (Shape::Names { pattern: "" }, "a,b", "[\"a\", \"b\"]", Ok(Value::Names(vec!["a".into(), "b".into()]))),
+            (
+                Shape::Weights,
+                "oak:3,birch",
+                "{\"oak\": 3, \"birch\": 1}",
+                Ok(Value::Weights(vec![("oak".into(), 3.0), ("birch".into(), 1.0)])),
+            ),
+            (Shape::Quadratic, "1.5", "1.5", Ok(Value::Text("1.5".into()))),
+        ] {
+            let expected = expected.map_err(Cow::from);
+            assert_eq!(shape.read(text), expected, "{text}");
+            assert_eq!(shape.read_json(&json(other)), expected, "{other}");
+        }
+    }
+
+    #[test]
+    fn faults_of_lists_name_the_part() {
+        let box_ = Shape::Numbers(&["min_x", "min_y", "max_x", "max_y"]);
+        for (text, expected) in [
+            ("", "a number is missing"),
+            ("1,2", "expected 4 numbers, got 2"),
+            ("1,x,3,4", "`x` must be a number"),
+            ("1,inf,3,4", "`inf` must be finite"),
+        ] {
+            assert_eq!(box_.read(text), Err(expected.into()), "{text}");
+        }
+    }
+
+    #[test]
+    fn long_values_are_refused_unread() {
+        let long = format!("[{}0]", "0,".repeat(LONGEST));
+        assert!(Shape::Numbers(&["min", "max"]).read_json(&json(&long)).is_err());
+    }
+}
