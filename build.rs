@@ -9,19 +9,24 @@ use std::{
 };
 
 use prost::Message as _;
+use prost_types::{
+    FileDescriptorSet,
+    field_descriptor_proto::{Label, Type},
+};
 
 const CONTRACT: &str = "strew/v1/points.proto";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(env::var("OUT_DIR")?);
-    compile_contract(&out)?;
+    let descriptors = compile_contract(&out)?;
+    convert_sets(&descriptors, &out.join("point_set.rs"))?;
     list_tables(&root.join("tables"), &out.join("tables.rs"))?;
     Ok(())
 }
 
 /// Messages, server and client from the contract, in pure Rust; its descriptor set for reflection.
-fn compile_contract(out: &Path) -> Result<(), Box<dyn Error>> {
+fn compile_contract(out: &Path) -> Result<FileDescriptorSet, Box<dyn Error>> {
     println!("cargo::rerun-if-changed=proto");
     let descriptors = protox::compile([CONTRACT], ["proto"])?;
     fs::write(
@@ -32,8 +37,73 @@ fn compile_contract(out: &Path) -> Result<(), Box<dyn Error>> {
         .build_transport(false)
         .bytes(".strew.v1")
         .btree_map(".strew.v1")
-        .compile_fds(descriptors)?;
+        .compile_fds(descriptors.clone())?;
+    Ok(descriptors)
+}
+
+/// The conversions between the message of a set and values by name: a field that the contract has
+/// needs no code of its own.
+fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<dyn Error>> {
+    let mut messages = descriptors.file.iter().flat_map(|file| &file.message_type);
+    let set = messages.find(|message| message.name() == "PointSet");
+    let set = set.ok_or("the contract has no message PointSet")?;
+    let (mut read, mut write) = (String::new(), String::new());
+    for field in &set.field {
+        let name = field.name();
+        let is_list = field.label() == Label::Repeated;
+        let in_oneof = field.oneof_index.is_some() && !field.proto3_optional();
+        let is_map = field.type_name().ends_with("Entry");
+        let (kind, from, into) = match field.r#type() {
+            Type::Double => ("Number", "*v", "v"),
+            Type::Uint64 => ("Integer", "*v", "v"),
+            Type::String if is_list => ("Names", "v.clone()", "v"),
+            Type::String => ("Text", "v.clone()", "v"),
+            Type::Message if is_map => (
+                "Weights",
+                "v.iter().map(|(name, weight)| (name.clone(), *weight)).collect()",
+                "v.into_iter().collect()",
+            ),
+            Type::Message if field.type_name() == ".strew.v1.ScaleRange" => (
+                "Numbers",
+                "vec![v.min, v.max]",
+                "ScaleRange { min: v[0], max: v[1] }",
+            ),
+            other => return Err(format!("PointSet.{name}: no value is a {other:?}").into()),
+        };
+        if in_oneof {
+            let variant = camel_case(name);
+            writeln!(
+                read,
+                "if let Some(Amount::{variant}(v)) = &set.amount {{ values.push(({name:?}, Value::{kind}({from}))); }}"
+            )?;
+            writeln!(write, "({name:?}, Value::{kind}(v)) => set.amount = Some(Amount::{variant}({into})),")?;
+        } else if is_list {
+            writeln!(
+                read,
+                "let v = &set.{name}; if !v.is_empty() {{ values.push(({name:?}, Value::{kind}({from}))); }}"
+            )?;
+            writeln!(write, "({name:?}, Value::{kind}(v)) => set.{name} = {into},")?;
+        } else {
+            writeln!(read, "if let Some(v) = &set.{name} {{ values.push(({name:?}, Value::{kind}({from}))); }}")?;
+            let guard = if kind == "Numbers" { " if v.len() == 2" } else { "" };
+            writeln!(write, "({name:?}, Value::{kind}(v)){guard} => set.{name} = Some({into}),")?;
+        }
+    }
+    let code = format!(
+        "fn fields(set: &PointSet) -> Vec<(&'static str, Value)> {{ let mut values = vec![]; {read} values }}\n\
+         fn put(set: &mut PointSet, name: &str, value: Value) {{ match (name, value) {{ {write} _ => {{}} }} }}\n"
+    );
+    fs::write(file, code)?;
     Ok(())
+}
+
+/// `min_distance` as `MinDistance`.
+fn camel_case(name: &str) -> String {
+    let upper = |word: &str| {
+        let (first, rest) = word.split_at(word.len().min(1));
+        first.to_uppercase() + rest
+    };
+    name.split('_').map(upper).collect()
 }
 
 /// A list of (file name, content) of every table in the folder, in the order of their names.

@@ -1,146 +1,74 @@
-//! What every error is on the wire, for both doors, in one place.
+//! What every error is on the wire, by both protocols, in one place.
 
 use http::StatusCode;
 use tonic::Code;
 
 use crate::service::Kind;
 
-/// An error kind in HTTP terms.
+/// What a kind of error is on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Problem {
-    /// The status.
-    pub status: StatusCode,
+pub struct Wire {
     /// The last part of the problem type `urn:strew:problem:…`.
     pub slug: &'static str,
     /// The problem's title: the same for all problems of the type.
     pub title: &'static str,
+    /// The status in HTTP.
+    pub status: StatusCode,
+    /// The code in gRPC.
+    pub code: Code,
 }
 
-/// What a kind of error is in HTTP.
-#[must_use]
-pub const fn http(kind: Kind) -> Problem {
-    let (status, slug, title) = match kind {
-        Kind::Invalid => (
-            StatusCode::BAD_REQUEST,
-            "invalid-query",
-            "The query is not valid",
-        ),
-        Kind::TooManyPoints => (
-            StatusCode::PAYLOAD_TOO_LARGE,
-            "too-many-points",
-            "The answer would have too many points",
-        ),
-        Kind::TooManyRows => (
-            StatusCode::PAYLOAD_TOO_LARGE,
-            "too-many-rows",
-            "Counting the points would take too long",
-        ),
-        Kind::BodyTooLarge => (
-            StatusCode::PAYLOAD_TOO_LARGE,
-            "body-too-large",
-            "The query is too long",
-        ),
-        Kind::OtherTable => (
-            StatusCode::CONFLICT,
-            "other-table",
-            "Another table would answer",
-        ),
-        Kind::NotAcceptable => (
-            StatusCode::NOT_ACCEPTABLE,
-            "not-acceptable",
-            "No acceptable format",
-        ),
-        Kind::NoSuchPoint => (
-            StatusCode::NOT_FOUND,
-            "no-such-point",
-            "There is no such point",
-        ),
-        Kind::NoSuchPath => (StatusCode::NOT_FOUND, "no-such-path", "Nothing is here"),
-        Kind::NoSuchMethod => (
-            StatusCode::METHOD_NOT_ALLOWED,
-            "no-such-method",
-            "The path does not take this method",
-        ),
-        Kind::Unauthenticated => (
-            StatusCode::UNAUTHORIZED,
-            "unauthenticated",
-            "A key is needed",
-        ),
-        Kind::NotAllowed => (
-            StatusCode::FORBIDDEN,
-            "not-allowed",
-            "The caller may not do this",
-        ),
-        Kind::TooManyStreams => (
-            StatusCode::TOO_MANY_REQUESTS,
-            "too-many-streams",
-            "Too many answers to this key are under way",
-        ),
-        Kind::TooFast => (
-            StatusCode::TOO_MANY_REQUESTS,
-            "too-fast",
-            "Points are taken too fast",
-        ),
-        Kind::Busy => (
-            StatusCode::SERVICE_UNAVAILABLE,
-            "busy",
-            "The server has as much to do as it takes on",
-        ),
-        Kind::BodyTooSlow => (
-            StatusCode::REQUEST_TIMEOUT,
-            "body-too-slow",
-            "The query took too long to come",
-        ),
-        Kind::TimeOver => (
-            StatusCode::SERVICE_UNAVAILABLE,
-            "time-over",
-            "The answer took too long",
-        ),
-        Kind::ShuttingDown => (
-            StatusCode::SERVICE_UNAVAILABLE,
-            "shutting-down",
-            "The server is shutting down",
-        ),
-        Kind::Internal => (
-            StatusCode::INTERNAL_SERVER_ERROR,
-            "internal",
-            "Something is wrong in the server",
-        ),
+/// Makes the table, and the match from a kind to its row.
+macro_rules! kinds {
+    ($($kind:ident: $slug:literal, $title:literal, $status:ident, $code:ident;)+) => {
+        /// What a kind of error is on the wire.
+        #[must_use]
+        pub const fn wire(kind: Kind) -> Wire {
+            match kind {
+                $(Kind::$kind => Wire {
+                    slug: $slug,
+                    title: $title,
+                    status: StatusCode::$status,
+                    code: Code::$code,
+                },)+
+            }
+        }
     };
-    Problem {
-        status,
-        slug,
-        title,
-    }
+}
+
+kinds! {
+    Invalid: "invalid-query", "The query is not valid", BAD_REQUEST, InvalidArgument;
+    TooManyPoints: "too-many-points", "The answer would have too many points", PAYLOAD_TOO_LARGE, ResourceExhausted;
+    TooManyRows: "too-many-rows", "Counting the points would take too long", PAYLOAD_TOO_LARGE, ResourceExhausted;
+    BodyTooLarge: "body-too-large", "The query is too long", PAYLOAD_TOO_LARGE, ResourceExhausted;
+    OtherTable: "other-table", "Another table would answer", CONFLICT, FailedPrecondition;
+    NotAcceptable: "not-acceptable", "No acceptable format", NOT_ACCEPTABLE, InvalidArgument;
+    NoSuchPoint: "no-such-point", "There is no such point", NOT_FOUND, NotFound;
+    NoSuchPath: "no-such-path", "Nothing is here", NOT_FOUND, Unimplemented;
+    NoSuchMethod: "no-such-method", "The path does not take this method", METHOD_NOT_ALLOWED, Unimplemented;
+    Unauthenticated: "unauthenticated", "A key is needed", UNAUTHORIZED, Unauthenticated;
+    NotAllowed: "not-allowed", "The caller may not do this", FORBIDDEN, PermissionDenied;
+    TooManyStreams: "too-many-streams", "Too many current streams", TOO_MANY_REQUESTS, ResourceExhausted;
+    TooFast: "too-fast", "Points are taken too fast", TOO_MANY_REQUESTS, ResourceExhausted;
+    Busy: "busy", "The server is busy", SERVICE_UNAVAILABLE, ResourceExhausted;
+    BodyTooSlow: "body-too-slow", "The query arrived too slowly", REQUEST_TIMEOUT, DeadlineExceeded;
+    TimeOver: "time-over", "The answer took too long", SERVICE_UNAVAILABLE, ResourceExhausted;
+    ShuttingDown: "shutting-down", "The server is shutting down", SERVICE_UNAVAILABLE, Unavailable;
+    Internal: "internal", "An internal error", INTERNAL_SERVER_ERROR, Internal;
 }
 
 /// The problem type of a kind of error.
 #[must_use]
 pub fn urn(kind: Kind) -> String {
-    format!("urn:strew:problem:{}", http(kind).slug)
+    format!("urn:strew:problem:{}", wire(kind).slug)
 }
 
-/// What a kind of error is in gRPC.
+/// Every problem type, and that of errors that a library makes.
 #[must_use]
-pub const fn grpc(kind: Kind) -> Code {
-    match kind {
-        Kind::Invalid | Kind::NotAcceptable => Code::InvalidArgument,
-        Kind::TooManyPoints
-        | Kind::TooManyRows
-        | Kind::BodyTooLarge
-        | Kind::TooManyStreams
-        | Kind::TooFast
-        | Kind::Busy
-        | Kind::TimeOver => Code::ResourceExhausted,
-        Kind::BodyTooSlow => Code::DeadlineExceeded,
-        Kind::Unauthenticated => Code::Unauthenticated,
-        Kind::NotAllowed => Code::PermissionDenied,
-        Kind::OtherTable => Code::FailedPrecondition,
-        Kind::NoSuchPoint => Code::NotFound,
-        Kind::NoSuchPath | Kind::NoSuchMethod => Code::Unimplemented,
-        Kind::ShuttingDown => Code::Unavailable,
-        Kind::Internal => Code::Internal,
-    }
+pub fn types() -> Vec<String> {
+    let mut types: Vec<String> = Kind::ALL.map(urn).into();
+    types.push("about:blank".into());
+    types
 }
 
 #[cfg(test)]
@@ -150,20 +78,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_kind_is_an_error_by_both_doors_and_has_a_type_of_its_own() {
-        let slugs: BTreeSet<_> = Kind::ALL.iter().map(|&kind| http(kind).slug).collect();
+    fn every_kind_is_an_error_by_both_protocols_and_has_a_type_of_its_own() {
+        let slugs: BTreeSet<_> = Kind::ALL.iter().map(|&kind| wire(kind).slug).collect();
         assert_eq!(slugs.len(), Kind::ALL.len());
         for kind in Kind::ALL {
-            let problem = http(kind);
+            let problem = wire(kind);
             let (client, server) = (
                 problem.status.is_client_error(),
                 problem.status.is_server_error(),
             );
             assert!(client || server, "{kind:?}");
             assert!(!problem.title.is_empty(), "{kind:?}");
-            let code = grpc(kind);
+            let code = problem.code;
             assert!(code != Code::Ok && code != Code::Unknown, "{kind:?}");
-            // Whose fault it is does not depend on the door.
+            // Whose fault it is does not depend on the protocol.
             let ours = matches!(
                 code,
                 Code::Internal | Code::Unavailable | Code::ResourceExhausted

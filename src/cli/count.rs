@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Failure, flags::Counted, output, query::Asked};
+use super::{Failure, flags::Counted, output, query::QueryArgs};
 use crate::service::query::Resolved;
 
 /// Flags of `strew count`.
@@ -12,7 +12,7 @@ pub(super) struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    query: Asked<Counted>,
+    query: QueryArgs<Counted>,
 }
 
 #[derive(Serialize)]

@@ -8,25 +8,23 @@ use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches};
 use crate::service::{
     Encoding,
     query::{
-        LOOKS_NAMES, PARAMETERS, Parameter, Parameters, REGION_NAMES, SET_NAMES, WINDOW_NAMES,
+        Group, Parameter, Shape, Values, groups,
+        parameters::{self, PARAMETERS},
     },
 };
 
 /// Which parameters a command takes.
 pub(super) trait Takes: fmt::Debug + Send + Sync + 'static {
-    /// Whether it takes the one of this name.
-    fn takes(name: &str) -> bool;
+    /// By their groups.
+    const GROUPS: &'static [Group];
+
+    /// Whether it takes a parameter.
+    fn takes(parameter: &Parameter) -> bool {
+        Self::GROUPS.contains(&parameter.group)
+    }
 }
 
-const NEAR: [&str; 3] = ["at", "k", "radius"];
-const PARTS: &str = "parts";
-
-/// What points there are.
-fn is_of_set(name: &str) -> bool {
-    SET_NAMES.contains(&name)
-}
-
-/// A query with its looks, as `GET /v1/points` has them.
+/// A query with its output, as `GET /v1/points` takes it.
 #[derive(Debug)]
 pub(super) struct Answered;
 /// A query of which only the number of points matters, as for `GET /v1/count`.
@@ -46,73 +44,87 @@ pub(super) struct Near;
 pub(super) struct Measured;
 
 impl Takes for Answered {
-    fn takes(name: &str) -> bool {
-        is_of_set(name)
-            || [REGION_NAMES, WINDOW_NAMES, LOOKS_NAMES]
-                .concat()
-                .contains(&name)
-    }
+    const GROUPS: &'static [Group] = groups::POINTS;
 }
 
 impl Takes for Counted {
-    fn takes(name: &str) -> bool {
-        is_of_set(name) || [REGION_NAMES, WINDOW_NAMES].concat().contains(&name)
-    }
+    const GROUPS: &'static [Group] = groups::COUNT;
 }
 
 impl Takes for Parted {
-    fn takes(name: &str) -> bool {
-        name == PARTS || Answered::takes(name)
-    }
+    const GROUPS: &'static [Group] = &[
+        Group::Split,
+        Group::Region,
+        Group::Amount,
+        Group::Count,
+        Group::Profile,
+        Group::Table,
+        Group::Points,
+        Group::Attributes,
+        Group::Window,
+        Group::Output,
+    ];
 }
 
 impl Takes for Single {
-    fn takes(name: &str) -> bool {
-        is_of_set(name) && name != "count"
-    }
+    const GROUPS: &'static [Group] = groups::SINGLE;
 }
 
 impl Takes for Near {
-    fn takes(name: &str) -> bool {
-        Single::takes(name) || NEAR.contains(&name)
-    }
+    const GROUPS: &'static [Group] = groups::NEAREST;
 }
 
 impl Takes for Measured {
-    fn takes(name: &str) -> bool {
-        let is_other = ["table", "attributes", "scale_range", "variants"].contains(&name);
-        name == "bbox" || is_of_set(name) && !is_other
+    const GROUPS: &'static [Group] = groups::COUNT;
+
+    fn takes(parameter: &Parameter) -> bool {
+        let is_other = *parameter == parameters::TABLE
+            || parameter.group == Group::Attributes
+            || parameter.group == Group::Region && *parameter != parameters::BBOX;
+        Self::GROUPS.contains(&parameter.group) && !is_other
     }
 }
 
 /// The flags of the parameters that `T` takes, as they were given.
 pub(super) struct Flags<T> {
-    given: Vec<(&'static str, String)>,
+    given: Vec<(&'static Parameter, String)>,
     takes: PhantomData<T>,
 }
 
 impl<T> fmt::Debug for Flags<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Flags").field(&self.given).finish()
+        let given = self.given.iter().map(|(parameter, text)| (parameter.name, text));
+        f.debug_list().entries(given).finish()
+    }
+}
+
+impl<T: Takes> Flags<T> {
+    /// All of them as values.
+    pub(super) fn values(&self) -> Values {
+        self.values_of(T::GROUPS)
     }
 }
 
 impl<T> Flags<T> {
-    /// The given ones as parameters, as far as they are wanted.
-    pub(super) fn parameters(&self, wanted: impl Fn(&str) -> bool) -> Parameters {
-        let given = self.given.iter().filter(|(name, _)| wanted(name));
-        Parameters::of(given.map(|(name, text)| (*name, Some(text.clone()))))
+    /// Those of some groups as values.
+    pub(super) fn values_of(&self, groups: &'static [Group]) -> Values {
+        let mut values = Values::new(groups, "");
+        for (parameter, text) in &self.given {
+            if groups.contains(&parameter.group) {
+                values.add_text(parameter.name, text);
+            }
+        }
+        values
     }
 
-    /// Those that are given, with their values.
-    pub(super) fn given(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        self.given.iter().map(|(name, text)| (*name, text.as_str()))
+    /// Those that are given.
+    pub(super) fn given(&self) -> impl Iterator<Item = &'static Parameter> {
+        self.given.iter().map(|(parameter, _)| *parameter)
     }
 
-    /// The value of one, if it is given.
-    pub(super) fn get(&self, wanted: &str) -> Option<&str> {
-        let mut given = self.given();
-        given.find_map(|(name, text)| (name == wanted).then_some(text))
+    /// Whether one is given.
+    pub(super) fn has(&self, wanted: &Parameter) -> bool {
+        self.given().any(|parameter| parameter == wanted)
     }
 }
 
@@ -121,16 +133,13 @@ pub(super) fn flag(name: &str) -> String {
     format!("--{}", name.replace('_', "-"))
 }
 
-/// Under which title `--help` lists it.
-fn heading(name: &str) -> &'static str {
-    if REGION_NAMES.contains(&name) || NEAR.contains(&name) {
-        WHERE
-    } else if WINDOW_NAMES.contains(&name) || name == PARTS {
-        "Which of the points"
-    } else if LOOKS_NAMES.contains(&name) {
-        "How the answer looks"
-    } else {
-        "Which points there are"
+/// Under which title `--help` lists the parameters of a group.
+const fn heading(group: Group) -> &'static str {
+    match group {
+        Group::Region | Group::Nearest | Group::Path => WHERE,
+        Group::Window | Group::Split => "Which of the points",
+        Group::Output => "Output",
+        _ => "Set of points",
     }
 }
 
@@ -149,7 +158,7 @@ fn own_words(name: &str) -> Option<(String, &'static str)> {
             "what the output's name ends with, else json",
         )),
         "limit" => Some((
-            "How many points to give at most. The cursor of the rest is said beforehand.".into(),
+            "The greatest number of points. The cursor of the rest is reported before the points.".into(),
             "all",
         )),
         "cursor" => Some((
@@ -171,42 +180,41 @@ fn argument(parameter: &'static Parameter) -> Arg {
         Some((first, _)) if name != "format" => first,
         _ => about.trim_end_matches('.'),
     };
-    let allowed = parameter.allowed;
+    let allowed = parameter.allowed();
     let long = format!("{about}{default}\n\nAllowed: {allowed}");
-    let is_name = ["profile", "map", "format", "attributes", "variants"].contains(&name);
+    let is_name = parameter.shape.is_of_names() || name == "profile" || name == "map";
     Arg::new(name)
         .long(name.replace('_', "-"))
         .aliases(name.contains('_').then_some(name))
-        .value_name(value_name(name))
+        .value_name(value_name(parameter))
         .help(format!("{short}{default}"))
         .long_help(long)
-        .help_heading(heading(name))
+        .help_heading(heading(parameter.group))
         .action(ArgAction::Set)
         // Negative numbers, also those that are wrong: the query says what is.
         .allow_hyphen_values(!is_name)
 }
 
-fn value_name(name: &str) -> &'static str {
-    match name {
-        "bbox" => "MINX,MINY,MAXX,MAXY",
-        "circle" => "X,Y,RADIUS",
-        "polygon" => "X1,Y1,X2,Y2,…",
-        "at" => "X,Y",
-        "scale_range" => "MIN,MAX",
-        "variants" => "NAME:WEIGHT,…",
-        "attributes" => "NAME,…",
-        "table" => "DIGEST",
-        "profile" | "map" | "format" => "NAME",
-        "cursor" => "CURSOR",
-        "size" => "PIXELS",
-        "warp" => "off|on|STRENGTH",
-        _ => "NUMBER",
+/// The value in the usage of a flag.
+fn value_name(parameter: &Parameter) -> String {
+    match parameter.shape {
+        Shape::Numbers(names) => names.join(",").to_uppercase().replace('_', ""),
+        Shape::Vertices => "X1,Y1,X2,Y2,…".into(),
+        Shape::Names { .. } => "NAME,…".into(),
+        Shape::Weights => "NAME:WEIGHT,…".into(),
+        Shape::Strength { .. } => "off|on|STRENGTH".into(),
+        Shape::Number { .. } | Shape::Integer { .. } | Shape::Signed { .. } | Shape::Quadratic => {
+            "NUMBER".into()
+        }
+        Shape::Format => "NAME".into(),
+        Shape::Pattern(_) => "HEX".into(),
+        Shape::Text => "NAME".into(),
     }
 }
 
 impl<T: Takes> clap::Args for Flags<T> {
     fn augment_args(command: Command) -> Command {
-        let taken = PARAMETERS.iter().filter(|p| T::takes(p.name));
+        let taken = PARAMETERS.iter().copied().filter(|parameter| T::takes(parameter));
         command.args(taken.map(argument))
     }
 
@@ -217,10 +225,10 @@ impl<T: Takes> clap::Args for Flags<T> {
 
 impl<T: Takes> FromArgMatches for Flags<T> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let taken = PARAMETERS.iter().filter(|p| T::takes(p.name));
+        let taken = PARAMETERS.iter().copied().filter(|parameter| T::takes(parameter));
         let given = taken.filter_map(|parameter| {
             let text: &String = matches.get_one(parameter.name)?;
-            Some((parameter.name, text.clone()))
+            Some((parameter, text.clone()))
         });
         Ok(Self {
             given: given.collect(),
@@ -240,18 +248,19 @@ mod tests {
 
     #[test]
     fn every_parameter_is_a_flag_of_some_command() {
-        for Parameter { name, .. } in PARAMETERS {
-            let near = ["at", "k", "radius"].contains(name);
-            let parts = *name == "parts";
-            assert_eq!(Answered::takes(name), !near && !parts, "{name}");
-            assert_eq!(Parted::takes(name), !near, "{name}");
-            assert!(!near || Near::takes(name), "{name}");
-            let looks = LOOKS_NAMES.contains(name);
-            assert_eq!(
-                Counted::takes(name),
-                Answered::takes(name) && !looks,
-                "{name}"
-            );
+        for parameter in PARAMETERS {
+            let taken = [
+                Answered::takes(parameter),
+                Parted::takes(parameter),
+                Near::takes(parameter),
+            ];
+            assert!(taken.contains(&true), "{}", parameter.name);
         }
+    }
+
+    #[test]
+    fn a_split_query_takes_what_a_query_takes() {
+        let both = || PARAMETERS.iter().filter(|parameter| Parted::takes(parameter));
+        assert!(both().all(|parameter| Answered::takes(parameter) != (parameter.name == "parts")));
     }
 }

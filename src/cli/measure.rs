@@ -19,7 +19,7 @@ use super::{
     query::described,
     refusal::Source,
 };
-use crate::service::{Planned, query::read_bbox};
+use crate::service::{Draft, Error, Planned, query::parameters::BBOX};
 
 /// Flags of `strew measure`. What is measured: a table file (`--table`), a file of points
 /// (`--points`), or, without either, the points of a query as for `strew sample`.
@@ -76,7 +76,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Usage(problem));
     }
     let nothing = args.table.is_none() && args.points.is_none();
-    if nothing && args.flags.get("bbox").is_none() {
+    if nothing && !args.flags.has(&BBOX) {
         let problem = "nothing to measure: --table FILE, --points FILE or --bbox BOX is missing";
         return Err(Failure::Usage(anyhow!(problem)));
     }
@@ -183,8 +183,8 @@ impl Args {
 
     /// Only the box: min x, min y, max x, max y.
     fn corners(&self) -> anyhow::Result<[f64; 4]> {
-        let read = read_bbox(self.flags.get("bbox")).map_err(|fault| anyhow!("{fault}"))?;
-        read.ok_or_else(|| anyhow!("--bbox is missing"))
+        let bbox = self.flags.values().require(&BBOX);
+        bbox.map_err(|faults| anyhow!("{}", Error::from(faults)))
     }
 
     fn twins(&self, table: &Table) -> anyhow::Result<Vec<Twin>> {
@@ -223,8 +223,7 @@ fn square([min_x, min_y, max_x, max_y]: [f64; 4]) -> anyhow::Result<([f64; 2], f
 fn of_query(args: &Args) -> Result<(Report, Option<Target>), Failure> {
     let config = args.settings.merged()?;
     let catalog = config.tables()?;
-    let parameters = args.flags.parameters(|_| true);
-    let checked = parameters.check(&catalog, 0, None, vec![]);
+    let checked = Draft::of(args.flags.values()).check(&catalog, 0);
     let planned = checked.and_then(|(query, _)| Planned::at_once(query, &config.limits));
     let planned = planned.map_err(|error| Source::Flags.refused(error))?;
     let (corner, side) = square(planned.query.region.bbox()).map_err(Failure::Usage)?;

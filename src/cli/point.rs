@@ -9,7 +9,7 @@ use super::{
     query::placed,
     refusal::Source,
 };
-use crate::service::{Error, Found, query::ResolvedSet};
+use crate::service::{Found, Nearest, Set, query::ResolvedSet};
 
 /// Flags of `strew point`.
 #[derive(Debug, clap::Args)]
@@ -17,7 +17,7 @@ pub(super) struct PointArgs {
     /// The id of the point: its lattice address, such as -31:52.
     #[arg(value_name = "ID", allow_hyphen_values = true)]
     id: String,
-    /// Print the document of GET /v1/points/{id} instead: the point and the query as understood.
+    /// Print the document of GET /v1/points/{id} instead: the point and the set with everything filled in.
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -29,7 +29,7 @@ pub(super) struct PointArgs {
 /// Flags of `strew nearest`.
 #[derive(Debug, clap::Args)]
 pub(super) struct NearestArgs {
-    /// Print the document of GET /v1/nearest instead: the points and the query as understood.
+    /// Print the document of GET /v1/nearest instead: the points and the set with everything filled in.
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -53,9 +53,13 @@ struct Several {
 /// Prints a point.
 pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
     let config = args.settings.merged()?;
-    let placed = placed(&args.flags.parameters(|_| true), &[], &config)?;
-    let found = placed.point(&args.id);
-    let point = found.map_err(|error| Source::Flags.refused(error))?;
+    let catalog = config.tables()?;
+    let set = Set::single(&args.flags.values(), &catalog);
+    let found = set.and_then(placed).and_then(|placed| {
+        let point = placed.point(&args.id)?;
+        Ok((placed, point))
+    });
+    let (placed, point) = found.map_err(|error| Source::Flags.refused(error))?;
     if args.json {
         let query = placed.resolved;
         return output::print_json([One { point, query }]);
@@ -65,13 +69,15 @@ pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
 
 /// Prints the points near a place.
 pub(super) fn nearest(args: &NearestArgs) -> Result<(), Failure> {
-    let refused = |error| Source::Flags.refused(error);
     let config = args.settings.merged()?;
-    let parameters = args.flags.parameters(|_| true);
-    let around = parameters.around().map_err(Error::Invalid);
-    let around = around.map_err(refused)?;
-    let placed = placed(&parameters, &["at", "k", "radius"], &config)?;
-    let neighbors = placed.nearest(around).map_err(refused)?;
+    let catalog = config.tables()?;
+    let near = Nearest::of_set(&args.flags.values(), &catalog);
+    let found = near.and_then(|(set, nearest)| {
+        let placed = placed(set)?;
+        let neighbors = placed.nearest(nearest)?;
+        Ok((placed, neighbors))
+    });
+    let (placed, neighbors) = found.map_err(|error| Source::Flags.refused(error))?;
     if args.json {
         let query = placed.resolved;
         return output::print_json([Several { neighbors, query }]);

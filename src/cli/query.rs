@@ -15,21 +15,19 @@ use super::{
 use crate::{
     config::Config,
     service::{
-        Catalog, Encoding, Error, Placed, Planned, PlannedSet, Ready, Set,
+        Catalog, Draft, Error, Options, Placed, Planned, PlannedSet, Ready, Set,
         catalog::CatalogError,
-        encode::Options,
         query::{
-            Body, Draft, LOOKS_NAMES, Parameters, REGION_NAMES, RegionDraft, ShapeDraft, read_body,
-            read_region,
+            Faults, Group, RegionDraft, ShapeDraft, groups, of, read_body, read_region,
         },
     },
 };
 
 /// A query with a region: by flags, or whole in a file.
 #[derive(Debug, clap::Args)]
-pub(super) struct Asked<T: Takes> {
+pub(super) struct QueryArgs<T: Takes> {
     /// A whole query as JSON, the body of POST /v1/points:query; - is standard input. Beside it only
-    /// the looks of the answer may be given.
+    /// flags of the output may be given.
     #[arg(long, value_name = "FILE")]
     query: Option<PathBuf>,
     /// The region: a chunk of the world grid. Coordinates are relative to its corner,
@@ -45,103 +43,95 @@ pub(super) struct Asked<T: Takes> {
     pub(super) settings: config::Args,
 }
 
-/// A query that is in order, with its plan.
+/// A valid query with its plan.
 #[derive(Debug)]
-pub(super) struct Ask {
+pub(super) struct PlannedQuery {
     pub(super) draft: Draft,
     pub(super) options: Options,
     pub(super) planned: Planned,
     pub(super) source: Source,
 }
 
-impl<T: Takes> Asked<T> {
+impl<T: Takes> QueryArgs<T> {
     /// The query, checked and planned.
-    pub(super) fn plan(&self, config: &Config) -> Result<Ask, Failure> {
-        let (body, source) = self.read()?;
-        let (options, mut faults) = (body.options, body.faults);
-        // Only files are Parquet, so no query knows the name.
-        let parquet = Some(Encoding::Parquet.name());
-        let is_parquet = |fault: &mut crate::service::Fault| {
-            fault.field == "format" && fault.value.as_deref() == parquet
-        };
-        let to_file = faults.extract_if(.., is_parquet).count() > 0;
-        let mut options = Options {
-            encoding: options.encoding.or(to_file.then_some(Encoding::Parquet)),
-            ..options
-        };
-        self.override_looks(&mut options)?;
+    pub(super) fn plan(&self, config: &Config) -> Result<PlannedQuery, Failure> {
+        let (draft, source) = self.read()?;
         let catalog = config.tables()?;
         let limits = &config.limits;
-        let query = body.draft.check(&catalog, limits.max_vertices, faults);
-        let planned = query.and_then(|query| Planned::at_once(query, limits));
-        Ok(Ask {
-            draft: body.draft,
+        let checked = draft.check(&catalog, limits.max_vertices);
+        let planned = checked.and_then(|(query, options)| {
+            let planned = Planned::at_once(query, limits)?;
+            Ok((planned, options))
+        });
+        let (planned, options) = planned.map_err(|error| source.refused(error))?;
+        Ok(PlannedQuery {
+            draft,
             options,
-            planned: planned.map_err(|error| source.refused(error))?,
+            planned,
             source,
         })
     }
 
-    fn read(&self) -> Result<(Body, Source), Failure> {
+    /// Which parameters a query in a file has.
+    fn in_file() -> &'static [Group] {
+        match T::GROUPS.contains(&Group::Output) {
+            true => groups::QUERY,
+            false => groups::SET,
+        }
+    }
+
+    fn read(&self) -> Result<(Draft, Source), Failure> {
         let Some(file) = &self.query else {
-            let region = self.region()?;
-            let parameters = self.flags.parameters(|name| name != "parts");
-            return Ok((parameters.draft(region, vec![]), Source::Flags));
+            let draft = Draft::of(self.flags.values_of(match T::GROUPS.contains(&Group::Output) {
+                true => groups::POINTS,
+                false => groups::COUNT,
+            }));
+            let draft = match self.region()? {
+                Some(region) => draft.within(Ok(region)),
+                None => draft,
+            };
+            return Ok((draft, Source::Flags));
         };
         let source = Source::File(format!("--query {}", file.display()));
-        let others = self.flags.given().map(|(name, _)| name);
-        let others = others.filter(|name| !LOOKS_NAMES.contains(name) && *name != "parts");
-        let places = [
-            self.chunk.as_ref().map(|_| "chunk"),
-            self.region.as_ref().map(|_| "region"),
-        ];
-        let others: Vec<String> = others
-            .chain(places.into_iter().flatten())
-            .map(flag)
-            .collect();
+        let is_beside = |group| [Group::Output, Group::Split].contains(&group);
+        let others = self.flags.given().filter(|parameter| !is_beside(parameter.group));
+        let others = others.map(|parameter| parameter.name);
+        let others: Vec<String> = others.chain(self.places()).map(flag).collect();
         if !others.is_empty() {
+            let allowed = of(groups::OUTPUT).map(|parameter| flag(parameter.name));
             return Err(Failure::Usage(anyhow!(
                 "{} cannot be given beside --query {}, which holds the whole query; allowed beside \
                  it: {}",
                 others.join(", "),
                 file.display(),
-                LOOKS_NAMES.map(flag).join(", ")
+                allowed.collect::<Vec<_>>().join(", ")
             )));
         }
         let bytes = read_file("--query", file)?;
-        let body = read_body(&bytes).map_err(|error| source.refused(error))?;
-        Ok((body, source))
+        let refused = |faults: Faults| source.refused(faults.into());
+        let mut draft = read_body(&bytes, Self::in_file()).map_err(refused)?;
+        // Flags of the output are stronger than what the file says.
+        let output = self.flags.values_of(groups::OUTPUT);
+        let read = output.read();
+        read.map_err(|faults| Source::Flags.refused(faults.into()))?;
+        for (parameter, value) in output.given() {
+            draft.values.replace(parameter, Some(value.clone()));
+        }
+        Ok((draft, source))
     }
 
-    /// What flags say of the looks is stronger than what a file says.
-    fn override_looks(&self, options: &mut Options) -> Result<(), Failure> {
-        if self.query.is_none() {
-            return Ok(());
-        }
-        let parquet = Encoding::Parquet;
-        let is_parquet = self.flags.get("format") == Some(parquet.name());
-        let wanted = |name: &str| LOOKS_NAMES.contains(&name) && !(is_parquet && name == "format");
-        let looks = self.flags.parameters(wanted).looks();
-        let looks = looks.map_err(|faults| Source::Flags.refused(Error::Invalid(faults)))?;
-        let encoding = looks.encoding.or(is_parquet.then_some(parquet));
-        options.encoding = encoding.or(options.encoding);
-        options.decimals = looks.decimals.or(options.decimals);
-        options.size = looks.size.or(options.size);
-        Ok(())
+    /// The flags of regions that are no parameters.
+    fn places(&self) -> impl Iterator<Item = &'static str> {
+        let chunk = self.chunk.as_ref().map(|_| "chunk");
+        let region = self.region.as_ref().map(|_| "region");
+        chunk.into_iter().chain(region)
     }
 
     /// A region that is no parameter.
     fn region(&self) -> Result<Option<RegionDraft>, Failure> {
-        let shapes = self.flags.given().map(|(name, _)| name);
-        let shapes = shapes.filter(|name| REGION_NAMES.contains(name));
-        let others = [
-            self.chunk.as_ref().map(|_| "chunk"),
-            self.region.as_ref().map(|_| "region"),
-        ];
-        let given: Vec<String> = shapes
-            .chain(others.into_iter().flatten())
-            .map(flag)
-            .collect();
+        let shapes = self.flags.given().filter(|parameter| parameter.group == Group::Region);
+        let shapes = shapes.map(|parameter| parameter.name);
+        let given: Vec<String> = shapes.chain(self.places()).map(flag).collect();
         if given.len() > 1 {
             return Err(Failure::Usage(anyhow!(
                 "{} are given; a query has one region (several: --query with include and exclude)",
@@ -152,9 +142,7 @@ impl<T: Takes> Asked<T> {
             let bytes = read_file("--region", file)?;
             let source = Source::File(format!("--region {}", file.display()));
             let read = read_region(&bytes);
-            return Ok(Some(
-                read.map_err(|fault| source.refused(Error::Invalid(vec![fault])))?,
-            ));
+            return Ok(Some(read.map_err(|fault| source.refused(fault.into()))?));
         }
         self.chunk.as_deref().map(chunk).transpose()
     }
@@ -170,8 +158,8 @@ fn chunk(text: &str) -> Result<RegionDraft, Failure> {
     };
     let shape = read().ok_or_else(|| {
         Failure::Usage(anyhow!(
-            "--chunk {text}: it is not such an address; allowed: SIZE/CX/CY, a size above 0 and \
-             two integers, such as 64/-3/2"
+            "--chunk {text}: not a chunk; allowed: SIZE/CX/CY, a size above 0 and two integers, \
+             such as 64/-3/2"
         ))
     })?;
     Ok(RegionDraft {
@@ -193,19 +181,9 @@ fn read_file(flag: &str, path: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 /// A set of points without a region, laid into the world.
-pub(super) fn placed(
-    parameters: &Parameters,
-    others: &[&str],
-    config: &Config,
-) -> Result<Placed, Failure> {
-    let catalog = config.tables()?;
-    let place = |set: Set| {
-        let ready = Ready::load(&set.entry)?;
-        Placed::new(set, ready)
-    };
-    let set = parameters.check_set(&catalog, others, vec![]);
-    set.and_then(place)
-        .map_err(|error| Source::Flags.refused(error))
+pub(super) fn placed(set: Set) -> Result<Placed, Error> {
+    let ready = Ready::load(&set.entry)?;
+    Placed::new(set, ready)
 }
 
 /// What a planned query asks for, in a few words.

@@ -19,7 +19,7 @@ impl Source {
     /// A failure that says what is wrong.
     pub(super) fn refused(&self, error: Error) -> Failure {
         let text = match &error {
-            Error::Invalid(faults) => self.told(faults),
+            Error::Invalid(faults) => self.described(faults.as_slice()),
             Error::TooManyPoints { count, limit } => format!(
                 "the query has {count} points, and the settings allow {limit}: ask for a smaller \
                  region or fewer points, or raise it by --set limits.max_points={count}"
@@ -39,17 +39,17 @@ impl Source {
         Failure::Usage(anyhow!("{text}"))
     }
 
-    fn told(&self, faults: &[Fault]) -> String {
-        let mut told: Vec<String> = faults.iter().map(|fault| self.one(fault)).collect();
+    fn described(&self, faults: &[Fault]) -> String {
+        let mut all: Vec<String> = faults.iter().map(|fault| self.one(fault)).collect();
         let place = match self {
             Self::Flags => String::new(),
             Self::File(name) => format!("{name}: "),
         };
-        match told.as_slice() {
+        match all.as_slice() {
             [only] => format!("{place}{only}"),
             _ => {
-                told.insert(0, format!("{place}{} things are wrong", told.len()));
-                told.join("\n  ")
+                all.insert(0, format!("{place}{} errors", all.len()));
+                all.join("\n  ")
             }
         }
     }
@@ -72,7 +72,7 @@ impl Source {
                  whole query by --query"
                     .into()
             }
-            (None, "density") => {
+            (None, "spacing") => {
                 "an amount is missing: give --density, --spacing, --min-distance or, with a region, \
                  --count"
                     .into()

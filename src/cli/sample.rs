@@ -12,7 +12,7 @@ use super::{
     flags::Answered,
     output::Output as Target,
     progress::Progress,
-    query::{Asked, described},
+    query::{QueryArgs, described},
 };
 use crate::{
     config::Config,
@@ -32,7 +32,7 @@ pub(super) struct Args {
     #[arg(long, short)]
     quiet: bool,
     #[command(flatten)]
-    query: Asked<Answered>,
+    query: QueryArgs<Answered>,
 }
 
 impl Args {

@@ -3,10 +3,10 @@
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::{Failure, flags::Parted, output, query::Asked, refusal::Source};
+use super::{Failure, flags::Parted, output, query::QueryArgs, refusal::Source};
 use crate::service::{
-    Error,
-    query::{Draft, Token, WindowDraft},
+    Token,
+    query::{groups, parts},
 };
 
 /// Flags of `strew split`: those of `strew sample`, and the number of parts.
@@ -16,7 +16,7 @@ pub(super) struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    query: Asked<Parted>,
+    query: QueryArgs<Parted>,
 }
 
 #[derive(Serialize)]
@@ -34,21 +34,12 @@ struct Part {
 /// Prints the parts, a query a line.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.query.settings.merged()?;
-    let parts = args.query.flags.parameters(|name| name == "parts").parts();
-    let parts = parts.map_err(|faults| Source::Flags.refused(Error::Invalid(faults)))?;
+    let parts = parts(&args.query.flags.values_of(groups::SPLIT));
+    let parts = parts.map_err(|faults| Source::Flags.refused(faults.into()))?;
     let ask = args.query.plan(&config)?;
-    let part = |(token, count): (Token, u64)| {
-        let window = WindowDraft {
-            offset: None,
-            limit: Some(count),
-            cursor: Some(token.to_string()),
-        };
-        let draft = Draft {
-            window,
-            ..ask.draft.clone()
-        };
-        let query = draft.to_body(&ask.options);
-        Part { count, query }
+    let part = |(token, count): (Token, u64)| Part {
+        count,
+        query: ask.draft.part(&token, count).to_body(),
     };
     let count = ask.planned.count();
     let split = ask.planned.split(parts);

@@ -9,6 +9,7 @@ mod profile;
 mod query;
 mod region;
 mod resolved;
+mod set;
 mod single;
 mod split;
 mod status;

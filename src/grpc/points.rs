@@ -17,12 +17,11 @@ use super::{
         SplitPointsRequest, SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
         point_service_server::PointService,
     },
-    query, resolved, single, split, status,
+    query, resolved, set, single, split, status,
 };
 use crate::access::Caller;
 use crate::service::{
-    Error, Fault, Record, Service,
-    query::{SetDraft, check_parts},
+    Error, Fault, Record, Service, Set, query::groups,
 };
 
 /// Answers over gRPC.
@@ -44,9 +43,7 @@ impl Points {
         is_compressed: bool,
     ) -> Result<Response<MessageStream>, Error> {
         let (query, encoding) = query::query(request, &self.service)?;
-        let permit = self.service.admit(caller, None)?;
-        let planned = self.service.plan(caller, query).await?;
-        caller.charge(planned.count())?;
+        let (permit, planned) = self.service.open(caller, query, None).await?;
         let block_bytes = self.service.limits().block_bytes;
         let messages = Messages::new(request, planned, encoding, block_bytes)?;
         Record::in_format(match encoding {
@@ -93,7 +90,8 @@ impl Points {
     }
 
     async fn point(&self, request: &GetPointRequest) -> Result<GetPointResponse, Error> {
-        let set = SetDraft::from(request).check_alone(&self.service.catalog(), vec![])?;
+        let values = set::values(request.set.as_ref(), groups::SINGLE, "");
+        let set = Set::single(&values, &self.service.catalog()).map_err(query::by_field)?;
         let placed = self.service.place(set).await?;
         Ok(GetPointResponse {
             point: Some(single::point(placed.point(&request.id)?)),
@@ -106,19 +104,11 @@ impl Points {
         caller: &Caller,
         request: &FindNearestRequest,
     ) -> Result<FindNearestResponse, Error> {
-        let mut faults = vec![];
-        let around = query::around(request).check(vec![]);
-        let around = around.map_err(|more| faults.extend(more));
-        let set = SetDraft::from(request).check_alone(&self.service.catalog(), faults)?;
-        let around = around.map_err(|()| Error::Internal("a fault is lost"))?;
-        let placed = self.service.place(set).await?;
-        let set = Some(resolved::placed(&placed));
-        let search = move || placed.nearest(around);
-        let found = self.service.workers().run(search).await??;
-        caller.charge(found.len() as u128)?;
+        let (set, nearest) = query::nearest(request, &self.service)?;
+        let (placed, found) = self.service.nearest(caller, set, nearest).await?;
         Ok(FindNearestResponse {
             neighbors: found.into_iter().map(single::point).collect(),
-            set,
+            set: Some(resolved::placed(&placed)),
         })
     }
 }
@@ -132,8 +122,8 @@ fn caller<T>(request: &Request<T>) -> Result<Caller, Status> {
 /// The query of a request, which must be there.
 fn required(query: Option<StreamPointsRequest>) -> Result<StreamPointsRequest, Status> {
     query.ok_or_else(|| {
-        let fault = Fault::missing("query", "a request as StreamPoints takes it");
-        status::status(&Error::Invalid(vec![fault]))
+        let fault = Fault::missing("query", "a StreamPointsRequest");
+        status::status(&fault.into())
     })
 }
 
@@ -173,11 +163,7 @@ impl PointService for Points {
     ) -> Result<Response<SplitPointsResponse>, Status> {
         let SplitPointsRequest { query, parts } = request.into_inner();
         let query = required(query)?;
-        let parts = check_parts(parts).and_then(|parts| {
-            split::check_size(&query, parts)?;
-            Ok(parts)
-        });
-        let parts = parts.map_err(|fault| status::status(&Error::Invalid(vec![fault])))?;
+        let parts = split::check(&query, parts).map_err(|error| status::status(&error))?;
         let answer = self.split(&query, parts).await;
         answered(answer.map_err(|error| status::within("query", error)))
     }

@@ -1,85 +1,16 @@
-//! Requests as the service's drafts. Nothing is checked here but what drafts cannot hold.
+//! Requests as drafts of queries. Nothing is checked here but what drafts cannot hold.
 
 use super::{
-    proto::{
-        Encoding, FindNearestRequest, GetPointRequest, Layer, Position, Region, ScaleRange,
-        StreamPointsRequest, Variant, find_nearest_request, get_point_request, layer,
-        stream_points_request,
-    },
-    region,
+    proto::{Encoding, FindNearestRequest, Position, Region, StreamPointsRequest},
+    region, set,
 };
 use crate::service::{
-    Draft, Error, Fault, Query, Service,
+    Draft, Error, Fault, Nearest, Query, Service, Set,
     query::{
-        AmountDraft, AroundDraft, AttributesDraft, LayerDraft, RegionDraft, SetDraft, TableDraft,
-        WindowDraft,
+        Checked, LayerDraft, Parameter, RegionDraft, Value, groups,
+        parameters::{AT, CURSOR, K, LIMIT, OFFSET, RADIUS},
     },
 };
-
-/// The amounts of messages, which say the same in types of their own.
-macro_rules! amounts {
-    ($($message:ident: $($variant:ident = $field:ident),+;)+) => {$(
-        impl From<$message::Amount> for AmountDraft {
-            fn from(given: $message::Amount) -> Self {
-                let mut draft = Self::default();
-                match given {
-                    $($message::Amount::$variant(value) => draft.$field = Some(value),)+
-                }
-                draft
-            }
-        }
-    )+};
-}
-
-amounts! {
-    stream_points_request: Density = density, Spacing = spacing, MinDistance = min_distance, Count = count;
-    layer: Density = density, Spacing = spacing, MinDistance = min_distance, Count = count;
-    get_point_request: Density = density, Spacing = spacing, MinDistance = min_distance;
-    find_nearest_request: Density = density, Spacing = spacing, MinDistance = min_distance;
-}
-
-/// The sets of messages, which have the same fields.
-macro_rules! sets {
-    ($($message:ident),+) => {$(
-        impl From<&$message> for SetDraft {
-            fn from(given: &$message) -> Self {
-                Self {
-                    amount: given.amount.map(Into::into).unwrap_or_default(),
-                    table: TableDraft {
-                        profile: given.profile.clone(),
-                        alpha: given.alpha.clone(),
-                        map: given.map.clone(),
-                        table: given.table.clone(),
-                    },
-                    seed: given.seed,
-                    warp: given.warp,
-                    keep: given.keep,
-                    attributes: attributes(&given.attributes, given.scale_range, &given.variants),
-                }
-            }
-        }
-    )+};
-}
-
-sets!(
-    StreamPointsRequest,
-    Layer,
-    GetPointRequest,
-    FindNearestRequest
-);
-
-fn attributes(
-    names: &[String],
-    scale_range: Option<ScaleRange>,
-    variants: &[Variant],
-) -> AttributesDraft {
-    let variant = |variant: &Variant| (variant.name.clone(), variant.weight.unwrap_or(1.0));
-    AttributesDraft {
-        names: names.into(),
-        scale_range: scale_range.map(|range| [range.min, range.max]),
-        variants: (!variants.is_empty()).then(|| variants.iter().map(variant).collect()),
-    }
-}
 
 /// The encoding of a request, with the default filled in.
 fn encoding(request: &StreamPointsRequest) -> Result<Encoding, Fault> {
@@ -88,12 +19,8 @@ fn encoding(request: &StreamPointsRequest) -> Result<Encoding, Fault> {
         Ok(encoding) => Ok(encoding),
         Err(_) => {
             let known = [Encoding::Points, Encoding::F64Le, Encoding::F32Le];
-            Err(Fault::new(
-                "encoding",
-                request.encoding,
-                "there is no such encoding",
-                known.map(|encoding| encoding.as_str_name()).join(", "),
-            ))
+            let allowed = known.map(|encoding| encoding.as_str_name()).join(", ");
+            Err(Fault::new("encoding", request.encoding, "unknown encoding", allowed))
         }
     }
 }
@@ -103,42 +30,72 @@ pub(super) fn query(
     request: &StreamPointsRequest,
     service: &Service,
 ) -> Result<(Query, Encoding), Error> {
-    let mut faults = vec![];
-    let encoding = encoding(request).map_err(|fault| faults.push(fault));
+    let mut draft = draft(request);
+    let encoding = encoding(request).map_err(|fault| {
+        draft.values.refuse(fault.clone());
+        fault
+    });
+    let (query, _) = service.check(&draft).map_err(by_field)?;
+    Ok((query, encoding?))
+}
+
+fn draft(request: &StreamPointsRequest) -> Draft {
+    let mut values = set::values(request.set.as_ref(), groups::QUERY, "");
+    let cursor = &request.cursor;
+    let window: [(&'static Parameter, Option<Value>); 3] = [
+        (&OFFSET, Some(Value::Integer(request.offset))),
+        (&LIMIT, request.limit.map(Value::Integer)),
+        (&CURSOR, (!cursor.is_empty()).then(|| Value::Text(cursor.clone()))),
+    ];
+    for (parameter, value) in window {
+        if let Some(value) = value {
+            values.add_value(parameter, value);
+        }
+    }
     let mut layers = vec![];
     for (i, layer) in request.layers.iter().enumerate() {
-        let path = format!("layers[{i}].region");
+        let path = format!("layers[{i}].");
         layers.push(LayerDraft {
-            name: layer.name.clone(),
-            region: draft_of(layer.region.as_ref(), &path, &mut faults),
-            set: layer.into(),
-            clear_of: layer.clear_of.clone().into_iter().collect(),
+            name: Ok((!layer.name.is_empty()).then(|| layer.name.clone())),
+            region: region_of(layer.region.as_ref(), &format!("{path}region")),
+            values: set::values(layer.set.as_ref(), groups::SET, &path),
+            clear_of: Ok(layer.clear_of.clone().into_iter().collect()),
         });
     }
-    let draft = Draft {
-        region: draft_of(request.region.as_ref(), "region", &mut faults),
-        set: request.into(),
-        layers,
-        window: WindowDraft {
-            offset: Some(request.offset),
-            limit: request.limit,
-            cursor: (!request.cursor.is_empty()).then(|| request.cursor.clone()),
-        },
-    };
-    let query = draft.check(&service.catalog(), service.limits().max_vertices, faults)?;
-    let encoding = encoding.map_err(|()| Error::Internal("a fault is lost"))?;
-    Ok((query, encoding))
-}
-
-fn draft_of(given: Option<&Region>, path: &str, faults: &mut Vec<Fault>) -> Option<RegionDraft> {
-    given.map(|given| region::draft(given, path, 0, faults))
-}
-
-/// Which neighbors a request asks for.
-pub(super) fn around(request: &FindNearestRequest) -> AroundDraft {
-    AroundDraft {
-        at: request.at.map(|Position { x, y }| [x, y]),
-        k: request.k.map(u64::from),
-        radius: request.radius,
+    Draft {
+        region: region_of(request.region.as_ref(), "region"),
+        values,
+        layers: Ok(layers),
     }
+}
+
+fn region_of(region: Option<&Region>, path: &str) -> Checked<Option<RegionDraft>> {
+    region.map(|region| region::draft(region, path, 0)).transpose()
+}
+
+/// Names the fields of faults as messages do.
+pub(super) fn by_field(error: Error) -> Error {
+    match error {
+        Error::Invalid(faults) => set::in_messages(faults).into(),
+        other => other,
+    }
+}
+
+/// The checked set and place of a request.
+pub(super) fn nearest(
+    request: &FindNearestRequest,
+    service: &Service,
+) -> Result<(Set, Nearest), Error> {
+    let mut values = set::values(request.set.as_ref(), groups::NEAREST, "");
+    let given: [(&'static Parameter, Option<Value>); 3] = [
+        (&AT, request.at.map(|Position { x, y }| Value::Numbers(vec![x, y]))),
+        (&K, request.k.map(|k| Value::Integer(k.into()))),
+        (&RADIUS, request.radius.map(Value::Number)),
+    ];
+    for (parameter, value) in given {
+        if let Some(value) = value {
+            values.add_value(parameter, value);
+        }
+    }
+    Nearest::of_set(&values, &service.catalog()).map_err(by_field)
 }

@@ -5,16 +5,11 @@ use super::proto::{
 };
 use crate::service::{
     Fault,
-    query::{MOST_LEVELS, RegionDraft, Rings, ShapeDraft},
+    query::{Checked, MOST_LEVELS, RegionDraft, Rings, ShapeDraft},
 };
 
 /// The draft of a region at a path, `depth` lists deep.
-pub(super) fn draft(
-    region: &Region,
-    path: &str,
-    depth: usize,
-    faults: &mut Vec<Fault>,
-) -> RegionDraft {
+pub(super) fn draft(region: &Region, path: &str, depth: usize) -> Checked<RegionDraft> {
     let (name, shape) = match &region.shape {
         Some(Shape::Bbox(b)) => ("bbox", bbox(*b)),
         Some(Shape::Circle(circle)) => ("circle", self::circle(*circle)),
@@ -22,21 +17,15 @@ pub(super) fn draft(
         Some(Shape::Chunk(Chunk { size, x, y })) => ("chunk", ShapeDraft::Chunk(*size, [*x, *y])),
         Some(Shape::Combined(combined)) => {
             let path = format!("{path}.combined");
-            ("combined", self::combined(combined, &path, depth, faults))
+            ("combined", self::combined(combined, &path, depth)?)
         }
         None => {
             let kinds = "one of bbox, circle, polygons, chunk and combined";
-            faults.push(Fault::missing(path, kinds));
-            return RegionDraft {
-                path: path.into(),
-                shape: ShapeDraft::Unread,
-            };
+            return Err(Fault::missing(path, kinds).into());
         }
     };
-    RegionDraft {
-        path: format!("{path}.{name}"),
-        shape,
-    }
+    let path = format!("{path}.{name}");
+    Ok(RegionDraft { path, shape })
 }
 
 fn bbox(b: BoundingBox) -> ShapeDraft {
@@ -63,20 +52,16 @@ fn combined(
     Combined { include, exclude }: &Combined,
     path: &str,
     depth: usize,
-    faults: &mut Vec<Fault>,
-) -> ShapeDraft {
+) -> Checked<ShapeDraft> {
     if depth == MOST_LEVELS {
         let allowed = format!("{MOST_LEVELS} levels at most");
-        let detail = "lists are nested too deeply";
-        faults.push(Fault::new(path, "", detail, allowed));
-        return ShapeDraft::Unread;
+        return Err(Fault::new(path, "", "regions are nested too deeply", allowed).into());
     }
-    let mut list = |name: &str, regions: &[Region]| {
+    let list = |name: &str, regions: &[Region]| {
         let regions = regions.iter().enumerate();
         regions
-            .map(|(i, region)| draft(region, &format!("{path}.{name}[{i}]"), depth + 1, faults))
+            .map(|(i, region)| draft(region, &format!("{path}.{name}[{i}]"), depth + 1))
             .collect()
     };
-    let include = list("include", include);
-    ShapeDraft::Combined(include, list("exclude", exclude))
+    Ok(ShapeDraft::Combined(list("include", include), list("exclude", exclude)))
 }

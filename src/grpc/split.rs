@@ -3,25 +3,30 @@
 use prost::Message as _;
 
 use super::proto::{Part, StreamPointsRequest};
-use crate::service::{Fault, query::Token};
+use crate::service::{
+    Error, Fault, Token,
+    query::{self, Value, Values, groups, parameters::PARTS},
+};
 
-/// What all requests of an answer may take together: what clients accept in one message by default.
+/// The most bytes of all requests of an answer: what clients accept in one message by default.
 const MAX_BYTES: usize = 4 << 20;
 
 /// What a part takes besides the query: a cursor, a limit, a count.
 const PART_BYTES: usize = 256;
 
-/// Checks that so many parts of a request fit into an answer.
-pub(super) fn check_size(request: &StreamPointsRequest, parts: u32) -> Result<(), Fault> {
+/// Checks the number of parts, and that all of them fit into an answer.
+pub(super) fn check(request: &StreamPointsRequest, parts: u32) -> Result<u32, Error> {
+    let mut values = Values::new(groups::SPLIT, "");
+    values.add_value(&PARTS, Value::Integer(parts.into()));
+    let parts = query::parts(&values)?;
     let one = request.encoded_len() + PART_BYTES;
     let most = MAX_BYTES / one;
     if parts as usize <= most {
-        return Ok(());
+        return Ok(parts);
     }
-    let detail =
-        format!("each request would take about {one} bytes, all together over {MAX_BYTES}");
+    let detail = format!("each request takes about {one} bytes, all together more than {MAX_BYTES}");
     let allowed = format!("1 to {most} for this query");
-    Err(Fault::new("parts", parts, detail, allowed))
+    Err(Fault::new(PARTS.name, parts, detail, allowed).into())
 }
 
 /// The part of a request that begins at a place and has so many points.

@@ -8,7 +8,7 @@ use tonic_types::{ErrorDetails, StatusExt as _};
 use crate::{
     access::Denied,
     error_map,
-    service::{Error, Fault, Interrupted, Kind, Record},
+    service::{Error, Interrupted, Kind, Record},
 };
 
 /// How long a client should wait before it goes on with a stream that the server broke off.
@@ -43,17 +43,13 @@ pub(super) fn status(error: &Error) -> Status {
     if let Some(seconds) = error.retry_seconds() {
         details.set_retry_info(Some(Duration::from_secs(seconds)));
     }
-    Status::with_error_details(error_map::grpc(error.kind()), error.to_string(), details)
+    Status::with_error_details(error_map::wire(error.kind()).code, error.to_string(), details)
 }
 
 /// An error of a message that is a field of the request.
 pub(super) fn within(field: &str, error: Error) -> Error {
-    let path = |fault: Fault| Fault {
-        field: format!("{field}.{}", fault.field),
-        ..fault
-    };
     match error {
-        Error::Invalid(faults) => Error::Invalid(faults.into_iter().map(path).collect()),
+        Error::Invalid(faults) => faults.rename(|name| format!("{field}.{name}")).into(),
         other => other,
     }
 }
@@ -70,7 +66,7 @@ pub(super) fn interrupted(why: Interrupted) -> Status {
     if kind != Kind::Internal {
         details.set_retry_info(Some(RETRY));
     }
-    Status::with_error_details(error_map::grpc(kind), why.to_string(), details)
+    Status::with_error_details(error_map::wire(kind).code, why.to_string(), details)
 }
 
 /// A fault of the call rather than of its message.
@@ -79,7 +75,7 @@ pub(super) fn faulty_metadata(name: &str, value: &str, detail: &str) -> Status {
     details.set_error_info(reason(Kind::Invalid), DOMAIN, HashMap::new());
     details.add_bad_request_violation(name, format!("`{value}`: {detail}"));
     let message = format!("`{name}` = `{value}`: {detail}");
-    Status::with_error_details(error_map::grpc(Kind::Invalid), message, details)
+    Status::with_error_details(error_map::wire(Kind::Invalid).code, message, details)
 }
 
 /// A call whose time is over.
@@ -95,7 +91,7 @@ const DOMAIN: &str = "strew";
 
 /// The same name as of the problem type by REST, as gRPC writes it.
 fn reason(kind: Kind) -> String {
-    error_map::http(kind).slug.replace('-', "_").to_uppercase()
+    error_map::wire(kind).slug.replace('-', "_").to_uppercase()
 }
 
 /// What a program needs to go on, by name.

@@ -7,11 +7,11 @@ use std::sync::{
 
 use axum::{body::Body, extract::State, response::Response, routing::get};
 use http::{HeaderValue, Method, StatusCode, header};
+use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::{Value, json};
 
 use crate::{
-    rest::api::{Answer, Endpoint, Operation},
+    rest::api::{Answer, Endpoint, Operation, Tag, schemas},
     service::Service,
 };
 
@@ -47,18 +47,14 @@ pub fn endpoints(readiness: Readiness, service: Arc<Service>) -> Vec<Endpoint> {
     let alive = operation(
         "getLivez",
         "Whether the daemon lives",
-        json!({ "alive": { "type": "boolean" } }),
+        |generator| generator.subschema_for::<Alive>(),
         vec![(200, "It lives.")],
         "/livez",
     );
     let is_ready = operation(
         "getReadyz",
         "Whether the daemon takes requests",
-        json!({
-            "ready": { "type": "boolean" },
-            "tables": { "type": "integer" },
-            "streams": { "type": "integer" },
-        }),
+        |generator| generator.subschema_for::<Ready>(),
         vec![(200, "It takes requests."), (503, "It is about to stop.")],
         "/readyz",
     );
@@ -77,24 +73,18 @@ pub fn endpoints(readiness: Readiness, service: Arc<Service>) -> Vec<Endpoint> {
 fn operation(
     id: &'static str,
     summary: &'static str,
-    members: Value,
+    schema: schemas::Content,
     answers: Vec<(u16, &'static str)>,
     path: &str,
 ) -> Operation {
-    let required: Vec<&String> = members
-        .as_object()
-        .into_iter()
-        .flatten()
-        .map(|m| m.0)
-        .collect();
-    let schema = json!({ "type": "object", "required": required, "properties": members });
     Operation {
         method: Method::GET,
         id,
         summary,
         about: "For probes; never cached.",
+        tag: Tag::Operations,
         path_parameters: &[],
-        parameters: vec![],
+        parameters: &[],
         body: None,
         answers: answers
             .into_iter()
@@ -102,7 +92,7 @@ fn operation(
                 status,
                 about,
                 headers: vec![],
-                contents: vec![("application/json".into(), schema.clone())],
+                contents: vec![("application/json", schema)],
             })
             .collect(),
         problems: vec![],
@@ -110,16 +100,21 @@ fn operation(
     }
 }
 
-#[derive(Serialize)]
+/// That the daemon lives.
+#[derive(Serialize, JsonSchema)]
 struct Alive {
+    /// Always true.
     alive: bool,
 }
 
-#[derive(Serialize)]
+/// Whether the daemon takes requests.
+#[derive(Serialize, JsonSchema)]
 struct Ready {
+    /// Whether it takes requests.
     ready: bool,
+    /// The number of tables that are loaded.
     tables: usize,
-    /// Answers under way.
+    /// The number of current streams.
     streams: usize,
 }
 

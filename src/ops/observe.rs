@@ -243,7 +243,7 @@ impl Drop for Watch {
         requests.increment(1);
 
         let trace = self.identity.trace.as_ref();
-        let reason = self.record.refused().map(|kind| error_map::http(kind).slug);
+        let reason = self.record.refused().map(|kind| error_map::wire(kind).slug);
         let client = self.client.map(|client| client.to_string());
         macro_rules! line {
             ($level:ident) => {

@@ -11,6 +11,7 @@ mod look;
 
 use std::{path::PathBuf, sync::Arc, time::Duration};
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::sync::Mutex;
 
@@ -43,7 +44,8 @@ impl Cause {
 }
 
 /// What came of reading everything again.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "Reloaded")]
 pub struct Done {
     /// The tables; files of keys are among what was refused.
     #[serde(flatten)]

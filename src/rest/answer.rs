@@ -1,24 +1,24 @@
 //! Answers with points, whichever path asks for them: checked, planned, streamed.
 
-use std::convert::Infallible;
+use std::{collections::BTreeMap, convert::Infallible};
 
 use axum::{body::Body, response::Response};
 use futures_util::stream;
-use http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
-use serde_json::{Value, json};
+use http::{HeaderMap, HeaderName, HeaderValue, Method, header};
+use schemars::JsonSchema;
 use strew_core::ALGORITHM_VERSION;
 
 use super::{
     api::{self, schemas},
     coding,
+    context::Context,
     freshness::Freshness,
     negotiate::{self, Chosen},
 };
 use crate::{
-    access::Caller,
     service::{
-        Answer, Error, Kind, Planned, Query, Record, Service,
-        encode::{Options, write_number},
+        Answer, Draft, Error, Kind, Output, Planned, Query, Record, Service,
+        encode::{QueryEcho, TableEcho, write_number},
     },
 };
 
@@ -28,15 +28,6 @@ const ALGORITHM: HeaderName = HeaderName::from_static("strew-algorithm");
 const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
 
 const NEXT: HeaderName = HeaderName::from_static("strew-next");
-
-/// A request, as far as it decides how an answer is sent.
-#[derive(Debug)]
-pub(super) struct Asked {
-    pub(super) caller: Caller,
-    pub(super) method: Method,
-    pub(super) uri: Uri,
-    pub(super) headers: HeaderMap,
-}
 
 /// The headers of an answer with points, and what they say.
 const HEADERS: [(&str, &str); 5] = [
@@ -57,16 +48,55 @@ const HEADERS: [(&str, &str); 5] = [
     ),
 ];
 
+/// The points of a query as one JSON document.
+#[derive(JsonSchema)]
+#[schemars(rename = "Points")]
+#[allow(dead_code, reason = "only described; the encoder writes it")]
+struct PointsDocument {
+    /// The query with everything filled in.
+    query: QueryEcho,
+    /// The table that answers, if there are no layers.
+    #[schemars(default)]
+    table: Option<TableEcho>,
+    /// The tables of the layers.
+    #[schemars(default)]
+    tables: Option<Vec<TableEcho>>,
+    /// The number of points.
+    count: u128,
+    /// The cursor of the points after these, if there are any.
+    #[schemars(default)]
+    next: Option<String>,
+    /// The points.
+    points: Vec<Point>,
+}
+
+/// A point, with a member for each attribute.
+#[derive(JsonSchema)]
+#[allow(dead_code, reason = "only described; the encoder writes it")]
+struct Point {
+    /// The stable id: the lattice address.
+    #[schemars(regex(pattern = "^-?[0-9]+:-?[0-9]+$"))]
+    id: String,
+    /// The x coordinate.
+    x: f64,
+    /// The y coordinate.
+    y: f64,
+    /// The name of its layer, if there are layers.
+    #[schemars(default)]
+    layer: Option<String>,
+    /// Its attributes by name.
+    #[serde(flatten)]
+    attributes: BTreeMap<String, serde_json::Value>,
+}
+
 /// The content types of points, with what they hold.
-fn contents() -> Vec<(String, Value)> {
-    let schema = |content_type: &str| match content_type {
-        "application/json" => schemas::reference("Points"),
-        _ => json!({}),
+fn contents() -> Vec<(&'static str, schemas::Content)> {
+    let schema = |content_type| match content_type {
+        "application/json" => schemas::of::<PointsDocument>,
+        _ => schemas::any,
     };
-    negotiate::content_types()
-        .into_iter()
-        .map(|content_type| (content_type.into(), schema(content_type)))
-        .collect()
+    let all = negotiate::content_types().into_iter();
+    all.map(|content_type| (content_type, schema(content_type) as schemas::Content)).collect()
 }
 
 /// The problems that any answer with points can have.
@@ -82,8 +112,8 @@ pub(super) fn problems() -> Vec<Kind> {
     ]
 }
 
-/// The answer with points, as a path tells it.
-pub(super) fn told() -> api::Answer {
+/// The answer with points, as the API describes it.
+pub(super) fn described() -> api::Answer {
     api::Answer {
         status: 200,
         about: "The points.",
@@ -92,19 +122,16 @@ pub(super) fn told() -> api::Answer {
     }
 }
 
-/// Answers a checked query.
+/// Answers a query with its points.
 pub(super) async fn stream(
     service: &Service,
-    asked: &Asked,
-    query: Query,
-    options: Options,
+    context: &Context,
+    draft: &Draft,
 ) -> Result<Response, Error> {
-    let Asked {
-        caller,
-        method,
-        headers,
-        ..
-    } = asked;
+    let (query, options) = service.check(draft)?;
+    let Context {
+        method, headers, ..
+    } = context;
     let chosen = match options.encoding {
         Some(encoding) => Chosen::named(encoding),
         None => negotiate::accepted(headers)?,
@@ -112,25 +139,37 @@ pub(super) async fn stream(
     Record::in_format(chosen.encoding.name());
     let mut output = options.output(chosen.encoding)?;
     output.relative_to = query.region.corner;
-    // A body is not part of the address, so what it asks for is not kept by caches.
-    let can_be_kept = *method != Method::POST;
-    let freshness = can_be_kept
-        .then(|| freshness(service, asked, &query, chosen.content_type))
-        .transpose()?;
-    if let Some(unchanged) = freshness.as_ref().and_then(|it| it.unchanged(headers)) {
-        return Ok(unchanged);
+    if *method == Method::POST {
+        // A body is not part of the address, so caches do not keep what it asks for.
+        return points(service, context, query, chosen, output).await;
     }
-    let is_head = *method == Method::HEAD;
+    let freshness = freshness(service, context, &query, chosen.content_type).negotiated();
+    let make = points(service, context, query, chosen, output);
+    freshness.answer(headers, make).await
+}
+
+/// The response with the points.
+async fn points(
+    service: &Service,
+    context: &Context,
+    query: Query,
+    chosen: Chosen,
+    output: Output,
+) -> Result<Response, Error> {
+    let Context {
+        caller,
+        method,
+        headers,
+        ..
+    } = context;
+    let is_wanted = *method != Method::HEAD && !Freshness::is_any_unwanted(headers);
     let picture = chosen.encoding.is_picture().then_some(output.size);
-    let permit = (!is_head).then(|| service.admit(caller, picture));
-    let permit = permit.transpose()?;
-    let planned = service.plan(caller, query).await?;
-    if let Some(unwanted) = freshness.as_ref().and_then(|it| it.unwanted(headers)) {
-        return Ok(unwanted);
-    }
-    if !is_head {
-        caller.charge(planned.count())?;
-    }
+    let (permit, planned) = if is_wanted {
+        let (permit, planned) = service.open(caller, query, picture).await?;
+        (Some(permit), planned)
+    } else {
+        (None, service.plan(caller, query).await?)
+    };
     let answer = Answer::new(&planned, &output, service.limits().block_bytes)?;
     let mut response_headers = describe(&planned, &answer, chosen)?;
     let body = match permit {
@@ -151,9 +190,6 @@ pub(super) async fn stream(
     };
     let mut response = Response::new(body);
     std::mem::swap(response.headers_mut(), &mut response_headers);
-    if let Some(freshness) = freshness {
-        freshness.stamp(&mut response);
-    }
     Ok(response)
 }
 
@@ -161,15 +197,14 @@ pub(super) async fn stream(
 /// query, it depends on the tables and on a limit.
 pub(super) fn freshness(
     service: &Service,
-    asked: &Asked,
+    context: &Context,
     query: &Query,
     content_type: &'static str,
-) -> Result<Freshness, Error> {
+) -> Freshness {
     let sets = query.sets.iter();
     let digests: Vec<&str> = sets.map(|set| set.entry.digest.as_str()).collect();
     let made_of = (digests, service.limits().max_points);
-    let freshness = Freshness::of(&asked.uri, &asked.headers, content_type, &made_of);
-    Ok(freshness.negotiated().pinned(query.is_pinned()))
+    Freshness::of(&context.uri, &context.headers, content_type, &made_of).pinned(query.is_pinned())
 }
 
 /// The headers of an answer.

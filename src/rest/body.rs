@@ -9,7 +9,10 @@ use axum::extract::{FromRequest, Request};
 use futures_util::StreamExt as _;
 use http::header;
 
-use crate::service::{Error, Fault, Service};
+use crate::service::{
+    Draft, Error, Fault, Service,
+    query::{Group, read_body},
+};
 
 /// A whole body.
 #[derive(Debug)]
@@ -20,10 +23,10 @@ impl FromRequest<Arc<Service>> for Whole {
 
     async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Error> {
         let limit = service.limits().max_body_bytes;
-        let told = request.headers().get(header::CONTENT_LENGTH);
-        let told = told.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
+        let length = request.headers().get(header::CONTENT_LENGTH);
+        let length = length.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
         // What says that it is too long need not even be sent.
-        if told.is_some_and(|length| usize::try_from(length).is_ok_and(|length| length > limit)) {
+        if length.is_some_and(|length| usize::try_from(length).is_ok_and(|length| length > limit)) {
             return Err(Error::BodyTooLarge { limit });
         }
         let mut pieces = request.into_body().into_data_stream();
@@ -39,15 +42,33 @@ impl FromRequest<Arc<Service>> for Whole {
     }
 }
 
+/// Bodies up to this many bytes are read at once; handing them over would take longer.
+const SMALL: usize = 8 << 10;
+
+/// The query that a body asks, read on the workers if it is long.
+pub(super) async fn query(
+    service: &Service,
+    body: Vec<u8>,
+    groups: &'static [Group],
+) -> Result<Draft, Error> {
+    let draft = if body.len() <= SMALL {
+        read_body(&body, groups)
+    } else {
+        let read = move || read_body(&body, groups);
+        service.workers().run(read).await?
+    };
+    Ok(draft?)
+}
+
 /// Why a body broke off: as the gate says, or because the client stopped.
 fn why(error: &axum::Error) -> Error {
     let mut cause = error.source();
     while let Some(inner) = cause {
-        if let Some(told) = inner.downcast_ref::<Error>() {
-            return told.clone();
+        if let Some(error) = inner.downcast_ref::<Error>() {
+            return error.clone();
         }
         cause = inner.source();
     }
-    let detail = "it broke off before its end";
-    Error::Invalid(vec![Fault::new("body", "", detail, "a whole body")])
+    let detail = "broke off before its end";
+    Fault::new("body", "", detail, "a whole body").into()
 }

@@ -1,26 +1,23 @@
 //! `GET /v1/chunks/{size}/{cx}/{cy}`: the points of a square of the world grid, relative to its
 //! corner.
 
-use std::{str::FromStr, sync::Arc};
+use std::sync::Arc;
 
 use axum::{
     extract::{Path, State},
     response::Response,
     routing,
 };
-use http::{HeaderMap, Method, Uri};
+use http::Method;
 
 use super::{
-    answer::{self, Asked},
-    api::{self, Endpoint, Operation},
+    answer,
+    api::{self, Endpoint, Operation, Tag},
+    context::Context,
 };
-use crate::access::Caller;
 use crate::service::{
-    Error, Fault, Service,
-    query::{
-        LOOKS_NAMES, Parameter, RegionDraft, SET_NAMES, Shape, ShapeDraft, WINDOW_NAMES,
-        parse_pairs,
-    },
+    Draft, Error, Service,
+    query::{Parameter, RegionDraft, Shape, ShapeDraft, Together as _, groups},
 };
 
 /// The path.
@@ -32,10 +29,11 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         about: "A chunk is a square of the world grid: size·cx ≤ x < size·(cx + 1), and so for y. \
                 Coordinates are relative to its corner, so that f32 is exact enough at any \
                 distance. Neighbors share no point and lose none.",
-        path_parameters: ADDRESS,
-        parameters: api::given(&[], &[&SET_NAMES[..], &WINDOW_NAMES, &LOOKS_NAMES].concat()),
+        tag: Tag::Points,
+        path_parameters: &[&SIZE, &COLUMN, &ROW],
+        parameters: groups::QUERY,
         body: None,
-        answers: vec![answer::told(), api::Answer::unchanged()],
+        answers: vec![answer::described(), api::Answer::unchanged()],
         problems: answer::problems(),
         example: "'/v1/chunks/64/-3/2?spacing=16&format=csv'".into(),
     };
@@ -47,81 +45,48 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     )
 }
 
-const CELL: &str = "an integer within ±4503599627370496";
+/// How far from the origin chunks are counted.
+const CELLS: Shape = Shape::Signed { limit: 1 << 52 };
 
-const ADDRESS: &[Parameter] = &[
-    Parameter {
-        name: "size",
-        about: "The side of a chunk in world units.",
-        allowed: "a finite number above 0",
-        shape: Shape::Number {
-            min: f64::MIN_POSITIVE,
-            max: f64::MAX,
-        },
-        default: None,
-        example: "64",
+const SIZE: Parameter = Parameter {
+    name: "size",
+    about: "The side of a chunk in world units.",
+    shape: Shape::Number {
+        min: f64::MIN_POSITIVE,
+        max: f64::MAX,
     },
-    Parameter {
-        name: "cx",
-        about: "The column of the chunk.",
-        allowed: CELL,
-        shape: Shape::Integer {
-            min: -(1 << 52),
-            max: 1 << 52,
-        },
-        default: None,
-        example: "-3",
-    },
-    Parameter {
-        name: "cy",
-        about: "The row of the chunk.",
-        allowed: CELL,
-        shape: Shape::Integer {
-            min: -(1 << 52),
-            max: 1 << 52,
-        },
-        default: None,
-        example: "2",
-    },
-];
+    allowed: Some("a finite number above 0"),
+    example: "64",
+    is_required: true,
+    ..Parameter::PLAIN
+};
+const COLUMN: Parameter = Parameter {
+    name: "cx",
+    about: "The column of the chunk.",
+    shape: CELLS,
+    example: "-3",
+    is_required: true,
+    ..Parameter::PLAIN
+};
+const ROW: Parameter = Parameter {
+    name: "cy",
+    about: "The row of the chunk.",
+    shape: CELLS,
+    example: "2",
+    is_required: true,
+    ..Parameter::PLAIN
+};
 
 async fn get(
     State(service): State<Arc<Service>>,
-    caller: Caller,
-    Path(address): Path<[String; 3]>,
-    method: Method,
-    uri: Uri,
-    headers: HeaderMap,
+    Path([size, x, y]): Path<[String; 3]>,
+    context: Context,
 ) -> Result<Response, Error> {
-    let (parameters, mut faults) = parse_pairs(uri.query().unwrap_or_default());
-    let [size, cx, cy] = &address;
-    let size = read::<f64>("size", size, "a finite number above 0", &mut faults);
-    let at =
-        [("cx", cx), ("cy", cy)].map(|(name, text)| read::<i64>(name, text, CELL, &mut faults));
-    let shape = match (size, at) {
-        (Some(size), [Some(x), Some(y)]) => ShapeDraft::Chunk(size, [x, y]),
-        _ => return Err(Error::Invalid(faults)),
-    };
-    let region = RegionDraft {
+    let address = (SIZE.read(&size), COLUMN.read(&x), ROW.read(&y));
+    let region = address.together().map(|(size, x, y)| RegionDraft {
         path: "chunk".into(),
-        shape,
-    };
-    let most_vertices = service.limits().max_vertices;
-    let (query, options) =
-        parameters.check(&service.catalog(), most_vertices, Some(region), faults)?;
-    let asked = Asked {
-        caller,
-        method,
-        uri,
-        headers,
-    };
-    answer::stream(&service, &asked, query, options).await
-}
-
-fn read<T: FromStr>(name: &str, text: &str, allowed: &str, faults: &mut Vec<Fault>) -> Option<T> {
-    let value = text.parse().ok();
-    if value.is_none() {
-        faults.push(Fault::new(name, text, "it is not such a number", allowed));
-    }
-    value
+        shape: ShapeDraft::Chunk(size, [x, y]),
+    });
+    let draft = Draft::new(context.values(groups::QUERY)).within(region);
+    answer::stream(&service, &context, &draft).await
 }

@@ -3,38 +3,28 @@
 use std::sync::Arc;
 
 use axum::{extract::State, response::Response, routing};
-use http::{HeaderMap, Method, Uri};
+use http::Method;
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
 
 use super::{
-    answer::{self, Asked},
-    api::{self, Endpoint, Operation, schemas},
-    body::Whole,
+    answer,
+    api::{self, Endpoint, Operation, Tag, schemas::{self, CountQuery}},
+    body::{self, Whole},
+    context::Context,
     document, query,
 };
-use crate::access::Caller;
 use crate::service::{
-    Error, Kind, Query, Service,
-    query::{REGION_NAMES, Resolved, SET_NAMES, WINDOW_NAMES, parse_pairs},
+    Draft, Error, Kind, Query, Service,
+    query::{Resolved, groups},
 };
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let about = "Exact, in closed form for a box without warp, whatever it holds; otherwise in time \
                  proportional to its rows.";
-    let answers = || {
-        let schema = schemas::object(json!({
-            "count": { "type": "integer", "minimum": 0 },
-            "query": schemas::reference("Query"),
-        }));
-        api::Answer {
-            status: 200,
-            about: "The count.",
-            headers: vec![],
-            contents: vec![("application/json".into(), schema)],
-        }
-    };
+    let answers = || api::Answer::json::<Count>("The count.");
     let problems = || {
         vec![
             Kind::Invalid,
@@ -48,11 +38,9 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         id: "getCount",
         summary: "How many points a region holds",
         about,
+        tag: Tag::Points,
         path_parameters: &[],
-        parameters: api::given(
-            &[],
-            &[&REGION_NAMES[..], &SET_NAMES, &WINDOW_NAMES].concat(),
-        ),
+        parameters: groups::COUNT,
         body: None,
         answers: vec![answers(), api::Answer::unchanged()],
         problems: problems(),
@@ -63,9 +51,13 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         id: "countPoints",
         summary: "How many points a query has",
         about,
+        tag: Tag::Points,
         path_parameters: &[],
-        parameters: vec![],
-        body: Some(query::body()),
+        parameters: groups::NONE,
+        body: Some(query::body(
+            schemas::of::<CountQuery>,
+            json!({ "region": { "circle": { "center": [0, 0], "radius": 9 } }, "spacing": 1 }),
+        )),
         answers: vec![answers()],
         problems: [problems(), vec![Kind::BodyTooLarge]].concat(),
         example: r#"/v1/count -d '{"region": {"circle": {"center": [0, 0], "radius": 9}}, "spacing": 1}'"#
@@ -75,49 +67,30 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     Endpoint::new("/v1/count", service, operations)
 }
 
-#[derive(Serialize)]
+/// The exact number of points of a query.
+#[derive(Serialize, JsonSchema)]
 struct Count {
+    /// The number of points.
     count: u128,
+    /// The query with everything filled in.
     query: Resolved,
 }
 
-async fn get(
-    State(service): State<Arc<Service>>,
-    caller: Caller,
-    method: Method,
-    uri: Uri,
-    headers: HeaderMap,
-) -> Result<Response, Error> {
-    let (parameters, faults) = parse_pairs(uri.query().unwrap_or_default());
-    let most_vertices = service.limits().max_vertices;
-    let (query, options) = parameters.check(&service.catalog(), most_vertices, None, faults)?;
-    document::no_looks(options)?;
-    let asked = Asked {
-        caller,
-        method,
-        uri,
-        headers,
-    };
-    let freshness = answer::freshness(&service, &asked, &query, document::JSON)?;
-    if let Some(unchanged) = freshness.unchanged(&asked.headers) {
-        return Ok(unchanged);
-    }
-    let mut response = counted(&service, query).await?;
-    if let Some(unwanted) = freshness.unwanted(&asked.headers) {
-        return Ok(unwanted);
-    }
-    freshness.stamp(&mut response);
-    Ok(response)
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+    let draft = Draft::of(context.values(groups::COUNT));
+    let (query, _) = service.check(&draft)?;
+    let freshness = answer::freshness(&service, &context, &query, document::JSON);
+    freshness.answer(&context.headers, counted(&service, query)).await
 }
 
 async fn post(
     State(service): State<Arc<Service>>,
-    uri: Uri,
+    context: Context,
     Whole(body): Whole,
 ) -> Result<Response, Error> {
-    query::no_parameters(&uri)?;
-    let (query, options) = query::read(&service, &body)?;
-    document::no_looks(options)?;
+    context.no_parameters()?;
+    let draft = body::query(&service, body, groups::SET).await?;
+    let (query, _) = service.check(&draft)?;
     counted(&service, query).await
 }
 

@@ -3,12 +3,12 @@
 use axum::{response::Response, routing};
 use bytes::Bytes;
 use http::{HeaderMap, HeaderValue, Method, Uri, header};
-use serde_json::json;
 
 use super::{
-    api::{self, Endpoint, Operation},
+    api::{self, Endpoint, Operation, Tag, schemas},
     openapi::fixed,
 };
+use crate::service::query::groups;
 
 const PAGE: &str = include_str!("docs/page.html");
 const STYLE: &str = include_str!("docs/page.css");
@@ -58,15 +58,16 @@ fn endpoint((path, id, summary, content_type, content): Part) -> Endpoint {
         id,
         summary,
         about: "For people; loads nothing from elsewhere.",
+        tag: Tag::About,
         path_parameters: &[],
-        parameters: vec![],
+        parameters: groups::NONE,
         body: None,
         answers: vec![
             api::Answer {
                 status: 200,
                 about: summary,
                 headers: vec![],
-                contents: vec![(content_type.into(), json!({ "type": "string" }))],
+                contents: vec![(content_type, schemas::text)],
             },
             api::Answer::unchanged(),
         ],

@@ -10,6 +10,7 @@ use serde::Serialize;
 use strew_core::ALGORITHM_VERSION;
 
 use super::coding::Coding;
+use crate::service::Error;
 
 /// What is known of an answer before it is made.
 #[derive(Clone, Debug)]
@@ -69,6 +70,26 @@ impl Freshness {
         self
     }
 
+    /// Answers a conditional request: makes the answer if the client needs it.
+    ///
+    /// # Errors
+    /// As making it.
+    pub(super) async fn answer(
+        &self,
+        headers: &HeaderMap,
+        make: impl Future<Output = Result<Response, Error>>,
+    ) -> Result<Response, Error> {
+        if let Some(unchanged) = self.unchanged(headers) {
+            return Ok(unchanged);
+        }
+        let mut response = make.await?;
+        if let Some(unwanted) = self.unwanted(headers) {
+            return Ok(unwanted);
+        }
+        self.stamp(&mut response);
+        Ok(response)
+    }
+
     /// The answer to a client that already has what it asks for.
     pub(super) fn unchanged(&self, headers: &HeaderMap) -> Option<Response> {
         self.listed(headers).then(|| self.not_modified())
@@ -77,8 +98,13 @@ impl Freshness {
     /// The answer to a client that wants none if there is any (`If-None-Match: *`); to be asked
     /// once it is sure that there is one.
     pub(super) fn unwanted(&self, headers: &HeaderMap) -> Option<Response> {
-        let any = headers.get(header::IF_NONE_MATCH)?.as_bytes().trim_ascii() == b"*";
-        any.then(|| self.not_modified())
+        Self::is_any_unwanted(headers).then(|| self.not_modified())
+    }
+
+    /// Whether a client wants no answer if there is any.
+    pub(super) fn is_any_unwanted(headers: &HeaderMap) -> bool {
+        let tag = headers.get(header::IF_NONE_MATCH);
+        tag.is_some_and(|tag| tag.as_bytes().trim_ascii() == b"*")
     }
 
     /// Puts what caches need onto an answer.

@@ -3,9 +3,9 @@
 mod answer;
 pub mod api;
 mod body;
-mod caller;
 mod chunks;
 mod coding;
+mod context;
 mod cors;
 mod count;
 mod docs;

@@ -3,12 +3,12 @@
 use axum::{body::Body, response::Response, routing};
 use bytes::Bytes;
 use http::{HeaderMap, HeaderValue, Method, Uri, header};
-use serde_json::json;
 
 use super::{
-    api::{self, Endpoint, Operation},
+    api::{self, Endpoint, Operation, Tag, schemas},
     freshness::Freshness,
 };
+use crate::service::query::groups;
 
 const PATH: &str = "/openapi.json";
 
@@ -54,15 +54,16 @@ fn operation() -> Operation {
         id: "getOpenapi",
         summary: "This document",
         about: "OpenAPI 3.1. The page /docs shows it.",
+        tag: Tag::About,
         path_parameters: &[],
-        parameters: vec![],
+        parameters: groups::NONE,
         body: None,
         answers: vec![
             api::Answer {
                 status: 200,
                 about: "The document.",
                 headers: vec![],
-                contents: vec![("application/json".into(), json!({ "type": "object" }))],
+                contents: vec![("application/json", schemas::object)],
             },
             api::Answer::unchanged(),
         ],

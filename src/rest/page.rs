@@ -6,15 +6,14 @@
 use axum::{extract::Path, response::Response, routing};
 use bytes::Bytes;
 use http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
-use serde_json::json;
 
 use super::{
-    api::{self, Endpoint, Operation},
+    api::{self, Endpoint, Operation, Tag, schemas},
     openapi::fixed,
 };
 use crate::service::{
     Error, Kind,
-    query::{Parameter, Shape},
+    query::{Parameter, groups},
 };
 
 /// What the page may load: its own parts, and what the daemon answers. Nothing inline.
@@ -98,7 +97,7 @@ pub(super) fn endpoints() -> Vec<Endpoint> {
         "/page/main.js",
         "A part of the page",
         &[SCRIPT, STYLE, PICTURE],
-        FILE,
+        &[&FILE],
         vec![Kind::NoSuchPath],
     );
     let parts_handler = routing::get(one);
@@ -108,31 +107,32 @@ pub(super) fn endpoints() -> Vec<Endpoint> {
     ]
 }
 
-const FILE: &[Parameter] = &[Parameter {
+const FILE: Parameter = Parameter {
     name: "file",
     about: "The name of the part.",
-    allowed: "the name of a part",
-    shape: Shape::Text,
-    default: None,
+    allowed: Some("the name of a part"),
     example: "main.js",
-}];
+    is_required: true,
+    ..Parameter::PLAIN
+};
 
 fn operation(
     id: &'static str,
     example: &str,
     summary: &'static str,
     content_types: &[&'static str],
-    path_parameters: &'static [Parameter],
+    path_parameters: &'static [&'static Parameter],
     problems: Vec<Kind>,
 ) -> Operation {
-    let text = |name: &&str| ((*name).into(), json!({ "type": "string" }));
+    let text = |name: &&'static str| (*name, schemas::text as schemas::Content);
     Operation {
         method: Method::GET,
         id,
         summary,
         about: "For people: a view of the plane. Loads nothing from elsewhere.",
+        tag: Tag::About,
         path_parameters,
-        parameters: vec![],
+        parameters: groups::NONE,
         body: None,
         answers: vec![
             api::Answer {

@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 use axum::{extract::State, response::Response, routing};
-use http::{HeaderMap, Method, Uri};
+use http::Method;
 
 use super::{
-    answer::{self, Asked},
-    api::{self, Endpoint, Operation},
+    answer,
+    api::{self, Endpoint, Operation, Tag},
+    context::Context,
 };
-use crate::access::Caller;
 use crate::service::{
-    Error, Service,
-    query::{LOOKS_NAMES, REGION_NAMES, SET_NAMES, WINDOW_NAMES, parse_pairs},
+    Draft, Error, Service,
+    query::groups,
 };
 
 /// The path.
@@ -23,13 +23,11 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         summary: "The points of a region",
         about: "Streams every point of a half-open box, a circle or a polygon, in a fixed order. The \
                 exact count is in the header strew-count before any point is made.",
+        tag: Tag::Points,
         path_parameters: &[],
-        parameters: api::given(
-            &[],
-            &[&REGION_NAMES[..], &SET_NAMES, &WINDOW_NAMES, &LOOKS_NAMES].concat(),
-        ),
+        parameters: groups::POINTS,
         body: None,
-        answers: vec![answer::told(), api::Answer::unchanged()],
+        answers: vec![answer::described(), api::Answer::unchanged()],
         problems: answer::problems(),
         example: "'/v1/points?bbox=0,0,3,2&spacing=1&format=csv'".into(),
     };
@@ -37,21 +35,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 }
 
 /// Answers a query.
-async fn get(
-    State(service): State<Arc<Service>>,
-    caller: Caller,
-    method: Method,
-    uri: Uri,
-    headers: HeaderMap,
-) -> Result<Response, Error> {
-    let (parameters, faults) = parse_pairs(uri.query().unwrap_or_default());
-    let most_vertices = service.limits().max_vertices;
-    let (query, options) = parameters.check(&service.catalog(), most_vertices, None, faults)?;
-    let asked = Asked {
-        caller,
-        method,
-        uri,
-        headers,
-    };
-    answer::stream(&service, &asked, query, options).await
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+    let draft = Draft::of(context.values(groups::POINTS));
+    answer::stream(&service, &context, &draft).await
 }

@@ -8,48 +8,32 @@ use axum::{
     response::Response,
     routing,
 };
-use http::{HeaderMap, HeaderValue, Method, Uri, header};
+use http::{HeaderValue, Method, header};
+use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::{Value, json};
 use strew_forge::Aim;
 
 use super::{
-    api::{self, Endpoint, Operation, schemas},
+    api::{self, Endpoint, Operation, Tag, schemas},
+    context::Context,
+    document,
     freshness::Freshness,
-    profiles::{self, Profile},
+    profiles::Profile,
 };
 use crate::service::{
     Entry, Error, Kind, Service,
-    query::{Parameter, Shape, parse_pairs},
+    query::{self, Parameter, groups, parameters},
 };
 
 /// The path of the curves.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
-    let numbers = |most: u32| {
-        let number = json!({ "type": "number" });
-        let row = json!({ "type": "array", "items": number, "minItems": most, "maxItems": most });
-        schemas::object(json!({
-            "columns": { "type": "array", "items": { "type": "string" } },
-            "values": { "type": "array", "items": row },
-        }))
-    };
-    let measured = json!({
-        "points": { "type": "integer" },
-        "radial": numbers(3),
-        "rdf": numbers(2),
-    });
-    let document = json!({
-        "table": profiles::schema(),
-        "target": target_schema(numbers(2)),
-        "measured": schemas::object(measured),
-    });
     let operation = operation(
         "getProfile",
         "One noise profile with its curves",
         "The table's provenance and figures; what it was made to be, with the radial power curve it \
          follows if it follows one; radial power, anisotropy and radial distribution of a window of \
          the unbounded pattern.",
-        ("application/json", schemas::object(document)),
+        (document::JSON, schemas::of::<Document<'_>>),
         "'/v1/profiles/blue?alpha=sqrt(3)'",
     );
     Endpoint::new(
@@ -59,28 +43,13 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     )
 }
 
-/// The JSON Schema of a table's target.
-fn target_schema(mut curve: Value) -> Value {
-    curve["type"] = json!(["object", "null"]);
-    let (text, number) = (json!({ "type": "string" }), json!({ "type": "number" }));
-    let side = json!({ "type": "string", "enum": ["at most", "at least"] });
-    let bound = schemas::object(json!({ "figure": text, "side": side, "limit": number }));
-    let mut target = schemas::object(json!({
-        "statement": text,
-        "bounds": { "type": "array", "items": bound },
-        "curve": curve,
-    }));
-    target["type"] = json!(["object", "null"]);
-    target
-}
-
 /// The path of the picture.
 pub(super) fn picture(service: Arc<Service>) -> Endpoint {
     let operation = operation(
         "getSpectrum",
         "A picture of one noise profile",
         "Points, radial power, anisotropy and radial distribution.",
-        ("image/svg+xml", json!({ "type": "string" })),
+        (SVG, schemas::text),
         "/v1/profiles/blue/spectrum.svg -o spectrum.svg",
     );
     Endpoint::new(
@@ -90,20 +59,23 @@ pub(super) fn picture(service: Arc<Service>) -> Endpoint {
     )
 }
 
-const NAME: &[Parameter] = &[Parameter {
+/// The content type of the picture.
+const SVG: &str = "image/svg+xml";
+
+const NAME: Parameter = Parameter {
     name: "name",
-    about: "The noise profile. The list of profiles says what is loaded.",
-    allowed: "the name of a profile that is loaded",
-    shape: Shape::Text,
-    default: None,
+    about: "The noise profile. The list of profiles shows what is loaded.",
+    allowed: Some("the name of a loaded profile"),
+    is_required: true,
     example: "blue",
-}];
+    ..Parameter::PLAIN
+};
 
 fn operation(
     id: &'static str,
     summary: &'static str,
     about: &'static str,
-    (content_type, schema): (&str, Value),
+    content: (&'static str, schemas::Content),
     example: &str,
 ) -> Operation {
     Operation {
@@ -111,15 +83,16 @@ fn operation(
         id,
         summary,
         about,
-        path_parameters: NAME,
-        parameters: api::given(&[], &["alpha", "map", "table"]),
+        tag: Tag::Profiles,
+        path_parameters: &[&NAME],
+        parameters: groups::TABLE,
         body: None,
         answers: vec![
             api::Answer {
                 status: 200,
                 about: summary,
                 headers: vec![],
-                contents: vec![(content_type.into(), schema)],
+                contents: vec![content],
             },
             api::Answer::unchanged(),
         ],
@@ -132,70 +105,59 @@ fn operation(
 async fn get(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
-    uri: Uri,
-    headers: HeaderMap,
+    context: Context,
 ) -> Result<Response, Error> {
-    let (entry, freshness) = asked(&service, &name, &uri, &headers, "application/json")?;
-    if let Some(unchanged) = freshness.unchanged(&headers) {
-        return Ok(unchanged);
-    }
-    let portrait = service.portrait(&entry).await?;
-    if let Some(unwanted) = freshness.unwanted(&headers) {
-        return Ok(unwanted);
-    }
-    let aim = entry.aim();
-    let document = Document {
-        table: Profile::new(&entry),
-        target: aim.as_ref().map(Target::new),
-        measured: Measured {
-            points: portrait.points,
-            radial: Curve {
-                columns: ["nu", "power", "anisotropy_db"],
-                values: &portrait.radial,
+    let (entry, freshness) = chosen(&service, &name, &context, document::JSON)?;
+    let make = async {
+        let portrait = service.portrait(&entry).await?;
+        let aim = entry.aim();
+        document::json(&Document {
+            table: Profile::new(&entry),
+            target: aim.as_ref().map(Target::new),
+            measured: Measured {
+                points: portrait.points,
+                radial: Curve {
+                    columns: ["nu", "power", "anisotropy_db"],
+                    values: &portrait.radial,
+                },
+                rdf: Curve {
+                    columns: ["distance", "g"],
+                    values: &portrait.rdf,
+                },
             },
-            rdf: Curve {
-                columns: ["distance", "g"],
-                values: &portrait.rdf,
-            },
-        },
+        })
     };
-    let mut body = serde_json::to_vec(&document)
-        .map_err(|_| Error::Internal("the profile cannot be written"))?;
-    body.push(b'\n');
-    Ok(typed(body, "application/json", &freshness))
+    freshness.answer(&context.headers, make).await
 }
 
 /// The picture.
 async fn svg(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
-    uri: Uri,
-    headers: HeaderMap,
+    context: Context,
 ) -> Result<Response, Error> {
-    let (entry, freshness) = asked(&service, &name, &uri, &headers, "image/svg+xml")?;
-    if let Some(unchanged) = freshness.unchanged(&headers) {
-        return Ok(unchanged);
-    }
-    let portrait = service.portrait(&entry).await?;
-    if let Some(unwanted) = freshness.unwanted(&headers) {
-        return Ok(unwanted);
-    }
-    let picture = portrait.svg.clone().into_bytes();
-    Ok(typed(picture, "image/svg+xml", &freshness))
+    let (entry, freshness) = chosen(&service, &name, &context, SVG)?;
+    let make = async {
+        let portrait = service.portrait(&entry).await?;
+        let mut response = Response::new(Body::from(portrait.svg.clone()));
+        let value = HeaderValue::from_static(SVG);
+        response.headers_mut().insert(header::CONTENT_TYPE, value);
+        Ok(response)
+    };
+    freshness.answer(&context.headers, make).await
 }
 
-/// The table that is asked for, and how fresh what is made of it is.
-fn asked(
+/// The table that is wanted, and how fresh what is made of it is.
+fn chosen(
     service: &Service,
     name: &str,
-    uri: &Uri,
-    headers: &HeaderMap,
+    context: &Context,
     content_type: &'static str,
 ) -> Result<(Arc<Entry>, Freshness), Error> {
     let catalog = service.catalog();
     if catalog.alphas(name).is_empty() {
         return Err(Error::NoSuchPath {
-            path: uri.path().into(),
+            path: context.uri.path().into(),
             available: catalog
                 .profiles()
                 .iter()
@@ -204,41 +166,45 @@ fn asked(
                 .join(", "),
         });
     }
-    let (parameters, faults) = parse_pairs(uri.query().unwrap_or_default());
-    let entry = parameters.entry(&catalog, name, faults)?;
-    let freshness = Freshness::of(uri, headers, content_type, &entry.digest);
-    Ok((entry, freshness.pinned(parameters.get("table").is_some())))
+    let values = context.values(groups::TABLE);
+    let entry = query::entry(&values, name, &catalog)?;
+    let freshness = Freshness::of(&context.uri, &context.headers, content_type, &entry.digest);
+    Ok((entry, freshness.pinned(values.has(&parameters::TABLE))))
 }
 
-fn typed(body: Vec<u8>, content_type: &'static str, freshness: &Freshness) -> Response {
-    let mut response = Response::new(Body::from(body));
-    let value = HeaderValue::from_static(content_type);
-    response.headers_mut().insert(header::CONTENT_TYPE, value);
-    freshness.stamp(&mut response);
-    response
-}
-
-#[derive(Serialize)]
+/// A table of a noise profile with its curves.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "ProfileCurves")]
 struct Document<'a> {
+    /// The table.
     table: Profile<'a>,
-    /// `null` for a table that does not tell what it was made to be.
+    /// What it was made to be; null if the table does not say.
     target: Option<Target<'a>>,
+    /// What was measured.
     measured: Measured<'a>,
 }
 
 /// What a table was made to be.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Target")]
 struct Target<'a> {
+    /// In words.
     statement: &'a str,
+    /// Bounds on its figures.
     bounds: Vec<Limit>,
+    /// The radial power curve that it follows, if it follows one.
     curve: Option<Curve<'a, 2>>,
 }
 
 /// A bound on a figure.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Bound")]
 struct Limit {
+    /// The name of the figure.
     figure: &'static str,
+    /// `at most` or `at least`.
     side: String,
+    /// The bound.
     limit: f64,
 }
 
@@ -261,19 +227,29 @@ impl<'a> Target<'a> {
 }
 
 /// What was measured on a window of the unbounded pattern.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Measured")]
 struct Measured<'a> {
+    /// The number of points in the window.
     points: u64,
+    /// Radial power and anisotropy by frequency.
     radial: Curve<'a, 3>,
+    /// The radial distribution by distance.
     rdf: Curve<'a, 2>,
 }
 
-#[derive(Serialize)]
+/// A curve: rows of numbers.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Curve")]
 struct Curve<'a, const N: usize>
 where
     [f64; N]: Serialize,
     [&'static str; N]: Serialize,
 {
+    /// What the columns are.
+    #[schemars(with = "Vec<String>")]
     columns: [&'static str; N],
+    /// The rows.
+    #[schemars(with = "Vec<Vec<f64>>")]
     values: &'a [[f64; N]],
 }

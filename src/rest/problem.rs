@@ -5,6 +5,7 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use http::{HeaderValue, StatusCode, header};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::{
@@ -13,37 +14,55 @@ use crate::{
     service::{Error, Fault, Record},
 };
 
-/// The document.
-#[derive(Debug, Serialize)]
+/// Why there is no answer (RFC 9457).
+#[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Problem")]
 pub(super) struct Problem<'a> {
+    /// The type of the problem.
+    #[schemars(extend("enum" = error_map::types()))]
     r#type: String,
+    /// The title, the same for all problems of a type.
     title: &'a str,
+    /// The status of the response.
+    #[schemars(range(min = 400, max = 599))]
     status: u16,
+    /// What is wrong, in words.
     detail: String,
+    /// The faults of an invalid query.
     #[serde(skip_serializing_if = "<[Fault]>::is_empty")]
+    #[schemars(default)]
     errors: &'a [Fault],
+    /// The exact number of points, if there are too many.
     #[serde(skip_serializing_if = "Option::is_none")]
     count: Option<u128>,
+    /// The limit that was exceeded.
     #[serde(skip_serializing_if = "Option::is_none")]
     limit: Option<u64>,
+    /// The digest of the table that the query pins, if another one would answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pinned: Option<&'a str>,
+    /// The digest of the table that would answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     loaded: Option<&'a str>,
     #[serde(flatten)]
     rate: Option<Rate>,
-    /// What the request is called in the log.
+    /// The id of the request in the server's log; also the header x-request-id of every answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     request_id: Option<String>,
 }
 
-/// What a caller who is too fast has to know.
-#[derive(Debug, Serialize)]
+/// The state of a rate limit that was exceeded.
+#[derive(Debug, Serialize, JsonSchema)]
 struct Rate {
+    /// The number of points that were requested.
     points: u128,
+    /// How many are left now.
     left: u64,
+    /// How many more there are each second.
     points_per_second: f64,
+    /// How many there are at most.
     burst_points: f64,
+    /// After how long the request is worth another try.
     retry_after_seconds: f64,
 }
 
@@ -65,7 +84,7 @@ fn request_id() -> Option<String> {
 
 impl<'a> Problem<'a> {
     fn new(error: &'a Error) -> Self {
-        let mapped = error_map::http(error.kind());
+        let mapped = error_map::wire(error.kind());
         let (count, limit) = match error {
             Error::TooManyPoints { count, limit } => (Some(*count), Some(*limit)),
             Error::TooManyRows { limit, .. } => (None, Some(*limit)),

@@ -1,40 +1,34 @@
 //! `GET /v1/profiles`: what is loaded.
 
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
-use axum::{body::Body, extract::State, response::Response, routing};
-use http::{HeaderMap, HeaderValue, Method, Uri, header};
+use axum::{extract::State, response::Response, routing};
+use http::Method;
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
-use serde_json::{Value, json};
 use strew_core::{ALGORITHM_VERSION, table};
 
 use super::{
-    api::{self, Endpoint, Operation, schemas},
+    api::{self, Endpoint, Operation, Tag},
+    context::Context,
+    document,
     freshness::Freshness,
 };
-use crate::service::{Entry, Error, Fault, Kind, Service};
+use crate::service::{Entry, Error, Kind, Service, query::groups};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
-    let document = json!({
-        "algorithm": { "type": "integer" },
-        "profiles": { "type": "array", "items": schema() },
-    });
     let operation = Operation {
         method: Method::GET,
         id: "listProfiles",
         summary: "The noise profiles that are loaded",
         about: "Every table with its provenance and its measured figures.",
+        tag: Tag::Profiles,
         path_parameters: &[],
-        parameters: vec![],
+        parameters: groups::NONE,
         body: None,
         answers: vec![
-            api::Answer {
-                status: 200,
-                about: "The list, sorted by profile, then alpha.",
-                headers: vec![],
-                contents: vec![("application/json".into(), schemas::object(document))],
-            },
+            api::Answer::json::<Profiles<'_>>("The list, sorted by profile, then alpha."),
             api::Answer::unchanged(),
         ],
         problems: vec![Kind::Invalid],
@@ -47,106 +41,88 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     )
 }
 
-/// The JSON Schema of a table's description.
-pub(super) fn schema() -> Value {
-    let (text, number) = (json!({ "type": "string" }), json!({ "type": "integer" }));
-    let figures = json!({
-        "subject": text,
-        "seen": { "type": "boolean" },
-        "points": number,
-        "values": { "type": "object", "additionalProperties": { "type": "number" } },
-    });
-    let provenance = json!({
-        "optimizer": text,
-        "parameters": { "type": "object", "additionalProperties": text },
-        "seed": number,
-        "twins": { "type": "array", "items": text },
-        "figures": { "type": "array", "items": schemas::object(figures) },
-    });
-    schemas::object(json!({
-        "profile": text,
-        "alpha": text,
-        "map": text,
-        "radius": number,
-        "intervals": number,
-        "blocks": number,
-        "bytes": number,
-        "digest": schemas::reference("Digest"),
-        "provenance": schemas::object(provenance),
-    }))
-}
-
 /// Lists the tables.
-async fn get(
-    State(service): State<Arc<Service>>,
-    uri: Uri,
-    headers: HeaderMap,
-) -> Result<Response, Error> {
-    if let Some(text) = uri.query().filter(|text| !text.is_empty()) {
-        let detail = "this list takes no parameters";
-        return Err(Error::Invalid(vec![Fault::new(
-            "query", text, detail, "none",
-        )]));
-    }
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+    context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let made_of: Vec<&str> = (catalog.entries())
         .map(|entry| entry.digest.as_str())
         .collect();
-    let freshness = Freshness::of(&uri, &headers, "application/json", &made_of);
-    let unchanged = freshness.unchanged(&headers);
-    if let Some(unchanged) = unchanged.or_else(|| freshness.unwanted(&headers)) {
-        return Ok(unchanged);
-    }
-    let document = Profiles {
-        algorithm: ALGORITHM_VERSION,
-        profiles: catalog.entries().map(|entry| Profile::new(entry)).collect(),
+    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &made_of);
+    let make = async {
+        document::json(&Profiles {
+            algorithm: ALGORITHM_VERSION,
+            profiles: catalog.entries().map(|entry| Profile::new(entry)).collect(),
+        })
     };
-    let mut body = serde_json::to_vec(&document)
-        .map_err(|_| Error::Internal("the list of profiles cannot be written"))?;
-    body.push(b'\n');
-    let mut response = Response::new(Body::from(body));
-    let json = HeaderValue::from_static("application/json");
-    response.headers_mut().insert(header::CONTENT_TYPE, json);
-    freshness.stamp(&mut response);
-    Ok(response)
+    freshness.answer(&context.headers, make).await
 }
 
-#[derive(Serialize)]
+/// The tables that are loaded.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Profiles")]
 struct Profiles<'a> {
+    /// The version of the algorithm that answers.
     algorithm: u32,
+    /// Sorted by profile, then alpha.
     profiles: Vec<Profile<'a>>,
 }
 
-/// A table.
-#[derive(Serialize)]
+/// A table of a noise profile.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Profile")]
 pub(super) struct Profile<'a> {
+    /// The name of the noise profile.
     profile: &'a str,
+    /// The number α of its pattern.
     alpha: String,
+    /// The size of its map.
     map: String,
+    /// The half-width R of its neighborhood map, in grid units.
     radius: u32,
+    /// The intervals per axis, n.
     intervals: usize,
+    /// The blocks, n².
     blocks: usize,
+    /// The size of the file in bytes.
     bytes: usize,
+    /// The BLAKE3 digest of the file.
     digest: &'a str,
+    /// How it was made.
     provenance: Provenance<'a>,
 }
 
-#[derive(Serialize)]
+/// How a table was made and what was measured on it.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Provenance")]
 struct Provenance<'a> {
+    /// The name of the optimizer.
     optimizer: &'a str,
+    /// Its parameters by name.
     #[serde(serialize_with = "as_map")]
+    #[schemars(with = "BTreeMap<String, String>")]
     parameters: &'a [(String, String)],
+    /// The seed of its random start.
     seed: u64,
+    /// The periodic twins it was optimized on, as fractions p/q.
     twins: Vec<String>,
+    /// What was measured.
     figures: Vec<Figures<'a>>,
 }
 
-#[derive(Serialize)]
+/// Figures measured on one point set.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Figures")]
 struct Figures<'a> {
+    /// What was measured.
     subject: &'a str,
+    /// Whether the table was optimized on it.
     seen: bool,
+    /// How many points it has.
     points: u64,
+    /// The figures by name.
     #[serde(serialize_with = "as_map")]
+    #[schemars(with = "BTreeMap<String, f64>")]
     values: &'a [(String, f64)],
 }
 

@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 use axum::{extract::State, response::Response, routing};
-use http::{HeaderMap, Method, Uri};
+use http::Method;
 use serde_json::json;
 
 use super::{
-    answer::{self, Asked},
-    api::{Body, Endpoint, Operation, schemas},
-    body::Whole,
+    answer,
+    api::{Body, Endpoint, Operation, Tag, schemas::{self, Content, PointsQuery}},
+    body::{self, Whole},
+    context::Context,
 };
-use crate::access::Caller;
-use crate::service::{Error, Fault, Kind, Query, Service, encode::Options, query::read_body};
+use crate::service::{Error, Kind, Service, query::groups};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -22,10 +22,11 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         summary: "The points of any region, in layers",
         about: "The same as GET /v1/points, with regions of all kinds and several layers at once, \
                 streamed one after another in one answer.",
+        tag: Tag::Points,
         path_parameters: &[],
-        parameters: vec![],
-        body: Some(body()),
-        answers: vec![answer::told()],
+        parameters: groups::NONE,
+        body: Some(body(schemas::of::<PointsQuery>, example())),
+        answers: vec![answer::described()],
         problems: [answer::problems(), vec![Kind::BodyTooLarge]].concat(),
         example: format!("/v1/points:query -d '{}'", example()),
     };
@@ -33,12 +34,12 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     Endpoint::new("/v1/points:query", service, vec![(operation, handler)])
 }
 
-/// A query as the body of a request.
-pub(super) fn body() -> Body {
+/// A query as the body of a request, with its schema and an example.
+pub(super) fn body(schema: Content, example: serde_json::Value) -> Body {
     Body {
         media_type: "application/json",
-        schema: schemas::reference("PointsQuery"),
-        example: example(),
+        schema,
+        example,
     }
 }
 
@@ -55,42 +56,10 @@ fn example() -> serde_json::Value {
 
 async fn post(
     State(service): State<Arc<Service>>,
-    caller: Caller,
-    method: Method,
-    uri: Uri,
-    headers: HeaderMap,
+    context: Context,
     Whole(body): Whole,
 ) -> Result<Response, Error> {
-    no_parameters(&uri)?;
-    let (query, options) = read(&service, &body)?;
-    let asked = Asked {
-        caller,
-        method,
-        uri,
-        headers,
-    };
-    answer::stream(&service, &asked, query, options).await
-}
-
-/// The checked query of a body.
-pub(super) fn read(service: &Service, body: &[u8]) -> Result<(Query, Options), Error> {
-    let body = read_body(body)?;
-    let most_vertices = service.limits().max_vertices;
-    let query = body
-        .draft
-        .check(&service.catalog(), most_vertices, body.faults)?;
-    Ok((query, body.options))
-}
-
-/// Everything is in the body.
-pub(super) fn no_parameters(uri: &Uri) -> Result<(), Error> {
-    match uri.query().filter(|text| !text.is_empty()) {
-        Some(text) => {
-            let detail = "the query is in the body";
-            Err(Error::Invalid(vec![Fault::new(
-                "query", text, detail, "none",
-            )]))
-        }
-        None => Ok(()),
-    }
+    context.no_parameters()?;
+    let draft = body::query(&service, body, groups::QUERY).await?;
+    answer::stream(&service, &context, &draft).await
 }

@@ -7,35 +7,30 @@ use axum::{
     response::Response,
     routing,
 };
-use http::{HeaderMap, Method, Uri};
+use http::Method;
+use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::{Value, json};
 
 use super::{
-    api::{self, Endpoint, Operation, schemas},
+    api::{self, Endpoint, Operation, Tag},
+    context::Context,
     document,
     freshness::Freshness,
 };
-use crate::access::Caller;
 use crate::service::{
-    Error, Found, Kind, Placed, Service,
-    query::{Parameter, Parameters, ResolvedSet, SET_NAMES, Shape, parse_pairs},
+    Error, Found, Kind, Nearest, Service, Set,
+    query::{Parameter, ResolvedSet, Shape, groups},
 };
 
-/// The parameters that say what points there are: without a region there is nothing to count.
-fn set_names() -> Vec<&'static str> {
-    let names = SET_NAMES.into_iter();
-    names.filter(|name| *name != "count").collect()
-}
-
-const ID: &[Parameter] = &[Parameter {
+const ID: Parameter = Parameter {
     name: "id",
     about: "The stable id of a point: its lattice address.",
-    allowed: "two integers joined by a colon, such as -31:52",
     shape: Shape::Pattern("^-?[0-9]+:-?[0-9]+$"),
-    default: None,
+    allowed: Some("two integers joined by a colon, such as -31:52"),
     example: "0:0",
-}];
+    is_required: true,
+    ..Parameter::PLAIN
+};
 
 /// The path of points by id.
 pub(super) fn by_id(service: Arc<Service>) -> Endpoint {
@@ -44,14 +39,12 @@ pub(super) fn by_id(service: Arc<Service>) -> Endpoint {
         id: "getPoint",
         summary: "A point by its id",
         about: "The same parameters that gave the id find the point again.",
-        path_parameters: ID,
-        parameters: api::given(&[], &set_names()),
+        tag: Tag::Points,
+        path_parameters: &[&ID],
+        parameters: groups::SINGLE,
         body: None,
         answers: vec![
-            told(
-                "The point.",
-                json!({ "point": schemas::reference("Found"), "query": set() }),
-            ),
+            api::Answer::json::<One>("The point."),
             api::Answer::unchanged(),
         ],
         problems: vec![Kind::Invalid, Kind::OtherTable, Kind::NoSuchPoint],
@@ -63,109 +56,81 @@ pub(super) fn by_id(service: Arc<Service>) -> Endpoint {
 
 /// The path of the points near a place.
 pub(super) fn nearest(service: Arc<Service>) -> Endpoint {
-    let neighbors = json!({ "type": "array", "items": schemas::reference("Found") });
     let operation = Operation {
         method: Method::GET,
         id: "getNearest",
         summary: "The points nearest to a place",
         about: "Exact, nearest first; of equally near ones the smaller id first. With k and radius \
                 both must hold; at most 10000 points.",
+        tag: Tag::Points,
         path_parameters: &[],
-        parameters: api::given(&["at"], &[&["k", "radius"], &set_names()[..]].concat()),
+        parameters: groups::NEAREST,
         body: None,
         answers: vec![
-            told(
-                "The points.",
-                json!({ "neighbors": neighbors, "query": set() }),
-            ),
+            api::Answer::json::<Several>("The points."),
             api::Answer::unchanged(),
         ],
         problems: vec![Kind::Invalid, Kind::OtherTable],
         example: "'/v1/nearest?at=100.5,-3&k=2&spacing=1'".into(),
     };
-    let handler = routing::get(around);
+    let handler = routing::get(near);
     Endpoint::new("/v1/nearest", service, vec![(operation, handler)])
 }
 
-fn told(about: &'static str, members: Value) -> api::Answer {
-    api::Answer {
-        status: 200,
-        about,
-        headers: vec![],
-        contents: vec![(document::JSON.into(), schemas::object(members))],
-    }
-}
-
-fn set() -> Value {
-    schemas::reference("Set")
-}
-
-#[derive(Serialize)]
+/// A point by its id.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "PointById")]
 struct One {
+    /// The point.
     point: Found,
+    /// The set of points with everything filled in.
     query: ResolvedSet,
 }
 
-#[derive(Serialize)]
+/// The points nearest to a place.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Neighbors")]
 struct Several {
+    /// The points, nearest first.
     neighbors: Vec<Found>,
+    /// The set of points with everything filled in.
     query: ResolvedSet,
 }
 
 async fn point(
     State(service): State<Arc<Service>>,
     Path(id): Path<String>,
-    uri: Uri,
-    headers: HeaderMap,
+    context: Context,
 ) -> Result<Response, Error> {
-    let (parameters, faults) = parse_pairs(uri.query().unwrap_or_default());
-    let set = parameters.check_set(&service.catalog(), &[], faults)?;
-    let placed = service.place(set).await?;
-    let one = One {
-        point: placed.point(&id)?,
-        query: placed.resolved.clone(),
+    let values = context.values(groups::SINGLE);
+    let set = Set::single(&values, &service.catalog())?;
+    let freshness = freshness(&context, &set);
+    let make = async {
+        let placed = service.place(set).await?;
+        document::json(&One {
+            point: placed.point(&id)?,
+            query: placed.resolved,
+        })
     };
-    finished(&uri, &headers, &parameters, &placed, &one)
+    freshness.answer(&context.headers, make).await
 }
 
-async fn around(
-    State(service): State<Arc<Service>>,
-    caller: Caller,
-    uri: Uri,
-    headers: HeaderMap,
-) -> Result<Response, Error> {
-    let (parameters, mut faults) = parse_pairs(uri.query().unwrap_or_default());
-    let around = parameters.around().map_err(|more| faults.extend(more));
-    let set = parameters.check_set(&service.catalog(), &["at", "k", "radius"], faults)?;
-    let around = around.map_err(|()| Error::Internal("a fault is lost"))?;
-    let placed = service.place(set).await?;
-    let finder = placed.clone();
-    let search = move || finder.nearest(around);
-    let neighbors = service.workers().run(search).await??;
-    caller.charge(neighbors.len() as u128)?;
-    let several = Several {
-        neighbors,
-        query: placed.resolved.clone(),
+async fn near(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+    let values = context.values(groups::NEAREST);
+    let (set, nearest) = Nearest::of_set(&values, &service.catalog())?;
+    let freshness = freshness(&context, &set);
+    let make = async {
+        let (placed, neighbors) = service.nearest(&context.caller, set, nearest).await?;
+        document::json(&Several {
+            neighbors,
+            query: placed.resolved,
+        })
     };
-    finished(&uri, &headers, &parameters, &placed, &several)
+    freshness.answer(&context.headers, make).await
 }
 
-/// A document that changes with the table only.
-fn finished(
-    uri: &Uri,
-    headers: &HeaderMap,
-    parameters: &Parameters,
-    placed: &Placed,
-    document: &impl Serialize,
-) -> Result<Response, Error> {
-    let made_of = (&placed.resolved, &placed.set.entry.digest);
-    let freshness = Freshness::of(uri, headers, document::JSON, &made_of)
-        .pinned(parameters.get("table").is_some());
-    let unchanged = freshness.unchanged(headers);
-    if let Some(unchanged) = unchanged.or_else(|| freshness.unwanted(headers)) {
-        return Ok(unchanged);
-    }
-    let mut response = document::json(document)?;
-    freshness.stamp(&mut response);
-    Ok(response)
+/// The freshness of a document about single points, which changes with the table only.
+fn freshness(context: &Context, set: &Set) -> Freshness {
+    let digest = &set.entry.digest;
+    Freshness::of(&context.uri, &context.headers, document::JSON, digest).pinned(set.pin.is_some())
 }

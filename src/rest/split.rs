@@ -3,27 +3,24 @@
 use std::sync::Arc;
 
 use axum::{extract::State, response::Response, routing};
-use http::{Method, Uri};
+use http::Method;
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::{
-    api::{self, Endpoint, Operation, schemas},
-    body::Whole,
+    api::{self, Endpoint, Operation, Tag, schemas::{self, PointsQuery}},
+    body::{self, Whole},
+    context::Context,
     document, query,
 };
-use crate::service::{Error, Kind, Service, query::parse_pairs};
+use crate::service::{
+    Error, Kind, Service, Token,
+    query::{groups, parts},
+};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
-    let part = schemas::object(json!({
-        "count": { "type": "integer", "minimum": 1 },
-        "query": schemas::reference("PointsQuery"),
-    }));
-    let schema = schemas::object(json!({
-        "count": { "type": "integer", "minimum": 0 },
-        "parts": { "type": "array", "items": part },
-    }));
     let operation = Operation {
         method: Method::POST,
         id: "splitPoints",
@@ -31,15 +28,14 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         about: "Queries of as many points, give or take one, that give the points of the query one \
                 after another; each is a body of POST /v1/points:query. Parts without points are \
                 left out.",
+        tag: Tag::Points,
         path_parameters: &[],
-        parameters: api::given(&["parts"], &[]),
-        body: Some(query::body()),
-        answers: vec![api::Answer {
-            status: 200,
-            about: "The parts.",
-            headers: vec![],
-            contents: vec![(document::JSON.into(), schema)],
-        }],
+        parameters: groups::SPLIT,
+        body: Some(query::body(
+            schemas::of::<PointsQuery>,
+            json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1 }),
+        )),
+        answers: vec![api::Answer::json::<Split>("The parts.")],
         problems: vec![
             Kind::Invalid,
             Kind::OtherTable,
@@ -55,40 +51,40 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     Endpoint::new("/v1/points:split", service, vec![(operation, handler)])
 }
 
-#[derive(Serialize)]
+/// A query in parts.
+#[derive(Serialize, JsonSchema)]
 struct Split {
+    /// The number of points of all parts.
     count: u128,
+    /// The parts in their order.
     parts: Vec<Part>,
 }
 
-#[derive(Serialize)]
+/// A part of a query.
+#[derive(Serialize, JsonSchema)]
 struct Part {
+    /// The number of points of the part.
     count: u64,
+    /// The body of POST /v1/points:query that asks for it.
+    #[schemars(with = "PointsQuery")]
     query: Map<String, Value>,
 }
 
 async fn post(
     State(service): State<Arc<Service>>,
-    uri: Uri,
+    context: Context,
     Whole(body): Whole,
 ) -> Result<Response, Error> {
-    let (parameters, mut faults) = parse_pairs(uri.query().unwrap_or_default());
-    let parts = parameters.parts().map_err(|more| faults.extend(more));
-    let (Ok(parts), true) = (parts, faults.is_empty()) else {
-        return Err(Error::Invalid(faults));
-    };
-    let (query, _) = query::read(&service, &body)?;
-    let mut asked: Map<String, Value> = serde_json::from_slice(&body)
-        .map_err(|_| Error::Internal("a body that was read is gone"))?;
-    asked.remove("offset");
+    let parts = parts(&context.values(groups::SPLIT));
+    let draft = body::query(&service, body, groups::QUERY).await?;
+    let (query, _) = service.check(&draft)?;
+    let parts = parts?;
     let planned = service.count(query).await?;
     let count = planned.count();
     let places = service.split(planned, parts).await?;
-    let part = |(token, count): (crate::service::Token, u64)| {
-        let mut query = asked.clone();
-        query.insert("cursor".into(), token.to_string().into());
-        query.insert("limit".into(), count.into());
-        Part { count, query }
+    let part = |(token, count): (Token, u64)| Part {
+        count,
+        query: draft.part(&token, count).to_body(),
     };
     document::json(&Split {
         count,

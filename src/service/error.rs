@@ -6,17 +6,18 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::query::Faults;
 use crate::access::Denied;
 
 /// One thing that is wrong with a query.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Fault {
     /// The parameter or field.
     pub field: String,
-    /// Its value; absent if it is missing.
+    /// Its value; null if it is missing.
     pub value: Option<String>,
     /// What is wrong with it.
     pub detail: String,

@@ -1,5 +1,6 @@
 //! Single points: by id, and near a place.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use strew_core::{Attribute, ErrorKind, Member, Neighbor, PointId};
@@ -10,9 +11,10 @@ use super::{
 };
 
 /// A point with its attributes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Found {
-    /// Its id as text.
+    /// Its stable id: the lattice address.
+    #[schemars(regex(pattern = "^-?[0-9]+:-?[0-9]+$"))]
     pub id: String,
     /// Its x.
     pub x: f64,

@@ -102,7 +102,7 @@ fn compare(library: &Library, opened: Response, body: &Value, encoding: Encoding
                 expected.len()
             )))
         }
-        Err(error) if error_map::http(error.kind()).status.as_u16() == status => Ok(0),
+        Err(error) if error_map::wire(error.kind()).status.as_u16() == status => Ok(0),
         Err(error) => Err(wrong(format!(
             "request {id}: status {status} where the library says `{error}`: {body}"
         ))),
@@ -131,7 +131,7 @@ pub fn count(library: &Library, at: SocketAddr, body: &Value) -> Done {
     let answer: Value = serde_json::from_slice(&decoded(opened)?).unwrap_or_default();
     match library.planned(body) {
         Ok(planned) if answer["count"].as_u64().map(u128::from) == Some(planned.count()) => Ok(0),
-        Err(error) if error_map::http(error.kind()).status.as_u16() == status => Ok(0),
+        Err(error) if error_map::wire(error.kind()).status.as_u16() == status => Ok(0),
         expected => Err(wrong(format!(
             "count: status {status}, {answer} instead of {:?}: {body}",
             expected.map(|planned| planned.count())
@@ -306,7 +306,7 @@ pub fn spoiled(library: &Library, at: SocketAddr, random: &mut SplitMix, body: &
     match expected {
         // A changed query may be too much to count here: that the server takes it is enough.
         Ok(_) if status == 200 || status == 400 || status == 413 => Ok(0),
-        Err(error) if error_map::http(error.kind()).status.as_u16() == status => Ok(0),
+        Err(error) if error_map::wire(error.kind()).status.as_u16() == status => Ok(0),
         expected => Err(wrong(format!(
             "status {status}, {}, where the library says {:?}: {}",
             String::from_utf8_lossy(&answer),

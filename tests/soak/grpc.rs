@@ -183,7 +183,7 @@ pub async fn stream(library: &Library, at: SocketAddr, body: &Value) -> Done {
                 return Err(trouble);
             }
             return match planned {
-                Err(error) if error_map::grpc(error.kind()) == status.code() => Ok(0),
+                Err(error) if error_map::wire(error.kind()).code == status.code() => Ok(0),
                 _ => Err(Trouble::Wrong(format!("{status:?}: {body}"))),
             };
         }

@@ -206,7 +206,7 @@ impl Metrics {
         OfDoor {
             in_flight: self.gauge(IN_FLIGHT, labels([("door", door())])),
             refused: Kind::ALL
-                .map(|kind| refused(error_map::http(kind).slug))
+                .map(|kind| refused(error_map::wire(kind).slug))
                 .into(),
             refused_otherwise: refused("other"),
             broken: [broken(Broken::Client), broken(Broken::Server)],

@@ -4,14 +4,13 @@ use std::{fmt::Write as _, sync::Arc, time::UNIX_EPOCH};
 
 use axum::{body::Body, extract::State, response::Response, routing};
 use http::{HeaderValue, Method, header};
-use serde_json::json;
 
 use super::{
     CACHE_BYTES, CACHE_HITS, CACHE_MISSES, MEMORY, MOST_STREAMS, Metrics, OPEN_FILES, STARTED,
     STREAMS, THREADS, process::Process,
 };
 use crate::{
-    rest::api::{Answer, Endpoint, Operation},
+    rest::api::{Answer, Endpoint, Operation, Tag, schemas},
     service::Service,
 };
 
@@ -28,14 +27,15 @@ pub(in crate::ops) fn endpoint(metrics: Metrics, service: Arc<Service>) -> Endpo
         summary: "Metrics for Prometheus",
         about: "Counts, gauges and latencies of this process; never cached. docs/operations.md tells \
                 what they mean.",
+        tag: Tag::Operations,
         path_parameters: &[],
-        parameters: vec![],
+        parameters: &[],
         body: None,
         answers: vec![Answer {
             status: 200,
             about: "The metrics in Prometheus' text format.",
             headers: vec![],
-            contents: vec![(CONTENT_TYPE.into(), json!({ "type": "string" }))],
+            contents: vec![(CONTENT_TYPE, schemas::text)],
         }],
         problems: vec![],
         example: "/metrics".into(),

@@ -1,18 +1,20 @@
 //! The OpenAPI document (3.1), from the endpoints' own descriptions.
 
+use schemars::SchemaGenerator;
 use serde_json::{Map, Value, json};
 
-use super::{Answer, Endpoint, Given, Operation, schemas};
+use super::{Answer, Endpoint, Operation, Tag, rules, schemas, sets};
 use crate::{
     error_map,
+    rest::problem::Problem,
     service::{
-        Kind,
-        query::{Parameter, Shape},
+        Encoding, Kind,
+        query::{Parameter, Shape, of},
     },
 };
 
 const ABOUT: &str = "Strew scatters points: any region of an unbounded plane, at any density, the \
-                     same points for the same question, forever. Every GET answers HEAD, too. \
+                     same points for the same query, forever. Every GET answers HEAD, too. \
                      Errors are problem documents (RFC 9457). Text answers come with gzip or zstd \
                      if the client accepts it.";
 
@@ -29,12 +31,13 @@ const AT_THE_GATE: [Kind; 2] = [Kind::Unauthenticated, Kind::TooFast];
 
 /// The document.
 pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
+    let mut generator = schemas::generator();
     let mut paths = Map::new();
     for endpoint in endpoints {
         let mut item = Map::new();
         for operation in endpoint.operations() {
             let method = operation.method.as_str().to_lowercase();
-            item.insert(method, described(operation, endpoint.is_open()));
+            item.insert(method, described(operation, endpoint.is_open(), &mut generator));
         }
         paths.insert(endpoint.path().into(), Value::Object(item));
     }
@@ -47,11 +50,12 @@ pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
             "license": { "name": "MIT OR Apache-2.0", "identifier": "MIT OR Apache-2.0" },
         },
         "servers": [{ "url": "/" }],
+        "tags": Tag::ALL.map(|tag| json!({ "name": tag.name(), "description": tag.about() })),
         "paths": paths,
         // Whether a key is needed is a setting of the server.
         "security": [{}, { "bearer": [] }, { "header": [] }],
         "components": {
-            "schemas": schemas::shared(),
+            "schemas": generator.take_definitions(true),
             "securitySchemes": {
                 "bearer": { "type": "http", "scheme": "bearer" },
                 "header": { "type": "apiKey", "in": "header", "name": "x-api-key" },
@@ -60,18 +64,18 @@ pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
     })
 }
 
-fn described(operation: &Operation, is_open: bool) -> Value {
-    let in_path = operation.path_parameters.iter().map(|parameter| Given {
-        parameter,
-        required: true,
-    });
+fn described(operation: &Operation, is_open: bool, generator: &mut SchemaGenerator) -> Value {
+    let in_path = operation.path_parameters.iter();
+    let in_query = of(operation.parameters);
     let parameters: Vec<Value> = in_path
-        .map(|given| told("path", &given, true))
-        .chain(in_query(&operation.parameters))
+        .map(|parameter| parameter_in("path", parameter, true))
+        .chain(in_query.map(|parameter| {
+            parameter_in("query", parameter, rules::is_first_of_its_kind(parameter))
+        }))
         .collect();
     let mut responses = Map::new();
     for answer in &operation.answers {
-        responses.insert(answer.status.to_string(), answered(answer));
+        responses.insert(answer.status.to_string(), answered(answer, generator));
     }
     let mut problems: Vec<Kind> = operation.problems.clone();
     problems.extend(EVERYWHERE);
@@ -79,127 +83,158 @@ fn described(operation: &Operation, is_open: bool) -> Value {
     if !is_open {
         problems.extend(AT_THE_GATE);
     }
-    for (status, response) in refused(&problems) {
-        // A status may be shared with an answer that is not a problem; that one is told.
+    for (status, response) in refused(&problems, generator) {
+        // A status may be shared with an answer that is not a problem, which is described then.
         responses.entry(status).or_insert(response);
     }
-    let mut told = json!({
+    let mut described = json!({
         "operationId": operation.id,
+        "tags": [operation.tag.name()],
         "summary": operation.summary,
         "description": operation.about,
         "parameters": parameters,
         "responses": responses,
         "x-curl": operation.example,
     });
+    let rules = rules::of(operation.parameters);
+    if !rules.is_empty() {
+        described["description"] = format!("{} {}", operation.about, rules::in_words(&rules)).into();
+        described["x-rules"] = json!(rules);
+    }
     if is_open {
-        told["security"] = json!([]);
+        described["security"] = json!([]);
     }
     if let Some(body) = &operation.body {
-        told["requestBody"] = json!({
+        described["requestBody"] = json!({
             "required": true,
-            "content": { body.media_type: { "schema": body.schema, "example": body.example } },
+            "content": { body.media_type: { "schema": (body.schema)(generator), "example": body.example } },
         });
     }
-    told
+    described
 }
 
-/// Of parameters that exclude each other, which their same words about what is allowed tell, only
-/// the first has an example: examples are in order together.
-fn in_query(all: &[Given]) -> Vec<Value> {
-    let is_first = |at: usize, given: &Given| {
-        let same = |other: &Given| other.parameter.allowed == given.parameter.allowed;
-        !all[..at].iter().any(same)
-    };
-    let numbered = all.iter().enumerate();
-    numbered
-        .map(|(at, given)| told("query", given, is_first(at, given)))
-        .collect()
-}
-
-fn told(place: &str, given: &Given, with_example: bool) -> Value {
-    let Parameter {
-        name,
-        about,
-        allowed,
-        default,
-        example,
-        shape,
-    } = given.parameter;
+/// A parameter. Those that exclude each other do not all have an example: examples are valid
+/// together.
+fn parameter_in(place: &str, parameter: &Parameter, with_example: bool) -> Value {
+    let default = parameter.default;
     let default = default.map_or_else(String::new, |default| format!(" Default: {default}."));
-    let mut told = json!({
-        "name": name,
+    let text = format!("{} Allowed: {}.{default}", parameter.about, parameter.allowed());
+    let mut described = json!({
+        "name": parameter.name,
         "in": place,
-        "required": given.required,
-        "description": format!("{about} Allowed: {allowed}.{default}"),
-        "schema": schema(*shape),
+        "required": parameter.is_required,
+        "description": text,
+        "schema": as_text(parameter.shape),
     });
     if with_example {
-        told["example"] = sample(*shape, example);
+        described["example"] = sample(parameter.shape, parameter.example);
     }
-    told
+    described
 }
 
-/// The JSON Schema of a parameter's values, as they are once read.
+/// The JSON Schema of a parameter in an address.
+fn as_text(shape: Shape) -> Value {
+    match shape {
+        Shape::Numbers(names) => {
+            let more = names.len().saturating_sub(1);
+            json!({ "type": "string", "pattern": format!("^{NUMBER}(,{NUMBER}){{{more}}}$") })
+        }
+        Shape::Vertices => {
+            json!({ "type": "string", "pattern": format!("^{NUMBER},{NUMBER}(,{NUMBER},{NUMBER}){{2,}}$") })
+        }
+        Shape::Names { pattern } => {
+            let name = pattern.trim_start_matches('^').trim_end_matches('$');
+            json!({ "type": "string", "pattern": format!("^{name}(,{name})*$") })
+        }
+        Shape::Weights => {
+            let pair = format!("{}(:{NUMBER})?", sets::NAME);
+            json!({ "type": "string", "pattern": format!("^{pair}(,{pair})*$") })
+        }
+        other => schema(other),
+    }
+}
+
+/// A decimal number.
+const NUMBER: &str = r"-?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?";
+
+/// The JSON Schema of a parameter in JSON.
 pub(super) fn schema(shape: Shape) -> Value {
     match shape {
         Shape::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
         Shape::Integer { min, max } => {
             json!({ "type": "integer", "minimum": min, "maximum": max })
         }
-        Shape::Numbers(count) => {
-            let number = r"-?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?";
-            let more = count.saturating_sub(1);
-            json!({ "type": "string", "pattern": format!("^{number}(,{number}){{{more}}}$") })
+        Shape::Signed { limit } => {
+            json!({ "type": "integer", "minimum": -limit, "maximum": limit })
         }
-        Shape::OneOf(names) => json!({ "type": "string", "enum": names() }),
-        Shape::NameOrNumber { names, min, max } => json!({ "anyOf": [
-            { "type": "string", "enum": names },
-            { "type": "number", "minimum": min, "maximum": max },
+        Shape::Strength { max } => json!({ "anyOf": [
+            { "type": "string", "enum": ["off", "on"] },
+            { "type": "number", "minimum": 0, "maximum": max },
         ] }),
+        Shape::Numbers(names) => json!({
+            "type": "array", "items": { "type": "number" },
+            "minItems": names.len(), "maxItems": names.len(),
+        }),
+        Shape::Vertices => json!({ "type": "array", "items": { "type": "number" }, "minItems": 6 }),
+        Shape::Names { pattern } => json!({
+            "type": "array", "items": { "type": "string", "pattern": pattern },
+            "minItems": 1, "uniqueItems": true,
+        }),
+        Shape::Weights => json!({
+            "type": "object",
+            "propertyNames": { "pattern": format!("^{}$", sets::NAME) },
+            "additionalProperties": { "type": "number", "minimum": 1e-9, "maximum": 1e9 },
+            "minProperties": 1, "maxProperties": 256,
+        }),
+        Shape::Format => {
+            json!({ "type": "string", "enum": Encoding::ALL.map(Encoding::name) })
+        }
         Shape::Pattern(pattern) => json!({ "type": "string", "pattern": pattern }),
-        Shape::Text => json!({ "type": "string" }),
+        Shape::Quadratic | Shape::Text => json!({ "type": "string" }),
     }
 }
 
 /// An example in the type of its schema.
 fn sample(shape: Shape, text: &str) -> Value {
     match shape {
-        Shape::Number { .. } | Shape::Integer { .. } => {
+        Shape::Number { .. } | Shape::Integer { .. } | Shape::Signed { .. } => {
             serde_json::from_str(text).unwrap_or_else(|_| text.into())
         }
         _ => text.into(),
     }
 }
 
-fn answered(answer: &Answer) -> Value {
+fn answered(answer: &Answer, generator: &mut SchemaGenerator) -> Value {
     let headers: Map<String, Value> = answer
         .headers
         .iter()
         .map(|&(name, about)| {
-            let told = json!({ "description": about, "schema": { "type": "string" } });
-            (name.to_owned(), told)
+            let header = json!({ "description": about, "schema": { "type": "string" } });
+            (name.to_owned(), header)
         })
         .collect();
     let contents: Map<String, Value> = answer
         .contents
         .iter()
-        .map(|(media_type, schema)| (media_type.clone(), json!({ "schema": schema })))
+        .map(|&(media_type, schema)| {
+            (media_type.to_owned(), json!({ "schema": schema(generator) }))
+        })
         .collect();
-    let mut told = json!({ "description": answer.about });
+    let mut described = json!({ "description": answer.about });
     if !headers.is_empty() {
-        told["headers"] = Value::Object(headers);
+        described["headers"] = Value::Object(headers);
     }
     if !contents.is_empty() {
-        told["content"] = Value::Object(contents);
+        described["content"] = Value::Object(contents);
     }
-    told
+    described
 }
 
 /// The problems by status: several kinds can share one.
-fn refused(kinds: &[Kind]) -> Vec<(String, Value)> {
+fn refused(kinds: &[Kind], generator: &mut SchemaGenerator) -> Vec<(String, Value)> {
     let mut by_status: Vec<(String, Vec<String>)> = vec![];
     for &kind in kinds {
-        let problem = error_map::http(kind);
+        let problem = error_map::wire(kind);
         let status = problem.status.as_u16().to_string();
         let text = format!("{} (`{}`)", problem.title, error_map::urn(kind));
         match by_status.iter_mut().find(|(known, _)| *known == status) {
@@ -208,13 +243,14 @@ fn refused(kinds: &[Kind]) -> Vec<(String, Value)> {
             None => by_status.push((status, vec![text])),
         }
     }
+    let schema = schemas::of::<Problem<'_>>(generator);
     by_status
         .into_iter()
         .map(|(status, texts)| {
             let response = json!({
                 "description": format!("{}.", texts.join(", or: ")),
                 "content": {
-                    "application/problem+json": { "schema": schemas::reference("Problem") },
+                    "application/problem+json": { "schema": schema },
                 },
             });
             (status, response)

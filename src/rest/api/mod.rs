@@ -1,19 +1,25 @@
-//! What the REST door offers, said once: an [`Endpoint`] is a path with its handlers and their
-//! description, so nothing is routed that `/openapi.json` does not tell.
+//! What REST offers, described once: an [`Endpoint`] is a path with its handlers and their
+//! description, so that nothing is routed that `/openapi.json` does not describe.
 //!
 //! To add a path, write a module with `pub(super) fn endpoint(service) -> Endpoint` and list it in
 //! [`rest::endpoints`](super::endpoints).
 
 mod document;
-mod query;
-pub(super) mod schemas;
+mod rules;
+pub mod schemas;
+mod sets;
 
 use axum::{Router, response::Response, routing::MethodRouter};
 use http::{HeaderValue, Method, Uri, header};
+use schemars::JsonSchema;
 use serde_json::Value;
 
 use super::problem::Problem;
-use crate::service::{Error, Kind, query::Parameter};
+use schemas::Content;
+use crate::service::{
+    Error, Kind,
+    query::{Group, Parameter},
+};
 
 pub(super) use document::document;
 
@@ -37,10 +43,12 @@ pub struct Operation {
     pub summary: &'static str,
     /// What else is to know.
     pub about: &'static str,
+    /// What the operation belongs to.
+    pub tag: Tag,
     /// The parameters of the path, in its order.
-    pub path_parameters: &'static [Parameter],
+    pub path_parameters: &'static [&'static Parameter],
     /// The parameters of the query.
-    pub parameters: Vec<Given>,
+    pub parameters: &'static [Group],
     /// The body of a request, if it has one.
     pub body: Option<Body>,
     /// The answers that are not problems.
@@ -52,13 +60,44 @@ pub struct Operation {
     pub example: String,
 }
 
-/// A parameter, and whether it must be given.
-#[derive(Clone, Copy, Debug)]
-pub struct Given {
-    /// The parameter.
-    pub parameter: &'static Parameter,
-    /// Whether it must be given.
-    pub required: bool,
+/// What operations belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tag {
+    /// Points of regions.
+    Points,
+    /// Noise profiles.
+    Profiles,
+    /// Pages and documents about the daemon.
+    About,
+    /// What operators use.
+    Operations,
+}
+
+impl Tag {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Points, Self::Profiles, Self::About, Self::Operations];
+
+    /// The name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Points => "points",
+            Self::Profiles => "profiles",
+            Self::About => "about",
+            Self::Operations => "operations",
+        }
+    }
+
+    /// What is in it.
+    #[must_use]
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Points => "Points of regions, counts, and single points.",
+            Self::Profiles => "The noise profiles that are loaded.",
+            Self::About => "Pages for people and this document.",
+            Self::Operations => "Health, metrics and administration.",
+        }
+    }
 }
 
 /// The body of a request.
@@ -67,7 +106,7 @@ pub struct Body {
     /// Its media type.
     pub media_type: &'static str,
     /// Its JSON Schema.
-    pub schema: Value,
+    pub schema: Content,
     /// A body that is in order on the built-in tables.
     pub example: Value,
 }
@@ -82,11 +121,21 @@ pub struct Answer {
     /// Its headers by name, with what they say.
     pub headers: Vec<(&'static str, &'static str)>,
     /// Its media types with the JSON Schemas of their content.
-    pub contents: Vec<(String, Value)>,
+    pub contents: Vec<(&'static str, Content)>,
 }
 
 impl Answer {
-    /// What a client hears whose copy is still right.
+    /// A JSON document of a type.
+    pub(super) fn json<T: JsonSchema>(about: &'static str) -> Self {
+        Self {
+            status: 200,
+            about,
+            headers: vec![],
+            contents: vec![("application/json", schemas::of::<T>)],
+        }
+    }
+
+    /// The answer to a client whose copy is still right.
     #[must_use]
     pub const fn unchanged() -> Self {
         Self {
@@ -96,30 +145,6 @@ impl Answer {
             contents: vec![],
         }
     }
-}
-
-/// The parameters of these names from the list that all queries share; those in `required` must be
-/// given.
-///
-/// # Panics
-/// At the start of the program, if there is none of a name.
-#[must_use]
-pub fn given(required: &[&str], optional: &[&str]) -> Vec<Given> {
-    let find = |name: &&str| {
-        Parameter::named(name).unwrap_or_else(|| panic!("no parameter is called {name}"))
-    };
-    let of = |names: &[&str], required| -> Vec<Given> {
-        let parameters = names.iter().map(find);
-        parameters
-            .map(|parameter| Given {
-                parameter,
-                required,
-            })
-            .collect()
-    };
-    let mut all = of(required, true);
-    all.extend(of(optional, false));
-    all
 }
 
 impl Endpoint {
@@ -132,14 +157,14 @@ impl Endpoint {
     ) -> Self {
         let mut methods = MethodRouter::new();
         let mut allowed: Vec<String> = vec![];
-        let mut told = vec![];
+        let mut described = vec![];
         for (operation, handler) in operations {
             methods = methods.merge(handler);
             allowed.push(operation.method.to_string());
             if operation.method == Method::GET {
                 allowed.push("HEAD".into());
             }
-            told.push(operation);
+            described.push(operation);
         }
         let allowed = allowed.join(", ");
         let fallback = move |method, uri| {
@@ -148,7 +173,7 @@ impl Endpoint {
         };
         Self {
             path,
-            operations: told,
+            operations: described,
             is_open: false,
             router: Router::new()
                 .route(path, methods.fallback(fallback))

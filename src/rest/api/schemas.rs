@@ -1,200 +1,119 @@
-//! The JSON Schemas of what several answers have in common.
+//! JSON Schemas: of types, derived from them, and of queries, from the table of parameters.
 
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, generate::SchemaSettings, json_schema};
 use serde_json::{Value, json};
 
-use super::query;
+use super::sets;
+use crate::service::query::{RegionSchema, Resolved, ResolvedSet};
 
-use crate::{error_map, service::Kind};
+/// Makes the schema of a content, with what it refers to among the generator's definitions.
+pub type Content = fn(&mut SchemaGenerator) -> Schema;
+
+/// A generator whose definitions are components of the document.
+pub(super) fn generator() -> SchemaGenerator {
+    let settings = SchemaSettings::draft2020_12().with(|settings| {
+        settings.definitions_path = "/components/schemas".into();
+        settings.meta_schema = None;
+    });
+    settings.into_generator()
+}
+
+/// The schema of a type.
+pub(in crate::rest) fn of<T: JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
+    generator.subschema_for::<T>()
+}
+
+/// The schema of text.
+pub fn text(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "string" })
+}
+
+/// The schema of anything.
+pub fn any(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({})
+}
+
+/// The schema of any object.
+pub fn object(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "object" })
+}
 
 /// A reference to a schema of the document.
-pub(in crate::rest) fn reference(name: &str) -> Value {
+pub(super) fn reference(name: &str) -> Value {
     json!({ "$ref": format!("#/components/schemas/{name}") })
 }
 
-/// An object of whose members all are always there.
-pub(in crate::rest) fn object(properties: Value) -> Value {
-    let required: Vec<&String> = properties
-        .as_object()
-        .map(|members| members.keys().collect())
-        .unwrap_or_default();
-    json!({ "type": "object", "required": required, "properties": properties })
+/// The body of `POST /v1/points:query`.
+#[derive(Debug)]
+pub(in crate::rest) struct PointsQuery;
+
+/// The body of `POST /v1/count`.
+#[derive(Debug)]
+pub(in crate::rest) struct CountQuery;
+
+/// A layer of either.
+struct Layer;
+
+/// Schemas that are made of the table of parameters.
+macro_rules! from_table {
+    ($($kind:ty = $name:literal, $schema:expr;)+) => {$(
+        impl JsonSchema for $kind {
+            fn schema_name() -> Cow<'static, str> {
+                $name.into()
+            }
+
+            fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+                let schema: fn(&mut SchemaGenerator) -> Value = $schema;
+                Schema::try_from(schema(generator)).unwrap_or_default()
+            }
+        }
+    )+};
 }
 
-/// All of them.
-pub(super) fn shared() -> Value {
-    let text = || json!({ "type": "string" });
-    let number = || json!({ "type": "number" });
-    let count = || json!({ "type": "integer", "minimum": 0 });
-    json!({
-        "Problem": {
+from_table! {
+    PointsQuery = "PointsQuery", |generator| {
+        refer(generator);
+        sets::points_query()
+    };
+    CountQuery = "CountQuery", |generator| {
+        refer(generator);
+        sets::count_query()
+    };
+    Layer = "Layer", |_| sets::layer();
+    ResolvedSet = "Set", |generator| {
+        of::<RegionSchema>(generator);
+        let (required, properties) = sets::echo();
+        json!({
             "type": "object",
-            "description": "Why there is no answer (RFC 9457).",
-            "required": ["type", "title", "status", "detail"],
-            "properties": {
-                "type": { "type": "string", "enum": types() },
-                "title": text(),
-                "status": { "type": "integer", "minimum": 400, "maximum": 599 },
-                "detail": text(),
-                "errors": { "type": "array", "items": reference("Fault") },
-                "count": count(),
-                "limit": count(),
-                "pinned": reference("Digest"),
-                "loaded": reference("Digest"),
-                "points": count(),
-                "left": count(),
-                "points_per_second": number(),
-                "burst_points": number(),
-                "retry_after_seconds": number(),
-                "request_id": {
-                    "type": "string",
-                    "description": "What the request is called in the server's log; also the header \
-                                    x-request-id of every answer.",
-                },
-            },
-        },
-        "Fault": {
+            "description": "A set of points with everything filled in.",
+            "required": required,
+            "properties": properties,
+        })
+    };
+    Resolved = "Query", |generator| {
+        of::<ResolvedSet>(generator);
+        let (_, mut properties) = sets::echo();
+        let count = json!({ "type": "integer", "minimum": 0 });
+        let number = json!({ "type": "number" });
+        let bbox = json!({ "type": "array", "items": number, "minItems": 4, "maxItems": 4 });
+        properties.insert("bbox".into(), bbox);
+        let layers = json!({ "type": "array", "items": reference("Set") });
+        properties.insert("layers".into(), layers);
+        properties.insert("offset".into(), count.clone());
+        properties.insert("limit".into(), count);
+        json!({
             "type": "object",
-            "description": "One thing that is wrong with a query.",
-            "required": ["field", "value", "detail", "allowed"],
-            "properties": {
-                "field": { "type": "string", "description": "The parameter or member." },
-                "value": {
-                    "type": ["string", "null"],
-                    "description": "Its value; null if it is missing.",
-                },
-                "detail": { "type": "string", "description": "What is wrong with it." },
-                "allowed": { "type": "string", "description": "What is allowed." },
-            },
-        },
-        "Point": object(json!({
-            "id": {
-                "type": "string",
-                "pattern": "^-?[0-9]+:-?[0-9]+$",
-                "description": "The stable id: the point's lattice address.",
-            },
-            "x": number(),
-            "y": number(),
-        })),
-        "Query": {
-            "type": "object",
-            "description": "A query as it was understood: of one set of points, or of layers.",
+            "description": "A query with everything filled in: of one set of points, or of layers.",
             "required": ["bbox"],
-            "properties": echo(),
-        },
-        "Set": {
-            "type": "object",
-            "description": "A set of points as it was understood.",
-            "required": SET_REQUIRED,
-            "properties": set_echo(),
-        },
-        "Found": {
-            "type": "object",
-            "description": "A point, with a member for each attribute asked for.",
-            "required": ["id", "x", "y"],
-            "properties": {
-                "id": { "type": "string", "pattern": "^-?[0-9]+:-?[0-9]+$" },
-                "x": number(),
-                "y": number(),
-                "distance": number(),
-                "block": {
-                    "type": "array",
-                    "description": "The block of the neighborhood map: column and row. Only of a point asked for by its id.",
-                    "items": count(),
-                    "minItems": 2,
-                    "maxItems": 2,
-                },
-            },
-        },
-        "PointsQuery": query::schema(),
-        "Region": query::region(),
-        "Layer": query::layer(),
-        "Table": {
-            "type": "object",
-            "required": ["profile", "alpha", "radius", "digest", "algorithm"],
-            "properties": {
-                "profile": text(),
-                "alpha": text(),
-                "radius": count(),
-                "digest": reference("Digest"),
-                "algorithm": count(),
-                "delta_min": number(),
-                "delta_avg": number(),
-            },
-        },
-        "Points": {
-            "type": "object",
-            "required": ["query", "count", "points"],
-            "properties": {
-                "query": reference("Query"),
-                "table": reference("Table"),
-                "tables": { "type": "array", "items": reference("Table") },
-                "count": count(),
-                "next": text(),
-                "points": { "type": "array", "items": reference("Point") },
-            },
-        },
-        "Digest": {
-            "type": "string",
-            "pattern": "^[0-9a-f]{64}$",
-            "description": "The BLAKE3 digest of a table's file.",
-        },
-    })
+            "properties": properties,
+        })
+    };
 }
 
-/// What is always there of a set of points.
-const SET_REQUIRED: [&str; 8] = [
-    "density",
-    "spacing",
-    "least_distance",
-    "profile",
-    "alpha",
-    "map",
-    "seed",
-    "warp",
-];
-
-fn set_echo() -> Value {
-    let text = || json!({ "type": "string" });
-    let number = || json!({ "type": "number" });
-    json!({
-        "name": text(),
-        "region": reference("Region"),
-        "density": number(),
-        "spacing": number(),
-        "least_distance": { "type": "number", "description": "No two points are nearer." },
-        "profile": text(),
-        "alpha": text(),
-        "map": text(),
-        "seed": { "type": "integer", "minimum": 0 },
-        "warp": number(),
-        "keep": number(),
-        "attributes": { "type": "array", "items": { "type": "object" } },
-        "clear_of": { "type": "object", "additionalProperties": number() },
-    })
-}
-
-fn echo() -> Value {
-    let count = || json!({ "type": "integer", "minimum": 0 });
-    let mut members = set_echo();
-    let number = json!({ "type": "number" });
-    let others = json!({
-        "bbox": { "type": "array", "items": number, "minItems": 4, "maxItems": 4 },
-        "layers": { "type": "array", "items": reference("Set") },
-        "offset": count(),
-        "limit": count(),
-        "format": { "type": "string" },
-        "decimals": count(),
-        "relative_to": { "type": "array", "items": number, "minItems": 2, "maxItems": 2 },
-    });
-    if let (Some(members), Value::Object(others)) = (members.as_object_mut(), others) {
-        members.extend(others);
-    }
-    members
-}
-
-/// Every problem type that a Strew server knows; and what a library below it may say.
-fn types() -> Vec<String> {
-    let mut types: Vec<String> = Kind::ALL.map(error_map::urn).into();
-    types.push("about:blank".into());
-    types
+/// Defines what queries refer to.
+fn refer(generator: &mut SchemaGenerator) {
+    of::<RegionSchema>(generator);
+    of::<Layer>(generator);
 }

@@ -10,12 +10,13 @@ use std::{
     sync::Arc,
 };
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Catalog, CatalogError, Entry, Key, Source, table_files};
 
 /// What reading the folder again gave.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Reload {
     /// Tables that were not there before, or not with this content.
     pub loaded: Vec<Serving>,
@@ -28,7 +29,7 @@ pub struct Reload {
 }
 
 /// A table, as told to who runs the daemon.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Serving {
     /// The noise profile.
     pub profile: String,
@@ -46,7 +47,7 @@ pub struct Serving {
 }
 
 /// A file that was not taken.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Refusal {
     /// The file, or the folder.
     pub source: String,

@@ -1,5 +1,6 @@
 //! What an answer says about itself: the query as understood, the table, the count.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use strew_core::ALGORITHM_VERSION;
 
@@ -7,7 +8,7 @@ use super::{Output, members::write_json};
 use crate::service::{Entry, Planned, query::Resolved};
 
 /// The head of a document, or its summary.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub(super) struct Head {
     pub(super) query: QueryEcho,
     #[serde(flatten)]
@@ -19,15 +20,16 @@ pub(super) struct Head {
 }
 
 /// The table, or that of each layer.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Tables {
     Table(TableEcho),
     Tables(Vec<TableEcho>),
 }
 
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct QueryEcho {
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+/// A query as answers echo it, with what the answer looks like.
+pub struct QueryEcho {
     #[serde(flatten)]
     resolved: Resolved,
     format: &'static str,
@@ -39,8 +41,9 @@ pub(super) struct QueryEcho {
     size: Option<u32>,
 }
 
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct TableEcho {
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+/// A table that answers.
+pub struct TableEcho {
     profile: String,
     alpha: String,
     radius: u32,

@@ -50,7 +50,8 @@ use text::{TextBlocks, TextFormat};
 pub use buffer::Pool;
 pub use encoding::Encoding;
 pub use number::{Digits, write_number};
-pub use output::{DECIMALS, MOST_DECIMALS, Options, Output};
+pub use head::{QueryEcho, TableEcho};
+pub use output::{MOST_DECIMALS, Options, Output};
 pub use packed::{Packed, Scalars};
 pub use part::{Attributes, Part};
 pub use rows::{Batch, Coordinates, Row, Rows};
@@ -140,7 +141,7 @@ impl Answer {
                     let detail = format!("the answer has {} points", rows.count());
                     let allowed = format!("svg for at most {most} points; png for any number");
                     let fault = Fault::new("format", "svg", detail, allowed);
-                    return Err(Error::Invalid(vec![fault]));
+                    return Err(fault.into());
                 }
                 let format = svg::Svg::new(&rows, head(), frame, output.decimals);
                 return Ok(Self::of_text(rows, format, block_bytes));

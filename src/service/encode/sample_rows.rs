@@ -11,7 +11,7 @@ use super::{
 };
 use crate::service::{
     Catalog, Draft, Limits, Planned,
-    query::{RegionDraft, ShapeDraft, Value, Values, groups, parameters},
+    query::{self, RegionDraft, ShapeDraft, Value, groups, parameters},
 };
 
 /// An angle for every point and a name out of a list; the angle is half the id's column.
@@ -52,7 +52,7 @@ impl Attributes for Marks {
 pub(super) fn planned(bbox: [f64; 4], spacing: f64, seed: u64) -> Planned {
     static CATALOG: LazyLock<Catalog> =
         LazyLock::new(|| Catalog::load(true, None).expect("embedded tables"));
-    let mut values = Values::new(groups::QUERY, "");
+    let mut values = query::Values::new(groups::QUERY, "");
     values.add_value(&parameters::SPACING, Value::Number(spacing));
     values.add_value(&parameters::SEED, Value::Integer(seed));
     let draft = Draft::new(values).within(Ok(RegionDraft {

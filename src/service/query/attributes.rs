@@ -33,10 +33,7 @@ pub(super) fn check(values: &Values) -> Checked<Attributes> {
             }
             "variant" => {
                 let variants = variants.as_ref().ok_or_else(|| values.missing(&VARIANTS))?;
-                // Not every writer of JSON keeps the order of an object's members.
-                let mut sorted: Vec<_> = variants.iter().collect();
-                sorted.sort_by(|a, b| a.0.cmp(&b.0));
-                let pairs = sorted.into_iter();
+                let pairs = variants.iter();
                 let variants = Variants::new(pairs.map(|(name, weight)| (name.as_str(), *weight)));
                 let fault = |error: strew_core::Error| values.fault(&VARIANTS, error.to_string());
                 variants.map(Attribute::Variant).map_err(fault)

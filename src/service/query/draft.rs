@@ -7,7 +7,7 @@ use strew_core::{Keep, Placement, Seed, Warp};
 
 use super::{
     Amount, Checked, Faults, MOST_LAYERS, Query, QueryRegion, RegionDraft, Set, Together as _,
-    Values, Window, attributes,
+    Value, Values, Window, attributes,
     cursor::Token,
     faults::all,
     number,
@@ -155,6 +155,17 @@ impl Draft {
         let sets = sets.map(|(i, layer)| layer.check(&layers[..i], catalog));
         let (_, sets) = (all(beside), all(sets)).together()?;
         Ok(sets)
+    }
+
+    /// The part of the query that begins at a place and has a number of points.
+    #[must_use]
+    pub fn part(&self, token: &Token, count: u64) -> Self {
+        let mut part = self.clone();
+        part.values.replace(&OFFSET, None);
+        let cursor = Value::Text(token.to_string());
+        part.values.replace(&CURSOR, Some(cursor));
+        part.values.replace(&LIMIT, Some(Value::Integer(count)));
+        part
     }
 
     /// The body of `POST /v1/points:query` that asks for this.

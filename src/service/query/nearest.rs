@@ -1,9 +1,10 @@
 //! Which points near a place are wanted.
 
 use super::{
-    Checked, Together as _, Values,
+    Checked, Set, Together as _, Values,
     parameters::{AT, K, RADIUS},
 };
+use crate::service::{Catalog, Error};
 
 /// Which points near a place are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,5 +34,17 @@ impl Nearest {
             k: k.map(|k| usize::try_from(k).unwrap_or(usize::MAX)),
             radius,
         })
+    }
+
+    /// Checks the values that say it and the set.
+    ///
+    /// # Errors
+    /// As [`Set::single`], with every fault of both.
+    pub fn of_set(values: &Values, catalog: &Catalog) -> Result<(Set, Self), Error> {
+        match (Self::of(values), Set::single(values, catalog)) {
+            (Ok(nearest), set) => Ok((set?, nearest)),
+            (Err(faults), Err(Error::Invalid(others))) => Err(faults.and(others).into()),
+            (Err(faults), _) => Err(faults.into()),
+        }
     }
 }

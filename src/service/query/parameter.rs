@@ -1,6 +1,9 @@
 //! What a parameter is, and which requests take which parameters.
 
-use super::{Set, Shape, Value, parameters::PARAMETERS};
+use std::borrow::Cow;
+
+use super::{Checked, Set, Shape, Value, parameters::PARAMETERS};
+use crate::service::Fault;
 
 /// A parameter of queries, under the same name in addresses, JSON bodies, messages and (with hyphens)
 /// flags.
@@ -16,6 +19,8 @@ pub struct Parameter {
     pub shape: Shape,
     /// What is allowed, where the shape does not say everything.
     pub allowed: Option<&'static str>,
+    /// Whether requests that take it must give it.
+    pub is_required: bool,
     /// What an absent one means.
     pub default: Option<&'static str>,
     /// A value that is valid on the built-in tables.
@@ -98,6 +103,7 @@ impl Parameter {
         group: Group::Path,
         shape: Shape::Text,
         allowed: None,
+        is_required: false,
         default: None,
         example: "",
         echo: None,
@@ -108,6 +114,19 @@ impl Parameter {
     pub fn named(name: &str) -> Option<&'static Self> {
         let mut all = PARAMETERS.iter().copied();
         all.find(|parameter| parameter.name == name)
+    }
+
+    /// Reads its value from text.
+    ///
+    /// # Errors
+    /// A fault of the parameter.
+    pub fn read<T>(&self, text: &str) -> Checked<T>
+    where
+        T: for<'a> TryFrom<&'a Value, Error = &'static str>,
+    {
+        let fault = |detail: Cow<'_, str>| Fault::new(self.name, text, detail, self.allowed());
+        let value = self.shape.read(text).map_err(fault)?;
+        T::try_from(&value).map_err(|detail| fault(detail.into()).into())
     }
 
     /// What is allowed, in words.

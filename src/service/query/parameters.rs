@@ -308,6 +308,7 @@ parameters! {
         about: "The place whose neighbors are wanted.",
         group: Group::Nearest,
         shape: Shape::Numbers(&["x", "y"]),
+        is_required: true,
         example: "100.5,-3",
         ..Parameter::PLAIN
     };
@@ -337,6 +338,7 @@ parameters! {
         about: "The number of queries to split the query into.",
         group: Group::Split,
         shape: Shape::Integer { min: 1, max: MOST_PARTS },
+        is_required: true,
         example: "4",
         ..Parameter::PLAIN
     };

@@ -93,7 +93,7 @@ impl RegionDraft {
             }
             [only] if **only == BBOX => values.get(&BBOX)?.map(ShapeDraft::Box),
             [only] if **only == CIRCLE => {
-                let circle = values.get(&CIRCLE)?;
+                let circle: Option<[f64; 3]> = values.get(&CIRCLE)?;
                 circle.map(|[x, y, radius]| ShapeDraft::Circle([x, y], radius))
             }
             [_] => values.get::<Vec<f64>>(&POLYGON)?.map(|numbers| {

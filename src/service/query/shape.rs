@@ -69,7 +69,7 @@ pub enum Value {
     Numbers(Vec<f64>),
     /// Names.
     Names(Vec<String>),
-    /// Names with weights.
+    /// Names with weights, sorted by name.
     Weights(Vec<(String, f64)>),
     /// Text.
     Text(String),
@@ -82,7 +82,7 @@ const OTHER_TYPE: &str = "has another type";
 type Detail = Cow<'static, str>;
 
 /// The longest value of a parameter in JSON, in bytes: far longer than any that is in order.
-const LONGEST: usize = 1 << 16;
+pub(super) const LONGEST: usize = 1 << 16;
 
 impl Shape {
     /// What is allowed, in words.
@@ -113,6 +113,12 @@ impl Shape {
             Self::Pattern(pattern) => format!("text that matches {pattern}"),
             Self::Text => "text".into(),
         }
+    }
+
+    /// Whether its values are names, which begin with no sign.
+    #[must_use]
+    pub const fn is_of_names(self) -> bool {
+        matches!(self, Self::Names { .. } | Self::Weights | Self::Format)
     }
 
     /// Reads a value from text.
@@ -233,8 +239,13 @@ impl Shape {
                     _ => Ok(value),
                 }
             }
+            // Not every writer of JSON keeps the order of an object's members.
+            (Self::Weights, Value::Weights(pairs)) => {
+                let mut sorted = pairs.clone();
+                sorted.sort_by(|a, b| a.0.cmp(&b.0));
+                Ok(Value::Weights(sorted))
+            }
             (Self::Names { .. }, Value::Names(_))
-            | (Self::Weights, Value::Weights(_))
             | (
                 Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text,
                 Value::Text(_),
@@ -395,7 +406,7 @@ mod tests {
                 Shape::Weights,
                 "oak:3,birch",
                 "{\"oak\": 3, \"birch\": 1}",
-                Ok(Value::Weights(vec![("oak".into(), 3.0), ("birch".into(), 1.0)])),
+                Ok(Value::Weights(vec![("birch".into(), 1.0), ("oak".into(), 3.0)])),
             ),
             (Shape::Quadratic, "1.5", "1.5", Ok(Value::Text("1.5".into()))),
         ] {

@@ -49,7 +49,7 @@ mod tests {
         let values = parse_pairs("alpha=(1+sqrt(5))%2F2&bbox=0,%200,%201,1%20&&seed=%207", groups::POINTS);
         assert_eq!(values.get(&ALPHA), Ok(Some("(1+sqrt(5))/2".to_owned())));
         assert_eq!(values.get(&BBOX), Ok(Some([0.0, 0.0, 1.0, 1.0])));
-        assert_eq!(values.get(&SEED), Ok(Some(7)));
+        assert_eq!(values.get(&SEED), Ok(Some(7_u64)));
         assert_eq!(values.read(), Ok(()));
     }
 
@@ -58,7 +58,7 @@ mod tests {
         for (text, expected) in [
             ("sed=1", "sed: unknown parameter; did you mean `seed`?"),
             ("seed=1&seed=2", "seed: given twice (first as `1`)"),
-            ("seed=x&seed=2", "seed: must be an integer"),
+            ("seed=x&seed=2", "seed: given twice (first as `x`)"),
             ("seed=1.5", "seed: must be an integer"),
             ("parts=3", "parts: not allowed here"),
             ("profile=%ff", "profile: not UTF-8 when decoded"),

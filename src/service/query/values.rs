@@ -71,6 +71,11 @@ impl Values {
 
     /// Adds a typed value.
     pub fn add_value(&mut self, parameter: &'static Parameter, value: Value) {
+        if !self.takes().any(|taken| taken == parameter) {
+            let field = format!("{}{}", self.path, parameter.name);
+            let allowed = names(self.groups);
+            return self.refuse(Fault::new(&field, value.to_text(), "not allowed here", allowed));
+        }
         let checked = parameter.shape.check(value.clone());
         let fault = |detail| self.described(parameter, &value.to_text(), detail);
         self.add(parameter, checked.map_err(fault), || value.to_text());

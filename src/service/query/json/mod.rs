@@ -20,7 +20,7 @@ use crate::service::Fault;
 use object::Object;
 
 pub use region::read_region;
-pub use schema::{RegionSchema, region_schema};
+pub use schema::RegionSchema;
 pub(super) use object::weights;
 
 /// What layers are.
@@ -54,6 +54,7 @@ pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
         }
         match name {
             "region" => draft.region = region::read(json, "region"),
+            "layers" if json.get() == "null" => {}
             "layers" => draft.layers = layers(json),
             // A common slip, which the list of members would not explain.
             "bbox" | "circle" | "polygon" | "chunk" | "include" | "exclude" => {

@@ -6,7 +6,7 @@ use serde_json::value::RawValue;
 use super::{
     super::{
         Checked, Faults, MOST_LEVELS, RegionDraft, ShapeDraft, parameter::unknown,
-        region::REGION,
+        region::REGION, shape::LONGEST,
         values::shown,
     },
     geojson::{GEOJSON, polygons},
@@ -164,8 +164,11 @@ fn list(path: &str, json: &RawValue, depth: usize) -> Checked<Vec<Checked<Region
 
 /// As many numbers as are wanted.
 fn numbers<const N: usize>(json: &RawValue) -> Result<[f64; N], String> {
-    serde_json::from_str(json.get()).map_err(|_| match serde_json::from_str::<Vec<f64>>(json.get()) {
-        Ok(values) => format!("expected {N} numbers, got {}", values.len()),
-        Err(_) => format!("must be an array of {N} numbers"),
-    })
+    if json.get().len() > LONGEST {
+        return Err(format!("must be an array of {N} numbers"));
+    }
+    let values: Vec<f64> = serde_json::from_str(json.get())
+        .map_err(|_| format!("must be an array of {N} numbers"))?;
+    let wrong = |values: Vec<f64>| format!("expected {N} numbers, got {}", values.len());
+    values.try_into().map_err(wrong)
 }

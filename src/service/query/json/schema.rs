@@ -3,7 +3,7 @@
 // Schemas are all that is made of these types.
 #![allow(dead_code, reason = "the types are only described, not built")]
 
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use schemars::JsonSchema;
 
 use super::region::{ChunkJson, CircleJson};
 
@@ -13,10 +13,15 @@ use super::region::{ChunkJson, CircleJson};
 #[serde(untagged)]
 #[schemars(rename = "Region")]
 pub enum RegionSchema {
+    /// A box.
     Box(BoxRegion),
+    /// A circle.
     Circle(CircleRegion),
+    /// Polygons.
     Polygon(PolygonRegion),
+    /// A chunk.
     Chunk(ChunkRegion),
+    /// Regions combined.
     Combined(CombinedRegion),
 }
 
@@ -65,7 +70,7 @@ pub struct CombinedRegion {
 pub enum GeoJson {
     Polygon(Polygon),
     MultiPolygon(MultiPolygon),
-    Feature(Feature),
+    Feature(Box<Feature>),
     FeatureCollection(FeatureCollection),
     GeometryCollection(GeometryCollection),
 }
@@ -137,9 +142,4 @@ types! {
     FeatureType = Feature;
     FeatureCollectionType = FeatureCollection;
     GeometryCollectionType = GeometryCollection;
-}
-
-/// The schema of regions, with all that it refers to among the generator's definitions.
-pub fn region_schema(generator: &mut SchemaGenerator) -> Schema {
-    generator.subschema_for::<RegionSchema>()
 }

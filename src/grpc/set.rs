@@ -1,0 +1,76 @@
+//! Sets of messages as values of parameters, and back.
+
+use super::proto::{PointSet, ScaleRange, point_set::Amount};
+use crate::service::query::{Faults, Group, Parameter, Value, Values, groups};
+
+// Made by build.rs from the contract: `fields`, the values of a message by name, and `put`, which sets
+// one.
+include!(concat!(env!("OUT_DIR"), "/point_set.rs"));
+
+/// The values of a set, with `path` before names in faults; an absent one has none.
+pub(super) fn values(set: Option<&PointSet>, groups: &'static [Group], path: &str) -> Values {
+    let mut values = Values::new(groups, path);
+    let fields = set.map(fields).unwrap_or_default();
+    let known = fields
+        .into_iter()
+        .filter_map(|(name, value)| Some((Parameter::named(name)?, value)));
+    for (parameter, value) in known {
+        values.add_value(parameter, value);
+    }
+    values
+}
+
+/// The message of some values.
+pub(super) fn message(values: impl IntoIterator<Item = (&'static Parameter, Value)>) -> PointSet {
+    let mut set = PointSet::default();
+    for (parameter, value) in values {
+        put(&mut set, parameter.name, value);
+    }
+    set
+}
+
+/// Names fields of sets by their path in messages: `layers[2].seed` is `layers[2].set.seed`.
+pub(super) fn in_messages(faults: Faults) -> Faults {
+    faults.rename(|field| {
+        let (before, name) = match field.rfind('.') {
+            Some(dot) => field.split_at(dot + 1),
+            None => ("", field),
+        };
+        let is_layer = before.is_empty() || before.starts_with("layers[") && before.ends_with("].");
+        let parameter = Parameter::named(name);
+        match parameter.filter(|parameter| is_layer && groups::SET.contains(&parameter.group)) {
+            Some(_) => format!("{before}set.{name}"),
+            None => field.into(),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::service::query::of;
+
+    #[test]
+    fn every_parameter_of_a_set_has_its_field() {
+        for parameter in of(groups::SET) {
+            let value = parameter.shape.read(parameter.example).expect("valid");
+            let set = message([(parameter, value.clone())]);
+            assert_eq!(fields(&set), [(parameter.name, value)], "{}", parameter.name);
+        }
+    }
+
+    #[test]
+    fn faults_name_fields_by_their_paths() {
+        for (field, expected) in [
+            ("seed", "set.seed"),
+            ("layers[3].spacing", "layers[3].set.spacing"),
+            ("layers[3].name", "layers[3].name"),
+            ("limit", "limit"),
+            ("region.bbox", "region.bbox"),
+        ] {
+            let fault = crate::service::Fault::new(field, 1, "wrong", "right");
+            let renamed = in_messages(fault.into());
+            assert_eq!(renamed.as_slice()[0].field, expected);
+        }
+    }
+}

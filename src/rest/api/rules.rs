@@ -1,0 +1,109 @@
+//! Rules between parameters, which no schema of a single one can state: published as `x-rules` of an
+//! operation, and in its description.
+
+use serde::Serialize;
+
+use crate::service::{
+    Encoding,
+    query::{
+        Group, Parameter, of as parameters_of,
+        parameters::{ATTRIBUTES, DECIMALS, FORMAT, PARAMETERS, SCALE_RANGE, SIZE, VARIANTS},
+    },
+};
+
+/// A rule between parameters.
+#[derive(Clone, Debug, Serialize)]
+#[serde(tag = "rule", rename_all = "kebab-case")]
+pub(super) enum Rule {
+    /// Exactly one of some parameters must be given.
+    ExactlyOneOf {
+        /// Their names.
+        parameters: Vec<&'static str>,
+    },
+    /// A parameter may only be given if another has one of some values (of a list: among its items).
+    OnlyWith {
+        /// The parameter.
+        parameter: &'static str,
+        /// The other one.
+        other: &'static str,
+        /// Its values.
+        values: Vec<&'static str>,
+    },
+    /// A value of a list needs another parameter.
+    Needs {
+        /// The list.
+        parameter: &'static str,
+        /// The value.
+        value: &'static str,
+        /// The other parameter.
+        needs: &'static str,
+    },
+}
+
+/// Whether a parameter is the first of those that exclude each other, or excludes none.
+pub(super) fn is_first_of_its_kind(parameter: &Parameter) -> bool {
+    let is_alternative = |group: Group| [Group::Region, Group::Amount, Group::Count].contains(&group);
+    let mut same = PARAMETERS.iter().filter(|other| {
+        let both_amounts = other.group == Group::Amount && parameter.group == Group::Count;
+        other.group == parameter.group || both_amounts
+    });
+    !is_alternative(parameter.group) || same.next().is_some_and(|first| *first == parameter)
+}
+
+/// The rules of a request that takes some groups.
+pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
+    let names = |wanted: &[Group]| -> Vec<&'static str> {
+        let taken = parameters_of(groups).filter(|parameter| wanted.contains(&parameter.group));
+        taken.map(|parameter| parameter.name).collect()
+    };
+    let alternatives = [names(&[Group::Region]), names(&[Group::Amount, Group::Count])];
+    let mut rules: Vec<Rule> = alternatives
+        .into_iter()
+        .filter(|parameters| !parameters.is_empty())
+        .map(|parameters| Rule::ExactlyOneOf { parameters })
+        .collect();
+    let only_with = |parameter: &Parameter, other: &Parameter, values: Vec<&'static str>| Rule::OnlyWith {
+        parameter: parameter.name,
+        other: other.name,
+        values,
+    };
+    if groups.contains(&Group::Attributes) {
+        rules.push(only_with(&SCALE_RANGE, &ATTRIBUTES, vec!["scale"]));
+        rules.push(only_with(&VARIANTS, &ATTRIBUTES, vec!["variant"]));
+        rules.push(Rule::Needs {
+            parameter: ATTRIBUTES.name,
+            value: "variant",
+            needs: VARIANTS.name,
+        });
+    }
+    if groups.contains(&Group::Output) {
+        let formats = |fits: fn(Encoding) -> bool| {
+            let fitting = Encoding::ALL.into_iter().filter(|encoding| fits(*encoding));
+            fitting.map(Encoding::name).collect()
+        };
+        rules.push(only_with(&DECIMALS, &FORMAT, formats(Encoding::is_text)));
+        rules.push(only_with(&SIZE, &FORMAT, formats(Encoding::is_picture)));
+    }
+    rules
+}
+
+/// The rules as sentences.
+pub(super) fn in_words(rules: &[Rule]) -> String {
+    let sentence = |rule: &Rule| match rule {
+        Rule::ExactlyOneOf { parameters } => {
+            format!("Exactly one of {} must be given.", parameters.join(", "))
+        }
+        Rule::OnlyWith {
+            parameter,
+            other,
+            values,
+        } => format!("{parameter} is for {other} {} only.", values.join(", ")),
+        Rule::Needs {
+            parameter,
+            value,
+            needs,
+        } => format!("{value} among {parameter} needs {needs}."),
+    };
+    let sentences: Vec<String> = rules.iter().map(sentence).collect();
+    sentences.join(" ")
+}

@@ -1,0 +1,163 @@
+//! The JSON Schemas of queries as bodies and of sets as answers echo them, from the table of
+//! parameters.
+
+use serde_json::{Map, Value, json};
+
+use super::{document::schema, schemas::reference};
+use crate::service::{
+    Encoding,
+    query::{
+        Group, MOST_LAYERS, Parameter, groups, of,
+        parameters::{COUNT, PARAMETERS},
+    },
+};
+
+/// The names of layers and variants.
+pub(super) const NAME: &str = "[A-Za-z0-9_.-]{1,64}";
+
+fn members(groups: &'static [Group]) -> Map<String, Value> {
+    let member = |parameter: &Parameter| {
+        let mut schema = schema(parameter.shape);
+        schema["description"] = parameter.about.into();
+        (parameter.name.to_owned(), schema)
+    };
+    of(groups).map(member).collect()
+}
+
+/// What the members of a set must fulfill together.
+fn rules() -> Vec<Value> {
+    let is_amount = |group: Group| [Group::Amount, Group::Count].contains(&group);
+    let amounts = of(groups::SET).filter(|parameter| is_amount(parameter.group));
+    let one: Vec<Value> = amounts.map(|amount| json!({ "required": [amount.name] })).collect();
+    let with = |name: &str| {
+        json!({
+            "required": ["attributes"],
+            "properties": { "attributes": { "contains": { "const": name } } },
+        })
+    };
+    let only_with = |member: &str, name: &str| {
+        json!({ "if": { "required": [member] }, "then": with(name) })
+    };
+    vec![
+        json!({ "oneOf": one }),
+        only_with("scale_range", "scale"),
+        only_with("variants", "variant"),
+        json!({ "if": with("variant"), "then": { "required": ["variants"] } }),
+    ]
+}
+
+/// What the output's members must fulfill together.
+fn output_rules() -> Vec<Value> {
+    let formats = |fits: fn(Encoding) -> bool| -> Value {
+        let fitting = Encoding::ALL.into_iter().filter(|encoding| fits(*encoding));
+        let names: Vec<&str> = fitting.map(Encoding::name).collect();
+        json!({ "properties": { "format": { "enum": names } } })
+    };
+    let mut picture = formats(Encoding::is_picture);
+    picture["required"] = json!(["format"]);
+    vec![
+        json!({ "if": { "required": ["decimals"] }, "then": formats(Encoding::is_text) }),
+        json!({ "if": { "required": ["size"] }, "then": picture }),
+    ]
+}
+
+fn query(groups: &'static [Group], about: &str, mut more: Vec<Value>) -> Value {
+    let mut properties = members(groups);
+    properties.insert("region".into(), reference("Region"));
+    let layers = json!({
+        "type": "array", "minItems": 1, "maxItems": MOST_LAYERS, "items": reference("Layer"),
+        "description": "Several sets of points, one after another, instead of one.",
+    });
+    properties.insert("layers".into(), layers);
+    let of_set = of(groups::SET).map(|parameter| (parameter.name.to_owned(), Value::Bool(false)));
+    let of_set: Map<String, Value> = of_set.collect();
+    let mut rules_of_all = vec![json!({ "oneOf": [
+        { "required": ["layers"], "properties": of_set },
+        { "properties": { "layers": false }, "allOf": rules() },
+    ] })];
+    rules_of_all.append(&mut more);
+    json!({
+        "type": "object",
+        "description": about,
+        "required": ["region"],
+        "properties": properties,
+        "additionalProperties": false,
+        "allOf": rules_of_all,
+    })
+}
+
+/// A query for points.
+pub(super) fn points_query() -> Value {
+    let about = "Which points, which part of them, and in which format: a region with one set of \
+                 points, or with layers.";
+    query(groups::QUERY, about, output_rules())
+}
+
+/// A query for a count.
+pub(super) fn count_query() -> Value {
+    let about = "Which points: a region with one set of points, or with layers.";
+    query(groups::SET, about, vec![])
+}
+
+/// One of several sets of points.
+pub(super) fn layer() -> Value {
+    let mut properties = members(groups::SET);
+    let others = json!({
+        "name": {
+            "type": "string", "pattern": format!("^{NAME}$"),
+            "description": "The layer's name; each layer has another one.",
+        },
+        "region": reference("Region"),
+        "clear_of": {
+            "type": "object", "additionalProperties": { "type": "number", "exclusiveMinimum": 0 },
+            "description": "Names of earlier layers and the distances kept from their points, in \
+                            world units. Not with count.",
+        },
+    });
+    if let Value::Object(others) = others {
+        properties.extend(others);
+    }
+    let mut rules = rules();
+    rules.push(json!({
+        "if": { "required": ["clear_of"], "properties": { "clear_of": { "minProperties": 1 } } },
+        "then": { "properties": { COUNT.name: false } },
+    }));
+    json!({
+        "type": "object",
+        "description": "One of several sets of points.",
+        "required": ["name"],
+        "properties": properties,
+        "additionalProperties": false,
+        "allOf": rules,
+    })
+}
+
+/// A set as answers echo it: what is always there, and all members.
+pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
+    let number = |about: &str| json!({ "type": "number", "description": about });
+    let mut members = Map::new();
+    let mut put = |name: &str, schema: Value| members.insert(name.into(), schema);
+    put("name", json!({ "type": "string", "description": "The name of the layer." }));
+    put("region", reference("Region"));
+    put("density", number("Points per unit of area, before keep and clear_of."));
+    put("spacing", number("The mean spacing: density^-1/2."));
+    put("least_distance", number("No two points are nearer, in world units."));
+    let mut always = vec!["density", "spacing", "least_distance"];
+    for parameter in PARAMETERS.iter().filter(|parameter| parameter.echo.is_some()) {
+        let mut echoed = match parameter.name {
+            // Text in requests, too, but always a number in answers.
+            "warp" => json!({ "type": "number" }),
+            _ => schema(parameter.shape),
+        };
+        echoed["description"] = parameter.about.into();
+        put(parameter.name, echoed);
+        let is_always = [Group::Profile, Group::Table].contains(&parameter.group)
+            || ["seed", "warp"].contains(&parameter.name);
+        always.extend(is_always.then_some(parameter.name));
+    }
+    put(
+        "clear_of",
+        json!({ "type": "object", "additionalProperties": { "type": "number" } }),
+    );
+    (always, members)
+}
