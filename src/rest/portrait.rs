@@ -240,7 +240,7 @@ struct Measured<'a> {
 
 /// A curve: rows of numbers.
 #[derive(Serialize, JsonSchema)]
-#[schemars(rename = "Curve")]
+#[schemars(inline)]
 struct Curve<'a, const N: usize>
 where
     [f64; N]: Serialize,

@@ -24,6 +24,11 @@ fn members(groups: &'static [Group]) -> Map<String, Value> {
     of(groups).map(member).collect()
 }
 
+/// What no value fulfills. Not every generator of clients reads `false`.
+fn nothing() -> Value {
+    json!({ "not": {} })
+}
+
 /// What the members of a set must fulfill together.
 fn rules() -> Vec<Value> {
     let is_amount = |group: Group| [Group::Amount, Group::Count].contains(&group);
@@ -69,11 +74,11 @@ fn query(groups: &'static [Group], about: &str, mut more: Vec<Value>) -> Value {
         "description": "Several sets of points, one after another, instead of one.",
     });
     properties.insert("layers".into(), layers);
-    let of_set = of(groups::SET).map(|parameter| (parameter.name.to_owned(), Value::Bool(false)));
+    let of_set = of(groups::SET).map(|parameter| (parameter.name.to_owned(), nothing()));
     let of_set: Map<String, Value> = of_set.collect();
     let mut rules_of_all = vec![json!({ "oneOf": [
         { "required": ["layers"], "properties": of_set },
-        { "properties": { "layers": false }, "allOf": rules() },
+        { "properties": { "layers": nothing() }, "allOf": rules() },
     ] })];
     rules_of_all.append(&mut more);
     json!({
@@ -120,7 +125,7 @@ pub(super) fn layer() -> Value {
     let mut rules = rules();
     rules.push(json!({
         "if": { "required": ["clear_of"], "properties": { "clear_of": { "minProperties": 1 } } },
-        "then": { "properties": { COUNT.name: false } },
+        "then": { "properties": { COUNT.name: nothing() } },
     }));
     json!({
         "type": "object",

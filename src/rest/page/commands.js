@@ -56,18 +56,17 @@ export function grpcurl(host, layers, box, keep) {
   return `grpcurl${plain} -d ${quoted(json(message, 2))} \\\n  ${host} strew.v1.PointService/StreamPoints`;
 }
 
-/** A set as the message has it: numbers for the warp, messages for ranges and variants. */
-function typed(set) {
+/** A layer as the message has it: its set in a member, numbers for the warp, objects for ranges and variants. */
+function typed({ name, region, clear_of, ...set }) {
   const message = { ...set };
   if (set.warp === "off" || set.warp === "on") message.warp = set.warp === "on" ? 1 : 0;
   if (set.scale_range) message.scale_range = { min: set.scale_range[0], max: set.scale_range[1] };
   if (set.variants) {
-    message.variants = set.variants.split(",").map((one) => {
-      const [name, weight] = one.split(":");
-      return weight === undefined ? { name } : { name, weight: Number(weight) };
-    });
+    const weights = set.variants.split(",").map((one) => one.split(":"));
+    message.variants = Object.fromEntries(weights.map(([kind, weight]) => [kind, Number(weight ?? 1)]));
   }
-  return message;
+  const around = Object.entries({ name, region, clear_of }).filter(([, value]) => value !== undefined);
+  return { ...Object.fromEntries(around), set: message };
 }
 
 /** A program in Python that needs nothing installed, but numpy for its own format. */

@@ -92,6 +92,10 @@ impl Shape {
             u64::MAX => "18446744073709551615".into(),
             max => max.to_string(),
         };
+        let number = |value: f64| {
+            let digits = number(value);
+            digits.strip_suffix(".0").map_or(digits.clone(), Into::into)
+        };
         match self {
             Self::Number { min, max } if max == f64::MAX => {
                 format!("a finite number of at least {}", number(min))

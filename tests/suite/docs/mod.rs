@@ -4,4 +4,5 @@
 mod api_contract;
 mod api_examples;
 mod deploy;
+mod generated_client;
 mod openapi;

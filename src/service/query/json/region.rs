@@ -24,6 +24,7 @@ const SHAPES: [&str; 5] = ["bbox", "circle", "polygon", "chunk", "include"];
 /// A circle.
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "Circle")]
 pub(super) struct CircleJson {
     /// The center [x, y].
     center: [f64; 2],
@@ -35,6 +36,7 @@ pub(super) struct CircleJson {
 /// A square of the world grid: size·x ≤ p.x < size·(x + 1), and so for y.
 #[derive(Debug, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "Chunk")]
 pub(super) struct ChunkJson {
     /// The side in world units, above 0.
     #[schemars(extend("exclusiveMinimum" = 0))]
