@@ -5,7 +5,10 @@ use std::{collections::BTreeMap, sync::OnceLock};
 use serde_json::Value;
 use strew::{
     config::Layers,
-    service::{Catalog, Error, Key, Limits, Planned, Query, Ready, query::read_body},
+    service::{
+        Catalog, Error, Key, Limits, Planned, Query, Ready,
+        query::{groups, read_body},
+    },
 };
 
 /// The built-in tables, and what a daemon with default settings makes of a query.
@@ -50,8 +53,9 @@ impl Library {
 
     /// Checks a query, as JSON.
     pub fn query(&self, body: &Value) -> Result<Query, Error> {
-        let body = read_body(body.to_string().as_bytes())?;
-        body.draft.check(&self.catalog, 10_000, body.faults)
+        let draft = read_body(body.to_string().as_bytes(), groups::QUERY)?;
+        let (query, _) = draft.check(&self.catalog, 10_000)?;
+        Ok(query)
     }
 
     /// Checks and plans a query, as JSON.

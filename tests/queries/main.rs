@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use strew::service::{Answer, Encoding, Error, Output, Planned};
+use strew::service::{Answer, Encoding, Error, Fault, Output, Planned};
 use strew_testkit::random::SplitMix;
 
 use library::{Library, library, with};
@@ -35,7 +35,7 @@ fn check(library: &Library, random: &mut SplitMix, body: &Value) -> Option<usize
         Ok(planned) => planned,
         // In a region that holds next to nothing, a count may have no spacing, or one so narrow
         // that the distance to keep clear is too wide for it.
-        Err(Error::Invalid(faults)) if faults.iter().all(|f| is_about_counts(&f.field)) => {
+        Err(Error::Invalid(faults)) if faults.as_slice().iter().all(is_about_counts) => {
             return None;
         }
         Err(error) => panic!("{error}: {body}"),
@@ -102,8 +102,8 @@ fn check(library: &Library, random: &mut SplitMix, body: &Value) -> Option<usize
     Some(all.len())
 }
 
-fn is_about_counts(field: &str) -> bool {
-    field.ends_with("count") || field.ends_with("clear_of")
+fn is_about_counts(fault: &Fault) -> bool {
+    fault.field.ends_with("count") || fault.field.ends_with("clear_of")
 }
 
 /// Checks that the parts of a split, each read by itself, make the whole.

@@ -9,7 +9,10 @@ use std::{
 use serde_json::{Value, json};
 use strew::{
     error_map,
-    service::{Answer, Encoding, Error, Output, Planned},
+    service::{
+        Answer, Encoding, Error, Output, Planned,
+        query::{groups, read_body},
+    },
 };
 use strew_testkit::{
     http1::{self, Response},
@@ -299,10 +302,9 @@ pub fn spoiled(library: &Library, at: SocketAddr, random: &mut SplitMix, body: &
     let status = opened.status;
     let answer = decoded(opened)?;
     let shown = || String::from_utf8_lossy(&text).into_owned();
-    let expected = strew::service::query::read_body(&text).and_then(|body| {
-        body.draft
-            .check(&library.catalog, library.limits.max_vertices, body.faults)
-    });
+    let expected = read_body(&text, groups::QUERY)
+        .map_err(Error::from)
+        .and_then(|draft| draft.check(&library.catalog, library.limits.max_vertices));
     match expected {
         // A changed query may be too much to count here: that the server takes it is enough.
         Ok(_) if status == 200 || status == 400 || status == 413 => Ok(0),

@@ -1,14 +1,14 @@
 //! Requests over gRPC: the queries as messages, and their points compared with the library's.
 
-use std::{collections::HashMap, net::SocketAddr, time::Duration};
+use std::{net::SocketAddr, time::Duration};
 
 use serde_json::Value;
 use strew::{
     error_map,
     grpc::proto::{
-        BoundingBox, Chunk, Circle, Combined, Encoding, Layer, Polygon, Polygons, Position, Region,
-        Ring, StreamPointsRequest, layer, point_service_client::PointServiceClient, region::Shape,
-        stream_points_request as request, stream_points_response::Message,
+        BoundingBox, Chunk, Circle, Combined, Encoding, Layer, PointSet, Polygon, Polygons,
+        Position, Region, Ring, StreamPointsRequest, point_service_client::PointServiceClient,
+        point_set::Amount, region::Shape, stream_points_response::Message,
     },
     service,
 };
@@ -96,55 +96,43 @@ fn names(value: &Value) -> Vec<String> {
     items(value).filter_map(text).collect()
 }
 
+/// The set of a JSON body, or of one of its layers.
+fn set(body: &Value) -> PointSet {
+    let of = |name| body.get(name).and_then(Value::as_f64);
+    let count = body.get("count").and_then(Value::as_u64);
+    let amount = of("density")
+        .map(Amount::Density)
+        .or_else(|| of("spacing").map(Amount::Spacing))
+        .or_else(|| of("min_distance").map(Amount::MinDistance))
+        .or_else(|| count.map(Amount::Count));
+    PointSet {
+        amount,
+        profile: text(&body["profile"]),
+        alpha: text(&body["alpha"]),
+        map: text(&body["map"]),
+        seed: body["seed"].as_u64(),
+        warp: warp(&body["warp"]),
+        keep: body["keep"].as_f64(),
+        attributes: names(&body["attributes"]),
+        ..PointSet::default()
+    }
+}
+
 /// A JSON body as a message.
 fn message(body: &Value) -> StreamPointsRequest {
-    use request::Amount;
-    let amount = |body: &Value| {
-        let of = |name| body.get(name).and_then(Value::as_f64);
-        let count = body.get("count").and_then(Value::as_u64);
-        of("density")
-            .map(Amount::Density)
-            .or_else(|| of("spacing").map(Amount::Spacing))
-            .or_else(|| of("min_distance").map(Amount::MinDistance))
-            .or_else(|| count.map(Amount::Count))
-    };
     let layer = |body: &Value| {
-        let clear: HashMap<_, _> = body["clear_of"]
-            .as_object()
-            .into_iter()
-            .flatten()
-            .map(|(name, distance)| (name.clone(), number(distance)))
-            .collect();
+        let clear_of = body["clear_of"].as_object().into_iter().flatten();
+        let clear_of = clear_of.map(|(name, distance)| (name.clone(), number(distance)));
         Layer {
-            amount: amount(body).map(|amount| match amount {
-                Amount::Density(value) => layer::Amount::Density(value),
-                Amount::Spacing(value) => layer::Amount::Spacing(value),
-                Amount::MinDistance(value) => layer::Amount::MinDistance(value),
-                Amount::Count(value) => layer::Amount::Count(value),
-            }),
             name: text(&body["name"]).unwrap_or_default(),
             region: body.get("region").map(region),
-            clear_of: clear.into_iter().collect(),
-            profile: text(&body["profile"]),
-            alpha: text(&body["alpha"]),
-            seed: body["seed"].as_u64(),
-            warp: warp(&body["warp"]),
-            map: text(&body["map"]),
-            keep: body["keep"].as_f64(),
-            attributes: names(&body["attributes"]),
-            ..Layer::default()
+            clear_of: clear_of.collect(),
+            set: Some(set(body)),
         }
     };
     StreamPointsRequest {
         region: Some(region(&body["region"])),
-        amount: amount(body),
-        profile: text(&body["profile"]),
-        alpha: text(&body["alpha"]),
-        seed: body["seed"].as_u64(),
-        warp: warp(&body["warp"]),
-        map: text(&body["map"]),
-        keep: body["keep"].as_f64(),
-        attributes: names(&body["attributes"]),
+        set: Some(set(body)),
         layers: items(&body["layers"]).map(layer).collect(),
         encoding: Encoding::Points.into(),
         ..StreamPointsRequest::default()
