@@ -6,8 +6,7 @@ use bytes::Bytes;
 use http::{Request, header};
 use prost::Message as _;
 use strew::grpc::proto::{
-    BoundingBox, Encoding, Region, StreamPointsRequest, region::Shape,
-    stream_points_request::Amount,
+    BoundingBox, Encoding, PointSet, Region, StreamPointsRequest, point_set::Amount, region::Shape,
 };
 
 /// How much a client lets the server send, in bytes.
@@ -44,7 +43,10 @@ pub fn request(points: u64) -> Bytes {
                 ..BoundingBox::default()
             })),
         }),
-        amount: Some(Amount::Spacing(1.0)),
+        set: Some(PointSet {
+            amount: Some(Amount::Spacing(1.0)),
+            ..PointSet::default()
+        }),
         encoding: Encoding::F32Le.into(),
         ..StreamPointsRequest::default()
     };

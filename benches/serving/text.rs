@@ -8,7 +8,7 @@ use std::{hint::black_box, time::Instant};
 
 use strew::service::{
     Answer, Catalog, Encoding, Limits, Output, Planned,
-    query::{Query, parse_pairs},
+    query::{Draft, Query, groups, parse_pairs},
 };
 use strew_core::Point;
 
@@ -28,9 +28,9 @@ fn limits() -> Limits {
 
 fn query(catalog: &Catalog, points: u64) -> Query {
     let side = (points as f64).sqrt();
-    let (parameters, faults) = parse_pairs(&format!("bbox=0,0,{side},{side}&spacing=1"));
-    let checked = parameters.check(catalog, 1, None, faults);
-    checked.expect("valid").0
+    let text = format!("bbox=0,0,{side},{side}&spacing=1");
+    let draft = Draft::of(parse_pairs(&text, groups::POINTS));
+    draft.check(catalog, 1).expect("valid").0
 }
 
 /// The text around the three values of a point.
