@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use strew::grpc::proto::{StreamPointsRequest, point_service_client::PointServiceClient};
+use strew::grpc::proto::point_service_client::PointServiceClient;
 use strew_testkit::http1;
 use tonic::{Code, Request, codec::CompressionEncoding};
 use tonic_types::StatusExt as _;
@@ -151,9 +151,10 @@ async fn another_table_than_the_pinned_one_is_a_failed_precondition() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
     let digest = table("(5-sqrt(3))/2", PROFILE).digest().to_string();
-    let pinned = |table: &str| StreamPointsRequest {
-        table: Some(table.into()),
-        ..square(10.0)
+    let pinned = |table: &str| {
+        let mut request = square(10.0);
+        request.set.get_or_insert_default().table = Some(table.into());
+        request
     };
     assert!(client.stream_points(pinned(&digest)).await.is_ok());
     let other = "0123456789abcdef".repeat(4);

@@ -1,8 +1,8 @@
 //! Every encoding carries the library's points, in the library's order.
 
 use strew::grpc::proto::{
-    Encoding, StreamPointsRequest, point_service_client::PointServiceClient, region::Shape,
-    stream_points_request::Amount,
+    Encoding, PointSet, StreamPointsRequest, point_service_client::PointServiceClient,
+    point_set::Amount, region::Shape,
 };
 use strew_core::Point;
 
@@ -15,9 +15,12 @@ use crate::support::{
 fn request(encoding: Encoding) -> StreamPointsRequest {
     StreamPointsRequest {
         region: boxed([-3.5, 1.0, 40.0, 33.25]),
-        amount: Some(Amount::Density(7.0)),
-        profile: Some(PROFILE.into()),
-        seed: Some(5),
+        set: Some(PointSet {
+            amount: Some(Amount::Density(7.0)),
+            profile: Some(PROFILE.into()),
+            seed: Some(5),
+            ..PointSet::default()
+        }),
         encoding: encoding.into(),
         ..StreamPointsRequest::default()
     }
@@ -41,15 +44,22 @@ async fn the_default_encoding_has_fields_and_ids() {
         let bbox = query.bbox.map(Shape::Bbox);
         assert_eq!(query.region.as_ref().map(|r| r.shape.clone()), Some(bbox));
         assert_eq!(query.encoding(), Encoding::Points);
-        let [set] = query.sets.as_slice() else {
+        let [resolved] = query.sets.as_slice() else {
             panic!("there is one set of points");
         };
-        assert_eq!(set.table, plan.table().digest().to_string());
-        assert_eq!(
-            (set.density, set.spacing),
-            (7.0, plan.placement().spacing.get())
-        );
-        assert_eq!((set.alpha.as_str(), set.seed), ("(5-sqrt(3))/2", 5));
+        assert_eq!(resolved.density, 7.0);
+        let placement = plan.placement();
+        let set = PointSet {
+            amount: Some(Amount::Spacing(placement.spacing.get())),
+            profile: Some(PROFILE.into()),
+            alpha: Some("(5-sqrt(3))/2".into()),
+            map: Some(plan.table().map().size().to_string()),
+            table: Some(plan.table().digest().to_string()),
+            seed: Some(5),
+            warp: Some(placement.warp.strength()),
+            ..PointSet::default()
+        };
+        assert_eq!(resolved.set, Some(set));
         assert!(blocks.len() > 10, "blocks are small");
         let got: Vec<Point> = blocks
             .iter()

@@ -17,7 +17,7 @@ from grpc_reflection.v1alpha.proto_reflection_descriptor_database import (
 channel = grpc.insecure_channel(sys.argv[1])
 pool = DescriptorPool(ProtoReflectionDescriptorDatabase(channel))
 method = pool.FindMethodByName("strew.v1.PointService.StreamPoints")
-request = GetMessageClass(method.input_type)(density=2, profile="test")
+request = GetMessageClass(method.input_type)(set={"density": 2, "profile": "test"})
 request.region.bbox.max_x = request.region.bbox.max_y = 50
 call = channel.unary_stream(
     "/strew.v1.PointService/StreamPoints",

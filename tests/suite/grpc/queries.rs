@@ -1,10 +1,13 @@
 //! Every feature of queries: points, attributes, counts, pages and parts are those of REST.
 
+use std::collections::BTreeMap;
+
+use serde::Serialize;
 use serde_json::{Value, json};
 use strew::grpc::proto::{
-    Chunk, Circle, Combined, CountPointsRequest, Encoding, Layer, Polygon, Polygons, Position,
-    ScaleRange, SplitPointsRequest, StreamPointsRequest, Variant, layer,
-    point_service_client::PointServiceClient, region::Shape, stream_points_request::Amount,
+    Chunk, Circle, Combined, CountPointsRequest, Encoding, Layer, PointSet, Polygon, Polygons,
+    Position, ScaleRange, SplitPointsRequest, StreamPointsRequest,
+    point_service_client::PointServiceClient, point_set::Amount, region::Shape,
 };
 use strew_testkit::http1;
 
@@ -18,9 +21,9 @@ fn daemon() -> Daemon {
     Daemon::start(&["limits.block_bytes=4096"])
 }
 
-fn variant(name: &str, weight: Option<f64>) -> Variant {
-    let name = name.into();
-    Variant { name, weight }
+/// What the attribute `variant` chooses from.
+fn variants(weights: [(&str, f64); 2]) -> BTreeMap<String, f64> {
+    weights.map(|(name, weight)| (name.into(), weight)).into()
 }
 
 /// Queries as messages, with the same queries as JSON.
@@ -56,27 +59,35 @@ fn queries() -> Vec<(StreamPointsRequest, Value)> {
     let all = ["angle", "scale", "variant", "rank", "u1", "u16"];
     let trees = Layer {
         name: "trees".into(),
-        amount: Some(layer::Amount::Spacing(2.0)),
-        seed: Some(1),
-        attributes: vec!["angle".into(), "variant".into()],
-        variants: vec![variant("oak", None), variant("birch", Some(0.5))],
+        set: Some(PointSet {
+            amount: Some(Amount::Spacing(2.0)),
+            seed: Some(1),
+            attributes: vec!["angle".into(), "variant".into()],
+            variants: variants([("oak", 1.0), ("birch", 0.5)]),
+            ..PointSet::default()
+        }),
         ..Layer::default()
     };
     let rocks = Layer {
         name: "rocks".into(),
-        amount: Some(layer::Amount::Density(1.5)),
         region: shaped(circle(9.0)),
         clear_of: [("trees".into(), 0.8)].into(),
-        attributes: vec!["variant".into(), "u2".into()],
-        variants: vec![variant("flint", Some(2.0)), variant("oak", Some(1.0))],
-        ..Layer::default()
+        set: Some(PointSet {
+            amount: Some(Amount::Density(1.5)),
+            attributes: vec!["variant".into(), "u2".into()],
+            variants: variants([("flint", 2.0), ("oak", 1.0)]),
+            ..PointSet::default()
+        }),
     };
     vec![
         (
             StreamPointsRequest {
                 region: shaped(circle(20.0)),
-                amount: Some(Amount::Count(777)),
-                seed: Some(7),
+                set: Some(PointSet {
+                    amount: Some(Amount::Count(777)),
+                    seed: Some(7),
+                    ..PointSet::default()
+                }),
                 ..StreamPointsRequest::default()
             },
             json!({
@@ -87,11 +98,14 @@ fn queries() -> Vec<(StreamPointsRequest, Value)> {
         (
             StreamPointsRequest {
                 region: shaped(Shape::Polygons(polygons)),
-                amount: Some(Amount::Density(1.0)),
-                attributes: all.map(Into::into).into(),
-                scale_range: Some(ScaleRange { min: 0.5, max: 2.0 }),
-                variants: vec![variant("oak", Some(3.0)), variant("birch", None)],
-                warp: Some(0.5),
+                set: Some(PointSet {
+                    amount: Some(Amount::Density(1.0)),
+                    attributes: all.map(Into::into).into(),
+                    scale_range: Some(ScaleRange { min: 0.5, max: 2.0 }),
+                    variants: variants([("oak", 3.0), ("birch", 1.0)]),
+                    warp: Some(0.5),
+                    ..PointSet::default()
+                }),
                 ..StreamPointsRequest::default()
             },
             json!({
@@ -102,9 +116,12 @@ fn queries() -> Vec<(StreamPointsRequest, Value)> {
         (
             StreamPointsRequest {
                 region: shaped(Shape::Combined(combined)),
-                amount: Some(Amount::MinDistance(0.5)),
-                keep: Some(0.25),
-                profile: Some("spaced".into()),
+                set: Some(PointSet {
+                    amount: Some(Amount::MinDistance(0.5)),
+                    keep: Some(0.25),
+                    profile: Some("spaced".into()),
+                    ..PointSet::default()
+                }),
                 ..StreamPointsRequest::default()
             },
             json!({
@@ -118,8 +135,11 @@ fn queries() -> Vec<(StreamPointsRequest, Value)> {
                     x: 1 << 20,
                     y: -7,
                 })),
-                amount: Some(Amount::Spacing(1.0)),
-                seed: Some(3),
+                set: Some(PointSet {
+                    amount: Some(Amount::Spacing(1.0)),
+                    seed: Some(3),
+                    ..PointSet::default()
+                }),
                 offset: 20,
                 limit: Some(900),
                 ..StreamPointsRequest::default()
@@ -174,6 +194,15 @@ fn document(bytes: &[u8]) -> Value {
     normal(&serde_json::from_slice(bytes).expect("JSON"))
 }
 
+/// JSON of what REST leaves out if it is empty.
+fn some(value: impl Serialize) -> Value {
+    match json!(value) {
+        Value::Array(items) if items.is_empty() => Value::Null,
+        Value::Object(members) if members.is_empty() => Value::Null,
+        value => value,
+    }
+}
+
 #[tokio::test]
 async fn points_attributes_and_echoes_are_those_of_rest() {
     let daemon = daemon();
@@ -211,49 +240,38 @@ async fn points_attributes_and_echoes_are_those_of_rest() {
             Value::Array(tables) => tables.clone(),
             _ => vec![expected["table"].clone()],
         };
-        for (i, set) in query.sets.iter().enumerate() {
-            let echo = if set.name.is_empty() {
-                echo
-            } else {
-                &echo["layers"][i]
+        for (i, resolved) in query.sets.iter().enumerate() {
+            let echo = match resolved.name.as_str() {
+                "" => echo,
+                _ => &echo["layers"][i],
             };
+            let set = resolved.set.as_ref().expect("set");
+            let Some(Amount::Spacing(spacing)) = set.amount else {
+                panic!("not the spacing: {resolved:?}");
+            };
+            let range = set.scale_range.map(|range| json!([range.min, range.max]));
             for (name, value) in [
-                ("density", json!(set.density)),
-                ("spacing", json!(set.spacing)),
-                ("least_distance", json!(set.least_distance)),
+                ("density", json!(resolved.density)),
+                ("least_distance", json!(resolved.least_distance)),
+                ("clear_of", some(&resolved.clear_of)),
+                ("spacing", json!(spacing)),
                 ("profile", json!(set.profile)),
                 ("alpha", json!(set.alpha)),
                 ("map", json!(set.map)),
                 ("seed", json!(set.seed)),
                 ("warp", json!(set.warp)),
+                ("keep", json!(set.keep)),
+                ("attributes", some(&set.attributes)),
+                ("scale_range", json!(range)),
+                ("variants", some(&set.variants)),
             ] {
                 assert_eq!(normal(&value), echo[name], "{name} of {body}");
             }
-            assert_eq!(set.keep, echo["keep"].as_f64().unwrap_or(1.0));
-            assert_eq!(digests[i]["digest"], set.table);
-            assert_eq!(normal(&set.delta_min.into()), digests[i]["delta_min"]);
-            assert_eq!(normal(&set.delta_avg.into()), digests[i]["delta_avg"]);
-            assert!(set.delta_min.is_some());
-            let attributes = echo["attributes"]
-                .as_array()
-                .map(Vec::as_slice)
-                .unwrap_or_default();
-            assert_eq!(set.attributes.len(), attributes.len());
-            for (attribute, expected) in set.attributes.iter().zip(attributes) {
-                assert_eq!(attribute.name, expected["name"]);
-                let range = attribute.range.map(|range| json!([range.min, range.max]));
-                assert_eq!(normal(&range.into()), expected["range"]);
-                let listed = expected["variants"]
-                    .as_array()
-                    .map(Vec::as_slice)
-                    .unwrap_or_default();
-                let variants = attribute.variants.iter();
-                let variants =
-                    variants.map(|v| normal(&json!({ "name": v.name, "weight": v.weight })));
-                assert_eq!(variants.collect::<Vec<_>>(), listed);
-            }
-            let clear_of = echo["clear_of"].as_object().map_or(0, serde_json::Map::len);
-            assert_eq!(set.clear_of.len(), clear_of);
+            let digest = &digests[i];
+            assert_eq!(digest["digest"], set.table());
+            assert_eq!(normal(&resolved.delta_min.into()), digest["delta_min"]);
+            assert_eq!(normal(&resolved.delta_avg.into()), digest["delta_avg"]);
+            assert!(resolved.delta_min.is_some());
         }
 
         let count = CountPointsRequest {

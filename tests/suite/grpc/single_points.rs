@@ -2,9 +2,8 @@
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{
-    CountPointsRequest, FindNearestRequest, GetPointRequest, Point, Position, StreamPointsRequest,
-    Variant, find_nearest_request, get_point_request, point_service_client::PointServiceClient,
-    stream_points_request, value,
+    CountPointsRequest, FindNearestRequest, GetPointRequest, Point, PointSet, Position,
+    StreamPointsRequest, point_service_client::PointServiceClient, point_set::Amount, value,
 };
 
 use crate::support::{
@@ -14,14 +13,16 @@ use crate::support::{
 
 const SET: &str = "spacing=1.5&seed=9&attributes=angle,variant,u3&variants=oak:3,birch:1";
 
-fn attributes() -> (Vec<String>, Vec<Variant>) {
-    let names = ["angle", "variant", "u3"].map(Into::into);
-    let variants = [("oak", Some(3.0)), ("birch", None)];
-    let variant = |(name, weight): (&str, _)| Variant {
-        name: name.into(),
-        weight,
-    };
-    (names.into(), variants.map(variant).into())
+/// [`SET`] as a message.
+fn set() -> PointSet {
+    let variants = [("oak", 3.0), ("birch", 1.0)];
+    PointSet {
+        amount: Some(Amount::Spacing(1.5)),
+        seed: Some(9),
+        attributes: ["angle", "variant", "u3"].map(Into::into).into(),
+        variants: variants.map(|(name, weight)| (name.into(), weight)).into(),
+        ..PointSet::default()
+    }
 }
 
 /// A point as REST writes it.
@@ -48,15 +49,10 @@ async fn a_point_is_found_by_its_id() {
         .json();
     let listed = list["points"].as_array().expect("a list");
     assert!(listed.len() > 100);
-    let (attributes, variants) = attributes();
     for expected in listed {
         let request = GetPointRequest {
             id: expected["id"].as_str().expect("a text").into(),
-            amount: Some(get_point_request::Amount::Spacing(1.5)),
-            seed: Some(9),
-            attributes: attributes.clone(),
-            variants: variants.clone(),
-            ..GetPointRequest::default()
+            set: Some(set()),
         };
         let answer = client
             .get_point(request)
@@ -69,10 +65,17 @@ async fn a_point_is_found_by_its_id() {
         let by_rest = daemon.get(&format!("/v1/points/{}?{SET}", point.id)).json();
         let expected = &by_rest["point"]["block"];
         assert_eq!(json!([block.column, block.row]), *expected);
-        let set = answer.set.expect("set");
-        assert_eq!((set.spacing, set.seed, set.warp), (1.5, 9, 1.0));
-        assert_eq!(set.attributes.len(), 3);
-        assert_eq!(set.table, list["table"]["digest"]);
+        let resolved = answer.set.expect("set").set.expect("set");
+        assert_eq!(list["table"]["digest"], resolved.table());
+        let asked = set();
+        assert_eq!(
+            (resolved.amount, resolved.seed, resolved.warp),
+            (asked.amount, asked.seed, Some(1.0))
+        );
+        assert_eq!(
+            (resolved.attributes, resolved.variants),
+            (asked.attributes, asked.variants)
+        );
     }
 }
 
@@ -80,7 +83,6 @@ async fn a_point_is_found_by_its_id() {
 async fn neighbors_are_those_of_rest() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
-    let (attributes, variants) = attributes();
     for (k, radius) in [
         (None, None),
         (Some(8), None),
@@ -91,11 +93,7 @@ async fn neighbors_are_those_of_rest() {
             at: Some(Position { x: 100.5, y: -3.0 }),
             k,
             radius,
-            amount: Some(find_nearest_request::Amount::Spacing(1.5)),
-            seed: Some(9),
-            attributes: attributes.clone(),
-            variants: variants.clone(),
-            ..FindNearestRequest::default()
+            set: Some(set()),
         };
         let answer = client
             .find_nearest(request)
@@ -125,7 +123,10 @@ async fn counts_are_exact_beyond_64_bits() {
     for side in [1e3, 1e9, 1e12] {
         let request = StreamPointsRequest {
             region: boxed([0.0, 0.0, side, side]),
-            amount: Some(stream_points_request::Amount::Spacing(1.0)),
+            set: Some(PointSet {
+                amount: Some(Amount::Spacing(1.0)),
+                ..PointSet::default()
+            }),
             ..StreamPointsRequest::default()
         };
         let request = CountPointsRequest {

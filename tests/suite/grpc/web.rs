@@ -3,14 +3,13 @@
 
 use prost::Message as _;
 use strew::grpc::proto::{
-    StreamPointsRequest, StreamPointsResponse, stream_points_request::Amount,
-    stream_points_response::Message,
+    StreamPointsRequest, StreamPointsResponse, point_set::Amount, stream_points_response::Message,
 };
 use strew_testkit::http1;
 
 use crate::support::{
-    daemon::{Daemon, PROFILE},
-    grpc::boxed,
+    daemon::Daemon,
+    grpc::{boxed, set},
 };
 
 const STREAM: &str = "/strew.v1.PointService/StreamPoints";
@@ -39,8 +38,7 @@ fn frames(mut body: &[u8]) -> Vec<(u8, &[u8])> {
 fn request(density: f64) -> Vec<u8> {
     let request = StreamPointsRequest {
         region: boxed([0.0, 0.0, 20.0, 20.0]),
-        amount: Some(Amount::Density(density)),
-        profile: Some(PROFILE.into()),
+        set: set(Amount::Density(density)),
         ..StreamPointsRequest::default()
     };
     frame(&request.encode_to_vec())
@@ -109,7 +107,7 @@ fn errors_reach_a_page_too() {
         (opened.status, opened.headers["grpc-status"].as_str()),
         (200, "3")
     );
-    assert!(opened.headers["grpc-message"].contains("density"));
+    assert!(opened.headers["grpc-message"].contains("set.density"));
     assert!(opened.headers.contains_key("grpc-status-details-bin"));
 
     let nothing = "/strew.v1.PointService/Nothing";

@@ -4,10 +4,7 @@ use std::{fs, path::Path, process::Output};
 
 use strew::{
     access::Hashed,
-    grpc::proto::{
-        ListProfilesRequest, StreamPointsRequest, point_service_client::PointServiceClient,
-        stream_points_request::Amount,
-    },
+    grpc::proto::{ListProfilesRequest, point_service_client::PointServiceClient},
 };
 use strew_testkit::{http1, tables::write, wait::until};
 use tonic::{Code, Request};
@@ -15,8 +12,8 @@ use tonic_health::pb::{HealthCheckRequest, health_client::HealthClient};
 use tonic_types::StatusExt as _;
 
 use crate::support::{
-    daemon::{Daemon, PROFILE, strew, table, tables},
-    grpc::boxed,
+    daemon::{Daemon, strew, table, tables},
+    grpc::square,
     keys::{entry, get_with_key, keys},
     queries::long,
 };
@@ -116,12 +113,7 @@ async fn grpc_requires_a_key() {
     let refused = client.list_profiles(ListProfilesRequest {}).await;
     assert_eq!(refused.expect_err("no key").code(), Code::Unauthenticated);
     let box_of = |side: f64, key: Option<&'static str>| {
-        let mut request = Request::new(StreamPointsRequest {
-            region: boxed([0.0, 0.0, side, side]),
-            amount: Some(Amount::Spacing(1.0)),
-            profile: Some(PROFILE.into()),
-            ..StreamPointsRequest::default()
-        });
+        let mut request = Request::new(square(side));
         if let Some(key) = key {
             let value = bearer(key).parse().expect("text");
             request.metadata_mut().insert("authorization", value);

@@ -8,7 +8,7 @@ use std::{
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{
-    StreamPointsRequest, point_service_client::PointServiceClient, stream_points_request::Amount,
+    StreamPointsRequest, point_service_client::PointServiceClient, point_set::Amount,
 };
 use strew_core::{PointSet, Region};
 use strew_testkit::{
@@ -20,7 +20,7 @@ use tonic_types::StatusExt as _;
 
 use crate::support::{
     daemon::{Daemon, PROFILE, table},
-    grpc::boxed,
+    grpc::{boxed, set},
     problem::assert_fault,
     queries::{MANY_ROWS, SLOW, long},
 };
@@ -54,8 +54,7 @@ async fn too_many_points_are_refused_with_the_exact_count_and_the_limit() {
 
         let request = StreamPointsRequest {
             region: boxed([-half, -half, half, half]),
-            amount: Some(Amount::Spacing(1.0)),
-            profile: Some(PROFILE.into()),
+            set: set(Amount::Spacing(1.0)),
             ..StreamPointsRequest::default()
         };
         let status = client.stream_points(request).await.expect_err("too many");

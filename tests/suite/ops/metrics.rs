@@ -1,14 +1,12 @@
 //! `/metrics`: requests, points and bytes are counted exactly, and the number of samples is
 //! bounded.
 
-use strew::grpc::proto::{
-    StreamPointsRequest, point_service_client::PointServiceClient, stream_points_request::Amount,
-};
+use strew::grpc::proto::point_service_client::PointServiceClient;
 use strew_testkit::{http1, wait::until};
 
 use crate::support::{
-    daemon::{Daemon, PROFILE},
-    grpc::{boxed, collect},
+    daemon::Daemon,
+    grpc::{collect, square},
     metrics::{samples, sum},
 };
 
@@ -80,17 +78,8 @@ fn requests_points_and_bytes_are_counted_by_protocol_and_format() {
 async fn calls_are_counted_by_method_and_code() {
     let daemon = Daemon::start(&[]);
     let mut client = PointServiceClient::new(daemon.channel().await);
-    let request = |side: f64| StreamPointsRequest {
-        region: boxed([0.0, 0.0, side, side]),
-        amount: Some(Amount::Density(1.0)),
-        profile: Some(PROFILE.into()),
-        ..StreamPointsRequest::default()
-    };
-    let whole = collect(&mut client, request(300.0)).await;
-    let status = client
-        .stream_points(request(-1.0))
-        .await
-        .expect_err("empty");
+    let whole = collect(&mut client, square(300.0)).await;
+    let status = client.stream_points(square(-1.0)).await.expect_err("empty");
     assert_eq!(status.code(), tonic::Code::InvalidArgument);
     // Over gRPC-Web, too, where the code is in the body.
     let empty_call = [("content-type", "application/grpc-web+proto")];

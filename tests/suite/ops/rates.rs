@@ -1,15 +1,13 @@
 //! Rates: each client gets points no faster than it may, and learns when to retry.
 
-use strew::grpc::proto::{
-    StreamPointsRequest, point_service_client::PointServiceClient, stream_points_request::Amount,
-};
+use strew::grpc::proto::point_service_client::PointServiceClient;
 use strew_testkit::{http1, wait::until};
 use tonic::Code;
 use tonic_types::StatusExt as _;
 
 use crate::support::{
-    daemon::{Daemon, PROFILE},
-    grpc::boxed,
+    daemon::Daemon,
+    grpc::square,
     keys::{entry, get_with_key, keys},
 };
 
@@ -103,16 +101,13 @@ fn a_query_above_the_burst_is_answered_once_and_paid_back() {
 async fn grpc_returns_a_retry_delay() {
     let daemon = Daemon::start(&[SLOW, BURST]);
     let mut client = PointServiceClient::new(daemon.channel().await);
-    let request = || StreamPointsRequest {
-        region: boxed([0.0, 0.0, 20.0, 20.0]),
-        amount: Some(Amount::Density(1.0)),
-        profile: Some(PROFILE.into()),
-        ..StreamPointsRequest::default()
-    };
     for _ in 0..2 {
-        client.stream_points(request()).await.expect("points");
+        client.stream_points(square(20.0)).await.expect("points");
     }
-    let status = client.stream_points(request()).await.expect_err("too fast");
+    let status = client
+        .stream_points(square(20.0))
+        .await
+        .expect_err("too fast");
     assert_eq!(status.code(), Code::ResourceExhausted, "{status:?}");
     let details = status.get_error_details();
     let info = details.error_info().expect("details");

@@ -10,7 +10,10 @@ use std::{
     process::{Child, Command, Stdio},
 };
 
-use strew::service::{Answer, Catalog, Encoding, Output, Planned, query::read_body};
+use strew::service::{
+    Answer, Catalog, Encoding, Output, Planned,
+    query::{groups, read_body},
+};
 use strew_testkit::{http1, wait::until};
 
 use crate::support::{
@@ -101,8 +104,8 @@ fn expected() -> Vec<String> {
     let body = format!(
         r#"{{"region": {{"bbox": [-200, -200, 200, 200]}}, "spacing": 1, "seed": 5, "profile": "{PROFILE}"}}"#
     );
-    let body = read_body(body.as_bytes()).expect("JSON");
-    let query = body.draft.check(&catalog, 100, body.faults).expect("valid");
+    let draft = read_body(body.as_bytes(), groups::QUERY).expect("JSON");
+    let (query, _) = draft.check(&catalog, 100).expect("valid");
     let settings = strew::config::Layers::new().and_then(strew::config::Layers::finish);
     let limits = settings.expect("valid").limits;
     let planned = Planned::at_once(query, &limits).expect("planned");

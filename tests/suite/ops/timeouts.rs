@@ -8,8 +8,8 @@ use std::{
 };
 
 use strew::grpc::proto::{
-    CountPointsRequest, StreamPointsRequest, point_service_client::PointServiceClient,
-    stream_points_request::Amount,
+    CountPointsRequest, PointSet, StreamPointsRequest, point_service_client::PointServiceClient,
+    point_set::Amount,
 };
 use strew_testkit::{
     http1::{self, read_to_close},
@@ -104,9 +104,12 @@ async fn a_call_that_takes_too_long_is_refused_and_stops() {
     let mut client = PointServiceClient::new(daemon.channel().await);
     let request = StreamPointsRequest {
         region: boxed([0.0, 0.0, 1e10, 1e10]),
-        amount: Some(Amount::Spacing(1.0)),
-        profile: Some(PROFILE.into()),
-        seed: Some(7),
+        set: Some(PointSet {
+            amount: Some(Amount::Spacing(1.0)),
+            profile: Some(PROFILE.into()),
+            seed: Some(7),
+            ..PointSet::default()
+        }),
         ..StreamPointsRequest::default()
     };
     let query = Some(request);

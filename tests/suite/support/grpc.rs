@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{
-    BoundingBox, ColumnHead, PointBlock, Position, Region, Ring, StreamHeader, StreamPointsRequest,
-    StreamSummary, point_service_client::PointServiceClient, region::Shape,
-    stream_points_request::Amount, stream_points_response::Message,
+    BoundingBox, ColumnHead, PointBlock, PointSet, Position, Region, Ring, StreamHeader,
+    StreamPointsRequest, StreamSummary, point_service_client::PointServiceClient,
+    point_set::Amount, region::Shape, stream_points_response::Message,
 };
-use tonic::transport::Channel;
+use tonic::{Code, Status, transport::Channel};
+use tonic_types::StatusExt as _;
 
 use super::daemon::PROFILE;
 
@@ -27,6 +28,15 @@ pub fn shaped(shape: Shape) -> Option<Region> {
     Some(Region { shape: Some(shape) })
 }
 
+/// A set of points of the test profile.
+pub fn set(amount: Amount) -> Option<PointSet> {
+    Some(PointSet {
+        amount: Some(amount),
+        profile: Some(PROFILE.into()),
+        ..PointSet::default()
+    })
+}
+
 /// The side of a square that holds a little over a billion points at density 1.
 pub const LONG: f64 = 31_700.0;
 
@@ -34,8 +44,7 @@ pub const LONG: f64 = 31_700.0;
 pub fn square(side: f64) -> StreamPointsRequest {
     StreamPointsRequest {
         region: boxed([0.0, 0.0, side, side]),
-        amount: Some(Amount::Density(1.0)),
-        profile: Some(PROFILE.into()),
+        set: set(Amount::Density(1.0)),
         ..StreamPointsRequest::default()
     }
 }
@@ -140,5 +149,23 @@ pub fn normal(value: &Value) -> Value {
             Value::Object(members.collect())
         }
         other => other.clone(),
+    }
+}
+
+/// Fails unless a status names exactly these fields, and its message contains these texts.
+pub fn assert_faults(status: &Status, fields: &[&str], texts: &[&str]) {
+    assert_eq!(status.code(), Code::InvalidArgument, "{status:?}");
+    let details = status.get_error_details();
+    let info = details.error_info().expect("details");
+    assert_eq!(
+        (info.reason.as_str(), info.domain.as_str()),
+        ("INVALID_QUERY", "strew")
+    );
+    let violations = &details.bad_request().expect("details").field_violations;
+    let named: Vec<&str> = violations.iter().map(|v| v.field.as_str()).collect();
+    assert_eq!(named, fields, "{status:?}");
+    for text in texts.iter().chain(fields) {
+        let message = status.message();
+        assert!(message.contains(text), "no `{text}`: {message}");
     }
 }
