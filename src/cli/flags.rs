@@ -244,6 +244,8 @@ impl<T: Takes> FromArgMatches for Flags<T> {
 
 #[cfg(test)]
 mod tests {
+    use clap::Args as _;
+
     use super::*;
 
     #[test]
@@ -262,5 +264,14 @@ mod tests {
     fn a_split_query_takes_what_a_query_takes() {
         let both = || PARAMETERS.iter().filter(|parameter| Parted::takes(parameter));
         assert!(both().all(|parameter| Answered::takes(parameter) != (parameter.name == "parts")));
+    }
+
+    #[test]
+    fn an_added_parameter_is_a_flag_with_help() {
+        let command = Flags::<Answered>::augment_args(clap::Command::new("sample"));
+        let help = command.clone().render_long_help().to_string();
+        assert!(help.contains("--added <NUMBER>") && help.contains("an integer from 1 to 9"), "{help}");
+        let other = Flags::<Counted>::augment_args(clap::Command::new("count"));
+        assert!(other.get_arguments().all(|flag| flag.get_id() != "added"));
     }
 }

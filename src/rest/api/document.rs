@@ -178,7 +178,7 @@ pub(super) fn schema(shape: Shape) -> Value {
         Shape::Vertices => json!({ "type": "array", "items": { "type": "number" }, "minItems": 6 }),
         Shape::Names { pattern } => json!({
             "type": "array", "items": { "type": "string", "pattern": pattern },
-            "minItems": 1, "uniqueItems": true,
+            "uniqueItems": true,
         }),
         Shape::Weights => json!({
             "type": "object",
@@ -256,4 +256,30 @@ fn refused(kinds: &[Kind], generator: &mut SchemaGenerator) -> Vec<(String, Valu
             (status, response)
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::{
+        config::Layers,
+        service::{Catalog, Service, Workers},
+    };
+
+    #[test]
+    fn an_added_parameter_is_described() {
+        let catalog = Catalog::load(true, None).expect("built in");
+        let settings = Layers::new().and_then(Layers::finish).expect("valid");
+        let workers = Workers::new(1).expect("threads");
+        let service = Arc::new(Service::new(catalog, settings.limits, workers));
+        let document = document(&crate::rest::endpoints(&service));
+        let parameters = &document["paths"]["/v1/points"]["get"]["parameters"];
+        let names = parameters.as_array().expect("a list").iter().map(|p| &p["name"]);
+        assert!(names.clone().any(|name| name == "added"), "{parameters}");
+        let schemas = &document["components"]["schemas"];
+        assert_eq!(schemas["PointsQuery"]["properties"]["added"]["maximum"], json!(9));
+        assert_eq!(schemas["Set"]["properties"]["added"]["maximum"], json!(9));
+    }
 }

@@ -130,7 +130,7 @@ mod tests {
             let properties = feature["properties"].as_object().expect("an object");
             let names: Vec<&str> = properties.keys().map(String::as_str).collect();
             let expected: &[&str] = match properties["layer"].as_str() {
-                Some("trees") => &["angle", "layer", "variant"],
+                Some("trees") => &["layer", "angle", "variant"],
                 _ => &["layer", "variant"],
             };
             assert_eq!(names, expected);

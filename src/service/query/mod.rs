@@ -15,6 +15,8 @@ mod json;
 mod nearest;
 mod parameter;
 pub mod parameters;
+#[cfg(test)]
+mod recipe;
 mod region;
 mod shape;
 mod table;
@@ -169,11 +171,13 @@ impl QueryRegion {
             (ErrorKind::TooFar, Some(limit)) => Fault::new(
                 &self.path,
                 value,
-                format!(
-                    "{} is {}, too far from the origin",
-                    error.field(),
-                    error.value()
-                ),
+                match &self.echo {
+                    None => {
+                        let (field, value) = (error.field(), error.value());
+                        format!("{field} is {value}, too far from the origin")
+                    }
+                    Some(_) => format!("reaches to {}, too far from the origin", error.value()),
+                },
                 format!(
                     "within ±{} at spacing {}, where f64 still tells neighbors apart",
                     number(limit),

@@ -17,9 +17,22 @@ macro_rules! parameters {
         $($(#[$doc])* pub static $name: Parameter = $parameter;)+
 
         /// All parameters, in the order of help texts.
-        pub static PARAMETERS: &[&Parameter] = &[$(&$name),+];
+        pub static PARAMETERS: &[&Parameter] = &[$(&$name,)+ #[cfg(test)] &ADDED];
     };
 }
+
+/// A parameter that only tests have: they follow the recipe of ARCHITECTURE.md.
+#[cfg(test)]
+pub static ADDED: Parameter = Parameter {
+    name: "added",
+    about: "Made for a test.",
+    group: Group::Window,
+    shape: Shape::Integer { min: 1, max: 9 },
+    default: Some("1"),
+    example: "3",
+    echo: Some(|_| Some(Value::Integer(3))),
+    ..Parameter::PLAIN
+};
 
 /// The most points of an answer about neighbors.
 pub const MOST_NEAREST: u64 = 10_000;

@@ -55,17 +55,20 @@ impl Values {
         self.add(parameter, value.map_err(fault), || text.into());
     }
 
-    /// Adds a member of JSON, under a name that may not be a parameter's. A null is as good as an absent
-    /// member.
+    /// Adds a member of JSON, under a name that may not be a parameter's.
     pub fn add_json(&mut self, name: &str, json: &RawValue) {
         let Some(parameter) = self.parameter("member", name, || shown(json).into()) else {
             return;
         };
-        if json.get() == "null" {
-            return;
-        }
         let value = parameter.shape.read_json(json);
-        let fault = |detail| self.described(parameter, shown(json), detail);
+        let fault = |detail: Cow<'static, str>| {
+            // Some programs write what they leave open.
+            let detail = match json.get() {
+                "null" => format!("{detail}; leave the member out for its default").into(),
+                _ => detail,
+            };
+            self.described(parameter, shown(json), detail)
+        };
         self.add(parameter, value.map_err(fault), || shown(json).into());
     }
 

@@ -1,7 +1,8 @@
-"""Hooks that make the queries of schemathesis valid: one region, one amount, moderate numbers.
+"""Hooks that make the queries of schemathesis valid: by the rules that the document publishes
+(`x-rules`), and with moderate numbers.
 
-No schema says that parameters exclude each other, or which tables are loaded. Without these hooks,
-next to no answer would have points.
+No schema says which tables are loaded, or that a region of 1e300 holds too many points. Without
+these hooks next to no answer would have points; with them every query must be accepted.
 """
 
 import schemathesis
@@ -64,11 +65,15 @@ def tidy_set(query, is_text, amounts=AMOUNTS):
         query.pop("scale_range", None)
 
 
-def tidy_looks(query):
-    if "decimals" in query and query.get("format") not in ["json", "ndjson", "csv", "geojson"]:
-        query.pop("decimals")
-    if "size" in query and query.get("format") not in ["png", "svg"]:
-        query.pop("size")
+def tidy_output(query):
+    if "decimals" in query:
+        query["decimals"] = int(number(query["decimals"], 0, 17))
+        if query.get("format") not in ["json", "ndjson", "csv", "geojson"]:
+            query.pop("decimals")
+    if "size" in query:
+        query["size"] = 16 + int(number(query["size"], 0, 500))
+        if query.get("format") not in ["png", "svg"]:
+            query.pop("size")
     if "limit" in query:
         query["limit"] = 1 + int(number(query["limit"], 0, 200))
     if "offset" in query:
@@ -93,30 +98,24 @@ def region(value, depth=0):
     if kind == "chunk":
         return {"chunk": {"size": 1 + shift, "x": -3, "y": int(shift)}}
     if kind == "include" and depth < 3:
-        lists = [value.get(name) or [] for name in ["include", "exclude"]]
-        include, exclude = [
-            [region(item, depth + 1) for item in items[:3]] if isinstance(items, list) else []
-            for items in lists
-        ]
-        return {"include": include or [region({}, depth + 1)], "exclude": exclude}
+        include = value.get("include")
+        items = include[:3] if isinstance(include, list) else []
+        regions = [region(item, depth + 1) for item in items] or [region({}, depth + 1)]
+        # What is left must not be empty.
+        exclude = [{"circle": {"center": [1, 1], "radius": 0.1 + shift / 99}}]
+        return {"include": regions, "exclude": exclude if value.get("exclude") else []}
     return {"bbox": [-shift, 0, 4, 9 + shift]}
 
 
-def name_of(context):
-    return context.operation.definition.raw.get("operationId", "")
-
-
-@schemathesis.hook
-def map_body(context, body):
-    if not isinstance(body, dict):
-        return body
+def tidy_body(name, body):
+    body = dict(body)
     body["region"] = region(body.get("region"))
     layers = body.get("layers")
     if isinstance(layers, list) and layers:
-        for name in AMOUNTS + ["profile", "alpha", "map", "table", "seed", "warp", "keep"]:
-            body.pop(name, None)
-        for name in ["attributes", "variants", "scale_range", "cursor"]:
-            body.pop(name, None)
+        for member in AMOUNTS + ["profile", "alpha", "map", "table", "seed", "warp", "keep"]:
+            body.pop(member, None)
+        for member in ["attributes", "variants", "scale_range", "cursor"]:
+            body.pop(member, None)
         tidy = []
         for i, layer in enumerate(layers[:4]):
             layer = dict(layer) if isinstance(layer, dict) else {}
@@ -135,38 +134,48 @@ def map_body(context, body):
     else:
         body.pop("layers", None)
         tidy_set(body, False)
-    tidy_looks(body)
-    if name_of(context) == "countPoints":
-        for name in ["format", "decimals", "size"]:
-            body.pop(name, None)
+    tidy_output(body)
+    if name == "countPoints":
+        for member in ["format", "decimals", "size", "offset", "limit"]:
+            body.pop(member, None)
     return body
 
 
-@schemathesis.hook
-def map_query(context, query):
-    name = name_of(context)
-    if not isinstance(query, dict) or name not in [
-        "getPoints", "getCount", "getChunk", "getPoint", "getNearest",
-    ]:
-        return query
-    tidy_set(query, True, AMOUNTS[:3] if name in ["getPoint", "getNearest"] else AMOUNTS)
-    if name in ["getPoints", "getCount"]:
-        shape = one_of(query, REGIONS, "bbox")
-        query[shape] = {"bbox": "-5,0,7,9", "circle": "1,2,6", "polygon": "0,0,9,1,3,12"}[shape]
+def tidy_query(name, rules, query):
+    query = dict(query)
+    for rule in rules:
+        if rule["rule"] == "exactly-one-of" and "bbox" in rule["parameters"]:
+            shape = one_of(query, rule["parameters"], "bbox")
+            query[shape] = {"bbox": "-5,0,7,9", "circle": "1,2,6", "polygon": "0,0,9,1,3,12"}[shape]
+        elif rule["rule"] == "exactly-one-of":
+            tidy_set(query, True, rule["parameters"])
     if name == "getNearest":
         query["at"] = "3,-2.5"
         if "k" in query:
             query["k"] = 1 + int(number(query["k"], 0, 50))
         if "radius" in query:
             query["radius"] = number(query["radius"], 0, 9)
-    tidy_looks(query)
+    if name in ["getProfile", "getSpectrum"]:
+        query.clear()
+    if name == "splitPoints":
+        query["parts"] = 1 + int(number(query.get("parts"), 0, 50))
+    tidy_output(query)
     return query
 
 
 @schemathesis.hook
-def map_path_parameters(context, path_parameters):
-    if name_of(context) == "getChunk" and isinstance(path_parameters, dict):
-        path_parameters["size"] = 1 + len(str(path_parameters)) % 9
-        path_parameters["cx"] = int(number(path_parameters.get("cx"), 0, 1000))
-        path_parameters["cy"] = -int(number(path_parameters.get("cy"), 0, 1000))
-    return path_parameters
+def before_call(context, case, kwargs):
+    raw = case.operation.definition.raw
+    name = raw.get("operationId", "")
+    if isinstance(case.body, dict):
+        case.body = tidy_body(name, case.body)
+    if "x-rules" in raw or name in ["getProfile", "getSpectrum", "splitPoints"]:
+        case.query = tidy_query(name, raw.get("x-rules", []), case.query or {})
+    if name == "getChunk":
+        path = dict(case.path_parameters or {})
+        path["size"] = 1 + len(str(path)) % 9
+        path["cx"] = int(number(path.get("cx"), 0, 1000))
+        path["cy"] = -int(number(path.get("cy"), 0, 1000))
+        case.path_parameters = path
+    if name == "getPoint":
+        case.path_parameters = {"id": f"{len(str(case.query))}:-3"}

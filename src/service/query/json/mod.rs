@@ -53,8 +53,7 @@ pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
             break;
         }
         match name {
-            "region" => draft.region = region::read(json, "region"),
-            "layers" if json.get() == "null" => {}
+            "region" => draft.region = region::read(json, "region").map(Some),
             "layers" => draft.layers = layers(json),
             // A common slip, which the list of members would not explain.
             "bbox" | "circle" | "polygon" | "chunk" | "include" | "exclude" => {
@@ -122,7 +121,7 @@ fn layer(path: &str, json: &RawValue) -> Result<LayerDraft, Fault> {
     let mut layer = LayerDraft::new(Values::new(groups::SET, &format!("{path}.")));
     for (name, json) in object.members() {
         match name {
-            "region" => layer.region = region::read(json, &format!("{path}.region")),
+            "region" => layer.region = region::read(json, &format!("{path}.region")).map(Some),
             "name" => {
                 let wrong = |_| {
                     let field = format!("{path}.name");
@@ -134,10 +133,7 @@ fn layer(path: &str, json: &RawValue) -> Result<LayerDraft, Fault> {
                 let wrong = |detail: String| {
                     Fault::new(&format!("{path}.clear_of"), shown(json), detail, CLEAR_OF).into()
                 };
-                layer.clear_of = match json.get() {
-                    "null" => Ok(vec![]),
-                    _ => object::numbers(json).map_err(wrong),
-                };
+                layer.clear_of = object::numbers(json).map_err(wrong);
             }
             name => add_member(&mut layer.values, name, json, &LAYER, groups::SET),
         }

@@ -32,11 +32,10 @@ impl<'a> Object<'a> {
         self.members.iter().map(|(name, json)| (name.as_str(), *json))
     }
 
-    /// The member with a name, unless it is null.
+    /// The member with a name.
     pub(super) fn get(&self, name: &str) -> Option<&'a RawValue> {
         let mut members = self.members();
-        let (_, json) = members.find(|(known, _)| *known == name)?;
-        (json.get() != "null").then_some(json)
+        members.find_map(|(known, json)| (known == name).then_some(json))
     }
 }
 

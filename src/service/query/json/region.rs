@@ -68,12 +68,9 @@ pub fn read_region(bytes: &[u8]) -> Result<RegionDraft, Fault> {
     })
 }
 
-/// A region, unless it is null.
-pub(super) fn read(json: &RawValue, path: &str) -> Checked<Option<RegionDraft>> {
-    match json.get() {
-        "null" => Ok(None),
-        _ => region(json, path, 0).map(Some),
-    }
+/// A region.
+pub(super) fn read(json: &RawValue, path: &str) -> Checked<RegionDraft> {
+    region(json, path, 0)
 }
 
 fn region(json: &RawValue, path: &str, depth: usize) -> Checked<RegionDraft> {

@@ -1,7 +1,7 @@
 use serde_json::{Value as Json, json};
 
 use super::*;
-use crate::service::query::{Value, parameters::*};
+use crate::service::query::Value;
 
 fn read(body: &Json) -> Checked<Draft> {
     read_body(body.to_string().as_bytes(), groups::QUERY)
@@ -139,11 +139,13 @@ fn lists_report_each_region_and_stop_in_time() {
 }
 
 #[test]
-fn nulls_are_absent() {
-    let body = json!({ "region": null, "seed": null, "layers": null, "limit": null });
-    let draft = read(&body);
-    let draft = draft.expect("an object");
-    assert_eq!(draft.region, Ok(None));
-    assert!(!draft.values.has(&SEED) && !draft.values.has(&LIMIT));
-    assert_eq!(draft.layers, Ok(vec![]));
+fn nulls_are_no_values() {
+    assert_eq!(
+        faults(r#"{"region": null, "seed": null, "layers": null}"#),
+        [
+            "seed: must be an integer; leave the member out for its default",
+            "region: must be an object",
+            "layers: must be an array",
+        ]
+    );
 }
