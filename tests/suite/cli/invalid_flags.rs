@@ -24,7 +24,7 @@ const WRONG: [(&str, &[&str]); 32] = [
     (
         "sample --bbox 0,0,1 --spacing x --keep 3",
         &[
-            "3 things",
+            "3 errors",
             "--bbox 0,0,1",
             "--spacing x",
             "--keep 3",
@@ -73,7 +73,7 @@ const WRONG: [(&str, &[&str]); 32] = [
     ),
     (
         "sample --bbox 0,0,9,9 --spacing 1 --scale-range 1",
-        &["--scale-range 1", "list"],
+        &["--scale-range 1", "expected 2 numbers, got 1"],
     ),
     (
         "sample --bbox 0,0,9,9 --spacing 1 --limit 0",
@@ -112,7 +112,7 @@ const WRONG: [(&str, &[&str]); 32] = [
     ("nearest --spacing 1", &["--at is missing"]),
     (
         "nearest --spacing 1 --at 1",
-        &["--at 1", "two finite numbers"],
+        &["--at 1", "expected 2 numbers, got 1"],
     ),
     (
         "nearest --spacing 1 --at 1,1 --k 0",
@@ -147,8 +147,8 @@ fn errors_name_the_file_and_the_member() {
     let line = r#"{"type": "Feature", "geometry": {"type": "LineString", "coordinates": []}}"#;
     for (flag, input, texts) in [
         ("--query=-", "{", &["--query -", "not JSON"][..]),
-        ("--query=-", "[]", &["--query -", "not an object"]),
-        ("--query=-", "{}", &["2 things", "`region`", "`density`"]),
+        ("--query=-", "[]", &["--query -", "must be an object"]),
+        ("--query=-", "{}", &["2 errors", "`region`", "`spacing`"]),
         (
             "--query=-",
             r#"{"region": {"bbox": [0, 0, 1, 1]}, "spacin": 1}"#,
@@ -156,8 +156,8 @@ fn errors_name_the_file_and_the_member() {
         ),
         (
             "--query=-",
-            r#"{"bbox": [0, 0, 1, 1], "spacing": "1"}"#,
-            &["`bbox`", "the member region", "`spacing`", "not a number"],
+            r#"{"bbox": [0, 0, 1, 1], "spacing": 1}"#,
+            &["`bbox`", "belongs in `region`"],
         ),
         (
             "--query=-",
@@ -165,11 +165,11 @@ fn errors_name_the_file_and_the_member() {
             &[
                 "`region.circle`",
                 "center",
-                "`layers[0].name`: it is missing",
+                "`layers[0].name`: missing",
             ],
         ),
         ("--region=-", "{", &["--region -", "not JSON"]),
-        ("--region=-", line, &["geometry is a LineString", "GeoJSON"]),
+        ("--region=-", line, &["geometry has the type `LineString`", "GeoJSON"]),
         (
             "--region=-",
             r#"{"type": "Polygon", "coordinates": [[[0, 0], [1, 1]]]}"#,

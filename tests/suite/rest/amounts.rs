@@ -74,9 +74,6 @@ fn counts_by_get_and_post_are_the_lengths_of_answers() {
             for answer in [&got, &posted] {
                 assert_eq!(answer.json()["count"], table.points.len(), "{body}");
             }
-            let window = "&offset=10&limit=25";
-            let part = daemon.get(&format!("/v1/count?{text}&density=3&seed={seed}{window}"));
-            assert_eq!(part.json()["count"], 25);
         }
     }
 }
@@ -85,8 +82,8 @@ fn counts_by_get_and_post_are_the_lengths_of_answers() {
 fn numbers_beyond_64_bits_are_counted() {
     let daemon = Daemon::start(&[]);
     let query = "bbox=-1e14,-1e14,1e14,1e14&density=1";
-    let count = |rest: &str| -> u128 {
-        let answer = daemon.get(&format!("/v1/count?{query}{rest}"));
+    let whole: u128 = {
+        let answer = daemon.get(&format!("/v1/count?{query}"));
         let text = answer.text().strip_prefix("{\"count\":").expect("a count");
         text.split(',')
             .next()
@@ -94,13 +91,11 @@ fn numbers_beyond_64_bits_are_counted() {
             .parse()
             .expect("digits")
     };
-    let whole = count("");
     assert!(
         whole.abs_diff(4 * 10u128.pow(28)) < 10u128.pow(22),
         "{whole}"
     );
     let offset = 10_000_000_000_000_000_000u128;
-    assert_eq!(count(&format!("&offset={offset}")), whole - offset);
     let points = Csv::get(&daemon, &format!("{query}&offset={offset}&limit=3"));
     assert_eq!(points.points.len(), 3);
 }

@@ -24,7 +24,7 @@ fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
         (
             json!({ "regoin": {} }),
             "regoin",
-            vec!["no such member", "region"],
+            vec!["unknown member", "did you mean `region`?"],
         ),
         (region(json!([0, 0, 1, 1])), "region", vec!["[0,0,1,1]"]),
         (region(json!({})), "region", vec!["{}"]),
@@ -108,7 +108,7 @@ fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
         ),
         (region(nested), path, vec!["nested", "8"]),
         (json!({ "spacing": "wide" }), "spacing", vec!["wide"]),
-        (json!({ "spacing": null }), "density", vec!["missing"]),
+        (json!({ "spacing": null }), "spacing", vec!["missing"]),
         (json!({ "count": 5 }), "count", vec!["spacing is given"]),
         (
             json!({ "spacing": null, "count": 5.5 }),
@@ -147,7 +147,7 @@ fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
         ),
         (json!({ "table": "abc" }), "table", vec!["abc"]),
         (json!({ "map": 3 }), "map", vec!["3"]),
-        (layers(json!([])), "layers", vec!["[]"]),
+        (layers(json!([])), "layers", vec!["empty", "1 to 16"]),
         (layers(json!({})), "layers", vec!["{}"]),
         (layers(json!([5])), "layers[0]", vec!["5"]),
         (layers(json!(many)), "layers", vec!["17", "16"]),
@@ -169,13 +169,13 @@ fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
         ),
         (
             layers(json!([{ "name": "a" }])),
-            "layers[0].density",
+            "layers[0].spacing",
             vec!["missing"],
         ),
         (
             layers(json!([{ "name": "a", "spacing": 1, "wide": 1 }])),
             "layers[0].wide",
-            vec!["no such"],
+            vec!["unknown member"],
         ),
         (
             layers(json!([{ "name": "a", "spacing": 1, "region": { "bbox": [1, 1, 0, 0] } }])),
@@ -206,7 +206,7 @@ fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
             layers(json!([{ "name": "a", "spacing": 1 },
                        { "name": "b", "count": 5, "clear_of": { "a": 1 } }])),
             "layers[1].count",
-            vec!["keeps clear"],
+            vec!["not with clear_of"],
         ),
         (
             layers(json!([{ "name": "a", "min_distance": 1, "profile": "pink" }])),
@@ -222,10 +222,16 @@ fn faults_name_the_wrong_member() {
     for (members, field, texts) in members() {
         let mut body = json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1 });
         for (name, value) in members.as_object().expect("an object") {
-            body[name] = value.clone();
+            match value {
+                // Stands for a member that is not there.
+                Value::Null => drop(body.as_object_mut().expect("an object").remove(name)),
+                value => body[name] = value.clone(),
+            }
         }
-        // Every path reads a query alike.
-        for path in ["points:query", "count", "points:split?parts=2"] {
+        // Every path reads a query alike; counts have no window and no output.
+        let paths = ["points:query", "points:split?parts=2", "count"];
+        let is_of_points = ["offset", "limit", "cursor", "format", "decimals", "size"].contains(&field);
+        for path in &paths[..if is_of_points { 2 } else { 3 }] {
             let answer = daemon.post(&format!("/v1/{path}"), &body);
             assert_fault(&answer, &format!("{path} {body}"), field, &texts);
         }
@@ -251,14 +257,13 @@ fn faults_name_the_wrong_member() {
 #[test]
 fn a_body_that_is_not_a_json_object_is_a_fault_of_the_body() {
     let daemon = Daemon::start(&[]);
-    let bodies: [&[u8]; 8] = [
+    let bodies: [&[u8]; 7] = [
         b"",
         b"{",
         b"[]",
         b"null",
         b"region=1&spacing=1",
         b"{\"spacing\": NaN}",
-        b"{\"spacing\": 1e999}",
         b"\xff\xfe",
     ];
     for path in ["points:query", "count", "points:split?parts=2"] {
@@ -277,7 +282,7 @@ fn a_body_that_is_not_a_json_object_is_a_fault_of_the_body() {
 #[test]
 fn the_content_type_of_a_body_does_not_matter() {
     let daemon = Daemon::start(&[]);
-    let body = br#"{ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1, "size": null }"#;
+    let body = br#"{ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1 }"#;
     // `curl -d` labels every body a form.
     for content_type in [
         "application/json",

@@ -5,7 +5,7 @@ use crate::support::{daemon::Daemon, problem::assert_fault};
 
 /// (path with parameters, the field at fault, texts in its fault).
 const PATHS: &[(&str, &str, &[&str])] = &[
-    ("points?circle=0,0&spacing=1", "circle", &["0,0", "radius"]),
+    ("points?circle=0,0&spacing=1", "circle", &["0,0", "radius", "expected 3 numbers, got 2"]),
     (
         "points?circle=0,0,0&spacing=1",
         "circle",
@@ -135,12 +135,12 @@ const PATHS: &[(&str, &str, &[&str])] = &[
     (
         "points?bbox=0,0,9,9&spacing=1&layers=2",
         "layers",
-        &["no such parameter"],
+        &["unknown parameter"],
     ),
     (
         "points?bbox=0,0,9,9&spacing=1&at=0,0",
         "at",
-        &["means nothing here"],
+        &["not allowed here"],
     ),
     (
         "count?bbox=0,0,9,9&spacing=1&format=csv",
@@ -150,17 +150,17 @@ const PATHS: &[(&str, &str, &[&str])] = &[
     (
         "count?bbox=0,0,9,9&spacing=1&k=3",
         "k",
-        &["means nothing here"],
+        &["not allowed here"],
     ),
-    ("chunks/0/1/1?spacing=1", "chunk", &["0.0/1/1", "above 0"]),
-    ("chunks/nan/1/1?spacing=1", "chunk", &["NaN", "above 0"]),
-    ("chunks/-4/1/1?spacing=1", "chunk", &["-4"]),
+    ("chunks/0/1/1?spacing=1", "size", &["0", "above 0"]),
+    ("chunks/nan/1/1?spacing=1", "size", &["nan", "above 0"]),
+    ("chunks/-4/1/1?spacing=1", "size", &["-4"]),
     ("chunks/wide/1/1?spacing=1", "size", &["wide"]),
     ("chunks/4/1.5/1?spacing=1", "cx", &["1.5", "integer"]),
     ("chunks/4/1/y?spacing=1", "cy", &["y", "integer"]),
     (
         "chunks/4/4503599627370497/1?spacing=1",
-        "chunk",
+        "cx",
         &["4503599627370497"],
     ),
     (
@@ -176,17 +176,17 @@ const PATHS: &[(&str, &str, &[&str])] = &[
     (
         "chunks/4/1/1?spacing=1&bbox=0,0,1,1",
         "bbox",
-        &["means nothing here"],
+        &["not allowed here"],
     ),
     ("points/7?spacing=1", "id", &["7", "-31:52"]),
     ("points/1:2:3?spacing=1", "id", &["1:2:3"]),
     ("points/a:b?spacing=1", "id", &["a:b"]),
-    ("points/0:0", "density", &["missing"]),
-    ("points/0:0?count=5", "count", &["means nothing here"]),
+    ("points/0:0", "spacing", &["missing", "density, spacing, min_distance"]),
+    ("points/0:0?count=5", "count", &["not allowed here"]),
     (
         "points/0:0?spacing=1&bbox=0,0,1,1",
         "bbox",
-        &["means nothing here"],
+        &["not allowed here"],
     ),
     ("nearest?spacing=1", "at", &["missing"]),
     ("nearest?at=1&spacing=1", "at", &["1", "x,y"]),
@@ -205,7 +205,7 @@ const PATHS: &[(&str, &str, &[&str])] = &[
         "k",
         &["10", "share"],
     ),
-    ("nearest?at=0,0&count=4", "count", &["means nothing here"]),
+    ("nearest?at=0,0&count=4", "count", &["not allowed here"]),
 ];
 
 #[test]

@@ -10,7 +10,7 @@ const BOX: &str = "bbox=0,0,10,10";
 /// (query, the fields at fault, texts in the answer).
 const CASES: &[(&str, &[&str], &[&str])] = &[
     // Missing.
-    ("", &["bbox", "density"], &["missing"]),
+    ("", &["bbox", "spacing"], &["missing"]),
     ("density=1", &["bbox"], &["missing"]),
     (BOX, &["density"], &["missing", "spacing"]),
     // Not a number, not finite, too far.
@@ -61,7 +61,7 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
     ("bbox=0,0,10,10&spacing=0", &["spacing"], &["1e-100"]),
     ("bbox=0,0,10,10&spacing=-2", &["spacing"], &["-2"]),
     ("bbox=0,0,10,10&spacing=1e300", &["spacing"], &["1e+300"]),
-    ("bbox=0,0,10,10&spacing=", &["spacing"], &["not a number"]),
+    ("bbox=0,0,10,10&spacing=", &["spacing"], &["must be a number"]),
     (
         "bbox=0,0,10,10&density=1&spacing=1",
         &["spacing"],
@@ -150,22 +150,22 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
     (
         "bbox=0,0,10,10&density=1&formt=csv",
         &["formt"],
-        &["csv", "format"],
+        &["csv", "did you mean `format`?"],
     ),
     (
         "bbox=0,0,10,10&density=1&%66oo=1",
         &["foo"],
-        &["no such parameter"],
+        &["unknown parameter"],
     ),
     (
         "bbox=0,0,10,10&density=1&density=2",
         &["density"],
-        &["again", "2"],
+        &["given twice", "1"],
     ),
     (
         "bbox=0,0,10,10&bbox=0,0,10,10&density=1",
         &["bbox"],
-        &["again"],
+        &["given twice"],
     ),
     (
         "bbox=0,0,10,10&density=1&profile=%ff",
@@ -180,13 +180,13 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
     (
         "bbox=0,0,10,10&density=1&%ff=1",
         &["\u{fffd}"],
-        &["no such parameter"],
+        &["unknown parameter"],
     ),
     // Several faults at once.
     (
         "bbox=5,5,1,1&density=0&profile=mauve&alpha=x&seed=y&format=z&w=v",
         &["w", "seed", "format", "bbox", "density", "profile", "alpha"],
-        &["reversed", "mauve", "there is no such format"],
+        &["reversed", "mauve", "unknown format"],
     ),
 ];
 
@@ -211,7 +211,7 @@ fn the_problem_lists_exactly_the_fields_at_fault() {
         let named: Vec<&str> = errors.iter().filter_map(|e| e["field"].as_str()).collect();
         assert_eq!(&named, fields, "{path}");
         for error in errors {
-            let missing = error["detail"] == "it is missing";
+            let missing = error["detail"] == "missing";
             assert_eq!(error["value"].is_null(), missing, "{path}: {error}");
             assert!(
                 error["allowed"].as_str().is_some_and(|a| !a.is_empty()),

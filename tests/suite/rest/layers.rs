@@ -208,6 +208,9 @@ fn answers_without_points_are_complete_in_every_format() {
                 _ => {}
             }
         }
+        if body["offset"].is_number() {
+            continue;
+        }
         let count = daemon.post("/v1/count", &body);
         assert_eq!(count.json()["count"], 0, "{body}");
     }

@@ -15,7 +15,7 @@ pub fn assert_fault(answer: &http1::Answer, asked: &str, field: &str, texts: &[&
     let errors = problem["errors"].as_array().expect("a list");
     let found = errors.iter().find(|error| error["field"] == field);
     let found = found.unwrap_or_else(|| panic!("{asked}: no {field}: {problem}"));
-    let missing = found["detail"] == "it is missing";
+    let missing = found["detail"] == "missing";
     assert_eq!(found["value"].is_null(), missing, "{asked}: {found}");
     let allowed = found["allowed"].as_str().expect("a text");
     assert!(!allowed.is_empty(), "{asked}");

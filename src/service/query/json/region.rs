@@ -105,6 +105,10 @@ fn region(json: &RawValue, path: &str, depth: usize) -> Checked<RegionDraft> {
     let wrong = |detail: String, allowed: &str| -> Faults {
         Fault::new(&field, shown(json), detail, allowed).into()
     };
+    if ["circle", "chunk"].contains(&kind) && !json.get().starts_with('{') {
+        let allowed = if kind == "circle" { CIRCLE } else { CHUNK_JSON };
+        return Err(wrong("must be an object".into(), allowed));
+    }
     let shape = match kind {
         "bbox" => {
             let corners = numbers(json).map_err(|detail| wrong(detail, BOX))?;
