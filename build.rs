@@ -76,17 +76,33 @@ fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<
                 read,
                 "if let Some(Amount::{variant}(v)) = &set.amount {{ values.push(({name:?}, Value::{kind}({from}))); }}"
             )?;
-            writeln!(write, "({name:?}, Value::{kind}(v)) => set.amount = Some(Amount::{variant}({into})),")?;
+            writeln!(
+                write,
+                "({name:?}, Value::{kind}(v)) => set.amount = Some(Amount::{variant}({into})),"
+            )?;
         } else if is_list {
             writeln!(
                 read,
                 "let v = &set.{name}; if !v.is_empty() {{ values.push(({name:?}, Value::{kind}({from}))); }}"
             )?;
-            writeln!(write, "({name:?}, Value::{kind}(v)) => set.{name} = {into},")?;
+            writeln!(
+                write,
+                "({name:?}, Value::{kind}(v)) => set.{name} = {into},"
+            )?;
         } else {
-            writeln!(read, "if let Some(v) = &set.{name} {{ values.push(({name:?}, Value::{kind}({from}))); }}")?;
-            let guard = if kind == "Numbers" { " if v.len() == 2" } else { "" };
-            writeln!(write, "({name:?}, Value::{kind}(v)){guard} => set.{name} = Some({into}),")?;
+            writeln!(
+                read,
+                "if let Some(v) = &set.{name} {{ values.push(({name:?}, Value::{kind}({from}))); }}"
+            )?;
+            let guard = if kind == "Numbers" {
+                " if v.len() == 2"
+            } else {
+                ""
+            };
+            writeln!(
+                write,
+                "({name:?}, Value::{kind}(v)){guard} => set.{name} = Some({into}),"
+            )?;
         }
     }
     let code = format!(

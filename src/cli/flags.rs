@@ -93,7 +93,10 @@ pub(super) struct Flags<T> {
 
 impl<T> fmt::Debug for Flags<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let given = self.given.iter().map(|(parameter, text)| (parameter.name, text));
+        let given = self
+            .given
+            .iter()
+            .map(|(parameter, text)| (parameter.name, text));
         f.debug_list().entries(given).finish()
     }
 }
@@ -158,7 +161,8 @@ fn own_words(name: &str) -> Option<(String, &'static str)> {
             "what the output's name ends with, else json",
         )),
         "limit" => Some((
-            "The greatest number of points. The cursor of the rest is reported before the points.".into(),
+            "The greatest number of points. The cursor of the rest is reported before the points."
+                .into(),
             "all",
         )),
         "cursor" => Some((
@@ -214,7 +218,10 @@ fn value_name(parameter: &Parameter) -> String {
 
 impl<T: Takes> clap::Args for Flags<T> {
     fn augment_args(command: Command) -> Command {
-        let taken = PARAMETERS.iter().copied().filter(|parameter| T::takes(parameter));
+        let taken = PARAMETERS
+            .iter()
+            .copied()
+            .filter(|parameter| T::takes(parameter));
         command.args(taken.map(argument))
     }
 
@@ -225,7 +232,10 @@ impl<T: Takes> clap::Args for Flags<T> {
 
 impl<T: Takes> FromArgMatches for Flags<T> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let taken = PARAMETERS.iter().copied().filter(|parameter| T::takes(parameter));
+        let taken = PARAMETERS
+            .iter()
+            .copied()
+            .filter(|parameter| T::takes(parameter));
         let given = taken.filter_map(|parameter| {
             let text: &String = matches.get_one(parameter.name)?;
             Some((parameter, text.clone()))
@@ -262,7 +272,11 @@ mod tests {
 
     #[test]
     fn a_split_query_takes_what_a_query_takes() {
-        let both = || PARAMETERS.iter().filter(|parameter| Parted::takes(parameter));
+        let both = || {
+            PARAMETERS
+                .iter()
+                .filter(|parameter| Parted::takes(parameter))
+        };
         assert!(both().all(|parameter| Answered::takes(parameter) != (parameter.name == "parts")));
     }
 
@@ -270,7 +284,10 @@ mod tests {
     fn an_added_parameter_is_a_flag_with_help() {
         let command = Flags::<Answered>::augment_args(clap::Command::new("sample"));
         let help = command.clone().render_long_help().to_string();
-        assert!(help.contains("--added <NUMBER>") && help.contains("an integer from 1 to 9"), "{help}");
+        assert!(
+            help.contains("--added <NUMBER>") && help.contains("an integer from 1 to 9"),
+            "{help}"
+        );
         let other = Flags::<Counted>::augment_args(clap::Command::new("count"));
         assert!(other.get_arguments().all(|flag| flag.get_id() != "added"));
     }

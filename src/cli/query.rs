@@ -17,9 +17,7 @@ use crate::{
     service::{
         Catalog, Draft, Error, Options, Placed, Planned, PlannedSet, Ready, Set,
         catalog::CatalogError,
-        query::{
-            Faults, Group, RegionDraft, ShapeDraft, groups, of, read_body, read_region,
-        },
+        query::{Faults, Group, RegionDraft, ShapeDraft, groups, of, read_body, read_region},
     },
 };
 
@@ -82,10 +80,13 @@ impl<T: Takes> QueryArgs<T> {
 
     fn read(&self) -> Result<(Draft, Source), Failure> {
         let Some(file) = &self.query else {
-            let draft = Draft::of(self.flags.values_of(match T::GROUPS.contains(&Group::Output) {
-                true => groups::POINTS,
-                false => groups::COUNT,
-            }));
+            let draft = Draft::of(
+                self.flags
+                    .values_of(match T::GROUPS.contains(&Group::Output) {
+                        true => groups::POINTS,
+                        false => groups::COUNT,
+                    }),
+            );
             let draft = match self.region()? {
                 Some(region) => draft.within(Ok(region)),
                 None => draft,
@@ -94,7 +95,10 @@ impl<T: Takes> QueryArgs<T> {
         };
         let source = Source::File(format!("--query {}", file.display()));
         let is_beside = |group| [Group::Output, Group::Split].contains(&group);
-        let others = self.flags.given().filter(|parameter| !is_beside(parameter.group));
+        let others = self
+            .flags
+            .given()
+            .filter(|parameter| !is_beside(parameter.group));
         let others = others.map(|parameter| parameter.name);
         let others: Vec<String> = others.chain(self.places()).map(flag).collect();
         if !others.is_empty() {
@@ -129,7 +133,10 @@ impl<T: Takes> QueryArgs<T> {
 
     /// A region that is no parameter.
     fn region(&self) -> Result<Option<RegionDraft>, Failure> {
-        let shapes = self.flags.given().filter(|parameter| parameter.group == Group::Region);
+        let shapes = self
+            .flags
+            .given()
+            .filter(|parameter| parameter.group == Group::Region);
         let shapes = shapes.map(|parameter| parameter.name);
         let given: Vec<String> = shapes.chain(self.places()).map(flag).collect();
         if given.len() > 1 {

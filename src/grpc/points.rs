@@ -20,9 +20,7 @@ use super::{
     query, resolved, set, single, split, status,
 };
 use crate::access::Caller;
-use crate::service::{
-    Error, Fault, Record, Service, Set, query::groups,
-};
+use crate::service::{Error, Fault, Record, Service, Set, query::groups};
 
 /// Answers over gRPC.
 #[derive(Debug)]
@@ -91,7 +89,7 @@ impl Points {
 
     async fn point(&self, request: &GetPointRequest) -> Result<GetPointResponse, Error> {
         let values = set::values(request.set.as_ref(), groups::SINGLE, "");
-        let set = Set::single(&values, &self.service.catalog()).map_err(query::by_field)?;
+        let set = Set::single(&values, &self.service.catalog())?;
         let placed = self.service.place(set).await?;
         Ok(GetPointResponse {
             point: Some(single::point(placed.point(&request.id)?)),
@@ -129,7 +127,7 @@ fn required(query: Option<StreamPointsRequest>) -> Result<StreamPointsRequest, S
 
 fn answered<T>(answer: Result<T, Error>) -> Result<Response<T>, Status> {
     let answer = answer.map(Response::new);
-    answer.map_err(|error| status::status(&error))
+    answer.map_err(|error| status::status(&query::by_field(error)))
 }
 
 type MessageStream = Pin<Box<dyn Stream<Item = Result<StreamPointsResponse, Status>> + Send>>;
@@ -145,7 +143,7 @@ impl PointService for Points {
         let caller = caller(&request)?;
         let is_compressed = compression::is_asked(request.metadata());
         let answer = self.stream(&caller, request.get_ref(), is_compressed).await;
-        answer.map_err(|error| status::status(&error))
+        answer.map_err(|error| status::status(&query::by_field(error)))
     }
 
     async fn count_points(
@@ -154,7 +152,7 @@ impl PointService for Points {
     ) -> Result<Response<CountPointsResponse>, Status> {
         let query = required(request.into_inner().query)?;
         let answer = self.count(&query).await;
-        answered(answer.map_err(|error| status::within("query", error)))
+        answered(answer.map_err(|error| status::within("query", query::by_field(error))))
     }
 
     async fn split_points(
@@ -165,7 +163,7 @@ impl PointService for Points {
         let query = required(query)?;
         let parts = split::check(&query, parts).map_err(|error| status::status(&error))?;
         let answer = self.split(&query, parts).await;
-        answered(answer.map_err(|error| status::within("query", error)))
+        answered(answer.map_err(|error| status::within("query", query::by_field(error))))
     }
 
     async fn get_point(

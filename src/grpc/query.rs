@@ -20,7 +20,12 @@ fn encoding(request: &StreamPointsRequest) -> Result<Encoding, Fault> {
         Err(_) => {
             let known = [Encoding::Points, Encoding::F64Le, Encoding::F32Le];
             let allowed = known.map(|encoding| encoding.as_str_name()).join(", ");
-            Err(Fault::new("encoding", request.encoding, "unknown encoding", allowed))
+            Err(Fault::new(
+                "encoding",
+                request.encoding,
+                "unknown encoding",
+                allowed,
+            ))
         }
     }
 }
@@ -31,11 +36,11 @@ pub(super) fn query(
     service: &Service,
 ) -> Result<(Query, Encoding), Error> {
     let mut draft = draft(request);
-    let encoding = encoding(request).map_err(|fault| {
+    let encoding = encoding(request);
+    if let Err(fault) = &encoding {
         draft.values.refuse(fault.clone());
-        fault
-    });
-    let (query, _) = service.check(&draft).map_err(by_field)?;
+    }
+    let (query, _) = service.check(&draft)?;
     Ok((query, encoding?))
 }
 
@@ -45,7 +50,10 @@ fn draft(request: &StreamPointsRequest) -> Draft {
     let window: [(&'static Parameter, Option<Value>); 3] = [
         (&OFFSET, Some(Value::Integer(request.offset))),
         (&LIMIT, request.limit.map(Value::Integer)),
-        (&CURSOR, (!cursor.is_empty()).then(|| Value::Text(cursor.clone()))),
+        (
+            &CURSOR,
+            (!cursor.is_empty()).then(|| Value::Text(cursor.clone())),
+        ),
     ];
     for (parameter, value) in window {
         if let Some(value) = value {
@@ -70,10 +78,13 @@ fn draft(request: &StreamPointsRequest) -> Draft {
 }
 
 fn region_of(region: Option<&Region>, path: &str) -> Checked<Option<RegionDraft>> {
-    region.map(|region| region::draft(region, path, 0)).transpose()
+    region
+        .map(|region| region::draft(region, path, 0))
+        .transpose()
 }
 
-/// Names the fields of faults as messages do.
+/// Names the fields of faults as messages do, whether they show when the query is checked or when it is
+/// planned.
 pub(super) fn by_field(error: Error) -> Error {
     match error {
         Error::Invalid(faults) => set::in_messages(faults).into(),
@@ -88,7 +99,12 @@ pub(super) fn nearest(
 ) -> Result<(Set, Nearest), Error> {
     let mut values = set::values(request.set.as_ref(), groups::NEAREST, "");
     let given: [(&'static Parameter, Option<Value>); 3] = [
-        (&AT, request.at.map(|Position { x, y }| Value::Numbers(vec![x, y]))),
+        (
+            &AT,
+            request
+                .at
+                .map(|Position { x, y }| Value::Numbers(vec![x, y])),
+        ),
         (&K, request.k.map(|k| Value::Integer(k.into()))),
         (&RADIUS, request.radius.map(Value::Number)),
     ];
@@ -97,5 +113,5 @@ pub(super) fn nearest(
             values.add_value(parameter, value);
         }
     }
-    Nearest::of_set(&values, &service.catalog()).map_err(by_field)
+    Nearest::of_set(&values, &service.catalog())
 }

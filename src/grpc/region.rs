@@ -63,5 +63,8 @@ fn combined(
             .map(|(i, region)| draft(region, &format!("{path}.{name}[{i}]"), depth + 1))
             .collect()
     };
-    Ok(ShapeDraft::Combined(list("include", include), list("exclude", exclude)))
+    Ok(ShapeDraft::Combined(
+        list("include", include),
+        list("exclude", exclude),
+    ))
 }

@@ -23,7 +23,11 @@ pub(super) fn query(
         limit,
         ..
     } = planned.resolved();
-    let sets = alone.into_iter().chain(layers).zip(&planned.sets).enumerate();
+    let sets = alone
+        .into_iter()
+        .chain(layers)
+        .zip(&planned.sets)
+        .enumerate();
     ResolvedQuery {
         bbox: Some(BoundingBox {
             min_x,
@@ -56,7 +60,9 @@ fn resolved(echo: ResolvedSet, entry: &Entry, region: Option<Region>) -> proto::
     proto::ResolvedSet {
         name: echo.name,
         region,
-        set: Some(set::message([spacing, table].into_iter().chain(echo.values))),
+        set: Some(set::message(
+            [spacing, table].into_iter().chain(echo.values),
+        )),
         density: echo.density,
         least_distance: echo.least_distance,
         clear_of: echo.clear_of.into_iter().collect(),

@@ -55,7 +55,12 @@ mod tests {
         for parameter in of(groups::SET) {
             let value = parameter.shape.read(parameter.example).expect("valid");
             let set = message([(parameter, value.clone())]);
-            assert_eq!(fields(&set), [(parameter.name, value)], "{}", parameter.name);
+            assert_eq!(
+                fields(&set),
+                [(parameter.name, value)],
+                "{}",
+                parameter.name
+            );
         }
     }
 

@@ -24,7 +24,8 @@ pub(super) fn check(request: &StreamPointsRequest, parts: u32) -> Result<u32, Er
     if parts as usize <= most {
         return Ok(parts);
     }
-    let detail = format!("each request takes about {one} bytes, all together more than {MAX_BYTES}");
+    let detail =
+        format!("each request takes about {one} bytes, all together more than {MAX_BYTES}");
     let allowed = format!("1 to {most} for this query");
     Err(Fault::new(PARTS.name, parts, detail, allowed).into())
 }

@@ -43,7 +43,11 @@ pub(super) fn status(error: &Error) -> Status {
     if let Some(seconds) = error.retry_seconds() {
         details.set_retry_info(Some(Duration::from_secs(seconds)));
     }
-    Status::with_error_details(error_map::wire(error.kind()).code, error.to_string(), details)
+    Status::with_error_details(
+        error_map::wire(error.kind()).code,
+        error.to_string(),
+        details,
+    )
 }
 
 /// An error of a message that is a field of the request.

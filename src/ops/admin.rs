@@ -34,7 +34,9 @@ pub(super) fn endpoint(reloader: Arc<Reloader>) -> Endpoint {
             status: 200,
             about: "What came of it.",
             headers: vec![],
-            contents: vec![("application/json", |generator| generator.subschema_for::<Done>())],
+            contents: vec![("application/json", |generator| {
+                generator.subschema_for::<Done>()
+            })],
         }],
         problems: vec![Kind::NotAllowed],
         example: "/v1/tables:reload -X POST".into(),

@@ -15,11 +15,9 @@ use super::{
     freshness::Freshness,
     negotiate::{self, Chosen},
 };
-use crate::{
-    service::{
-        Answer, Draft, Error, Kind, Output, Planned, Query, Record, Service,
-        encode::{QueryEcho, TableEcho, write_number},
-    },
+use crate::service::{
+    Answer, Draft, Error, Kind, Output, Planned, Query, Record, Service,
+    encode::{QueryEcho, TableEcho, write_number},
 };
 
 const COUNT: HeaderName = HeaderName::from_static("strew-count");
@@ -96,7 +94,8 @@ fn contents() -> Vec<(&'static str, schemas::Content)> {
         _ => schemas::any,
     };
     let all = negotiate::content_types().into_iter();
-    all.map(|content_type| (content_type, schema(content_type) as schemas::Content)).collect()
+    all.map(|content_type| (content_type, schema(content_type) as schemas::Content))
+        .collect()
 }
 
 /// The problems that any answer with points can have.

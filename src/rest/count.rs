@@ -10,7 +10,10 @@ use serde_json::json;
 
 use super::{
     answer,
-    api::{self, Endpoint, Operation, Tag, schemas::{self, CountQuery}},
+    api::{
+        self, Endpoint, Operation, Tag,
+        schemas::{self, CountQuery},
+    },
     body::{self, Whole},
     context::Context,
     document, query,
@@ -80,7 +83,9 @@ async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Re
     let draft = Draft::of(context.values(groups::COUNT));
     let (query, _) = service.check(&draft)?;
     let freshness = answer::freshness(&service, &context, &query, document::JSON);
-    freshness.answer(&context.headers, counted(&service, query)).await
+    freshness
+        .answer(&context.headers, counted(&service, query))
+        .await
 }
 
 async fn post(

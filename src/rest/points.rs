@@ -10,10 +10,7 @@ use super::{
     api::{self, Endpoint, Operation, Tag},
     context::Context,
 };
-use crate::service::{
-    Draft, Error, Service,
-    query::groups,
-};
+use crate::service::{Draft, Error, Service, query::groups};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {

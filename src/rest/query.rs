@@ -8,7 +8,10 @@ use serde_json::json;
 
 use super::{
     answer,
-    api::{Body, Endpoint, Operation, Tag, schemas::{self, Content, PointsQuery}},
+    api::{
+        Body, Endpoint, Operation, Tag,
+        schemas::{self, Content, PointsQuery},
+    },
     body::{self, Whole},
     context::Context,
 };

@@ -9,7 +9,10 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::{
-    api::{self, Endpoint, Operation, Tag, schemas::{self, PointsQuery}},
+    api::{
+        self, Endpoint, Operation, Tag,
+        schemas::{self, PointsQuery},
+    },
     body::{self, Whole},
     context::Context,
     document, query,

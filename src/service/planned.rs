@@ -80,7 +80,12 @@ impl Placed {
     /// [`Error::Invalid`] for a distance that cannot be kept, or a count.
     pub fn new(set: Set, ready: Ready) -> Result<Self, Error> {
         let Some((spacing, density)) = planner::resolve(&set, &ready)? else {
-            return Err(set.fault("count", "", "needs a region", "density, spacing or min_distance"));
+            return Err(set.fault(
+                "count",
+                "",
+                "needs a region",
+                "density, spacing or min_distance",
+            ));
         };
         let least = planner::least_distance(&set, &ready, spacing);
         Ok(Self {

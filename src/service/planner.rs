@@ -197,7 +197,8 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>
     };
     match set.amount {
         Amount::Density(density) => {
-            let spacing = Spacing::from_density(density).map_err(wrong(&parameters::DENSITY, density))?;
+            let spacing =
+                Spacing::from_density(density).map_err(wrong(&parameters::DENSITY, density))?;
             Ok(Some((spacing, density)))
         }
         Amount::Spacing(value) => {

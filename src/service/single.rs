@@ -111,9 +111,12 @@ fn fault(nearest: Nearest, error: &strew_core::Error) -> Error {
             let allowed = format!("a radius with at most {MOST_WITHIN} points within");
             Fault::new("radius", number(radius), error.problem(), allowed)
         }
-        (ErrorKind::TooMany, _) => {
-            Fault::new("k", k, error.to_string(), "fewer neighbors, or a larger share to keep")
-        }
+        (ErrorKind::TooMany, _) => Fault::new(
+            "k",
+            k,
+            error.to_string(),
+            "fewer neighbors, or a larger share to keep",
+        ),
         _ => {
             let value = format!("{},{}", number(at[0]), number(at[1]));
             let allowed = "a place near enough to the origin for points to be told apart";

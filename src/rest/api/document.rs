@@ -37,7 +37,10 @@ pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
         let mut item = Map::new();
         for operation in endpoint.operations() {
             let method = operation.method.as_str().to_lowercase();
-            item.insert(method, described(operation, endpoint.is_open(), &mut generator));
+            item.insert(
+                method,
+                described(operation, endpoint.is_open(), &mut generator),
+            );
         }
         paths.insert(endpoint.path().into(), Value::Object(item));
     }
@@ -98,7 +101,8 @@ fn described(operation: &Operation, is_open: bool, generator: &mut SchemaGenerat
     });
     let rules = rules::of(operation.parameters);
     if !rules.is_empty() {
-        described["description"] = format!("{} {}", operation.about, rules::in_words(&rules)).into();
+        described["description"] =
+            format!("{} {}", operation.about, rules::in_words(&rules)).into();
         described["x-rules"] = json!(rules);
     }
     if is_open {
@@ -118,7 +122,11 @@ fn described(operation: &Operation, is_open: bool, generator: &mut SchemaGenerat
 fn parameter_in(place: &str, parameter: &Parameter, with_example: bool) -> Value {
     let default = parameter.default;
     let default = default.map_or_else(String::new, |default| format!(" Default: {default}."));
-    let text = format!("{} Allowed: {}.{default}", parameter.about, parameter.allowed());
+    let text = format!(
+        "{} Allowed: {}.{default}",
+        parameter.about,
+        parameter.allowed()
+    );
     let mut described = json!({
         "name": parameter.name,
         "in": place,
@@ -217,7 +225,10 @@ fn answered(answer: &Answer, generator: &mut SchemaGenerator) -> Value {
         .contents
         .iter()
         .map(|&(media_type, schema)| {
-            (media_type.to_owned(), json!({ "schema": schema(generator) }))
+            (
+                media_type.to_owned(),
+                json!({ "schema": schema(generator) }),
+            )
         })
         .collect();
     let mut described = json!({ "description": answer.about });
@@ -276,10 +287,17 @@ mod tests {
         let service = Arc::new(Service::new(catalog, settings.limits, workers));
         let document = document(&crate::rest::endpoints(&service));
         let parameters = &document["paths"]["/v1/points"]["get"]["parameters"];
-        let names = parameters.as_array().expect("a list").iter().map(|p| &p["name"]);
+        let names = parameters
+            .as_array()
+            .expect("a list")
+            .iter()
+            .map(|p| &p["name"]);
         assert!(names.clone().any(|name| name == "added"), "{parameters}");
         let schemas = &document["components"]["schemas"];
-        assert_eq!(schemas["PointsQuery"]["properties"]["added"]["maximum"], json!(9));
+        assert_eq!(
+            schemas["PointsQuery"]["properties"]["added"]["maximum"],
+            json!(9)
+        );
         assert_eq!(schemas["Set"]["properties"]["added"]["maximum"], json!(9));
     }
 }

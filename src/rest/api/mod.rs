@@ -15,11 +15,11 @@ use schemars::JsonSchema;
 use serde_json::Value;
 
 use super::problem::Problem;
-use schemas::Content;
 use crate::service::{
     Error, Kind,
     query::{Group, Parameter},
 };
+use schemas::Content;
 
 pub(super) use document::document;
 

@@ -42,7 +42,8 @@ pub(super) enum Rule {
 
 /// Whether a parameter is the first of those that exclude each other, or excludes none.
 pub(super) fn is_first_of_its_kind(parameter: &Parameter) -> bool {
-    let is_alternative = |group: Group| [Group::Region, Group::Amount, Group::Count].contains(&group);
+    let is_alternative =
+        |group: Group| [Group::Region, Group::Amount, Group::Count].contains(&group);
     let mut same = PARAMETERS.iter().filter(|other| {
         let both_amounts = other.group == Group::Amount && parameter.group == Group::Count;
         other.group == parameter.group || both_amounts
@@ -56,17 +57,21 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
         let taken = parameters_of(groups).filter(|parameter| wanted.contains(&parameter.group));
         taken.map(|parameter| parameter.name).collect()
     };
-    let alternatives = [names(&[Group::Region]), names(&[Group::Amount, Group::Count])];
+    let alternatives = [
+        names(&[Group::Region]),
+        names(&[Group::Amount, Group::Count]),
+    ];
     let mut rules: Vec<Rule> = alternatives
         .into_iter()
         .filter(|parameters| !parameters.is_empty())
         .map(|parameters| Rule::ExactlyOneOf { parameters })
         .collect();
-    let only_with = |parameter: &Parameter, other: &Parameter, values: Vec<&'static str>| Rule::OnlyWith {
-        parameter: parameter.name,
-        other: other.name,
-        values,
-    };
+    let only_with =
+        |parameter: &Parameter, other: &Parameter, values: Vec<&'static str>| Rule::OnlyWith {
+            parameter: parameter.name,
+            other: other.name,
+            values,
+        };
     if groups.contains(&Group::Attributes) {
         rules.push(only_with(&SCALE_RANGE, &ATTRIBUTES, vec!["scale"]));
         rules.push(only_with(&VARIANTS, &ATTRIBUTES, vec!["variant"]));

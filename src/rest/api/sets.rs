@@ -33,16 +33,17 @@ fn nothing() -> Value {
 fn rules() -> Vec<Value> {
     let is_amount = |group: Group| [Group::Amount, Group::Count].contains(&group);
     let amounts = of(groups::SET).filter(|parameter| is_amount(parameter.group));
-    let one: Vec<Value> = amounts.map(|amount| json!({ "required": [amount.name] })).collect();
+    let one: Vec<Value> = amounts
+        .map(|amount| json!({ "required": [amount.name] }))
+        .collect();
     let with = |name: &str| {
         json!({
             "required": ["attributes"],
             "properties": { "attributes": { "contains": { "const": name } } },
         })
     };
-    let only_with = |member: &str, name: &str| {
-        json!({ "if": { "required": [member] }, "then": with(name) })
-    };
+    let only_with =
+        |member: &str, name: &str| json!({ "if": { "required": [member] }, "then": with(name) });
     vec![
         json!({ "oneOf": one }),
         only_with("scale_range", "scale"),
@@ -142,13 +143,25 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
     let number = |about: &str| json!({ "type": "number", "description": about });
     let mut members = Map::new();
     let mut put = |name: &str, schema: Value| members.insert(name.into(), schema);
-    put("name", json!({ "type": "string", "description": "The name of the layer." }));
+    put(
+        "name",
+        json!({ "type": "string", "description": "The name of the layer." }),
+    );
     put("region", reference("Region"));
-    put("density", number("Points per unit of area, before keep and clear_of."));
+    put(
+        "density",
+        number("Points per unit of area, before keep and clear_of."),
+    );
     put("spacing", number("The mean spacing: density^-1/2."));
-    put("least_distance", number("No two points are nearer, in world units."));
+    put(
+        "least_distance",
+        number("No two points are nearer, in world units."),
+    );
     let mut always = vec!["density", "spacing", "least_distance"];
-    for parameter in PARAMETERS.iter().filter(|parameter| parameter.echo.is_some()) {
+    for parameter in PARAMETERS
+        .iter()
+        .filter(|parameter| parameter.echo.is_some())
+    {
         let mut echoed = match parameter.name {
             // Text in requests, too, but always a number in answers.
             "warp" => json!({ "type": "number" }),

@@ -49,8 +49,8 @@ use text::{TextBlocks, TextFormat};
 
 pub use buffer::Pool;
 pub use encoding::Encoding;
-pub use number::{Digits, write_number};
 pub use head::{QueryEcho, TableEcho};
+pub use number::{Digits, write_number};
 pub use output::{MOST_DECIMALS, Options, Output};
 pub use packed::{Packed, Scalars};
 pub use part::{Attributes, Part};

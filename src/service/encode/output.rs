@@ -35,7 +35,11 @@ impl Options {
             });
             fault.map_or(Ok(()), Err)
         };
-        let decimals = check(&parameters::DECIMALS, self.decimals.map(Into::into), Encoding::is_text);
+        let decimals = check(
+            &parameters::DECIMALS,
+            self.decimals.map(Into::into),
+            Encoding::is_text,
+        );
         let size = check(&parameters::SIZE, self.size, Encoding::is_picture);
         (decimals, size).together()?;
         Ok(Output {

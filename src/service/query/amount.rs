@@ -58,7 +58,8 @@ impl Amount {
 
 /// The amounts that a request takes.
 pub(super) fn taken(values: &Values) -> impl Iterator<Item = &'static Parameter> {
-    let is_amount = |parameter: &&Parameter| [Group::Amount, Group::Count].contains(&parameter.group);
+    let is_amount =
+        |parameter: &&Parameter| [Group::Amount, Group::Count].contains(&parameter.group);
     values.takes().filter(is_amount)
 }
 

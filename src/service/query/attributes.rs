@@ -19,7 +19,12 @@ pub(super) fn check(values: &Values) -> Checked<Attributes> {
     let names = names.unwrap_or_default();
     let without = |parameter: &'static Parameter, attribute: &str| -> Option<Fault> {
         let is_unused = values.has(parameter) && !names.iter().any(|name| name == attribute);
-        is_unused.then(|| values.fault(parameter, format!("has no effect without the attribute {attribute}")))
+        is_unused.then(|| {
+            values.fault(
+                parameter,
+                format!("has no effect without the attribute {attribute}"),
+            )
+        })
     };
     if let Some(fault) = without(&SCALE_RANGE, "scale").or_else(|| without(&VARIANTS, "variant")) {
         return Err(fault.into());

@@ -18,10 +18,7 @@ use super::{
     region::REGION,
     table,
 };
-use crate::service::{
-    Catalog, Encoding, Entry, Error, Fault,
-    encode::Options,
-};
+use crate::service::{Catalog, Encoding, Entry, Error, Fault, encode::Options};
 
 /// A query as it was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +45,8 @@ pub struct LayerDraft {
 }
 
 /// What layers may be called.
-pub(super) const NAME: &str = "1 to 64 ASCII letters, digits, _, - and ., another name for each layer";
+pub(super) const NAME: &str =
+    "1 to 64 ASCII letters, digits, _, - and ., another name for each layer";
 /// What clear_of may be.
 const CLEAR_OF: &str = "names of layers before this one, each with a finite distance above 0";
 
@@ -83,7 +81,11 @@ impl Draft {
     ///
     /// # Errors
     /// [`Error::Invalid`] with every fault, [`Error::OtherTable`] if a pinned table is not loaded.
-    pub fn check(&self, catalog: &Catalog, most_vertices: usize) -> Result<(Query, Options), Error> {
+    pub fn check(
+        &self,
+        catalog: &Catalog,
+        most_vertices: usize,
+    ) -> Result<(Query, Options), Error> {
         self.check_vertices(most_vertices)?;
         let sets = match &self.layers {
             Ok(layers) if layers.is_empty() => Set::of(&self.values, catalog).map(|set| vec![set]),
@@ -97,7 +99,8 @@ impl Draft {
             window(&self.values),
             options(&self.values),
         );
-        let ((), region, sets, window, options) = (read, region, sets, window, options).together()?;
+        let ((), region, sets, window, options) =
+            (read, region, sets, window, options).together()?;
         for set in &sets {
             table::hold(&set.entry, set.pin.as_deref())?;
         }
@@ -144,7 +147,10 @@ impl Draft {
             return Err(Fault::new("layers", layers.len(), "too many layers", allowed).into());
         }
         let is_of_set = |group: &Group| groups::SET.contains(group);
-        let own = self.values.given().filter(|(parameter, _)| is_of_set(&parameter.group));
+        let own = self
+            .values
+            .given()
+            .filter(|(parameter, _)| is_of_set(&parameter.group));
         let beside = own.map(|(parameter, _)| {
             let detail = "has no effect beside layers: each layer has its own";
             let field = format!("{}{}", self.values.path(), parameter.name);
@@ -278,7 +284,9 @@ impl LayerDraft {
         if let Ok(pairs) = &self.clear_of
             && !pairs.is_empty()
         {
-            let pairs = pairs.iter().map(|(name, distance)| (name.clone(), (*distance).into()));
+            let pairs = pairs
+                .iter()
+                .map(|(name, distance)| (name.clone(), (*distance).into()));
             members.insert("clear_of".into(), Json::Object(pairs.collect()));
         }
         members.into()
@@ -288,7 +296,9 @@ impl LayerDraft {
 /// Values as members of JSON.
 fn written(values: &Values) -> Map<String, Json> {
     let in_body = |group: &Group| groups::QUERY.contains(group);
-    let given = values.given().filter(|(parameter, _)| in_body(&parameter.group));
+    let given = values
+        .given()
+        .filter(|(parameter, _)| in_body(&parameter.group));
     let member = given.filter_map(|(parameter, value)| {
         Some((parameter.name.to_owned(), serde_json::to_value(value).ok()?))
     });

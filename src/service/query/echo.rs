@@ -75,7 +75,9 @@ fn is_zero(value: &u128) -> bool {
 
 fn distances(pairs: &[(String, f64)]) -> Map<String, Json> {
     let pairs = pairs.iter();
-    pairs.map(|(name, distance)| (name.clone(), (*distance).into())).collect()
+    pairs
+        .map(|(name, distance)| (name.clone(), (*distance).into()))
+        .collect()
 }
 
 impl Set {
@@ -106,7 +108,8 @@ impl Set {
 
     fn named_clear_of(&self, all: &[Self]) -> Vec<(String, f64)> {
         let pairs = self.clear_of.iter();
-        let named = pairs.filter_map(|&(place, distance)| Some((all.get(place)?.name.clone(), distance)));
+        let named =
+            pairs.filter_map(|&(place, distance)| Some((all.get(place)?.name.clone(), distance)));
         named.collect()
     }
 

@@ -75,12 +75,14 @@ impl From<Fault> for Error {
 
 /// All values, or the faults of all.
 pub fn all<T>(checked: impl IntoIterator<Item = Checked<T>>) -> Checked<Vec<T>> {
-    checked.into_iter().fold(Ok(vec![]), |all, one| {
-        both(all, one).map(|(mut all, one)| {
-            all.push(one);
-            all
-        })
-    })
+    let mut values = Ok(vec![]);
+    for one in checked {
+        values = both(values, one).map(|(mut values, one)| {
+            values.push(one);
+            values
+        });
+    }
+    values
 }
 
 fn both<A, B>(a: Checked<A>, b: Checked<B>) -> Checked<(A, B)> {
@@ -143,12 +145,23 @@ mod tests {
 
     #[test]
     fn all_faults_are_kept_a_field_once() {
-        let (a, b, c) = (Ok::<_, Faults>(1), Err::<u8, _>(fault("b")), Err::<u8, _>(fault("c")));
+        let (a, b, c) = (
+            Ok::<_, Faults>(1),
+            Err::<u8, _>(fault("b")),
+            Err::<u8, _>(fault("c")),
+        );
         let faults = (a, b, c).together().expect_err("two");
-        let fields: Vec<_> = faults.as_slice().iter().map(|fault| &*fault.field).collect();
+        let fields: Vec<_> = faults
+            .as_slice()
+            .iter()
+            .map(|fault| &*fault.field)
+            .collect();
         assert_eq!(fields, ["b", "c"]);
         assert_eq!(faults.clone().and(fault("b")), faults);
-        assert_eq!((Ok::<_, Faults>(1), Ok::<_, Faults>("2")).together(), Ok((1, "2")));
+        assert_eq!(
+            (Ok::<_, Faults>(1), Ok::<_, Faults>("2")).together(),
+            Ok((1, "2"))
+        );
         let many = all((0..99).map(|i| Err::<(), _>(fault(&i.to_string()))));
         assert!(many.expect_err("99").is_full());
     }

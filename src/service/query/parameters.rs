@@ -5,7 +5,9 @@
 
 use strew_core::{Attribute, Keep, ScaleRange, Spacing, UniformNumber, Variants, Warp};
 
-use super::{DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_PARTS, Parameter, Shape, Value, parameter::Group};
+use super::{
+    DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_PARTS, Parameter, Shape, Value, parameter::Group,
+};
 use crate::service::encode::{
     MOST_DECIMALS,
     preview::{LEAST_SIZE, MOST_SIZE},

@@ -82,7 +82,9 @@ impl RegionDraft {
     /// # Errors
     /// Faults if there are several, or one that cannot be read.
     pub fn of(values: &Values) -> Checked<Option<Self>> {
-        let shapes = values.takes().filter(|parameter| parameter.group == Group::Region);
+        let shapes = values
+            .takes()
+            .filter(|parameter| parameter.group == Group::Region);
         let given: Vec<_> = shapes.filter(|parameter| values.has(parameter)).collect();
         let shape = match given.as_slice() {
             [] => return Ok(None),
@@ -142,7 +144,8 @@ impl RegionDraft {
             ShapeDraft::Circle(center, radius) => {
                 let value = || listed(&[center[0], center[1], *radius]);
                 let fault = |detail| Fault::new(&self.path, value(), detail, CIRCLE.allowed());
-                let circle = Circle::new(*center, *radius).map_err(|error| fault(error.to_string()))?;
+                let circle =
+                    Circle::new(*center, *radius).map_err(|error| fault(error.to_string()))?;
                 let area = Area::from(circle);
                 match area.bounds() {
                     Some(_) => Ok(area),
@@ -153,7 +156,9 @@ impl RegionDraft {
             ShapeDraft::Chunk(size, at) => Ok(self.chunk(*size, *at)?.into()),
             ShapeDraft::Combined(include, exclude) => {
                 let areas = |list: &[Checked<Self>]| {
-                    all(list.iter().map(|region| region.as_ref().map_err(Clone::clone)?.area()))
+                    all(list
+                        .iter()
+                        .map(|region| region.as_ref().map_err(Clone::clone)?.area()))
                 };
                 let (include, exclude) = (areas(include), areas(exclude)).together()?;
                 if include.is_empty() {
@@ -167,7 +172,8 @@ impl RegionDraft {
 
     fn region(&self, corners: [f64; 4]) -> Result<Region, Fault> {
         let [min_x, min_y, max_x, max_y] = corners;
-        let fault = |detail: String| Fault::new(&self.path, listed(&corners), detail, BBOX.allowed());
+        let fault =
+            |detail: String| Fault::new(&self.path, listed(&corners), detail, BBOX.allowed());
         let region = Region::new([min_x, min_y], [max_x, max_y]).map_err(|error| {
             let (corner, value) = (error.field(), error.value());
             let is_reversed = corners.iter().all(|v| v.is_finite());
@@ -181,7 +187,9 @@ impl RegionDraft {
         for (axis, i) in [("x", 0), ("y", 1)] {
             let (min, max) = (region.min()[i], region.max()[i]);
             if min >= max {
-                return Err(fault(format!("empty: min_{axis} and max_{axis} are both {min}")));
+                return Err(fault(format!(
+                    "empty: min_{axis} and max_{axis} are both {min}"
+                )));
             }
         }
         Ok(region)
@@ -189,16 +197,24 @@ impl RegionDraft {
 
     fn polygons(&self, polygons: &[Rings]) -> Result<Area, Fault> {
         let fault = |detail: String| {
-            let value = format!("{} polygons of {} vertices", polygons.len(), self.vertices());
+            let value = format!(
+                "{} polygons of {} vertices",
+                polygons.len(),
+                self.vertices()
+            );
             Fault::new(&self.path, value, detail, POLYGON.allowed())
         };
         let read = |(i, rings): (usize, &Rings)| {
-            Polygon::new(rings).map(Area::from).map_err(|error| match polygons.len() {
-                1 => fault(error.to_string()),
-                _ => fault(format!("polygon {i}: {error}")),
-            })
+            Polygon::new(rings)
+                .map(Area::from)
+                .map_err(|error| match polygons.len() {
+                    1 => fault(error.to_string()),
+                    _ => fault(format!("polygon {i}: {error}")),
+                })
         };
-        let areas: Vec<Area> = (polygons.iter().enumerate()).map(read).collect::<Result<_, _>>()?;
+        let areas: Vec<Area> = (polygons.iter().enumerate())
+            .map(read)
+            .collect::<Result<_, _>>()?;
         if areas.is_empty() {
             return Err(fault("there is no polygon".into()));
         }

@@ -94,6 +94,7 @@ impl Shape {
         };
         let number = |value: f64| {
             let digits = number(value);
+            let digits = digits.replace("e+", "e");
             digits.strip_suffix(".0").map_or(digits.clone(), Into::into)
         };
         match self {
@@ -141,7 +142,9 @@ impl Shape {
             }),
             Self::Numbers(_) | Self::Vertices => Value::Numbers(numbers(text)?),
             Self::Signed { .. } => Value::Signed(integer(text)?),
-            Self::Names { .. } => Value::Names(text.split(',').map(|name| name.trim().into()).collect()),
+            Self::Names { .. } => {
+                Value::Names(text.split(',').map(|name| name.trim().into()).collect())
+            }
             Self::Weights => Value::Weights(weights(text)?),
             Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text => {
                 Value::Text(text.into())
@@ -157,10 +160,14 @@ impl Shape {
     /// What is wrong with it.
     pub fn read_json(self, json: &RawValue) -> Result<Value, Detail> {
         if json.get().len() > LONGEST {
-            return Err(format!("is {} bytes long, the most is {LONGEST}", json.get().len()).into());
+            return Err(
+                format!("is {} bytes long, the most is {LONGEST}", json.get().len()).into(),
+            );
         }
         let text = serde_json::from_str::<String>(json.get());
-        let is_number = json.get().starts_with(|c: char| c == '-' || c.is_ascii_digit());
+        let is_number = json
+            .get()
+            .starts_with(|c: char| c == '-' || c.is_ascii_digit());
         let value = match (self, text) {
             (Self::Number { .. } | Self::Strength { .. }, Err(_)) if is_number => {
                 Value::Number(finite(json.get())?)
@@ -178,9 +185,7 @@ impl Shape {
                 let names = serde_json::from_str(json.get());
                 Value::Names(names.map_err(|_| "must be an array of names")?)
             }
-            (Self::Weights, _) => {
-                Value::Weights(json::weights(json)?)
-            }
+            (Self::Weights, _) => Value::Weights(json::weights(json)?),
             (Self::Quadratic, _) if is_number => Value::Text(json.get().into()),
             (Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text, _) => {
                 return Err("must be text".into());
@@ -250,10 +255,9 @@ impl Shape {
                 Ok(Value::Weights(sorted))
             }
             (Self::Names { .. }, Value::Names(_))
-            | (
-                Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text,
-                Value::Text(_),
-            ) => Ok(value),
+            | (Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text, Value::Text(_)) => {
+                Ok(value)
+            }
             // Messages, whose fields have types of their own, are read by these names.
             _ => Err(OTHER_TYPE.into()),
         }
@@ -389,7 +393,10 @@ mod tests {
     #[test]
     fn text_and_json_say_the_same() {
         let bounds = Shape::Number { min: 0.5, max: 2.0 };
-        let seed = Shape::Integer { min: 0, max: u64::MAX };
+        let seed = Shape::Integer {
+            min: 0,
+            max: u64::MAX,
+        };
         let warp = Shape::Strength { max: 2.0 };
         let range = Shape::Numbers(&["min", "max"]);
         for (shape, text, other, expected) in [
@@ -397,22 +404,50 @@ mod tests {
             (bounds, "3", "3", Err("out of range")),
             (bounds, "1e999", "1e999", Err("must be finite")),
             (bounds, "x", "\"x\"", Err("must be a number")),
-            (seed, "18446744073709551615", "\"18446744073709551615\"", Ok(Value::Integer(u64::MAX))),
-            (seed, "18446744073709551616", "18446744073709551616", Err("out of range")),
+            (
+                seed,
+                "18446744073709551615",
+                "\"18446744073709551615\"",
+                Ok(Value::Integer(u64::MAX)),
+            ),
+            (
+                seed,
+                "18446744073709551616",
+                "18446744073709551616",
+                Err("out of range"),
+            ),
             (seed, "1.5", "1.5", Err("must be an integer")),
             (seed, "-1", "-1", Err("out of range")),
             (warp, "on", "\"on\"", Ok(Value::Number(1.0))),
             (warp, "0.25", "0.25", Ok(Value::Number(0.25))),
             (range, "1, 2", "[1, 2]", Ok(Value::Numbers(vec![1.0, 2.0]))),
-            (range, "1,2,3", "[1, 2, 3]", Err("expected 2 numbers, got 3")),
-            (Shape::Names { pattern: "" }, "a,b", "[\"a\", \"b\"]", Ok(Value::Names(vec!["a".into(), "b".into()]))),
+            (
+                range,
+                "1,2,3",
+                "[1, 2, 3]",
+                Err("expected 2 numbers, got 3"),
+            ),
+            (
+                Shape::Names { pattern: "" },
+                "a,b",
+                "[\"a\", \"b\"]",
+                Ok(Value::Names(vec!["a".into(), "b".into()])),
+            ),
             (
                 Shape::Weights,
                 "oak:3,birch",
                 "{\"oak\": 3, \"birch\": 1}",
-                Ok(Value::Weights(vec![("birch".into(), 1.0), ("oak".into(), 3.0)])),
+                Ok(Value::Weights(vec![
+                    ("birch".into(), 1.0),
+                    ("oak".into(), 3.0),
+                ])),
             ),
-            (Shape::Quadratic, "1.5", "1.5", Ok(Value::Text("1.5".into()))),
+            (
+                Shape::Quadratic,
+                "1.5",
+                "1.5",
+                Ok(Value::Text("1.5".into())),
+            ),
         ] {
             let expected = expected.map_err(Cow::from);
             assert_eq!(shape.read(text), expected, "{text}");
@@ -436,6 +471,10 @@ mod tests {
     #[test]
     fn long_values_are_refused_unread() {
         let long = format!("[{}0]", "0,".repeat(LONGEST));
-        assert!(Shape::Numbers(&["min", "max"]).read_json(&json(&long)).is_err());
+        assert!(
+            Shape::Numbers(&["min", "max"])
+                .read_json(&json(&long))
+                .is_err()
+        );
     }
 }

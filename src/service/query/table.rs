@@ -38,7 +38,12 @@ pub(super) fn check(
     let alpha = parse(&text).map_err(|error| fault(&ALPHA, &text, error.to_string(), allowed()));
     let known = match is_loaded {
         true => Ok(()),
-        false => Err(fault(&PROFILE, &profile, "no such profile is loaded".into(), loaded(catalog))),
+        false => Err(fault(
+            &PROFILE,
+            &profile,
+            "no such profile is loaded".into(),
+            loaded(catalog),
+        )),
     };
     let (alpha, ()) = (alpha, known).together()?;
     let sizes = catalog.sizes(&profile, alpha);
@@ -51,7 +56,12 @@ pub(super) fn check(
             let size = text.parse::<Size>().ok();
             size.filter(|size| sizes.contains(size)).ok_or_else(|| {
                 let detail = format!("the profile `{profile}` is not loaded with this map size");
-                fault(&MAP, text, detail, some(sizes.iter().map(ToString::to_string)))
+                fault(
+                    &MAP,
+                    text,
+                    detail,
+                    some(sizes.iter().map(ToString::to_string)),
+                )
             })?
         }
         None if sizes.contains(&Size::S) => Size::S,
@@ -63,7 +73,14 @@ pub(super) fn check(
         size,
     };
     let entry = catalog.entry(&key);
-    let gone = || fault(&PROFILE, &profile, "no such profile is loaded".into(), loaded(catalog));
+    let gone = || {
+        fault(
+            &PROFILE,
+            &profile,
+            "no such profile is loaded".into(),
+            loaded(catalog),
+        )
+    };
     Ok((entry.ok_or_else(gone)?, pin))
 }
 

@@ -46,7 +46,10 @@ mod tests {
 
     #[test]
     fn values_are_decoded_and_trimmed_and_a_plus_stays_one() {
-        let values = parse_pairs("alpha=(1+sqrt(5))%2F2&bbox=0,%200,%201,1%20&&seed=%207", groups::POINTS);
+        let values = parse_pairs(
+            "alpha=(1+sqrt(5))%2F2&bbox=0,%200,%201,1%20&&seed=%207",
+            groups::POINTS,
+        );
         assert_eq!(values.get(&ALPHA), Ok(Some("(1+sqrt(5))/2".to_owned())));
         assert_eq!(values.get(&BBOX), Ok(Some([0.0, 0.0, 1.0, 1.0])));
         assert_eq!(values.get(&SEED), Ok(Some(7_u64)));

@@ -77,7 +77,12 @@ impl Values {
         if !self.takes().any(|taken| taken == parameter) {
             let field = format!("{}{}", self.path, parameter.name);
             let allowed = names(self.groups);
-            return self.refuse(Fault::new(&field, value.to_text(), "not allowed here", allowed));
+            return self.refuse(Fault::new(
+                &field,
+                value.to_text(),
+                "not allowed here",
+                allowed,
+            ));
         }
         let checked = parameter.shape.check(value.clone());
         let fault = |detail| self.described(parameter, &value.to_text(), detail);
@@ -146,7 +151,10 @@ impl Values {
     /// # Errors
     /// These faults.
     pub fn read(&self) -> Checked<()> {
-        let unread = self.given.iter().filter_map(|(_, value)| value.as_ref().err());
+        let unread = self
+            .given
+            .iter()
+            .filter_map(|(_, value)| value.as_ref().err());
         unread.fold(self.others.clone(), |all, faults| match all {
             Ok(()) => Err(faults.clone()),
             Err(others) => Err(others.and(faults.clone())),

@@ -162,14 +162,14 @@ fn errors_name_the_file_and_the_member() {
         (
             "--query=-",
             r#"{"region": {"circle": [0, 0, 1]}, "layers": [{"spacing": 1}]}"#,
-            &[
-                "`region.circle`",
-                "center",
-                "`layers[0].name`: missing",
-            ],
+            &["`region.circle`", "center", "`layers[0].name`: missing"],
         ),
         ("--region=-", "{", &["--region -", "not JSON"]),
-        ("--region=-", line, &["geometry has the type `LineString`", "GeoJSON"]),
+        (
+            "--region=-",
+            line,
+            &["geometry has the type `LineString`", "GeoJSON"],
+        ),
         (
             "--region=-",
             r#"{"type": "Polygon", "coordinates": [[[0, 0], [1, 1]]]}"#,

@@ -151,7 +151,11 @@ fn samples_are_the_answers_of_rest() {
 fn count_point_and_nearest_print_the_documents_of_rest() {
     let daemon = Daemon::start(&[]);
     for (flags, query) in QUERIES {
-        if ["decimals", "offset"].iter().any(|word| query.contains(word)) || flags.contains("chunk") {
+        if ["decimals", "offset"]
+            .iter()
+            .any(|word| query.contains(word))
+            || flags.contains("chunk")
+        {
             continue;
         }
         let document = daemon.get(&format!("/v1/count?{query}"));

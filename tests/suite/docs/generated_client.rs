@@ -10,7 +10,9 @@ fn a_generated_python_client_asks_everything() {
         return;
     };
     let is_there = clients::python("openapi-python-client").is_some_and(|mut python| {
-        let version = python.args(["-m", "openapi_python_client", "--version"]).output();
+        let version = python
+            .args(["-m", "openapi_python_client", "--version"])
+            .output();
         version.is_ok_and(|output| output.status.success())
     });
     if !is_there {
@@ -24,15 +26,24 @@ fn a_generated_python_client_asks_everything() {
     let output = generator
         .args(["-m", "openapi_python_client", "generate", "--meta", "none"])
         .args(["--path".as_ref(), document.as_os_str()])
-        .args(["--output-path".as_ref(), folder.path().join("strew_client").as_os_str()])
+        .args([
+            "--output-path".as_ref(),
+            folder.path().join("strew_client").as_os_str(),
+        ])
         .output()
         .expect("Python runs");
     let report = String::from_utf8_lossy(&output.stdout);
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{report}\n{errors}");
     // It reads no pictures; everything else it does.
-    let warnings: Vec<&str> = report.lines().filter(|line| line.contains("WARNING")).collect();
-    assert!(warnings.iter().all(|line| line.contains("spectrum.svg")), "{report}");
+    let warnings: Vec<&str> = report
+        .lines()
+        .filter(|line| line.contains("WARNING"))
+        .collect();
+    assert!(
+        warnings.iter().all(|line| line.contains("spectrum.svg")),
+        "{report}"
+    );
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite/docs/generated_client.py");
     let output = clients::python("as above")
         .expect("as above")

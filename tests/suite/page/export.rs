@@ -142,14 +142,9 @@ fn a_copied_request_for_layers_returns_the_points_in_view() {
         .next();
     let message: Value = serde_json::from_str(message.expect("a message")).expect("JSON");
     assert_eq!(message["layers"][1]["clear_of"]["layer1"], 0.6);
-    assert_eq!(
-        message["layers"][1]["variants"][0],
-        json!({ "name": "oak", "weight": 3 })
-    );
-    assert_eq!(
-        message["layers"][1]["scale_range"],
-        json!({ "min": 0.5, "max": 1.5 })
-    );
+    let set = &message["layers"][1]["set"];
+    assert_eq!(set["variants"]["oak"], 3);
+    assert_eq!(set["scale_range"], json!({ "min": 0.5, "max": 1.5 }));
     assert!(
         message["region"]["bbox"]["max_x"].as_f64() > message["region"]["bbox"]["min_x"].as_f64()
     );

@@ -230,7 +230,8 @@ fn faults_name_the_wrong_member() {
         }
         // Every path reads a query alike; counts have no window and no output.
         let paths = ["points:query", "points:split?parts=2", "count"];
-        let is_of_points = ["offset", "limit", "cursor", "format", "decimals", "size"].contains(&field);
+        let is_of_points =
+            ["offset", "limit", "cursor", "format", "decimals", "size"].contains(&field);
         for path in &paths[..if is_of_points { 2 } else { 3 }] {
             let answer = daemon.post(&format!("/v1/{path}"), &body);
             assert_fault(&answer, &format!("{path} {body}"), field, &texts);

@@ -5,7 +5,11 @@ use crate::support::{daemon::Daemon, problem::assert_fault};
 
 /// (path with parameters, the field at fault, texts in its fault).
 const PATHS: &[(&str, &str, &[&str])] = &[
-    ("points?circle=0,0&spacing=1", "circle", &["0,0", "radius", "expected 3 numbers, got 2"]),
+    (
+        "points?circle=0,0&spacing=1",
+        "circle",
+        &["0,0", "radius", "expected 3 numbers, got 2"],
+    ),
     (
         "points?circle=0,0,0&spacing=1",
         "circle",
@@ -181,7 +185,11 @@ const PATHS: &[(&str, &str, &[&str])] = &[
     ("points/7?spacing=1", "id", &["7", "-31:52"]),
     ("points/1:2:3?spacing=1", "id", &["1:2:3"]),
     ("points/a:b?spacing=1", "id", &["a:b"]),
-    ("points/0:0", "spacing", &["missing", "density, spacing, min_distance"]),
+    (
+        "points/0:0",
+        "spacing",
+        &["missing", "density, spacing, min_distance"],
+    ),
     ("points/0:0?count=5", "count", &["not allowed here"]),
     (
         "points/0:0?spacing=1&bbox=0,0,1,1",

@@ -12,7 +12,7 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
     // Missing.
     ("", &["bbox", "spacing"], &["missing"]),
     ("density=1", &["bbox"], &["missing"]),
-    (BOX, &["density"], &["missing", "spacing"]),
+    (BOX, &["spacing"], &["missing", "spacing"]),
     // Not a number, not finite, too far.
     ("bbox=0,0,NaN,10&density=1", &["bbox"], &["max_x", "NaN"]),
     ("bbox=0,0,10,inf&density=1", &["bbox"], &["max_y", "inf"]),
@@ -61,7 +61,11 @@ const CASES: &[(&str, &[&str], &[&str])] = &[
     ("bbox=0,0,10,10&spacing=0", &["spacing"], &["1e-100"]),
     ("bbox=0,0,10,10&spacing=-2", &["spacing"], &["-2"]),
     ("bbox=0,0,10,10&spacing=1e300", &["spacing"], &["1e+300"]),
-    ("bbox=0,0,10,10&spacing=", &["spacing"], &["must be a number"]),
+    (
+        "bbox=0,0,10,10&spacing=",
+        &["spacing"],
+        &["must be a number"],
+    ),
     (
         "bbox=0,0,10,10&density=1&spacing=1",
         &["spacing"],

@@ -40,13 +40,21 @@ pub(super) fn polygons(json: &RawValue) -> Result<Vec<Rings>, String> {
     Ok(found)
 }
 
-fn collect(json: &RawValue, path: &str, depth: usize, found: &mut Vec<Rings>) -> Result<(), String> {
+fn collect(
+    json: &RawValue,
+    path: &str,
+    depth: usize,
+    found: &mut Vec<Rings>,
+) -> Result<(), String> {
     let name = || match path {
         "" => "the object",
         path => path,
     };
     if depth > MOST_LEVELS {
-        return Err(format!("{} is nested too deeply: {MOST_LEVELS} levels at most", name()));
+        return Err(format!(
+            "{} is nested too deeply: {MOST_LEVELS} levels at most",
+            name()
+        ));
     }
     if !json.get().starts_with('{') {
         return Err(format!("{} must be an object", name()));
@@ -94,7 +102,10 @@ fn collect(json: &RawValue, path: &str, depth: usize, found: &mut Vec<Rings>) ->
         },
         Some(other) => {
             let other: String = other.chars().take(40).collect();
-            Err(format!("{} has the type `{other}`, not a polygon's", name()))
+            Err(format!(
+                "{} has the type `{other}`, not a polygon's",
+                name()
+            ))
         }
         None => Err(format!("{} has no type", name())),
     }
@@ -160,9 +171,7 @@ mod tests {
         let multi = json!({ "type": "MultiPolygon", "coordinates": [
             polygon()["coordinates"], polygon()["coordinates"],
         ]});
-        let feature = |geometry: &Value| {
-            json!({ "type": "Feature", "geometry": geometry, "properties": { "type": 1 } })
-        };
+        let feature = |geometry: &Value| json!({ "type": "Feature", "geometry": geometry, "properties": { "type": 1 } });
         let features = json!({ "type": "FeatureCollection", "features": [
             feature(&polygon()), feature(&Value::Null), feature(&multi),
         ]});
@@ -185,14 +194,34 @@ mod tests {
         for (value, expected) in [
             (json!([]), "the object must be an object"),
             (json!({}), "the object has no type"),
-            (json!({ "type": "Point" }), "the object has the type `Point`, not a polygon's"),
-            (json!({ "type": "Polygon" }), "the object has no array `coordinates`"),
-            (json!({ "type": "Polygon", "coordinates": [7] }),
-             "coordinates[0] is not a ring, an array of positions"),
-            (bad.clone(), "coordinates[0][1] is `[4]`, not a position [x, y]"),
-            (within, "features[1].geometry.coordinates[0][1] is `[4]`, not a position [x, y]"),
-            (json!({ "type": "Feature", "geometry": null }), "contains no polygon"),
-            (json!({ "type": "FeatureCollection" }), "the object has no array `features`"),
+            (
+                json!({ "type": "Point" }),
+                "the object has the type `Point`, not a polygon's",
+            ),
+            (
+                json!({ "type": "Polygon" }),
+                "the object has no array `coordinates`",
+            ),
+            (
+                json!({ "type": "Polygon", "coordinates": [7] }),
+                "coordinates[0] is not a ring, an array of positions",
+            ),
+            (
+                bad.clone(),
+                "coordinates[0][1] is `[4]`, not a position [x, y]",
+            ),
+            (
+                within,
+                "features[1].geometry.coordinates[0][1] is `[4]`, not a position [x, y]",
+            ),
+            (
+                json!({ "type": "Feature", "geometry": null }),
+                "contains no polygon",
+            ),
+            (
+                json!({ "type": "FeatureCollection" }),
+                "the object has no array `features`",
+            ),
         ] {
             assert_eq!(read(&value), Err(expected.into()), "{value}");
         }

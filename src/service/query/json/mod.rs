@@ -19,14 +19,15 @@ use super::{
 use crate::service::Fault;
 use object::Object;
 
+pub(super) use object::weights;
 pub use region::read_region;
 pub use schema::RegionSchema;
-pub(super) use object::weights;
 
 /// What layers are.
 const LAYERS: &str = "an array of 1 to 16 layers, objects with a name and a set of points each";
 /// What clear_of may be.
-const CLEAR_OF: &str = r#"an object of distances by the names of earlier layers, such as {"trees": 2}"#;
+const CLEAR_OF: &str =
+    r#"an object of distances by the names of earlier layers, such as {"trees": 2}"#;
 
 /// The members of a query that are no parameters.
 const QUERY: [&str; 2] = ["region", "layers"];
@@ -44,8 +45,8 @@ pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
         let words: Vec<&str> = text.split_whitespace().collect();
         Fault::new("body", words.join(" "), detail, "a JSON object")
     };
-    let whole: &RawValue = serde_json::from_slice(bytes)
-        .map_err(|error| fault(format!("not JSON: {error}")))?;
+    let whole: &RawValue =
+        serde_json::from_slice(bytes).map_err(|error| fault(format!("not JSON: {error}")))?;
     let object = Object::read(whole).map_err(fault)?;
     let mut draft = Draft::new(Values::new(groups, ""));
     for (name, json) in object.members() {
@@ -59,7 +60,9 @@ pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
             "bbox" | "circle" | "polygon" | "chunk" | "include" | "exclude" => {
                 let detail = format!("belongs in `region`: {{\"region\": {{\"{name}\": …}}}}");
                 let allowed = members(&QUERY, groups);
-                draft.values.refuse(Fault::new(name, shown(json), detail, allowed));
+                draft
+                    .values
+                    .refuse(Fault::new(name, shown(json), detail, allowed));
             }
             name => add_member(&mut draft.values, name, json, &QUERY, groups),
         }
@@ -82,7 +85,12 @@ fn add_member(
     let known = known.chain(others.iter().copied());
     let detail = unknown("member", name, known);
     let field = format!("{}{name}", values.path());
-    values.refuse(Fault::new(&field, shown(json), detail, members(others, groups)));
+    values.refuse(Fault::new(
+        &field,
+        shown(json),
+        detail,
+        members(others, groups),
+    ));
 }
 
 /// The names of all members.
@@ -109,7 +117,11 @@ fn layers(json: &RawValue) -> Checked<Vec<LayerDraft>> {
         return Err(fault("must be an array"));
     }
     if count == 0 || count > MOST_LAYERS {
-        let detail = if count == 0 { "empty" } else { "too many layers" };
+        let detail = if count == 0 {
+            "empty"
+        } else {
+            "too many layers"
+        };
         return Err(Fault::new("layers", format!("{count} layers"), detail, LAYERS).into());
     }
     unread.map(|()| layers)

@@ -24,12 +24,16 @@ impl<'a> Object<'a> {
             return Err("must be an object".into());
         }
         let mut deserializer = Deserializer::from_str(json.get());
-        deserializer.deserialize_map(Members).map_err(|error| text_of(&error))
+        deserializer
+            .deserialize_map(Members)
+            .map_err(|error| text_of(&error))
     }
 
     /// The members with their names.
     pub(super) fn members(&self) -> impl Iterator<Item = (&str, &'a RawValue)> {
-        self.members.iter().map(|(name, json)| (name.as_str(), *json))
+        self.members
+            .iter()
+            .map(|(name, json)| (name.as_str(), *json))
     }
 
     /// The member with a name.
@@ -62,10 +66,14 @@ impl<'a> Visitor<'a> for Members {
         while let Some((name, json)) = map.next_entry::<String, &RawValue>()? {
             if members.iter().any(|(known, _)| *known == name) {
                 let name: String = name.chars().take(60).collect();
-                return Err(A::Error::custom(format!("the member `{name}` appears twice")));
+                return Err(A::Error::custom(format!(
+                    "the member `{name}` appears twice"
+                )));
             }
             if members.len() == MOST_MEMBERS {
-                return Err(A::Error::custom(format!("more than {MOST_MEMBERS} members")));
+                return Err(A::Error::custom(format!(
+                    "more than {MOST_MEMBERS} members"
+                )));
             }
             members.push((name, json));
         }

@@ -5,9 +5,8 @@ use serde_json::value::RawValue;
 
 use super::{
     super::{
-        Checked, Faults, MOST_LEVELS, RegionDraft, ShapeDraft, parameter::unknown,
-        region::REGION, shape::LONGEST,
-        values::shown,
+        Checked, Faults, MOST_LEVELS, RegionDraft, ShapeDraft, parameter::unknown, region::REGION,
+        shape::LONGEST, values::shown,
     },
     geojson::{GEOJSON, polygons},
     object::{self, Object, text_of},
@@ -119,12 +118,10 @@ fn region(json: &RawValue, path: &str, depth: usize) -> Checked<RegionDraft> {
                 serde_json::from_str(json.get()).map_err(|error| wrong(text_of(&error), CIRCLE))?;
             ShapeDraft::Circle(center, radius)
         }
-        "polygon" => {
-            ShapeDraft::Polygons(polygons(json).map_err(|detail| wrong(detail, GEOJSON))?)
-        }
+        "polygon" => ShapeDraft::Polygons(polygons(json).map_err(|detail| wrong(detail, GEOJSON))?),
         "chunk" => {
-            let ChunkJson { size, x, y } =
-                serde_json::from_str(json.get()).map_err(|error| wrong(text_of(&error), CHUNK_JSON))?;
+            let ChunkJson { size, x, y } = serde_json::from_str(json.get())
+                .map_err(|error| wrong(text_of(&error), CHUNK_JSON))?;
             ShapeDraft::Chunk(size, [x, y])
         }
         _ if depth == MOST_LEVELS => {
@@ -170,8 +167,8 @@ fn numbers<const N: usize>(json: &RawValue) -> Result<[f64; N], String> {
     if json.get().len() > LONGEST {
         return Err(format!("must be an array of {N} numbers"));
     }
-    let values: Vec<f64> = serde_json::from_str(json.get())
-        .map_err(|_| format!("must be an array of {N} numbers"))?;
+    let values: Vec<f64> =
+        serde_json::from_str(json.get()).map_err(|_| format!("must be an array of {N} numbers"))?;
     let wrong = |values: Vec<f64>| format!("expected {N} numbers, got {}", values.len());
     values.try_into().map_err(wrong)
 }

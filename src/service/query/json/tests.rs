@@ -1,3 +1,5 @@
+//! Bodies read, written and refused.
+
 use serde_json::{Value as Json, json};
 
 use super::*;
@@ -89,31 +91,68 @@ fn faults_name_the_member_by_its_path() {
     for (body, expected) in [
         ("[]", "body: must be an object"),
         (r#"{"seed": "x"}"#, "seed: must be an integer"),
-        (r#"{"seed": 1, "seed": 2}"#, "body: the member `seed` appears twice"),
+        (
+            r#"{"seed": 1, "seed": 2}"#,
+            "body: the member `seed` appears twice",
+        ),
         (r#"{"sed": 1}"#, "sed: unknown member; did you mean `seed`?"),
-        (r#"{"bbox": [0, 0, 1, 1]}"#, r#"bbox: belongs in `region`: {"region": {"bbox": …}}"#),
-        (r#"{"warp": true}"#, r#"warp: must be "off", "on" or a number"#),
-        (r#"{"attributes": "u1", "scale_range": [1]}"#, "scale_range: expected 2 numbers, got 1"),
-        (r#"{"variants": {"oak": 1, "oak": 2}}"#, "variants: the member `oak` appears twice"),
+        (
+            r#"{"bbox": [0, 0, 1, 1]}"#,
+            r#"bbox: belongs in `region`: {"region": {"bbox": …}}"#,
+        ),
+        (
+            r#"{"warp": true}"#,
+            r#"warp: must be "off", "on" or a number"#,
+        ),
+        (
+            r#"{"attributes": "u1", "scale_range": [1]}"#,
+            "scale_range: expected 2 numbers, got 1",
+        ),
+        (
+            r#"{"variants": {"oak": 1, "oak": 2}}"#,
+            "variants: the member `oak` appears twice",
+        ),
         (r#"{"region": 3}"#, "region: must be an object"),
         (r#"{"region": {}}"#, "region: has no shape"),
-        (r#"{"region": {"bbox": [0, 0, 1]}}"#, "region.bbox: expected 4 numbers, got 3"),
-        (r#"{"region": {"bbox": [0, 0, 1, 1], "chunk": {}}}"#,
-         "region: has several shapes: bbox, chunk"),
-        (r#"{"region": {"circel": {}}}"#, "region.circel: unknown member; did you mean `circle`?"),
-        (r#"{"region": {"circle": {"center": [0, 0], "r": 1}}}"#,
-         "region.circle: unknown field `r`, expected `center` or `radius`"),
-        (r#"{"region": {"circle": {"center": [0, 0], "radius": 1, "radius": 2}}}"#,
-         "region.circle: duplicate field `radius`"),
-        (r#"{"region": {"chunk": {"size": 1, "x": 0.5, "y": 0}}}"#,
-         "region.chunk: invalid type: floating point `0.5`, expected i64"),
+        (
+            r#"{"region": {"bbox": [0, 0, 1]}}"#,
+            "region.bbox: expected 4 numbers, got 3",
+        ),
+        (
+            r#"{"region": {"bbox": [0, 0, 1, 1], "chunk": {}}}"#,
+            "region: has several shapes: bbox, chunk",
+        ),
+        (
+            r#"{"region": {"circel": {}}}"#,
+            "region.circel: unknown member; did you mean `circle`?",
+        ),
+        (
+            r#"{"region": {"circle": {"center": [0, 0], "r": 1}}}"#,
+            "region.circle: unknown field `r`, expected `center` or `radius`",
+        ),
+        (
+            r#"{"region": {"circle": {"center": [0, 0], "radius": 1, "radius": 2}}}"#,
+            "region.circle: duplicate field `radius`",
+        ),
+        (
+            r#"{"region": {"chunk": {"size": 1, "x": 0.5, "y": 0}}}"#,
+            "region.chunk: invalid type: floating point `0.5`, expected i64",
+        ),
         (r#"{"layers": 3}"#, "layers: must be an array"),
         (r#"{"layers": []}"#, "layers: empty"),
         (r#"{"layers": [3]}"#, "layers[0]: must be an object"),
-        (r#"{"layers": [{"name": 3}]}"#, "layers[0].name: must be text"),
-        (r#"{"layers": [{"name": "a", "clear_of": {"a": "x"}}]}"#,
-         "layers[0].clear_of: the value of `a` must be a number"),
-        (r#"{"layers": [{"name": "a", "limit": 3}]}"#, "layers[0].limit: unknown member"),
+        (
+            r#"{"layers": [{"name": 3}]}"#,
+            "layers[0].name: must be text",
+        ),
+        (
+            r#"{"layers": [{"name": "a", "clear_of": {"a": "x"}}]}"#,
+            "layers[0].clear_of: the value of `a` must be a number",
+        ),
+        (
+            r#"{"layers": [{"name": "a", "limit": 3}]}"#,
+            "layers[0].limit: unknown member",
+        ),
     ] {
         assert_eq!(faults(body), [expected], "{body}");
     }
@@ -122,7 +161,10 @@ fn faults_name_the_member_by_its_path() {
 
 #[test]
 fn lists_report_each_region_and_stop_in_time() {
-    let bad = format!(r#"{{"region": {{"include": [{}1]}}}}"#, "1,".repeat(100_000));
+    let bad = format!(
+        r#"{{"region": {{"include": [{}1]}}}}"#,
+        "1,".repeat(100_000)
+    );
     let draft = read_body(bad.as_bytes(), groups::QUERY).expect("an object");
     let region = draft.region.expect("read").expect("given");
     let crate::service::query::ShapeDraft::Combined(include, _) = region.shape else {
