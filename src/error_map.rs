@@ -76,6 +76,11 @@ pub const fn http(kind: Kind) -> Problem {
             "too-many-streams",
             "Too many answers to this key are under way",
         ),
+        Kind::TooManyForAddress => (
+            StatusCode::TOO_MANY_REQUESTS,
+            "too-many-for-address",
+            "The client's address uses as much as one address may",
+        ),
         Kind::TooFast => (
             StatusCode::TOO_MANY_REQUESTS,
             "too-fast",
@@ -129,6 +134,7 @@ pub const fn grpc(kind: Kind) -> Code {
         | Kind::TooManyRows
         | Kind::BodyTooLarge
         | Kind::TooManyStreams
+        | Kind::TooManyForAddress
         | Kind::TooFast
         | Kind::Busy
         | Kind::TimeOver => Code::ResourceExhausted,

@@ -41,7 +41,9 @@ impl Networks {
         })
     }
 
-    fn contain(&self, address: IpAddr) -> bool {
+    /// Whether one of the networks has an address.
+    #[must_use]
+    pub fn contains(&self, address: IpAddr) -> bool {
         let address = address.to_canonical();
         self.networks.iter().any(|&(network, length)| {
             let (ours, theirs, bits) = match (network, address) {
@@ -62,7 +64,7 @@ impl Networks {
         lines: impl DoubleEndedIterator<Item = &'a [u8]>,
     ) -> IpAddr {
         let mut client = peer.to_canonical();
-        if !self.contain(client) {
+        if !self.contains(client) {
             return client;
         }
         let named = lines
@@ -72,7 +74,7 @@ impl Networks {
             // What is not an address was not written by a proxy that is to be trusted.
             let Some(address) = read(name) else { break };
             client = address;
-            if !self.contain(client) {
+            if !self.contains(client) {
                 break;
             }
         }
@@ -152,7 +154,7 @@ mod tests {
             );
         }
         let all = Networks::read("0.0.0.0/0").expect("valid");
-        assert!(all.contain("192.0.2.1".parse().expect("valid")));
-        assert!(!all.contain("::1".parse().expect("valid")));
+        assert!(all.contains("192.0.2.1".parse().expect("valid")));
+        assert!(!all.contains("::1".parse().expect("valid")));
     }
 }

@@ -203,6 +203,7 @@ impl Keys {
                 Arc::new(Places { limit, open })
             }),
             bucket,
+            usage: None,
         };
         Ok(Key { hash, caller, open })
     }

@@ -10,6 +10,7 @@ mod caller;
 mod clients;
 mod keys;
 mod secret;
+mod usage;
 
 use std::{
     net::IpAddr,
@@ -21,14 +22,18 @@ use std::{
 use arc_swap::ArcSwap;
 use serde::{Deserialize, Serialize};
 
+use crate::config::AddressLimits;
+
 pub use address::{NETWORKS, Networks};
 pub use bucket::{Level, Rate, Short};
 pub use caller::{Caller, Place};
 pub use keys::{KeysError, is_name};
 pub use secret::{Hashed, new_key};
+pub use usage::{InUse, Quota, Usage};
 
 use clients::Clients;
 use keys::Keys;
+use usage::Usages;
 
 /// Who is let in.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -110,6 +115,14 @@ pub enum Denied {
         /// The limit.
         limit: usize,
     },
+    /// The client's address uses as much as one address may.
+    #[error("{limit} {what} of this address are in use, the most at once: try again later")]
+    Address {
+        /// What it uses.
+        what: &'static str,
+        /// The limit.
+        limit: usize,
+    },
     /// The caller takes points too fast.
     #[error(
         "{points} points are more than can be taken now: {left} are left, {rate} come back every \
@@ -132,7 +145,7 @@ impl Denied {
     #[must_use]
     pub const fn wait(&self) -> Option<Duration> {
         match self {
-            Self::TooManyStreams { .. } => Some(Duration::from_secs(1)),
+            Self::TooManyStreams { .. } | Self::Address { .. } => Some(Duration::from_secs(1)),
             Self::TooFast { short, .. } => Some(short.wait),
             _ => None,
         }
@@ -155,6 +168,7 @@ pub struct Gate {
     rate: Option<Rate>,
     keys: ArcSwap<Keys>,
     clients: Option<Clients>,
+    usages: Usages,
 }
 
 impl Gate {
@@ -162,7 +176,11 @@ impl Gate {
     ///
     /// # Errors
     /// [`KeysError`], naming the place and the key.
-    pub fn new(settings: Settings, rate: &RateSettings) -> Result<Self, KeysError> {
+    pub fn new(
+        settings: Settings,
+        rate: &RateSettings,
+        addresses: AddressLimits,
+    ) -> Result<Self, KeysError> {
         let most = rate.max_clients;
         let rate = rate.rate();
         Ok(Self {
@@ -170,6 +188,7 @@ impl Gate {
             proxies: Networks::read(&settings.trusted_proxies).unwrap_or_default(),
             keys: ArcSwap::from_pointee(Keys::read(&settings, rate, &Keys::default())?),
             clients: rate.map(|rate| Clients::new(rate, most)),
+            usages: Usages::new(addresses),
             rate,
             settings,
         })
@@ -201,13 +220,27 @@ impl Gate {
         self.proxies.client(peer, forwarded)
     }
 
+    /// What an address uses. Trusted proxies, which speak for many clients, have no limits.
+    #[must_use]
+    pub fn usage(&self, address: IpAddr) -> Arc<Usage> {
+        if self.proxies.contains(address) {
+            return Usage::unlimited();
+        }
+        self.usages.of(address)
+    }
+
     /// Lets someone in who shows a key, or none, from an address, and takes one point from its rate
     /// for the request itself.
     ///
     /// # Errors
     /// [`Denied`], for want of a key, or of points.
-    pub fn admit(&self, key: Option<&[u8]>, address: IpAddr) -> Result<Caller, Denied> {
-        let caller = match key.filter(|_| self.settings.has_keys()) {
+    pub fn admit(
+        &self,
+        key: Option<&[u8]>,
+        address: IpAddr,
+        usage: Arc<Usage>,
+    ) -> Result<Caller, Denied> {
+        let mut caller = match key.filter(|_| self.settings.has_keys()) {
             Some(key) => {
                 let keys = self.keys.load();
                 keys.find(key).cloned().ok_or(Denied::WrongKey)?
@@ -221,6 +254,7 @@ impl Gate {
                 ..Caller::default()
             },
         };
+        caller.usage = Some(usage);
         caller.charge_request()?;
         Ok(caller)
     }

@@ -42,7 +42,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         | ServeError::Spans(_) => Failure::Usage(error.into()),
         _ => Failure::Other(error.into()),
     })?;
-    let app = app.with_all_metrics();
     if app.service().catalog().entries().len() == 0 {
         tracing::warn!("no table is loaded: every query will be refused");
     }

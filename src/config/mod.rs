@@ -47,6 +47,8 @@ pub struct Config {
     pub tables: Tables,
     /// What a query may ask for.
     pub limits: Limits,
+    /// What one address may use.
+    pub per_address: AddressLimits,
     /// Who makes points.
     pub workers: Workers,
     /// How to stop.
@@ -86,6 +88,22 @@ pub struct Server {
     pub max_stream_seconds: f64,
     /// How long a reader may take nothing of what waits for it, in seconds.
     pub stalled_reader_seconds: f64,
+    /// The least rate at which a reader must take an answer that lasts longer than that.
+    pub min_bytes_per_second: f64,
+}
+
+/// What one address may use at once.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AddressLimits {
+    /// Connections.
+    pub max_connections: usize,
+    /// Requests, from their head to the last byte of the answer.
+    pub max_requests: usize,
+    /// Answers with points.
+    pub max_streams: usize,
+    /// Bytes that its requests and answers hold.
+    pub max_bytes_in_flight: usize,
 }
 
 /// Where administrators are let in.

@@ -13,6 +13,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         admin,
         http,
         limits,
+        per_address,
         workers,
         shutdown,
         log,
@@ -71,6 +72,12 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         day,
     );
     within(
+        "server.min_bytes_per_second",
+        server.min_bytes_per_second,
+        0.0,
+        1e9,
+    );
+    within(
         "server.body_read_timeout_seconds",
         server.body_read_timeout_seconds,
         0.1 * second,
@@ -114,6 +121,19 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     within(
         "limits.max_bytes_in_flight",
         limits.max_bytes_in_flight as f64,
+        one as f64,
+        1e15,
+    );
+    for (name, value) in [
+        ("max_connections", per_address.max_connections),
+        ("max_requests", per_address.max_requests),
+        ("max_streams", per_address.max_streams),
+    ] {
+        within(&format!("per_address.{name}"), value as f64, 1.0, 1e6);
+    }
+    within(
+        "per_address.max_bytes_in_flight",
+        per_address.max_bytes_in_flight as f64,
         one as f64,
         1e15,
     );

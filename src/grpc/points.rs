@@ -21,7 +21,7 @@ use super::{
 };
 use crate::access::Caller;
 use crate::service::{
-    Error, Fault, Record, Service,
+    Error, Fault, Record, Service, considered,
     query::{SetDraft, check_parts},
 };
 
@@ -46,7 +46,7 @@ impl Points {
         let (query, encoding) = query::query(request, &self.service)?;
         let permit = self.service.admit(caller, None)?;
         let planned = self.service.plan(caller, query).await?;
-        caller.charge(planned.count())?;
+        caller.charge(considered(&planned))?;
         let block_bytes = self.service.limits().block_bytes;
         let messages = Messages::new(request, planned, encoding, block_bytes)?;
         Record::in_format(match encoding {

@@ -14,7 +14,7 @@ use std::{path::PathBuf, sync::Arc, time::Duration};
 use serde::Serialize;
 use tokio::sync::Mutex;
 
-use super::shutdown::Hangups;
+use super::{metrics::Metrics, shutdown::Hangups};
 use crate::{
     access::Gate,
     service::{Error, Reload, Service, catalog::Refusal},
@@ -58,18 +58,24 @@ pub struct Reloader {
     service: Arc<Service>,
     gate: Arc<Gate>,
     folder: Option<PathBuf>,
+    metrics: Metrics,
     /// What came of it the last time.
     last: Mutex<Done>,
 }
 
 impl Reloader {
     /// For a service and its folder of tables, and a gate with its keys.
-    #[must_use]
-    pub fn new(service: Arc<Service>, gate: Arc<Gate>, folder: Option<PathBuf>) -> Self {
+    pub(super) fn new(
+        service: Arc<Service>,
+        gate: Arc<Gate>,
+        folder: Option<PathBuf>,
+        metrics: Metrics,
+    ) -> Self {
         Self {
             service,
             gate,
             folder,
+            metrics,
             last: Mutex::default(),
         }
     }
@@ -85,7 +91,7 @@ impl Reloader {
         // A look that finds the same damaged file again has nothing to tell.
         let is_news = cause != Cause::Change || differs(&last, &done);
         if is_news {
-            tell(cause, &done);
+            tell(cause, &done, &self.metrics);
         }
         *last = done.clone();
         Ok(done)
@@ -168,10 +174,10 @@ fn differs(before: &Done, now: &Done) -> bool {
     has_changed || tables.refused != before.tables.refused || now.keys != before.keys
 }
 
-fn tell(cause: Cause, done: &Done) {
+fn tell(cause: Cause, done: &Done, metrics: &Metrics) {
     let reload = &done.tables;
     let cause = cause.name();
-    metrics::counter!("strew_tables_reloads_total", "cause" => cause).increment(1);
+    metrics.reloads(cause).increment(1);
     for table in &reload.loaded {
         tracing::info!(
             cause,
@@ -193,7 +199,7 @@ fn tell(cause: Cause, done: &Done) {
         );
     }
     for refusal in &reload.refused {
-        metrics::counter!("strew_tables_refused_total").increment(1);
+        metrics.refused_tables().increment(1);
         tracing::error!(
             cause,
             source = refusal.source,

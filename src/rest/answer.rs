@@ -17,7 +17,7 @@ use super::{
 use crate::{
     access::Caller,
     service::{
-        Answer, Error, Kind, Planned, Query, Record, Service,
+        Answer, Error, Kind, Planned, Query, Record, Service, considered,
         encode::{Options, write_number},
     },
 };
@@ -129,7 +129,7 @@ pub(super) async fn stream(
         return Ok(unwanted);
     }
     if !is_head {
-        caller.charge(planned.count())?;
+        caller.charge(considered(&planned))?;
     }
     let answer = Answer::new(&planned, &output, service.limits().block_bytes)?;
     let mut response_headers = describe(&planned, &answer, chosen)?;

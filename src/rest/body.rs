@@ -6,6 +6,7 @@
 use std::{error::Error as _, sync::Arc};
 
 use axum::extract::{FromRequest, Request};
+use bytes::Bytes;
 use futures_util::StreamExt as _;
 use http::header;
 
@@ -13,17 +14,17 @@ use crate::service::{Error, Fault, Service};
 
 /// A whole body.
 #[derive(Debug)]
-pub(super) struct Whole(pub(super) Vec<u8>);
+pub(super) struct Whole(pub(super) Bytes);
 
 impl FromRequest<Arc<Service>> for Whole {
     type Rejection = Error;
 
     async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Error> {
         let limit = service.limits().max_body_bytes;
-        let told = request.headers().get(header::CONTENT_LENGTH);
-        let told = told.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
+        let length = request.headers().get(header::CONTENT_LENGTH);
+        let length = length.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
         // What says that it is too long need not even be sent.
-        if told.is_some_and(|length| usize::try_from(length).is_ok_and(|length| length > limit)) {
+        if length.is_some_and(|length| usize::try_from(length).is_ok_and(|length| length > limit)) {
             return Err(Error::BodyTooLarge { limit });
         }
         let mut pieces = request.into_body().into_data_stream();
@@ -35,7 +36,7 @@ impl FromRequest<Arc<Service>> for Whole {
             }
             whole.extend_from_slice(&piece);
         }
-        Ok(Self(whole))
+        Ok(Self(whole.into()))
     }
 }
 

@@ -116,7 +116,7 @@ async fn post(
     Whole(body): Whole,
 ) -> Result<Response, Error> {
     query::no_parameters(&uri)?;
-    let (query, options) = query::read(&service, &body)?;
+    let (query, options) = query::read(&service, body).await?;
     document::no_looks(options)?;
     counted(&service, query).await
 }

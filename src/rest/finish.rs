@@ -1,5 +1,7 @@
 //! What is done to every answer, whoever made it: CORS, problems instead of bare errors, how long
-//! it may be kept, compression. Answers of other doors only get the first.
+//! it may be kept, compression. Answers to calls only get the first.
+
+use std::sync::Arc;
 
 use axum::{
     Router,
@@ -16,7 +18,7 @@ use super::{
     freshness, harden,
     problem::{self, Problem},
 };
-use crate::service::Workers;
+use crate::service::Service;
 
 /// How HTTP answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,7 +39,7 @@ struct Finish {
     /// Answers are for one client, not for those who share a cache with it.
     is_private: bool,
     head_bytes: usize,
-    workers: Workers,
+    service: Arc<Service>,
 }
 
 /// Finishes the answers of a router; heads of requests longer than `head_bytes` are refused. Answers
@@ -47,14 +49,14 @@ pub fn finished(
     settings: &Settings,
     head_bytes: u32,
     is_private: bool,
-    workers: Workers,
+    service: Arc<Service>,
 ) -> Router {
     let finish = Finish {
         origins: Origins::read(&settings.cors_origins),
         cache_seconds: settings.cache_seconds,
         is_private,
         head_bytes: usize::try_from(head_bytes).unwrap_or(usize::MAX),
-        workers,
+        service,
     };
     router.layer(middleware::from_fn_with_state(finish, finish_answer))
 }
@@ -78,7 +80,8 @@ async fn finish_answer(State(finish): State<Finish>, request: Request, next: Nex
     let mut response = problem::instead_of_bare(response).await;
     freshness::keep(&mut response, finish.cache_seconds, finish.is_private);
     harden::guard(response.headers_mut(), finish.origins == Origins::All);
-    coding::apply(&accept, is_head, &finish.workers, response)
+    let coded = coding::apply(&accept, is_head, &finish.service, response).await;
+    coded.unwrap_or_else(|error| Problem::response(&error))
 }
 
 /// The lines of one header.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use axum::{extract::State, response::Response, routing};
+use bytes::Bytes;
 use http::{HeaderMap, Method, Uri};
 use serde_json::json;
 
@@ -62,7 +63,7 @@ async fn post(
     Whole(body): Whole,
 ) -> Result<Response, Error> {
     no_parameters(&uri)?;
-    let (query, options) = read(&service, &body)?;
+    let (query, options) = read(&service, body).await?;
     let asked = Asked {
         caller,
         method,
@@ -73,13 +74,17 @@ async fn post(
 }
 
 /// The checked query of a body.
-pub(super) fn read(service: &Service, body: &[u8]) -> Result<(Query, Options), Error> {
-    let body = read_body(body)?;
-    let most_vertices = service.limits().max_vertices;
-    let query = body
-        .draft
-        .check(&service.catalog(), most_vertices, body.faults)?;
-    Ok((query, body.options))
+pub(super) async fn read(service: &Arc<Service>, body: Bytes) -> Result<(Query, Options), Error> {
+    let bytes = body.len();
+    let read = move |service: &Service| {
+        let body = read_body(&body)?;
+        let most_vertices = service.limits().max_vertices;
+        let query = body
+            .draft
+            .check(&service.catalog(), most_vertices, body.faults)?;
+        Ok((query, body.options))
+    };
+    service.read(bytes, read).await?
 }
 
 /// Everything is in the body.

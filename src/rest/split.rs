@@ -77,7 +77,7 @@ async fn post(
     let (Ok(parts), true) = (parts, faults.is_empty()) else {
         return Err(Error::Invalid(faults));
     };
-    let (query, _) = query::read(&service, &body)?;
+    let (query, _) = query::read(&service, body.clone()).await?;
     let mut asked: Map<String, Value> = serde_json::from_slice(&body)
         .map_err(|_| Error::Internal("a body that was read is gone"))?;
     asked.remove("offset");

@@ -237,6 +237,8 @@ pub enum Kind {
     NotAllowed,
     /// [`Denied::TooManyStreams`].
     TooManyStreams,
+    /// [`Denied::Address`].
+    TooManyForAddress,
     /// [`Denied::TooFast`].
     TooFast,
     /// [`Error::Busy`], [`Error::TooManyConnections`], [`Error::TooManyRequests`],
@@ -254,7 +256,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Invalid,
         Self::TooManyPoints,
         Self::TooManyRows,
@@ -267,6 +269,7 @@ impl Kind {
         Self::Unauthenticated,
         Self::NotAllowed,
         Self::TooManyStreams,
+        Self::TooManyForAddress,
         Self::TooFast,
         Self::Busy,
         Self::BodyTooSlow,
@@ -293,6 +296,7 @@ impl Error {
             Self::Denied(Denied::NoKey | Denied::WrongKey) => Kind::Unauthenticated,
             Self::Denied(Denied::NotAdmin { .. }) => Kind::NotAllowed,
             Self::Denied(Denied::TooManyStreams { .. }) => Kind::TooManyStreams,
+            Self::Denied(Denied::Address { .. }) => Kind::TooManyForAddress,
             Self::Denied(Denied::TooFast { .. }) => Kind::TooFast,
             Self::Busy { .. }
             | Self::TooManyConnections { .. }

@@ -19,6 +19,7 @@ pub mod query;
 pub mod record;
 mod single;
 pub mod stream;
+mod turns;
 pub mod workers;
 
 use std::{path::PathBuf, sync::Arc};
@@ -33,6 +34,7 @@ use tokio::sync::Mutex;
 pub use budget::{Budget, Held};
 pub use cache::Ready;
 pub use catalog::{Catalog, Entry, Key, Reload};
+pub use effort::considered;
 pub use encode::{Answer, Encoding, Output};
 pub use error::{Error, Fault, Kind};
 pub use planned::{Placed, Planned, PlannedSet};
@@ -41,7 +43,7 @@ pub use query::{Draft, Query, Set, Token};
 pub use record::Record;
 pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
-pub use workers::Workers;
+pub use workers::{Lane, Workers};
 
 use crate::access::Caller;
 use cache::{CacheState, Samplers};
@@ -89,7 +91,7 @@ pub struct Service {
     samplers: Samplers,
     portraits: Portraits,
     streams: Arc<Streams>,
-    budget: Arc<Budget>,
+    budget: Budget,
     workers: Workers,
 }
 
@@ -101,7 +103,7 @@ impl Service {
             samplers: Samplers::new(limits.cache_bytes),
             portraits: Portraits::new(),
             streams: Arc::new(Streams::new(limits.max_streams)),
-            budget: Arc::new(Budget::new(limits.max_bytes_in_flight)),
+            budget: Budget::new(limits.max_bytes_in_flight),
             catalog: ArcSwap::from_pointee(catalog),
             reload: Mutex::new(()),
             limits,
@@ -157,10 +159,21 @@ impl Service {
         &self.streams
     }
 
-    /// What requests and answers hold.
+    /// The byte budget of all requests and answers.
     #[must_use]
-    pub const fn budget(&self) -> &Arc<Budget> {
+    pub const fn budget(&self) -> &Budget {
         &self.budget
+    }
+
+    /// Takes bytes of the budget for the request that is being answered.
+    ///
+    /// # Errors
+    /// As [`Budget::hold`].
+    pub fn hold(&self, bytes: usize) -> Result<Held, Error> {
+        match Record::current() {
+            Some(record) => record.budget().hold(bytes),
+            None => self.budget.hold(bytes),
+        }
     }
 
     /// Plans a query on the workers, whatever it counts.
@@ -178,8 +191,9 @@ impl Service {
             Planned::new(query, &tables, &self.limits)?
         } else {
             let limits = self.limits.clone();
+            let lane = effort::lane(&query, &tables);
             let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
-            self.workers.run_while_wanted(plan).await??
+            self.workers.take_turn(lane, plan).await??
         };
         tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
         Ok(planned)
@@ -200,7 +214,7 @@ impl Service {
             .saturating_add(side.saturating_mul(side));
         let place = caller.place()?;
         let permit = self.streams.admit()?;
-        Ok(permit.with(place, self.budget.hold(held)?))
+        Ok(permit.with(place, self.hold(held)?))
     }
 
     /// Plans a query that is to be answered with its points.
@@ -209,6 +223,9 @@ impl Service {
     /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
     pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
         let planned = self.count(query).await?;
+        if let Some(record) = Record::current() {
+            record.take_lane(effort::block_lane(&planned));
+        }
         let limit = caller.max_points(self.limits.max_points);
         let count = planned.count();
         if count > u128::from(limit) {
@@ -223,7 +240,32 @@ impl Service {
     /// As [`Planned::split`].
     pub async fn split(&self, planned: Planned, parts: u32) -> Result<Vec<(Token, u64)>, Error> {
         let split = move |stop: &Stop| planned.stopped_by(stop).split(parts);
-        self.workers.run_while_wanted(split).await?
+        self.workers.take_turn(Lane::Long, split).await?
+    }
+
+    /// Reads what a client sent, of so many bytes: at once if they are few, else on the workers.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if reading panicked.
+    pub async fn read<T: Send + 'static>(
+        self: &Arc<Self>,
+        bytes: usize,
+        read: impl FnOnce(&Self) -> T + Send + 'static,
+    ) -> Result<T, Error> {
+        /// Reading this much takes as long as handing it over.
+        const FEW: usize = 4 << 10;
+        /// Reading this much takes milliseconds.
+        const MANY: usize = 64 << 10;
+        if bytes <= FEW {
+            return Ok(read(self));
+        }
+        let lane = if bytes <= MANY {
+            Lane::Short
+        } else {
+            Lane::Long
+        };
+        let service = self.clone();
+        self.workers.take_turn(lane, move |_| read(&service)).await
     }
 
     /// Lays a set into the world, to ask for single points.
@@ -289,6 +331,7 @@ impl Service {
         I: Iterator + Send + 'static,
         I::Item: Send,
     {
-        BlockStream::new(items, permit, self.workers.clone())
+        let lane = Record::current().map_or(Lane::Short, |record| record.lane());
+        BlockStream::new(items, permit, self.workers.clone(), lane)
     }
 }

@@ -25,7 +25,7 @@ use tokio_util::{sync::CancellationToken, task::AbortOnDropHandle};
 use super::{
     identity,
     metrics::{Metrics, OfSpans},
-    often::Often,
+    throttle::LogThrottle,
     tls::certificates,
 };
 use crate::config;
@@ -148,7 +148,7 @@ impl Collector {
             exporter,
             queue,
             counted: counted.clone(),
-            failed: Often::default(),
+            failed: LogThrottle::default(),
         };
         let task = AbortOnDropHandle::new(tokio::spawn(task.run(stop.clone())));
         let spans = Spans {
@@ -194,7 +194,7 @@ pub(super) struct Spans {
     sender: mpsc::Sender<SpanData>,
     sample_ratio: f64,
     counted: Arc<OfSpans>,
-    full: Arc<Often>,
+    full: Arc<LogThrottle>,
 }
 
 impl Spans {
@@ -212,7 +212,7 @@ impl Spans {
         };
         if self.sender.try_send(span).is_err() {
             self.counted.lost.increment(1);
-            if let Some(spans) = self.full.once_more() {
+            if let Some(spans) = self.full.record() {
                 tracing::warn!(
                     spans,
                     "lost: the collector takes spans slower than they come"
@@ -244,7 +244,7 @@ struct Task {
     exporter: SpanExporter,
     queue: mpsc::Receiver<SpanData>,
     counted: Arc<OfSpans>,
-    failed: Often,
+    failed: LogThrottle,
 }
 
 impl Task {
@@ -274,7 +274,7 @@ impl Task {
             Ok(()) => self.counted.sent.increment(spans),
             Err(error) => {
                 self.counted.lost.increment(spans);
-                if let Some(times) = self.failed.once_more() {
+                if let Some(times) = self.failed.record() {
                     tracing::warn!(%error, times, "spans could not be sent to the collector");
                 }
             }
