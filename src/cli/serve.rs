@@ -54,9 +54,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         .enable_all()
         .build()
         .context("cannot start the runtime")?;
-    runtime.block_on(serve(app, listener, scheme))?;
-    Ok(())
+    let served = runtime.block_on(serve(app, listener, scheme));
+    // A thread that waits for a file system that hangs must not keep the process.
+    runtime.shutdown_timeout(LAST_WORK);
+    Ok(served?)
 }
+
+/// The time for what still runs when the daemon has stopped.
+const LAST_WORK: std::time::Duration = std::time::Duration::from_secs(1);
 
 fn bind(listen: SocketAddr) -> anyhow::Result<TcpListener> {
     TcpListener::bind(listen).map_err(|error| match error.kind() {

@@ -49,6 +49,8 @@ pub struct Config {
     pub limits: Limits,
     /// What one address may use.
     pub per_address: AddressLimits,
+    /// When files are read again.
+    pub reload: Reload,
     /// Who makes points.
     pub workers: Workers,
     /// How to stop.
@@ -133,8 +135,6 @@ pub struct Tables {
     pub embedded: bool,
     /// A folder with more; empty for none.
     pub folder: PathBuf,
-    /// How often the folder is looked at for changes, in seconds; 0 for never.
-    pub watch_seconds: f64,
 }
 
 impl Tables {
@@ -143,6 +143,14 @@ impl Tables {
     pub fn folder(&self) -> Option<&Path> {
         Some(self.folder.as_path()).filter(|folder| !folder.as_os_str().is_empty())
     }
+}
+
+/// When files are read again.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reload {
+    /// The time between two looks at the files, in seconds; 0 for never.
+    pub watch_seconds: f64,
 }
 
 /// Who makes points.

@@ -19,7 +19,8 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         log,
         metrics: _,
         telemetry,
-        tables,
+        reload,
+        tables: _,
     } = config;
     let mut faults = vec![];
     let mut within = |key: &str, value: f64, min: f64, max: f64| {
@@ -95,14 +96,13 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         0.1 * second,
         365.0 * day,
     );
-    within("tls.watch_seconds", tls.watch_seconds, 0.0, day);
     within(
         "http.cache_seconds",
         f64::from(http.cache_seconds),
         0.0,
         365.0 * day,
     );
-    within("tables.watch_seconds", tables.watch_seconds, 0.0, day);
+    within("reload.watch_seconds", reload.watch_seconds, 0.0, day);
     within("rate.points_per_second", rate.points_per_second, 0.0, 1e15);
     within("rate.burst_points", rate.burst_points, 0.0, 1e15);
     within("rate.max_clients", rate.max_clients as f64, 64.0, 1e7);

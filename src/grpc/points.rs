@@ -3,7 +3,8 @@
 use std::{pin::Pin, sync::Arc};
 
 use futures_util::{Stream, TryStreamExt as _, stream};
-use strew_core::ALGORITHM_VERSION;
+use prost::Message as _;
+use strew_core::{ALGORITHM_VERSION, server::Stop};
 use tonic::{Request, Response, Status};
 
 use super::{
@@ -21,7 +22,7 @@ use super::{
 };
 use crate::access::Caller;
 use crate::service::{
-    Error, Fault, Record, Service, considered,
+    Error, Fault, Neighbors, Query, Record, Service, considered,
     query::{SetDraft, check_parts},
 };
 
@@ -36,6 +37,19 @@ impl Points {
         Self { service }
     }
 
+    /// The checked query of a request.
+    async fn read(&self, request: &StreamPointsRequest) -> Result<(Query, Encoding), Error> {
+        /// A shorter query is checked as fast as it is handed over.
+        const SHORT: usize = 4 << 10;
+        let bytes = request.encoded_len();
+        if bytes <= SHORT {
+            return query::query(request, &self.service);
+        }
+        let request = request.clone();
+        let read = move |service: &Service| query::query(&request, service);
+        self.service.process(bytes, read).await?
+    }
+
     /// The answer of messages, which tonic has to compress, or of frames that are sent as they are.
     async fn stream(
         &self,
@@ -43,7 +57,7 @@ impl Points {
         request: &StreamPointsRequest,
         is_compressed: bool,
     ) -> Result<Response<MessageStream>, Error> {
-        let (query, encoding) = query::query(request, &self.service)?;
+        let (query, encoding) = self.read(request).await?;
         let permit = self.service.admit(caller, None)?;
         let planned = self.service.plan(caller, query).await?;
         caller.charge(considered(&planned))?;
@@ -67,7 +81,7 @@ impl Points {
     }
 
     async fn count(&self, request: &StreamPointsRequest) -> Result<CountPointsResponse, Error> {
-        let (query, encoding) = query::query(request, &self.service)?;
+        let (query, encoding) = self.read(request).await?;
         let planned = self.service.count(query).await?;
         Ok(CountPointsResponse {
             count: u64::try_from(planned.count()).unwrap_or(u64::MAX),
@@ -81,7 +95,7 @@ impl Points {
         request: &StreamPointsRequest,
         parts: u32,
     ) -> Result<SplitPointsResponse, Error> {
-        let (query, _) = query::query(request, &self.service)?;
+        let (query, _) = self.read(request).await?;
         let planned = self.service.count(query).await?;
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
         let places = self.service.split(planned, parts).await?;
@@ -113,8 +127,11 @@ impl Points {
         let around = around.map_err(|()| Error::Internal("a fault is lost"))?;
         let placed = self.service.place(set).await?;
         let set = Some(resolved::placed(&placed));
-        let search = move || placed.nearest(around);
-        let found = self.service.workers().run(search).await??;
+        let effort = Neighbors::of(&placed, &around);
+        let _held = self.service.hold(effort.bytes)?;
+        let search = move |_: &Stop| placed.nearest(around);
+        let found = self.service.workers().take_turn(effort.lane, search);
+        let found = found.await??;
         caller.charge(found.len() as u128)?;
         Ok(FindNearestResponse {
             neighbors: found.into_iter().map(single::point).collect(),

@@ -93,6 +93,7 @@ impl App {
         let reloader = Reloader::new(
             service.clone(),
             gate.clone(),
+            tls.clone(),
             folder.map(Into::into),
             metrics.clone(),
         );
@@ -173,15 +174,6 @@ impl App {
         let readiness = Readiness::default();
         let (router, grpc_health) = self.router(readiness.clone()).await?;
         let listener = asynchronous(listener)?;
-        let _fresh = match self.tls.clone() {
-            Some(tls) => {
-                let hangups = Hangups::new()?;
-                Some(AbortOnDropHandle::new(tokio::spawn(
-                    tls.keep_fresh(hangups),
-                )))
-            }
-            None => None,
-        };
         let handshakes = self.metrics.failed_handshakes();
         let server = &self.config.server;
         let admins = Connections::new(server, self.tls.clone(), None, handshakes.clone());
@@ -229,12 +221,10 @@ impl App {
         Ok(broken)
     }
 
-    /// Looks for changes of tables and keys for as long as the handle is held.
+    /// Watches files while the handle is held.
     fn watch(&mut self) -> AbortOnDropHandle<()> {
-        let seconds = self.config.tables.watch_seconds;
-        let has_keys = self.config.access.keys_file().is_some();
-        let has_files = has_keys || self.config.tables.folder().is_some();
-        let is_looked_for = seconds > 0.0 && has_files;
+        let seconds = self.config.reload.watch_seconds;
+        let is_looked_for = seconds > 0.0 && self.reloader.has_files();
         let every = is_looked_for.then(|| config::seconds(seconds));
         let hangups = self.hangups.take();
         let reloader = self.reloader.clone();

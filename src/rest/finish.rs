@@ -9,7 +9,7 @@ use axum::{
     middleware::{self, Next},
     response::Response,
 };
-use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
+use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Version, header};
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -69,7 +69,8 @@ async fn finish_answer(State(finish): State<Finish>, request: Request, next: Nex
     let is_head = *method == Method::HEAD;
     let origin = headers.get(header::ORIGIN).cloned();
     let accept = picked(headers, &header::ACCEPT_ENCODING);
-    let mut response = match too_long(&request, finish.head_bytes) {
+    let refusal = too_long(&request, finish.head_bytes).or_else(|| wrong_host(&request));
+    let mut response = match refusal {
         Some(refusal) => refusal,
         None => next.run(request).await,
     };
@@ -93,6 +94,14 @@ fn picked(headers: &HeaderMap, name: &HeaderName) -> HeaderMap {
 fn is_grpc(headers: &HeaderMap) -> bool {
     let content_type = headers.get(header::CONTENT_TYPE).map(HeaderValue::as_bytes);
     content_type.is_some_and(|value| value.starts_with(b"application/grpc"))
+}
+
+/// The refusal of a request of HTTP/1.1 without one `Host` (RFC 9112, 3.2).
+fn wrong_host(request: &Request) -> Option<Response> {
+    let hosts = request.headers().get_all(header::HOST).iter().count();
+    let is_wrong = request.version() == Version::HTTP_11 && hosts != 1;
+    let detail = || format!("it has {hosts} lines `Host`; allowed: exactly one");
+    is_wrong.then(|| Problem::of_status(StatusCode::BAD_REQUEST, detail()))
 }
 
 /// The refusal of a request whose head is too long. (What is much too long never gets here: the

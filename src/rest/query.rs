@@ -84,7 +84,7 @@ pub(super) async fn read(service: &Arc<Service>, body: Bytes) -> Result<(Query, 
             .check(&service.catalog(), most_vertices, body.faults)?;
         Ok((query, body.options))
     };
-    service.read(bytes, read).await?
+    service.process(bytes, read).await?
 }
 
 /// Everything is in the body.

@@ -10,6 +10,7 @@ use axum::{
 use http::{HeaderMap, Method, Uri};
 use serde::Serialize;
 use serde_json::{Value, json};
+use strew_core::server::Stop;
 
 use super::{
     api::{self, Endpoint, Operation, schemas},
@@ -18,7 +19,7 @@ use super::{
 };
 use crate::access::Caller;
 use crate::service::{
-    Error, Found, Kind, Placed, Service,
+    Error, Found, Kind, Neighbors, Placed, Service,
     query::{Parameter, Parameters, ResolvedSet, SET_NAMES, Shape, parse_pairs},
 };
 
@@ -139,15 +140,19 @@ async fn around(
     let set = parameters.check_set(&service.catalog(), &["at", "k", "radius"], faults)?;
     let around = around.map_err(|()| Error::Internal("a fault is lost"))?;
     let placed = service.place(set).await?;
-    let finder = placed.clone();
-    let search = move || finder.nearest(around);
-    let neighbors = service.workers().run(search).await??;
-    caller.charge(neighbors.len() as u128)?;
-    let several = Several {
-        neighbors,
-        query: placed.resolved.clone(),
+    let effort = Neighbors::of(&placed, &around);
+    let _held = service.hold(effort.bytes)?;
+    // Thousands of points are written where they are found, not where sockets are served.
+    let answer = move |_: &Stop| {
+        let neighbors = placed.nearest(around)?;
+        caller.charge(neighbors.len() as u128)?;
+        let several = Several {
+            neighbors,
+            query: placed.resolved.clone(),
+        };
+        finished(&uri, &headers, &parameters, &placed, &several)
     };
-    finished(&uri, &headers, &parameters, &placed, &several)
+    service.workers().take_turn(effort.lane, answer).await?
 }
 
 /// A document that changes with the table only.

@@ -78,20 +78,29 @@ async fn post(
         return Err(Error::Invalid(faults));
     };
     let (query, _) = query::read(&service, body.clone()).await?;
-    let mut asked: Map<String, Value> = serde_json::from_slice(&body)
-        .map_err(|_| Error::Internal("a body that was read is gone"))?;
-    asked.remove("offset");
     let planned = service.count(query).await?;
     let count = planned.count();
     let places = service.split(planned, parts).await?;
-    let part = |(token, count): (crate::service::Token, u64)| {
-        let mut query = asked.clone();
-        query.insert("cursor".into(), token.to_string().into());
-        query.insert("limit".into(), count.into());
-        Part { count, query }
+    // Each part repeats the body, in memory and in the answer.
+    let bytes = places.len().saturating_mul(body.len() + PART_BYTES);
+    let _held = service.hold(bytes.saturating_mul(3))?;
+    let write = move |_: &Service| {
+        let mut asked: Map<String, Value> = serde_json::from_slice(&body)
+            .map_err(|_| Error::Internal("a body that was read is gone"))?;
+        asked.remove("offset");
+        let part = |(token, count): (crate::service::Token, u64)| {
+            let mut query = asked.clone();
+            query.insert("cursor".into(), token.to_string().into());
+            query.insert("limit".into(), count.into());
+            Part { count, query }
+        };
+        document::json(&Split {
+            count,
+            parts: places.into_iter().map(part).collect(),
+        })
     };
-    document::json(&Split {
-        count,
-        parts: places.into_iter().map(part).collect(),
-    })
+    service.process(bytes, write).await?
 }
+
+/// What a part takes besides the body: a cursor, a limit, a count.
+const PART_BYTES: usize = 512;

@@ -5,10 +5,11 @@
 use strew_core::{Area, PointSet, Region, Spacing, Warp, server};
 
 use super::{
-    Lane, Planned, PlannedSet,
+    Lane, Placed, Planned, PlannedSet,
     cache::Ready,
     planner::{self, COUNTS},
-    query::{Amount, Query, Set},
+    query::{Amount, Around, Query, Set},
+    single::MOST_WITHIN,
 };
 
 /// About how many lattice units a mean spacing has.
@@ -92,6 +93,42 @@ pub(super) fn block_lane(planned: &Planned) -> Lane {
         block / set.keep.get() > SHORT_BLOCK
     });
     if is_long { Lane::Long } else { Lane::Short }
+}
+
+/// What a search for neighbors takes, known before it begins.
+#[derive(Clone, Copy, Debug)]
+pub struct Neighbors {
+    /// The most bytes that the points and the answer with them hold.
+    pub bytes: usize,
+    /// Where to search.
+    pub lane: Lane,
+}
+
+impl Neighbors {
+    /// What a search among the points of a set takes.
+    #[must_use]
+    pub fn of(placed: &Placed, around: &Around) -> Self {
+        /// A point without attributes, and a value, in memory and as text.
+        const POINT: usize = 384;
+        const VALUE: usize = 160;
+        /// More points than this take milliseconds.
+        const MANY: usize = 500;
+        let within = around.radius.map_or(1.0, |radius| {
+            // The disk and its rim, generously.
+            let across = radius * placed.resolved.density.sqrt() + 2.0;
+            across * across * 4.0
+        });
+        let most = around.k.unwrap_or(MOST_WITHIN).min(MOST_WITHIN);
+        let most = match (around.k, around.radius) {
+            (Some(_), None) => most,
+            _ => most.min(within.ceil() as usize),
+        };
+        let values = placed.set.attributes.as_slice().len();
+        Self {
+            bytes: most * (POINT + values * VALUE),
+            lane: if most > MANY { Lane::Long } else { Lane::Short },
+        }
+    }
 }
 
 /// The points that are considered to make those of a plan: with `keep`, those that are thinned out,

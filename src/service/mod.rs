@@ -22,19 +22,18 @@ pub mod stream;
 mod turns;
 pub mod workers;
 
-use std::{path::PathBuf, sync::Arc};
+use std::{path::Path, sync::Arc};
 
 use arc_swap::ArcSwap;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
 use serde::{Deserialize, Serialize};
 use strew_core::server::Stop;
-use tokio::sync::Mutex;
 
 pub use budget::{Budget, Held};
 pub use cache::Ready;
 pub use catalog::{Catalog, Entry, Key, Reload};
-pub use effort::considered;
+pub use effort::{Neighbors, considered};
 pub use encode::{Answer, Encoding, Output};
 pub use error::{Error, Fault, Kind};
 pub use planned::{Placed, Planned, PlannedSet};
@@ -85,8 +84,6 @@ pub struct Limits {
 #[derive(Debug)]
 pub struct Service {
     catalog: ArcSwap<Catalog>,
-    /// Held while tables are read again, so that reloads come one after another.
-    reload: Mutex<()>,
     limits: Limits,
     samplers: Samplers,
     portraits: Portraits,
@@ -105,7 +102,6 @@ impl Service {
             streams: Arc::new(Streams::new(limits.max_streams)),
             budget: Budget::new(limits.max_bytes_in_flight),
             catalog: ArcSwap::from_pointee(catalog),
-            reload: Mutex::new(()),
             limits,
             workers,
         }
@@ -117,23 +113,20 @@ impl Service {
         self.catalog.load_full()
     }
 
-    /// Reads the folder of tables again and serves what is good in it from then on, all at once. A
-    /// file that is not good is refused, and the table that it held so far serves on.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if reading panicked; then nothing has changed.
-    pub async fn reload(&self, folder: Option<PathBuf>) -> Result<Reload, Error> {
-        let _one_at_a_time = self.reload.lock().await;
-        let before = self.catalog.load_full();
-        let read = move || before.again(folder.as_deref());
-        let (after, reload) = tokio::task::spawn_blocking(read)
-            .await
-            .map_err(|_| Error::Internal("the tables cannot be read again"))?;
+    /// Reads the folder of tables again. A file that is not valid is refused, and the table that it
+    /// held so far stays.
+    #[must_use]
+    pub fn read_tables(&self, folder: Option<&Path>) -> (Catalog, Reload) {
+        self.catalog.load().reload(folder)
+    }
+
+    /// Serves the tables that were read, all at once. Reloads come one after another.
+    pub async fn serve_tables(&self, (after, reload): (Catalog, Reload)) -> Reload {
         self.catalog.store(Arc::new(after));
         for digest in reload.gone() {
             self.samplers.forget(digest).await;
         }
-        Ok(reload)
+        reload
     }
 
     /// The limits.
@@ -243,21 +236,22 @@ impl Service {
         self.workers.take_turn(Lane::Long, split).await?
     }
 
-    /// Reads what a client sent, of so many bytes: at once if they are few, else on the workers.
+    /// Reads or writes this many bytes of a request or an answer: at once if they are few, else on the
+    /// workers.
     ///
     /// # Errors
-    /// [`Error::Internal`] if reading panicked.
-    pub async fn read<T: Send + 'static>(
+    /// [`Error::Internal`] if the job panicked.
+    pub async fn process<T: Send + 'static>(
         self: &Arc<Self>,
         bytes: usize,
-        read: impl FnOnce(&Self) -> T + Send + 'static,
+        job: impl FnOnce(&Self) -> T + Send + 'static,
     ) -> Result<T, Error> {
-        /// Reading this much takes as long as handing it over.
+        /// This much takes as long as handing it over.
         const FEW: usize = 4 << 10;
-        /// Reading this much takes milliseconds.
+        /// More than this takes milliseconds.
         const MANY: usize = 64 << 10;
         if bytes <= FEW {
-            return Ok(read(self));
+            return Ok(job(self));
         }
         let lane = if bytes <= MANY {
             Lane::Short
@@ -265,7 +259,7 @@ impl Service {
             Lane::Long
         };
         let service = self.clone();
-        self.workers.take_turn(lane, move |_| read(&service)).await
+        self.workers.take_turn(lane, move |_| job(&service)).await
     }
 
     /// Lays a set into the world, to ask for single points.

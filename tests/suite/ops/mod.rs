@@ -3,6 +3,7 @@
 //! panics, long streams, a replica that fails); and what it reports (logs, metrics, spans).
 
 mod admin;
+mod attacks;
 mod connections;
 mod hostile_clients;
 mod keys;
