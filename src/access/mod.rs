@@ -14,17 +14,14 @@ mod usage;
 
 use std::{
     net::IpAddr,
-    path::{Path, PathBuf},
     sync::Arc,
     time::{Duration, Instant},
 };
 
 use arc_swap::ArcSwap;
-use serde::{Deserialize, Serialize};
 
-use crate::config::AddressLimits;
+use crate::config::{self, Access as Settings, AddressLimits, Networks};
 
-pub use address::{NETWORKS, Networks};
 pub use bucket::{Level, Rate, Short};
 pub use caller::{Caller, Place};
 pub use keys::{KeysError, is_name};
@@ -35,57 +32,11 @@ use clients::Clients;
 use keys::Keys;
 use usage::Usages;
 
-/// Who is let in.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Settings {
-    /// A file with keys; empty for none.
-    pub keys_file: PathBuf,
-    /// Keys in the same form as in the file; empty for none.
-    pub keys: String,
-    /// Whether those without a key are let in as well, where there are keys.
-    pub anonymous: bool,
-    /// The proxies whose word is taken on where a request comes from.
-    pub trusted_proxies: String,
-}
-
-impl Settings {
-    /// The file with keys, if there is one.
-    #[must_use]
-    pub fn keys_file(&self) -> Option<&Path> {
-        Some(self.keys_file.as_path()).filter(|file| !file.as_os_str().is_empty())
-    }
-
-    /// Whether there are keys.
-    #[must_use]
-    pub fn has_keys(&self) -> bool {
-        self.keys_file().is_some() || !self.keys.is_empty()
-    }
-
-    /// Whether nobody is let in without a key.
-    #[must_use]
-    pub fn needs_key(&self) -> bool {
-        self.has_keys() && !self.anonymous
-    }
-}
-
-/// How fast points may be taken, by each client.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RateSettings {
-    /// Points per second; 0 for no limit.
-    pub points_per_second: f64,
-    /// How many may be taken at once after a rest; 0 for those of ten seconds.
-    pub burst_points: f64,
-    /// How many addresses are remembered.
-    pub max_clients: usize,
-}
-
-impl RateSettings {
-    fn rate(&self) -> Option<Rate> {
-        let burst = Some(self.burst_points).filter(|burst| *burst > 0.0);
-        (self.points_per_second > 0.0).then(|| Rate::new(self.points_per_second, burst))
-    }
+/// The rate that the settings name, if they name one.
+fn rate_of(settings: &config::Rate) -> Option<Rate> {
+    let burst = Some(settings.burst_points).filter(|burst| *burst > 0.0);
+    let per_second = settings.points_per_second;
+    (per_second > 0.0).then(|| Rate::new(per_second, burst))
 }
 
 /// Why someone is not let in, or not now.
@@ -178,11 +129,11 @@ impl Gate {
     /// [`KeysError`], naming the place and the key.
     pub fn new(
         settings: Settings,
-        rate: &RateSettings,
+        rate: &config::Rate,
         addresses: AddressLimits,
     ) -> Result<Self, KeysError> {
         let most = rate.max_clients;
-        let rate = rate.rate();
+        let rate = rate_of(rate);
         Ok(Self {
             // Settings are checked before.
             proxies: Networks::read(&settings.trusted_proxies).unwrap_or_default(),
@@ -217,7 +168,7 @@ impl Gate {
         peer: IpAddr,
         forwarded: impl DoubleEndedIterator<Item = &'a [u8]>,
     ) -> IpAddr {
-        self.proxies.client(peer, forwarded)
+        address::client(&self.proxies, peer, forwarded)
     }
 
     /// What an address uses. Trusted proxies, which speak for many clients, have no limits.

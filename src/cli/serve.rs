@@ -22,7 +22,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged()?;
     telemetry::start(&config.log.filter, config.log.format).context("log.filter")?;
     let listen = config.server.listen;
-    let admin = config.admin.address().context("admin.listen")?;
+    let admin = config
+        .admin
+        .address()
+        .map_err(|problem| anyhow!("admin.listen: {problem}"))?;
     if let Some(warning) = exposure::warning(&config) {
         tracing::warn!("{warning}");
     }

@@ -1,7 +1,6 @@
 //! The ranges of settings.
 
-use super::{Config, ConfigError};
-use crate::access::{NETWORKS, Networks};
+use super::{Config, ConfigError, NETWORKS, Networks};
 
 /// Checks every setting; reports all that are out of range.
 pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
@@ -170,10 +169,14 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         ));
     }
     if let Err(error) = admin.address() {
+        faults.push(format!("admin.listen: {error}, or nothing"));
+    }
+    let wrong = http.origins().find(|origin| !is_origin(origin));
+    if let Some(origin) = wrong.filter(|_| http.cors_origins.trim() != "*") {
         faults.push(format!(
-            "admin.listen = {:?}: {error}; allowed: an address and a port, such as 127.0.0.1:8081, or \
-             nothing",
-            admin.listen
+            "http.cors_origins = {:?}: {origin:?} is not an origin; allowed: * or origins such as \
+             https://a.example and http://localhost:3000, with spaces or commas between them",
+            http.cors_origins
         ));
     }
     let is_set = |path: &std::path::Path| !path.as_os_str().is_empty();
@@ -199,4 +202,17 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     } else {
         Err(ConfigError::OutOfRange { faults })
     }
+}
+
+/// Whether a text is an origin as browsers send it: a scheme, a host, perhaps a port.
+fn is_origin(text: &str) -> bool {
+    let Some((scheme, authority)) = text.split_once("://") else {
+        return false;
+    };
+    let is_scheme = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);
+    let is_host = |c: char| c.is_ascii_alphanumeric() || "-._[]:".contains(c);
+    !scheme.is_empty()
+        && scheme.chars().all(is_scheme)
+        && !authority.is_empty()
+        && authority.chars().all(is_host)
 }

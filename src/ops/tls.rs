@@ -14,37 +14,9 @@ use rustls::{
     pki_types::{CertificateDer, PrivateKeyDer, pem::PemObject as _},
     server::{WebPkiClientVerifier, danger::ClientCertVerifier},
 };
-use serde::{Deserialize, Serialize};
 use tokio_rustls::TlsAcceptor;
 
-use crate::bounded_file;
-
-/// Which certificates, if any.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Settings {
-    /// A PEM file with the server's certificate and those that vouch for it; empty for no TLS.
-    pub certificate: PathBuf,
-    /// A PEM file with the certificate's private key.
-    pub key: PathBuf,
-    /// A PEM file with the authorities that vouch for clients; empty if clients need not prove who
-    /// they are.
-    pub client_ca: PathBuf,
-}
-
-impl Settings {
-    /// Whether TLS is spoken.
-    #[must_use]
-    pub fn is_on(&self) -> bool {
-        !self.certificate.as_os_str().is_empty()
-    }
-
-    /// Whether clients have to show a certificate.
-    #[must_use]
-    pub fn proves_clients(&self) -> bool {
-        self.is_on() && !self.client_ca.as_os_str().is_empty()
-    }
-}
+use crate::{bounded_file, config::Tls as Settings};
 
 /// What is wrong with a certificate, or a file of them.
 #[derive(Debug, thiserror::Error)]

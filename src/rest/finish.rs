@@ -10,7 +10,6 @@ use axum::{
     response::Response,
 };
 use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Version, header};
-use serde::{Deserialize, Serialize};
 
 use super::{
     coding,
@@ -18,18 +17,7 @@ use super::{
     freshness, harden,
     problem::{self, Problem},
 };
-use crate::service::Service;
-
-/// How HTTP answers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Settings {
-    /// The origins of pages that may ask: `*` for all, else origins with spaces or commas between
-    /// them.
-    pub cors_origins: String,
-    /// How long an answer may be kept that a restart with other tables could change, in seconds.
-    pub cache_seconds: u32,
-}
+use crate::{config::Http, service::Service};
 
 /// What finishing needs.
 #[derive(Clone, Debug)]
@@ -46,7 +34,7 @@ struct Finish {
 /// that are private are not kept by caches that several clients share.
 pub fn finished(
     router: Router,
-    settings: &Settings,
+    settings: &Http,
     head_bytes: u32,
     is_private: bool,
     service: Arc<Service>,

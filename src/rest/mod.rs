@@ -33,7 +33,7 @@ use http::StatusCode;
 
 use crate::service::{Error, Service};
 use api::Endpoint;
-pub use finish::{Settings, finished};
+pub use finish::finished;
 use problem::Problem;
 
 /// The endpoints of REST, without their description.

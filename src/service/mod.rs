@@ -27,7 +27,7 @@ use std::{path::Path, sync::Arc};
 use arc_swap::ArcSwap;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
-use serde::{Deserialize, Serialize};
+
 use strew_core::server::Stop;
 
 pub use budget::{Budget, Held};
@@ -44,41 +44,12 @@ pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
 pub use workers::{Lane, Workers};
 
+pub use crate::config::Limits;
+
 use crate::access::Caller;
 use cache::{CacheState, Samplers};
 use portrait::Portraits;
 use record::Recorded;
-
-/// What a query may ask for, and what answering may hold.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Limits {
-    /// The most points of one answer. Keeps a slip of a zero from filling a disk; the refusal says
-    /// the exact count.
-    pub max_points: u64,
-    /// The most lattice rows that are counted one by one, where a region is not a box or is warped
-    /// (about three for each mean spacing of its outline's width and height, and of its height), and
-    /// points that keep clear of others. They take about a microsecond each before the first point.
-    pub max_rows: u64,
-    /// The most vertices that the polygons of a query have in all: bounds its memory.
-    pub max_vertices: usize,
-    /// The most bytes of a query that comes as a body or a message: bounds what is held of each before it is
-    /// read.
-    pub max_body_bytes: usize,
-    /// The most requests that are being answered at once: read, counted, planned. Bounds what waits
-    /// for the workers.
-    pub max_requests: usize,
-    /// The most bytes that requests and answers hold at once: bodies that have come, answers that have
-    /// not left, and what streams are made in.
-    pub max_bytes_in_flight: usize,
-    /// The most answers under way at once. Bounds memory: an answer holds 1 to 3 MB,
-    /// some blocks and the rows they are made of, and a picture up to 16 MB more.
-    pub max_streams: usize,
-    /// The size of a block before it is encoded, in bytes.
-    pub block_bytes: usize,
-    /// The most memory for samplers that are ready to answer, in bytes.
-    pub cache_bytes: u64,
-}
 
 /// Everything a front end needs. Cheap to share behind an [`Arc`].
 #[derive(Debug)]

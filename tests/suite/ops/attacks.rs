@@ -187,7 +187,7 @@ fn an_address_takes_no_more_than_its_share() {
         "per_address.max_streams=3",
         "per_address.max_connections=8",
         "server.max_connections=12",
-        "limits.max_streams=4",
+        "limits.max_streams=6",
     ]);
     let path = long("f32");
     let status = |mut stream: TcpStream| {
