@@ -1,4 +1,4 @@
-//! What every error is on the wire, for both doors, in one place.
+//! The status of every error in both protocols.
 
 use http::StatusCode;
 use tonic::Code;
@@ -156,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_kind_is_an_error_by_both_doors_and_has_a_type_of_its_own() {
+    fn every_kind_is_an_error_by_both_protocols_and_has_a_type_of_its_own() {
         let slugs: BTreeSet<_> = Kind::ALL.iter().map(|&kind| http(kind).slug).collect();
         assert_eq!(slugs.len(), Kind::ALL.len());
         for kind in Kind::ALL {
@@ -169,7 +169,7 @@ mod tests {
             assert!(!problem.title.is_empty(), "{kind:?}");
             let code = grpc(kind);
             assert!(code != Code::Ok && code != Code::Unknown, "{kind:?}");
-            // Whose fault it is does not depend on the door.
+            // Whose fault it is does not depend on the protocol.
             let ours = matches!(
                 code,
                 Code::Internal | Code::Unavailable | Code::ResourceExhausted

@@ -60,7 +60,7 @@ pub fn readers(effort: Effort) {
     let daemon = process::start(&[
         "limits.max_streams=300",
         "per_address.max_streams=300",
-        "per_address.max_bytes_in_flight=1e9",
+        "per_address.max_bytes_in_flight=1000000000",
     ]);
     let mut alone = vec![];
     for _ in 0..effort.rounds {

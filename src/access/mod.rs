@@ -1,8 +1,7 @@
-//! Who may ask, and how much: keys, what each may do, how fast points may be taken.
+//! Access: keys and what each allows, rates in points, what each address uses.
 //!
-//! The doors find in a request what its client shows and where it comes from; [`Gate::admit`] says
-//! who that is. The [`Caller`] goes along with the request, and whoever answers asks it what is
-//! allowed. Nothing here knows a wire.
+//! REST and gRPC pass the key and the address of a request to [`Gate::admit`], which returns the
+//! [`Caller`]. It travels with the request and decides what is allowed. Nothing here knows a protocol.
 
 mod address;
 mod bucket;

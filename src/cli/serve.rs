@@ -26,7 +26,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         .admin
         .address()
         .map_err(|problem| anyhow!("admin.listen: {problem}"))?;
-    if let Some(warning) = exposure::warning(&config) {
+    for warning in [exposure::warning(&config), exposure::readable_keys(&config)]
+        .into_iter()
+        .flatten()
+    {
         tracing::warn!("{warning}");
     }
     let wanted = config.server.max_connections;

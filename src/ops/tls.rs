@@ -3,6 +3,8 @@
 //! Certificates are read again by [`reload`](super::reload). New ones serve new connections; open
 //! connections go on with those they began with.
 
+mod expiry;
+
 use std::{
     path::{Path, PathBuf},
     sync::{Arc, PoisonError, RwLock},
@@ -162,6 +164,11 @@ impl Files {
         // Named, lest a second provider somewhere in the program make the choice ambiguous.
         let provider = Arc::new(default_provider());
         let chain = certificates(&self.certificate).map_err(of_certificate)?;
+        for certificate in &chain {
+            if let Some(warning) = expiry::warning(certificate) {
+                tracing::warn!(path = %settings.certificate.display(), "{warning}");
+            }
+        }
         let key = PrivateKeyDer::from_pem_slice(&self.key)
             .map_err(|error| of_key(format!("it holds no private key in PEM: {error}")))?;
         let builder = ServerConfig::builder_with_provider(provider.clone())

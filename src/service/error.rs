@@ -1,7 +1,6 @@
 //! What can go wrong with a question, in words for the one who asked.
 //!
-//! One type for all of it, whatever the door: what each becomes on the wire stands in
-//! [`error_map`](crate::error_map). Text here is for clients; what only operators should see goes
+//! One type for both protocols; [`error_map`](crate::error_map) has the status of each. Text here is for clients; what only operators should see goes
 //! to the log where it happens.
 
 use std::fmt;

@@ -1,8 +1,8 @@
 //! What is learned of an answer while it is made, for the log and the metrics.
 //!
-//! Whoever serves requests makes a [`Record`] for each and answers within its scope; the code that
-//! answers writes down what only it knows: the format, the points, why it refused. Doors stay free of
-//! counters this way, and what a door forgets to say shows as missing, not as wrong.
+//! The server makes a [`Record`] for each request and answers within its scope. The code that answers
+//! writes down what only it knows: the format, the points, the reason of a refusal. So REST and gRPC
+//! need no counters. The record also has the byte budget of the request and the lane of its work.
 
 use std::sync::{
     Arc, OnceLock,

@@ -1,4 +1,4 @@
-//! What the REST door offers, said once: an [`Endpoint`] is a path with its handlers and their
+//! What REST offers, in one place: an [`Endpoint`] is a path with its handlers and their
 //! description, so nothing is routed that `/openapi.json` does not tell.
 //!
 //! To add a path, write a module with `pub(super) fn endpoint(service) -> Endpoint` and list it in

@@ -113,7 +113,7 @@ fn readers_that_never_read_take_little_memory_and_others_are_served() {
     let daemon = Daemon::start(&[
         "limits.max_streams=200",
         "per_address.max_streams=200",
-        "per_address.max_bytes_in_flight=1e9",
+        "per_address.max_bytes_in_flight=1000000000",
     ]);
     assert_eq!(daemon.get(SMALL).status, 200);
     let before = daemon.memory_kib("VmRSS");

@@ -5,6 +5,8 @@
 mod admin;
 mod attacks;
 mod connections;
+mod fairness;
+mod files;
 mod hostile_clients;
 mod keys;
 mod limits;

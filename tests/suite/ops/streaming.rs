@@ -55,7 +55,7 @@ fn a_billion_points_to_slow_readers_take_little_memory() {
 fn vanished_clients_leave_nothing_running() {
     let daemon = Daemon::start(&[
         "per_address.max_streams=100",
-        "per_address.max_bytes_in_flight=1e9",
+        "per_address.max_bytes_in_flight=1000000000",
     ]);
     let mut readers: Vec<_> = (0..100)
         .map(|i| {
