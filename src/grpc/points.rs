@@ -128,8 +128,11 @@ impl Points {
         let placed = self.service.place(set).await?;
         let set = Some(resolved::placed(&placed));
         let effort = Neighbors::of(&placed, &around);
-        let _held = self.service.hold(effort.bytes)?;
-        let search = move |_: &Stop| placed.nearest(around);
+        let budget = self.service.own_budget();
+        let search = move |_: &Stop| {
+            let _held = budget.hold(effort.bytes)?;
+            placed.nearest(around)
+        };
         let found = self.service.workers().take_turn(effort.lane, search);
         let found = found.await??;
         caller.charge(found.len() as u128)?;

@@ -141,9 +141,10 @@ async fn around(
     let around = around.map_err(|()| Error::Internal("a fault is lost"))?;
     let placed = service.place(set).await?;
     let effort = Neighbors::of(&placed, &around);
-    let _held = service.hold(effort.bytes)?;
+    let budget = service.own_budget();
     // Thousands of points are written where they are found, not where sockets are served.
     let answer = move |_: &Stop| {
+        let _held = budget.hold(effort.bytes)?;
         let neighbors = placed.nearest(around)?;
         caller.charge(neighbors.len() as u128)?;
         let several = Several {

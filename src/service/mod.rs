@@ -129,15 +129,19 @@ impl Service {
         &self.budget
     }
 
+    /// The byte budget of the request that is being answered.
+    #[must_use]
+    pub fn own_budget(&self) -> Budget {
+        let record = Record::current();
+        record.map_or_else(|| self.budget.clone(), |record| record.budget().clone())
+    }
+
     /// Takes bytes of the budget for the request that is being answered.
     ///
     /// # Errors
     /// As [`Budget::hold`].
     pub fn hold(&self, bytes: usize) -> Result<Held, Error> {
-        match Record::current() {
-            Some(record) => record.budget().hold(bytes),
-            None => self.budget.hold(bytes),
-        }
+        self.own_budget().hold(bytes)
     }
 
     /// Plans a query on the workers, whatever it counts.
