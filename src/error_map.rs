@@ -49,6 +49,7 @@ kinds! {
     Unauthenticated: "unauthenticated", "A key is needed", UNAUTHORIZED, Unauthenticated;
     NotAllowed: "not-allowed", "The caller may not do this", FORBIDDEN, PermissionDenied;
     TooManyStreams: "too-many-streams", "Too many current streams", TOO_MANY_REQUESTS, ResourceExhausted;
+    TooManyForAddress: "too-many-for-address", "The client's address uses as much as one address may", TOO_MANY_REQUESTS, ResourceExhausted;
     TooFast: "too-fast", "Points are taken too fast", TOO_MANY_REQUESTS, ResourceExhausted;
     Busy: "busy", "The server is busy", SERVICE_UNAVAILABLE, ResourceExhausted;
     BodyTooSlow: "body-too-slow", "The query arrived too slowly", REQUEST_TIMEOUT, DeadlineExceeded;

@@ -8,6 +8,7 @@
 //! - [`config`] holds the settings, [`error_map`] maps each error to its status on both protocols.
 
 pub mod access;
+mod bounded_file;
 pub mod cli;
 pub mod config;
 pub mod error_map;

@@ -57,7 +57,11 @@ pub fn readers(effort: Effort) {
     } else {
         (256, Duration::from_secs(1))
     };
-    let daemon = process::start(&["limits.max_streams=300"]);
+    let daemon = process::start(&[
+        "limits.max_streams=300",
+        "per_address.max_streams=300",
+        "per_address.max_bytes_in_flight=1000000000",
+    ]);
     let mut alone = vec![];
     for _ in 0..effort.rounds {
         alone.push(fast(&daemon, time));

@@ -9,7 +9,7 @@ use std::{
 };
 
 use super::{
-    Denied,
+    Denied, InUse, Usage,
     bucket::{Bucket, Level},
 };
 
@@ -24,6 +24,8 @@ pub struct Caller {
     pub(super) max_points: Option<u64>,
     pub(super) places: Option<Arc<Places>>,
     pub(super) bucket: Option<Arc<Bucket>>,
+    /// What its address uses.
+    pub(super) usage: Option<Arc<Usage>>,
 }
 
 /// How many streams a key may have at once, and has.
@@ -33,15 +35,18 @@ pub(super) struct Places {
     pub(super) open: Arc<AtomicUsize>,
 }
 
-/// A place for one stream; given back when dropped.
+/// A place for one stream, of the key and of the address; given back when dropped.
 #[derive(Debug)]
 pub struct Place {
-    open: Arc<AtomicUsize>,
+    open: Option<Arc<AtomicUsize>>,
+    _address: Option<InUse>,
 }
 
 impl Drop for Place {
     fn drop(&mut self) {
-        self.open.fetch_sub(1, Ordering::AcqRel);
+        if let Some(open) = &self.open {
+            open.fetch_sub(1, Ordering::AcqRel);
+        }
     }
 }
 
@@ -80,23 +85,27 @@ impl Caller {
         self.max_points.map_or(limit, |own| own.min(limit))
     }
 
-    /// A place for one more stream; none is needed where there is no limit.
+    /// A place for one more stream.
     ///
     /// # Errors
-    /// [`Denied::TooManyStreams`] if as many as allowed are under way.
-    pub fn place(&self) -> Result<Option<Place>, Denied> {
-        let Some(places) = &self.places else {
-            return Ok(None);
+    /// [`Denied::TooManyStreams`] if the key has as many as it may have, [`Denied::Address`] if the
+    /// address has.
+    pub fn place(&self) -> Result<Place, Denied> {
+        let usage = self.usage.as_ref();
+        let mut place = Place {
+            open: None,
+            _address: usage.map(Usage::stream).transpose()?,
         };
-        let limit = places.limit;
-        let more = |open: usize| (open < limit).then_some(open + 1);
-        places
-            .open
-            .fetch_update(Ordering::AcqRel, Ordering::Acquire, more)
-            .map_err(|_| Denied::TooManyStreams { limit })?;
-        Ok(Some(Place {
-            open: places.open.clone(),
-        }))
+        if let Some(places) = &self.places {
+            let limit = places.limit;
+            let more = |open: usize| (open < limit).then_some(open + 1);
+            places
+                .open
+                .fetch_update(Ordering::AcqRel, Ordering::Acquire, more)
+                .map_err(|_| Denied::TooManyStreams { limit })?;
+            place.open = Some(places.open.clone());
+        }
+        Ok(place)
     }
 
     /// Takes the points of an answer from the caller's rate.

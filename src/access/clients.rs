@@ -65,7 +65,7 @@ fn make_room(buckets: &mut HashMap<IpAddr, Arc<Bucket>>, most: usize, now: Insta
 }
 
 /// What counts as one client.
-fn client(address: IpAddr) -> IpAddr {
+pub(super) fn client(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(v6) => Ipv6Addr::from_bits(v6.to_bits() & (u128::MAX << 64)).into(),
         v4 => v4,

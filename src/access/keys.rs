@@ -12,7 +12,7 @@
 //! ```
 
 use std::{
-    fs, io,
+    io,
     path::PathBuf,
     sync::{Arc, atomic::AtomicUsize},
     time::Instant,
@@ -26,6 +26,7 @@ use super::{
     caller::{Caller, Places},
     secret::Hashed,
 };
+use crate::bounded_file;
 
 /// Why keys are not taken.
 #[derive(Debug, thiserror::Error)]
@@ -98,6 +99,9 @@ struct Key {
     open: Arc<AtomicUsize>,
 }
 
+/// The most bytes of a file of keys: some ten thousand.
+const MAX_BYTES: u64 = 4 << 20;
+
 /// All keys.
 #[derive(Debug, Default)]
 pub(super) struct Keys {
@@ -114,9 +118,11 @@ impl Keys {
     ) -> Result<Self, KeysError> {
         let mut keys = Self::default();
         if let Some(path) = settings.keys_file() {
-            let text = fs::read_to_string(path).map_err(|error| KeysError::Unreadable {
-                path: path.into(),
-                error,
+            let text = bounded_file::read_text(path, MAX_BYTES).map_err(|error| {
+                KeysError::Unreadable {
+                    path: path.into(),
+                    error,
+                }
             })?;
             keys.add(&path.display().to_string(), &text, common, before)?;
         }
@@ -203,6 +209,7 @@ impl Keys {
                 Arc::new(Places { limit, open })
             }),
             bucket,
+            usage: None,
         };
         Ok(Key { hash, caller, open })
     }

@@ -1,8 +1,7 @@
-//! Who may ask, and how much: keys, what each may do, how fast points may be taken.
+//! Access: keys and what each allows, rates in points, what each address uses.
 //!
-//! The doors find in a request what its client shows and where it comes from; [`Gate::admit`] says
-//! who that is. The [`Caller`] goes along with the request, and whoever answers asks it what is
-//! allowed. Nothing here knows a wire.
+//! REST and gRPC pass the key and the address of a request to [`Gate::admit`], which returns the
+//! [`Caller`]. It travels with the request and decides what is allowed. Nothing here knows a protocol.
 
 mod address;
 mod bucket;
@@ -10,77 +9,33 @@ mod caller;
 mod clients;
 mod keys;
 mod secret;
+mod usage;
 
 use std::{
     net::IpAddr,
-    path::{Path, PathBuf},
     sync::Arc,
     time::{Duration, Instant},
 };
 
 use arc_swap::ArcSwap;
-use serde::{Deserialize, Serialize};
 
-pub use address::{NETWORKS, Networks};
+use crate::config::{self, Access as Settings, AddressLimits, Networks};
+
 pub use bucket::{Level, Rate, Short};
 pub use caller::{Caller, Place};
 pub use keys::{KeysError, is_name};
 pub use secret::{Hashed, new_key};
+pub use usage::{InUse, Quota, Usage};
 
 use clients::Clients;
 use keys::Keys;
+use usage::Usages;
 
-/// Who is let in.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Settings {
-    /// A file with keys; empty for none.
-    pub keys_file: PathBuf,
-    /// Keys in the same form as in the file; empty for none.
-    pub keys: String,
-    /// Whether those without a key are let in as well, where there are keys.
-    pub anonymous: bool,
-    /// The proxies whose word is taken on where a request comes from.
-    pub trusted_proxies: String,
-}
-
-impl Settings {
-    /// The file with keys, if there is one.
-    #[must_use]
-    pub fn keys_file(&self) -> Option<&Path> {
-        Some(self.keys_file.as_path()).filter(|file| !file.as_os_str().is_empty())
-    }
-
-    /// Whether there are keys.
-    #[must_use]
-    pub fn has_keys(&self) -> bool {
-        self.keys_file().is_some() || !self.keys.is_empty()
-    }
-
-    /// Whether nobody is let in without a key.
-    #[must_use]
-    pub fn needs_key(&self) -> bool {
-        self.has_keys() && !self.anonymous
-    }
-}
-
-/// How fast points may be taken, by each client.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RateSettings {
-    /// Points per second; 0 for no limit.
-    pub points_per_second: f64,
-    /// How many may be taken at once after a rest; 0 for those of ten seconds.
-    pub burst_points: f64,
-    /// How many addresses are remembered.
-    pub max_clients: usize,
-}
-
-impl RateSettings {
-    fn rate(&self) -> Option<Rate> {
-        let burst = Some(self.burst_points).filter(|burst| *burst > 0.0);
-        (self.points_per_second > 0.0).then(|| Rate::new(self.points_per_second, burst))
-    }
+/// The rate that the settings name, if they name one.
+fn rate_of(settings: &config::Rate) -> Option<Rate> {
+    let burst = Some(settings.burst_points).filter(|burst| *burst > 0.0);
+    let per_second = settings.points_per_second;
+    (per_second > 0.0).then(|| Rate::new(per_second, burst))
 }
 
 /// Why someone is not let in, or not now.
@@ -110,6 +65,14 @@ pub enum Denied {
         /// The limit.
         limit: usize,
     },
+    /// The client's address uses as much as one address may.
+    #[error("{limit} {what} of this address are in use, the most at once: try again later")]
+    Address {
+        /// What it uses.
+        what: &'static str,
+        /// The limit.
+        limit: usize,
+    },
     /// The caller takes points too fast.
     #[error(
         "{points} points are more than can be taken now: {left} are left, {rate} come back every \
@@ -132,7 +95,7 @@ impl Denied {
     #[must_use]
     pub const fn wait(&self) -> Option<Duration> {
         match self {
-            Self::TooManyStreams { .. } => Some(Duration::from_secs(1)),
+            Self::TooManyStreams { .. } | Self::Address { .. } => Some(Duration::from_secs(1)),
             Self::TooFast { short, .. } => Some(short.wait),
             _ => None,
         }
@@ -155,6 +118,7 @@ pub struct Gate {
     rate: Option<Rate>,
     keys: ArcSwap<Keys>,
     clients: Option<Clients>,
+    usages: Usages,
 }
 
 impl Gate {
@@ -162,14 +126,19 @@ impl Gate {
     ///
     /// # Errors
     /// [`KeysError`], naming the place and the key.
-    pub fn new(settings: Settings, rate: &RateSettings) -> Result<Self, KeysError> {
+    pub fn new(
+        settings: Settings,
+        rate: &config::Rate,
+        addresses: AddressLimits,
+    ) -> Result<Self, KeysError> {
         let most = rate.max_clients;
-        let rate = rate.rate();
+        let rate = rate_of(rate);
         Ok(Self {
             // Settings are checked before.
             proxies: Networks::read(&settings.trusted_proxies).unwrap_or_default(),
             keys: ArcSwap::from_pointee(Keys::read(&settings, rate, &Keys::default())?),
             clients: rate.map(|rate| Clients::new(rate, most)),
+            usages: Usages::new(addresses),
             rate,
             settings,
         })
@@ -198,7 +167,16 @@ impl Gate {
         peer: IpAddr,
         forwarded: impl DoubleEndedIterator<Item = &'a [u8]>,
     ) -> IpAddr {
-        self.proxies.client(peer, forwarded)
+        address::client(&self.proxies, peer, forwarded)
+    }
+
+    /// What an address uses. Trusted proxies, which speak for many clients, have no limits.
+    #[must_use]
+    pub fn usage(&self, address: IpAddr) -> Arc<Usage> {
+        if self.proxies.contains(address) {
+            return Usage::unlimited();
+        }
+        self.usages.of(address)
     }
 
     /// Lets someone in who shows a key, or none, from an address, and takes one point from its rate
@@ -206,8 +184,13 @@ impl Gate {
     ///
     /// # Errors
     /// [`Denied`], for want of a key, or of points.
-    pub fn admit(&self, key: Option<&[u8]>, address: IpAddr) -> Result<Caller, Denied> {
-        let caller = match key.filter(|_| self.settings.has_keys()) {
+    pub fn admit(
+        &self,
+        key: Option<&[u8]>,
+        address: IpAddr,
+        usage: Arc<Usage>,
+    ) -> Result<Caller, Denied> {
+        let mut caller = match key.filter(|_| self.settings.has_keys()) {
             Some(key) => {
                 let keys = self.keys.load();
                 keys.find(key).cloned().ok_or(Denied::WrongKey)?
@@ -221,6 +204,7 @@ impl Gate {
                 ..Caller::default()
             },
         };
+        caller.usage = Some(usage);
         caller.charge_request()?;
         Ok(caller)
     }

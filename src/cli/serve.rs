@@ -22,8 +22,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged()?;
     telemetry::start(&config.log.filter, config.log.format).context("log.filter")?;
     let listen = config.server.listen;
-    let admin = config.admin.address().context("admin.listen")?;
-    if let Some(warning) = exposure::warning(&config) {
+    let admin = config
+        .admin
+        .address()
+        .map_err(|problem| anyhow!("admin.listen: {problem}"))?;
+    for warning in [exposure::warning(&config), exposure::readable_keys(&config)]
+        .into_iter()
+        .flatten()
+    {
         tracing::warn!("{warning}");
     }
     let wanted = config.server.max_connections;
@@ -42,7 +48,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         | ServeError::Spans(_) => Failure::Usage(error.into()),
         _ => Failure::Other(error.into()),
     })?;
-    let app = app.with_all_metrics();
     if app.service().catalog().entries().len() == 0 {
         tracing::warn!("no table is loaded: every query will be refused");
     }
@@ -55,9 +60,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         .enable_all()
         .build()
         .context("cannot start the runtime")?;
-    runtime.block_on(serve(app, listener, scheme))?;
-    Ok(())
+    let served = runtime.block_on(serve(app, listener, scheme));
+    // A thread that waits for a file system that hangs must not keep the process.
+    runtime.shutdown_timeout(LAST_WORK);
+    Ok(served?)
 }
+
+/// The time for what still runs when the daemon has stopped.
+const LAST_WORK: std::time::Duration = std::time::Duration::from_secs(1);
 
 fn bind(listen: SocketAddr) -> anyhow::Result<TcpListener> {
     TcpListener::bind(listen).map_err(|error| match error.kind() {

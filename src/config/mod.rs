@@ -4,23 +4,24 @@
 //! TOML by `layers` and read into [`Config`] once; what is read is checked as a whole, and from
 //! then on nobody checks a setting again.
 
+mod access;
 mod layers;
+mod limits;
+mod listen;
+mod networks;
+mod reports;
+mod server;
 mod validate;
 
-use std::{
-    net::SocketAddr,
-    path::{Path, PathBuf},
-    time::Duration,
-};
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    access,
-    ops::{spans, telemetry, tls},
-    rest,
-    service::Limits,
-};
+pub use access::{Access, AddressLimits, Rate};
+pub use limits::{Limits, Reload, Tables, Workers};
+pub use networks::{NETWORKS, Networks};
+pub use reports::{Http, Log, LogFormat, Metrics, Telemetry};
+pub use server::{Admin, Server, Shutdown, Tls};
 
 pub use layers::{ConfigError, Layers};
 
@@ -34,19 +35,23 @@ pub struct Config {
     /// Where and how to serve.
     pub server: Server,
     /// How to prove who serves and who asks.
-    pub tls: tls::Settings,
+    pub tls: Tls,
     /// Who is let in.
-    pub access: access::Settings,
+    pub access: Access,
     /// How fast points may be taken.
-    pub rate: access::RateSettings,
+    pub rate: Rate,
     /// Where administrators are let in.
     pub admin: Admin,
     /// How HTTP answers.
-    pub http: rest::Settings,
+    pub http: Http,
     /// Which tables to load.
     pub tables: Tables,
     /// What a query may ask for.
     pub limits: Limits,
+    /// What one address may use.
+    pub per_address: AddressLimits,
+    /// When files are read again.
+    pub reload: Reload,
     /// Who makes points.
     pub workers: Workers,
     /// How to stop.
@@ -56,111 +61,7 @@ pub struct Config {
     /// What to count.
     pub metrics: Metrics,
     /// Where to send spans.
-    pub telemetry: spans::Settings,
-}
-
-/// Where and how to serve.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Server {
-    /// Address and port.
-    pub listen: SocketAddr,
-    /// The most connections at once.
-    pub max_connections: usize,
-    /// How long the head of an HTTP/1.1 request may take, in seconds.
-    pub header_read_timeout_seconds: f64,
-    /// The most bytes of a request's head.
-    pub max_header_bytes: u32,
-    /// The most requests at once on one HTTP/2 connection.
-    pub max_requests_per_connection: u32,
-    /// How often a quiet HTTP/2 client is asked for a sign of life, and how long it may take, in
-    /// seconds.
-    pub http2_keepalive_seconds: f64,
-    /// How long an HTTP/2 connection may be without a request, in seconds.
-    pub idle_connection_seconds: f64,
-    /// How long the body of a request may take, in seconds.
-    pub body_read_timeout_seconds: f64,
-    /// How long the head of an answer may take once its request is there, in seconds.
-    pub first_byte_seconds: f64,
-    /// How long an answer may take in all, in seconds.
-    pub max_stream_seconds: f64,
-    /// How long a reader may take nothing of what waits for it, in seconds.
-    pub stalled_reader_seconds: f64,
-}
-
-/// Where administrators are let in.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Admin {
-    /// Address and port; empty for none.
-    pub listen: String,
-}
-
-impl Admin {
-    /// The address, if there is one.
-    ///
-    /// # Errors
-    /// If it does not read as one.
-    pub fn address(&self) -> Result<Option<SocketAddr>, std::net::AddrParseError> {
-        let text = Some(self.listen.as_str()).filter(|text| !text.is_empty());
-        text.map(str::parse).transpose()
-    }
-}
-
-/// Which tables to load.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Tables {
-    /// Whether the built-in ones are loaded.
-    pub embedded: bool,
-    /// A folder with more; empty for none.
-    pub folder: PathBuf,
-    /// How often the folder is looked at for changes, in seconds; 0 for never.
-    pub watch_seconds: f64,
-}
-
-impl Tables {
-    /// The folder, if there is one.
-    #[must_use]
-    pub fn folder(&self) -> Option<&Path> {
-        Some(self.folder.as_path()).filter(|folder| !folder.as_os_str().is_empty())
-    }
-}
-
-/// Who makes points.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Workers {
-    /// Threads that make points; 0 for one per core.
-    pub threads: usize,
-}
-
-/// How to stop.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Shutdown {
-    /// How long requests are still taken after `/readyz` says no, in seconds.
-    pub notice_seconds: f64,
-    /// How long open streams may then go on, in seconds.
-    pub drain_seconds: f64,
-}
-
-/// What to log.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Log {
-    /// A level, or levels by module.
-    pub filter: String,
-    /// How a line looks.
-    pub format: telemetry::Format,
-}
-
-/// What to count.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Metrics {
-    /// Whether `/metrics` is served.
-    pub enabled: bool,
+    pub telemetry: Telemetry,
 }
 
 impl Config {

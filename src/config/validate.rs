@@ -1,7 +1,6 @@
 //! The ranges of settings.
 
-use super::{Config, ConfigError};
-use crate::access::{NETWORKS, Networks};
+use super::{Config, ConfigError, NETWORKS, Networks};
 
 /// Checks every setting; reports all that are out of range.
 pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
@@ -13,12 +12,14 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         admin,
         http,
         limits,
+        per_address,
         workers,
         shutdown,
         log,
         metrics: _,
         telemetry,
-        tables,
+        reload,
+        tables: _,
     } = config;
     let mut faults = vec![];
     let mut within = |key: &str, value: f64, min: f64, max: f64| {
@@ -71,6 +72,12 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         day,
     );
     within(
+        "server.min_bytes_per_second",
+        server.min_bytes_per_second,
+        0.0,
+        1e9,
+    );
+    within(
         "server.body_read_timeout_seconds",
         server.body_read_timeout_seconds,
         0.1 * second,
@@ -88,14 +95,13 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         0.1 * second,
         365.0 * day,
     );
-    within("tls.watch_seconds", tls.watch_seconds, 0.0, day);
     within(
         "http.cache_seconds",
         f64::from(http.cache_seconds),
         0.0,
         365.0 * day,
     );
-    within("tables.watch_seconds", tables.watch_seconds, 0.0, day);
+    within("reload.watch_seconds", reload.watch_seconds, 0.0, day);
     within("rate.points_per_second", rate.points_per_second, 0.0, 1e15);
     within("rate.burst_points", rate.burst_points, 0.0, 1e15);
     within("rate.max_clients", rate.max_clients as f64, 64.0, 1e7);
@@ -114,6 +120,19 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     within(
         "limits.max_bytes_in_flight",
         limits.max_bytes_in_flight as f64,
+        one as f64,
+        1e15,
+    );
+    for (name, value) in [
+        ("max_connections", per_address.max_connections),
+        ("max_requests", per_address.max_requests),
+        ("max_streams", per_address.max_streams),
+    ] {
+        within(&format!("per_address.{name}"), value as f64, 1.0, 1e6);
+    }
+    within(
+        "per_address.max_bytes_in_flight",
+        per_address.max_bytes_in_flight as f64,
         one as f64,
         1e15,
     );
@@ -150,10 +169,14 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         ));
     }
     if let Err(error) = admin.address() {
+        faults.push(format!("admin.listen: {error}, or nothing"));
+    }
+    let wrong = http.origins().find(|origin| !is_origin(origin));
+    if let Some(origin) = wrong.filter(|_| http.cors_origins.trim() != "*") {
         faults.push(format!(
-            "admin.listen = {:?}: {error}; allowed: an address and a port, such as 127.0.0.1:8081, or \
-             nothing",
-            admin.listen
+            "http.cors_origins = {:?}: {origin:?} is not an origin; allowed: * or origins such as \
+             https://a.example and http://localhost:3000, with spaces or commas between them",
+            http.cors_origins
         ));
     }
     let is_set = |path: &std::path::Path| !path.as_os_str().is_empty();
@@ -179,4 +202,17 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
     } else {
         Err(ConfigError::OutOfRange { faults })
     }
+}
+
+/// Whether a text is an origin as browsers send it: a scheme, a host, perhaps a port.
+fn is_origin(text: &str) -> bool {
+    let Some((scheme, authority)) = text.split_once("://") else {
+        return false;
+    };
+    let is_scheme = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);
+    let is_host = |c: char| c.is_ascii_alphanumeric() || "-._[]:".contains(c);
+    !scheme.is_empty()
+        && scheme.chars().all(is_scheme)
+        && !authority.is_empty()
+        && authority.chars().all(is_host)
 }

@@ -1,16 +1,10 @@
 //! Deadlines: a call that says by when it must be over (`grpc-timeout`) is over then, visibly, with
 //! DEADLINE_EXCEEDED, and its stream's place is free.
 
-use std::{
-    pin::Pin,
-    task::{Context, Poll},
-    time::Duration,
-};
+use std::time::Duration;
 
-use bytes::Bytes;
 use http::{HeaderMap, Response};
-use http_body::{Body, Frame};
-use tokio::time::{Instant, Sleep, sleep_until};
+use tokio::time::Instant;
 use tonic::Status;
 
 use super::status;
@@ -41,22 +35,28 @@ impl Deadline {
         Ok(end.map(|end| Self { allowed, end }))
     }
 
-    /// The answer to a call, or the status of one that is too late.
-    pub async fn answer<B>(self, call: impl Future<Output = Response<B>>) -> Response<InTime<B>> {
-        match tokio::time::timeout_at(self.end, call).await {
-            Ok(response) => response.map(|body| InTime {
-                body: Some(body),
-                allowed: self.allowed,
-                sleep: Box::pin(sleep_until(self.end)),
-            }),
-            Err(_) => status::too_late(self.allowed)
-                .into_http::<tonic::body::Body>()
-                .map(|_| InTime {
-                    body: None,
-                    allowed: self.allowed,
-                    sleep: Box::pin(sleep_until(self.end)),
-                }),
-        }
+    /// The answer to a call, if its head comes in time.
+    ///
+    /// # Errors
+    /// DEADLINE_EXCEEDED if not.
+    pub async fn answer<B>(
+        self,
+        call: impl Future<Output = Response<B>>,
+    ) -> Result<Response<B>, Status> {
+        let answered = tokio::time::timeout_at(self.end, call).await;
+        answered.map_err(|_| status::too_late(self.allowed))
+    }
+
+    /// When the call must be over.
+    #[must_use]
+    pub const fn end(&self) -> Instant {
+        self.end
+    }
+
+    /// The trailers of an answer that is not complete at its deadline.
+    #[must_use]
+    pub fn trailers(&self) -> Option<HeaderMap> {
+        super::trailers(&status::too_late(self.allowed))
     }
 }
 
@@ -76,47 +76,6 @@ fn read(text: &str) -> Option<Duration> {
         'n' => Duration::from_nanos(value),
         _ => return None,
     })
-}
-
-/// A body that ends at a deadline: with its status, unless it has ended by then.
-#[derive(Debug)]
-pub struct InTime<B> {
-    /// Nothing once it is over.
-    body: Option<B>,
-    allowed: Duration,
-    sleep: Pin<Box<Sleep>>,
-}
-
-impl<B: Body<Data = Bytes> + Unpin> Body for InTime<B> {
-    type Data = Bytes;
-    type Error = B::Error;
-
-    fn poll_frame(
-        mut self: Pin<&mut Self>,
-        cx: &mut Context<'_>,
-    ) -> Poll<Option<Result<Frame<Bytes>, B::Error>>> {
-        let Some(body) = &mut self.body else {
-            return Poll::Ready(None);
-        };
-        if body.is_end_stream() {
-            return Poll::Ready(None);
-        }
-        // The deadline first: a stream that always has more would never see it.
-        if self.sleep.as_mut().poll(cx).is_pending() {
-            return match &mut self.body {
-                Some(body) => Pin::new(body).poll_frame(cx),
-                None => Poll::Ready(None),
-            };
-        }
-        self.body = None;
-        let mut trailers = HeaderMap::new();
-        let told = status::too_late(self.allowed).add_header(&mut trailers);
-        Poll::Ready(told.ok().map(|()| Ok(Frame::trailers(trailers))))
-    }
-
-    fn is_end_stream(&self) -> bool {
-        self.body.as_ref().is_none_or(Body::is_end_stream)
-    }
 }
 
 #[cfg(test)]

@@ -16,9 +16,10 @@ mod status;
 
 use std::sync::Arc;
 
+use base64::{Engine as _, engine::general_purpose::STANDARD};
 use bytes::Bytes;
-use http_body::Frame;
-use tonic::service::Routes;
+use http::{HeaderMap, HeaderValue};
+use tonic::{Status, service::Routes};
 use tonic_health::server::HealthReporter;
 
 use crate::service::{Error, Interrupted, Service};
@@ -122,7 +123,7 @@ impl Health {
 ///
 /// # Errors
 /// A status that says what is wrong with the call.
-pub fn terms(headers: &mut http::HeaderMap) -> Result<Option<Deadline>, tonic::Status> {
+pub fn terms(headers: &mut HeaderMap) -> Result<Option<Deadline>, Status> {
     compression::settle(headers);
     Deadline::of(headers)
 }
@@ -135,20 +136,71 @@ pub fn refusal(error: &Error) -> http::Response<tonic::body::Body> {
 
 /// An error as what a call ends with.
 #[must_use]
-pub fn broken(error: &Error) -> tonic::Status {
+pub fn broken(error: &Error) -> Status {
     status::status(error)
 }
 
-/// The last of a stream that is not complete.
+/// The trailers of a stream that is not complete.
 #[must_use]
-pub fn ending(why: Interrupted) -> Option<Frame<Bytes>> {
-    let mut trailers = http::HeaderMap::new();
-    let told = status::interrupted(why).add_header(&mut trailers);
-    told.ok().map(|()| Frame::trailers(trailers))
+pub fn interrupted(why: Interrupted) -> Option<HeaderMap> {
+    trailers(&status::interrupted(why))
 }
+
+fn trailers(status: &Status) -> Option<HeaderMap> {
+    let mut trailers = HeaderMap::new();
+    let added = status.add_header(&mut trailers);
+    added.ok().map(|()| trailers)
+}
+
+/// Trailers as the last data of a gRPC-Web body, in Base64 if that is text.
+#[must_use]
+pub fn web_trailers(trailers: &HeaderMap, is_text: bool) -> Bytes {
+    /// The flag of a frame that holds trailers.
+    const TRAILERS: u8 = 0x80;
+    let mut lines = vec![];
+    for (name, value) in trailers {
+        lines.extend_from_slice(name.as_str().as_bytes());
+        lines.push(b':');
+        lines.extend_from_slice(value.as_bytes());
+        lines.extend_from_slice(b"\r\n");
+    }
+    let mut frame = vec![TRAILERS];
+    frame.extend_from_slice(&u32::try_from(lines.len()).unwrap_or_default().to_be_bytes());
+    frame.append(&mut lines);
+    if is_text {
+        return STANDARD.encode(frame).into();
+    }
+    frame.into()
+}
+
+/// Corrects the statuses that the gRPC library answers bad messages with: one that is too large is
+/// RESOURCE_EXHAUSTED, and bytes that are not a message are the client's fault.
+pub fn improve(headers: &mut HeaderMap) {
+    let code = headers.get(GRPC_STATUS).map(HeaderValue::as_bytes);
+    let message = headers.get(GRPC_MESSAGE).map(HeaderValue::as_bytes);
+    let message = String::from_utf8_lossy(message.unwrap_or_default());
+    let better = match code {
+        Some(b"11") if message.contains("message%20length%20too%20large") => "8",
+        Some(b"13") if MALFORMED.iter().any(|part| message.contains(part)) => "3",
+        _ => return,
+    };
+    headers.insert(GRPC_STATUS, HeaderValue::from_static(better));
+}
+
+/// How the libraries begin to tell that bytes are not a message.
+const MALFORMED: [&str; 4] = [
+    "failed%20to%20decode%20Protobuf",
+    "protocol%20error:%20received%20message",
+    "Error%20decompressing",
+    "Unexpected%20EOF%20decoding",
+];
+
+const GRPC_STATUS: &str = "grpc-status";
+const GRPC_MESSAGE: &str = "grpc-message";
 
 /// The answer to a method that does not exist.
 #[must_use]
 pub fn unimplemented() -> http::Response<tonic::body::Body> {
-    tonic::Status::unimplemented("there is no such method").into_http()
+    let methods = METHODS.join(", ");
+    Status::unimplemented(format!("there is no such method; available: {methods}")).into_http()
 }

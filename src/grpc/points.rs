@@ -3,6 +3,7 @@
 use std::{pin::Pin, sync::Arc};
 
 use futures_util::{Stream, TryStreamExt as _, stream};
+use prost::Message as _;
 use strew_core::ALGORITHM_VERSION;
 use tonic::{Request, Response, Status};
 
@@ -20,7 +21,9 @@ use super::{
     query, resolved, set, single, split, status,
 };
 use crate::access::Caller;
-use crate::service::{Error, Fault, Record, Service, Set, query::groups};
+use crate::service::{
+    Error, Fault, Found, Placed, Query, Record, Service, Set, query::groups,
+};
 
 /// Answers over gRPC.
 #[derive(Debug)]
@@ -33,6 +36,19 @@ impl Points {
         Self { service }
     }
 
+    /// The checked query of a request.
+    async fn read(&self, request: &StreamPointsRequest) -> Result<(Query, Encoding), Error> {
+        /// A shorter query is checked as fast as it is handed over.
+        const SHORT: usize = 4 << 10;
+        let bytes = request.encoded_len();
+        if bytes <= SHORT {
+            return query::query(request, &self.service);
+        }
+        let request = request.clone();
+        let read = move |service: &Service| query::query(&request, service);
+        self.service.process(bytes, read).await?
+    }
+
     /// The answer of messages, which tonic has to compress, or of frames that are sent as they are.
     async fn stream(
         &self,
@@ -40,7 +56,7 @@ impl Points {
         request: &StreamPointsRequest,
         is_compressed: bool,
     ) -> Result<Response<MessageStream>, Error> {
-        let (query, encoding) = query::query(request, &self.service)?;
+        let (query, encoding) = self.read(request).await?;
         let (permit, planned) = self.service.open(caller, query, None).await?;
         let block_bytes = self.service.limits().block_bytes;
         let messages = Messages::new(request, planned, encoding, block_bytes)?;
@@ -62,7 +78,7 @@ impl Points {
     }
 
     async fn count(&self, request: &StreamPointsRequest) -> Result<CountPointsResponse, Error> {
-        let (query, encoding) = query::query(request, &self.service)?;
+        let (query, encoding) = self.read(request).await?;
         let planned = self.service.count(query).await?;
         Ok(CountPointsResponse {
             count: u64::try_from(planned.count()).unwrap_or(u64::MAX),
@@ -76,7 +92,7 @@ impl Points {
         request: &StreamPointsRequest,
         parts: u32,
     ) -> Result<SplitPointsResponse, Error> {
-        let (query, _) = query::query(request, &self.service)?;
+        let (query, _) = self.read(request).await?;
         let planned = self.service.count(query).await?;
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
         let places = self.service.split(planned, parts).await?;
@@ -103,11 +119,13 @@ impl Points {
         request: &FindNearestRequest,
     ) -> Result<FindNearestResponse, Error> {
         let (set, nearest) = query::nearest(request, &self.service)?;
-        let (placed, found) = self.service.nearest(caller, set, nearest).await?;
-        Ok(FindNearestResponse {
-            neighbors: found.into_iter().map(single::point).collect(),
-            set: Some(resolved::placed(&placed)),
-        })
+        let answer = |placed: &Placed, found: Vec<Found>| {
+            Ok(FindNearestResponse {
+                neighbors: found.into_iter().map(single::point).collect(),
+                set: Some(resolved::placed(placed)),
+            })
+        };
+        self.service.nearest(caller, set, nearest, answer).await
     }
 }
 

@@ -110,7 +110,9 @@ fn facts(error: &Error) -> HashMap<String, String> {
         Error::Busy { limit }
         | Error::TooManyRequests { limit }
         | Error::TooManyBytes { limit }
-        | Error::Denied(Denied::TooManyStreams { limit }) => vec![("limit", limit.to_string())],
+        | Error::Denied(Denied::TooManyStreams { limit } | Denied::Address { limit, .. }) => {
+            vec![("limit", limit.to_string())]
+        }
         Error::Denied(Denied::TooFast { points, short }) => vec![
             ("points", points.to_string()),
             ("left", short.level.left.to_string()),

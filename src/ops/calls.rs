@@ -1,4 +1,5 @@
-//! gRPC calls on the common port: native ones, those of web pages (gRPC-Web), and what is none.
+//! gRPC calls on the common port: native ones, those of web pages (gRPC-Web), and requests to their
+//! paths that are not calls.
 
 use std::sync::Arc;
 
@@ -9,60 +10,66 @@ use axum::{
     middleware::{self, Next},
     response::Response,
 };
-use http::{HeaderMap, Version, header};
+use http::Version;
+use http_body_util::BodyExt as _;
 use tonic_web::GrpcWebLayer;
 
 use super::{
+    dialect::Dialect,
+    exchange::{Intake, grpc_code},
     gate,
-    load::{Load, Words},
-    observe,
 };
-use crate::{access::Gate, grpc, rest};
+use crate::{access::Gate, grpc, rest, service::Record};
 
-/// The routes of gRPC, for all who can call them and are let in. (The last layer is the first to see a
-/// request.)
-pub(super) fn routes(grpc: Router, gate: Arc<Gate>, load: &Load) -> Router {
-    let words = Words {
-        refusal: |error| grpc::refusal(error).map(Body::new),
-        broken: |error| grpc::broken(&error).into(),
-        ending: |why| Some(Ok(grpc::ending(why)?)),
-    };
-    load.before(grpc, words)
+/// The routes of gRPC, behind the gate. (The last layer is the first to see a request.)
+pub(super) fn routes(grpc: Router, gate: Arc<Gate>, intake: &Intake) -> Router {
+    intake
+        .before(grpc)
         .layer(middleware::from_fn_with_state(gate, gate::of_calls))
         .layer(middleware::from_fn(on_terms))
         .layer(GrpcWebLayer::new())
         .layer(middleware::from_fn(only_calls))
 }
 
-/// Whether a request is a call, by its content type.
-pub(super) fn is_grpc(headers: &HeaderMap) -> bool {
-    starts_with(headers, b"application/grpc")
-}
-
-fn starts_with(headers: &HeaderMap, start: &[u8]) -> bool {
-    let content_type = headers.get(header::CONTENT_TYPE);
-    content_type.is_some_and(|value| value.as_bytes().starts_with(start))
-}
-
-/// What is no call hears so in the language of those who ask so.
+/// Rejects requests that are not calls with a problem document instead of a gRPC status.
 async fn only_calls(request: Request, next: Next) -> Response {
-    let headers = request.headers();
-    if !is_grpc(headers) {
-        return rest::not_a_call(&request);
+    match Dialect::of(request.headers()) {
+        Dialect::Rest => rest::not_a_call(&request),
+        Dialect::Grpc if request.version() < Version::HTTP_2 => rest::needs_http2(&request),
+        _ => next.run(request).await,
     }
-    let is_web = starts_with(headers, b"application/grpc-web");
-    if !is_web && request.version() < Version::HTTP_2 {
-        return rest::needs_http2(&request);
-    }
-    next.run(request).await
 }
 
 /// Calls are answered as compressed as they ask, and in time.
 async fn on_terms(mut request: Request, next: Next) -> Response {
-    let answered = match grpc::terms(request.headers_mut()) {
+    let mut response = match grpc::terms(request.headers_mut()) {
         Err(refusal) => refusal.into_http::<Body>(),
         Ok(None) => next.run(request).await,
-        Ok(Some(deadline)) => deadline.answer(next.run(request)).await.map(Body::new),
+        Ok(Some(deadline)) => {
+            let mut response = match deadline.answer(next.run(request)).await {
+                Ok(response) => response,
+                Err(late) => late.into_http::<Body>(),
+            };
+            // The exchange ends with it, also after the head.
+            response.extensions_mut().insert(deadline);
+            response
+        }
     };
-    observe::coded(answered)
+    grpc::improve(response.headers_mut());
+    let Some(record) = Record::current() else {
+        return response;
+    };
+    if let Some(code) = grpc_code(response.headers()) {
+        record.ended(code);
+        return response;
+    }
+    // Noted here, because the body of a web page's call has its trailers in data.
+    response.map(|body| {
+        Body::new(body.map_frame(move |frame| {
+            if let Some(code) = frame.trailers_ref().and_then(grpc_code) {
+                record.ended(code);
+            }
+            frame
+        }))
+    })
 }

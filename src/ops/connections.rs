@@ -15,6 +15,7 @@ use hyper_util::{
     server::conn::auto::Builder,
     service::TowerToHyperService,
 };
+use metrics::Counter;
 use tokio::{
     io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _},
     net::{TcpListener, TcpStream},
@@ -23,14 +24,16 @@ use tokio::{
 use tokio_util::{sync::CancellationToken, task::TaskTracker};
 
 use super::{
-    activity::{Activity, Answering, Still},
-    guarded::{Moving, Opening},
-    often::Often,
+    exchange::{Fate, OpenExchanges},
+    guarded::{FirstWords, WriteTimeout},
+    throttle::LogThrottle,
     tls::Tls,
 };
 use crate::{
+    access::{Gate, InUse},
     config::{Server, seconds},
     rest,
+    service::Error,
 };
 
 /// Who asks: every request carries it among its extensions.
@@ -50,9 +53,13 @@ struct Shared {
     limit: usize,
     places: Arc<Semaphore>,
     /// Those that are being told that there is no place.
-    told: Arc<Semaphore>,
-    refused: Often,
-    failed: Often,
+    telling: Arc<Semaphore>,
+    /// The limits of addresses; nothing on the address of administrators.
+    gate: Option<Arc<Gate>>,
+    refused: LogThrottle,
+    failed: LogThrottle,
+    unshaken: LogThrottle,
+    handshakes: Counter,
     running: TaskTracker,
     /// No more connections are taken, and those that are open end when they are idle.
     closing: CancellationToken,
@@ -80,7 +87,12 @@ const OUT_OF_FILES: Duration = Duration::from_millis(50);
 const UNSENT: u32 = 512 << 10;
 
 impl Connections {
-    pub(super) fn new(settings: &Server, tls: Option<Tls>) -> Self {
+    pub(super) fn new(
+        settings: &Server,
+        tls: Option<Tls>,
+        gate: Option<Arc<Gate>>,
+        handshakes: Counter,
+    ) -> Self {
         let limit = settings.max_connections;
         let shared = Shared {
             http: http(settings),
@@ -92,9 +104,12 @@ impl Connections {
             },
             limit,
             places: Arc::new(Semaphore::new(limit)),
-            told: Arc::new(Semaphore::new(TOLD_AT_ONCE)),
-            refused: Often::default(),
-            failed: Often::default(),
+            telling: Arc::new(Semaphore::new(TOLD_AT_ONCE)),
+            gate,
+            refused: LogThrottle::default(),
+            failed: LogThrottle::default(),
+            unshaken: LogThrottle::default(),
+            handshakes,
             running: TaskTracker::new(),
             closing: CancellationToken::new(),
             ended: CancellationToken::new(),
@@ -117,7 +132,7 @@ impl Connections {
                 Ok((stream, peer)) => self.place(stream, peer, &router),
                 Err(error) if is_of_the_client(&error) => {}
                 Err(error) => {
-                    if let Some(times) = shared.failed.once_more() {
+                    if let Some(times) = shared.failed.record() {
                         tracing::error!(%error, times, "no connection can be taken");
                     }
                     tokio::time::sleep(OUT_OF_FILES).await;
@@ -129,27 +144,28 @@ impl Connections {
     /// Gives a connection a place, or tells it that there is none.
     fn place(&self, stream: TcpStream, peer: SocketAddr, router: &Router) {
         let shared = self.shared.clone();
-        if let Ok(place) = shared.places.clone().try_acquire_owned() {
-            let router = router.clone();
-            let running = shared.running.clone();
-            running.spawn(async move { shared.serve(stream, peer, router, place).await });
-            return;
-        }
-        let limit = shared.limit;
-        if let Some(times) = shared.refused.once_more() {
-            tracing::warn!(
-                limit,
-                times,
-                "connections are refused: server.max_connections are open"
-            );
-        }
-        // Before a handshake nothing can be said in TLS.
-        let told = shared.told.clone().try_acquire_owned();
-        if let (None, Ok(told)) = (&shared.tls, told) {
-            shared.running.spawn(async move {
-                let _ = tokio::time::timeout(TELLING, tell(stream, limit)).await;
-                drop(told);
-            });
+        match shared.places_of(peer) {
+            Ok(places) => {
+                let router = router.clone();
+                let running = shared.running.clone();
+                running.spawn(async move {
+                    shared.serve(stream, peer, router).await;
+                    drop(places);
+                });
+            }
+            Err(error) => {
+                if let Some(times) = shared.refused.record() {
+                    tracing::warn!(%peer, %error, times, "connections are refused");
+                }
+                // Before a handshake nothing can be said in TLS.
+                let telling = shared.telling.clone().try_acquire_owned();
+                if let (None, Ok(telling)) = (&shared.tls, telling) {
+                    shared.running.spawn(async move {
+                        let _ = tokio::time::timeout(TELLING, tell(stream, error)).await;
+                        drop(telling);
+                    });
+                }
+            }
         }
     }
 
@@ -170,18 +186,24 @@ impl Connections {
     }
 }
 
+/// A place among all connections, and one among those of the address.
+type Places = (OwnedSemaphorePermit, Option<InUse>);
+
 impl Shared {
-    async fn serve(
-        &self,
-        stream: TcpStream,
-        peer: SocketAddr,
-        router: Router,
-        place: OwnedSemaphorePermit,
-    ) {
+    fn places_of(&self, peer: SocketAddr) -> Result<Places, Error> {
+        let limit = self.limit;
+        let place = self.places.clone().try_acquire_owned();
+        let place = place.map_err(|_| Error::TooManyConnections { limit })?;
+        let usage = self.gate.as_ref().map(|gate| gate.usage(peer.ip()));
+        let of_address = usage.map(|usage| usage.connection()).transpose()?;
+        Ok((place, of_address))
+    }
+
+    async fn serve(&self, stream: TcpStream, peer: SocketAddr, router: Router) {
         let _ = stream.set_nodelay(true);
         #[cfg(any(target_os = "android", target_os = "linux"))]
         let _ = socket2::SockRef::from(&stream).set_tcp_notsent_lowat(UNSENT);
-        let stream = Moving::new(stream, self.patience.stalled);
+        let stream = WriteTimeout::new(stream, self.patience.stalled);
         match &self.tls {
             None => self.converse(stream, peer, router).await,
             Some(tls) => {
@@ -193,30 +215,43 @@ impl Shared {
                 };
                 match shaken {
                     Ok(Ok(stream)) => self.converse(stream, peer, router).await,
-                    Ok(Err(error)) => tracing::debug!(%peer, %error, "no TLS handshake"),
-                    Err(_) => tracing::debug!(%peer, "the TLS handshake took too long"),
+                    Ok(Err(error)) => self.no_handshake(peer, &error.to_string()),
+                    Err(_) => self.no_handshake(peer, "it took too long"),
                 }
             }
         }
-        drop(place);
+    }
+
+    /// Logs a failed handshake: one in a while at a level that is seen, since anyone can cause them.
+    fn no_handshake(&self, peer: SocketAddr, error: &str) {
+        self.handshakes.increment(1);
+        match self.unshaken.record() {
+            Some(times) => tracing::warn!(%peer, error, times, "a TLS handshake failed"),
+            None => tracing::debug!(%peer, error, "a TLS handshake failed"),
+        }
     }
 
     async fn converse<S>(&self, stream: S, peer: SocketAddr, router: Router)
     where
         S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
     {
-        let activity = Arc::new(Activity::default());
+        let open = OpenExchanges::new();
         let service = Answers {
             router: TowerToHyperService::new(router),
             peer: Peer(peer),
-            activity: activity.clone(),
+            open: open.clone(),
         };
-        let stream = TokioIo::new(Opening::new(stream, self.patience.opening));
+        let stream = TokioIo::new(FirstWords::new(stream, self.patience.opening));
         let connection = self.http.serve_connection(stream, service);
-        let still = activity.still(self.patience.idle, self.patience.stalled);
-        tokio::pin!(connection, still);
+        tokio::pin!(connection);
         let mut is_closing = false;
         loop {
+            // A connection that is to end is not idle, whatever it waits for.
+            let idle = if is_closing {
+                Duration::MAX
+            } else {
+                self.patience.idle
+            };
             tokio::select! {
                 ended = connection.as_mut() => {
                     if let Err(error) = ended {
@@ -226,14 +261,16 @@ impl Shared {
                 }
                 () = self.ended.cancelled() => return,
                 () = self.closing.cancelled(), if !is_closing => {}
-                still = &mut still, if !is_closing => if still == Still::Stalled {
-                    // A goodbye would wait for the answers that nobody takes.
-                    tracing::debug!(%peer, "nothing is taken of any answer");
+                fate = open.decided(idle, self.patience.stalled, is_closing) => if fate == Fate::Close {
+                    // A goodbye would wait for the answers that the client leaves untouched.
+                    tracing::debug!(%peer, "the client takes none of its answers");
                     return;
                 },
             }
-            is_closing = true;
-            connection.as_mut().graceful_shutdown();
+            if !is_closing {
+                is_closing = true;
+                connection.as_mut().graceful_shutdown();
+            }
         }
     }
 }
@@ -270,22 +307,19 @@ fn http(settings: &Server) -> Builder<TokioExecutor> {
 struct Answers {
     router: TowerToHyperService<Router>,
     peer: Peer,
-    activity: Arc<Activity>,
+    open: Arc<OpenExchanges>,
 }
 
 impl HyperService<Request<Incoming>> for Answers {
-    type Response = Response<Answering<Body>>;
+    type Response = Response<Body>;
     type Error = std::convert::Infallible;
-    type Future = futures_util::future::BoxFuture<'static, Result<Self::Response, Self::Error>>;
+    type Future = <TowerToHyperService<Router> as HyperService<Request<Incoming>>>::Future;
 
     fn call(&self, mut request: Request<Incoming>) -> Self::Future {
-        request.extensions_mut().insert(self.peer);
-        let under_way = self.activity.begin();
-        let answer = self.router.call(request);
-        Box::pin(async move {
-            let answer = answer.await?;
-            Ok(answer.map(|body| Answering::new(body, under_way)))
-        })
+        let extensions = request.extensions_mut();
+        extensions.insert(self.peer);
+        extensions.insert(self.open.clone());
+        self.router.call(request)
     }
 }
 
@@ -300,10 +334,10 @@ fn is_of_the_client(error: &io::Error) -> bool {
 
 /// Tells a client that there is no place, and hears it out: a socket that is closed with words
 /// unread takes back what was said.
-async fn tell(mut stream: TcpStream, limit: usize) -> io::Result<()> {
+async fn tell(mut stream: TcpStream, error: Error) -> io::Result<()> {
     /// No more is heard.
     const HEARD: u64 = 1 << 16;
-    stream.write_all(&rest::no_place(limit)).await?;
+    stream.write_all(&rest::no_place(&error)).await?;
     stream.shutdown().await?;
     tokio::io::copy(&mut stream.take(HEARD), &mut tokio::io::sink()).await?;
     Ok(())

@@ -1,6 +1,6 @@
 //! Letting requests in: what a client shows, and where it comes from, decide who asks.
 //!
-//! Both doors stand behind the same gate; what it refuses is a problem at one and a status at the
+//! REST and gRPC are behind the same gate; what it refuses is a problem by one and a status by the
 //! other. Open to all are `/livez`, `/readyz`, the pages with the description of the API, and of gRPC
 //! health and reflection: probes have no keys, and what the API looks like is no secret.
 
@@ -14,22 +14,21 @@ use axum::{
 };
 use http::{HeaderMap, HeaderName, HeaderValue, header};
 
-use super::Peer;
+use super::exchange::Client;
 use crate::{
-    access::{Caller, Denied, Gate, Level},
+    access::{Caller, Denied, Gate, Level, Usage},
     grpc,
     service::Error,
 };
 
 const API_KEY: HeaderName = HeaderName::from_static("x-api-key");
-const FORWARDED_FOR: HeaderName = HeaderName::from_static("x-forwarded-for");
 const RATE_LIMIT: HeaderName = HeaderName::from_static("ratelimit");
 const RATE_LIMIT_POLICY: HeaderName = HeaderName::from_static("ratelimit-policy");
 
 /// The services of gRPC that are open to all.
 const OPEN: [&str; 2] = ["/grpc.health.", "/grpc.reflection."];
 
-/// The gate of the REST door.
+/// The gate of REST.
 pub(super) async fn of_rest(
     State(gate): State<Arc<Gate>>,
     mut request: Request,
@@ -55,7 +54,7 @@ pub(super) async fn of_rest(
     response
 }
 
-/// The gate of the gRPC door.
+/// The gate of gRPC.
 pub(super) async fn of_calls(
     State(gate): State<Arc<Gate>>,
     mut request: Request,
@@ -87,17 +86,12 @@ pub(super) async fn of_admins(mut request: Request, next: Next) -> Response {
 }
 
 fn admit(gate: &Gate, request: &Request) -> Result<Caller, Denied> {
-    let headers = request.headers();
-    let forwarded = headers
-        .get_all(FORWARDED_FOR)
-        .iter()
-        .map(HeaderValue::as_bytes);
-    // Inside a program without sockets all are one.
-    let peer = request.extensions().get::<Peer>();
-    let peer = peer.map_or(IpAddr::from([0, 0, 0, 0]), |peer| peer.0.ip());
-    let lines: Vec<&[u8]> = forwarded.collect();
-    let address = gate.client(peer, lines.into_iter());
-    gate.admit(shown(headers), address)
+    let client = request.extensions().get::<Client>();
+    let (address, usage) = match client {
+        Some(client) => (client.address, client.usage.clone()),
+        None => (IpAddr::from([0, 0, 0, 0]), Usage::unlimited()),
+    };
+    gate.admit(shown(request.headers()), address, usage)
 }
 
 /// The key that a client shows: `x-api-key`, or else `Authorization` of the scheme Bearer.

@@ -25,14 +25,14 @@ fn too_late(what: &'static str) -> io::Error {
 
 /// A socket whose client must say something soon.
 #[derive(Debug)]
-pub(super) struct Opening<S> {
+pub(super) struct FirstWords<S> {
     stream: S,
     read: usize,
     /// Until the client has said enough, or has been answered.
     deadline: Option<Pin<Box<Sleep>>>,
 }
 
-impl<S> Opening<S> {
+impl<S> FirstWords<S> {
     /// The client has so much time for its first words.
     pub(super) fn new(stream: S, patience: Duration) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl<S> Opening<S> {
     }
 }
 
-impl<S: AsyncRead + Unpin> AsyncRead for Opening<S> {
+impl<S: AsyncRead + Unpin> AsyncRead for FirstWords<S> {
     fn poll_read(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
@@ -70,7 +70,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for Opening<S> {
     }
 }
 
-impl<S: AsyncWrite + Unpin> AsyncWrite for Opening<S> {
+impl<S: AsyncWrite + Unpin> AsyncWrite for FirstWords<S> {
     fn poll_write(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
@@ -104,7 +104,7 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for Opening<S> {
 
 /// A socket whose receiver must take something now and then, while there is something to take.
 #[derive(Debug)]
-pub(super) struct Moving<S> {
+pub(super) struct WriteTimeout<S> {
     stream: S,
     patience: Duration,
     /// Made when the socket is full for the first time.
@@ -112,7 +112,7 @@ pub(super) struct Moving<S> {
     is_full: bool,
 }
 
-impl<S> Moving<S> {
+impl<S> WriteTimeout<S> {
     /// The receiver may take nothing for so long.
     pub(super) fn new(stream: S, patience: Duration) -> Self {
         Self {
@@ -148,7 +148,7 @@ impl<S> Moving<S> {
     }
 }
 
-impl<S: AsyncRead + Unpin> AsyncRead for Moving<S> {
+impl<S: AsyncRead + Unpin> AsyncRead for WriteTimeout<S> {
     fn poll_read(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
@@ -158,7 +158,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for Moving<S> {
     }
 }
 
-impl<S: AsyncWrite + Unpin> AsyncWrite for Moving<S> {
+impl<S: AsyncWrite + Unpin> AsyncWrite for WriteTimeout<S> {
     fn poll_write(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,

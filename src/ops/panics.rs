@@ -4,30 +4,29 @@
 use std::{any::Any, panic::AssertUnwindSafe};
 
 use axum::{
-    body::Body,
-    extract::Request,
+    extract::{Request, State},
     middleware::Next,
-    response::{IntoResponse as _, Response},
+    response::Response,
 };
 use futures_util::FutureExt as _;
 
-use super::calls;
-use crate::{grpc, service::Error};
+use super::{dialect::Dialect, metrics::Metrics};
+use crate::service::Error;
 
 /// Answers what panics.
-pub(super) async fn answered(request: Request, next: Next) -> Response {
-    let is_call = calls::is_grpc(request.headers());
+pub(super) async fn answered(
+    State(metrics): State<Metrics>,
+    request: Request,
+    next: Next,
+) -> Response {
+    let dialect = Dialect::of(request.headers());
     let path = request.uri().path().to_owned();
     let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
     answer.unwrap_or_else(|panic| {
-        metrics::counter!("strew_panics_total").increment(1);
+        metrics.panics().increment(1);
         tracing::error!(path, panic = said(&*panic), "a handler panicked");
         let error = Error::Internal("the request could not be answered");
-        if is_call {
-            grpc::refusal(&error).map(Body::new)
-        } else {
-            error.into_response()
-        }
+        dialect.refusal(&error)
     })
 }
 

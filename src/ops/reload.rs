@@ -1,35 +1,40 @@
-//! Reading tables and keys again while the daemon serves: on SIGHUP, when files change,
-//! when asked.
+//! Reading tables, keys and certificates again while the daemon serves: on SIGHUP, when files change, on
+//! request.
 //!
-//! The folder is looked at every few seconds rather than listened to: notices of changes do not come
-//! through network volumes and the folders that orchestrators mount, and a look costs microseconds.
-//!
-//! Counters, for whoever collects them: `strew_tables_reloads_total` by what caused them, and
-//! `strew_tables_refused_total`.
+//! Files are polled, because notifications of changes do not come through network volumes and the
+//! folders that orchestrators mount. They are compared by content, because times of change are too
+//! coarse to tell two writes apart.
 
-mod look;
+mod fingerprint;
 
-use std::{path::PathBuf, sync::Arc, time::Duration};
+use std::{
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Duration,
+};
 
 use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::sync::Mutex;
 
-use super::shutdown::Hangups;
+use super::{metrics::Metrics, shutdown::Hangups, tls::Tls};
 use crate::{
     access::Gate,
     service::{Error, Reload, Service, catalog::Refusal},
 };
-use look::Look;
+use fingerprint::Fingerprint;
 
-/// Why tables are read again.
+/// Why files are read again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
     /// SIGHUP.
     Signal,
-    /// The folder looks different.
+    /// A file has changed.
     Change,
-    /// Somebody asked.
+    /// An administrator requests it.
     Request,
 }
 
@@ -54,98 +59,161 @@ pub struct Done {
     pub keys: Option<usize>,
 }
 
-/// Reads tables and keys again.
+/// The longest time that reading may take: a file system may hang.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Reads tables, keys and certificates again.
 #[derive(Debug)]
 pub struct Reloader {
     service: Arc<Service>,
     gate: Arc<Gate>,
+    tls: Option<Tls>,
     folder: Option<PathBuf>,
+    metrics: Metrics,
+    /// Whether files are being read.
+    is_reading: Arc<AtomicBool>,
     /// What came of it the last time.
     last: Mutex<Done>,
 }
 
 impl Reloader {
-    /// For a service and its folder of tables, and a gate with its keys.
-    #[must_use]
-    pub fn new(service: Arc<Service>, gate: Arc<Gate>, folder: Option<PathBuf>) -> Self {
+    /// For a service and its folder of tables, a gate with its keys, and certificates.
+    pub(super) fn new(
+        service: Arc<Service>,
+        gate: Arc<Gate>,
+        tls: Option<Tls>,
+        folder: Option<PathBuf>,
+        metrics: Metrics,
+    ) -> Self {
         Self {
             service,
             gate,
+            tls,
             folder,
+            metrics,
+            is_reading: Arc::default(),
             last: Mutex::default(),
         }
     }
 
-    /// Reads everything again; says in the log what came of it.
+    /// Whether there are files to watch.
+    pub(super) fn has_files(&self) -> bool {
+        let has_keys = self.gate.settings().keys_file().is_some();
+        has_keys || self.folder.is_some() || self.tls.is_some()
+    }
+
+    /// Reads everything again and logs the result.
     ///
     /// # Errors
-    /// [`Error::Internal`] if that panicked; then nothing has changed.
+    /// [`Error::Internal`] if reading panicked or takes too long; then nothing has changed.
     pub async fn reload(&self, cause: Cause) -> Result<Done, Error> {
         let mut last = self.last.lock().await;
-        let tables = self.service.reload(self.folder.clone()).await?;
-        let done = self.keys(tables).await?;
-        // A look that finds the same damaged file again has nothing to tell.
+        let (service, gate, tls) = (self.service.clone(), self.gate.clone(), self.tls.clone());
+        let folder = self.folder.clone();
+        let read = move || {
+            let keys = gate.settings().has_keys().then(|| gate.reload());
+            let certificates = tls.map(|tls| tls.reload());
+            (service.read_tables(folder.as_deref()), keys, certificates)
+        };
+        let (tables, keys, certificates) = self.read(read).await?;
+        let mut done = Done {
+            tables: self.service.serve_tables(tables).await,
+            keys: None,
+        };
+        match keys {
+            Some(Ok(count)) => done.keys = Some(count),
+            Some(Err(error)) => {
+                let file = self.gate.settings().keys_file();
+                let source = file.map_or("access.keys".into(), |file| file.display().to_string());
+                done.refuse(source, error.to_string());
+            }
+            None => {}
+        }
+        match certificates {
+            Some(Ok(true)) => tracing::info!("the certificates were replaced"),
+            Some(Err(error)) => done.refuse(error.path(), error.to_string()),
+            _ => {}
+        }
+        // A look that finds the same damaged file again is no news.
         let is_news = cause != Cause::Change || differs(&last, &done);
         if is_news {
-            tell(cause, &done);
+            log(cause, &done, &self.metrics);
         }
         *last = done.clone();
         Ok(done)
     }
 
-    /// Reads the keys again; a refusal goes to the others.
-    async fn keys(&self, mut tables: Reload) -> Result<Done, Error> {
-        if !self.gate.settings().has_keys() {
-            return Ok(Done { tables, keys: None });
-        }
-        let gate = self.gate.clone();
-        let read = tokio::task::spawn_blocking(move || gate.reload());
-        let read = read
-            .await
-            .map_err(|_| Error::Internal("the keys cannot be read again"))?;
-        let keys = match read {
-            Ok(count) => Some(count),
-            Err(error) => {
-                let file = self.gate.settings().keys_file();
-                let source = file.map_or("access.keys".into(), |file| file.display().to_string());
-                tables.refused.push(Refusal {
-                    source,
-                    detail: error.to_string(),
-                    serving: None,
-                });
-                None
-            }
-        };
-        Ok(Done { tables, keys })
-    }
-
-    /// Reloads on signals and changes until it is dropped. Without `every` nobody looks for changes.
+    /// Reloads on signals and changes until it is dropped. Without `every`, changes are not looked for.
     pub async fn watch(&self, mut hangups: Option<Hangups>, every: Option<Duration>) {
-        let mut seen = self.look().await;
+        let mut seen = self.look().await.ok();
         loop {
             let cause = tokio::select! {
                 () = heard(&mut hangups) => Cause::Signal,
                 () = wait(every) => Cause::Change,
             };
-            let now = self.look().await;
-            if cause == Cause::Change && now.is_surely(&seen) {
+            let now = match self.look().await {
+                Ok(now) => Some(now),
+                Err(error) => {
+                    tracing::error!(%error, "files cannot be looked at");
+                    continue;
+                }
+            };
+            if cause == Cause::Change && now == seen {
                 continue;
             }
             seen = now;
             if let Err(error) = self.reload(cause).await {
-                tracing::error!(%error, "the tables were not read again");
+                tracing::error!(%error, "files were not read again");
             }
         }
     }
 
-    async fn look(&self) -> Look {
+    async fn look(&self) -> Result<Fingerprint, Error> {
         let folder = self.folder.clone();
-        let keys = self.gate.settings().keys_file().map(Into::into);
-        let look = tokio::task::spawn_blocking(move || {
-            let keys: Option<PathBuf> = keys;
-            Look::at(folder.as_deref(), keys.as_deref())
+        let mut files: Vec<PathBuf> = vec![];
+        files.extend(self.gate.settings().keys_file().map(Into::into));
+        files.extend(self.tls.iter().flat_map(Tls::files));
+        let look = move || Fingerprint::of(folder.as_deref(), files);
+        self.read(look).await
+    }
+
+    /// Reads files on a thread that may block, and waits for a limited time. A file system that hangs
+    /// keeps one such thread, however often it is tried.
+    async fn read<T: Send + 'static>(
+        &self,
+        read: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<T, Error> {
+        const HANGS: Error = Error::Internal("a file system does not answer");
+        let is_reading = self.is_reading.clone();
+        if is_reading.swap(true, Ordering::AcqRel) {
+            return Err(HANGS);
+        }
+        let read = tokio::task::spawn_blocking(move || {
+            let _reading = Reading(is_reading);
+            read()
         });
-        look.await.unwrap_or_default()
+        let read = tokio::time::timeout(PATIENCE, read).await;
+        let read = read.map_err(|_| HANGS)?;
+        read.map_err(|_| Error::Internal("the files cannot be read again"))
+    }
+}
+
+/// Files are being read, until dropped.
+struct Reading(Arc<AtomicBool>);
+
+impl Drop for Reading {
+    fn drop(&mut self) {
+        self.0.store(false, Ordering::Release);
+    }
+}
+
+impl Done {
+    fn refuse(&mut self, source: String, detail: String) {
+        self.tables.refused.push(Refusal {
+            source,
+            detail,
+            serving: None,
+        });
     }
 }
 
@@ -170,10 +238,10 @@ fn differs(before: &Done, now: &Done) -> bool {
     has_changed || tables.refused != before.tables.refused || now.keys != before.keys
 }
 
-fn tell(cause: Cause, done: &Done) {
+fn log(cause: Cause, done: &Done, metrics: &Metrics) {
     let reload = &done.tables;
     let cause = cause.name();
-    metrics::counter!("strew_tables_reloads_total", "cause" => cause).increment(1);
+    metrics.reloads(cause).increment(1);
     for table in &reload.loaded {
         tracing::info!(
             cause,
@@ -195,7 +263,7 @@ fn tell(cause: Cause, done: &Done) {
         );
     }
     for refusal in &reload.refused {
-        metrics::counter!("strew_tables_refused_total").increment(1);
+        metrics.refused_tables().increment(1);
         tracing::error!(
             cause,
             source = refusal.source,

@@ -1,24 +1,19 @@
-//! Serving: both doors on one port, until asked to stop, and then not much longer.
+//! Serving: both protocols on one port, until asked to stop, and then not much longer.
 
 use std::{io, net::TcpListener, sync::Arc, time::Duration};
 
-use axum::{
-    Router,
-    body::Body,
-    extract::Request,
-    middleware,
-    response::{IntoResponse as _, Response},
-};
+use axum::{Router, extract::Request, middleware, response::Response};
 use tokio_util::task::AbortOnDropHandle;
 
 use super::{
     admin, calls,
     connections::Connections,
+    dialect::Dialect,
+    exchange::{self, Exchanges, Intake},
     gate,
     health::{self, Readiness},
-    load::{Load, Words},
     metrics::{self, Metrics},
-    observe, panics,
+    panics,
     reload::Reloader,
     shutdown::Hangups,
     spans::{Collector, Spans, SpansError},
@@ -42,7 +37,7 @@ pub enum ServeError {
     #[error("cannot start the workers: {0}")]
     Workers(#[from] rayon::ThreadPoolBuildError),
     /// The program was built wrongly.
-    #[error("cannot open the gRPC door: {0}")]
+    #[error("cannot serve gRPC: {0}")]
     Grpc(#[from] grpc::BuildError),
     /// The certificates cannot be used.
     #[error(transparent)]
@@ -88,9 +83,20 @@ impl App {
         let folder = config.tables.folder();
         let catalog = Catalog::load(config.tables.embedded, folder)?;
         let workers = Workers::new(config.workers.threads)?;
+        let metrics = Metrics::default();
         let service = Arc::new(Service::new(catalog, config.limits.clone(), workers));
-        let gate = Arc::new(Gate::new(config.access.clone(), &config.rate)?);
-        let reloader = Reloader::new(service.clone(), gate.clone(), folder.map(Into::into));
+        let gate = Arc::new(Gate::new(
+            config.access.clone(),
+            &config.rate,
+            config.per_address.clone(),
+        )?);
+        let reloader = Reloader::new(
+            service.clone(),
+            gate.clone(),
+            tls.clone(),
+            folder.map(Into::into),
+            metrics.clone(),
+        );
         Ok(Self {
             gate,
             reloader: Arc::new(reloader),
@@ -99,7 +105,7 @@ impl App {
             config,
             service,
             tls,
-            metrics: Metrics::default(),
+            metrics,
             collector,
             spans: None,
             more: Router::new(),
@@ -131,13 +137,6 @@ impl App {
     #[must_use]
     pub fn admin_address(&self) -> Option<std::net::SocketAddr> {
         self.admin.as_ref()?.local_addr().ok()
-    }
-
-    /// Shows also what the process counts without saying for which daemon: for a process of one.
-    #[must_use]
-    pub fn with_all_metrics(self) -> Self {
-        self.metrics.take_all();
-        self
     }
 
     /// What it serves.
@@ -175,16 +174,9 @@ impl App {
         let readiness = Readiness::default();
         let (router, grpc_health) = self.router(readiness.clone()).await?;
         let listener = asynchronous(listener)?;
-        let _fresh = match self.tls.clone() {
-            Some(tls) => {
-                let hangups = Hangups::new()?;
-                Some(AbortOnDropHandle::new(tokio::spawn(
-                    tls.keep_fresh(hangups),
-                )))
-            }
-            None => None,
-        };
-        let admins = Connections::new(&self.config.server, self.tls.clone());
+        let handshakes = self.metrics.failed_handshakes();
+        let server = &self.config.server;
+        let admins = Connections::new(server, self.tls.clone(), None, handshakes.clone());
         if let Some(listener) = self.admin.take() {
             let (listener, router) = (
                 asynchronous(listener)?,
@@ -194,7 +186,8 @@ impl App {
             tokio::spawn(async move { admins.take(listener, router).await });
         }
         let _admins = EndOnDrop(admins);
-        let connections = Connections::new(&self.config.server, self.tls.clone());
+        let gate = Some(self.gate.clone());
+        let connections = Connections::new(server, self.tls.clone(), gate, handshakes);
         let taking = tokio::spawn({
             let connections = connections.clone();
             async move { connections.take(listener, router).await }
@@ -228,12 +221,10 @@ impl App {
         Ok(broken)
     }
 
-    /// Looks for changes of tables and keys for as long as the handle is held.
+    /// Watches files while the handle is held.
     fn watch(&mut self) -> AbortOnDropHandle<()> {
-        let seconds = self.config.tables.watch_seconds;
-        let has_keys = self.config.access.keys_file().is_some();
-        let has_files = has_keys || self.config.tables.folder().is_some();
-        let is_looked_for = seconds > 0.0 && has_files;
+        let seconds = self.config.reload.watch_seconds;
+        let is_looked_for = seconds > 0.0 && self.reloader.has_files();
         let every = is_looked_for.then(|| config::seconds(seconds));
         let hangups = self.hangups.take();
         let reloader = self.reloader.clone();
@@ -242,7 +233,7 @@ impl App {
         }))
     }
 
-    /// Both doors, health, and one fallback for all.
+    /// Both protocols, health, and one fallback for all.
     async fn router(&self, readiness: Readiness) -> Result<(Router, grpc::Health), ServeError> {
         let (grpc, grpc_health) = grpc::routes(self.service.clone()).await?;
         let mut endpoints = rest::endpoints(&self.service);
@@ -250,26 +241,24 @@ impl App {
         endpoints.push(admin::endpoint(self.reloader.clone()));
         if self.config.metrics.enabled {
             endpoints.push(self.metrics_endpoint());
-            tokio::spawn(self.metrics.clone().keep_up());
+            tokio::spawn(self.metrics.clone().fold_up());
         }
-        let load = Load::new(&self.config, &self.service);
-        let words = Words {
-            refusal: |error| error.clone().into_response(),
-            broken: |error| Box::new(error),
-            ending: |why| Some(Err(axum::Error::new(why))),
-        };
-        // Who may not ask at all takes nobody's place.
-        let (gate, bounds) = (self.gate.clone(), load.clone());
+        let intake = Intake::new(&self.config, self.service.budget().clone());
+        // A client without a key takes no place among requests.
+        let (gate, bounds) = (self.gate.clone(), intake.clone());
         let behind_gate = move |router: Router| {
-            let router = bounds.before(router, words);
+            let router = bounds.before(router);
             router.layer(middleware::from_fn_with_state(gate, gate::of_rest))
         };
-        let rest::Door { router, paths } = rest::Door::new(endpoints, behind_gate);
+        let bounds = intake.clone();
+        let open = move |router: Router| bounds.before(router);
+        let rest::Routes { router, paths } = rest::Routes::new(endpoints, open, behind_gate);
         let calls = grpc.into_axum_router().reset_fallback();
+        let others = Router::new().fallback(move |request| nothing_here(request, paths));
         let router = router
-            .merge(calls::routes(calls, self.gate.clone(), &load))
-            .merge(load.before(self.more.clone(), words))
-            .fallback(move |request| nothing_here(request, paths));
+            .merge(calls::routes(calls, self.gate.clone(), &intake))
+            .merge(intake.before(self.more.clone()))
+            .merge(intake.before(others));
         Ok((self.finished(router), grpc_health))
     }
 
@@ -281,21 +270,29 @@ impl App {
             endpoints.push(self.metrics_endpoint());
         }
         let of_admins = |router: Router| router.layer(middleware::from_fn(gate::of_admins));
-        let rest::Door { router, paths } = rest::Door::new(endpoints, of_admins);
+        let rest::Routes { router, paths } = rest::Routes::new(endpoints, |open| open, of_admins);
         self.finished(router.fallback(move |request| nothing_here(request, paths)))
     }
 
     /// What every answer goes through.
     fn finished(&self, router: Router) -> Router {
-        let router = router.layer(middleware::from_fn(panics::answered));
+        let panics = middleware::from_fn_with_state(self.metrics.clone(), panics::answered);
+        let router = router.layer(panics);
         let router = rest::finished(
             router,
             &self.config.http,
             self.config.server.max_header_bytes,
             self.gate.settings().needs_key(),
-            self.service.workers().clone(),
+            self.service.clone(),
         );
-        observe::observed(router, self.metrics.clone(), self.spans.clone())
+        let exchanges = Exchanges {
+            metrics: self.metrics.clone(),
+            spans: self.spans.clone(),
+            gate: self.gate.clone(),
+            budget: self.service.budget().clone(),
+            terms: exchange::terms(&self.config.server),
+        };
+        exchange::observed(router, exchanges)
     }
 
     fn metrics_endpoint(&self) -> rest::api::Endpoint {
@@ -318,10 +315,10 @@ fn asynchronous(listener: TcpListener) -> io::Result<tokio::net::TcpListener> {
     tokio::net::TcpListener::from_std(listener)
 }
 
-/// Where no door is: each kind of client hears it in its own language.
+/// The answer to an unknown path, in the protocol of the client.
 async fn nothing_here(request: Request, paths: String) -> Response {
-    if calls::is_grpc(request.headers()) {
-        grpc::unimplemented().map(Body::new)
+    if Dialect::of(request.headers()).is_call() {
+        grpc::unimplemented().map(axum::body::Body::new)
     } else {
         rest::not_found(&request, &paths)
     }

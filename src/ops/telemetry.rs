@@ -4,24 +4,18 @@
 
 use std::io::IsTerminal as _;
 
-use serde::{Deserialize, Serialize};
 use tracing_subscriber::EnvFilter;
 
-/// How a line of the log looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Format {
-    /// For people.
-    Text,
-    /// An object a line.
-    Json,
-}
+use crate::config::LogFormat;
 
 /// Starts logging. The filter is a level or levels by module; a second call changes nothing.
 ///
 /// # Errors
 /// If the filter does not read.
-pub fn start(filter: &str, format: Format) -> Result<(), tracing_subscriber::filter::ParseError> {
+pub fn start(
+    filter: &str,
+    format: LogFormat,
+) -> Result<(), tracing_subscriber::filter::ParseError> {
     let filter: EnvFilter = filter.parse()?;
     let lines = tracing_subscriber::fmt()
         .with_env_filter(filter)
@@ -29,8 +23,8 @@ pub fn start(filter: &str, format: Format) -> Result<(), tracing_subscriber::fil
         // What cannot be logged is lost: telling so on the same stream would fail, too, and panic.
         .log_internal_errors(false);
     let _ = match format {
-        Format::Text => lines.with_ansi(std::io::stderr().is_terminal()).try_init(),
-        Format::Json => lines
+        LogFormat::Text => lines.with_ansi(std::io::stderr().is_terminal()).try_init(),
+        LogFormat::Json => lines
             .json()
             .flatten_event(true)
             .with_span_list(false)

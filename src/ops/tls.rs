@@ -1,13 +1,13 @@
 //! TLS: who serves is proven by a certificate, and if asked for, who asks by one of theirs.
 //!
-//! Certificates are read again on SIGHUP and when a file changes. What is read anew serves the next
-//! connections; those that are open stay as they are. Files that cannot be used change nothing but
-//! the log.
+//! Certificates are read again by [`reload`](super::reload). New ones serve new connections; open
+//! connections go on with those they began with.
+
+mod expiry;
 
 use std::{
     path::{Path, PathBuf},
     sync::{Arc, PoisonError, RwLock},
-    time::Duration,
 };
 
 use rustls::{
@@ -16,39 +16,9 @@ use rustls::{
     pki_types::{CertificateDer, PrivateKeyDer, pem::PemObject as _},
     server::{WebPkiClientVerifier, danger::ClientCertVerifier},
 };
-use serde::{Deserialize, Serialize};
 use tokio_rustls::TlsAcceptor;
 
-use super::shutdown::Hangups;
-
-/// Which certificates, if any.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Settings {
-    /// A PEM file with the server's certificate and those that vouch for it; empty for no TLS.
-    pub certificate: PathBuf,
-    /// A PEM file with the certificate's private key.
-    pub key: PathBuf,
-    /// A PEM file with the authorities that vouch for clients; empty if clients need not prove who
-    /// they are.
-    pub client_ca: PathBuf,
-    /// How often the files are looked at for changes, in seconds; 0 for never.
-    pub watch_seconds: f64,
-}
-
-impl Settings {
-    /// Whether TLS is spoken.
-    #[must_use]
-    pub fn is_on(&self) -> bool {
-        !self.certificate.as_os_str().is_empty()
-    }
-
-    /// Whether clients have to show a certificate.
-    #[must_use]
-    pub fn proves_clients(&self) -> bool {
-        self.is_on() && !self.client_ca.as_os_str().is_empty()
-    }
-}
+use crate::{bounded_file, config::Tls as Settings};
 
 /// What is wrong with a certificate, or a file of them.
 #[derive(Debug, thiserror::Error)]
@@ -57,6 +27,13 @@ pub struct TlsError {
     setting: &'static str,
     path: PathBuf,
     problem: String,
+}
+
+impl TlsError {
+    /// The file.
+    pub(super) fn path(&self) -> String {
+        self.path.display().to_string()
+    }
 }
 
 /// Speaks TLS with what was read last.
@@ -103,8 +80,11 @@ impl Tls {
         TlsAcceptor::from(current.config.clone())
     }
 
-    /// Reads the files again; whether they were other ones.
-    fn reload(&self) -> Result<bool, TlsError> {
+    /// Reads the files again; returns whether they have changed.
+    ///
+    /// # Errors
+    /// If they cannot be used; then those before stay.
+    pub(super) fn reload(&self) -> Result<bool, TlsError> {
         let files = Files::read(&self.settings)?;
         let content = files.hash();
         let known = self.current.read().unwrap_or_else(PoisonError::into_inner);
@@ -118,48 +98,22 @@ impl Tls {
         Ok(true)
     }
 
-    /// Reads the files again at every SIGHUP, and when they change; never ends.
-    pub(super) async fn keep_fresh(self, mut hangups: Hangups) {
-        let watch = Duration::try_from_secs_f64(self.settings.watch_seconds);
-        let watch = watch.ok().filter(|every| !every.is_zero());
-        // What was said last about files that cannot be used: once is enough.
-        let mut told = String::new();
-        loop {
-            let look = async {
-                match watch {
-                    Some(every) => tokio::time::sleep(every).await,
-                    None => std::future::pending().await,
-                }
-            };
-            let is_asked = tokio::select! {
-                () = look => false,
-                () = hangups.next() => true,
-            };
-            let tls = self.clone();
-            let read = tokio::task::spawn_blocking(move || tls.reload()).await;
-            match read {
-                Ok(Ok(true)) => {
-                    told.clear();
-                    tracing::info!("the certificates were read anew");
-                }
-                Ok(Ok(false)) => {
-                    told.clear();
-                    if is_asked {
-                        tracing::info!("the certificates are still the same");
-                    }
-                }
-                Ok(Err(error)) => {
-                    let error = error.to_string();
-                    if is_asked || told != error {
-                        tracing::error!(%error, "new certificates are refused; the old ones serve on");
-                    }
-                    told = error;
-                }
-                Err(error) => tracing::error!(%error, "reading certificates failed"),
-            }
-        }
+    /// The files that are in use.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        let Settings {
+            certificate,
+            key,
+            client_ca,
+        } = &self.settings;
+        let all = [certificate, key, client_ca].into_iter();
+        all.filter(|path| !path.as_os_str().is_empty())
+            .cloned()
+            .collect()
     }
 }
+
+/// The most bytes of a file of certificates.
+const MAX_BYTES: u64 = 4 << 20;
 
 /// The contents of all files.
 struct Files {
@@ -176,7 +130,7 @@ impl Files {
                 path: path.into(),
                 problem: format!("it cannot be read: {error}"),
             };
-            std::fs::read(path).map_err(failed)
+            bounded_file::read(path, MAX_BYTES).map_err(failed)
         };
         let client_ca = settings.proves_clients();
         let client_ca = client_ca.then(|| read("tls.client_ca", &settings.client_ca));
@@ -210,6 +164,11 @@ impl Files {
         // Named, lest a second provider somewhere in the program make the choice ambiguous.
         let provider = Arc::new(default_provider());
         let chain = certificates(&self.certificate).map_err(of_certificate)?;
+        for certificate in &chain {
+            if let Some(warning) = expiry::warning(certificate) {
+                tracing::warn!(path = %settings.certificate.display(), "{warning}");
+            }
+        }
         let key = PrivateKeyDer::from_pem_slice(&self.key)
             .map_err(|error| of_key(format!("it holds no private key in PEM: {error}")))?;
         let builder = ServerConfig::builder_with_provider(provider.clone())

@@ -16,7 +16,7 @@ use super::{
     negotiate::{self, Chosen},
 };
 use crate::service::{
-    Answer, Draft, Error, Kind, Output, Planned, Query, Record, Service,
+    Answer, Error, Kind, Options, Output, Planned, Query, Record, Service,
     encode::{QueryEcho, TableEcho, write_number},
 };
 
@@ -125,9 +125,9 @@ pub(super) fn described() -> api::Answer {
 pub(super) async fn stream(
     service: &Service,
     context: &Context,
-    draft: &Draft,
+    query: Query,
+    options: Options,
 ) -> Result<Response, Error> {
-    let (query, options) = service.check(draft)?;
     let Context {
         method, headers, ..
     } = context;

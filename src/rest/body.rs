@@ -6,17 +6,18 @@
 use std::{error::Error as _, sync::Arc};
 
 use axum::extract::{FromRequest, Request};
+use bytes::Bytes;
 use futures_util::StreamExt as _;
 use http::header;
 
 use crate::service::{
-    Draft, Error, Fault, Service,
+    Draft, Error, Fault, Options, Query, Service,
     query::{Group, read_body},
 };
 
 /// A whole body.
 #[derive(Debug)]
-pub(super) struct Whole(pub(super) Vec<u8>);
+pub(super) struct Whole(pub(super) Bytes);
 
 impl FromRequest<Arc<Service>> for Whole {
     type Rejection = Error;
@@ -38,26 +39,23 @@ impl FromRequest<Arc<Service>> for Whole {
             }
             whole.extend_from_slice(&piece);
         }
-        Ok(Self(whole))
+        Ok(Self(whole.into()))
     }
 }
 
-/// Bodies up to this many bytes are read at once; handing them over would take longer.
-const SMALL: usize = 8 << 10;
-
-/// The query that a body asks, read on the workers if it is long.
+/// The query that a body asks, as it was read and checked: on the workers if it is long.
 pub(super) async fn query(
-    service: &Service,
-    body: Vec<u8>,
+    service: &Arc<Service>,
+    body: Bytes,
     groups: &'static [Group],
-) -> Result<Draft, Error> {
-    let draft = if body.len() <= SMALL {
-        read_body(&body, groups)
-    } else {
-        let read = move || read_body(&body, groups);
-        service.workers().run(read).await?
+) -> Result<(Draft, Query, Options), Error> {
+    let bytes = body.len();
+    let read = move |service: &Service| {
+        let draft = read_body(&body, groups)?;
+        let (query, options) = service.check(&draft)?;
+        Ok((draft, query, options))
     };
-    Ok(draft?)
+    service.process(bytes, read).await?
 }
 
 /// Why a body broke off: as the gate says, or because the client stopped.

@@ -88,5 +88,6 @@ async fn get(
         shape: ShapeDraft::Chunk(size, [x, y]),
     });
     let draft = Draft::new(context.values(groups::QUERY)).within(region);
-    answer::stream(&service, &context, &draft).await
+    let (query, options) = service.check(&draft)?;
+    answer::stream(&service, &context, query, options).await
 }

@@ -94,8 +94,7 @@ async fn post(
     Whole(body): Whole,
 ) -> Result<Response, Error> {
     context.no_parameters()?;
-    let draft = body::query(&service, body, groups::SET).await?;
-    let (query, _) = service.check(&draft)?;
+    let (_, query, _) = body::query(&service, body, groups::SET).await?;
     counted(&service, query).await
 }
 

@@ -6,7 +6,7 @@ use http::{HeaderMap, HeaderValue, Method, Uri, header};
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
-    openapi::fixed,
+    fixed::Fixed,
 };
 use crate::service::query::groups;
 
@@ -74,20 +74,14 @@ fn endpoint((path, id, summary, content_type, content): Part) -> Endpoint {
         problems: vec![],
         example: path.into(),
     };
-    let handler = routing::get(move |uri: Uri, headers: HeaderMap| async move {
-        part(&uri, &headers, content_type, content)
-    });
+    let document = Fixed::new(content_type, Bytes::from_static(content.as_bytes()));
+    let answer = move |uri: Uri, headers: HeaderMap| async move { part(&document, &uri, &headers) };
+    let handler = routing::get(answer);
     Endpoint::new(path, (), vec![(operation, handler)]).open()
 }
 
-fn part(
-    uri: &Uri,
-    headers: &HeaderMap,
-    content_type: &'static str,
-    text: &'static str,
-) -> Response {
-    let content = Bytes::from_static(text.as_bytes());
-    let mut response = fixed(uri, headers, content_type, content);
+fn part(document: &Fixed, uri: &Uri, headers: &HeaderMap) -> Response {
+    let mut response = document.answer(uri, headers);
     let headers = response.headers_mut();
     let policy = HeaderValue::from_static(POLICY);
     headers.insert(header::CONTENT_SECURITY_POLICY, policy);

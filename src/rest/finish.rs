@@ -1,5 +1,7 @@
 //! What is done to every answer, whoever made it: CORS, problems instead of bare errors, how long
-//! it may be kept, compression. Answers of other doors only get the first.
+//! it may be kept, compression. Answers to calls only get the first.
+
+use std::sync::Arc;
 
 use axum::{
     Router,
@@ -7,8 +9,7 @@ use axum::{
     middleware::{self, Next},
     response::Response,
 };
-use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
-use serde::{Deserialize, Serialize};
+use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Version, header};
 
 use super::{
     coding,
@@ -16,18 +17,7 @@ use super::{
     freshness, harden,
     problem::{self, Problem},
 };
-use crate::service::Workers;
-
-/// How HTTP answers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Settings {
-    /// The origins of pages that may ask: `*` for all, else origins with spaces or commas between
-    /// them.
-    pub cors_origins: String,
-    /// How long an answer may be kept that a restart with other tables could change, in seconds.
-    pub cache_seconds: u32,
-}
+use crate::{config::Http, service::Service};
 
 /// What finishing needs.
 #[derive(Clone, Debug)]
@@ -37,24 +27,24 @@ struct Finish {
     /// Answers are for one client, not for those who share a cache with it.
     is_private: bool,
     head_bytes: usize,
-    workers: Workers,
+    service: Arc<Service>,
 }
 
 /// Finishes the answers of a router; heads of requests longer than `head_bytes` are refused. Answers
 /// that are private are not kept by caches that several clients share.
 pub fn finished(
     router: Router,
-    settings: &Settings,
+    settings: &Http,
     head_bytes: u32,
     is_private: bool,
-    workers: Workers,
+    service: Arc<Service>,
 ) -> Router {
     let finish = Finish {
         origins: Origins::read(&settings.cors_origins),
         cache_seconds: settings.cache_seconds,
         is_private,
         head_bytes: usize::try_from(head_bytes).unwrap_or(usize::MAX),
-        workers,
+        service,
     };
     router.layer(middleware::from_fn_with_state(finish, finish_answer))
 }
@@ -67,7 +57,8 @@ async fn finish_answer(State(finish): State<Finish>, request: Request, next: Nex
     let is_head = *method == Method::HEAD;
     let origin = headers.get(header::ORIGIN).cloned();
     let accept = picked(headers, &header::ACCEPT_ENCODING);
-    let mut response = match too_long(&request, finish.head_bytes) {
+    let refusal = too_long(&request, finish.head_bytes).or_else(|| wrong_host(&request));
+    let mut response = match refusal {
         Some(refusal) => refusal,
         None => next.run(request).await,
     };
@@ -78,7 +69,8 @@ async fn finish_answer(State(finish): State<Finish>, request: Request, next: Nex
     let mut response = problem::instead_of_bare(response).await;
     freshness::keep(&mut response, finish.cache_seconds, finish.is_private);
     harden::guard(response.headers_mut(), finish.origins == Origins::All);
-    coding::apply(&accept, is_head, &finish.workers, response)
+    let coded = coding::apply(&accept, is_head, &finish.service, response).await;
+    coded.unwrap_or_else(|error| Problem::response(&error))
 }
 
 /// The lines of one header.
@@ -90,6 +82,14 @@ fn picked(headers: &HeaderMap, name: &HeaderName) -> HeaderMap {
 fn is_grpc(headers: &HeaderMap) -> bool {
     let content_type = headers.get(header::CONTENT_TYPE).map(HeaderValue::as_bytes);
     content_type.is_some_and(|value| value.starts_with(b"application/grpc"))
+}
+
+/// The refusal of a request of HTTP/1.1 without one `Host` (RFC 9112, 3.2).
+fn wrong_host(request: &Request) -> Option<Response> {
+    let hosts = request.headers().get_all(header::HOST).iter().count();
+    let is_wrong = request.version() == Version::HTTP_11 && hosts != 1;
+    let detail = || format!("it has {hosts} lines `Host`; allowed: exactly one");
+    is_wrong.then(|| Problem::of_status(StatusCode::BAD_REQUEST, detail()))
 }
 
 /// The refusal of a request whose head is too long. (What is much too long never gets here: the

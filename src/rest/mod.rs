@@ -1,4 +1,4 @@
-//! The REST door: addresses in, streamed bodies and problems out. It decides nothing itself.
+//! REST: addresses in, streamed bodies and problems out. It decides nothing itself.
 
 mod answer;
 pub mod api;
@@ -11,6 +11,7 @@ mod count;
 mod docs;
 mod document;
 mod finish;
+mod fixed;
 mod freshness;
 mod harden;
 mod negotiate;
@@ -20,6 +21,7 @@ mod points;
 mod portrait;
 mod problem;
 mod profiles;
+mod quality;
 mod query;
 mod single;
 mod split;
@@ -31,10 +33,10 @@ use http::StatusCode;
 
 use crate::service::{Error, Service};
 use api::Endpoint;
-pub use finish::{Settings, finished};
+pub use finish::finished;
 use problem::Problem;
 
-/// What the REST door answers, without what is said about it.
+/// The endpoints of REST, without their description.
 pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
     vec![
         points::endpoint(service.clone()),
@@ -50,31 +52,35 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
     ]
 }
 
-/// All that the port answers by REST, and what is said about it.
+/// All that the port answers by REST.
 #[derive(Debug)]
-pub struct Door {
+pub struct Routes {
     /// The routes.
     pub router: Router,
-    /// The paths there are, for those who look elsewhere.
+    /// The paths, for answers to unknown ones.
     pub paths: String,
 }
 
-impl Door {
-    /// A door of these endpoints and their description. All but the open ones are put behind a
-    /// gate.
+impl Routes {
+    /// The routes of these endpoints and of their description. Those that are open go through `open`,
+    /// all others through `gate`.
     #[must_use]
-    pub fn new(mut endpoints: Vec<Endpoint>, gate: impl FnOnce(Router) -> Router) -> Self {
+    pub fn new(
+        mut endpoints: Vec<Endpoint>,
+        open: impl FnOnce(Router) -> Router,
+        gate: impl FnOnce(Router) -> Router,
+    ) -> Self {
         endpoints.extend(page::endpoints());
         endpoints.extend(docs::endpoints());
         endpoints.push(openapi::endpoint(&endpoints));
         let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
         let paths = paths.join(", ");
-        let (open, closed): (Vec<_>, Vec<_>) = endpoints.into_iter().partition(Endpoint::is_open);
+        let (free, closed): (Vec<_>, Vec<_>) = endpoints.into_iter().partition(Endpoint::is_open);
         let joined = |endpoints: Vec<Endpoint>| {
             let routers = endpoints.into_iter().map(Endpoint::into_router);
             routers.fold(Router::new(), Router::merge)
         };
-        let router = joined(open).merge(gate(joined(closed)));
+        let router = open(joined(free)).merge(gate(joined(closed)));
         Self { router, paths }
     }
 }
@@ -89,10 +95,10 @@ pub fn not_found(request: &Request, paths: &str) -> Response {
     Problem::response(&error)
 }
 
-/// What a client hears, as bytes, for whose connection there is no place.
+/// The whole HTTP/1.1 response to a client whose connection is refused.
 #[must_use]
-pub fn no_place(limit: usize) -> Vec<u8> {
-    Problem::last_words(&Error::TooManyConnections { limit })
+pub fn no_place(error: &Error) -> Vec<u8> {
+    Problem::last_words(error)
 }
 
 /// The answer to what asks for a gRPC method, but not as a call.

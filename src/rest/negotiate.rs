@@ -2,6 +2,7 @@
 
 use http::{HeaderMap, header::ACCEPT};
 
+use super::quality;
 use crate::service::{Encoding, Error};
 
 /// A format and the content type to call it.
@@ -136,16 +137,8 @@ struct Range<'a> {
 impl<'a> Range<'a> {
     /// One element of the list; `None` if it is not a media range.
     fn parse(text: &'a str) -> Option<Self> {
-        let mut parts = text.split(';').map(str::trim);
-        let (main, sub) = parts.next()?.split_once('/')?;
-        let mut quality = 1000;
-        for parameter in parts {
-            let (name, value) = parameter.split_once('=')?;
-            if name.trim().eq_ignore_ascii_case("q") {
-                let value: f64 = value.trim().parse().ok()?;
-                quality = (value.clamp(0.0, 1.0) * 1000.0).round() as u16;
-            }
-        }
+        let (media_type, quality) = quality::split(text)?;
+        let (main, sub) = media_type.split_once('/')?;
         Some(Self { main, sub, quality })
     }
 

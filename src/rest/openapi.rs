@@ -1,12 +1,11 @@
-//! `GET /openapi.json`: what the REST door answers, for programs.
+//! `GET /openapi.json`: the description of the REST API, for programs.
 
-use axum::{body::Body, response::Response, routing};
-use bytes::Bytes;
-use http::{HeaderMap, HeaderValue, Method, Uri, header};
+use axum::routing;
+use http::{HeaderMap, Method, Uri};
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
-    freshness::Freshness,
+    fixed::Fixed,
 };
 use crate::service::query::groups;
 
@@ -20,32 +19,10 @@ pub(super) fn endpoint(endpoints: &[Endpoint]) -> Endpoint {
     document["paths"][PATH] = own["paths"][PATH].clone();
     let mut text = serde_json::to_vec_pretty(&document).unwrap_or_default();
     text.push(b'\n');
-    let text = Bytes::from(text);
-    let handler = routing::get(move |uri, headers| {
-        let text = text.clone();
-        async move { fixed(&uri, &headers, "application/json", text) }
-    });
+    let document = Fixed::new("application/json", text.into());
+    let answer = move |uri: Uri, headers: HeaderMap| async move { document.answer(&uri, &headers) };
+    let handler = routing::get(answer);
     Endpoint::new(PATH, (), vec![(operation(), handler)]).open()
-}
-
-/// An answer that is always the same.
-pub(super) fn fixed(
-    uri: &Uri,
-    headers: &HeaderMap,
-    content_type: &'static str,
-    content: Bytes,
-) -> Response {
-    let digest = blake3::hash(&content).to_hex();
-    let freshness = Freshness::of(uri, headers, content_type, &digest.as_str());
-    let unchanged = freshness.unchanged(headers);
-    if let Some(unchanged) = unchanged.or_else(|| freshness.unwanted(headers)) {
-        return unchanged;
-    }
-    let mut response = Response::new(Body::from(content));
-    let value = HeaderValue::from_static(content_type);
-    response.headers_mut().insert(header::CONTENT_TYPE, value);
-    freshness.stamp(&mut response);
-    response
 }
 
 fn operation() -> Operation {

@@ -3,13 +3,19 @@
 //!
 //! The list of parts stands in [`PARTS`]; tests/tidy.rs holds it against the folder.
 
-use axum::{extract::Path, response::Response, routing};
+use std::sync::Arc;
+
+use axum::{
+    extract::{Path, State},
+    response::Response,
+    routing,
+};
 use bytes::Bytes;
 use http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
-    openapi::fixed,
+    fixed::Fixed,
 };
 use crate::service::{
     Error, Kind,
@@ -88,9 +94,10 @@ fn content_type(name: &str) -> &'static str {
 /// The page and its parts.
 pub(super) fn endpoints() -> Vec<Endpoint> {
     let page = operation("getPage", "/", "The page", &[HTML], &[], vec![]);
+    let document = Fixed::new(HTML, Bytes::from_static(PAGE.as_bytes()));
     let page_handler =
         routing::get(
-            |uri: Uri, headers: HeaderMap| async move { part(&uri, &headers, HTML, PAGE) },
+            move |uri: Uri, headers: HeaderMap| async move { part(&document, &uri, &headers) },
         );
     let parts = operation(
         "getPagePart",
@@ -101,9 +108,14 @@ pub(super) fn endpoints() -> Vec<Endpoint> {
         vec![Kind::NoSuchPath],
     );
     let parts_handler = routing::get(one);
+    let all = PARTS.iter().map(|&(name, text)| {
+        let content = Bytes::from_static(text.as_bytes());
+        (name, Fixed::new(content_type(name), content))
+    });
+    let all: Parts = Arc::new(all.collect());
     vec![
         Endpoint::new("/", (), vec![(page, page_handler)]).open(),
-        Endpoint::new("/page/{file}", (), vec![(parts, parts_handler)]).open(),
+        Endpoint::new("/page/{file}", all, vec![(parts, parts_handler)]).open(),
     ]
 }
 
@@ -148,23 +160,25 @@ fn operation(
     }
 }
 
-async fn one(Path(file): Path<String>, uri: Uri, headers: HeaderMap) -> Result<Response, Error> {
-    let found = PARTS.iter().find(|(name, _)| *name == file);
-    let &(name, text) = found.ok_or_else(|| Error::NoSuchPath {
+/// The parts by their names, ready to send.
+type Parts = Arc<Vec<(&'static str, Fixed)>>;
+
+async fn one(
+    State(parts): State<Parts>,
+    Path(file): Path<String>,
+    uri: Uri,
+    headers: HeaderMap,
+) -> Result<Response, Error> {
+    let found = parts.iter().find(|(name, _)| *name == file);
+    let (_, document) = found.ok_or_else(|| Error::NoSuchPath {
         path: uri.path().into(),
         available: "/ and the parts that it names".into(),
     })?;
-    Ok(part(&uri, &headers, content_type(name), text))
+    Ok(part(document, &uri, &headers))
 }
 
-fn part(
-    uri: &Uri,
-    headers: &HeaderMap,
-    content_type: &'static str,
-    text: &'static str,
-) -> Response {
-    let content = Bytes::from_static(text.as_bytes());
-    let mut response = fixed(uri, headers, content_type, content);
+fn part(document: &Fixed, uri: &Uri, headers: &HeaderMap) -> Response {
+    let mut response = document.answer(uri, headers);
     for (name, value) in [
         (header::CONTENT_SECURITY_POLICY, POLICY),
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),

@@ -34,5 +34,6 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 /// Answers a query.
 async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
     let draft = Draft::of(context.values(groups::POINTS));
-    answer::stream(&service, &context, &draft).await
+    let (query, options) = service.check(&draft)?;
+    answer::stream(&service, &context, query, options).await
 }

@@ -63,6 +63,6 @@ async fn post(
     Whole(body): Whole,
 ) -> Result<Response, Error> {
     context.no_parameters()?;
-    let draft = body::query(&service, body, groups::QUERY).await?;
-    answer::stream(&service, &context, &draft).await
+    let (_, query, options) = body::query(&service, body, groups::QUERY).await?;
+    answer::stream(&service, &context, query, options).await
 }

@@ -18,7 +18,7 @@ use super::{
     freshness::Freshness,
 };
 use crate::service::{
-    Error, Found, Kind, Nearest, Service, Set,
+    Error, Found, Kind, Nearest, Placed, Service, Set,
     query::{Parameter, ResolvedSet, Shape, groups},
 };
 
@@ -119,13 +119,13 @@ async fn near(State(service): State<Arc<Service>>, context: Context) -> Result<R
     let values = context.values(groups::NEAREST);
     let (set, nearest) = Nearest::of_set(&values, &service.catalog())?;
     let freshness = freshness(&context, &set);
-    let make = async {
-        let (placed, neighbors) = service.nearest(&context.caller, set, nearest).await?;
+    let write = |placed: &Placed, neighbors| {
         document::json(&Several {
             neighbors,
-            query: placed.resolved,
+            query: placed.resolved.clone(),
         })
     };
+    let make = service.nearest(&context.caller, set, nearest, write);
     freshness.answer(&context.headers, make).await
 }
 

@@ -79,18 +79,27 @@ async fn post(
     Whole(body): Whole,
 ) -> Result<Response, Error> {
     let parts = parts(&context.values(groups::SPLIT));
-    let draft = body::query(&service, body, groups::QUERY).await?;
-    let (query, _) = service.check(&draft)?;
+    let size = body.len();
+    let (draft, query, _) = body::query(&service, body, groups::QUERY).await?;
     let parts = parts?;
     let planned = service.count(query).await?;
     let count = planned.count();
     let places = service.split(planned, parts).await?;
-    let part = |(token, count): (Token, u64)| Part {
-        count,
-        query: draft.part(&token, count).to_body(),
+    // Each part repeats the body, in memory and in the answer.
+    let bytes = places.len().saturating_mul(size + PART_BYTES);
+    let _held = service.hold(bytes.saturating_mul(3))?;
+    let write = move |_: &Service| {
+        let part = |(token, count): (Token, u64)| Part {
+            count,
+            query: draft.part(&token, count).to_body(),
+        };
+        document::json(&Split {
+            count,
+            parts: places.into_iter().map(part).collect(),
+        })
     };
-    document::json(&Split {
-        count,
-        parts: places.into_iter().map(part).collect(),
-    })
+    service.process(bytes, write).await?
 }
+
+/// What a part takes besides the body: a cursor, a limit, a count.
+const PART_BYTES: usize = 512;

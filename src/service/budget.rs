@@ -1,78 +1,122 @@
-//! Bytes in flight: what requests and answers may hold in memory at once, all together.
+//! The byte budget: what requests and answers may hold in memory at once, of the daemon and of each
+//! address.
 //!
-//! Who holds something says so before, with what it will be at most; it is given back with what held
-//! it. So a thousand small things and ten large ones are bounded by the same number.
+//! Whatever holds something takes its share beforehand, with the most it can become, and gives it
+//! back when it is dropped. So a thousand small things and ten large ones have the same bound.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicUsize, Ordering},
-};
+use std::sync::Arc;
 
 use super::Error;
+use crate::access::{Denied, Quota, Usage};
 
-/// What may be held, and what is.
-#[derive(Debug)]
+/// The byte budget that a request takes from: the daemon's, and that of the client's address. Cheap
+/// to clone.
+#[derive(Clone, Debug)]
 pub struct Budget {
-    held: AtomicUsize,
-    limit: usize,
+    all: Arc<Quota>,
+    address: Arc<Usage>,
 }
 
 impl Budget {
-    /// Nothing is held, and at most `limit` bytes may be.
+    /// A budget of `limit` bytes for all addresses.
     #[must_use]
-    pub const fn new(limit: usize) -> Self {
+    pub fn new(limit: usize) -> Self {
         Self {
-            held: AtomicUsize::new(0),
-            limit,
+            all: Arc::new(Quota::new(limit)),
+            address: Usage::unlimited(),
         }
     }
 
-    /// The bytes that are held.
+    /// The same budget, from which an address takes no more than its own limit.
     #[must_use]
-    pub fn held(&self) -> usize {
-        self.held.load(Ordering::Acquire)
+    pub fn of_address(&self, address: Arc<Usage>) -> Self {
+        Self {
+            all: self.all.clone(),
+            address,
+        }
     }
 
-    /// The right to hold so many bytes.
+    /// A number that tells addresses apart, by which their work takes turns.
+    pub(super) fn address(&self) -> usize {
+        Arc::as_ptr(&self.address).addr()
+    }
+
+    /// The bytes that are held of all addresses together.
+    #[must_use]
+    pub fn held(&self) -> usize {
+        self.all.used()
+    }
+
+    /// The limit of all addresses together.
+    #[must_use]
+    pub fn limit(&self) -> usize {
+        self.all.limit()
+    }
+
+    /// Takes bytes.
     ///
     /// # Errors
-    /// [`Error::TooManyBytes`] if there is no room.
-    pub fn hold(self: &Arc<Self>, bytes: usize) -> Result<Held, Error> {
-        let mut held = Held {
-            budget: self.clone(),
-            bytes: 0,
-        };
-        held.more(bytes)?;
+    /// [`Error::TooManyBytes`] if there is no room, [`Denied::Address`] if the address has used its
+    /// own.
+    pub fn hold(&self, bytes: usize) -> Result<Held, Error> {
+        let mut held = self.hold_anyway(0);
+        held.grow(bytes)?;
         Ok(held)
+    }
+
+    /// Takes bytes that are there already, whatever the limit.
+    #[must_use]
+    pub fn hold_anyway(&self, bytes: usize) -> Held {
+        self.all.take_anyway(bytes);
+        self.address.bytes.take_anyway(bytes);
+        Held {
+            budget: self.clone(),
+            bytes,
+        }
     }
 }
 
-/// The right to hold bytes; given back when dropped.
+/// A share of the budget; given back when dropped.
 #[derive(Debug)]
 pub struct Held {
-    budget: Arc<Budget>,
+    budget: Budget,
     bytes: usize,
 }
 
 impl Held {
-    /// The right to so many more.
+    /// Takes more bytes.
     ///
     /// # Errors
-    /// [`Error::TooManyBytes`] if there is no room; what was held before still is.
-    pub fn more(&mut self, bytes: usize) -> Result<(), Error> {
-        let limit = self.budget.limit;
-        let grown = |held: usize| held.checked_add(bytes).filter(|&sum| sum <= limit);
-        let held = &self.budget.held;
-        held.fetch_update(Ordering::AcqRel, Ordering::Acquire, grown)
-            .map_err(|_| Error::TooManyBytes { limit })?;
+    /// As [`Budget::hold`]; what was held before still is.
+    pub fn grow(&mut self, bytes: usize) -> Result<(), Error> {
+        let Budget { all, address } = &self.budget;
+        if !address.bytes.take(bytes) {
+            let (what, limit) = ("bytes", address.bytes.limit());
+            return Err(Denied::Address { what, limit }.into());
+        }
+        if !all.take(bytes) {
+            address.bytes.give_back(bytes);
+            return Err(Error::TooManyBytes { limit: all.limit() });
+        }
         self.bytes += bytes;
         Ok(())
+    }
+
+    /// Gives back all but `bytes`.
+    pub fn shrink_to(&mut self, bytes: usize) {
+        self.give_back(self.bytes.saturating_sub(bytes));
+    }
+
+    fn give_back(&mut self, bytes: usize) {
+        self.budget.all.give_back(bytes);
+        self.budget.address.bytes.give_back(bytes);
+        self.bytes -= bytes;
     }
 }
 
 impl Drop for Held {
     fn drop(&mut self) {
-        self.budget.held.fetch_sub(self.bytes, Ordering::AcqRel);
+        self.give_back(self.bytes);
     }
 }
 
@@ -82,17 +126,19 @@ mod tests {
 
     #[test]
     fn what_is_held_is_bounded_and_given_back() {
-        let budget = Arc::new(Budget::new(100));
+        let budget = Budget::new(100);
         let mut first = budget.hold(60).expect("room");
         assert_eq!(
             budget.hold(41).expect_err("no room").kind(),
             crate::service::Kind::Busy
         );
         let second = budget.hold(40).expect("room");
-        assert!(first.more(1).is_err() && first.more(usize::MAX).is_err());
+        assert!(first.grow(1).is_err() && first.grow(usize::MAX).is_err());
         drop(second);
-        first.more(40).expect("room again");
+        first.grow(40).expect("room again");
         assert_eq!(budget.held(), 100);
+        first.shrink_to(30);
+        assert_eq!(budget.held(), 30);
         drop(first);
         assert_eq!(budget.held(), 0);
     }

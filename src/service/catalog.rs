@@ -25,6 +25,7 @@ use strew_core::{
 use strew_forge::Aim;
 
 use super::Error;
+use crate::bounded_file;
 pub use reload::{Refusal, Reload};
 
 /// The tables that are built into the program beside the library's: (file name, content).
@@ -131,22 +132,14 @@ impl Entry {
         })
     }
 
-    /// Reads a table file, whose size is checked before its content is taken into memory.
+    /// Reads a table file, which must be a regular file of the size that tables may have.
     ///
     /// # Errors
     /// [`CatalogError::File`] or [`CatalogError::Table`], naming the file.
     pub fn from_file(path: PathBuf) -> Result<Self, CatalogError> {
         let source = Source::File(path.clone());
-        let read = || -> io::Result<Result<Vec<u8>, u64>> {
-            let size = fs::metadata(&path)?.len();
-            if size > MAX_FILE_BYTES {
-                return Ok(Err(size));
-            }
-            fs::read(&path).map(Ok)
-        };
-        match read() {
-            Ok(Ok(bytes)) => Self::read(bytes.into(), source),
-            Ok(Err(bytes)) => Err(CatalogError::TooLarge { path, bytes }),
+        match bounded_file::read(&path, MAX_FILE_BYTES) {
+            Ok(bytes) => Self::read(bytes.into(), source),
             Err(error) => Err(CatalogError::File { path, error }),
         }
     }
@@ -216,14 +209,6 @@ pub enum CatalogError {
         source_name: Source,
         /// What is wrong where.
         error: strew_core::Error,
-    },
-    /// A file is larger than any table; it was not read.
-    #[error("the table {} has {bytes} bytes; at most {MAX_FILE_BYTES} are allowed", path.display())]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-        /// Its size.
-        bytes: u64,
     },
     /// Two tables of one place answer the same queries.
     #[error("the tables {first} and {second} are both for {key}: keep one")]

@@ -4,6 +4,14 @@
 
 use strew_core::{Area, PointSet, Region, Spacing, Warp, server};
 
+use super::{
+    Lane, Placed, Planned, PlannedSet,
+    cache::Ready,
+    planner::{self, COUNTS},
+    query::{Amount, Nearest, Query, Set},
+    single::MOST_WITHIN,
+};
+
 /// About how many lattice units a mean spacing has.
 const UNITS: f64 = 3.0;
 /// The rows that are looked at together, in mean spacings.
@@ -21,6 +29,117 @@ pub(super) struct Selection {
     pub(super) area: Area,
     /// Whether the set keeps clear of others.
     pub(super) keeps_clear: bool,
+}
+
+/// What takes more rows than this, in rows of warped sets, is planned in the lane for long work:
+/// some ten milliseconds.
+const SHORT_ROWS: f64 = 30_000.0;
+/// A row of a set without warp takes this much of one with warp.
+const PLAIN: f64 = 0.1;
+/// Blocks for which more points than this are considered are made in the lane for long work.
+const SHORT_BLOCK: f64 = 2e7;
+
+/// The lane in which a query is planned.
+pub(super) fn lane(query: &Query, tables: &[Ready]) -> Lane {
+    // With a cursor nothing is counted.
+    if query.window.cursor.is_some() {
+        return Lane::Short;
+    }
+    let sets = query.sets.iter().zip(tables);
+    let rows: f64 = sets.map(|(set, ready)| planning(query, set, ready)).sum();
+    if rows > SHORT_ROWS {
+        Lane::Long
+    } else {
+        Lane::Short
+    }
+}
+
+/// What planning a set takes, in rows of a warped set.
+fn planning(query: &Query, set: &Set, ready: &Ready) -> f64 {
+    let bounds = query.region.bbox();
+    let (spacing, counts) = match set.amount {
+        Amount::Count(count) => {
+            let [min_x, min_y, max_x, max_y] = bounds;
+            let area = (max_x - min_x) * (max_y - min_y);
+            let guess = (area * set.keep.get() / count.max(1) as f64).sqrt();
+            (Spacing::new(guess).ok(), COUNTS)
+        }
+        _ => {
+            let resolved = planner::resolve(set, ready).ok().flatten();
+            (resolved.map(|(spacing, _)| spacing), 1.0)
+        }
+    };
+    let Some(spacing) = spacing else { return 0.0 };
+    let selection = Selection {
+        set: PointSet::new(ready.table.clone()).placed(set.placement(spacing)),
+        area: set.area(&query.region),
+        keeps_clear: !set.clear_of.is_empty(),
+    };
+    let is_plain = selection.set.placement().warp == Warp::OFF && !selection.keeps_clear;
+    let weight = if is_plain { PLAIN } else { 1.0 };
+    // Seeking an offset counts again.
+    let seeks = 1.0 + f64::from(u8::from(query.window.offset > 0));
+    rows_and_edges(&selection) * weight * counts * seeks
+}
+
+/// The lane in which the blocks of an answer are made: points that are thinned out take as long as
+/// those that stay.
+pub(super) fn block_lane(planned: &Planned) -> Lane {
+    /// The most points of a block.
+    const BLOCK: u128 = 1 << 15;
+    let sets = planned.query.sets.iter().zip(&planned.sets);
+    let is_long = sets.into_iter().any(|(set, planned)| {
+        let block = planned.plan.count().min(BLOCK) as f64;
+        block / set.keep.get() > SHORT_BLOCK
+    });
+    if is_long { Lane::Long } else { Lane::Short }
+}
+
+/// What a search for neighbors takes, known before it begins.
+#[derive(Clone, Copy, Debug)]
+pub struct Neighbors {
+    /// The most bytes that the points and the answer with them hold.
+    pub bytes: usize,
+    /// Where to search.
+    pub lane: Lane,
+}
+
+impl Neighbors {
+    /// What a search among the points of a set takes.
+    #[must_use]
+    pub fn of(placed: &Placed, nearest: &Nearest) -> Self {
+        /// A point without attributes, and a value, in memory and as text.
+        const POINT: usize = 384;
+        const VALUE: usize = 160;
+        /// More points than this take milliseconds.
+        const MANY: usize = 500;
+        let within = nearest.radius.map_or(1.0, |radius| {
+            // The disk and its rim, generously.
+            let across = radius * placed.resolved.density.sqrt() + 2.0;
+            across * across * 4.0
+        });
+        let most = nearest.k.unwrap_or(MOST_WITHIN).min(MOST_WITHIN);
+        let most = match (nearest.k, nearest.radius) {
+            (Some(_), None) => most,
+            _ => most.min(within.ceil() as usize),
+        };
+        let values = placed.set.attributes.as_slice().len();
+        Self {
+            bytes: most * (POINT + values * VALUE),
+            lane: if most > MANY { Lane::Long } else { Lane::Short },
+        }
+    }
+}
+
+/// The points that are considered to make those of a plan: with `keep`, those that are thinned out,
+/// too.
+#[must_use]
+pub fn considered(planned: &Planned) -> u128 {
+    let sets = planned.query.sets.iter().zip(&planned.sets);
+    let considered =
+        |(set, planned): (&Set, &PlannedSet)| planned.plan.count() as f64 / set.keep.get();
+    let all: f64 = sets.map(considered).sum();
+    all.round() as u128
 }
 
 /// The number of rows that are counted one by one, or points tested, which takes as long: none for a

@@ -1,7 +1,6 @@
 //! What can go wrong with a question, in words for the one who asked.
 //!
-//! One type for all of it, whatever the door: what each becomes on the wire stands in
-//! [`error_map`](crate::error_map). Text here is for clients; what only operators should see goes
+//! One type for both protocols; [`error_map`](crate::error_map) has the status of each. Text here is for clients; what only operators should see goes
 //! to the log where it happens.
 
 use std::fmt;
@@ -239,6 +238,8 @@ pub enum Kind {
     NotAllowed,
     /// [`Denied::TooManyStreams`].
     TooManyStreams,
+    /// [`Denied::Address`].
+    TooManyForAddress,
     /// [`Denied::TooFast`].
     TooFast,
     /// [`Error::Busy`], [`Error::TooManyConnections`], [`Error::TooManyRequests`],
@@ -256,7 +257,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Invalid,
         Self::TooManyPoints,
         Self::TooManyRows,
@@ -269,6 +270,7 @@ impl Kind {
         Self::Unauthenticated,
         Self::NotAllowed,
         Self::TooManyStreams,
+        Self::TooManyForAddress,
         Self::TooFast,
         Self::Busy,
         Self::BodyTooSlow,
@@ -295,6 +297,7 @@ impl Error {
             Self::Denied(Denied::NoKey | Denied::WrongKey) => Kind::Unauthenticated,
             Self::Denied(Denied::NotAdmin { .. }) => Kind::NotAllowed,
             Self::Denied(Denied::TooManyStreams { .. }) => Kind::TooManyStreams,
+            Self::Denied(Denied::Address { .. }) => Kind::TooManyForAddress,
             Self::Denied(Denied::TooFast { .. }) => Kind::TooFast,
             Self::Busy { .. }
             | Self::TooManyConnections { .. }

@@ -19,20 +19,21 @@ pub mod query;
 pub mod record;
 mod single;
 pub mod stream;
+mod turns;
 pub mod workers;
 
-use std::{path::PathBuf, sync::Arc};
+use std::{path::Path, sync::Arc};
 
 use arc_swap::ArcSwap;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
-use serde::{Deserialize, Serialize};
+
 use strew_core::server::Stop;
-use tokio::sync::Mutex;
 
 pub use budget::{Budget, Held};
 pub use cache::Ready;
 pub use catalog::{Catalog, Entry, Key, Reload};
+pub use effort::{Neighbors, considered};
 pub use encode::{Answer, Encoding, Options, Output};
 pub use error::{Error, Fault, Kind};
 pub use planned::{Placed, Planned, PlannedSet};
@@ -41,55 +42,24 @@ pub use query::{Draft, Nearest, Query, Set, Token};
 pub use record::Record;
 pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
-pub use workers::Workers;
+pub use workers::{Lane, Workers};
+
+pub use crate::config::Limits;
 
 use crate::access::Caller;
 use cache::{CacheState, Samplers};
 use portrait::Portraits;
 use record::Recorded;
 
-/// What a query may ask for, and what answering may hold.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Limits {
-    /// The most points of one answer. Keeps a slip of a zero from filling a disk; the refusal says
-    /// the exact count.
-    pub max_points: u64,
-    /// The most lattice rows that are counted one by one, where a region is not a box or is warped
-    /// (about three for each mean spacing of its outline's width and height, and of its height), and
-    /// points that keep clear of others. They take about a microsecond each before the first point.
-    pub max_rows: u64,
-    /// The most vertices that the polygons of a query have in all: bounds its memory.
-    pub max_vertices: usize,
-    /// The most bytes of a query that comes as a body or a message: bounds what is held of each before it is
-    /// read.
-    pub max_body_bytes: usize,
-    /// The most requests that are being answered at once: read, counted, planned. Bounds what waits
-    /// for the workers.
-    pub max_requests: usize,
-    /// The most bytes that requests and answers hold at once: bodies that have come, answers that have
-    /// not left, and what streams are made in.
-    pub max_bytes_in_flight: usize,
-    /// The most answers under way at once. Bounds memory: an answer holds 1 to 3 MB,
-    /// some blocks and the rows they are made of, and a picture up to 16 MB more.
-    pub max_streams: usize,
-    /// The size of a block before it is encoded, in bytes.
-    pub block_bytes: usize,
-    /// The most memory for samplers that are ready to answer, in bytes.
-    pub cache_bytes: u64,
-}
-
 /// Everything a front end needs. Cheap to share behind an [`Arc`].
 #[derive(Debug)]
 pub struct Service {
     catalog: ArcSwap<Catalog>,
-    /// Held while tables are read again, so that reloads come one after another.
-    reload: Mutex<()>,
     limits: Limits,
     samplers: Samplers,
     portraits: Portraits,
     streams: Arc<Streams>,
-    budget: Arc<Budget>,
+    budget: Budget,
     workers: Workers,
 }
 
@@ -101,9 +71,8 @@ impl Service {
             samplers: Samplers::new(limits.cache_bytes),
             portraits: Portraits::new(),
             streams: Arc::new(Streams::new(limits.max_streams)),
-            budget: Arc::new(Budget::new(limits.max_bytes_in_flight)),
+            budget: Budget::new(limits.max_bytes_in_flight),
             catalog: ArcSwap::from_pointee(catalog),
-            reload: Mutex::new(()),
             limits,
             workers,
         }
@@ -115,23 +84,20 @@ impl Service {
         self.catalog.load_full()
     }
 
-    /// Reads the folder of tables again and serves what is good in it from then on, all at once. A
-    /// file that is not good is refused, and the table that it held so far serves on.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if reading panicked; then nothing has changed.
-    pub async fn reload(&self, folder: Option<PathBuf>) -> Result<Reload, Error> {
-        let _one_at_a_time = self.reload.lock().await;
-        let before = self.catalog.load_full();
-        let read = move || before.again(folder.as_deref());
-        let (after, reload) = tokio::task::spawn_blocking(read)
-            .await
-            .map_err(|_| Error::Internal("the tables cannot be read again"))?;
+    /// Reads the folder of tables again. A file that is not valid is refused, and the table that it
+    /// held so far stays.
+    #[must_use]
+    pub fn read_tables(&self, folder: Option<&Path>) -> (Catalog, Reload) {
+        self.catalog.load().reload(folder)
+    }
+
+    /// Serves the tables that were read, all at once. Reloads come one after another.
+    pub async fn serve_tables(&self, (after, reload): (Catalog, Reload)) -> Reload {
         self.catalog.store(Arc::new(after));
         for digest in reload.gone() {
             self.samplers.forget(digest).await;
         }
-        Ok(reload)
+        reload
     }
 
     /// The limits.
@@ -157,9 +123,9 @@ impl Service {
         &self.streams
     }
 
-    /// What requests and answers hold.
+    /// The byte budget of all requests and answers.
     #[must_use]
-    pub const fn budget(&self) -> &Arc<Budget> {
+    pub const fn budget(&self) -> &Budget {
         &self.budget
     }
 
@@ -179,7 +145,7 @@ impl Service {
         }
     }
 
-    /// Admits a caller and plans a query whose points are to be made, charging them.
+    /// Admits a caller and plans a query whose points are to be made, charging the points considered.
     ///
     /// # Errors
     /// As [`admit`](Self::admit) and [`plan`](Self::plan), and [`Error::Denied`] if the caller takes
@@ -192,8 +158,23 @@ impl Service {
     ) -> Result<(Permit, Planned), Error> {
         let permit = self.admit(caller, picture)?;
         let planned = self.plan(caller, query).await?;
-        caller.charge(planned.count())?;
+        caller.charge(considered(&planned))?;
         Ok((permit, planned))
+    }
+
+    /// The byte budget of the request that is being answered.
+    #[must_use]
+    pub fn own_budget(&self) -> Budget {
+        let record = Record::current();
+        record.map_or_else(|| self.budget.clone(), |record| record.budget().clone())
+    }
+
+    /// Takes bytes of the budget for the request that is being answered.
+    ///
+    /// # Errors
+    /// As [`Budget::hold`].
+    pub fn hold(&self, bytes: usize) -> Result<Held, Error> {
+        self.own_budget().hold(bytes)
     }
 
     /// Plans a query on the workers, whatever it counts.
@@ -211,8 +192,9 @@ impl Service {
             Planned::new(query, &tables, &self.limits)?
         } else {
             let limits = self.limits.clone();
+            let lane = effort::lane(&query, &tables);
             let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
-            self.workers.run_while_wanted(plan).await??
+            self.workers.take_turn(lane, plan).await??
         };
         tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
         Ok(planned)
@@ -233,7 +215,7 @@ impl Service {
             .saturating_add(side.saturating_mul(side));
         let place = caller.place()?;
         let permit = self.streams.admit()?;
-        Ok(permit.with(place, self.budget.hold(held)?))
+        Ok(permit.with(place, self.hold(held)?))
     }
 
     /// Plans a query that is to be answered with its points.
@@ -242,6 +224,9 @@ impl Service {
     /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
     pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
         let planned = self.count(query).await?;
+        if let Some(record) = Record::current() {
+            record.take_lane(effort::block_lane(&planned));
+        }
         let limit = caller.max_points(self.limits.max_points);
         let count = planned.count();
         if count > u128::from(limit) {
@@ -256,7 +241,33 @@ impl Service {
     /// As [`Planned::split`].
     pub async fn split(&self, planned: Planned, parts: u32) -> Result<Vec<(Token, u64)>, Error> {
         let split = move |stop: &Stop| planned.stopped_by(stop).split(parts);
-        self.workers.run_while_wanted(split).await?
+        self.workers.take_turn(Lane::Long, split).await?
+    }
+
+    /// Reads or writes this many bytes of a request or an answer: at once if they are few, else on the
+    /// workers.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if the job panicked.
+    pub async fn process<T: Send + 'static>(
+        self: &Arc<Self>,
+        bytes: usize,
+        job: impl FnOnce(&Self) -> T + Send + 'static,
+    ) -> Result<T, Error> {
+        /// This much takes as long as handing it over.
+        const FEW: usize = 4 << 10;
+        /// More than this takes milliseconds.
+        const MANY: usize = 64 << 10;
+        if bytes <= FEW {
+            return Ok(job(self));
+        }
+        let lane = if bytes <= MANY {
+            Lane::Short
+        } else {
+            Lane::Long
+        };
+        let service = self.clone();
+        self.workers.take_turn(lane, move |_| job(&service)).await
     }
 
     /// Lays a set into the world, to look up single points.
@@ -268,22 +279,29 @@ impl Service {
         Placed::new(set, ready)
     }
 
-    /// The points of a set nearest to a place, charging them.
+    /// What is made of the points of a set nearest to a place, where they are found: there may be
+    /// thousands. Charges them.
     ///
     /// # Errors
-    /// As [`place`](Self::place) and [`Placed::nearest`], and [`Error::Denied`] if the caller takes
-    /// points too fast.
-    pub async fn nearest(
+    /// As [`place`](Self::place) and [`Placed::nearest`], [`Error::Denied`] if the caller takes points
+    /// too fast, and [`Error::TooManyBytes`] if there is no room.
+    pub async fn nearest<T: Send + 'static>(
         &self,
         caller: &Caller,
         set: Set,
         nearest: Nearest,
-    ) -> Result<(Placed, Vec<Found>), Error> {
+        answer: impl FnOnce(&Placed, Vec<Found>) -> Result<T, Error> + Send + 'static,
+    ) -> Result<T, Error> {
         let placed = self.place(set).await?;
-        let finder = placed.clone();
-        let found = self.workers.run(move || finder.nearest(nearest)).await??;
-        caller.charge(found.len() as u128)?;
-        Ok((placed, found))
+        let effort = Neighbors::of(&placed, &nearest);
+        let (budget, caller) = (self.own_budget(), caller.clone());
+        let search = move |_: &Stop| {
+            let _held = budget.hold(effort.bytes)?;
+            let found = placed.nearest(nearest)?;
+            caller.charge(found.len() as u128)?;
+            answer(&placed, found)
+        };
+        self.workers.take_turn(effort.lane, search).await?
     }
 
     /// What the points of a table look like.
@@ -340,6 +358,7 @@ impl Service {
         I: Iterator + Send + 'static,
         I::Item: Send,
     {
-        BlockStream::new(items, permit, self.workers.clone())
+        let lane = Record::current().map_or(Lane::Short, |record| record.lane());
+        BlockStream::new(items, permit, self.workers.clone(), lane)
     }
 }

@@ -21,7 +21,7 @@ pub(super) struct Planner<'a> {
 }
 
 /// About how often an area is counted to find the spacing of a count.
-const COUNTS: f64 = 32.0;
+pub(super) const COUNTS: f64 = 32.0;
 
 impl<'a> Planner<'a> {
     /// `stop` ends the counting early; what is planned then means nothing.

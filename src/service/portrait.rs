@@ -7,7 +7,7 @@ use std::sync::Arc;
 use moka::future::Cache;
 use strew_forge::{Report, Resolution, measure::window_set, picture};
 
-use super::{Entry, Error, Workers};
+use super::{Entry, Error, Lane, Workers};
 
 /// How many points a portrait is taken of.
 const POINTS: u64 = 20_000;
@@ -79,7 +79,9 @@ impl Portraits {
     ) -> Result<Arc<Portrait>, Error> {
         let make = async {
             let entry = entry.clone();
-            let made = workers.run(move || Portrait::new(&entry)).await?;
+            let made = workers
+                .take_turn(Lane::Long, move |_| Portrait::new(&entry))
+                .await?;
             Ok::<_, Error>(Arc::new(made?))
         };
         self.made

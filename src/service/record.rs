@@ -1,15 +1,15 @@
 //! What is learned of an answer while it is made, for the log and the metrics.
 //!
-//! Whoever serves requests makes a [`Record`] for each and answers within its scope; the code that
-//! answers writes down what only it knows: the format, the points, why it refused. Doors stay free of
-//! counters this way, and what a door forgets to say shows as missing, not as wrong.
+//! The server makes a [`Record`] for each request and answers within its scope. The code that answers
+//! writes down what only it knows: the format, the points, the reason of a refusal. So REST and gRPC
+//! need no counters. The record also has the byte budget of the request and the lane of its work.
 
 use std::sync::{
     Arc, OnceLock,
-    atomic::{AtomicU32, AtomicU64, Ordering},
+    atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
 };
 
-use super::{Answer, Kind, encode::EncodeError};
+use super::{Answer, Budget, Kind, Lane, encode::EncodeError};
 
 tokio::task_local! {
     static CURRENT: Arc<Record>;
@@ -19,9 +19,11 @@ tokio::task_local! {
 #[derive(Debug)]
 pub struct Record {
     id: Box<str>,
+    budget: Budget,
     format: OnceLock<&'static str>,
     refused: OnceLock<Kind>,
     points: AtomicU64,
+    is_long: AtomicBool,
     code: AtomicU32,
 }
 
@@ -29,14 +31,16 @@ pub struct Record {
 const NONE: u32 = u32::MAX;
 
 impl Record {
-    /// Of a request that goes by this name.
+    /// Of a request with this id, which takes its memory from a budget.
     #[must_use]
-    pub fn new(id: &str) -> Arc<Self> {
+    pub fn new(id: &str, budget: Budget) -> Arc<Self> {
         Arc::new(Self {
             id: id.into(),
+            budget,
             format: OnceLock::new(),
             refused: OnceLock::new(),
             points: AtomicU64::new(0),
+            is_long: AtomicBool::new(false),
             code: AtomicU32::new(NONE),
         })
     }
@@ -60,6 +64,12 @@ impl Record {
     /// Notes in which format the request is answered.
     pub fn in_format(name: &'static str) {
         let _ = CURRENT.try_with(|record| record.format.set(name));
+    }
+
+    /// The byte budget of the request.
+    #[must_use]
+    pub const fn budget(&self) -> &Budget {
+        &self.budget
     }
 
     /// The name of the request.
@@ -89,6 +99,20 @@ impl Record {
     /// Notes that more points were made.
     pub fn made(&self, points: u64) {
         self.points.fetch_add(points, Ordering::Relaxed);
+    }
+
+    /// The lane in which the blocks of the answer are made.
+    #[must_use]
+    pub(super) fn lane(&self) -> Lane {
+        match self.is_long.load(Ordering::Relaxed) {
+            true => Lane::Long,
+            false => Lane::Short,
+        }
+    }
+
+    /// Chooses the lane in which the blocks of the answer are made.
+    pub(super) fn take_lane(&self, lane: Lane) {
+        self.is_long.store(lane == Lane::Long, Ordering::Relaxed);
     }
 
     /// The code with which a call ended, where the protocol says so after the answer.
@@ -144,7 +168,10 @@ mod tests {
     async fn notes_go_to_the_record_of_the_task_and_nowhere_else() {
         Record::refuse(Kind::Busy);
         assert!(Record::current().is_none());
-        let (a, b) = (Record::new("a"), Record::new("b"));
+        let (a, b) = (
+            Record::new("a", Budget::new(1)),
+            Record::new("b", Budget::new(1)),
+        );
         let noted = |kind| async move {
             tokio::task::yield_now().await;
             Record::refuse(kind);

@@ -21,7 +21,7 @@ use std::{
 use futures_util::{FutureExt as _, Stream};
 use tokio_util::sync::{CancellationToken, WaitForCancellationFutureOwned};
 
-use super::{Error, Held, Workers};
+use super::{Error, Held, Lane, Workers};
 use crate::access::Place;
 
 /// Why a stream broke off: its reader must see that it is not complete.
@@ -96,7 +96,7 @@ impl Streams {
 #[derive(Debug)]
 pub struct Permit {
     streams: Arc<Streams>,
-    /// The caller's own place, where it has not any number.
+    /// The caller's place.
     _place: Option<Place>,
     /// What it may hold.
     _held: Option<Held>,
@@ -104,8 +104,8 @@ pub struct Permit {
 
 impl Permit {
     /// With a place of the caller's and memory that are given back with it.
-    pub(super) fn with(mut self, place: Option<Place>, held: Held) -> Self {
-        self._place = place;
+    pub(super) fn with(mut self, place: Place, held: Held) -> Self {
+        self._place = Some(place);
         self._held = Some(held);
         self
     }
@@ -160,6 +160,7 @@ pub struct BlockStream<I: Iterator> {
     /// Nothing once all is said.
     shared: Option<Arc<Mutex<Shared<I>>>>,
     workers: Workers,
+    lane: Lane,
     stop: Pin<Box<WaitForCancellationFutureOwned>>,
     /// When the last block was taken.
     taken: Instant,
@@ -172,7 +173,7 @@ where
     I: Iterator + Send + 'static,
     I::Item: Send,
 {
-    pub(super) fn new(items: I, permit: Permit, workers: Workers) -> Self {
+    pub(super) fn new(items: I, permit: Permit, workers: Workers, lane: Lane) -> Self {
         let stop = Box::pin(permit.streams.stop.clone().cancelled_owned());
         let shared = Shared {
             ready: VecDeque::new(),
@@ -187,6 +188,7 @@ where
         Self {
             shared: Some(Arc::new(Mutex::new(shared))),
             workers,
+            lane,
             stop,
             taken: Instant::now(),
             quick: 0,
@@ -297,7 +299,7 @@ where
                 shared: Arc::downgrade(&all),
             };
             drop(shared);
-            self.workers.spawn(|| turn.run());
+            self.workers.spawn(self.lane, || turn.run());
         }
         match item {
             Some(item) => Poll::Ready(Some(Ok(item))),
@@ -343,7 +345,10 @@ mod tests {
         let streams = Arc::new(Streams::new(1));
         let permit = streams.admit().expect("the first");
         let workers = Workers::new(1).expect("threads");
-        (BlockStream::new(numbers, permit, workers), streams)
+        (
+            BlockStream::new(numbers, permit, workers, Lane::Short),
+            streams,
+        )
     }
 
     fn until(what: impl Fn() -> bool) {
@@ -435,7 +440,7 @@ mod tests {
         let (mut stream, streams) = stream(numbers);
         // The only worker is busy, so there is nothing to take.
         let (hold, held) = std::sync::mpsc::channel::<()>();
-        stream.workers.spawn(move || {
+        stream.workers.spawn(Lane::Short, move || {
             let _ = held.recv();
         });
         let mut context = Context::from_waker(Waker::noop());

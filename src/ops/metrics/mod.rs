@@ -24,16 +24,16 @@ use crate::{error_map, service::Kind};
 
 pub(super) use scrape::endpoint;
 
-/// The doors, as labels name them.
+/// The protocols, as labels name them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Door {
+pub(super) enum Protocol {
     /// Everything that is no call.
     Rest,
     /// gRPC and gRPC-Web.
     Grpc,
 }
 
-impl Door {
+impl Protocol {
     const ALL: [Self; 2] = [Self::Rest, Self::Grpc];
 
     /// The label.
@@ -74,7 +74,7 @@ const BUCKETS: [f64; 17] = [
 /// How often what histograms gather is folded up, whether somebody scrapes or not.
 const UPKEEP: Duration = Duration::from_secs(5);
 
-/// What requests add to by door and format.
+/// What requests add to by protocol and format.
 #[derive(Debug)]
 pub(super) struct OfFormat {
     /// Seconds until the first byte of the body.
@@ -87,9 +87,9 @@ pub(super) struct OfFormat {
     pub(super) bytes: Counter,
 }
 
-/// What requests add to by door alone.
+/// What requests add to by protocol alone.
 #[derive(Debug)]
-pub(super) struct OfDoor {
+pub(super) struct OfProtocol {
     /// Requests that are being answered.
     pub(super) in_flight: Gauge,
     refused: Vec<Counter>,
@@ -97,7 +97,7 @@ pub(super) struct OfDoor {
     broken: [Counter; 2],
 }
 
-impl OfDoor {
+impl OfProtocol {
     /// The counter of a reason to refuse; `None` for what only the protocol has a name for.
     pub(super) fn refused(&self, kind: Option<Kind>) -> &Counter {
         let at = kind.and_then(|kind| Kind::ALL.iter().position(|&other| other == kind));
@@ -124,7 +124,7 @@ pub(super) struct OfSpans {
 }
 
 /// A route, a method and how it ended.
-type Outcome = (Door, Arc<str>, &'static str, &'static str);
+type Outcome = (Protocol, Arc<str>, &'static str, &'static str);
 
 /// A daemon's metrics. Cheap to clone.
 #[derive(Clone)]
@@ -136,8 +136,8 @@ struct Inner {
     recorder: Arc<PrometheusRecorder>,
     handle: PrometheusHandle,
     started: SystemTime,
-    doors: OnceLock<[OfDoor; 2]>,
-    formats: RwLock<HashMap<(Door, &'static str), Arc<OfFormat>>>,
+    protocols: OnceLock<[OfProtocol; 2]>,
+    formats: RwLock<HashMap<(Protocol, &'static str), Arc<OfFormat>>>,
     requests: RwLock<HashMap<Outcome, Counter>>,
 }
 
@@ -158,16 +158,16 @@ impl Default for Metrics {
                 handle: recorder.handle(),
                 recorder: Arc::new(recorder),
                 started: SystemTime::now(),
-                doors: OnceLock::new(),
+                protocols: OnceLock::new(),
                 formats: RwLock::default(),
                 requests: RwLock::default(),
             }),
         };
         metrics.describe();
-        // Both doors show from the start, at zero: a rate needs a first value.
-        for door in Door::ALL {
-            metrics.door(door);
-            metrics.format(door, NO_FORMAT);
+        // Both protocols show from the start, at zero: a rate needs a first value.
+        for protocol in Protocol::ALL {
+            metrics.protocol(protocol);
+            metrics.format(protocol, NO_FORMAT);
         }
         metrics
     }
@@ -184,27 +184,27 @@ fn labels<const N: usize>(pairs: [(&'static str, SharedString); N]) -> Vec<Label
 }
 
 impl Metrics {
-    /// What requests by a door add to.
-    pub(super) fn door(&self, door: Door) -> &OfDoor {
-        let doors = self
+    /// What requests by a protocol add to.
+    pub(super) fn protocol(&self, protocol: Protocol) -> &OfProtocol {
+        let protocols = self
             .inner
-            .doors
-            .get_or_init(|| Door::ALL.map(|door| self.make_door(door)));
-        &doors[door as usize]
+            .protocols
+            .get_or_init(|| Protocol::ALL.map(|protocol| self.make_protocol(protocol)));
+        &protocols[protocol as usize]
     }
 
-    fn make_door(&self, door: Door) -> OfDoor {
-        let door = || SharedString::from(door.name());
+    fn make_protocol(&self, protocol: Protocol) -> OfProtocol {
+        let name = || SharedString::from(protocol.name());
         let refused = |reason: &'static str| {
-            let labels = labels([("door", door()), ("reason", reason.into())]);
+            let labels = labels([("protocol", name()), ("reason", reason.into())]);
             self.counter(REJECTED, labels)
         };
         let broken = |by: Broken| {
-            let labels = labels([("door", door()), ("by", by.name().into())]);
+            let labels = labels([("protocol", name()), ("by", by.name().into())]);
             self.counter(BROKEN, labels)
         };
-        OfDoor {
-            in_flight: self.gauge(IN_FLIGHT, labels([("door", door())])),
+        OfProtocol {
+            in_flight: self.gauge(IN_FLIGHT, labels([("protocol", name())])),
             refused: Kind::ALL
                 .map(|kind| refused(error_map::wire(kind).slug))
                 .into(),
@@ -214,17 +214,22 @@ impl Metrics {
     }
 
     /// What answers in a format add to.
-    pub(super) fn format(&self, door: Door, format: &'static str) -> Arc<OfFormat> {
+    pub(super) fn format(&self, protocol: Protocol, format: &'static str) -> Arc<OfFormat> {
         let formats = self
             .inner
             .formats
             .read()
             .unwrap_or_else(PoisonError::into_inner);
-        if let Some(found) = formats.get(&(door, format)) {
+        if let Some(found) = formats.get(&(protocol, format)) {
             return found.clone();
         }
         drop(formats);
-        let labels = || labels([("door", door.name().into()), ("format", format.into())]);
+        let labels = || {
+            labels([
+                ("protocol", protocol.name().into()),
+                ("format", format.into()),
+            ])
+        };
         let made = Arc::new(OfFormat {
             first_byte: self.histogram(FIRST_BYTE, labels()),
             whole: self.histogram(WHOLE, labels()),
@@ -236,18 +241,18 @@ impl Metrics {
             .formats
             .write()
             .unwrap_or_else(PoisonError::into_inner);
-        formats.entry((door, format)).or_insert(made).clone()
+        formats.entry((protocol, format)).or_insert(made).clone()
     }
 
     /// The counter of requests of a route that ended so.
     pub(super) fn requests(
         &self,
-        door: Door,
+        protocol: Protocol,
         route: &Arc<str>,
         method: &'static str,
         status: &'static str,
     ) -> Counter {
-        let outcome: Outcome = (door, route.clone(), method, status);
+        let outcome: Outcome = (protocol, route.clone(), method, status);
         let requests = self
             .inner
             .requests
@@ -258,7 +263,7 @@ impl Metrics {
         }
         drop(requests);
         let labels = labels([
-            ("door", door.name().into()),
+            ("protocol", protocol.name().into()),
             ("route", route.to_string().into()),
             ("method", method.into()),
             ("status", status.into()),
@@ -281,14 +286,28 @@ impl Metrics {
         }
     }
 
-    /// Takes in what the process counts without saying for which daemon. There is one such place in
-    /// a process; the first to ask has it.
-    pub(super) fn take_all(&self) {
-        let _ = metrics::set_global_recorder(self.inner.recorder.clone());
+    /// The counter of reloads with a cause.
+    pub(super) fn reloads(&self, cause: &'static str) -> Counter {
+        self.counter(RELOADS, labels([("cause", cause.into())]))
+    }
+
+    /// The counter of files that a reload refused.
+    pub(super) fn refused_tables(&self) -> Counter {
+        self.counter(REFUSED_TABLES, vec![])
+    }
+
+    /// The counter of panics.
+    pub(super) fn panics(&self) -> Counter {
+        self.counter(PANICS, vec![])
+    }
+
+    /// The counter of TLS handshakes that failed.
+    pub(super) fn failed_handshakes(&self) -> Counter {
+        self.counter(FAILED_HANDSHAKES, vec![])
     }
 
     /// Folds up what histograms gather, as long as the daemon runs.
-    pub(super) fn keep_up(&self) -> impl Future<Output = ()> + Send + use<> {
+    pub(super) fn fold_up(&self) -> impl Future<Output = ()> + Send + use<> {
         let inner = Arc::downgrade(&self.inner);
         async move {
             let mut ticks = tokio::time::interval(UPKEEP);
@@ -342,6 +361,10 @@ const POINTS: &str = "strew_points_total";
 const BYTES: &str = "strew_response_bytes_total";
 const REJECTED: &str = "strew_rejected_total";
 const BROKEN: &str = "strew_broken_total";
+const RELOADS: &str = "strew_tables_reloads_total";
+const REFUSED_TABLES: &str = "strew_tables_refused_total";
+const PANICS: &str = "strew_panics_total";
+const FAILED_HANDSHAKES: &str = "strew_tls_handshakes_failed_total";
 const SPANS: &str = "strew_spans_total";
 const CACHE_HITS: &str = "strew_sampler_cache_hits_total";
 const CACHE_MISSES: &str = "strew_sampler_cache_misses_total";
@@ -356,7 +379,7 @@ const THREADS: &str = "process_threads";
 const FIRST_BYTE: &str = "strew_time_to_first_byte_seconds";
 const WHOLE: &str = "strew_request_duration_seconds";
 
-const COUNTERS: [(&str, &str); 10] = [
+const COUNTERS: [(&str, &str); 12] = [
     (
         REQUESTS,
         "Requests that were answered, by route and how they ended: a class of HTTP or a gRPC code",
@@ -368,12 +391,11 @@ const COUNTERS: [(&str, &str); 10] = [
         BROKEN,
         "Answers that ended before they were whole, by who broke them off",
     ),
+    (PANICS, "Requests that failed because of a bug"),
+    (FAILED_HANDSHAKES, "TLS handshakes that failed"),
+    (RELOADS, "How often tables were read again, by cause"),
     (
-        "strew_tables_reloads_total",
-        "How often tables were read again, by cause",
-    ),
-    (
-        "strew_tables_refused_total",
+        REFUSED_TABLES,
         "Files of tables that were refused when they were read again",
     ),
     (

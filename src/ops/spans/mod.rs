@@ -7,7 +7,7 @@
 
 mod answered;
 
-use std::{path::PathBuf, sync::Arc, time::Duration};
+use std::{sync::Arc, time::Duration};
 
 use opentelemetry::KeyValue;
 use opentelemetry_otlp::{
@@ -18,71 +18,18 @@ use opentelemetry_sdk::{
     Resource,
     trace::{SpanData, SpanExporter as _},
 };
-use serde::{Deserialize, Serialize};
 use tokio::sync::mpsc;
 use tokio_util::{sync::CancellationToken, task::AbortOnDropHandle};
 
 use super::{
     identity,
     metrics::{Metrics, OfSpans},
-    often::Often,
+    throttle::LogThrottle,
     tls::certificates,
 };
-use crate::config;
+use crate::config::{self, Telemetry as Settings};
 
 pub(super) use answered::Answered;
-
-/// Where spans go, if anywhere.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Settings {
-    /// The collector's address; empty for none.
-    pub otlp_endpoint: String,
-    /// A PEM file with the authorities that vouch for the collector, for `https`.
-    pub otlp_ca: PathBuf,
-    /// What the daemon is called there.
-    pub service_name: String,
-    /// The share of requests without a trace of their own that begin one.
-    pub sample_ratio: f64,
-    /// The most spans that wait to be sent.
-    pub max_queued_spans: usize,
-    /// How long sending may take, in seconds.
-    pub export_timeout_seconds: f64,
-}
-
-impl Settings {
-    /// What is wrong with the address, if there is one.
-    pub(crate) fn fault(&self) -> Option<String> {
-        let endpoint = &self.otlp_endpoint;
-        if endpoint.is_empty() {
-            return None;
-        }
-        let read = endpoint.parse::<http::Uri>().ok();
-        let is_whole = read.is_some_and(|uri| {
-            matches!(uri.scheme_str(), Some("http" | "https"))
-                && uri.authority().is_some()
-                && uri.path_and_query().is_none_or(|path| path == "/")
-        });
-        if !is_whole {
-            return Some(format!(
-                "telemetry.otlp_endpoint = {endpoint:?}; allowed: http://host:port, https://host:port, or \
-                 nothing"
-            ));
-        }
-        let has_ca = !self.otlp_ca.as_os_str().is_empty();
-        (self.is_https() != has_ca).then(|| {
-            format!(
-                "telemetry.otlp_endpoint = {endpoint:?}, telemetry.otlp_ca = {:?}; allowed: an authority \
-                 with https, and none with http",
-                self.otlp_ca
-            )
-        })
-    }
-
-    fn is_https(&self) -> bool {
-        self.otlp_endpoint.starts_with("https:")
-    }
-}
 
 /// Why spans cannot be sent.
 #[derive(Debug, thiserror::Error)]
@@ -148,7 +95,7 @@ impl Collector {
             exporter,
             queue,
             counted: counted.clone(),
-            failed: Often::default(),
+            failed: LogThrottle::default(),
         };
         let task = AbortOnDropHandle::new(tokio::spawn(task.run(stop.clone())));
         let spans = Spans {
@@ -194,7 +141,7 @@ pub(super) struct Spans {
     sender: mpsc::Sender<SpanData>,
     sample_ratio: f64,
     counted: Arc<OfSpans>,
-    full: Arc<Often>,
+    full: Arc<LogThrottle>,
 }
 
 impl Spans {
@@ -212,7 +159,7 @@ impl Spans {
         };
         if self.sender.try_send(span).is_err() {
             self.counted.lost.increment(1);
-            if let Some(spans) = self.full.once_more() {
+            if let Some(spans) = self.full.record() {
                 tracing::warn!(
                     spans,
                     "lost: the collector takes spans slower than they come"
@@ -244,7 +191,7 @@ struct Task {
     exporter: SpanExporter,
     queue: mpsc::Receiver<SpanData>,
     counted: Arc<OfSpans>,
-    failed: Often,
+    failed: LogThrottle,
 }
 
 impl Task {
@@ -274,7 +221,7 @@ impl Task {
             Ok(()) => self.counted.sent.increment(spans),
             Err(error) => {
                 self.counted.lost.increment(spans);
-                if let Some(times) = self.failed.once_more() {
+                if let Some(times) = self.failed.record() {
                     tracing::warn!(%error, times, "spans could not be sent to the collector");
                 }
             }

@@ -13,7 +13,7 @@ const ZSTD_LEVEL: i32 = 1;
 const GZIP_LEVEL: u32 = 2;
 
 /// A compressor under way.
-pub(super) enum Encoder {
+pub(in crate::rest) enum Encoder {
     Zstd(zstd::stream::write::Encoder<'static, Vec<u8>>),
     Gzip(flate2::write::GzEncoder<Vec<u8>>),
 }
@@ -27,6 +27,20 @@ impl Encoder {
                 Self::Gzip(flate2::write::GzEncoder::new(vec![], level))
             }
         })
+    }
+
+    /// A whole document, compressed.
+    pub(in crate::rest) fn whole(coding: Coding, plain: &[u8]) -> io::Result<Bytes> {
+        let mut encoder = Self::new(coding)?;
+        match &mut encoder {
+            Self::Zstd(encoder) => {
+                // A small document needs no large window.
+                encoder.set_pledged_src_size(Some(plain.len() as u64))?;
+                encoder.write_all(plain)?;
+            }
+            Self::Gzip(encoder) => encoder.write_all(plain)?,
+        }
+        Ok(encoder.encode(None)?.1)
     }
 
     /// What goes out for a block, all of which can be read from it; after the last one, the end.

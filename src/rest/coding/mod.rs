@@ -6,13 +6,16 @@
 
 mod encoder;
 
+use std::sync::Arc;
+
 use axum::{body::Body, response::Response};
+use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderValue, header};
 
-use super::freshness;
-use crate::service::Workers;
-use encoder::Encoder;
+use super::{freshness, quality};
+use crate::service::{Error, Held, Lane, Service, Workers};
+pub(super) use encoder::Encoder;
 
 /// How an answer is compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,9 +28,9 @@ pub(super) enum Coding {
 
 impl Coding {
     /// In the order of our preference.
-    const ALL: [Self; 2] = [Self::Zstd, Self::Gzip];
+    pub(super) const ALL: [Self; 2] = [Self::Zstd, Self::Gzip];
 
-    const fn name(self) -> &'static str {
+    pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Zstd => "zstd",
             Self::Gzip => "gzip",
@@ -39,6 +42,14 @@ impl Coding {
         match self {
             Self::Zstd => "-zstd",
             Self::Gzip => "-gzip",
+        }
+    }
+
+    /// About what a compressor holds, in bytes.
+    const fn memory(self) -> usize {
+        match self {
+            Self::Zstd => 1 << 20,
+            Self::Gzip => 320 << 10,
         }
     }
 
@@ -55,7 +66,7 @@ impl Coding {
         let accepted: Vec<(&str, u16)> = lines
             .iter()
             .flat_map(|line| line.split(','))
-            .filter_map(quality)
+            .filter_map(accepted_coding)
             .collect();
         let of = |name: &str| {
             let named = accepted.iter().find(|(other, _)| *other == name);
@@ -78,19 +89,13 @@ impl Coding {
 }
 
 /// An element of the list: a coding with its quality in thousandths.
-fn quality(element: &str) -> Option<(&str, u16)> {
-    let (name, parameters) = element.split_once(';').unwrap_or((element, ""));
-    let name = match name.trim() {
-        "" => return None,
-        "x-gzip" => "gzip",
-        name => name,
-    };
-    let parameter = parameters.trim();
-    if parameter.is_empty() {
-        return Some((name, 1000));
+fn accepted_coding(element: &str) -> Option<(&str, u16)> {
+    let (name, quality) = quality::split(element)?;
+    match name {
+        "" => None,
+        "x-gzip" => Some(("gzip", quality)),
+        name => Some((name, quality)),
     }
-    let quality: f64 = parameter.strip_prefix("q=")?.trim().parse().ok()?;
-    Some((name, (quality.clamp(0.0, 1.0) * 1000.0).round() as u16))
 }
 
 /// Whether content of a type is text, which compresses well.
@@ -105,41 +110,53 @@ fn is_text(content_type: &str) -> bool {
 }
 
 /// Compresses an answer as its content type and the client's headers say.
-pub(super) fn apply(
+pub(super) async fn apply(
     accept: &HeaderMap,
     is_head: bool,
-    workers: &Workers,
+    service: &Service,
     mut response: Response,
-) -> Response {
+) -> Result<Response, Error> {
     let headers = response.headers_mut();
     // Also of answers that stay plain: with other headers they would not.
     freshness::vary(headers, "accept-encoding");
+    if headers.contains_key(header::CONTENT_ENCODING) {
+        return Ok(response);
+    }
     let content_type = headers.get(header::CONTENT_TYPE);
     let content_type = content_type.and_then(|value| value.to_str().ok());
     let Some(coding) = content_type.and_then(|of| Coding::chosen(accept, of)) else {
-        return response;
+        return Ok(response);
     };
+    let whole = http_body::Body::size_hint(response.body()).exact();
     // Tags tell what coding an answer has; what has none may stay plain where that is shorter.
-    let is_short = headers
+    let is_short = response
+        .headers()
         .get(header::CONTENT_LENGTH)
         .and_then(|value| value.to_str().ok()?.parse::<u64>().ok())
-        .or_else(|| http_body::Body::size_hint(response.body()).exact())
+        .or(whole)
         .is_some_and(|length| length < SHORT);
-    let headers = response.headers_mut();
-    if headers.contains_key(header::CONTENT_ENCODING)
-        || is_short && !headers.contains_key(header::ETAG)
-    {
-        return response;
+    if is_short && !response.headers().contains_key(header::ETAG) {
+        return Ok(response);
     }
-    let name = HeaderValue::from_static(coding.name());
-    headers.insert(header::CONTENT_ENCODING, name);
-    headers.remove(header::CONTENT_LENGTH);
-    if is_head {
+    let (mut parts, body) = response.into_parts();
+    let body = match whole {
         // The length is not known, which an empty body would not say.
-        *response.body_mut() = unknown_length();
-        return response;
-    }
-    response.map(|body| compressed(body, coding, workers.clone()))
+        _ if is_head => unknown_length(),
+        Some(length) => {
+            let encoded = whole_document(body, length, coding, service).await?;
+            let held = service.hold(encoded.len())?;
+            parts.extensions.insert(Arc::new(held));
+            Body::from(encoded)
+        }
+        None => {
+            let held = service.hold(coding.memory())?;
+            compressed(body, coding, service.workers().clone(), held)
+        }
+    };
+    let name = HeaderValue::from_static(coding.name());
+    parts.headers.insert(header::CONTENT_ENCODING, name);
+    parts.headers.remove(header::CONTENT_LENGTH);
+    Ok(Response::from_parts(parts, body))
 }
 
 /// Compressing less than a packet gains nothing.
@@ -152,9 +169,32 @@ pub(super) fn unknown_length() -> Body {
     >())
 }
 
+/// A document, compressed at once.
+async fn whole_document(
+    body: Body,
+    length: u64,
+    coding: Coding,
+    service: &Service,
+) -> Result<Bytes, Error> {
+    /// Compressing more than this takes milliseconds.
+    const MUCH: u64 = 256 << 10;
+    let failed = |_| Error::Internal("an answer cannot be compressed");
+    let _held = service.hold(coding.memory())?;
+    let most = usize::try_from(length).unwrap_or(usize::MAX);
+    let plain = axum::body::to_bytes(body, most).await.map_err(failed)?;
+    let lane = if length <= MUCH {
+        Lane::Short
+    } else {
+        Lane::Long
+    };
+    let encode = move |_: &_| Encoder::whole(coding, &plain);
+    let encoded = service.workers().take_turn(lane, encode).await?;
+    encoded.map_err(|_| Error::Internal("an answer cannot be compressed"))
+}
+
 /// A body compressed block by block, each sent on when it is done. The work is done where points
 /// are made; meanwhile the next block is being made.
-fn compressed(body: Body, coding: Coding, workers: Workers) -> Body {
+fn compressed(body: Body, coding: Coding, workers: Workers, held: Held) -> Body {
     let state = Encoder::new(coding).map(|encoder| (body.into_data_stream(), encoder));
     let start = stream::once(std::future::ready(state));
     let blocks = start.flat_map(move |state| {
@@ -169,15 +209,15 @@ fn compressed(body: Body, coding: Coding, workers: Workers) -> Body {
             }
         }
     });
-    Body::from_stream(blocks)
+    // The memory of the encoder is held as long as the stream is.
+    Body::from_stream(blocks.inspect(move |_| {
+        let _ = &held;
+    }))
 }
 
 type State = Option<(axum::body::BodyDataStream, Encoder)>;
 
-async fn next_block(
-    state: State,
-    workers: Workers,
-) -> Result<Option<(bytes::Bytes, State)>, axum::Error> {
+async fn next_block(state: State, workers: Workers) -> Result<Option<(Bytes, State)>, axum::Error> {
     let Some((mut blocks, encoder)) = state else {
         return Ok(None);
     };
@@ -212,7 +252,7 @@ mod tests {
             ("gzip;q=0", None),
             ("identity;q=0.5, gzip;q=0.4", None),
             ("identity, gzip", gzip),
-            ("gzip;quality=1", None),
+            ("gzip;quality=1", gzip),
         ] {
             let mut headers = HeaderMap::new();
             headers.insert(header::ACCEPT_ENCODING, HeaderValue::from_static(accept));

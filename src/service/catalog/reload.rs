@@ -80,7 +80,7 @@ impl Reload {
 
 impl Catalog {
     /// The catalog after reading the folder again, and what came of it.
-    pub(in crate::service) fn again(&self, folder: Option<&Path>) -> (Self, Reload) {
+    pub(in crate::service) fn reload(&self, folder: Option<&Path>) -> (Self, Reload) {
         let mut reload = Reload::default();
         let files = folder.map_or(Ok(vec![]), table_files);
         let files = match files {

@@ -27,7 +27,7 @@ pub enum Encoding {
     Png,
     /// A picture of circles.
     Svg,
-    /// A Parquet file; only for files, not by any door.
+    /// A Parquet file; only for files, not by any protocol.
     Parquet,
 }
 

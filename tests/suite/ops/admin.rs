@@ -42,7 +42,7 @@ fn a_reload_needs_an_admin_key_or_the_admin_address() {
 #[test]
 fn an_admin_key_reloads_and_gets_a_report() {
     let entries = [entry("user", "u", ""), entry("root", "r", "admin = true")].concat();
-    let daemon = Daemon::start(&[&keys(&entries), "tables.watch_seconds=0"]);
+    let daemon = Daemon::start(&[&keys(&entries), "reload.watch_seconds=0"]);
     let address = daemon.address();
     assert_eq!(reload(address, &[]).status, 401);
     let refused = reload(address, &[("x-api-key", "u")]);

@@ -48,7 +48,12 @@ fn ten_thousand_idle_connections_take_little_memory_and_others_are_served() {
         println!("scaled to {count} connections by the limit on open files");
     }
     let limit = format!("server.max_connections={}", count + 10);
-    let daemon = Daemon::start(&[&limit, "server.header_read_timeout_seconds=3600"]);
+    let of_address = format!("per_address.max_connections={}", count + 10);
+    let daemon = Daemon::start(&[
+        &limit,
+        &of_address,
+        "server.header_read_timeout_seconds=3600",
+    ]);
     assert_eq!(daemon.get(SMALL).status, 200);
     let before = daemon.memory_kib("VmRSS");
     // Silent ones, some with a part of a request, and some that have been answered.
@@ -105,7 +110,11 @@ fn silent_connections_are_closed_to_make_room() {
 
 #[test]
 fn readers_that_never_read_take_little_memory_and_others_are_served() {
-    let daemon = Daemon::start(&["limits.max_streams=200"]);
+    let daemon = Daemon::start(&[
+        "limits.max_streams=200",
+        "per_address.max_streams=200",
+        "per_address.max_bytes_in_flight=1000000000",
+    ]);
     assert_eq!(daemon.get(SMALL).status, 200);
     let before = daemon.memory_kib("VmRSS");
     let stuck: Vec<_> = (0..200)

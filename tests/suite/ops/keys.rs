@@ -250,7 +250,7 @@ fn keys_are_added_and_removed_while_the_daemon_serves() {
     let write_keys = |text: &str| fs::write(&file, text).expect("writable");
     write_keys(&entry("a", "one", ""));
     let setting = format!("access.keys_file={}", file.display());
-    let daemon = Daemon::start(&[&setting, "tables.watch_seconds=0.05"]);
+    let daemon = Daemon::start(&[&setting, "reload.watch_seconds=0.05"]);
     let is_in = |key: &str| get_with_key(&daemon, POINTS, key).status == 200;
     assert!(is_in("one") && !is_in("two"));
     write_keys(&[entry("a", "one", ""), entry("b", "two", "")].concat());
@@ -258,7 +258,7 @@ fn keys_are_added_and_removed_while_the_daemon_serves() {
     write_keys(&entry("b", "two", ""));
     until("a key is removed", || (!is_in("one")).then_some(()));
     // An invalid file changes nothing.
-    let daemon = Daemon::start(&[&setting, "tables.watch_seconds=0"]);
+    let daemon = Daemon::start(&[&setting, "reload.watch_seconds=0"]);
     let is_in = |key: &str| get_with_key(&daemon, POINTS, key).status == 200;
     for wrong in ["[[key]", "", "[[key]]\nname = 'a'\nhash = 'a'"] {
         write_keys(wrong);

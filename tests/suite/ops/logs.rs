@@ -27,7 +27,7 @@ fn every_request_is_logged_with_its_outcome() {
     assert_eq!(text("trace_id"), trace);
     assert_eq!(text("parent_id"), "00f067aa0ba902b7");
     assert_eq!(text("span_id").len(), 16);
-    assert_eq!((&*text("level"), &*text("door")), ("INFO", "rest"));
+    assert_eq!((&*text("level"), &*text("protocol")), ("INFO", "rest"));
     assert_eq!((&*text("method"), &*text("route")), ("GET", "/v1/points"));
     assert_eq!(
         (text("address"), &*text("format")),
@@ -79,7 +79,7 @@ fn errors_and_their_lines_share_a_request_id() {
     assert_eq!(answer.header("x-request-id"), "c1");
     let line = json_line(&daemon, "strew::access");
     assert_eq!(
-        (&line["door"], &line["outcome"]),
+        (&line["protocol"], &line["outcome"]),
         (&"grpc".into(), &"INVALID_ARGUMENT".into())
     );
     assert_eq!(

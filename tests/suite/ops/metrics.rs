@@ -87,7 +87,7 @@ async fn calls_are_counted_by_method_and_code() {
     http1::post(daemon.address(), path, &empty_call, &[0; 5]);
     let samples = until("the calls are counted", || {
         let samples = samples(&daemon);
-        let all = sum(&samples, "strew_requests_total", &["door=\"grpc\""]);
+        let all = sum(&samples, "strew_requests_total", &["protocol=\"grpc\""]);
         (all == 3.0).then_some(samples)
     });
     let of = |name: &str, labels: &[&str]| sum(&samples, name, labels);

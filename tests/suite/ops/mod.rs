@@ -3,7 +3,10 @@
 //! panics, long streams, a replica that fails); and what it reports (logs, metrics, spans).
 
 mod admin;
+mod attacks;
 mod connections;
+mod fairness;
+mod files;
 mod hostile_clients;
 mod keys;
 mod limits;

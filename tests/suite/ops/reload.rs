@@ -38,7 +38,7 @@ fn replace(folder: &Path, name: &str, bytes: &[u8]) {
 
 /// A daemon that reloads its tables only on a signal.
 fn unwatched() -> Daemon {
-    Daemon::start(&["tables.watch_seconds=0"])
+    Daemon::start(&["reload.watch_seconds=0"])
 }
 
 fn digest(daemon: &Daemon) -> String {
@@ -88,7 +88,7 @@ fn a_signal_applies_new_changed_and_removed_tables() {
 
 #[test]
 fn a_change_of_the_folder_is_noticed() {
-    let daemon = Daemon::start(&["tables.watch_seconds=0.05"]);
+    let daemon = Daemon::start(&["reload.watch_seconds=0.05"]);
     let first = digest(&daemon);
     replace(daemon.folder(), "a.strew", &other().to_bytes());
     until_served(&daemon, &other());

@@ -159,7 +159,7 @@ fn a_replica_may_fail_and_return(program: &str) {
     until("the replica that came back answers", || {
         http1::get(proxy.address, &format!("/v1/points?{QUERY}&limit=10"), &[]);
         let text = returned.get("/metrics").text().to_owned();
-        text.contains("strew_requests_total{door=\"rest\",route=\"/v1/points\"")
+        text.contains("strew_requests_total{protocol=\"rest\",route=\"/v1/points\"")
             .then_some(())
     });
 }

@@ -53,7 +53,10 @@ fn a_billion_points_to_slow_readers_take_little_memory() {
 
 #[test]
 fn vanished_clients_leave_nothing_running() {
-    let daemon = Daemon::start(&[]);
+    let daemon = Daemon::start(&[
+        "per_address.max_streams=100",
+        "per_address.max_bytes_in_flight=1000000000",
+    ]);
     let mut readers: Vec<_> = (0..100)
         .map(|i| {
             let format = ["f32", "json", "csv", "f64"][i % 4];

@@ -212,7 +212,7 @@ fn new_certificates_serve_new_connections_and_bad_ones_change_nothing() {
     let first = authority.issue_server();
     first.write_server(folder);
     // Files are read on a signal only, so that a change below is the effect of the signal.
-    let daemon = Daemon::with_tls(folder, &["tls.watch_seconds=0"]);
+    let daemon = Daemon::with_tls(folder, &["reload.watch_seconds=0"]);
     let config = client(&authority, None, &[b"http/1.1"]);
     let mut open = connect(&daemon, &config);
     get(&mut open, "/livez").expect("an answer");
@@ -252,7 +252,7 @@ fn changed_files_are_noticed_without_a_signal() {
     let folder = tempfile::tempdir().expect("a folder");
     let authority = Authority::new();
     authority.issue_server().write_server(folder.path());
-    let daemon = Daemon::with_tls(folder.path(), &["tls.watch_seconds=0.05"]);
+    let daemon = Daemon::with_tls(folder.path(), &["reload.watch_seconds=0.05"]);
     let config = client(&authority, None, &[b"http/1.1"]);
     let second = authority.issue_server();
     second.write_server(folder.path());

@@ -1,6 +1,7 @@
 //! What tests of several folders share. There are no tests here; parts that other test binaries and
 //! benches need as well are in `crates/testkit`.
 
+pub mod attack;
 pub mod browser;
 pub mod clients;
 pub mod command;

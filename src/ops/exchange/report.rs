@@ -1,73 +1,30 @@
-//! Every request is seen from its head to the last byte of its answer: named, counted, logged.
+//! The one report of an exchange: counters, the access line, a span.
 //!
-//! This is the outermost layer. The id goes back with every answer, also with errors, and stands in
-//! every line of the log that the request causes. The access line (target `strew::access`) is written
-//! when the answer has ended, at `info`; for probes and scrapes at `debug`.
+//! It is made when the exchange is over. The access line (target `strew::access`) has the level
+//! `info`, for probes and scrapes `debug`.
 
-use std::{
-    net::SocketAddr,
-    pin::Pin,
-    sync::Arc,
-    task::{Context, Poll},
-    time::Instant,
-};
+use std::{net::SocketAddr, sync::Arc, time::Instant};
 
 use axum::{
-    Router,
-    body::Body,
-    extract::{MatchedPath, Request, State},
-    middleware::{self, Next},
+    extract::{MatchedPath, Request},
     response::Response,
 };
 use bytes::Bytes;
-use http::{HeaderMap, HeaderValue, Method, StatusCode, header};
-use http_body::{Body as HttpBody, Frame, SizeHint};
-use tracing::{Instrument as _, Span};
+use http::{HeaderMap, Method, StatusCode, header};
+use http_body::{Body as _, Frame};
+use tracing::Span;
 
-use super::{
-    calls,
-    connections::Peer,
-    identity::{Identity, REQUEST_ID},
-    metrics::{Broken, Door, Metrics, NO_FORMAT, since},
-    spans::{Answered, Spans},
+use crate::{
+    error_map, grpc,
+    ops::{
+        Peer,
+        dialect::Dialect,
+        identity::Identity,
+        metrics::{Broken, Metrics, NO_FORMAT, Protocol, since},
+        spans::{Answered, Spans},
+    },
+    service::{Budget, Record},
 };
-use crate::{error_map, grpc, service::Record};
-
-/// A router whose requests are seen, and sent as spans where these are taken.
-pub(super) fn observed(router: Router, metrics: Metrics, spans: Option<Spans>) -> Router {
-    router.layer(middleware::from_fn_with_state((metrics, spans), observe))
-}
-
-async fn observe(
-    State((metrics, spans)): State<(Metrics, Option<Spans>)>,
-    request: Request,
-    next: Next,
-) -> Response {
-    let watch = Watch::start(metrics, spans, &request);
-    let (record, span) = (watch.record.clone(), watch.span.clone());
-    let answered = record.scope(next.run(request)).instrument(span);
-    let mut response = Seen { watch }.over(answered).await;
-    let id = HeaderValue::from_str(response.body().watch.record.id());
-    if let Ok(id) = id {
-        response.headers_mut().insert(REQUEST_ID, id);
-    }
-    response.map(Body::new)
-}
-
-/// A watch whose answer is still being made.
-struct Seen {
-    watch: Watch,
-}
-
-impl Seen {
-    /// The answer, watched on.
-    async fn over(mut self, answer: impl Future<Output = Response>) -> Response<Observed> {
-        let response = answer.await;
-        self.watch.head(&response);
-        let watch = self.watch;
-        response.map(|body| Observed { body, watch })
-    }
-}
 
 /// How an answer stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,16 +34,16 @@ enum Stand {
     BrokenOff,
 }
 
-/// What is known of a request and its answer; tells it when dropped.
+/// What is known of a request and its answer; reported when dropped.
 #[derive(Debug)]
-struct Watch {
+pub(super) struct Report {
     metrics: Metrics,
     spans: Option<Spans>,
     record: Arc<Record>,
     identity: Identity,
     span: Span,
     start: Instant,
-    door: Door,
+    protocol: Protocol,
     route: Arc<str>,
     method: Method,
     address: String,
@@ -104,22 +61,24 @@ struct Watch {
 /// The longest address that goes into the log.
 const LONGEST: usize = 500;
 
-impl Watch {
-    fn start(metrics: Metrics, spans: Option<Spans>, request: &Request) -> Self {
+impl Report {
+    pub(super) fn start(
+        metrics: Metrics,
+        spans: Option<Spans>,
+        budget: Budget,
+        request: &Request,
+    ) -> Self {
         let begins_one = || spans.as_ref().is_some_and(Spans::begins_one);
         let identity = Identity::of(request.headers(), begins_one);
-        let door = match calls::is_grpc(request.headers()) {
-            true => Door::Grpc,
-            false => Door::Rest,
-        };
-        metrics.door(door).in_flight.increment(1.0);
+        let protocol = Dialect::of(request.headers()).protocol();
+        metrics.protocol(protocol).in_flight.increment(1.0);
         let asked = request.uri().path_and_query();
         let asked = asked.map_or("", |asked| asked.as_str());
         let trace = identity.trace.as_ref().map(|trace| &*trace.trace);
         // At the level of errors, so that they have it however little is logged.
         let span = tracing::error_span!("request", request_id = identity.id, trace_id = trace);
         Self {
-            record: Record::new(&identity.id),
+            record: Record::new(&identity.id, budget),
             span,
             start: Instant::now(),
             route: route(request),
@@ -135,12 +94,40 @@ impl Watch {
             metrics,
             spans,
             identity,
-            door,
+            protocol,
         }
     }
 
+    /// What the answering code writes about the request.
+    pub(super) const fn record(&self) -> &Arc<Record> {
+        &self.record
+    }
+
+    /// The span of the lines that the request causes in the log.
+    pub(super) const fn span(&self) -> &Span {
+        &self.span
+    }
+
+    /// All of the answer has left.
+    pub(super) fn whole(&mut self) {
+        self.stand = Stand::Whole;
+    }
+
+    /// The answer ends before it is complete.
+    pub(super) fn broken_off(&mut self) {
+        self.stand = Stand::BrokenOff;
+    }
+
+    /// The last frame of a call leaves, with its status.
+    pub(super) fn trailers(&mut self, frame: &Frame<Bytes>) {
+        if let Some(code) = frame.trailers_ref().and_then(code) {
+            self.record.ended(code);
+        }
+        self.stand = Stand::Whole;
+    }
+
     /// The head of the answer is made.
-    fn head(&mut self, response: &Response) {
+    pub(super) fn head(&mut self, response: &Response) {
         self.status = Some(response.status());
         if let Some(code) = code(response.headers()) {
             self.record.ended(code);
@@ -158,7 +145,7 @@ impl Watch {
     }
 
     /// A part of the body goes out.
-    fn part(&mut self, bytes: usize) {
+    pub(super) fn part(&mut self, bytes: usize) {
         let bytes = bytes as u64;
         if self.first_byte.is_none() && bytes > 0 {
             self.first_byte = Some(since(self.start));
@@ -174,7 +161,7 @@ impl Watch {
     /// Brings the counters of bytes and points up to date, so that long answers show while they run.
     fn count(&mut self, bytes: u64) {
         let format = self.record.format().unwrap_or(NO_FORMAT);
-        let format = self.metrics.format(self.door, format);
+        let format = self.metrics.format(self.protocol, format);
         format.bytes.increment(bytes);
         let points = self.record.points();
         format.points.increment(points - self.counted);
@@ -196,9 +183,9 @@ impl Watch {
 
     /// How it ended, as a label: few values.
     fn outcome(&self) -> &'static str {
-        match (self.door, self.record.code(), self.status) {
-            (Door::Grpc, Some(code), _) => grpc::code_name(code),
-            (Door::Grpc, None, Some(_)) if self.stand == Stand::Open => "CANCELLED",
+        match (self.protocol, self.record.code(), self.status) {
+            (Protocol::Grpc, Some(code), _) => grpc::code_name(code),
+            (Protocol::Grpc, None, Some(_)) if self.stand == Stand::Open => "CANCELLED",
             (_, _, Some(status)) => match status.as_u16() {
                 100..=199 => "1xx",
                 200..=299 => "2xx",
@@ -217,29 +204,31 @@ impl Watch {
     }
 }
 
-impl Drop for Watch {
+impl Drop for Report {
     fn drop(&mut self) {
         self.count(0);
         let total = since(self.start);
         let first = self.first_byte.unwrap_or(total);
         let broken = self.broken();
         let outcome = self.outcome();
-        let door = self.metrics.door(self.door);
-        door.in_flight.decrement(1.0);
+        let counters = self.metrics.protocol(self.protocol);
+        counters.in_flight.decrement(1.0);
         if self.is_refused() {
-            door.refused(self.record.refused()).increment(1);
+            counters.refused(self.record.refused()).increment(1);
         }
         if let Some(by) = broken {
-            door.broken(by).increment(1);
+            counters.broken(by).increment(1);
         }
         let format = self.record.format();
-        let of_format = self.metrics.format(self.door, format.unwrap_or(NO_FORMAT));
+        let of_format = self
+            .metrics
+            .format(self.protocol, format.unwrap_or(NO_FORMAT));
         of_format.first_byte.record(first);
         of_format.whole.record(total);
         let method = method_name(&self.method);
         let requests = self
             .metrics
-            .requests(self.door, &self.route, method, outcome);
+            .requests(self.protocol, &self.route, method, outcome);
         requests.increment(1);
 
         let trace = self.identity.trace.as_ref();
@@ -255,7 +244,7 @@ impl Drop for Watch {
                     span_id = trace.map(|trace| &*trace.span),
                     parent_id = trace.and_then(|trace| trace.parent.as_deref()),
                     client,
-                    door = self.door.name(),
+                    protocol = self.protocol.name(),
                     method = self.method.as_str(),
                     address = self.address,
                     route = &*self.route,
@@ -279,7 +268,7 @@ impl Drop for Watch {
         }
         line!(info);
         if let (Some(spans), Some(trace)) = (&self.spans, trace) {
-            let is_call = self.door == Door::Grpc && &*self.route != NO_ROUTE;
+            let is_call = self.protocol == Protocol::Grpc && &*self.route != NO_ROUTE;
             spans.take(&Answered {
                 trace,
                 request_id: self.record.id(),
@@ -332,94 +321,6 @@ fn method_name(method: &Method) -> &'static str {
 }
 
 /// The code of a call that has ended.
-fn code(headers: &HeaderMap) -> Option<u32> {
+pub(in crate::ops) fn code(headers: &HeaderMap) -> Option<u32> {
     headers.get("grpc-status")?.to_str().ok()?.parse().ok()
-}
-
-/// The body of an answer, seen.
-#[derive(Debug)]
-struct Observed {
-    body: Body,
-    watch: Watch,
-}
-
-impl HttpBody for Observed {
-    type Data = Bytes;
-    type Error = axum::Error;
-
-    fn poll_frame(
-        mut self: Pin<&mut Self>,
-        cx: &mut Context<'_>,
-    ) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
-        let Self { body, watch } = &mut *self;
-        let polled = {
-            let _entered = watch.span.enter();
-            Pin::new(&mut *body).poll_frame(cx)
-        };
-        match &polled {
-            Poll::Pending => {}
-            Poll::Ready(None) => watch.stand = Stand::Whole,
-            Poll::Ready(Some(Err(_))) => watch.stand = Stand::BrokenOff,
-            Poll::Ready(Some(Ok(frame))) => {
-                watch.part(frame.data_ref().map_or(0, Bytes::len));
-                if frame.is_trailers() || body.is_end_stream() {
-                    watch.stand = Stand::Whole;
-                }
-            }
-        }
-        polled
-    }
-
-    fn is_end_stream(&self) -> bool {
-        self.body.is_end_stream()
-    }
-
-    fn size_hint(&self) -> SizeHint {
-        self.body.size_hint()
-    }
-}
-
-/// Notes the code of a call's answer, which comes at its end. Inside of what rewrites answers for
-/// web pages.
-pub(super) fn coded(response: Response) -> Response {
-    let Some(record) = Record::current() else {
-        return response;
-    };
-    if let Some(code) = code(response.headers()) {
-        record.ended(code);
-        return response;
-    }
-    response.map(|body| Body::new(Coded { body, record }))
-}
-
-/// The body of a call's answer.
-struct Coded {
-    body: Body,
-    record: Arc<Record>,
-}
-
-impl HttpBody for Coded {
-    type Data = Bytes;
-    type Error = axum::Error;
-
-    fn poll_frame(
-        mut self: Pin<&mut Self>,
-        cx: &mut Context<'_>,
-    ) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
-        let polled = Pin::new(&mut self.body).poll_frame(cx);
-        if let Poll::Ready(Some(Ok(frame))) = &polled
-            && let Some(code) = frame.trailers_ref().and_then(code)
-        {
-            self.record.ended(code);
-        }
-        polled
-    }
-
-    fn is_end_stream(&self) -> bool {
-        self.body.is_end_stream()
-    }
-
-    fn size_hint(&self) -> SizeHint {
-        self.body.size_hint()
-    }
 }

@@ -1,0 +1,65 @@
+//! Settings of access: who is let in, and how much each client may take.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+/// Who is let in.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Access {
+    /// A file with keys; empty for none.
+    pub keys_file: PathBuf,
+    /// Keys in the same form as in the file; empty for none.
+    pub keys: String,
+    /// Whether those without a key are let in as well, where there are keys.
+    pub anonymous: bool,
+    /// The proxies whose word is taken on where a request comes from.
+    pub trusted_proxies: String,
+}
+
+impl Access {
+    /// The file with keys, if there is one.
+    #[must_use]
+    pub fn keys_file(&self) -> Option<&Path> {
+        Some(self.keys_file.as_path()).filter(|file| !file.as_os_str().is_empty())
+    }
+
+    /// Whether there are keys.
+    #[must_use]
+    pub fn has_keys(&self) -> bool {
+        self.keys_file().is_some() || !self.keys.is_empty()
+    }
+
+    /// Whether nobody is let in without a key.
+    #[must_use]
+    pub fn needs_key(&self) -> bool {
+        self.has_keys() && !self.anonymous
+    }
+}
+
+/// How fast points may be taken, by each client.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rate {
+    /// Points per second; 0 for no limit.
+    pub points_per_second: f64,
+    /// How many may be taken at once after a rest; 0 for those of ten seconds.
+    pub burst_points: f64,
+    /// How many addresses are remembered.
+    pub max_clients: usize,
+}
+
+/// What one address may use at once.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AddressLimits {
+    /// Connections.
+    pub max_connections: usize,
+    /// Requests, from their head to the last byte of the answer.
+    pub max_requests: usize,
+    /// Answers with points.
+    pub max_streams: usize,
+    /// Bytes that its requests and answers hold.
+    pub max_bytes_in_flight: usize,
+}

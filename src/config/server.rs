@@ -1,0 +1,95 @@
+//! Settings of connections: where to serve, TLS, administrators, stopping.
+
+use std::{net::SocketAddr, path::PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::listen;
+
+/// Where and how to serve.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Server {
+    /// Address and port.
+    #[serde(deserialize_with = "listen::deserialize")]
+    pub listen: SocketAddr,
+    /// The most connections at once.
+    pub max_connections: usize,
+    /// How long the head of an HTTP/1.1 request may take, in seconds.
+    pub header_read_timeout_seconds: f64,
+    /// The most bytes of a request's head.
+    pub max_header_bytes: u32,
+    /// The most requests at once on one HTTP/2 connection.
+    pub max_requests_per_connection: u32,
+    /// How often a quiet HTTP/2 client is asked for a sign of life, and how long it may take, in
+    /// seconds.
+    pub http2_keepalive_seconds: f64,
+    /// How long an HTTP/2 connection may be without a request, in seconds.
+    pub idle_connection_seconds: f64,
+    /// How long the body of a request may take, in seconds.
+    pub body_read_timeout_seconds: f64,
+    /// How long the head of an answer may take once its request is there, in seconds.
+    pub first_byte_seconds: f64,
+    /// How long an answer may take in all, in seconds.
+    pub max_stream_seconds: f64,
+    /// How long a reader may take nothing of what waits for it, in seconds.
+    pub stalled_reader_seconds: f64,
+    /// The least rate at which a reader must take an answer that lasts longer than that.
+    pub min_bytes_per_second: f64,
+}
+
+/// Where administrators are let in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Admin {
+    /// Address and port; empty for none.
+    pub listen: String,
+}
+
+impl Admin {
+    /// The address, if there is one.
+    ///
+    /// # Errors
+    /// If it does not read as one.
+    pub fn address(&self) -> Result<Option<SocketAddr>, String> {
+        let text = Some(self.listen.as_str()).filter(|text| !text.is_empty());
+        text.map(listen::read).transpose()
+    }
+}
+
+/// Which certificates, if any.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tls {
+    /// A PEM file with the server's certificate and those that vouch for it; empty for no TLS.
+    pub certificate: PathBuf,
+    /// A PEM file with the certificate's private key.
+    pub key: PathBuf,
+    /// A PEM file with the authorities that vouch for clients; empty if clients need not prove who
+    /// they are.
+    pub client_ca: PathBuf,
+}
+
+impl Tls {
+    /// Whether TLS is spoken.
+    #[must_use]
+    pub fn is_on(&self) -> bool {
+        !self.certificate.as_os_str().is_empty()
+    }
+
+    /// Whether clients have to show a certificate.
+    #[must_use]
+    pub fn proves_clients(&self) -> bool {
+        self.is_on() && !self.client_ca.as_os_str().is_empty()
+    }
+}
+
+/// How to stop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shutdown {
+    /// How long requests are still taken after `/readyz` says no, in seconds.
+    pub notice_seconds: f64,
+    /// How long open streams may then go on, in seconds.
+    pub drain_seconds: f64,
+}

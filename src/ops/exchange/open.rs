@@ -1,0 +1,133 @@
+//! The open exchanges of one connection, and what becomes of a connection whose client takes nothing.
+
+use std::{
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError, Weak,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::Duration,
+};
+
+use tokio::time::Instant;
+
+use super::reply::Exchange;
+
+/// The exchanges of one connection.
+#[derive(Debug)]
+pub(in crate::ops) struct OpenExchanges {
+    all: Mutex<Vec<(u64, Weak<Exchange>)>>,
+    next: AtomicU64,
+    /// When the last one began or ended.
+    changed: Mutex<Instant>,
+}
+
+/// What should become of a connection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::ops) enum Fate {
+    /// It goes on.
+    GoOn,
+    /// There has been no request for long, or clients left answers untouched that were broken off:
+    /// it takes no more requests and ends with those that it has.
+    Retire,
+    /// All of its answers were broken off: it ends now.
+    Close,
+}
+
+/// The time in which an answer that was broken off tells its client so.
+const TELLING: Duration = Duration::from_secs(1);
+/// The longest time between two looks.
+const LONGEST: Duration = Duration::from_secs(5);
+
+impl OpenExchanges {
+    pub(in crate::ops) fn new() -> Arc<Self> {
+        Arc::new(Self {
+            all: Mutex::default(),
+            next: AtomicU64::new(0),
+            changed: Mutex::new(Instant::now()),
+        })
+    }
+
+    /// A place for an exchange that begins.
+    pub(super) fn begin(self: &Arc<Self>) -> Entry {
+        Entry {
+            open: self.clone(),
+            number: self.next.fetch_add(1, Ordering::Relaxed),
+        }
+    }
+
+    /// Waits until it is time to look at the exchanges, again and again until one of them, or a want
+    /// of them, decides the fate of the connection.
+    pub(in crate::ops) async fn decided(
+        &self,
+        idle: Duration,
+        patience: Duration,
+        is_closing: bool,
+    ) -> Fate {
+        let step = (idle.min(patience) / 4).clamp(Duration::from_millis(10), LONGEST);
+        loop {
+            tokio::time::sleep(step).await;
+            let fate = self.fate(Instant::now(), idle, patience);
+            // One that retires already can only be closed.
+            if fate == Fate::Close || fate == Fate::Retire && !is_closing {
+                return fate;
+            }
+        }
+    }
+
+    fn fate(&self, now: Instant, idle: Duration, patience: Duration) -> Fate {
+        let all: Vec<_> = lock(&self.all)
+            .iter()
+            .filter_map(|(_, exchange)| exchange.upgrade())
+            .collect();
+        if all.is_empty() {
+            let quiet = now.saturating_duration_since(*lock(&self.changed));
+            return if quiet >= idle {
+                Fate::Retire
+            } else {
+                Fate::GoOn
+            };
+        }
+        let broken: Vec<Instant> = all.iter().filter_map(|one| one.check(now)).collect();
+        let since = |at: Option<&Instant>| at.map(|&at| now.saturating_duration_since(at));
+        let newest = since(broken.iter().max());
+        if broken.len() == all.len() && newest.is_some_and(|age| age >= TELLING.min(patience)) {
+            return Fate::Close;
+        }
+        let oldest = since(broken.iter().min());
+        if oldest.is_some_and(|age| age >= patience) {
+            return Fate::Retire;
+        }
+        Fate::GoOn
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The place of an exchange among those of its connection, until dropped.
+#[derive(Debug)]
+pub(super) struct Entry {
+    open: Arc<OpenExchanges>,
+    number: u64,
+}
+
+impl Entry {
+    /// Takes the place for an exchange.
+    pub(super) fn of(self, exchange: Weak<Exchange>) -> Self {
+        lock(&self.open.all).push((self.number, exchange));
+        *lock(&self.open.changed) = Instant::now();
+        self
+    }
+}
+
+impl Drop for Entry {
+    fn drop(&mut self) {
+        let mut all = lock(&self.open.all);
+        if let Some(at) = all.iter().position(|(number, _)| *number == self.number) {
+            all.swap_remove(at);
+        }
+        drop(all);
+        *lock(&self.open.changed) = Instant::now();
+    }
+}

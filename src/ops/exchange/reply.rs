@@ -1,0 +1,374 @@
+//! An exchange from the head of its request until the socket has taken the last byte of its answer,
+//! and the body of that answer.
+//!
+//! All answers by both protocols leave through [`Reply`]. Each frame leaves as [`Bytes`] whose owner
+//! holds its share of the byte budget: HTTP, TLS and the socket drop it when it is written, so what
+//! waits in their buffers is still counted, and [`Progress`] knows what the client took.
+//!
+//! A client that stops leaves the HTTP library waiting, and a body that is not polled cannot look at
+//! the clock. So the connection calls [`Exchange::check`] now and then: when time is over it drops
+//! what makes the answer.
+
+use std::{
+    fmt,
+    pin::Pin,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    task::{Context, Poll, Waker},
+};
+
+use axum::{body::Body, response::Response};
+use bytes::Bytes;
+use http_body::{Body as HttpBody, Frame, SizeHint};
+use tokio::time::{Instant, Sleep, sleep_until};
+
+use super::{
+    open::Entry,
+    progress::{Progress, Terms},
+    report::Report,
+};
+use crate::{
+    access::InUse,
+    grpc,
+    ops::dialect::{Dialect, Ending},
+    service::{Budget, Held, Interrupted},
+};
+
+/// The most bytes of a frame of a whole document: its share of the budget comes back with each.
+const FRAME: usize = 64 << 10;
+
+/// A request and its answer.
+pub(super) struct Exchange {
+    state: Mutex<State>,
+    budget: Budget,
+    dialect: Dialect,
+    /// The most time, if the client set a limit as well.
+    end: Mutex<End>,
+    /// Its place among the exchanges of the connection.
+    _entry: Option<Entry>,
+    _places: Places,
+}
+
+/// What is given back when an exchange is over.
+#[derive(Debug)]
+pub(super) struct Places {
+    pub(super) _request: InUse,
+    pub(super) _probe: Option<InUse>,
+    pub(super) _base: Held,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct End {
+    at: Option<Instant>,
+    why: Ending,
+}
+
+struct State {
+    report: Report,
+    /// What makes the answer; nothing before the head, after the end, and once it was broken off.
+    body: Option<Body>,
+    /// The rest of a frame of a whole document.
+    rest: Bytes,
+    /// The share of a whole document.
+    whole: Option<Arc<Held>>,
+    /// Why it was broken off, until the client has been told.
+    untold: Option<Ending>,
+    /// When it was broken off.
+    broken: Option<Instant>,
+    /// Bytes that left and have not been written.
+    in_flight: usize,
+    progress: Progress,
+    reader: Option<Waker>,
+}
+
+impl fmt::Debug for Exchange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Exchange").finish_non_exhaustive()
+    }
+}
+
+impl Exchange {
+    /// An exchange that begins now.
+    pub(super) fn new(
+        report: Report,
+        dialect: Dialect,
+        terms: Terms,
+        places: Places,
+        entry: Option<Entry>,
+    ) -> Arc<Self> {
+        let now = Instant::now();
+        let budget = report.record().budget().clone();
+        let state = State {
+            report,
+            body: None,
+            rest: Bytes::new(),
+            whole: None,
+            untold: None,
+            broken: None,
+            in_flight: 0,
+            progress: Progress::new(terms, now),
+            reader: None,
+        };
+        let end = End {
+            at: now.checked_add(terms.whole),
+            why: Ending::Interrupted(Interrupted::TimeOver),
+        };
+        Arc::new_cyclic(|exchange| Self {
+            state: Mutex::new(state),
+            budget,
+            dialect,
+            end: Mutex::new(end),
+            _entry: entry.map(|entry| entry.of(exchange.clone())),
+            _places: places,
+        })
+    }
+
+    /// The answer, of which every byte counts until the socket has taken it.
+    pub(super) fn answer(self: Arc<Self>, mut response: Response) -> Response {
+        let extensions = response.extensions_mut();
+        let deadline = extensions.remove::<grpc::Deadline>();
+        let held = extensions.remove::<Arc<Held>>();
+        let end = {
+            let mut end = lock(&self.end);
+            if let Some(deadline) = deadline
+                && end.at.is_none_or(|at| deadline.end() < at)
+            {
+                *end = End {
+                    at: Some(deadline.end()),
+                    why: Ending::Deadline(deadline),
+                };
+            }
+            *end
+        };
+        self.lock().report.head(&response);
+        response.map(|body| {
+            let whole = body.size_hint().exact();
+            let whole = whole.and_then(|bytes| usize::try_from(bytes).ok());
+            let mut state = self.lock();
+            state.whole = whole
+                .filter(|&bytes| bytes > 0)
+                .map(|bytes| held.unwrap_or_else(|| Arc::new(self.budget.hold_anyway(bytes))));
+            state.body = Some(body);
+            state.progress.resume(Instant::now());
+            drop(state);
+            Body::new(Reply {
+                exchange: self,
+                end,
+                sleep: None,
+            })
+        })
+    }
+
+    /// Breaks the answer off if its time is over. Returns when it was broken off, if it was.
+    pub(super) fn check(&self, now: Instant) -> Option<Instant> {
+        let end = *lock(&self.end);
+        let mut state = self.lock();
+        if state.broken.is_some() {
+            return state.broken;
+        }
+        let has_begun = state.body.is_some() || state.in_flight > 0;
+        let why = if has_begun && end.at.is_some_and(|at| at <= now) {
+            end.why
+        } else if state.progress.is_over(now) {
+            Ending::Interrupted(Interrupted::Stalled)
+        } else {
+            return None;
+        };
+        state.broken = Some(now);
+        let body = state.body.take();
+        state.untold = body.is_some().then_some(why);
+        state.rest = Bytes::new();
+        // What has left holds its share of a whole document until it is written or dropped.
+        state.whole = None;
+        state.report.broken_off();
+        let reader = state.reader.take();
+        drop(state);
+        drop(body);
+        if let Some(reader) = reader {
+            reader.wake();
+        }
+        Some(now)
+    }
+
+    /// The socket took bytes, or the connection is gone.
+    fn written(&self, bytes: usize) {
+        let now = Instant::now();
+        let mut state = self.lock();
+        state.in_flight -= bytes;
+        state.progress.taken(bytes, now);
+        // The reader is only set while the body has nothing to give.
+        if state.in_flight == 0 && state.reader.is_some() {
+            state.progress.pause(now);
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        lock(&self.state)
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The body of every answer.
+pub(super) struct Reply {
+    exchange: Arc<Exchange>,
+    end: End,
+    /// Made when there is something to wait for.
+    sleep: Option<Pin<Box<Sleep>>>,
+}
+
+impl Reply {
+    fn is_late(&self, now: Instant) -> bool {
+        self.end.at.is_some_and(|at| at <= now)
+    }
+}
+
+impl State {
+    /// A frame that leaves.
+    fn leave(&mut self, exchange: &Arc<Exchange>, mut bytes: Bytes, now: Instant) -> Frame<Bytes> {
+        let held = match &self.whole {
+            Some(whole) => {
+                if bytes.len() > FRAME {
+                    self.rest = bytes.split_off(FRAME);
+                }
+                whole.clone()
+            }
+            None => Arc::new(exchange.budget.hold_anyway(bytes.len())),
+        };
+        self.report.part(bytes.len());
+        if self.rest.is_empty() && self.body.as_ref().is_some_and(Body::is_end_stream) {
+            self.report.whole();
+            self.whole = None;
+        }
+        if bytes.is_empty() {
+            return Frame::data(bytes);
+        }
+        self.in_flight += bytes.len();
+        self.progress.resume(now);
+        Frame::data(Bytes::from_owner(InFlight {
+            bytes,
+            exchange: exchange.clone(),
+            _held: held,
+        }))
+    }
+}
+
+impl HttpBody for Reply {
+    type Data = Bytes;
+    type Error = axum::Error;
+
+    fn poll_frame(
+        mut self: Pin<&mut Self>,
+        cx: &mut Context<'_>,
+    ) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
+        let this = &mut *self;
+        let exchange = this.exchange.clone();
+        let now = Instant::now();
+        if this.is_late(now) {
+            exchange.check(now);
+        }
+        let mut guard = exchange.lock();
+        let state = &mut *guard;
+        state.reader = None;
+        if let Some(why) = state.untold.take() {
+            return Poll::Ready(exchange.dialect.ending(why));
+        }
+        if !state.rest.is_empty() {
+            let rest = std::mem::take(&mut state.rest);
+            return Poll::Ready(Some(Ok(state.leave(&exchange, rest, now))));
+        }
+        let Some(body) = &mut state.body else {
+            return Poll::Ready(None);
+        };
+        let polled = {
+            let span = state.report.span();
+            let _entered = span.enter();
+            Pin::new(body).poll_frame(cx)
+        };
+        match polled {
+            Poll::Pending => {
+                state.reader = Some(cx.waker().clone());
+                if state.in_flight == 0 {
+                    state.progress.pause(now);
+                }
+                drop(guard);
+                let Some(at) = this.end.at else {
+                    return Poll::Pending;
+                };
+                let sleep = this.sleep.get_or_insert_with(|| Box::pin(sleep_until(at)));
+                if sleep.as_mut().poll(cx).is_ready() {
+                    exchange.check(Instant::now());
+                    let untold = exchange.lock().untold.take();
+                    return Poll::Ready(untold.and_then(|why| exchange.dialect.ending(why)));
+                }
+                Poll::Pending
+            }
+            Poll::Ready(None) => {
+                state.report.whole();
+                (state.body, state.whole) = (None, None);
+                Poll::Ready(None)
+            }
+            Poll::Ready(Some(Err(error))) => {
+                state.report.broken_off();
+                Poll::Ready(Some(Err(error)))
+            }
+            Poll::Ready(Some(Ok(frame))) => Poll::Ready(Some(Ok(match frame.into_data() {
+                Ok(bytes) => state.leave(&exchange, bytes, now),
+                Err(frame) => {
+                    state.report.trailers(&frame);
+                    frame
+                }
+            }))),
+        }
+    }
+
+    fn is_end_stream(&self) -> bool {
+        let state = self.exchange.lock();
+        let is_over = state.body.as_ref().is_none_or(Body::is_end_stream);
+        is_over && state.rest.is_empty() && state.untold.is_none()
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        let state = self.exchange.lock();
+        let body = state.body.as_ref().map(Body::size_hint);
+        let body = body.unwrap_or_else(|| SizeHint::with_exact(0));
+        let rest = state.rest.len() as u64;
+        let mut hint = SizeHint::new();
+        hint.set_lower(body.lower() + rest);
+        if let Some(upper) = body.upper() {
+            hint.set_upper(upper + rest);
+        }
+        hint
+    }
+}
+
+impl Drop for Reply {
+    /// Frees what makes the answer, also while frames of it are still to be written.
+    fn drop(&mut self) {
+        let mut state = self.exchange.lock();
+        let body = state.body.take();
+        (state.rest, state.whole, state.untold) = (Bytes::new(), None, None);
+        drop(state);
+        drop(body);
+    }
+}
+
+/// Bytes that have left and are not written yet.
+struct InFlight {
+    bytes: Bytes,
+    exchange: Arc<Exchange>,
+    _held: Arc<Held>,
+}
+
+impl AsRef<[u8]> for InFlight {
+    fn as_ref(&self) -> &[u8] {
+        &self.bytes
+    }
+}
+
+impl Drop for InFlight {
+    fn drop(&mut self) {
+        self.exchange.written(self.bytes.len());
+    }
+}
