@@ -4,7 +4,7 @@
 use axum::body::Body;
 use http::Request;
 
-use super::doors;
+use super::protocols;
 
 pub fn run(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else {
@@ -15,6 +15,6 @@ pub fn run(data: &[u8]) {
         && request.uri().path().starts_with('/')
         && !request.uri().path().starts_with("/v1/profiles/")
     {
-        doors::ask(request);
+        protocols::ask(request);
     }
 }

@@ -3,7 +3,7 @@
 use axum::body::Body;
 use http::Request;
 
-use super::doors;
+use super::protocols;
 
 pub fn run(data: &[u8]) {
     let mut lines = data.splitn(2, |&b| b == b'\n');
@@ -19,6 +19,6 @@ pub fn run(data: &[u8]) {
     if let Ok(request) = request
         && request.uri().path().starts_with('/')
     {
-        doors::ask(request);
+        protocols::ask(request);
     }
 }

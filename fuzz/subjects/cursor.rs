@@ -6,7 +6,7 @@
 use axum::body::Body;
 use http::{Request, StatusCode};
 
-use super::doors::{self, Answered};
+use super::protocols::{self, Answered};
 
 const QUERIES: [&str; 4] = [
     "bbox=0,0,20,20&spacing=1",
@@ -17,7 +17,7 @@ const QUERIES: [&str; 4] = [
 
 fn points(query: &str, more: &str) -> Answered {
     let request = Request::get(format!("/v1/points?{query}&format=csv{more}"));
-    doors::ask(request.body(Body::empty()).expect("a request"))
+    protocols::ask(request.body(Body::empty()).expect("a request"))
 }
 
 /// The points of an answer, without the names of their columns.

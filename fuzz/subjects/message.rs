@@ -1,6 +1,6 @@
 //! Messages of the gRPC door: a byte that chooses the method, then the message.
 
-use super::doors;
+use super::protocols;
 
 const METHODS: [&str; 6] = [
     "StreamPoints",
@@ -19,7 +19,7 @@ pub fn run(data: &[u8]) {
         return;
     };
     let method = METHODS[usize::from(first) % METHODS.len()];
-    let (status, text) = doors::call(method, message);
+    let (status, text) = protocols::call(method, message);
     // tonic answers INTERNAL to a message that is none; every other one is for us to answer.
     let is_no_message = text.starts_with("failed%20to%20decode%20Protobuf%20message");
     assert!(

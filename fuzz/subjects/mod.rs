@@ -9,9 +9,9 @@ pub mod address;
 pub mod area;
 pub mod body;
 pub mod cursor;
-mod doors;
 pub mod import;
 pub mod message;
+mod protocols;
 pub mod table;
 
 /// A subject by its name, which is also that of its seeds' folder.

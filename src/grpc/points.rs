@@ -21,9 +21,7 @@ use super::{
     query, resolved, set, single, split, status,
 };
 use crate::access::Caller;
-use crate::service::{
-    Error, Fault, Found, Placed, Query, Record, Service, Set, query::groups,
-};
+use crate::service::{Error, Fault, Found, Placed, Query, Record, Service, Set, query::groups};
 
 /// Answers over gRPC.
 #[derive(Debug)]

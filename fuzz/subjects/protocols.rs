@@ -1,4 +1,4 @@
-//! The doors of a daemon without a socket, and what every answer must be.
+//! The protocols of a daemon without a socket, and what every answer must be.
 
 use std::sync::{Arc, LazyLock};
 
@@ -20,13 +20,13 @@ const MOST_ROWS: u64 = 20_000;
 /// The most bytes of an answer that are looked at: a picture of the largest size.
 const MOST_BYTES: usize = 256 << 20;
 
-struct Doors {
+struct Protocols {
     runtime: Runtime,
     rest: Router,
     grpc: Router,
 }
 
-static DOORS: LazyLock<Doors> = LazyLock::new(|| {
+static PROTOCOLS: LazyLock<Protocols> = LazyLock::new(|| {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .build()
         .expect("a runtime");
@@ -44,8 +44,8 @@ static DOORS: LazyLock<Doors> = LazyLock::new(|| {
         .expect("built rightly");
     // There is no gate: everyone is let in.
     let open = |router: Router| router.layer(Extension(Caller::default()));
-    let rest::Door { router, paths } = rest::Door::new(rest::endpoints(&service), open);
-    Doors {
+    let rest::Routes { router, paths } = rest::Routes::new(rest::endpoints(&service), open, open);
+    Protocols {
         rest: router.fallback(async move |request| rest::not_found(&request, &paths)),
         grpc: open(grpc.into_axum_router()),
         runtime,
@@ -66,9 +66,9 @@ impl Answered {
 
 /// Asks by REST. The answer is one that may be, or this panics.
 pub fn ask(request: Request<Body>) -> Answered {
-    let doors = &*DOORS;
-    let answered = doors.runtime.block_on(async {
-        let response = doors.rest.clone().oneshot(request).await;
+    let protocols = &*PROTOCOLS;
+    let answered = protocols.runtime.block_on(async {
+        let response = protocols.rest.clone().oneshot(request).await;
         let (head, body) = response.unwrap_or_else(|never| match never {}).into_parts();
         let body = axum::body::to_bytes(body, MOST_BYTES).await;
         let body = body.expect("an answer ends as it should").to_vec();
@@ -109,7 +109,7 @@ fn check(answered: &Answered) {
 
 /// Calls a method by gRPC with one message. Gives the status, as a number, with its message.
 pub fn call(method: &str, message: &[u8]) -> (u32, String) {
-    let doors = &*DOORS;
+    let protocols = &*PROTOCOLS;
     let mut frame = vec![0];
     frame.extend(u32::try_from(message.len()).expect("short").to_be_bytes());
     frame.extend(message);
@@ -119,8 +119,8 @@ pub fn call(method: &str, message: &[u8]) -> (u32, String) {
         .header(header::TE, "trailers")
         .body(Body::from(frame))
         .expect("a request");
-    doors.runtime.block_on(async {
-        let response: Response = doors
+    protocols.runtime.block_on(async {
+        let response: Response = protocols
             .grpc
             .clone()
             .oneshot(request)
