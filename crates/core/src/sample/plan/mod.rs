@@ -1,5 +1,7 @@
 //! Plans: requests made ready, before any point is made.
 
+#[cfg(test)]
+mod chunks;
 mod windows;
 
 use alloc::{sync::Arc, vec, vec::Vec};
@@ -167,7 +169,7 @@ impl Plan {
         points
     }
 
-    /// The points in one of the formats [`F32`], [`F64`] and [`Points`], block by block: the fastest way
+    /// The points in one of the formats [`F32`], [`F64`], [`Offsets`](crate::Offsets) and [`Points`], block by block: the fastest way
     /// to make many.
     ///
     /// ```
@@ -300,8 +302,9 @@ impl Plan {
         self.scope.region
     }
 
-    /// The lower corner of the [region](Self::region), in world coordinates. [`F32`] coordinates are
-    /// relative to it.
+    /// The lower corner of the requested chunk, or else of the [region](Self::region), in world coordinates.
+    /// [`F32`] coordinates and [`Offsets`](crate::Offsets) are relative to it; in a chunk to the exact corner, which this
+    /// rounds to `f64`.
     ///
     /// ```
     /// use strew_core::{PointSet, Table};
@@ -312,7 +315,7 @@ impl Plan {
     /// ```
     #[must_use]
     pub fn origin(&self) -> [f64; 2] {
-        self.region().min()
+        self.scope.corner.at
     }
 
     /// The table of the set.
