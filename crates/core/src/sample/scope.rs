@@ -39,18 +39,32 @@ pub(crate) struct Corner {
     pub(crate) first: [i128; 2],
     /// The distances from the exact place to [`first`](Self::first); see [`Multiple::gap`].
     pub(crate) gap: [[f64; 2]; 2],
+    /// Whether the place is a chunk's, and `f32` offsets are from it and not from
+    /// [`first`](Self::first).
+    pub(crate) is_chunk: bool,
     /// Offsets are below this.
     pub(crate) extent: [f64; 2],
 }
 
 impl Corner {
     /// The lower corner of a box, whose sides begin at these fixed-point coordinates.
-    fn of_box(region: Region, first: [i128; 2]) -> Self {
+    fn of_box(lattice: &Lattice, region: Region, first: [i128; 2]) -> Self {
         let (min, max) = (region.min(), region.max());
+        let gap = |axis: usize| {
+            let sign = if min[axis] < 0.0 { -1 } else { 1 };
+            let corner = Multiple::new(lattice.step, min[axis].abs(), sign);
+            // Reported coordinates decide which is first, so it is a little beside the corner far out.
+            let [gap, error] = corner.gap;
+            [
+                gap,
+                error + (first[axis] - corner.first) as f64 * lattice.step,
+            ]
+        };
         Self {
             at: min,
             first,
-            gap: [[0.0; 2]; 2],
+            gap: [gap(0), gap(1)],
+            is_chunk: false,
             extent: [0, 1].map(|axis| max[axis] - min[axis]),
         }
     }
@@ -62,6 +76,7 @@ impl Corner {
             at: at.map(|index| index as f64 * size),
             first: multiples.map(|multiple| multiple.first),
             gap: multiples.map(|multiple| multiple.gap),
+            is_chunk: true,
             extent: [size; 2],
         }
     }
@@ -129,7 +144,7 @@ impl Scope {
         let is_box = matches!(rest, None | Some(Area::Region(_)));
         let corner = match chunks.last() {
             Some(chunk) => Corner::of_chunk(lattice, *chunk),
-            None => Corner::of_box(region, [x.bounds.start, y.bounds.start]),
+            None => Corner::of_box(lattice, region, [x.bounds.start, y.bounds.start]),
         };
         let sieve = if is_box && mask.clear.is_empty() {
             None

@@ -10,9 +10,11 @@ use crate::table::{FRACTION_BITS, fixed};
 /// Pairs of `f64` coordinates relative to the region's lower corner
 /// ([`Plan::origin`](crate::Plan::origin)).
 ///
-/// In a chunk the offset of the exact position from the exact corner is rounded once, so offsets are as
-/// precise at any distance as at the origin. In other regions it is the offset from the first fixed-point
-/// place inside. Offsets lie in \[0, extent): what would round up to the extent becomes the number below it.
+/// The offset of the exact position from the corner is rounded once, so offsets are as precise at any
+/// distance as at the origin. A chunk's corner is the exact multiple of its size. Offsets lie in
+/// \[0, extent): what would round up to the extent becomes the number below it. In a region that is no
+/// chunk they can also reach below 0 before they are rounded, by half of what the reported coordinates
+/// resolve there, and become 0.
 ///
 /// ```
 /// use strew_core::{F64, Offsets, PointSet, Table};
@@ -59,11 +61,14 @@ impl Offsets {
         let [gap, gap_error] = self.gap[axis];
         let (place, lost) = sum(product, gap);
         let place = place + (lost + (error + (rest * step + gap_error)));
-        // None is NaN, so this is the minimum.
-        if place < self.last[axis] {
+        let last = self.last[axis];
+        // None is NaN, so this is a clamp.
+        if place > last {
+            last
+        } else if place > 0.0 {
             place
         } else {
-            self.last[axis]
+            0.0
         }
     }
 }

@@ -60,7 +60,10 @@ impl Emit for F32 {
         Self {
             step: geometry.step,
             first: geometry.first,
-            lead: geometry.gap.map(|[gap, _]| gap / geometry.step),
+            lead: geometry.gap.map(|[gap, _]| match geometry.is_chunk {
+                true => gap / geometry.step,
+                false => 0.0,
+            }),
             last: geometry.extent.map(below),
         }
     }
