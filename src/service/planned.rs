@@ -82,7 +82,7 @@ impl Placed {
         let Some((spacing, density)) = planner::resolve(&set, &ready)? else {
             return Err(set.fault("count", "", "it needs a region", super::query::AMOUNT));
         };
-        let least = planner::least_distance(&set, &ready, spacing);
+        let least = planner::least_distance(&set, &ready, spacing, 0.0);
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least),
             points: PointSet::new(ready.table).placed(set.placement(spacing)),

@@ -161,7 +161,7 @@ fn set_echo() -> Value {
         "region": reference("Region"),
         "density": number(),
         "spacing": number(),
-        "least_distance": { "type": "number", "description": "No two points are nearer." },
+        "least_distance": { "type": "number", "description": "No two points are nearer, by their f64 coordinates." },
         "profile": text(),
         "alpha": text(),
         "map": text(),
