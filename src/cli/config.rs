@@ -1,10 +1,10 @@
 //! `strew config`, and the flags that change settings.
 
-use std::{io::Write as _, path::PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Context as _;
 
-use super::Failure;
+use super::{Failure, output};
 use crate::config::{Config, ConfigError, Layers};
 
 /// Flags that change settings, shared by all commands that have any.
@@ -60,8 +60,5 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         .merged()?
         .to_toml()
         .context("cannot write the settings")?;
-    std::io::stdout()
-        .write_all(text.as_bytes())
-        .context("cannot write to standard output")?;
-    Ok(())
+    output::print(&text)
 }

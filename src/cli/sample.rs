@@ -62,17 +62,18 @@ impl Args {
 /// Writes the points.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.query.settings.merged()?;
+    let mut output = Target::open(args.output.as_deref())?;
     let ask = args.query.plan(&config)?;
     let (planned, options) = (&ask.planned, ask.options);
     let encoding = match options.encoding {
         Some(encoding) => encoding,
         None => args.by_ending()?,
     };
-    let output = options.output(encoding).map(|output| Output {
+    let looks = options.output(encoding).map(|looks| Output {
         relative_to: planned.query.region.corner,
-        ..output
+        ..looks
     });
-    let answer = output.and_then(|output| Answer::new(planned, &output, config.limits.block_bytes));
+    let answer = looks.and_then(|looks| Answer::new(planned, &looks, config.limits.block_bytes));
     let answer = answer.map_err(|error| ask.source.refused(error))?;
     let count = u64::try_from(planned.count()).map_err(|_| {
         let count = planned.count();
@@ -84,7 +85,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         announce(planned, encoding, &answer);
     }
     let pool = workers(&config)?;
-    let mut output = Target::open(args.output.as_deref())?;
     let mut progress = Progress::new("points", count, args.quiet);
     let written = pool.install(|| match answer.plain().cloned() {
         Some(plain) => packed(&plain, &mut output, &mut progress),
