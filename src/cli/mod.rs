@@ -58,7 +58,7 @@ enum Command {
     /// Ask a running daemon whether it is ready: exit code 0 if so, 1 if not.
     Probe(probe::Args),
     /// Print the merged settings.
-    Config(config::Args),
+    Config(config::Served),
 }
 
 /// Why a command failed: decides the exit code.

@@ -59,14 +59,16 @@ impl<T: Takes> Asked<T> {
     pub(super) fn plan(&self, config: &Config) -> Result<Ask, Failure> {
         let (body, source) = self.read()?;
         let (options, mut faults) = (body.options, body.faults);
-        // Only files are Parquet, so no query knows the name.
-        let parquet = Some(Encoding::Parquet.name());
-        let is_parquet = |fault: &mut crate::service::Fault| {
-            fault.field == "format" && fault.value.as_deref() == parquet
+        // Formats of files are unknown to queries.
+        let is_of_file = |fault: &mut crate::service::Fault| {
+            fault.field == "format" && fault.value.as_deref().and_then(of_file).is_some()
         };
-        let to_file = faults.extract_if(.., is_parquet).count() > 0;
+        let refused: Vec<_> = faults.extract_if(.., is_of_file).collect();
+        let file = refused
+            .iter()
+            .find_map(|fault| of_file(fault.value.as_deref()?));
         let mut options = Options {
-            encoding: options.encoding.or(to_file.then_some(Encoding::Parquet)),
+            encoding: options.encoding.or(file),
             ..options
         };
         self.override_looks(&mut options)?;
@@ -118,12 +120,12 @@ impl<T: Takes> Asked<T> {
         if self.query.is_none() {
             return Ok(());
         }
-        let parquet = Encoding::Parquet;
-        let is_parquet = self.flags.get("format") == Some(parquet.name());
-        let wanted = |name: &str| LOOKS_NAMES.contains(&name) && !(is_parquet && name == "format");
+        let file = self.flags.get("format").and_then(of_file);
+        let is_known = |name: &str| file.is_none() || name != "format";
+        let wanted = |name: &str| LOOKS_NAMES.contains(&name) && is_known(name);
         let looks = self.flags.parameters(wanted).looks();
         let looks = looks.map_err(|faults| Source::Flags.refused(Error::Invalid(faults)))?;
-        let encoding = looks.encoding.or(is_parquet.then_some(parquet));
+        let encoding = looks.encoding.or(file);
         options.encoding = encoding.or(options.encoding);
         options.decimals = looks.decimals.or(options.decimals);
         options.size = looks.size.or(options.size);
@@ -158,6 +160,11 @@ impl<T: Takes> Asked<T> {
         }
         self.chunk.as_deref().map(chunk).transpose()
     }
+}
+
+/// The format of a name, if only files have it.
+fn of_file(name: &str) -> Option<Encoding> {
+    Encoding::from_any_name(name).filter(|encoding| Encoding::FILES.contains(encoding))
 }
 
 fn chunk(text: &str) -> Result<RegionDraft, Failure> {

@@ -43,17 +43,18 @@ impl Args {
         };
         let ending = ending.to_string_lossy();
         let encoding = match &*ending {
+            "arrow" => Some(Encoding::Feather),
             "arrows" => Some(Encoding::Arrow),
             "geojsons" | "geojsonl" => Some(Encoding::Geojsonseq),
             "jsonl" => Some(Encoding::Ndjson),
-            "parquet" => Some(Encoding::Parquet),
-            name => Encoding::from_name(name),
+            name => Encoding::from_any_name(name),
         };
         encoding.ok_or_else(|| {
             Failure::Usage(anyhow!(
                 "--output ends with .{ending}, which names no format: give --format, or one of the \
-                 endings {}, parquet",
-                Encoding::ALL.map(Encoding::name).join(", ")
+                 endings {}, arrows, {}",
+                Encoding::ALL.map(Encoding::name).join(", "),
+                Encoding::FILES.map(Encoding::name).join(", ")
             ))
         })
     }
@@ -116,6 +117,12 @@ fn announce(planned: &Planned, encoding: Encoding, answer: &Answer) {
             String::from_utf8_lossy(&text).into_owned()
         });
         eprintln!("coordinates are relative to the origin {x},{y}");
+    }
+    if let Some(columns) = answer.legend() {
+        eprintln!("columns: {columns}");
+    }
+    if let Some(warning) = answer.warning() {
+        eprintln!("warning: {warning}");
     }
 }
 

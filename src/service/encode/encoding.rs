@@ -27,12 +27,17 @@ pub enum Encoding {
     Png,
     /// A picture of circles.
     Svg,
-    /// A Parquet file; only for files, not by any door.
+    /// A Parquet file. Only the command line writes it.
     Parquet,
+    /// An Arrow IPC file. Only the command line writes it.
+    Feather,
 }
 
 impl Encoding {
-    /// All formats that are streamed: all but Parquet, which is for files.
+    /// The formats that only the command line writes, to files.
+    pub const FILES: [Self; 2] = [Self::Parquet, Self::Feather];
+
+    /// The formats that are streamed.
     pub const ALL: [Self; 12] = [
         Self::Json,
         Self::Ndjson,
@@ -65,6 +70,7 @@ impl Encoding {
             Self::Png => "png",
             Self::Svg => "svg",
             Self::Parquet => "parquet",
+            Self::Feather => "feather",
         }
     }
 
@@ -74,6 +80,14 @@ impl Encoding {
         Self::ALL
             .into_iter()
             .find(|encoding| encoding.name() == name)
+    }
+
+    /// The format of a name, those of files included.
+    #[must_use]
+    pub fn from_any_name(name: &str) -> Option<Self> {
+        let files = Self::FILES.into_iter();
+        let file = files.clone().find(|encoding| encoding.name() == name);
+        file.or_else(|| Self::from_name(name))
     }
 
     /// The content type, when the format is asked for by name. NumPy's and PLY are registered by
@@ -93,7 +107,35 @@ impl Encoding {
             Self::Png => "image/png",
             Self::Svg => "image/svg+xml",
             Self::Parquet => "application/vnd.apache.parquet",
+            Self::Feather => "application/vnd.apache.arrow.file",
         }
+    }
+
+    /// The name under which browsers save an answer.
+    #[must_use]
+    pub const fn file_name(self) -> &'static str {
+        match self {
+            Self::Json => "points.json",
+            Self::Ndjson => "points.ndjson",
+            Self::Csv => "points.csv",
+            Self::F32 => "points.f32",
+            Self::F64 => "points.f64",
+            Self::Geojson => "points.geojson",
+            Self::Geojsonseq => "points.geojsons",
+            Self::Npy => "points.npy",
+            Self::Ply => "points.ply",
+            Self::Arrow => "points.arrows",
+            Self::Png => "points.png",
+            Self::Svg => "points.svg",
+            Self::Parquet => "points.parquet",
+            Self::Feather => "points.arrow",
+        }
+    }
+
+    /// Whether browsers show an answer by themselves instead of saving it.
+    #[must_use]
+    pub const fn is_shown(self) -> bool {
+        matches!(self, Self::Json | Self::Png | Self::Svg)
     }
 
     /// Whether numbers are written as digits.
@@ -112,7 +154,8 @@ impl Encoding {
             | Self::Ply
             | Self::Arrow
             | Self::Png
-            | Self::Parquet => false,
+            | Self::Parquet
+            | Self::Feather => false,
         }
     }
 

@@ -5,15 +5,17 @@
 //! Formats are made of [`Rows`]; only packed coordinates without further columns come straight
 //! from the kernel.
 
-mod arrow;
 mod batches;
 mod buffer;
 mod canvas;
+mod columnar;
+mod crs;
 mod csv;
 mod encoding;
 mod geojson;
 mod head;
 mod json;
+mod legend;
 mod members;
 mod ndjson;
 mod npy;
@@ -41,6 +43,8 @@ use bytes::Bytes;
 use strew_core::{F32, F64, Plan};
 
 use super::{Error, Fault, Planned};
+use batches::Batches;
+use columnar::Columnar;
 use head::Head;
 use members::Members;
 use preview::Frame;
@@ -48,6 +52,7 @@ use records::{Layout, Records};
 use text::{TextBlocks, TextFormat};
 
 pub use buffer::Pool;
+pub use crs::{CRS, Crs};
 pub use encoding::Encoding;
 pub use number::{Digits, write_number};
 pub use output::{DECIMALS, MOST_DECIMALS, Options, Output};
@@ -84,6 +89,8 @@ pub struct Answer {
     blocks: Box<dyn Blocks>,
     size: Option<u64>,
     origin: Option<[f64; 2]>,
+    legend: Option<String>,
+    warning: Option<&'static str>,
     plain: Option<Plain>,
 }
 
@@ -105,7 +112,21 @@ impl Answer {
     /// # Errors
     /// [`Error::Invalid`] if the format cannot hold the answer.
     pub fn new(planned: &Planned, output: &Output, block_bytes: usize) -> Result<Self, Error> {
-        Self::of_parts(planned, planned.parts(), output, block_bytes)
+        if let Some(crs) = output.crs.as_ref()
+            && output.encoding == Encoding::Parquet
+            && crs.projjson().is_none()
+        {
+            let allowed =
+                "EPSG:4326, OGC:CRS84, EPSG:3857 and EPSG:32601 to EPSG:32760, the UTM zones";
+            let detail = "its definition is not known here, and Parquet must hold it";
+            return Err(Error::Invalid(vec![Fault::new(
+                "crs", crs, detail, allowed,
+            )]));
+        }
+        Ok(Self {
+            warning: output.warning(),
+            ..Self::of_parts(planned, planned.parts(), output, block_bytes)?
+        })
     }
 
     fn of_parts(
@@ -130,6 +151,8 @@ impl Answer {
                     head: None,
                     size: None,
                     origin: None,
+                    legend: None,
+                    warning: None,
                     plain: None,
                     blocks: Box::new(png::Png::new(rows, head(), frame, block_bytes)),
                 });
@@ -146,14 +169,19 @@ impl Answer {
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Arrow => {
-                return Self::of_columns(rows, |rows| {
-                    arrow::Arrow::new(rows, &head(), block_bytes)
-                });
+                let batches = Batches::new(rows.schema(), &head(), false);
+                let writer = columnar::arrow_stream(batches.schema());
+                return Self::of_columns(rows, batches, writer, block_bytes);
+            }
+            Encoding::Feather => {
+                let batches = Batches::new(rows.schema(), &head(), false);
+                let writer = columnar::arrow_file(batches.schema());
+                return Self::of_columns(rows, batches, writer, block_bytes);
             }
             Encoding::Parquet => {
-                return Self::of_columns(rows, |rows| {
-                    parquet::Parquet::new(rows, &head(), block_bytes)
-                });
+                let batches = Batches::new(rows.schema(), &head(), true);
+                let writer = parquet::writer(batches.schema(), output.crs.as_ref());
+                return Self::of_columns(rows, batches, writer, block_bytes);
             }
             Encoding::Json => {
                 let format = json::Json::new(head(), members());
@@ -176,16 +204,22 @@ impl Answer {
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
         };
-        Ok(Self::of_records(rows, layout, before, block_bytes))
+        let legend = legend::legend(rows.schema(), output.encoding);
+        Ok(Self {
+            legend,
+            ..Self::of_records(rows, layout, before, block_bytes)
+        })
     }
 
     /// A columnar format of unknown size.
-    fn of_columns<B: Blocks + 'static>(
+    fn of_columns(
         rows: Rows,
-        make: impl FnOnce(Rows) -> Result<B, EncodeError>,
+        batches: Batches,
+        writer: Result<impl columnar::Writer + 'static, EncodeError>,
+        block_bytes: usize,
     ) -> Result<Self, Error> {
         let origin = rows.coordinates().origin();
-        let blocks = make(rows).map_err(|error| {
+        let writer = writer.map_err(|error| {
             tracing::error!(%error, "an answer cannot begin");
             Error::Internal("the format cannot be written")
         })?;
@@ -193,8 +227,10 @@ impl Answer {
             head: None,
             size: None,
             origin,
+            legend: None,
+            warning: None,
             plain: None,
-            blocks: Box::new(blocks),
+            blocks: Box::new(Columnar::new(rows, batches, writer, block_bytes)),
         })
     }
 
@@ -207,6 +243,8 @@ impl Answer {
             head: None,
             size: None,
             origin: rows.coordinates().origin(),
+            legend: None,
+            warning: None,
             plain: None,
             blocks: Box::new(TextBlocks::new(rows, format, block_bytes)),
         }
@@ -239,6 +277,8 @@ impl Answer {
             blocks,
             size,
             origin,
+            legend: None,
+            warning: None,
             // A window's tiles are those of the whole.
             plain: plain.filter(|plain| !plain.plan.is_window()),
         }
@@ -254,6 +294,19 @@ impl Answer {
     #[must_use]
     pub const fn origin(&self) -> Option<[f64; 2]> {
         self.origin
+    }
+
+    /// For formats without names in them: the columns, as a JSON list in ASCII. Each has a `name`, a
+    /// `type` and, where its values are indices, the `names` that they stand for.
+    #[must_use]
+    pub fn legend(&self) -> Option<&str> {
+        self.legend.as_deref()
+    }
+
+    /// What readers of the format may take wrongly.
+    #[must_use]
+    pub const fn warning(&self) -> Option<&'static str> {
+        self.warning
     }
 
     /// How to make it from the plan's tiles, if it is that simple.

@@ -2,6 +2,7 @@
 
 use super::{
     Encoding,
+    crs::Crs,
     preview::{DEFAULT_SIZE, LEAST_SIZE, MOST_SIZE, SIZE},
 };
 use crate::service::{Error, Fault};
@@ -61,7 +62,7 @@ impl Options {
 }
 
 /// How an answer looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// The format.
     pub encoding: Encoding,
@@ -72,6 +73,8 @@ pub struct Output {
     pub relative_to: Option<[f64; 2]>,
     /// The longer side of a picture, in pixels.
     pub size: u32,
+    /// What plane coordinates are in.
+    pub crs: Option<Crs>,
 }
 
 impl Output {
@@ -83,6 +86,24 @@ impl Output {
             decimals: None,
             relative_to: None,
             size: DEFAULT_SIZE,
+            crs: None,
+        }
+    }
+
+    /// What readers of the format may take wrongly.
+    pub(super) fn warning(&self) -> Option<&'static str> {
+        if !matches!(self.encoding, Encoding::Geojson | Encoding::Geojsonseq) {
+            return None;
+        }
+        match &self.crs {
+            None => Some(
+                "GeoJSON readers take coordinates for degrees of longitude and latitude. Tell them the \
+                 plane, and use a projected one: what is even in degrees is not even on the ground",
+            ),
+            Some(crs) if crs.is_geographic() => Some(
+                "points are even in degrees, not on the ground: use a projected plane, such as a UTM zone",
+            ),
+            Some(_) => None,
         }
     }
 }
