@@ -136,9 +136,19 @@ impl Answer {
         block_bytes: usize,
     ) -> Result<Self, Error> {
         let coordinates = Coordinates::of(output, &parts);
-        let frame = Frame::new(&parts, output.size);
+        let count = parts.iter().map(|part| part.plan.count()).sum();
+        let (frame, parts) = match output.encoding.is_picture() {
+            true => {
+                let frame = Frame::new(&parts, output.size);
+                let parts = match output.encoding {
+                    Encoding::Png => frame.shown(parts)?,
+                    _ => parts,
+                };
+                (Some(frame), parts)
+            }
+            false => (None, parts),
+        };
         let rows = Rows::new(parts, coordinates);
-        let count = rows.count();
         let head = || Head::new(planned, output, count);
         let members = || Members::new(&rows, output);
         let (layout, before) = match output.encoding {
@@ -147,6 +157,7 @@ impl Answer {
             Encoding::Npy => (Layout::F64, Some(npy::head(&rows))),
             Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head()))),
             Encoding::Png => {
+                let frame = frame.ok_or(Error::Internal("a picture has no frame"))?;
                 return Ok(Self {
                     head: None,
                     size: None,
@@ -165,6 +176,7 @@ impl Answer {
                     let fault = Fault::new("format", "svg", detail, allowed);
                     return Err(Error::Invalid(vec![fault]));
                 }
+                let frame = frame.ok_or(Error::Internal("a picture has no frame"))?;
                 let format = svg::Svg::new(&rows, head(), frame, output.decimals);
                 return Ok(Self::of_text(rows, format, block_bytes));
             }

@@ -12,7 +12,7 @@ use super::{
     count::count,
     iter::Members,
     kernel::{F32, F64, Format, Points},
-    lattice::{Lattice, Placement, Point},
+    lattice::{Keep, Lattice, Placement, Point, Spacing},
     near::Mask,
     scope::Scope,
     stop::Stop,
@@ -365,6 +365,28 @@ impl Plan {
     #[must_use]
     pub fn attributes(&self, attributes: &Attributes) -> BoundAttributes {
         BoundAttributes::new(attributes, &self.scope.lattice)
+    }
+
+    /// The points of the same area at another spacing, all of them, not counted.
+    pub(crate) fn with_spacing(&self, spacing: Spacing) -> Result<Self, Error> {
+        let Scope {
+            lattice,
+            sieve,
+            stop,
+            region,
+            ..
+        } = &*self.scope;
+        let placement = Placement {
+            spacing,
+            keep: Keep::ALL,
+            ..lattice.placement
+        };
+        let lattice = Lattice::new(lattice.table.clone(), placement);
+        let mut mask = sieve
+            .as_ref()
+            .map_or_else(Mask::default, |sieve| sieve.mask().clone());
+        let area = mask.area.take().unwrap_or(Area::Region(*region));
+        Self::new(&lattice, &mask, area, stop.clone(), Some(u64::MAX.into()))
     }
 
     /// This plan with another flag that stops its further counting.
