@@ -146,7 +146,19 @@ fn places_that_cannot_be_written_are_refused_before_the_work() {
         for output in [
             sample(&path),
             measure(&path),
-            run(&["table", "export", "--profile", "blue", "-o", &path], ""),
+            run(
+                &[
+                    "table",
+                    "export",
+                    "--profile",
+                    "spaced",
+                    "--map",
+                    "l",
+                    "-o",
+                    &path,
+                ],
+                "",
+            ),
         ] {
             let text = errors(&output);
             assert!(!output.status.success());

@@ -41,7 +41,7 @@ def pandas():
 def polars():
     import polars
 
-    frame = polars.read_ipc(folder / "t.arrow", memory_map=False)
+    frame = polars.read_ipc(folder / "t.arrow")
     check("polars", frame["id"], frame["x"], frame["variant"])
 
 
