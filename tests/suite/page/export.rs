@@ -110,7 +110,7 @@ fn run(line: &str, needs: &str, look: impl Fn(&str)) {
         "{line}: {}",
         String::from_utf8_lossy(&shell.stderr)
     );
-    look(&std::fs::read_to_string(folder.path().join("strew.csv")).expect("written"));
+    look(&std::fs::read_to_string(folder.path().join("points.csv")).expect("written"));
 }
 
 #[test]
@@ -175,7 +175,7 @@ fn a_download_has_the_count_and_the_size_that_were_shown() {
         let size = browser.value("[strew.take.weight.bytes, strew.take.weight.isExact]");
         let (size, is_exact) = (size[0].as_u64().expect("bytes"), size[1] == true);
         browser.click("#download");
-        let file = browser.downloads().join(format!("strew.{format}"));
+        let file = browser.downloads().join(format!("points.{format}"));
         let bytes = until("the file is whole", || {
             let partial = browser
                 .downloads()
