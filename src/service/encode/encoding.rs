@@ -121,7 +121,7 @@ impl Encoding {
             Self::F32 => "points.f32",
             Self::F64 => "points.f64",
             Self::Geojson => "points.geojson",
-            Self::Geojsonseq => "points.geojsons",
+            Self::Geojsonseq => "points.geojsonl",
             Self::Npy => "points.npy",
             Self::Ply => "points.ply",
             Self::Arrow => "points.arrows",

@@ -73,7 +73,7 @@ fn a_copied_request_returns_the_points_in_view() {
     assert_same(&browser, &rows(answer.text()));
     let line = copied(&browser, "curl");
     assert!(
-        line.starts_with(&format!("curl -f '{url}' -o strew.csv")),
+        line.starts_with(&format!("curl -f '{url}' -o points.csv")),
         "{line}"
     );
     run(&line, "curl", |text| assert_same(&browser, &rows(text)));
@@ -93,7 +93,7 @@ fn a_copied_request_returns_the_points_in_view() {
     }
 }
 
-/// Runs a shell command that writes strew.csv, in a folder of its own, and passes the file to
+/// Runs a shell command that writes points.csv, in a folder of its own, and passes the file to
 /// `look`.
 fn run(line: &str, needs: &str, look: impl Fn(&str)) {
     if clients::find(needs).is_none() {
@@ -179,7 +179,7 @@ fn a_download_has_the_count_and_the_size_that_were_shown() {
         let bytes = until("the file is whole", || {
             let partial = browser
                 .downloads()
-                .join(format!("strew.{format}.crdownload"));
+                .join(format!("points.{format}.crdownload"));
             let bytes = std::fs::read(&file).ok()?;
             (!partial.exists() && !bytes.is_empty()).then_some(bytes)
         });
