@@ -226,7 +226,7 @@ mod tests {
                 let dense = planned(bbox, 1.0, seed);
                 let mut dense = Answer::new(&dense, &output, 4096).expect("drawn");
                 let mut bytes = vec![];
-                while let Some(block) = dense.next() {
+                for block in dense.by_ref() {
                     bytes.extend_from_slice(&block.expect("made"));
                 }
                 assert!(dense.points() < 1_000_000, "{} were made", dense.points());
