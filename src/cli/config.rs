@@ -1,10 +1,10 @@
 //! `strew config`, and the flags that change settings.
 
-use std::{io::Write as _, path::PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Context as _;
 
-use super::Failure;
+use super::{Failure, output};
 use crate::config::{Config, ConfigError, Layers};
 
 /// Flags that change settings, shared by all commands that have any.
@@ -14,9 +14,6 @@ pub(crate) struct Args {
     /// A file with settings, in TOML.
     #[arg(long, value_name = "FILE", env = "STREW_CONFIG")]
     config: Option<PathBuf>,
-    /// Where to serve: address and port; port 0 for any free one.
-    #[arg(long, value_name = "ADDR")]
-    listen: Option<String>,
     /// A folder whose *.strew tables are loaded besides the built-in ones.
     #[arg(long, value_name = "DIR")]
     tables: Option<String>,
@@ -25,13 +22,33 @@ pub(crate) struct Args {
     set: Vec<String>,
 }
 
+/// The flags of commands that serve, or look at what would be served.
+#[derive(Clone, Debug, Default, clap::Args)]
+#[group(skip)]
+pub(crate) struct Served {
+    /// Where to serve: address and port; port 0 for any free one.
+    #[arg(long, value_name = "ADDR")]
+    listen: Option<String>,
+    #[command(flatten)]
+    settings: Args,
+}
+
+impl Served {
+    /// The merged settings.
+    pub(crate) fn merged(&self) -> Result<Config, Failure> {
+        let merged = self.settings.merge(self.listen.as_deref());
+        merged.map_err(|error| Failure::Usage(error.into()))
+    }
+}
+
 impl Args {
     /// The merged settings.
     pub(crate) fn merged(&self) -> Result<Config, Failure> {
-        self.merge().map_err(|error| Failure::Usage(error.into()))
+        self.merge(None)
+            .map_err(|error| Failure::Usage(error.into()))
     }
 
-    fn merge(&self) -> Result<Config, ConfigError> {
+    fn merge(&self, listen: Option<&str>) -> Result<Config, ConfigError> {
         let mut layers = Layers::new()?;
         if let Some(file) = &self.config {
             layers = layers.file(file)?;
@@ -44,7 +61,7 @@ impl Args {
         for assignment in &self.set {
             layers = layers.assignment(assignment)?;
         }
-        if let Some(listen) = &self.listen {
+        if let Some(listen) = listen {
             layers = layers.flag("--listen", "server.listen", listen)?;
         }
         if let Some(folder) = &self.tables {
@@ -55,13 +72,10 @@ impl Args {
 }
 
 /// Prints the merged settings.
-pub(super) fn run(args: &Args) -> Result<(), Failure> {
+pub(super) fn run(args: &Served) -> Result<(), Failure> {
     let text = args
         .merged()?
         .to_toml()
         .context("cannot write the settings")?;
-    std::io::stdout()
-        .write_all(text.as_bytes())
-        .context("cannot write to standard output")?;
-    Ok(())
+    output::print(&text)
 }

@@ -206,13 +206,13 @@ fn value_name(parameter: &Parameter) -> String {
         Shape::Vertices => "X1,Y1,X2,Y2,…".into(),
         Shape::Names { .. } => "NAME,…".into(),
         Shape::Weights => "NAME:WEIGHT,…".into(),
+        Shape::Switch => "on|off".into(),
         Shape::Strength { .. } => "off|on|STRENGTH".into(),
         Shape::Number { .. } | Shape::Integer { .. } | Shape::Signed { .. } | Shape::Quadratic => {
             "NUMBER".into()
         }
         Shape::Format => "NAME".into(),
-        Shape::Pattern(_) => "HEX".into(),
-        Shape::Text => "NAME".into(),
+        Shape::Pattern(_) | Shape::Text => "TEXT".into(),
     }
 }
 

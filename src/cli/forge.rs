@@ -14,7 +14,7 @@ use strew_forge::{
     forge, resume, write_table,
 };
 
-use super::{Failure, watcher::Watcher};
+use super::{Failure, output, watcher::Watcher};
 use crate::service::query::{DEFAULT_ALPHA, DEFAULT_PROFILE};
 
 /// Checkpoints lie beside the table, with this behind its name.
@@ -137,6 +137,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let problem = anyhow!("{} is there already; --force replaces it", path.display());
         return Err(Failure::Usage(problem));
     }
+    output::check(&path)?;
     let usage = |error: ForgeError| Failure::Usage(error.into());
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads)
@@ -156,7 +157,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     let every = Duration::from_secs(args.checkpoint_every);
-    let watcher = Watcher::new(&kept, every, args.quiet)?;
+    let watcher = Watcher::new(&kept, every, args.quiet);
     let outcome = pool.install(|| match found {
         None => forge(&job, &watcher),
         Some(found) => resume(&job, found, &watcher),
@@ -236,7 +237,7 @@ fn interrupted(
     let mut said = String::from("interrupted");
     if args.keep_rejected {
         write_table(path, &outcome.table).map_err(|error| Failure::Other(error.into()))?;
-        println!("{}  {}", outcome.table.digest(), path.display());
+        report(path, outcome)?;
         said += &format!("; {} holds the best so far, not judged", path.display());
     }
     if watcher.has_kept() {
@@ -267,7 +268,7 @@ fn conclude(args: &Args, path: &Path, outcome: &Outcome) -> Result<(), Failure> 
         )));
     }
     write_table(path, &outcome.table).map_err(|error| Failure::Other(error.into()))?;
-    println!("{}  {}", outcome.table.digest(), path.display());
+    report(path, outcome)?;
     if let Some(nearness) = nearness.filter(|_| !args.quiet) {
         eprintln!("{nearness}");
     }
@@ -275,6 +276,11 @@ fn conclude(args: &Args, path: &Path, outcome: &Outcome) -> Result<(), Failure> 
         eprintln!("kept although rejected: {complaint}");
     }
     Ok(())
+}
+
+/// Prints the digest and the path of the table that was written.
+fn report(path: &Path, outcome: &Outcome) -> Result<(), Failure> {
+    output::print(&format!("{}  {}\n", outcome.table.digest(), path.display()))
 }
 
 /// Of the complaints about each figure the gravest, in words.

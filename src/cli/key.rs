@@ -1,10 +1,8 @@
 //! `strew key`: keys for clients.
 
-use std::io::Write as _;
-
 use anyhow::{Context as _, anyhow};
 
-use super::Failure;
+use super::{Failure, output};
 use crate::access;
 
 /// Commands about keys.
@@ -63,9 +61,7 @@ pub(super) fn run(command: &Command) -> Result<(), Failure> {
     line("max_streams", new.max_streams.map(|v| v.to_string()));
     let rate = new.points_per_second.map(|v| format!("{v:?}"));
     line("points_per_second", rate);
-    std::io::stdout()
-        .write_all(entry.as_bytes())
-        .context("cannot write to standard output")?;
+    output::print(&entry)?;
     eprintln!("the key, which is kept nowhere and cannot be shown again:\n{key}");
     Ok(())
 }

@@ -80,6 +80,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let problem = "nothing to measure: --table FILE, --points FILE or --bbox BOX is missing";
         return Err(Failure::Usage(anyhow!(problem)));
     }
+    let mut output = Output::open(args.output.as_deref())?;
+    let drawing = args.picture.as_deref();
+    let drawing = drawing.map(|path| Output::open(Some(path))).transpose()?;
     let (reports, target) = if let Some(file) = &args.table {
         of_table(args, file)?
     } else if let Some(file) = &args.points {
@@ -92,7 +95,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Some(target) => reports.into_iter().map(|r| r.compared(target)).collect(),
         None => reports,
     };
-    if let (Some(path), Some(report)) = (&args.picture, reports.first()) {
+    if let (Some(mut drawing), Some(report)) = (drawing, reports.first()) {
         let subject = &report.figures.subject;
         let stem = args.table.as_deref().and_then(Path::file_stem);
         let title = stem.map_or_else(
@@ -100,12 +103,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             |stem| format!("{}: {subject}", stem.display()),
         );
         let svg = picture(report, &title, target.as_ref()).context("--picture")?;
-        let mut output = Output::open(Some(path))?;
-        output.write(svg.as_bytes())?;
-        output.finish()?;
+        drawing.write(svg.as_bytes())?;
+        drawing.finish()?;
     }
     let text = json!({ "subjects": reports.iter().map(to_json).collect::<Vec<_>>() });
-    let mut output = Output::open(args.output.as_deref())?;
     output.write(format!("{text:#}\n").as_bytes())?;
     Ok(output.finish()?)
 }

@@ -14,6 +14,7 @@ mod query;
 mod refusal;
 mod sample;
 mod serve;
+mod signals;
 mod split;
 mod table;
 mod watcher;
@@ -57,7 +58,7 @@ enum Command {
     /// Ask a running daemon whether it is ready: exit code 0 if so, 1 if not.
     Probe(probe::Args),
     /// Print the merged settings.
-    Config(config::Args),
+    Config(config::Served),
 }
 
 /// Why a command failed: decides the exit code.
@@ -103,6 +104,23 @@ pub fn main() -> ExitCode {
         Err(Failure::Interrupted(error)) => (error, INTERRUPTED),
         Err(Failure::Other(error)) => (error, 1),
     };
-    eprintln!("error: {error:#}");
+    if error.is::<output::ReaderLeft>() {
+        return ExitCode::SUCCESS;
+    }
+    eprintln!("error: {}", in_full(&error));
     ExitCode::from(code)
+}
+
+/// An error and its causes, except those whose text an error before them has.
+fn in_full(error: &anyhow::Error) -> String {
+    error.chain().fold(String::new(), |text, cause| {
+        let cause = cause.to_string();
+        if text.is_empty() {
+            cause
+        } else if text.contains(&cause) {
+            text
+        } else {
+            format!("{text}: {cause}")
+        }
+    })
 }

@@ -2,64 +2,62 @@
 //! complete.
 
 use std::{
+    fmt,
     fs::{self, File},
     io::{self, Write},
     path::{Path, PathBuf},
 };
 
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow};
 use serde::Serialize;
 
-use super::Failure;
+use super::{Failure, signals::Incomplete};
 
-/// An open output. Until [`finish`](Self::finish) a regular file goes by its name with `.partial`
-/// behind it, so that what a killed command leaves never looks complete; one that fails leaves nothing.
+/// An open output. Until [`finish`](Self::finish) a regular file is called `NAME.partial`. A command that
+/// fails or is ended by a signal removes it; what is left by one that is killed never looks complete.
 pub(super) struct Output {
     writer: Box<dyn Write + Send>,
-    /// The partial file and what it will be called.
+    /// The path that was given; `None` for standard output.
+    path: Option<PathBuf>,
     pending: Option<Pending>,
 }
 
 /// A file that is not complete.
 struct Pending {
     file: File,
-    partial: PathBuf,
-    path: PathBuf,
+    incomplete: Incomplete,
+    /// What it will be called: the path, links followed.
+    target: PathBuf,
 }
 
+/// The reader of the output has closed it: it has all it wanted, so the command ends quietly and in
+/// success.
+#[derive(Debug)]
+pub(super) struct ReaderLeft;
+
+impl fmt::Display for ReaderLeft {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the reader of the output closed it early")
+    }
+}
+
+impl std::error::Error for ReaderLeft {}
+
 impl Output {
-    /// `None` or `-` is standard output.
+    /// `None` or `-` is standard output. Fails if the path cannot be written.
     pub(super) fn open(path: Option<&Path>) -> anyhow::Result<Self> {
         let Some(path) = path.filter(|path| *path != Path::new("-")) else {
             return Ok(Self {
                 writer: Box::new(io::stdout()),
+                path: None,
                 pending: None,
             });
         };
-        let special = fs::metadata(path).is_ok_and(|metadata| !metadata.is_file());
-        let partial = if special {
-            path.to_owned()
-        } else {
-            let mut name = path.as_os_str().to_owned();
-            name.push(".partial");
-            name.into()
-        };
-        let file = if special {
-            File::options().write(true).open(&partial)
-        } else {
-            File::create(&partial)
-        };
-        let file = file.with_context(|| format!("cannot write {}", partial.display()))?;
-        let pending = match special {
-            true => None,
-            false => Some(Pending {
-                file: file.try_clone()?,
-                partial,
-                path: path.to_owned(),
-            }),
-        };
+        let (file, pending) =
+            open(path).with_context(|| format!("cannot write {}", path.display()))?;
         Ok(Self {
             writer: Box::new(file),
+            path: Some(path.to_owned()),
             pending,
         })
     }
@@ -71,44 +69,71 @@ impl Output {
     }
 
     fn explained(&self, error: io::Error) -> anyhow::Error {
-        let place = match &self.pending {
-            Some(pending) => format!("{}", pending.partial.display()),
-            None => "the output".into(),
-        };
-        match error.kind() {
-            io::ErrorKind::BrokenPipe => {
-                anyhow::anyhow!("the reader of the output closed it early")
-            }
-            _ => anyhow::Error::new(error).context(format!("cannot write to {place}")),
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            return ReaderLeft.into();
         }
+        let place = match &self.path {
+            Some(path) => format!("{}", path.display()),
+            None => "standard output".into(),
+        };
+        anyhow::Error::new(error).context(format!("cannot write {place}"))
     }
 
     /// Everything is written: a file gets its name, once the disk has it all.
     pub(super) fn finish(mut self) -> anyhow::Result<()> {
         self.writer.flush().map_err(|error| self.explained(error))?;
-        if let Some(Pending {
+        let Some(Pending {
             file,
-            partial,
-            path,
-        }) = &self.pending
-        {
-            file.sync_all().map_err(|error| self.explained(error))?;
-            fs::rename(partial, path).with_context(|| {
-                format!("cannot rename {} to {}", partial.display(), path.display())
-            })?;
-        }
-        self.pending = None;
-        Ok(())
+            incomplete,
+            target,
+        }) = self.pending.take()
+        else {
+            return Ok(());
+        };
+        let named = file
+            .sync_all()
+            .and_then(|()| incomplete.complete(|partial| fs::rename(partial, target)));
+        named.map_err(|error| self.explained(error))
     }
 }
 
-impl Drop for Output {
-    /// What was not finished serves nobody, and may be what fills the disk.
-    fn drop(&mut self) {
-        if let Some(pending) = self.pending.take() {
-            let _ = fs::remove_file(pending.partial);
+/// Opens a file for writing.
+fn open(path: &Path) -> anyhow::Result<(File, Option<Pending>)> {
+    // A link stays one.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    match fs::metadata(&target) {
+        Ok(metadata) if metadata.is_dir() => return Err(anyhow!("it is a folder")),
+        Ok(metadata) => {
+            // Refuses a file without permission; what is in it stays.
+            let file = File::options().write(true).open(&target)?;
+            if !metadata.is_file() {
+                return Ok((file, None));
+            }
         }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            let folder = target
+                .parent()
+                .filter(|folder| !folder.as_os_str().is_empty());
+            if let Some(folder) = folder.filter(|folder| !folder.exists()) {
+                return Err(anyhow!("there is no folder {}", folder.display()));
+            }
+        }
+        Err(error) => return Err(error.into()),
     }
+    let mut partial = target.as_os_str().to_owned();
+    partial.push(".partial");
+    let (file, incomplete) = Incomplete::make(Path::new(&partial), |path| File::create(path))?;
+    let pending = Pending {
+        file: file.try_clone()?,
+        incomplete,
+        target,
+    };
+    Ok((file, Some(pending)))
+}
+
+/// Fails if a file could not be written; nothing is left there.
+pub(super) fn check(path: &Path) -> anyhow::Result<()> {
+    Output::open(Some(path)).map(drop)
 }
 
 /// Writes a text to standard output.

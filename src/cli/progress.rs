@@ -73,16 +73,14 @@ impl Progress {
     fn line(&self, done: u64, note: &str) -> String {
         let share = done as f64 / self.total.max(1) as f64;
         let elapsed = self.started.elapsed();
-        let here = done.saturating_sub(self.first).max(1) as f64;
-        let to_do = self.total.saturating_sub(done) as f64;
-        let left = elapsed.mul_f64((to_do / here).clamp(0.0, 1e6));
+        let here = done.saturating_sub(self.first);
+        let left = left(elapsed, here, self.total.saturating_sub(done));
         format!(
-            "{:.0}% of {} {} {note} ({} so far, about {} left)",
+            "{:.0}% of {} {} {note} ({} so far, {left})",
             100.0 * share,
             self.total,
             self.what,
             HumanDuration(elapsed),
-            HumanDuration(left)
         )
     }
 
@@ -91,5 +89,39 @@ impl Progress {
         if let Some(bar) = self.bar {
             bar.finish_and_clear();
         }
+    }
+}
+
+/// How long the rest takes if it goes on as fast, in words.
+fn left(elapsed: Duration, done: u64, to_do: u64) -> String {
+    const YEAR: f64 = 365.25 * 86_400.0;
+    let seconds = elapsed.as_secs_f64() * (to_do as f64 / done as f64);
+    if done == 0 {
+        "the time left is not known yet".into()
+    } else if seconds > 100.0 * YEAR {
+        "more than 100 years left".into()
+    } else {
+        format!(
+            "about {} left",
+            HumanDuration(Duration::from_secs_f64(seconds))
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_follows_from_the_work_done() {
+        let ten = Duration::from_secs(10);
+        assert_eq!(left(ten, 1_000, 6_000), "about 60 seconds left");
+        assert_eq!(left(ten, 0, 6_000), "the time left is not known yet");
+        // 10⁹ points of 10¹⁷: no cap makes this weeks.
+        assert_eq!(
+            left(ten, 1_000_000_000, 100_000_000_000_000_000),
+            "about 32 years left"
+        );
+        assert_eq!(left(ten, 1, u64::MAX), "more than 100 years left");
     }
 }

@@ -79,8 +79,8 @@ impl Source {
             }
             (None, _) => format!("{name} is missing; allowed: {allowed}"),
             (Some(value), "format") if Encoding::from_name(value).is_none() => {
-                let parquet = Encoding::Parquet.name();
-                format!("{name} {value}: {detail}; allowed: {allowed}, {parquet}")
+                let files = Encoding::FILES.map(Encoding::name).join(", ");
+                format!("{name} {value}: {detail}; allowed: {allowed}, {files}")
             }
             (Some(value), _) => format!("{name} {value}: {detail}; allowed: {allowed}"),
         }

@@ -43,17 +43,18 @@ impl Args {
         };
         let ending = ending.to_string_lossy();
         let encoding = match &*ending {
+            "arrow" => Some(Encoding::Feather),
             "arrows" => Some(Encoding::Arrow),
             "geojsons" | "geojsonl" => Some(Encoding::Geojsonseq),
             "jsonl" => Some(Encoding::Ndjson),
-            "parquet" => Some(Encoding::Parquet),
             name => Encoding::from_name(name),
         };
         encoding.ok_or_else(|| {
             Failure::Usage(anyhow!(
                 "--output ends with .{ending}, which names no format: give --format, or one of the \
-                 endings {}, parquet",
-                Encoding::ALL.map(Encoding::name).join(", ")
+                 endings {}, arrows, {}",
+                Encoding::ALL.map(Encoding::name).join(", "),
+                Encoding::FILES.map(Encoding::name).join(", ")
             ))
         })
     }
@@ -62,17 +63,18 @@ impl Args {
 /// Writes the points.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.query.settings.merged()?;
+    let mut output = Target::open(args.output.as_deref())?;
     let ask = args.query.plan(&config)?;
     let (planned, options) = (&ask.planned, ask.options);
     let encoding = match options.encoding {
         Some(encoding) => encoding,
         None => args.by_ending()?,
     };
-    let output = options.output(encoding).map(|output| Output {
+    let looks = options.output(encoding).map(|looks| Output {
         relative_to: planned.query.region.corner,
-        ..output
+        ..looks
     });
-    let answer = output.and_then(|output| Answer::new(planned, &output, config.limits.block_bytes));
+    let answer = looks.and_then(|looks| Answer::new(planned, &looks, config.limits.block_bytes));
     let answer = answer.map_err(|error| ask.source.refused(error))?;
     let count = u64::try_from(planned.count()).map_err(|_| {
         let count = planned.count();
@@ -84,7 +86,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         announce(planned, encoding, &answer);
     }
     let pool = workers(&config)?;
-    let mut output = Target::open(args.output.as_deref())?;
     let mut progress = Progress::new("points", count, args.quiet);
     let written = pool.install(|| match answer.plain().cloned() {
         Some(plain) => packed(&plain, &mut output, &mut progress),
@@ -116,6 +117,12 @@ fn announce(planned: &Planned, encoding: Encoding, answer: &Answer) {
             String::from_utf8_lossy(&text).into_owned()
         });
         eprintln!("coordinates are relative to the origin {x},{y}");
+    }
+    if let Some(columns) = answer.legend() {
+        eprintln!("columns: {columns}");
+    }
+    if let Some(warning) = answer.warning() {
+        eprintln!("warning: {warning}");
     }
 }
 

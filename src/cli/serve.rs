@@ -14,7 +14,7 @@ use crate::ops::{App, ServeError, exposure, files, shutdown, telemetry};
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     #[command(flatten)]
-    settings: config::Args,
+    settings: config::Served,
 }
 
 /// Serves until a signal comes.

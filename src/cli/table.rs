@@ -9,7 +9,10 @@ use anyhow::{Context as _, anyhow};
 use clap::Subcommand;
 use strew_core::{Alpha, Map, Table};
 
-use super::{Failure, config, output::Output};
+use super::{
+    Failure, config,
+    output::{self, Output},
+};
 use crate::service::catalog::{Entry, Source};
 
 /// What to do with tables.
@@ -248,13 +251,13 @@ fn verify(args: &Verify) -> Result<(), Failure> {
     let mut bad = 0;
     for file in &args.files {
         match read(file) {
-            Ok(table) => println!(
-                "{}: good, profile {}, alpha {}, digest {}",
+            Ok(table) => output::print(&format!(
+                "{}: good, profile {}, alpha {}, digest {}\n",
                 file.display(),
                 table.profile(),
                 table.alpha(),
                 table.digest()
-            ),
+            ))?,
             Err(error) => {
                 bad += 1;
                 eprintln!("{error:#}");
@@ -278,6 +281,7 @@ fn export(args: &Export) -> Result<(), Failure> {
             tables.len()
         )));
     };
+    let mut output = Output::open(args.output.as_deref())?;
     let bytes = if args.text {
         let mut text = String::new();
         table.write_text(&mut text).context("cannot format")?;
@@ -285,7 +289,6 @@ fn export(args: &Export) -> Result<(), Failure> {
     } else {
         table.to_bytes()
     };
-    let mut output = Output::open(args.output.as_deref())?;
     output.write(&bytes)?;
     Ok(output.finish()?)
 }
@@ -306,6 +309,5 @@ fn import(args: &Import) -> Result<(), Failure> {
     let table = Table::from_text(map, &args.profile, &text)
         .with_context(|| format!("{} is not a table", args.text.display()))?;
     strew_forge::write_table(&args.output, &table).map_err(anyhow::Error::from)?;
-    println!("{}  {}", table.digest(), args.output.display());
-    Ok(())
+    output::print(&format!("{}  {}\n", table.digest(), args.output.display()))
 }

@@ -9,10 +9,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use anyhow::Context as _;
 use strew_forge::{Checkpoint, Stage, Watch};
 
-use super::{INTERRUPTED, progress::Progress};
+use super::{progress::Progress, signals};
 
 /// Shows progress on standard error and keeps the last checkpoint in a file.
 pub(super) struct Watcher {
@@ -30,24 +29,16 @@ struct Kept {
     at: Instant,
     /// Whether it holds where the work stands.
     good: bool,
-    /// Whether it was said that it cannot be written.
-    told: bool,
+    /// Whether a warning said that it cannot be written.
+    warned: bool,
 }
 
 impl Watcher {
     /// Checkpoints go to `path`, at least `every` apart.
-    pub(super) fn new(path: &Path, every: Duration, quiet: bool) -> anyhow::Result<Self> {
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let flag = interrupted.clone();
-        ctrlc::set_handler(move || {
-            // The first interrupt ends the work in good order, the second at once.
-            if flag.swap(true, Ordering::Relaxed) {
-                std::process::exit(INTERRUPTED.into());
-            }
-        })
-        .context("cannot listen for interrupts")?;
-        Ok(Self {
-            interrupted,
+    pub(super) fn new(path: &Path, every: Duration, quiet: bool) -> Self {
+        Self {
+            // The first signal ends the work in good order, the second at once.
+            interrupted: signals::stop_flag(),
             quiet,
             path: path.to_owned(),
             every,
@@ -55,9 +46,9 @@ impl Watcher {
             kept: Mutex::new(Kept {
                 at: Instant::now(),
                 good: false,
-                told: false,
+                warned: false,
             }),
-        })
+        }
     }
 
     /// The work is over: the bar goes away.
@@ -111,8 +102,8 @@ impl Watch for Watcher {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         kept.good = written.is_ok();
         kept.at = Instant::now();
-        if let (Err(error), false) = (written, kept.told) {
-            kept.told = true;
+        if let (Err(error), false) = (written, kept.warned) {
+            kept.warned = true;
             eprintln!("warning: no checkpoint is kept: {error}");
         }
     }

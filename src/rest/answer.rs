@@ -25,10 +25,12 @@ const TABLE: HeaderName = HeaderName::from_static("strew-table");
 const ALGORITHM: HeaderName = HeaderName::from_static("strew-algorithm");
 const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
 
+const COLUMNS: HeaderName = HeaderName::from_static("strew-columns");
+const WARNING: HeaderName = HeaderName::from_static("strew-warning");
 const NEXT: HeaderName = HeaderName::from_static("strew-next");
 
 /// The headers of an answer with points, and what they say.
-const HEADERS: [(&str, &str); 5] = [
+const HEADERS: [(&str, &str); 8] = [
     ("strew-count", "Exactly how many points follow."),
     ("strew-table", "The digest of the table that answers."),
     (
@@ -43,6 +45,19 @@ const HEADERS: [(&str, &str); 5] = [
     (
         "strew-next",
         "With a limit: the cursor of the points after these, if there are any.",
+    ),
+    (
+        "strew-columns",
+        "With npy, f32, f64 and ply: the columns in their order, as a JSON list of objects with name, \
+         type and, where values are indices, the names that they stand for.",
+    ),
+    (
+        "strew-warning",
+        "What readers of the format may take wrongly.",
+    ),
+    (
+        "content-disposition",
+        "The name under which browsers save the answer, and whether they show it.",
     ),
 ];
 
@@ -237,6 +252,20 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         write_number(y, &mut origin);
         headers.insert(ORIGIN, text(&String::from_utf8_lossy(&origin))?);
     }
+    if let Some(columns) = answer.legend() {
+        headers.insert(COLUMNS, text(columns)?);
+    }
+    if let Some(warning) = answer.warning() {
+        headers.insert(WARNING, HeaderValue::from_static(warning));
+    }
+    let encoding = chosen.encoding;
+    let way = if encoding.is_shown() {
+        "inline"
+    } else {
+        "attachment"
+    };
+    let disposition = format!("{way}; filename=\"{}\"", encoding.file_name());
+    headers.insert(header::CONTENT_DISPOSITION, text(&disposition)?);
     if let Some(size) = answer.size() {
         headers.insert(header::CONTENT_LENGTH, size.into());
     }

@@ -87,7 +87,7 @@ impl Placed {
                 "density, spacing or min_distance",
             ));
         };
-        let least = planner::least_distance(&set, &ready, spacing);
+        let least = planner::least_distance(&set, &ready, spacing, 0.0);
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least),
             points: PointSet::new(ready.table).placed(set.placement(spacing)),

@@ -1,7 +1,7 @@
 //! Planning the sets of a query one after another, each knowing the layers before it.
 
 use strew_core::{
-    Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Region, Spacing,
+    Cursor, ErrorKind, LeastDistance, Placement, Plan, PointId, PointSet, Region, Spacing,
     server::{self, Stop},
 };
 
@@ -9,7 +9,7 @@ use super::{
     Error, Limits, PlannedSet,
     cache::Ready,
     effort::{self, Selection},
-    query::{Amount, Parameter, Query, Set, Token, parameters},
+    query::{Amount, Parameter, Query, Set, Token, number, parameters},
 };
 
 /// Plans sets one after another.
@@ -41,6 +41,7 @@ impl<'a> Planner<'a> {
     pub(super) fn plan(&mut self, i: usize, set: &Set, ready: &Ready) -> Result<PlannedSet, Error> {
         let region = &self.query.region;
         let resolved = resolve(set, ready)?;
+        check_reach(set, region.reach())?;
         let cursor = self.query.window.cursor;
         let here = cursor.filter(|token| i == usize::from(token.set));
         let is_over = cursor.is_some_and(|token| i < usize::from(token.set));
@@ -88,7 +89,7 @@ impl<'a> Planner<'a> {
         Ok(PlannedSet::new(
             ready.entry.clone(),
             resolved.map_or(spacing.density(), |(_, density)| density),
-            least_distance(set, ready, spacing),
+            least_distance(set, ready, spacing, region.reach()),
             plan,
         ))
     }
@@ -222,6 +223,34 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>
     }
 }
 
-pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing) -> f64 {
-    ready.table.least_distance().with_warp(set.warp) * spacing.get()
+/// The distance that coordinates within ±`reach` keep.
+pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing, reach: f64) -> f64 {
+    let least = ready.table.least_distance();
+    let least = least.reported(spacing, set.warp, reach);
+    match set.amount {
+        // The spacing is a little wider than this takes.
+        Amount::MinDistance(distance) => least.min(distance),
+        _ => least,
+    }
+}
+
+/// Refuses a least distance that coordinates within ±`reach` do not keep.
+pub(super) fn check_reach(set: &Set, reach: f64) -> Result<(), Error> {
+    let Amount::MinDistance(distance) = set.amount else {
+        return Ok(());
+    };
+    let limit = LeastDistance::RANGE * distance;
+    if reach <= limit {
+        return Ok(());
+    }
+    let [far, near] = [reach, limit].map(number);
+    let detail = format!(
+        "coordinates up to {far} are rounded too coarsely to keep it: it holds within ±{near}"
+    );
+    let allowed = format!(
+        "coordinates within ±{near}, a distance of at least {}, chunks, whose coordinates are relative to \
+         their corner, or spacing",
+        number(reach / LeastDistance::RANGE)
+    );
+    Err(set.fault("min_distance", distance, detail, allowed))
 }

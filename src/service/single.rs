@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 use strew_core::{Attribute, ErrorKind, Member, Neighbor, PointId};
 
 use super::{
-    Error, Fault, Placed,
+    Error, Fault, Placed, planner,
     query::{Nearest, number, parameters},
 };
 
@@ -47,6 +47,7 @@ impl Placed {
             .map_err(|_| Fault::new("id", id, "not a point id", ID))?;
         let member = self.points.point(read);
         let member = member.ok_or_else(|| Error::NoSuchPoint { id: id.into() })?;
+        self.check_reach([&member])?;
         let mut found = self.found(&member, None);
         found.block = self.points.block(member.id());
         Ok(found)
@@ -69,10 +70,18 @@ impl Placed {
             }),
         };
         let found = found.map_err(|error| fault(nearest, &error))?;
+        self.check_reach(found.iter().map(|neighbor| &neighbor.member))?;
         let found = found
             .iter()
             .map(|Neighbor { member, distance }| self.found(member, Some(*distance)));
         Ok(found.collect())
+    }
+
+    /// Refuses a least distance that the coordinates of some points do not keep.
+    fn check_reach<'a>(&self, members: impl IntoIterator<Item = &'a Member>) -> Result<(), Error> {
+        let coordinates = members.into_iter().flat_map(|member| member.at());
+        let reach = coordinates.map(f64::abs).fold(0.0, f64::max);
+        planner::check_reach(&self.set, reach)
     }
 
     fn found(&self, member: &Member, distance: Option<f64>) -> Found {

@@ -60,8 +60,8 @@ pub use pattern::{Alpha, Pattern};
 pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
     Cursor, F32, F64, Format, Keep, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
-    Placement, Plan, Point, PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed, Spacing,
-    Tile, UniformNumber, Variants, Warp, rank, side_for,
+    Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed,
+    Spacing, Tile, UniformNumber, Variants, Warp, rank, side_for,
 };
 pub use table::Table;
 

@@ -17,7 +17,7 @@
 
 use crate::{
     error::Error,
-    sample::{Area, Plan, PointSet, Region},
+    sample::{Area, Plan, PointSet, Region, Spacing},
 };
 
 pub use crate::sample::Stop;
@@ -88,6 +88,30 @@ pub fn exactly(
 #[must_use]
 pub fn stopped_by(plan: Plan, stop: Stop) -> Plan {
     plan.with_stop(stop)
+}
+
+/// A sparser or denser set of the same table and seed in the area of a plan, whatever its window and
+/// share, clear of the same other sets. Its points are not counted: [`Plan::count`] is only a bound.
+///
+/// A picture whose pixels are larger than the spacing shows this as well as the plan itself.
+///
+/// # Errors
+/// [`ErrorKind::Spacing`](crate::ErrorKind::Spacing) outside of [`Spacing`]'s range, and as
+/// [`PointSet::within`].
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table, server};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let dense = PointSet::new(table).spacing(1e-6)?.within(Region::chunk(10.0, [0, 0])?)?;
+/// let preview = server::preview(&dense, 0.5)?;
+/// let mut points = vec![[0.0; 2]; 1000];
+/// let filled = preview.blocks_f64().fill(&mut points);
+/// assert!((350..450).contains(&filled));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub fn preview(plan: &Plan, spacing: f64) -> Result<Plan, Error> {
+    plan.with_spacing(Spacing::new(spacing)?)
 }
 
 /// About half the length, along the axes and in world units, of the outlines of all shapes of an area

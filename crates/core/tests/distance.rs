@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use proptest::prelude::*;
 use strew_core::{
-    Alpha, ErrorKind, Map, Placement, Region, Seed, Spacing, Table, Warp,
+    Alpha, ErrorKind, LeastDistance, Map, Placement, PointSet, Region, Seed, Spacing, Table, Warp,
     table::{FRACTION_BITS, Provenance},
 };
 use subject::{set, shipped};
@@ -79,7 +79,7 @@ fn without_warp_the_guarantee_is_attained() {
         assert!(found >= least - 1e-12, "{name}: {found} < {least}");
         assert!(found <= least + 1e-3, "{name}: {found} > {least}");
         let set = set(&table, unit(0, 0.0)).spacing(4.0).expect("valid");
-        assert_eq!(set.least_distance(), 4.0 * least);
+        assert!((set.least_distance() / (4.0 * least) - 1.0).abs() < 1e-6);
     }
 }
 
@@ -129,6 +129,65 @@ proptest! {
             prop_assert!(found >= distance, "{}", found);
         }
     }
+}
+
+/// The least distance between points near the corner of a square `reach` from the origin, in all
+/// directions from it, by reported coordinates.
+fn least_far_out(set: &PointSet, reach: f64) -> f64 {
+    let side = 40.0 * set.placement().spacing.get();
+    let corners = [
+        [reach - side, -reach],
+        [-reach, reach - side],
+        [reach - side, 0.37 * reach],
+        [-0.71 * reach, reach - side],
+    ];
+    let least = corners.map(|corner| {
+        let region = Region::new(corner, corner.map(|v| v + side)).expect("ordered");
+        let plan = set.within(region).expect("near enough");
+        let scale = 1.0 / set.placement().spacing.get();
+        // Differences of such numbers are exact.
+        let relative = plan
+            .iter()
+            .map(|m| [0, 1].map(|i| (m.at()[i] - corner[i]) * scale));
+        least_of(&relative.collect::<Vec<_>>()) / scale
+    });
+    least.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn reported_coordinates_keep_the_distance_out_to_the_limit(
+        which in 0usize..4, seed: u64, strength in prop_oneof![Just(0.0), 0.0..2.0f64, Just(1.0)],
+        distance in prop_oneof![Just(1.0), 1e-6..1e6f64], share in prop_oneof![Just(1.0), 0.0..1.0f64],
+        beyond in 1.0..1e5f64,
+    ) {
+        let names = ["blue-5-sqrt3-over-2-s", "spaced-sqrt3-s", "spaced-5-sqrt3-over-2-s",
+            "pattern-5-sqrt3-over-2-s"];
+        let warp = Warp::new(strength).expect("in range");
+        let table = shipped(names[which]);
+        let spacing = table.least_distance().spacing_for(distance, warp).expect("useful");
+        let placement = Placement::new(spacing, Seed(seed)).with_warp(warp);
+        let set = set(&table, placement);
+        let limit = LeastDistance::RANGE * distance;
+        prop_assert!(set.least_distance_within(limit) >= distance);
+        let found = least_far_out(&set, share * limit);
+        prop_assert!(found >= distance, "{found} at {}", share * limit);
+        // Beyond the limit less is promised, and kept.
+        let promised = set.least_distance_within(beyond * limit);
+        let found = least_far_out(&set, beyond * limit);
+        prop_assert!(found >= promised, "{found} < {promised} at {}", beyond * limit);
+    }
+}
+
+#[test]
+fn far_beyond_the_limit_distances_are_not_kept() {
+    let table = shipped("spaced-5-sqrt3-over-2-s");
+    let distance = table.least_distance().with_warp(Warp::OFF);
+    let least = (0..3).map(|seed| least_far_out(&set(&table, unit(seed, 0.0)), 1e14));
+    let least = least.fold(f64::INFINITY, f64::min);
+    assert!(least < 0.99 * distance, "{least}: the limit has no reason");
 }
 
 #[test]

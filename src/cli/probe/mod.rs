@@ -37,7 +37,7 @@ pub(super) struct Args {
     #[command(flatten)]
     trust: TrustArgs,
     #[command(flatten)]
-    settings: config::Args,
+    settings: config::Served,
 }
 
 /// More than any answer to a probe.

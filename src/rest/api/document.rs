@@ -158,6 +158,7 @@ fn as_text(shape: Shape) -> Value {
             let pair = format!("{}(:{NUMBER})?", sets::NAME);
             json!({ "type": "string", "pattern": format!("^{pair}(,{pair})*$") })
         }
+        Shape::Switch => json!({ "type": "string", "enum": ["on", "off"] }),
         other => schema(other),
     }
 }
@@ -175,6 +176,7 @@ pub(super) fn schema(shape: Shape) -> Value {
         Shape::Signed { limit } => {
             json!({ "type": "integer", "minimum": -limit, "maximum": limit })
         }
+        Shape::Switch => json!({ "type": "boolean" }),
         Shape::Strength { max } => json!({ "anyOf": [
             { "type": "string", "enum": ["off", "on"] },
             { "type": "number", "minimum": 0, "maximum": max },

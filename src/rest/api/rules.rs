@@ -7,7 +7,9 @@ use crate::service::{
     Encoding,
     query::{
         Group, Parameter, of as parameters_of,
-        parameters::{ATTRIBUTES, DECIMALS, FORMAT, PARAMETERS, SCALE_RANGE, SIZE, VARIANTS},
+        parameters::{
+            ATTRIBUTES, CRS, DECIMALS, FORMAT, PARAMETERS, SCALE_RANGE, SIZE, SUMMARY, VARIANTS,
+        },
     },
 };
 
@@ -88,6 +90,8 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
         };
         rules.push(only_with(&DECIMALS, &FORMAT, formats(Encoding::is_text)));
         rules.push(only_with(&SIZE, &FORMAT, formats(Encoding::is_picture)));
+        rules.push(only_with(&SUMMARY, &FORMAT, formats(Encoding::has_summary)));
+        rules.push(only_with(&CRS, &FORMAT, formats(Encoding::has_crs)));
     }
     rules
 }

@@ -59,11 +59,16 @@ fn output_rules() -> Vec<Value> {
         let names: Vec<&str> = fitting.map(Encoding::name).collect();
         json!({ "properties": { "format": { "enum": names } } })
     };
-    let mut picture = formats(Encoding::is_picture);
-    picture["required"] = json!(["format"]);
+    let named = |member: &str, fits: fn(Encoding) -> bool| {
+        let mut formats = formats(fits);
+        formats["required"] = json!(["format"]);
+        json!({ "if": { "required": [member] }, "then": formats })
+    };
     vec![
         json!({ "if": { "required": ["decimals"] }, "then": formats(Encoding::is_text) }),
-        json!({ "if": { "required": ["size"] }, "then": picture }),
+        named("size", Encoding::is_picture),
+        named("summary", Encoding::has_summary),
+        named("crs", Encoding::has_crs),
     ]
 }
 
@@ -155,7 +160,7 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
     put("spacing", number("The mean spacing: density^-1/2."));
     put(
         "least_distance",
-        number("No two points are nearer, in world units."),
+        number("No two points are nearer, in world units, by their f64 coordinates."),
     );
     let mut always = vec!["density", "spacing", "least_distance"];
     for parameter in PARAMETERS

@@ -59,7 +59,7 @@ export class Take {
   }
 
   get file() {
-    return `strew.${FORMATS.find(([name]) => name === this.format)[1]}`;
+    return `points.${FORMATS.find(([name]) => name === this.format)[1]}`;
   }
 
   opened() {

@@ -8,10 +8,11 @@
 use std::{fmt::Write as _, sync::Arc};
 
 use arrow_array::{
-    ArrayRef, DictionaryArray, Float64Array, Int32Array, RecordBatch, StringArray,
+    ArrayRef, BinaryArray, DictionaryArray, Float64Array, Int32Array, RecordBatch, StringArray,
     builder::StringBuilder, new_null_array, types::Int32Type,
 };
 use arrow_schema::{DataType, Field, Metadata};
+use strew_core::Point;
 
 use super::{
     EncodeError,
@@ -26,14 +27,27 @@ pub(super) struct Batches {
     schema: Arc<arrow_schema::Schema>,
     /// The names of each column, if it has any.
     names: Vec<Option<ArrayRef>>,
+    has_geometry: bool,
+}
+
+/// The column of points as WKB.
+pub(super) const GEOMETRY: &str = "geometry";
+
+/// A point as WKB: byte order, type 1, x, y.
+fn wkb(point: &Point) -> [u8; 21] {
+    let mut wkb = [0; 21];
+    wkb[..5].copy_from_slice(&[1, 1, 0, 0, 0]);
+    wkb[5..13].copy_from_slice(&point.x.to_le_bytes());
+    wkb[13..].copy_from_slice(&point.y.to_le_bytes());
+    wkb
 }
 
 /// An id takes about so many bytes.
 const ID_BYTES: usize = 16;
 
 impl Batches {
-    /// For rows of a schema; the head becomes metadata.
-    pub(super) fn new(schema: &Schema, head: &Head) -> Self {
+    /// For rows of a schema; the head becomes metadata. `has_geometry` adds a column of geometries.
+    pub(super) fn new(schema: &Schema, head: &Head, has_geometry: bool) -> Self {
         let mut fields = vec![
             Field::new("id", DataType::Utf8, false),
             Field::new("x", DataType::Float64, false),
@@ -52,7 +66,11 @@ impl Batches {
             fields.push(Field::new(&column.name, data_type, column.optional));
             arrays.push(array);
         }
+        if has_geometry {
+            fields.push(Field::new(GEOMETRY, DataType::Binary, false));
+        }
         Self {
+            has_geometry,
             schema: Arc::new(arrow_schema::Schema::new_with_metadata(
                 fields,
                 metadata(head),
@@ -82,7 +100,7 @@ impl Batches {
             }
             ids.append_value("");
         }
-        let numbers = |of: fn(&strew_core::Point) -> f64| -> ArrayRef {
+        let numbers = |of: fn(&Point) -> f64| -> ArrayRef {
             Arc::new(Float64Array::from_iter_values(points.iter().map(of)))
         };
         let mut columns: Vec<ArrayRef> = vec![
@@ -91,6 +109,7 @@ impl Batches {
             numbers(|point| point.y),
         ];
         let fields = self.schema.fields().iter().skip(columns.len());
+        // The geometry, which comes last, has no names, and the zip ends before it.
         for ((field, names), values) in fields.zip(&self.names).zip(batch.columns) {
             columns.push(match (values, names) {
                 (Values::Numbers(values), None) => Arc::new(Float64Array::from(values.clone())),
@@ -109,6 +128,11 @@ impl Batches {
                     Arc::new(array)
                 }
             });
+        }
+        if self.has_geometry {
+            columns.push(Arc::new(BinaryArray::from_iter_values(
+                points.iter().map(wkb),
+            )));
         }
         RecordBatch::try_new(self.schema.clone(), columns).map_err(EncodeError::of)
     }

@@ -27,12 +27,17 @@ pub enum Encoding {
     Png,
     /// A picture of circles.
     Svg,
-    /// A Parquet file; only for files, not by any protocol.
+    /// A Parquet file. Only the command line writes it.
     Parquet,
+    /// An Arrow IPC file. Only the command line writes it.
+    Feather,
 }
 
 impl Encoding {
-    /// All formats that are streamed: all but Parquet, which is for files.
+    /// The formats that only the command line writes, to files.
+    pub const FILES: [Self; 2] = [Self::Parquet, Self::Feather];
+
+    /// The formats that are streamed.
     pub const ALL: [Self; 12] = [
         Self::Json,
         Self::Ndjson,
@@ -65,13 +70,14 @@ impl Encoding {
             Self::Png => "png",
             Self::Svg => "svg",
             Self::Parquet => "parquet",
+            Self::Feather => "feather",
         }
     }
 
     /// The format with a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        let mut all = Self::ALL.into_iter().chain([Self::Parquet]);
+        let mut all = Self::ALL.into_iter().chain(Self::FILES);
         all.find(|encoding| encoding.name() == name)
     }
 
@@ -98,7 +104,35 @@ impl Encoding {
             Self::Png => "image/png",
             Self::Svg => "image/svg+xml",
             Self::Parquet => "application/vnd.apache.parquet",
+            Self::Feather => "application/vnd.apache.arrow.file",
         }
+    }
+
+    /// The name under which browsers save an answer.
+    #[must_use]
+    pub const fn file_name(self) -> &'static str {
+        match self {
+            Self::Json => "points.json",
+            Self::Ndjson => "points.ndjson",
+            Self::Csv => "points.csv",
+            Self::F32 => "points.f32",
+            Self::F64 => "points.f64",
+            Self::Geojson => "points.geojson",
+            Self::Geojsonseq => "points.geojsonl",
+            Self::Npy => "points.npy",
+            Self::Ply => "points.ply",
+            Self::Arrow => "points.arrows",
+            Self::Png => "points.png",
+            Self::Svg => "points.svg",
+            Self::Parquet => "points.parquet",
+            Self::Feather => "points.arrow",
+        }
+    }
+
+    /// Whether browsers show an answer by themselves instead of saving it.
+    #[must_use]
+    pub const fn is_shown(self) -> bool {
+        matches!(self, Self::Json | Self::Png | Self::Svg)
     }
 
     /// Whether numbers are written as digits.
@@ -117,8 +151,21 @@ impl Encoding {
             | Self::Ply
             | Self::Arrow
             | Self::Png
-            | Self::Parquet => false,
+            | Self::Parquet
+            | Self::Feather => false,
         }
+    }
+
+    /// Whether its last line can be a summary.
+    #[must_use]
+    pub const fn has_summary(self) -> bool {
+        matches!(self, Self::Ndjson)
+    }
+
+    /// Whether readers want to know what plane coordinates are in.
+    #[must_use]
+    pub const fn has_crs(self) -> bool {
+        matches!(self, Self::Geojson | Self::Geojsonseq | Self::Parquet)
     }
 
     /// Whether it is a picture.

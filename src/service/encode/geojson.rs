@@ -1,8 +1,11 @@
 //! GeoJSON (RFC 7946): one collection, or a text sequence (RFC 8142) of features.
 //!
-//! Coordinates are the world's, in whatever unit it has; readers that take them for degrees draw
-//! them off Africa. What an answer says about itself stands in foreign members of the collection; a
-//! sequence has no room for it, since some readers refuse texts that are not GeoJSON.
+//! Coordinates are the world's, in whatever unit it has. Readers take them for degrees unless the member
+//! `crs` of GeoJSON 2008 names another plane; GDAL, QGIS and geopandas read it. What an answer says about
+//! itself stands in foreign members of the collection; a sequence has no room for it, since some readers
+//! refuse texts that are not GeoJSON.
+
+use serde_json::json;
 
 use super::{
     head::Head,
@@ -33,6 +36,11 @@ impl TextFormat for Collection {
         // The head's members join the collection's, and its closing brace comes after the features.
         out.remove(head);
         out.pop();
+        if let Some(crs) = self.head.crs() {
+            let crs = json!({ "type": "name", "properties": { "name": crs.urn() } });
+            out.extend_from_slice(b",\"crs\":");
+            write_json(&crs, out);
+        }
         out.extend_from_slice(b",\"features\":[");
     }
 

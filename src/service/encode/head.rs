@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use strew_core::ALGORITHM_VERSION;
 
-use super::{Output, members::write_json};
+use super::{Output, crs::Crs, members::write_json};
 use crate::service::{Entry, Planned, query::Resolved};
 
 /// The head of a document, or its summary.
@@ -39,6 +39,8 @@ pub struct QueryEcho {
     relative_to: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     size: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    crs: Option<Crs>,
 }
 
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -59,6 +61,11 @@ pub struct TableEcho {
 }
 
 impl Head {
+    /// The plane, if it was requested.
+    pub(super) const fn crs(&self) -> Option<&Crs> {
+        self.query.crs.as_ref()
+    }
+
     /// What formats with room for named texts hold: query and table as JSON, and the count.
     pub(super) fn entries(&self) -> [(&'static str, String); 3] {
         fn json(value: &impl Serialize) -> String {
@@ -86,6 +93,7 @@ impl Head {
                 decimals: output.decimals,
                 relative_to: output.relative_to,
                 size: output.encoding.is_picture().then_some(output.size),
+                crs: output.crs.clone(),
             },
             tables,
             count,

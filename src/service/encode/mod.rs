@@ -5,15 +5,17 @@
 //! Formats are made of [`Rows`]; only packed coordinates without further columns come straight
 //! from the kernel.
 
-mod arrow;
 mod batches;
 mod buffer;
 mod canvas;
+mod columnar;
+mod crs;
 mod csv;
 mod encoding;
 mod geojson;
 mod head;
 mod json;
+mod legend;
 mod members;
 mod ndjson;
 mod npy;
@@ -41,6 +43,8 @@ use bytes::Bytes;
 use strew_core::{F32, F64, Plan};
 
 use super::{Error, Fault, Planned};
+use batches::Batches;
+use columnar::Columnar;
 use head::Head;
 use members::Members;
 use preview::Frame;
@@ -48,6 +52,7 @@ use records::{Layout, Records};
 use text::{TextBlocks, TextFormat};
 
 pub use buffer::Pool;
+pub use crs::{CRS, Crs};
 pub use encoding::Encoding;
 pub use head::{QueryEcho, TableEcho};
 pub use number::{Digits, write_number};
@@ -85,6 +90,8 @@ pub struct Answer {
     blocks: Box<dyn Blocks>,
     size: Option<u64>,
     origin: Option<[f64; 2]>,
+    legend: Option<String>,
+    warning: Option<&'static str>,
     plain: Option<Plain>,
 }
 
@@ -106,7 +113,19 @@ impl Answer {
     /// # Errors
     /// [`Error::Invalid`] if the format cannot hold the answer.
     pub fn new(planned: &Planned, output: &Output, block_bytes: usize) -> Result<Self, Error> {
-        Self::of_parts(planned, planned.parts(), output, block_bytes)
+        if let Some(crs) = output.crs.as_ref()
+            && output.encoding == Encoding::Parquet
+            && crs.projjson().is_none()
+        {
+            let allowed =
+                "EPSG:4326, OGC:CRS84, EPSG:3857 and EPSG:32601 to EPSG:32760, the UTM zones";
+            let detail = "its definition is not known here, and Parquet must hold it";
+            return Err(Fault::new("crs", crs, detail, allowed).into());
+        }
+        Ok(Self {
+            warning: output.warning(),
+            ..Self::of_parts(planned, planned.parts(), output, block_bytes)?
+        })
     }
 
     fn of_parts(
@@ -116,9 +135,19 @@ impl Answer {
         block_bytes: usize,
     ) -> Result<Self, Error> {
         let coordinates = Coordinates::of(output, &parts);
-        let frame = Frame::new(&parts, output.size);
+        let count = parts.iter().map(|part| part.plan.count()).sum();
+        let (frame, parts) = match output.encoding.is_picture() {
+            true => {
+                let frame = Frame::new(&parts, output.size);
+                let parts = match output.encoding {
+                    Encoding::Png => frame.shown(parts)?,
+                    _ => parts,
+                };
+                (Some(frame), parts)
+            }
+            false => (None, parts),
+        };
         let rows = Rows::new(parts, coordinates);
-        let count = rows.count();
         let head = || Head::new(planned, output, count);
         let members = || Members::new(&rows, output);
         let (layout, before) = match output.encoding {
@@ -127,10 +156,13 @@ impl Answer {
             Encoding::Npy => (Layout::F64, Some(npy::head(&rows))),
             Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head()))),
             Encoding::Png => {
+                let frame = frame.ok_or(Error::Internal("a picture has no frame"))?;
                 return Ok(Self {
                     head: None,
                     size: None,
                     origin: None,
+                    legend: None,
+                    warning: None,
                     plain: None,
                     blocks: Box::new(png::Png::new(rows, head(), frame, block_bytes)),
                 });
@@ -143,25 +175,31 @@ impl Answer {
                     let fault = Fault::new("format", "svg", detail, allowed);
                     return Err(fault.into());
                 }
+                let frame = frame.ok_or(Error::Internal("a picture has no frame"))?;
                 let format = svg::Svg::new(&rows, head(), frame, output.decimals);
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Arrow => {
-                return Self::of_columns(rows, |rows| {
-                    arrow::Arrow::new(rows, &head(), block_bytes)
-                });
+                let batches = Batches::new(rows.schema(), &head(), false);
+                let writer = columnar::arrow_stream(batches.schema());
+                return Self::of_columns(rows, batches, writer, block_bytes);
+            }
+            Encoding::Feather => {
+                let batches = Batches::new(rows.schema(), &head(), false);
+                let writer = columnar::arrow_file(batches.schema());
+                return Self::of_columns(rows, batches, writer, block_bytes);
             }
             Encoding::Parquet => {
-                return Self::of_columns(rows, |rows| {
-                    parquet::Parquet::new(rows, &head(), block_bytes)
-                });
+                let batches = Batches::new(rows.schema(), &head(), true);
+                let writer = parquet::writer(batches.schema(), output.crs.as_ref());
+                return Self::of_columns(rows, batches, writer, block_bytes);
             }
             Encoding::Json => {
                 let format = json::Json::new(head(), members());
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Ndjson => {
-                let format = ndjson::Ndjson::new(head(), members());
+                let format = ndjson::Ndjson::new(output.has_summary.then(head), members());
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
             Encoding::Csv => {
@@ -177,16 +215,22 @@ impl Answer {
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
         };
-        Ok(Self::of_records(rows, layout, before, block_bytes))
+        let legend = legend::legend(rows.schema(), output.encoding);
+        Ok(Self {
+            legend,
+            ..Self::of_records(rows, layout, before, block_bytes)
+        })
     }
 
     /// A columnar format of unknown size.
-    fn of_columns<B: Blocks + 'static>(
+    fn of_columns(
         rows: Rows,
-        make: impl FnOnce(Rows) -> Result<B, EncodeError>,
+        batches: Batches,
+        writer: Result<impl columnar::Writer + 'static, EncodeError>,
+        block_bytes: usize,
     ) -> Result<Self, Error> {
         let origin = rows.coordinates().origin();
-        let blocks = make(rows).map_err(|error| {
+        let writer = writer.map_err(|error| {
             tracing::error!(%error, "an answer cannot begin");
             Error::Internal("the format cannot be written")
         })?;
@@ -194,8 +238,10 @@ impl Answer {
             head: None,
             size: None,
             origin,
+            legend: None,
+            warning: None,
             plain: None,
-            blocks: Box::new(blocks),
+            blocks: Box::new(Columnar::new(rows, batches, writer, block_bytes)),
         })
     }
 
@@ -208,6 +254,8 @@ impl Answer {
             head: None,
             size: None,
             origin: rows.coordinates().origin(),
+            legend: None,
+            warning: None,
             plain: None,
             blocks: Box::new(TextBlocks::new(rows, format, block_bytes)),
         }
@@ -240,6 +288,8 @@ impl Answer {
             blocks,
             size,
             origin,
+            legend: None,
+            warning: None,
             // A window's tiles are those of the whole.
             plain: plain.filter(|plain| !plain.plan.is_window()),
         }
@@ -255,6 +305,19 @@ impl Answer {
     #[must_use]
     pub const fn origin(&self) -> Option<[f64; 2]> {
         self.origin
+    }
+
+    /// For formats without names in them: the columns, as a JSON list in ASCII. Each has a `name`, a
+    /// `type` and, where its values are indices, the `names` that they stand for.
+    #[must_use]
+    pub fn legend(&self) -> Option<&str> {
+        self.legend.as_deref()
+    }
+
+    /// What readers of the format may take wrongly.
+    #[must_use]
+    pub const fn warning(&self) -> Option<&'static str> {
+        self.warning
     }
 
     /// How to make it from the plan's tiles, if it is that simple.

@@ -1,4 +1,4 @@
-//! A JSON document a line: the points, then a summary. Without the summary it is not complete.
+//! A JSON document a line: the points, then a summary unless it is switched off.
 
 use serde::Serialize;
 
@@ -12,12 +12,13 @@ use super::{
 
 #[derive(Debug)]
 pub(super) struct Ndjson {
-    head: Head,
+    /// What the summary says, if there is one.
+    head: Option<Head>,
     members: Members,
 }
 
 impl Ndjson {
-    pub(super) const fn new(head: Head, members: Members) -> Self {
+    pub(super) const fn new(head: Option<Head>, members: Members) -> Self {
         Self { head, members }
     }
 }
@@ -46,12 +47,13 @@ impl TextFormat for Ndjson {
     }
 
     fn end(&self, points: u64, out: &mut Vec<u8>) {
+        let Some(head) = &self.head else { return };
         let last = Last {
             summary: Summary {
                 count: points,
-                query: &self.head.query,
-                tables: &self.head.tables,
-                next: self.head.next.as_deref(),
+                query: &head.query,
+                tables: &head.tables,
+                next: head.next.as_deref(),
             },
         };
         write_json(&last, out);

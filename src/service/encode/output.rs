@@ -1,6 +1,6 @@
 //! How an answer is to look: the format and its options.
 
-use super::{Encoding, preview::DEFAULT_SIZE};
+use super::{Encoding, crs::Crs, preview::DEFAULT_SIZE};
 use crate::service::{
     Error, Fault,
     query::{Faults, Parameter, Together as _, parameters},
@@ -10,7 +10,7 @@ use crate::service::{
 pub const MOST_DECIMALS: u8 = 17;
 
 /// What a query asks of its answer's looks, before the format is settled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// The format, if it is asked for by name.
     pub encoding: Option<Encoding>,
@@ -18,6 +18,10 @@ pub struct Options {
     pub decimals: Option<u8>,
     /// The longer side of a picture, in pixels.
     pub size: Option<u32>,
+    /// Whether a stream of lines ends with a summary.
+    pub summary: Option<bool>,
+    /// What plane coordinates are in.
+    pub crs: Option<Crs>,
 }
 
 impl Options {
@@ -26,7 +30,7 @@ impl Options {
     /// # Errors
     /// [`Error::Invalid`] if an option has no effect in that format.
     pub fn output(self, encoding: Encoding) -> Result<Output, Error> {
-        let check = |parameter: &Parameter, value: Option<u32>, fits: fn(Encoding) -> bool| {
+        let check = |parameter: &Parameter, value: Option<String>, fits: fn(Encoding) -> bool| {
             let value = value.filter(|_| !fits(encoding));
             let fault = value.map(|value| {
                 let detail = format!("has no effect in the format {}", encoding.name());
@@ -35,23 +39,31 @@ impl Options {
             });
             fault.map_or(Ok(()), Err)
         };
-        let decimals = check(
-            &parameters::DECIMALS,
-            self.decimals.map(Into::into),
-            Encoding::is_text,
-        );
-        let size = check(&parameters::SIZE, self.size, Encoding::is_picture);
-        (decimals, size).together()?;
+        let decimals = self.decimals.map(|decimals| decimals.to_string());
+        let size = self.size.map(|size| size.to_string());
+        let summary = self
+            .summary
+            .map(|is_on| if is_on { "on" } else { "off" }.into());
+        let crs = self.crs.as_ref().map(ToString::to_string);
+        (
+            check(&parameters::DECIMALS, decimals, Encoding::is_text),
+            check(&parameters::SIZE, size, Encoding::is_picture),
+            check(&parameters::SUMMARY, summary, Encoding::has_summary),
+            check(&parameters::CRS, crs, Encoding::has_crs),
+        )
+            .together()?;
         Ok(Output {
             decimals: self.decimals,
             size: self.size.unwrap_or(DEFAULT_SIZE),
+            has_summary: self.summary.unwrap_or(true),
+            crs: self.crs,
             ..Output::new(encoding)
         })
     }
 }
 
 /// How an answer looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// The format.
     pub encoding: Encoding,
@@ -62,6 +74,10 @@ pub struct Output {
     pub relative_to: Option<[f64; 2]>,
     /// The longer side of a picture, in pixels.
     pub size: u32,
+    /// Whether a stream of lines ends with a summary.
+    pub has_summary: bool,
+    /// What plane coordinates are in.
+    pub crs: Option<Crs>,
 }
 
 impl Output {
@@ -73,6 +89,25 @@ impl Output {
             decimals: None,
             relative_to: None,
             size: DEFAULT_SIZE,
+            has_summary: true,
+            crs: None,
+        }
+    }
+
+    /// What readers of the format may take wrongly.
+    pub(super) fn warning(&self) -> Option<&'static str> {
+        if !matches!(self.encoding, Encoding::Geojson | Encoding::Geojsonseq) {
+            return None;
+        }
+        match &self.crs {
+            None => Some(
+                "GeoJSON readers take coordinates for degrees of longitude and latitude. Say by crs= what \
+                 the plane is, and use a projected one: what is even in degrees is not even on the ground",
+            ),
+            Some(crs) if crs.is_geographic() => Some(
+                "points are even in degrees, not on the ground: use a projected plane, such as a UTM zone",
+            ),
+            Some(_) => None,
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use std::{fmt, sync::Arc};
 
-use strew_core::{Blocks, F32, Plan, Point, Points};
+use strew_core::{Blocks, F32, Offsets, Plan, Point, Points};
 
 use super::{
     rows::Coordinates,
@@ -47,6 +47,7 @@ pub(super) struct Current {
     pub(super) part: Part,
     pub(super) blocks: Blocks<Points>,
     near: Option<Blocks<F32>>,
+    offsets: Option<(Blocks<Offsets>, Vec<[f64; 2]>)>,
     /// The values of the part's own columns.
     own: Vec<Values>,
     /// Where each column of the schema comes from.
@@ -82,14 +83,19 @@ impl Current {
                 Source::own(place, &columns[place].kind, &column.kind)
             })
         });
-        let at_origin =
-            matches!(coordinates, Coordinates::Near(origin) if origin == part.plan.origin());
+        let is_own = |origin: &[f64; 2]| *origin == part.plan.origin();
+        let (near, offsets) = match coordinates {
+            Coordinates::World => (false, false),
+            Coordinates::Relative(origin) => (false, is_own(&origin)),
+            Coordinates::Near(origin) => (is_own(&origin), false),
+        };
         Self {
             number,
             sources: layer.chain(own).collect(),
             own: columns.iter().map(|c| Values::of(&c.kind)).collect(),
             blocks: part.plan.blocks(),
-            near: at_origin.then(|| part.plan.blocks()),
+            near: near.then(|| part.plan.blocks()),
+            offsets: offsets.then(|| (part.plan.blocks(), vec![])),
             part,
         }
     }
@@ -110,6 +116,25 @@ impl Current {
                     }
                 }
                 Source::Nowhere => *column = Values::Missing,
+            }
+        }
+    }
+
+    /// Makes the coordinates of the next points relative to `origin`.
+    pub(super) fn move_to(&mut self, origin: [f64; 2], points: &mut [Point]) {
+        match &mut self.offsets {
+            Some((blocks, offsets)) => {
+                offsets.resize(points.len().max(offsets.len()), [0.0; 2]);
+                blocks.fill(&mut offsets[..points.len()]);
+                for (point, offset) in points.iter_mut().zip(offsets) {
+                    [point.x, point.y] = *offset;
+                }
+            }
+            None => {
+                let shift = Shift::new(&self.part.plan, origin);
+                for point in points {
+                    [point.x, point.y] = shift.apply(point);
+                }
             }
         }
     }

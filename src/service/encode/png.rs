@@ -184,7 +184,10 @@ impl io::Write for Sink {
 mod tests {
     use std::io::Cursor;
 
-    use crate::service::encode::{Encoding, Output, sample_rows::answer};
+    use crate::service::encode::{
+        Answer, Encoding, Output,
+        sample_rows::{answer, planned},
+    };
 
     #[test]
     fn a_picture_has_the_shape_of_the_region_and_a_color_for_each_layer() {
@@ -205,5 +208,37 @@ mod tests {
         let has = |color: [u8; 3]| pixels.chunks_exact(3).any(|pixel| pixel == color);
         assert!(has([255; 3]) && has([0; 3]) && has([0xe6, 0x9f, 0]));
         assert_eq!(bytes, answer(&output, 4096).0, "whatever the blocks");
+    }
+
+    #[test]
+    fn a_picture_costs_what_it_shows() {
+        // 10¹⁴ points on 64 × 64 pixels, and 10⁸ in a strip thinner than one.
+        for (bbox, seeds) in [
+            ([0.0, 0.0, 1e7, 1e7], &[0][..]),
+            ([0.0, 0.0, 1e5, 1e5], &[3]),
+            ([0.0, 0.0, 1e8, 1.0], &[0]),
+        ] {
+            for &seed in seeds {
+                let output = Output {
+                    size: 64,
+                    ..Output::new(Encoding::Png)
+                };
+                let dense = planned(bbox, 1.0, seed);
+                let mut dense = Answer::new(&dense, &output, 4096).expect("drawn");
+                let mut bytes = vec![];
+                for block in dense.by_ref() {
+                    bytes.extend_from_slice(&block.expect("made"));
+                }
+                assert!(dense.points() < 1_000_000, "{} were made", dense.points());
+                let mut decoder = png::Decoder::new(Cursor::new(&bytes));
+                decoder.set_transformations(png::Transformations::EXPAND);
+                let mut reader = decoder.read_info().expect("a picture");
+                let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+                reader.next_frame(&mut pixels).expect("whole");
+                let ink = pixels.iter().map(|v| f64::from(255 - v)).sum::<f64>();
+                let share = ink / 255.0 / pixels.len() as f64;
+                assert!(share > 0.97, "{share} of the picture is black");
+            }
+        }
     }
 }

@@ -5,11 +5,14 @@
 //! follows. Dots have a quarter of the mean spacing as radius, within bounds, so that a few points
 //! are seen and many do not run together before they must.
 
+use strew_core::server;
+
 use super::{
     part::Part,
     rows::Row,
     schema::{Kind, Schema},
 };
+use crate::service::{Error, Fault};
 
 /// The longer side of a picture, in pixels, if nothing else is asked for.
 pub const DEFAULT_SIZE: u32 = 512;
@@ -19,6 +22,10 @@ pub const LEAST_SIZE: u32 = 16;
 pub const MOST_SIZE: u32 = 4096;
 /// What `size` may be.
 pub const SIZE: &str = "an integer from 16 to 4096";
+
+/// Dots of the least size, so many for each pixel, leave hardly any white. Sets are drawn as they are up to
+/// four times that.
+const DOTS_PER_PIXEL: f64 = 3.0;
 
 /// The colors of Okabe and Ito (2008), told apart with any color vision; the faintest last.
 pub(super) const COLORS: [[u8; 3]; 8] = [
@@ -72,6 +79,45 @@ impl Frame {
             top: max[1],
             scale,
         }
+    }
+
+    /// The parts to draw in place of these, so that a picture costs what it shows. Where points are so
+    /// much finer than pixels that dots cover every pixel, a sparser set in the same area covers them as
+    /// well.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a window of so many points, which only these points show.
+    pub(super) fn shown(&self, parts: Vec<Part>) -> Result<Vec<Part>, Error> {
+        let pixels = f64::from(self.width) * f64::from(self.height);
+        let shown = |part: Part| {
+            let (min, max) = (part.plan.region().min(), part.plan.region().max());
+            let sides = [0, 1].map(|axis| (max[axis] - min[axis]) * self.scale);
+            // In a strip thinner than a pixel few points lie side by side.
+            let thinnest = sides[0].min(sides[1]).min(1.0);
+            let wanted = DOTS_PER_PIXEL / (thinnest * thinnest).max(1e-3) * pixels.max(1.0);
+            let spacing = part.plan.placement().spacing.get();
+            let density = part.plan.placement().keep.get() / (spacing * spacing);
+            let area = (max[0] - min[0]) * (max[1] - min[1]);
+            let coarse = (area / wanted).sqrt();
+            if part.plan.count() as f64 <= 4.0 * wanted || density * area <= 4.0 * wanted {
+                return Ok(part);
+            }
+            if part.plan.is_window() {
+                let detail = format!("a part of {} points is drawn", part.plan.count());
+                let allowed = format!(
+                    "png of all points, or of at most {:.0} of them at this size",
+                    4.0 * wanted
+                );
+                let fault = Fault::new("format", "png", detail, allowed);
+                return Err(fault.into());
+            }
+            let plan = server::preview(&part.plan, coarse).map_err(|error| {
+                tracing::error!(%error, "a picture cannot be planned");
+                Error::Internal("the picture cannot be drawn")
+            })?;
+            Ok(Part { plan, ..part })
+        };
+        parts.into_iter().map(shown).collect()
     }
 
     /// The place of a point in pixels from the upper left corner.

@@ -12,7 +12,6 @@ use super::{
     Encoding, Output,
     part::{Current, Part},
     schema::{Schema, Values},
-    shift::Shift,
 };
 
 /// What coordinates are relative to, and how exactly they are wanted.
@@ -20,10 +19,10 @@ use super::{
 pub enum Coordinates {
     /// As they are in the world.
     World,
-    /// Relative to a point.
+    /// Relative to a point. Where it is a plan's origin, offsets are exact at any distance.
     Relative([f64; 2]),
-    /// As `f32` relative to a point, in [`Batch::near`]; where the point is a plan's origin they
-    /// are straight from the kernel.
+    /// As `f32` relative to a point, in [`Batch::near`]. Where it is a plan's origin, they come
+    /// from the kernel.
     Near([f64; 2]),
 }
 
@@ -196,12 +195,7 @@ impl Rows {
         current.fill_columns(points, &mut self.columns);
         match self.coordinates {
             Coordinates::World => {}
-            Coordinates::Relative(origin) => {
-                let shift = Shift::new(&current.part.plan, origin);
-                for point in points {
-                    [point.x, point.y] = shift.apply(point);
-                }
-            }
+            Coordinates::Relative(origin) => current.move_to(origin, points),
             Coordinates::Near(origin) => {
                 self.near.resize(room, [0.0; 2]);
                 current.fill_near(points, origin, &mut self.near[..filled]);
@@ -286,7 +280,7 @@ mod tests {
         for ((world, relative), near) in world.iter().zip(&relative).zip(&near) {
             for axis in 0..2 {
                 let expected = world.2[axis] - origin[axis];
-                assert_eq!(relative.2[axis], expected);
+                assert!((relative.2[axis] - expected).abs() < 1e-14);
                 assert!((f64::from(near.3[axis]) - expected).abs() < 4e-6);
                 assert!(f64::from(near.3[axis]) < [40.0, 35.5][axis]);
             }

@@ -13,7 +13,8 @@ use super::{
     number,
     parameter::{Group, groups},
     parameters::{
-        BBOX, COUNT, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, PARTS, SEED, SIZE, WARP,
+        BBOX, COUNT, CRS, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, PARTS, SEED, SIZE,
+        SUMMARY, WARP,
     },
     region::REGION,
     table,
@@ -379,16 +380,28 @@ pub fn options(values: &Values) -> Checked<Options> {
         Ok(Some(encoding))
     });
     // Their shapes bound both.
-    let (encoding, decimals, size) = (
+    let crs = values.get::<String>(&CRS).and_then(|text| {
+        let crs = text.map(|text| text.parse()).transpose();
+        crs.map_err(|_| {
+            values
+                .fault(&CRS, "not a coordinate reference system")
+                .into()
+        })
+    });
+    let (encoding, decimals, size, summary, crs) = (
         encoding,
         values.get::<u64>(&DECIMALS),
         values.get::<u64>(&SIZE),
+        values.get(&SUMMARY),
+        crs,
     )
         .together()?;
     Ok(Options {
         encoding,
         decimals: decimals.and_then(|decimals| decimals.try_into().ok()),
         size: size.and_then(|size| size.try_into().ok()),
+        summary,
+        crs,
     })
 }
 

@@ -9,7 +9,7 @@ use super::{
     DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_PARTS, Parameter, Shape, Value, parameter::Group,
 };
 use crate::service::encode::{
-    MOST_DECIMALS,
+    CRS as CRS_ALLOWED, MOST_DECIMALS,
     preview::{LEAST_SIZE, MOST_SIZE},
 };
 
@@ -315,6 +315,29 @@ parameters! {
         shape: Shape::Integer { min: LEAST_SIZE as u64, max: MOST_SIZE as u64 },
         default: Some("512"),
         example: "256",
+        ..Parameter::PLAIN
+    };
+    /// Whether a stream of lines ends with a summary.
+    SUMMARY = Parameter {
+        name: "summary",
+        about: "Whether ndjson ends with a line that is not a point: the query, the table and the count. \
+                Without it, programs that expect rows of one kind read the answer.",
+        group: Group::Output,
+        shape: Shape::Switch,
+        default: Some("on"),
+        example: "off",
+        ..Parameter::PLAIN
+    };
+    /// What plane coordinates are in.
+    CRS = Parameter {
+        name: "crs",
+        about: "The coordinate reference system of the plane, for geojson, geojsonseq and Parquet: by \
+                default readers of GeoJSON take coordinates for degrees. Coordinates do not change.",
+        group: Group::Output,
+        shape: Shape::Pattern("^[A-Za-z]{1,16}:[A-Za-z0-9]{1,16}$"),
+        allowed: Some(CRS_ALLOWED),
+        default: Some("none"),
+        example: "EPSG:3857",
         ..Parameter::PLAIN
     };
     /// The place whose neighbors are wanted.

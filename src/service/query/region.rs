@@ -69,6 +69,19 @@ impl QueryRegion {
         [min_x, min_y, max_x, max_y]
     }
 
+    /// The largest absolute coordinate of an answer, which a chunk's are not far from.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        let [min_x, min_y, max_x, max_y] = self.bbox();
+        match self.corner {
+            Some(_) => (max_x - min_x).max(max_y - min_y),
+            None => [min_x, min_y, max_x, max_y]
+                .map(f64::abs)
+                .into_iter()
+                .fold(0.0, f64::max),
+        }
+    }
+
     /// The area that lies in both regions.
     #[must_use]
     pub fn and(&self, own: &Self) -> Area {

@@ -25,6 +25,8 @@ pub enum Shape {
         /// The greatest.
         max: u64,
     },
+    /// `on` or `off`.
+    Switch,
     /// `off` for 0, `on` for 1, or a number from 0 to a greatest one.
     Strength {
         /// The greatest.
@@ -65,6 +67,8 @@ pub enum Value {
     Integer(u64),
     /// An integer with a sign.
     Signed(i64),
+    /// On or off.
+    Switch(bool),
     /// Several numbers, none of them NaN or infinite.
     Numbers(Vec<f64>),
     /// Names.
@@ -105,6 +109,7 @@ impl Shape {
                 format!("a number from {} to {}", number(min), number(max))
             }
             Self::Integer { min, max } => format!("an integer from {min} to {}", integers(max)),
+            Self::Switch => "on or off".into(),
             Self::Strength { max } => format!("off, on, or a number from 0 to {}", number(max)),
             Self::Numbers(names) => format!("{} finite numbers: {}", names.len(), names.join(",")),
             Self::Vertices => "the coordinates of at least 3 vertices: x1,y1,x2,y2,x3,y3,…".into(),
@@ -135,6 +140,11 @@ impl Shape {
         let value = match self {
             Self::Number { .. } => Value::Number(finite(text)?),
             Self::Integer { .. } => Value::Integer(integer(text)?),
+            Self::Switch => Value::Switch(match text {
+                "on" | "true" => true,
+                "off" | "false" => false,
+                _ => return Err("must be on or off".into()),
+            }),
             Self::Strength { .. } => Value::Number(match text {
                 "off" => 0.0,
                 "on" => 1.0,
@@ -174,6 +184,10 @@ impl Shape {
             }
             (Self::Number { .. }, _) => return Err("must be a number".into()),
             (_, Ok(text)) => return self.read(&text),
+            (Self::Switch, _) => {
+                let value = serde_json::from_str(json.get());
+                Value::Switch(value.map_err(|_| "must be true, false, \"on\" or \"off\"")?)
+            }
             (Self::Strength { .. }, _) => return Err("must be \"off\", \"on\" or a number".into()),
             (Self::Integer { .. }, _) => Value::Integer(integer(json.get())?),
             (Self::Signed { .. }, _) => Value::Signed(integer(json.get())?),
@@ -254,7 +268,8 @@ impl Shape {
                 sorted.sort_by(|a, b| a.0.cmp(&b.0));
                 Ok(Value::Weights(sorted))
             }
-            (Self::Names { .. }, Value::Names(_))
+            (Self::Switch, Value::Switch(_))
+            | (Self::Names { .. }, Value::Names(_))
             | (Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text, Value::Text(_)) => {
                 Ok(value)
             }
@@ -316,6 +331,7 @@ impl Value {
             Self::Number(value) => number(*value),
             Self::Integer(value) => value.to_string(),
             Self::Signed(value) => value.to_string(),
+            Self::Switch(value) => if *value { "on" } else { "off" }.into(),
             Self::Numbers(values) => listed(values.iter().map(|value| number(*value)).collect()),
             Self::Names(names) => names.join(","),
             Self::Weights(pairs) => {
@@ -347,6 +363,7 @@ read_as! {
     Number as f64;
     Integer as u64;
     Signed as i64;
+    Switch as bool;
     Numbers as Vec<f64>;
     Names as Vec<String>;
     Weights as Vec<(String, f64)>;
@@ -368,6 +385,7 @@ impl Serialize for Value {
             Self::Number(value) => value.serialize(serializer),
             Self::Integer(value) => value.serialize(serializer),
             Self::Signed(value) => value.serialize(serializer),
+            Self::Switch(value) => value.serialize(serializer),
             Self::Numbers(values) => values.serialize(serializer),
             Self::Names(names) => names.serialize(serializer),
             Self::Weights(pairs) => {

@@ -6,5 +6,6 @@ mod config;
 mod forge;
 mod full_disk;
 mod invalid_flags;
+mod outputs;
 mod probe;
 mod queries;

@@ -73,7 +73,7 @@ fn a_copied_request_returns_the_points_in_view() {
     assert_same(&browser, &rows(answer.text()));
     let line = copied(&browser, "curl");
     assert!(
-        line.starts_with(&format!("curl -f '{url}' -o strew.csv")),
+        line.starts_with(&format!("curl -f '{url}' -o points.csv")),
         "{line}"
     );
     run(&line, "curl", |text| assert_same(&browser, &rows(text)));
@@ -93,7 +93,7 @@ fn a_copied_request_returns_the_points_in_view() {
     }
 }
 
-/// Runs a shell command that writes strew.csv, in a folder of its own, and passes the file to
+/// Runs a shell command that writes points.csv, in a folder of its own, and passes the file to
 /// `look`.
 fn run(line: &str, needs: &str, look: impl Fn(&str)) {
     if clients::find(needs).is_none() {
@@ -110,7 +110,7 @@ fn run(line: &str, needs: &str, look: impl Fn(&str)) {
         "{line}: {}",
         String::from_utf8_lossy(&shell.stderr)
     );
-    look(&std::fs::read_to_string(folder.path().join("strew.csv")).expect("written"));
+    look(&std::fs::read_to_string(folder.path().join("points.csv")).expect("written"));
 }
 
 #[test]
@@ -170,11 +170,11 @@ fn a_download_has_the_count_and_the_size_that_were_shown() {
         let size = browser.value("[strew.take.weight.bytes, strew.take.weight.isExact]");
         let (size, is_exact) = (size[0].as_u64().expect("bytes"), size[1] == true);
         browser.click("#download");
-        let file = browser.downloads().join(format!("strew.{format}"));
+        let file = browser.downloads().join(format!("points.{format}"));
         let bytes = until("the file is whole", || {
             let partial = browser
                 .downloads()
-                .join(format!("strew.{format}.crdownload"));
+                .join(format!("points.{format}.crdownload"));
             let bytes = std::fs::read(&file).ok()?;
             (!partial.exists() && !bytes.is_empty()).then_some(bytes)
         });

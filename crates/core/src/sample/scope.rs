@@ -1,8 +1,10 @@
 //! Scopes: the part of a lattice that a plan covers.
 
+use core::ops::Range;
+
 use super::{
-    area::{Area, CORNERS, Region},
-    lattice::{LATTICE_LIMIT, Lattice, Span},
+    area::{Area, CORNERS, Chunk, Region},
+    lattice::{LATTICE_LIMIT, Lattice, Multiple, Span},
     near::Mask,
     sieve::Sieve,
     stop::Stop,
@@ -24,6 +26,85 @@ pub(crate) struct Scope {
     pub(crate) stop: Stop,
     /// The box around the area.
     pub(crate) region: Region,
+    /// What offsets are relative to.
+    pub(crate) corner: Corner,
+}
+
+/// The place that offsets of points are relative to, on the fixed-point grid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Corner {
+    /// The place in world coordinates, rounded.
+    pub(crate) at: [f64; 2],
+    /// The first fixed-point coordinates from there on.
+    pub(crate) first: [i128; 2],
+    /// The distances from the exact place to [`first`](Self::first); see [`Multiple::gap`].
+    pub(crate) gap: [[f64; 2]; 2],
+    /// Whether the place is a chunk's, and `f32` offsets are from it and not from
+    /// [`first`](Self::first).
+    pub(crate) is_chunk: bool,
+    /// Offsets are below this.
+    pub(crate) extent: [f64; 2],
+}
+
+impl Corner {
+    /// The lower corner of a box, whose sides begin at these fixed-point coordinates.
+    fn of_box(lattice: &Lattice, region: Region, first: [i128; 2]) -> Self {
+        let (min, max) = (region.min(), region.max());
+        let gap = |axis: usize| {
+            let sign = if min[axis] < 0.0 { -1 } else { 1 };
+            let corner = Multiple::new(lattice.step, min[axis].abs(), sign);
+            // Reported coordinates decide which is first, so it is a little beside the corner far out.
+            let [gap, error] = corner.gap;
+            [
+                gap,
+                error + (first[axis] - corner.first) as f64 * lattice.step,
+            ]
+        };
+        Self {
+            at: min,
+            first,
+            gap: [gap(0), gap(1)],
+            is_chunk: false,
+            extent: [0, 1].map(|axis| max[axis] - min[axis]),
+        }
+    }
+
+    /// The exact corner of a chunk.
+    fn of_chunk(lattice: &Lattice, Chunk { size, at }: Chunk) -> Self {
+        let multiples = at.map(|index| Multiple::new(lattice.step, size, index));
+        Self {
+            at: at.map(|index| index as f64 * size),
+            first: multiples.map(|multiple| multiple.first),
+            gap: multiples.map(|multiple| multiple.gap),
+            is_chunk: true,
+            extent: [size; 2],
+        }
+    }
+}
+
+/// The fixed-point coordinates of the points of an area along both axes: of its chunks exactly, of
+/// everything else by the reported coordinates. The bounds of the area are within the lattice's limit.
+fn bounds(lattice: &Lattice, chunks: &[Chunk], rest: Option<&Area>) -> [Range<i128>; 2] {
+    let common = |a: Range<i128>, b: Range<i128>| a.start.max(b.start)..a.end.min(b.end);
+    let of_box = rest.and_then(Area::bounds).map(|region| {
+        let side = |i: usize| {
+            let ends = [region.min()[i], region.max()[i]].map(|bound| {
+                let limit = lattice.limit();
+                lattice.first_at_or_above(bound.clamp(-limit, limit))
+            });
+            ends[0]..ends[1]
+        };
+        [side(0), side(1)]
+    });
+    let of_chunks = chunks.iter().map(|chunk| {
+        chunk.at.map(|index| {
+            let first = |index| Multiple::new(lattice.step, chunk.size, index).first;
+            first(index)..first(index + 1)
+        })
+    });
+    let all = of_box.into_iter().chain(of_chunks);
+    let all = all.reduce(|[ax, ay], [bx, by]| [common(ax, bx), common(ay, by)]);
+    all.unwrap_or([0..0, 0..0])
 }
 
 impl Scope {
@@ -52,15 +133,24 @@ impl Scope {
                 return Err(error.because("too far from the origin").with_limit(limit));
             }
         }
-        let x = Span::new(lattice, Axis::X, min_x, max_x);
-        let y = Span::new(lattice, Axis::Y, min_y, max_y);
+        let (chunks, rest) = area.map_or_else(Default::default, |area| {
+            (area.chunks(), area.beside_chunks())
+        });
+        let [columns, rows] = bounds(lattice, &chunks, rest.as_ref());
+        let x = Span::new(lattice, Axis::X, columns);
+        let y = Span::new(lattice, Axis::Y, rows);
         debug_assert!(x.all.end < 2 * LATTICE_LIMIT && y.all.end < 2 * LATTICE_LIMIT);
         // Integers decide membership of a box, so it needs no sieve, except together with one.
-        let is_box = matches!(area, Some(Area::Region(_)));
+        let is_box = matches!(rest, None | Some(Area::Region(_)));
+        let corner = match chunks.last() {
+            Some(chunk) => Corner::of_chunk(lattice, *chunk),
+            None => Corner::of_box(lattice, region, [x.bounds.start, y.bounds.start]),
+        };
         let sieve = if is_box && mask.clear.is_empty() {
             None
         } else {
-            Sieve::new(lattice, mask)
+            let area = area.map(Area::around_chunks);
+            Sieve::new(lattice, Mask { area, ..mask })
         };
         Ok(Self {
             lattice: lattice.clone(),
@@ -69,6 +159,7 @@ impl Scope {
             sieve,
             stop,
             region,
+            corner,
         })
     }
 }

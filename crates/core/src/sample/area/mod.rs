@@ -8,6 +8,7 @@
 //! For speed an area also answers for whole strips of the plane at once: between which x all points are
 //! inside, all are outside, or each must be tested (`steps`). `outline` estimates what counting costs.
 
+mod chunks;
 mod circle;
 mod edge;
 mod outline;
@@ -18,7 +19,7 @@ mod steps;
 
 pub use circle::Circle;
 pub use polygon::Polygon;
-pub(super) use region::CORNERS;
 pub use region::Region;
+pub(super) use region::{CORNERS, Chunk};
 pub use shape::Area;
 pub(super) use steps::{Near, State, Stepper};

@@ -13,10 +13,28 @@ use crate::error::{Error, ErrorKind, number};
 /// assert_eq!(Region::chunk(64.0, [0, 0])?, region);
 /// # Ok::<(), strew_core::Error>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// A point lies in a box by its reported `f64` coordinates. A [chunk](Self::chunk) of a grid is compared
+/// exactly instead when its points are requested. Boxes are equal if their corners are.
+#[derive(Clone, Copy, Debug)]
 pub struct Region {
     min: [f64; 2],
     max: [f64; 2],
+    /// The chunk that this is.
+    chunk: Option<Chunk>,
+}
+
+/// A square of a grid: size · at ≤ p < size · (at + 1) along both axes, exactly.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Chunk {
+    pub(crate) size: f64,
+    pub(crate) at: [i64; 2],
+}
+
+impl PartialEq for Region {
+    fn eq(&self, other: &Self) -> bool {
+        (self.min, self.max) == (other.min, other.max)
+    }
 }
 
 /// The names of the four numbers of a box.
@@ -59,12 +77,16 @@ impl Region {
                 return Err(Error::new(ErrorKind::Region, name, value, allowed));
             }
         }
-        Ok(Self { min, max })
+        Ok(Self::between(min, max))
     }
 
     /// The chunk in column `at[0]` and row `at[1]` of a grid of squares with a side of `size` world
-    /// units. Neighbors compute their common corners from the same integers, so chunks partition the
-    /// plane exactly.
+    /// units. Chunks partition the plane exactly.
+    ///
+    /// The corners are multiples of `size`, rounded to `f64`. The points of a chunk are found by the exact
+    /// multiples: a point lies in the chunk if its exact position divided by `size` rounds down to `at`.
+    /// Far from the origin, where `f64` coordinates are coarse, a point next to an edge can lie in a chunk
+    /// and be reported with the coordinates of the neighbor's corner.
     ///
     /// # Errors
     /// [`ErrorKind::Chunk`] unless `size` is a positive finite number, column and row are within
@@ -97,12 +119,24 @@ impl Region {
         if region.is_empty() {
             return Err(refused("too small to have an extent there"));
         }
-        Ok(region)
+        let chunk = Some(Chunk { size, at });
+        Ok(Self { chunk, ..region })
     }
 
     /// The box between corners known to be in order. They may be infinite.
     pub(crate) const fn between(min: [f64; 2], max: [f64; 2]) -> Self {
-        Self { min, max }
+        let chunk = None;
+        Self { min, max, chunk }
+    }
+
+    /// The chunk that this is, if it is one.
+    pub(crate) const fn as_chunk(&self) -> Option<Chunk> {
+        self.chunk
+    }
+
+    /// Whether another box lies inside without touching the sides.
+    pub(super) fn surrounds(&self, other: &Self) -> bool {
+        (0..2).all(|i| self.min[i] < other.min[i] && other.max[i] < self.max[i])
     }
 
     /// The lower corner, included, in world coordinates.
@@ -148,10 +182,7 @@ impl Region {
             [0, 1].map(|i| self.max[i].min(other.max[i])),
         ];
         let reversed = (0..2).any(|i| max[i] < min[i]);
-        Self {
-            min,
-            max: if reversed { min } else { max },
-        }
+        Self::between(min, if reversed { min } else { max })
     }
 
     /// `Some(true)` if all points of another box, its upper sides included, lie inside, `Some(false)` if

@@ -93,7 +93,15 @@ impl Area {
     pub fn and(self, other: Self) -> Self {
         match (self, other) {
             // A box again, which is counted in closed form.
-            (Self::Region(a), Self::Region(b)) => Self::Region(a.and(b)),
+            (Self::Region(a), Self::Region(b)) if a.as_chunk().or(b.as_chunk()).is_none() => {
+                Self::Region(a.and(b))
+            }
+            (Self::Region(inner), Self::Region(outer))
+            | (Self::Region(outer), Self::Region(inner))
+                if outer.as_chunk().is_none() && outer.surrounds(&inner) =>
+            {
+                Self::Region(inner)
+            }
             (Self::AllOf(mut areas), other) => {
                 areas.push(other);
                 Self::AllOf(areas)

@@ -123,7 +123,8 @@ impl Edges<'_> {
                     let [dx, dy] = vectors[column.block as usize];
                     let x = patch.relative(Axis::X, column.at) + dx;
                     let place = patch.place([x, row + dy]);
-                    count += usize::from(self.sieve.passes(run, scale.world(place)));
+                    let passes = patch.holds(place) && self.sieve.passes(run, scale.world(place));
+                    count += usize::from(passes);
                 }
             }
         }

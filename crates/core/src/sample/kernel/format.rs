@@ -32,9 +32,13 @@ pub trait Format: Emit {}
 pub struct Geometry {
     /// World units per fixed-point unit.
     pub(crate) step: f64,
-    /// The first fixed-point coordinates inside the region.
+    /// The first fixed-point coordinates from the corner on that offsets are relative to.
     pub(crate) first: [i128; 2],
-    /// The sides of the region in world units.
+    /// The distances from the corner to these in world units, each as a number and its rounding error.
+    pub(crate) gap: [[f64; 2]; 2],
+    /// Whether `f32` offsets begin at the corner, not at the first coordinates.
+    pub(crate) is_chunk: bool,
+    /// Offsets are below this.
     pub(crate) extent: [f64; 2],
 }
 

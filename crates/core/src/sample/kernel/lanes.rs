@@ -69,6 +69,22 @@ pub trait Lanes {
     }
 }
 
+/// The most lanes of a vector.
+const MOST: usize = 16;
+
+/// The lanes of a vector, followed by zeros.
+///
+/// # Safety
+/// The machine has the instructions of `L`.
+#[inline(always)]
+pub(super) unsafe fn stored<L: Lanes>(v: L::Ints) -> [i32; MOST] {
+    const { assert!(L::WIDTH <= MOST) };
+    let mut lanes = [0; MOST];
+    // SAFETY: as the caller ensures, and the array holds at least WIDTH values.
+    unsafe { L::store_ints(lanes.as_mut_ptr(), v) };
+    lanes
+}
+
 /// A loop over vectors, written once for all instruction sets.
 pub(super) trait VectorLoop {
     /// Writes items from the front in whole vectors. Returns the number written: all of them, or none if

@@ -1,7 +1,7 @@
 //! The innermost loops: a row is a template of its columns plus the place of the row.
 //!
 //! `format` defines, in plain code, how a position becomes an item of each output format (`singles`,
-//! `doubles`, `points`). That code is the definition; every faster path has the same bits. Positions are
+//! `doubles`, `offsets`, `points`). That code is the definition; every faster path has the same bits. Positions are
 //! 32-bit fixed-point offsets from the origin of a patch. Their sum with the origin is exact in `f64`
 //! while lattice coordinates stay below 2⁵³, so it rounds once, as the conversion of the whole integer
 //! would.
@@ -33,6 +33,7 @@ mod dispatch;
 mod doubles;
 mod format;
 mod lanes;
+mod offsets;
 mod points;
 mod rows;
 mod singles;
@@ -44,6 +45,7 @@ pub(super) use dispatch::{compiled, write_numbers};
 pub use doubles::F64;
 pub use format::Format;
 pub(super) use format::{Geometry, Row};
+pub use offsets::Offsets;
 pub use points::Points;
 pub(super) use rows::{WarpedColumns, fill_row, fill_warped_row};
 pub use singles::F32;

@@ -3,7 +3,7 @@
 use super::{
     F64, Format,
     format::{Emit, Geometry, Row},
-    lanes::Lanes,
+    lanes::{Lanes, stored},
     rows::vector_starts,
 };
 use crate::sample::lattice::{Point, PointId};
@@ -87,15 +87,8 @@ impl Emit for Points {
         lattice: &[i64],
         out: &mut [Point],
     ) {
-        /// Vectors have at most this many lanes.
-        const MOST: usize = 16;
-        const { assert!(L::WIDTH <= MOST) };
-        let (mut xs, mut ys) = ([0i32; MOST], [0i32; MOST]);
-        // SAFETY: the machine has the instructions, and both arrays hold at least WIDTH values.
-        unsafe {
-            L::store_ints(xs.as_mut_ptr(), x);
-            L::store_ints(ys.as_mut_ptr(), y);
-        }
+        // SAFETY: the machine has the instructions.
+        let [xs, ys] = [x, y].map(|v| unsafe { stored::<L>(v) });
         let lanes = xs.into_iter().zip(ys).zip(lattice);
         for (out, ((x, y), &column)) in out.iter_mut().zip(lanes) {
             let column = self.column(row.base, x, column);

@@ -12,8 +12,9 @@ use crate::table::fixed;
 /// ([`Plan::origin`](crate::Plan::origin)).
 ///
 /// The offset from the first fixed-point place inside the region is exact in integers, scaled in `f64`
-/// and rounded once to `f32`. What would round up to the region's extent becomes the largest `f32` below
-/// it, so relative coordinates lie in \[0, extent).
+/// and rounded once to `f32`. In a chunk it is the offset from the chunk's exact corner, at any distance
+/// from the origin. What would round up to the region's extent becomes the largest `f32` below it, so
+/// relative coordinates lie in \[0, extent).
 ///
 /// ```
 /// use strew_core::{F32, PointSet, Table};
@@ -31,6 +32,8 @@ pub struct F32 {
     pub(super) step: f64,
     /// The first place inside.
     pub(super) first: [i128; 2],
+    /// The distance from the corner to that place, in steps.
+    pub(super) lead: [f64; 2],
     /// The largest value per axis.
     pub(super) last: [f32; 2],
 }
@@ -57,12 +60,16 @@ impl Emit for F32 {
         Self {
             step: geometry.step,
             first: geometry.first,
+            lead: geometry.gap.map(|[gap, _]| match geometry.is_chunk {
+                true => gap / geometry.step,
+                false => 0.0,
+            }),
             last: geometry.extent.map(below),
         }
     }
 
     fn base(&self, origin: [i64; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| (fixed(origin[axis]) - self.first[axis]) as f64)
+        [0, 1].map(|axis| (fixed(origin[axis]) - self.first[axis]) as f64 + self.lead[axis])
     }
 
     #[inline(always)]

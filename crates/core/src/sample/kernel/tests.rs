@@ -5,8 +5,8 @@
 use alloc::{vec, vec::Vec};
 
 use super::{
-    Backend, F32, F64, Format, Points, WarpedColumns, fill_row, fill_warped_row, format::Row,
-    rows::emit, write_numbers,
+    Backend, F32, F64, Format, Geometry, Offsets, Points, Row, WarpedColumns, fill_row,
+    fill_warped_row, format::Emit as _, rows::emit, write_numbers,
 };
 use crate::sample::{
     Seed, Warp,
@@ -149,6 +149,7 @@ fn rows_of_f32_pairs_have_the_same_bits_by_all_backends() {
     let format = F32 {
         step: 3.7e-7,
         first: [0, 0],
+        lead: [0.25, 0.0],
         // Some places are above these.
         last: [410_000.0, -1.249_4e9],
     };
@@ -158,6 +159,19 @@ fn rows_of_f32_pairs_have_the_same_bits_by_all_backends() {
 #[test]
 fn rows_of_f64_pairs_have_the_same_bits_by_all_backends() {
     let format = F64 { step: 3.7e-7 };
+    all_rows(format, [-1.5; 2], |item| item.map(f64::to_bits));
+}
+
+#[test]
+fn rows_of_offsets_have_the_same_bits_by_all_backends() {
+    let format = Offsets::new(&Geometry {
+        step: 3.7e-7,
+        first: [77, -(5 << 40) + 3],
+        gap: [[1.3e-7, 4e-24], [0.0; 2]],
+        is_chunk: true,
+        // Some places are above these.
+        extent: [410_000.0, -1.249_4e9],
+    });
     all_rows(format, [-1.5; 2], |item| item.map(f64::to_bits));
 }
 
@@ -178,6 +192,7 @@ fn rows_end_where_the_shortest_slice_ends() {
     let format = F32 {
         step: 3.7e-7,
         first: [0, 0],
+        lead: [0.0; 2],
         last: [1e30; 2],
     };
     let example = examples().next().expect("some");

@@ -4,7 +4,7 @@
 //! `world` joins them with a table into the [`Lattice`]. Positions are integers in fixed point, 2⁻²⁰ grid
 //! units, until the last conversion: one multiplication by the step, the world size of a unit. That
 //! conversion is monotone, so the bounds of a region become integers once (`span`), and integers decide
-//! membership.
+//! membership. The bounds of chunks are exact multiples of their size (`multiple`).
 //!
 //! Work proceeds in pieces: `lines` lists the columns and rows that hold points, `prefix` counts them,
 //! `patch` has the bands and patches in which positions fit 32 bits. `point` is what comes out, `rank`
@@ -12,6 +12,7 @@
 
 mod keep;
 mod lines;
+mod multiple;
 mod patch;
 mod placement;
 mod point;
@@ -23,6 +24,7 @@ mod world;
 
 pub use keep::Keep;
 pub(super) use lines::{Columns, Line, lines_of_class};
+pub(super) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
 pub use placement::Placement;
 pub use point::{Point, PointId};

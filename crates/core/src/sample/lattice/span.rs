@@ -21,10 +21,9 @@ pub(crate) struct Span {
 }
 
 impl Span {
-    /// The span min ≤ p < max, for bounds within the lattice's limit.
-    pub(crate) fn new(lattice: &Lattice, axis: Axis, min: f64, max: f64) -> Self {
+    /// The span of some fixed-point coordinates.
+    pub(crate) fn new(lattice: &Lattice, axis: Axis, bounds: Range<i128>) -> Self {
         let [least, most] = lattice.reach(axis).map(i128::from);
-        let bounds = lattice.first_at_or_above(min)..lattice.first_at_or_above(max);
         // The first lattice coordinate at or above a fixed-point one.
         let first = |k: i128| -((-k) >> FRACTION_BITS) as i64;
         let all = if bounds.is_empty() {

@@ -104,16 +104,20 @@ impl Lattice {
         Some([map.interval_of(index_x)?, map.interval_of(index_y)?])
     }
 
-    /// The point of an address, or `None` if it has none.
-    pub(crate) fn point(&self, id: PointId) -> Option<Point> {
+    /// The fixed-point place of an address, or `None` if it has no point.
+    pub(crate) fn place(&self, id: PointId) -> Option<[i128; 2]> {
         let [block_x, block_y] = self.block(id)?;
         let [dx, dy] = self.vectors(block_y)[block_x];
         let displaced = [fixed(id.x) + i128::from(dx), fixed(id.y) + i128::from(dy)];
-        let warped = match &self.shears {
+        Some(match &self.shears {
             Some(shears) => shears.apply(displaced),
             None => displaced,
-        };
-        let [x, y] = warped.map(|k| self.world(k));
+        })
+    }
+
+    /// The point of an address, or `None` if it has none.
+    pub(crate) fn point(&self, id: PointId) -> Option<Point> {
+        let [x, y] = self.place(id)?.map(|k| self.world(k));
         Some(Point { id, x, y })
     }
 

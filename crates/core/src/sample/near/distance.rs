@@ -84,8 +84,15 @@ impl Table {
 impl LeastDistance {
     /// The least [`relative`](Self::relative) distance that is useful.
     pub const MIN_RELATIVE: f64 = 0.3;
-    /// What [`spacing_for`](Self::spacing_for) adds, to outweigh rounding.
+    /// Reported `f64` coordinates keep [`reported`](Self::reported) distances out to this many of them from
+    /// the origin, 2³⁰. Farther out the rounding of coordinates takes more from a distance.
+    pub const RANGE: f64 = 1_073_741_824.0;
+    /// What [`spacing_for`](Self::spacing_for) adds, more than rounding takes within
+    /// [`RANGE`](Self::RANGE): 2³⁰ · 2⁻⁵⁰.
     const MARGIN: f64 = 1e-6;
+    /// What rounding takes from a distance, per unit of the largest coordinate. A coordinate is rounded
+    /// twice, by 2⁻⁵³ of itself each, and a distance changes by up to 2√2 times that much.
+    const ROUNDING: f64 = 1.0 / (1u64 << 50) as f64;
 
     /// δ_min: the distance without warp in units of the hexagonal distance √(2/√3) at the same density;
     /// at most 1.
@@ -105,7 +112,8 @@ impl LeastDistance {
         self.with_warp(Warp::OFF) / HEXAGONAL
     }
 
-    /// The guaranteed distance in mean spacings, for a strength of the warp and every seed.
+    /// The guaranteed distance in mean spacings, for a strength of the warp and every seed. It is that of
+    /// exact positions; [`reported`](Self::reported) has that of coordinates.
     ///
     /// Without warp it is attained. With warp it is a bound: the table's distance divided by the largest
     /// factor by which the warp shrinks distances.
@@ -131,6 +139,31 @@ impl LeastDistance {
         units.max(0.0) / f64::from(1u32 << FRACTION_BITS) * self.set_side
     }
 
+    /// The distance in world units that reported `f64` coordinates keep, for a spacing, a strength of the
+    /// warp and every seed: the [guaranteed](Self::with_warp) one less what rounding takes. `reach` is the
+    /// largest absolute coordinate of a point, at least 0. Up to [`RANGE`](Self::RANGE) times the distance
+    /// the answer is the same, and nearly all of the guaranteed one; far beyond it is 0.
+    ///
+    /// Coordinates relative to a chunk reach no farther than its size ([`Offsets`](crate::Offsets)).
+    ///
+    /// ```
+    /// use strew_core::{LeastDistance, Spacing, Table, Warp};
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let least = table.least_distance();
+    /// let reported = |reach| least.reported(Spacing::ONE, Warp::OFF, reach);
+    /// assert_eq!(reported(0.0), reported(0.7 * LeastDistance::RANGE));
+    /// assert!(reported(0.0) > 0.999_999 * least.with_warp(Warp::OFF));
+    /// // Coordinates are multiples of 1/64 there.
+    /// assert!(reported(1e14) < reported(0.0) - 0.05);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn reported(&self, spacing: Spacing, warp: Warp, reach: f64) -> f64 {
+        let exact = self.with_warp(warp) * spacing.get();
+        (exact - Self::ROUNDING * reach.max(Self::RANGE * exact)).max(0.0)
+    }
+
     /// Whether δ_min is at least [`MIN_RELATIVE`](Self::MIN_RELATIVE).
     ///
     /// ```
@@ -153,9 +186,9 @@ impl LeastDistance {
     /// The mean spacing at which no two points are nearer than `distance` world units, for a strength of
     /// the warp and every seed.
     ///
-    /// It is 10⁻⁶ wider than the bound requires, which outweighs the rounding of reported coordinates up
-    /// to 10⁸ spacings from the origin. Farther out a coordinate x is itself only good to x·2⁻⁵², and a
-    /// distance to three times that.
+    /// It is 10⁻⁶ wider than the bound requires, which outweighs the rounding of reported `f64` coordinates
+    /// out to [`RANGE`](Self::RANGE) times the distance from the origin. Farther out
+    /// [`reported`](Self::reported) is less than the distance.
     ///
     /// # Errors
     /// [`ErrorKind::Distance`] unless the distance is a positive finite number,

@@ -1,5 +1,7 @@
 //! Plans: requests made ready, before any point is made.
 
+#[cfg(test)]
+mod chunks;
 mod windows;
 
 use alloc::{sync::Arc, vec, vec::Vec};
@@ -10,7 +12,7 @@ use super::{
     count::count,
     iter::Members,
     kernel::{F32, F64, Format, Points},
-    lattice::{Lattice, Placement, Point},
+    lattice::{Keep, Lattice, Placement, Point, Spacing},
     near::Mask,
     scope::Scope,
     stop::Stop,
@@ -167,7 +169,7 @@ impl Plan {
         points
     }
 
-    /// The points in one of the formats [`F32`], [`F64`] and [`Points`], block by block: the fastest way
+    /// The points in one of the formats [`F32`], [`F64`], [`Offsets`](crate::Offsets) and [`Points`], block by block: the fastest way
     /// to make many.
     ///
     /// ```
@@ -300,8 +302,9 @@ impl Plan {
         self.scope.region
     }
 
-    /// The lower corner of the [region](Self::region), in world coordinates. [`F32`] coordinates are
-    /// relative to it.
+    /// The lower corner of the requested chunk, or else of the [region](Self::region), in world coordinates.
+    /// [`F32`] coordinates and [`Offsets`](crate::Offsets) are relative to it; in a chunk to the exact corner, which this
+    /// rounds to `f64`.
     ///
     /// ```
     /// use strew_core::{PointSet, Table};
@@ -312,7 +315,7 @@ impl Plan {
     /// ```
     #[must_use]
     pub fn origin(&self) -> [f64; 2] {
-        self.region().min()
+        self.scope.corner.at
     }
 
     /// The table of the set.
@@ -362,6 +365,28 @@ impl Plan {
     #[must_use]
     pub fn attributes(&self, attributes: &Attributes) -> BoundAttributes {
         BoundAttributes::new(attributes, &self.scope.lattice)
+    }
+
+    /// The points of the same area at another spacing, all of them, not counted.
+    pub(crate) fn with_spacing(&self, spacing: Spacing) -> Result<Self, Error> {
+        let Scope {
+            lattice,
+            sieve,
+            stop,
+            region,
+            ..
+        } = &*self.scope;
+        let placement = Placement {
+            spacing,
+            keep: Keep::ALL,
+            ..lattice.placement
+        };
+        let lattice = Lattice::new(lattice.table.clone(), placement);
+        let mut mask = sieve
+            .as_ref()
+            .map_or_else(Mask::default, |sieve| sieve.mask().clone());
+        let area = mask.area.take().unwrap_or(Area::Region(*region));
+        Self::new(&lattice, &mask, area, stop.clone(), Some(u64::MAX.into()))
     }
 
     /// This plan with another flag that stops its further counting.

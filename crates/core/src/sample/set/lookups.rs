@@ -183,8 +183,11 @@ impl PointSet {
         Clearance::new(self.lattice.clone(), &self.mask, distance)
     }
 
-    /// The least distance between any two points, in world units: a guarantee for all of the plane. It is 0
-    /// for profiles that guarantee none.
+    /// The least distance between any two points, in world units: a guarantee for reported `f64`
+    /// coordinates out to [`LeastDistance::RANGE`](crate::LeastDistance::RANGE) times this distance from the
+    /// origin, whatever the region. It is 0 for profiles that guarantee none.
+    ///
+    /// [`least_distance_within`](Self::least_distance_within) has what holds farther out.
     ///
     /// ```
     /// use strew_core::{PointSet, Table};
@@ -200,8 +203,26 @@ impl PointSet {
     /// ```
     #[must_use]
     pub fn least_distance(&self) -> f64 {
+        self.least_distance_within(0.0)
+    }
+
+    /// The least distance between any two points whose `f64` coordinates are within ±`reach`, in world
+    /// units; see [`LeastDistance::reported`](crate::LeastDistance::reported).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// assert_eq!(set.least_distance_within(1e6), set.least_distance());
+    /// // World coordinates are coarse there. Offsets in a chunk are not.
+    /// assert!(set.least_distance_within(1e14) < set.least_distance_within(64.0));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn least_distance_within(&self, reach: f64) -> f64 {
         let Placement { spacing, warp, .. } = self.placement();
-        self.table().least_distance().with_warp(warp) * spacing.get()
+        self.table().least_distance().reported(spacing, warp, reach)
     }
 
     /// The values that the points of this set have for some attributes. They depend on ids and the seed

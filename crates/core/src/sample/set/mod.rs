@@ -135,7 +135,8 @@ impl PointSet {
     }
 
     /// Sets the spacing at which no two points are nearer than `distance` world units, for the warp that
-    /// the set has; so choose seed and warp first.
+    /// the set has; so choose seed and warp first. It holds for reported `f64` coordinates out to
+    /// [`LeastDistance::RANGE`](crate::LeastDistance::RANGE) times the distance from the origin.
     ///
     /// # Errors
     /// As [`LeastDistance::spacing_for`](crate::LeastDistance::spacing_for).

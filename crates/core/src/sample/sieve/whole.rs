@@ -38,6 +38,11 @@ impl Sieve {
         LocalSieve::new(self.mask.clear_guards(), self.reach, self.unit)
     }
 
+    /// What points satisfy.
+    pub(crate) const fn mask(&self) -> &Mask {
+        &self.mask
+    }
+
     /// The area in which points lie, if not in all of the box.
     pub(crate) const fn area(&self) -> Option<&Area> {
         self.mask.area.as_ref()

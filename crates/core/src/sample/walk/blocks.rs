@@ -14,7 +14,7 @@ use crate::{
         cursor::Cursor,
         kernel::{Backend, Format, Geometry, Row, compiled},
         lattice::{BAND_WIDTH, Columns, Patch, PointId, PrefixCounts, clip_to_band},
-        scope::Scope,
+        scope::{Corner, Scope},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale},
     },
 };
@@ -133,11 +133,19 @@ impl<F: Format> Blocks<F> {
             None if begins_within => Kept::Places,
             None => Kept::Columns,
         };
-        let (min, max) = (scope.region.min(), scope.region.max());
+        let Corner {
+            first,
+            gap,
+            is_chunk,
+            extent,
+            ..
+        } = scope.corner;
         let format = F::new(&Geometry {
             step: scope.lattice.step,
-            first: [scope.x.bounds.start, scope.y.bounds.start],
-            extent: [0, 1].map(|axis| max[axis] - min[axis]),
+            first,
+            gap,
+            is_chunk,
+            extent,
         });
         let patch = Patch::new(&scope.lattice, bands.start, rows.start, &scope.x, &scope.y);
         let is_tall = rows.end - rows.start >= TALL;
@@ -433,7 +441,8 @@ impl<F: Format> Blocks<F> {
                     template.fill(format, patch, row, part, self.backend, out)
                 } else {
                     let columns = displaced(patch, &columns[part], vectors);
-                    let passes = |place| sifting.patch.passes(run, scale.world(place));
+                    let passes =
+                        |place| patch.holds(place) && sifting.patch.passes(run, scale.world(place));
                     sift(format, patch, row, columns, passes, out)
                 };
                 filled += progress.written;

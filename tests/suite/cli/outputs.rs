@@ -1,0 +1,259 @@
+//! Where commands write: signals, closed pipes, places that cannot be written, and the formats of files.
+
+use std::{
+    fs,
+    io::{BufRead as _, BufReader},
+    path::Path,
+    process::{Command, Stdio},
+};
+
+use strew_testkit::wait;
+
+use crate::support::{
+    clients,
+    command::{errors, run},
+    daemon::strew,
+};
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let name = |entry: std::io::Result<fs::DirEntry>| entry.expect("an entry").file_name();
+    entries
+        .map(|entry| name(entry).to_string_lossy().into_owned())
+        .collect()
+}
+
+#[test]
+fn signals_leave_no_file() {
+    for (signal, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut child = strew()
+            .current_dir(folder.path())
+            .args([
+                "sample",
+                "-q",
+                "--bbox",
+                "0,0,1e5,1e5",
+                "--spacing",
+                "1",
+                "-o",
+                "x.csv",
+            ])
+            .spawn()
+            .expect("the program runs");
+        wait::until("a file is begun", || {
+            (names(folder.path()) == ["x.csv.partial"]).then_some(())
+        });
+        let sent = Command::new("kill")
+            .args(["-s", signal, &child.id().to_string()])
+            .status();
+        assert!(sent.is_ok_and(|status| status.success()));
+        let status = child.wait().expect("it ends");
+        assert_eq!(status.code(), Some(code), "{signal}");
+        assert_eq!(names(folder.path()), Vec::<String>::new(), "{signal}");
+    }
+}
+
+#[test]
+fn a_reader_that_leaves_ends_a_command_quietly() {
+    let commands = [
+        vec![
+            "sample",
+            "--bbox",
+            "0,0,3000,3000",
+            "--spacing",
+            "1",
+            "--format",
+            "csv",
+            "-q",
+        ],
+        vec![
+            "sample",
+            "--bbox",
+            "0,0,3000,3000",
+            "--spacing",
+            "1",
+            "--format",
+            "f32",
+            "-q",
+        ],
+        vec![
+            "table",
+            "export",
+            "--text",
+            "--profile",
+            "spaced",
+            "--map",
+            "l",
+        ],
+    ];
+    for arguments in commands {
+        let mut child = strew()
+            .args(&arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program runs");
+        let mut reader = BufReader::new(child.stdout.take().expect("piped"));
+        assert!(!reader.fill_buf().expect("readable").is_empty());
+        drop(reader);
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(
+            (output.status.code(), &*errors(&output)),
+            (Some(0), ""),
+            "{arguments:?}"
+        );
+    }
+}
+
+#[test]
+fn places_that_cannot_be_written_are_refused_before_the_work() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (inside, missing) = (folder.path().join("d"), folder.path().join("no/x.csv"));
+    fs::create_dir(&inside).expect("a folder");
+    // So many points that the work would not end.
+    let long = [
+        "--bbox",
+        "0,0,1e7,1e7",
+        "--spacing",
+        "1",
+        "--set",
+        "limits.max_points=1000000000000000",
+    ];
+    let sample = |path: &str| {
+        run(
+            &[&["sample", "--format", "csv", "-o", path], &long[..]].concat(),
+            "",
+        )
+    };
+    let measure = |path: &str| {
+        let measured = [
+            "measure",
+            "--bbox",
+            "0,0,1000,1000",
+            "--spacing",
+            "1",
+            "--picture",
+            path,
+        ];
+        run(&measured, "")
+    };
+    for (path, problem) in [
+        (&inside, "it is a folder"),
+        (&missing, "there is no folder"),
+    ] {
+        let path = path.to_string_lossy();
+        for output in [
+            sample(&path),
+            measure(&path),
+            run(
+                &[
+                    "table",
+                    "export",
+                    "--profile",
+                    "spaced",
+                    "--map",
+                    "l",
+                    "-o",
+                    &path,
+                ],
+                "",
+            ),
+        ] {
+            let text = errors(&output);
+            assert!(!output.status.success());
+            assert!(
+                text.contains(&format!("cannot write {path}: {problem}")),
+                "{text}"
+            );
+            assert!(
+                !text.contains("partial") && text.lines().count() == 1,
+                "{text}"
+            );
+        }
+    }
+}
+
+#[test]
+fn an_error_is_told_once() {
+    let text = errors(&run(&["measure", "--table", "/etc/passwd"], ""));
+    assert_eq!(text.matches("is not a Strew table").count(), 1, "{text}");
+}
+
+#[test]
+fn commands_that_do_not_serve_take_no_address() {
+    for command in ["sample", "count", "point", "nearest", "split", "measure"] {
+        let help = run(&[command, "--help"], "").stdout;
+        assert!(
+            !String::from_utf8_lossy(&help).contains("--listen"),
+            "{command}"
+        );
+    }
+    let help = run(&["serve", "--help"], "").stdout;
+    assert!(String::from_utf8_lossy(&help).contains("--listen"));
+}
+
+#[test]
+fn files_of_columns_are_read_by_their_readers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let looks = [
+        "--bbox",
+        "0,0,30,30",
+        "--spacing",
+        "1",
+        "--attributes",
+        "variant,angle",
+        "--variants",
+        "oak:3,birch:1",
+    ];
+    for name in ["t.arrow", "t.feather", "t.arrows", "t.parquet", "t.csv"] {
+        let path = folder.path().join(name);
+        let output = run(
+            &[&["sample", "-q", "-o", &path.to_string_lossy()], &looks[..]].concat(),
+            "",
+        );
+        assert!(output.status.success(), "{}", errors(&output));
+    }
+    let starts = |name: &str| fs::read(folder.path().join(name)).expect("written")[..6].to_vec();
+    assert_eq!(
+        (starts("t.arrow"), starts("t.feather")),
+        (b"ARROW1".to_vec(), b"ARROW1".to_vec())
+    );
+    assert_ne!(starts("t.arrows"), b"ARROW1");
+    let Some(mut python) = clients::python("readers of Arrow and Parquet") else {
+        return;
+    };
+    let script = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/suite/cli/table_readers.py"
+    );
+    let output = python
+        .arg(script)
+        .arg(folder.path())
+        .output()
+        .expect("Python runs");
+    println!("{}", String::from_utf8_lossy(&output.stdout));
+    assert!(output.status.success(), "{}", errors(&output));
+}
+
+#[test]
+fn records_say_what_their_columns_are() {
+    let arguments = [
+        "sample",
+        "--bbox",
+        "0,0,3,2",
+        "--spacing",
+        "1",
+        "--format",
+        "f32",
+        "--attributes",
+        "variant",
+        "--variants",
+        "oak:3,birch:1",
+    ];
+    let text = errors(&run(&arguments, ""));
+    assert!(
+        text.contains(r#"{"name":"variant","type":"f32","names":["birch","oak"]}"#),
+        "{text}"
+    );
+}
