@@ -88,9 +88,17 @@ impl Routes {
 /// The answer where nothing is.
 #[must_use]
 pub fn not_found(request: &Request, paths: &str) -> Response {
+    let path = request.uri().path();
+    // A slash at the end is what most of them have too much.
+    let without = path.trim_end_matches('/');
+    let known =
+        !without.is_empty() && without != path && paths.split(", ").any(|known| known == without);
     let error = Error::NoSuchPath {
-        path: request.uri().path().into(),
-        available: paths.into(),
+        path: path.into(),
+        available: match known {
+            true => format!("{without} (without the slash at the end)"),
+            false => paths.into(),
+        },
     };
     Problem::response(&error)
 }

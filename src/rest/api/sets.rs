@@ -3,13 +3,10 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{document::schema, schemas::reference};
-use crate::service::{
-    Encoding,
-    query::{
-        Group, MOST_LAYERS, Parameter, groups, of,
-        parameters::{COUNT, PARAMETERS},
-    },
+use super::{document::schema, rules, schemas::reference};
+use crate::service::query::{
+    Group, MOST_LAYERS, Parameter, groups, of,
+    parameters::{COUNT, PARAMETERS},
 };
 
 /// The names of layers and variants.
@@ -30,7 +27,7 @@ fn nothing() -> Value {
 }
 
 /// What the members of a set must fulfill together.
-fn rules() -> Vec<Value> {
+fn rules_of_set() -> Vec<Value> {
     let is_amount = |group: Group| [Group::Amount, Group::Count].contains(&group);
     let amounts = of(groups::SET).filter(|parameter| is_amount(parameter.group));
     let one: Vec<Value> = amounts
@@ -52,27 +49,9 @@ fn rules() -> Vec<Value> {
     ]
 }
 
-/// What the output's members must fulfill together.
-fn output_rules() -> Vec<Value> {
-    let formats = |fits: fn(Encoding) -> bool| -> Value {
-        let fitting = Encoding::ALL.into_iter().filter(|encoding| fits(*encoding));
-        let names: Vec<&str> = fitting.map(Encoding::name).collect();
-        json!({ "properties": { "format": { "enum": names } } })
-    };
-    let named = |member: &str, fits: fn(Encoding) -> bool| {
-        let mut formats = formats(fits);
-        formats["required"] = json!(["format"]);
-        json!({ "if": { "required": [member] }, "then": formats })
-    };
-    vec![
-        json!({ "if": { "required": ["decimals"] }, "then": formats(Encoding::is_text) }),
-        named("size", Encoding::is_picture),
-        named("summary", Encoding::has_summary),
-        named("crs", Encoding::has_crs),
-    ]
-}
-
-fn query(groups: &'static [Group], about: &str, mut more: Vec<Value>) -> Value {
+/// What decimals, size, summary and crs are for stands in `x-rules` only: programs that make queries from
+/// the schema give up on so many conditions.
+fn query(groups: &'static [Group], about: &str) -> Value {
     let mut properties = members(groups);
     properties.insert("region".into(), reference("Region"));
     let layers = json!({
@@ -82,11 +61,11 @@ fn query(groups: &'static [Group], about: &str, mut more: Vec<Value>) -> Value {
     properties.insert("layers".into(), layers);
     let of_set = of(groups::SET).map(|parameter| (parameter.name.to_owned(), nothing()));
     let of_set: Map<String, Value> = of_set.collect();
-    let mut rules_of_all = vec![json!({ "oneOf": [
+    let rules_of_all = vec![json!({ "oneOf": [
         { "required": ["layers"], "properties": of_set },
-        { "properties": { "layers": nothing() }, "allOf": rules() },
+        { "properties": { "layers": nothing() }, "allOf": rules_of_set() },
     ] })];
-    rules_of_all.append(&mut more);
+    let published = rules::of(groups);
     json!({
         "type": "object",
         "description": about,
@@ -94,6 +73,7 @@ fn query(groups: &'static [Group], about: &str, mut more: Vec<Value>) -> Value {
         "properties": properties,
         "additionalProperties": false,
         "allOf": rules_of_all,
+        "x-rules": published,
     })
 }
 
@@ -101,13 +81,13 @@ fn query(groups: &'static [Group], about: &str, mut more: Vec<Value>) -> Value {
 pub(super) fn points_query() -> Value {
     let about = "Which points, which part of them, and in which format: a region with one set of \
                  points, or with layers.";
-    query(groups::QUERY, about, output_rules())
+    query(groups::QUERY, about)
 }
 
 /// A query for a count.
 pub(super) fn count_query() -> Value {
     let about = "Which points: a region with one set of points, or with layers.";
-    query(groups::SET, about, vec![])
+    query(groups::SET, about)
 }
 
 /// One of several sets of points.
@@ -128,7 +108,7 @@ pub(super) fn layer() -> Value {
     if let Value::Object(others) = others {
         properties.extend(others);
     }
-    let mut rules = rules();
+    let mut rules = rules_of_set();
     rules.push(json!({
         "if": { "required": ["clear_of"], "properties": { "clear_of": { "minProperties": 1 } } },
         "then": { "properties": { COUNT.name: nothing() } },

@@ -150,7 +150,8 @@ impl Shape {
                 "on" => 1.0,
                 text => finite(text).map_err(|_| "must be off, on or a number")?,
             }),
-            Self::Numbers(_) | Self::Vertices => Value::Numbers(numbers(text)?),
+            Self::Numbers(names) => Value::Numbers(numbers(text, names)?),
+            Self::Vertices => Value::Numbers(numbers(text, &[])?),
             Self::Signed { .. } => Value::Signed(integer(text)?),
             Self::Names { .. } => {
                 Value::Names(text.split(',').map(|name| name.trim().into()).collect())
@@ -300,15 +301,20 @@ fn integer<T: FromStr>(text: &str) -> Result<T, &'static str> {
     })
 }
 
-fn numbers(text: &str) -> Result<Vec<f64>, Detail> {
-    let part = |part: &str| {
+/// Numbers joined by commas, called by some names as far as there are names.
+fn numbers(text: &str, names: &[&str]) -> Result<Vec<f64>, Detail> {
+    let part = |(i, part): (usize, &str)| {
         let part = part.trim();
-        finite(part).map_err(|detail| match part {
-            "" => "a number is missing".into(),
-            part => format!("`{part}` {detail}").into(),
+        finite(part).map_err(|detail| -> Detail {
+            match (names.get(i), part) {
+                (Some(name), "") => format!("{name} is missing").into(),
+                (Some(name), part) => format!("{name} is `{part}`, which {detail}").into(),
+                (None, "") => "a number is missing".into(),
+                (None, part) => format!("`{part}` {detail}").into(),
+            }
         })
     };
-    text.split(',').map(part).collect()
+    text.split(',').enumerate().map(part).collect()
 }
 
 /// Names with weights, such as `oak:3,birch:1`; the weight of a name without one is 1.
@@ -477,10 +483,10 @@ mod tests {
     fn faults_of_lists_name_the_part() {
         let box_ = Shape::Numbers(&["min_x", "min_y", "max_x", "max_y"]);
         for (text, expected) in [
-            ("", "a number is missing"),
+            ("", "min_x is missing"),
             ("1,2", "expected 4 numbers, got 2"),
-            ("1,x,3,4", "`x` must be a number"),
-            ("1,inf,3,4", "`inf` must be finite"),
+            ("1,x,3,4", "min_y is `x`, which must be a number"),
+            ("1,inf,3,4", "min_y is `inf`, which must be finite"),
         ] {
             assert_eq!(box_.read(text), Err(expected.into()), "{text}");
         }

@@ -74,6 +74,12 @@ def tidy_output(query):
         query["size"] = 16 + int(number(query["size"], 0, 500))
         if query.get("format") not in ["png", "svg"]:
             query.pop("size")
+    if "summary" in query and query.get("format") != "ndjson":
+        query.pop("summary")
+    if "crs" in query:
+        query["crs"] = "EPSG:3857"
+        if query.get("format") not in ["geojson", "geojsonseq"]:
+            query.pop("crs")
     if "limit" in query:
         query["limit"] = 1 + int(number(query["limit"], 0, 200))
     if "offset" in query:
@@ -136,7 +142,7 @@ def tidy_body(name, body):
         tidy_set(body, False)
     tidy_output(body)
     if name == "countPoints":
-        for member in ["format", "decimals", "size", "offset", "limit"]:
+        for member in ["format", "decimals", "size", "summary", "crs", "offset", "limit"]:
             body.pop(member, None)
     return body
 
