@@ -21,16 +21,16 @@ impl Source {
         let text = match &error {
             Error::Invalid(faults) => self.described(faults.as_slice()),
             Error::TooManyPoints { count, limit } => format!(
-                "the query has {count} points, and the settings allow {limit}: ask for a smaller \
+                "the query has {count} points, and the settings allow {limit}: choose a smaller \
                  region or fewer points, or raise it by --set limits.max_points={count}"
             ),
             Error::TooManyRows { rows, limit } => format!(
-                "about {rows} lattice rows, or points that keep clear of others, would have to be \
-                 counted one by one, and the settings allow {limit}: ask for a smaller region, a wider spacing, or a box \
+                "counting takes about {rows} steps (lattice rows, or points that keep clear of others), \
+                 and the settings allow {limit}: choose a smaller region, a wider spacing, or a box \
                  with --warp off, or raise it by --set limits.max_rows={rows}"
             ),
             Error::OtherTable { pinned, loaded } => format!(
-                "the query pins the table {pinned}, but {loaded} would answer: leave --table out, \
+                "the query names the table {pinned}, but {loaded} would answer: leave --table out, \
                  or load the table by --tables DIR"
             ),
             Error::NoSuchPoint { .. } | Error::Internal(_) => return Failure::Other(error.into()),

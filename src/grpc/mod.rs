@@ -202,5 +202,5 @@ const GRPC_MESSAGE: &str = "grpc-message";
 #[must_use]
 pub fn unimplemented() -> http::Response<tonic::body::Body> {
     let methods = METHODS.join(", ");
-    Status::unimplemented(format!("there is no such method; available: {methods}")).into_http()
+    Status::unimplemented(format!("unknown method; available: {methods}")).into_http()
 }

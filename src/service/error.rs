@@ -85,8 +85,8 @@ pub enum Error {
     Invalid(Faults),
     /// The region holds more points than one answer may have.
     #[error(
-        "the region holds {count} points; this server gives at most {limit} in one answer: ask \
-         for a smaller region, fewer points, or a part of them with limit and cursor"
+        "the region holds {count} points, and this server returns at most {limit} in one answer: \
+         request a smaller region, fewer points, or pages with limit and cursor"
     )]
     TooManyPoints {
         /// The exact count.
@@ -96,9 +96,8 @@ pub enum Error {
     },
     /// Counting the region's points would take too long.
     #[error(
-        "about {rows} lattice rows, or points that keep clear of others, would have to be counted \
-         one by one; this server counts at most {limit} so: ask for a smaller region, a wider \
-         spacing, or a box with warp=off"
+        "counting takes about {rows} steps (lattice rows, or points that keep clear of others), and \
+         this server allows {limit}: request a smaller region, a wider spacing, or a box with warp=off"
     )]
     TooManyRows {
         /// About how many.
@@ -108,8 +107,8 @@ pub enum Error {
     },
     /// The query is longer than queries may be.
     #[error(
-        "the body is longer than {limit} bytes, the most that this server reads: ask with fewer \
-         vertices or regions"
+        "the body is longer than {limit} bytes, the limit of this server: send fewer vertices or \
+         regions"
     )]
     BodyTooLarge {
         /// The limit.
@@ -117,7 +116,8 @@ pub enum Error {
     },
     /// Another table would answer than the one that the query pins.
     #[error(
-        "the query pins the table {pinned}, but {loaded} would answer: without `table` it does"
+        "the query names the table {pinned}, but {loaded} would answer: leave out `table`, or load \
+         that table"
     )]
     OtherTable {
         /// The digest in the query.
@@ -126,7 +126,7 @@ pub enum Error {
         loaded: String,
     },
     /// None of the formats the client accepts is made here.
-    #[error("`Accept: {accept}` has no format that is made here; available: {available}")]
+    #[error("`Accept: {accept}` names no available format; available: {available}")]
     NotAcceptable {
         /// What the client accepts.
         accept: String,
@@ -134,13 +134,13 @@ pub enum Error {
         available: String,
     },
     /// The set has no point with that id.
-    #[error("there is no point `{id}` in this set of points")]
+    #[error("this set has no point `{id}`")]
     NoSuchPoint {
         /// The id.
         id: String,
     },
     /// Nothing is at that path.
-    #[error("there is nothing at `{path}`; available: {available}")]
+    #[error("nothing is at `{path}`; available: {available}")]
     NoSuchPath {
         /// The path.
         path: String,
@@ -160,8 +160,8 @@ pub enum Error {
     /// The caller is not let in, or not now.
     #[error(transparent)]
     Denied(#[from] Denied),
-    /// As many answers are under way as the server takes on at once.
-    #[error("{limit} answers are under way, the most at once: try again later")]
+    /// As many answers are being streamed as the server allows at once.
+    #[error("{limit} answers are being streamed, the most at once: try again later")]
     Busy {
         /// The limit.
         limit: usize,
@@ -185,14 +185,14 @@ pub enum Error {
         limit: usize,
     },
     /// The body took longer to come than it may.
-    #[error("the body did not come within {seconds} seconds")]
+    #[error("the body did not arrive within {seconds} seconds")]
     BodyTooSlow {
         /// The limit.
         seconds: String,
     },
     /// The answer took longer than it may.
     #[error(
-        "no answer was found within {seconds} seconds: try again later, or ask for a smaller region"
+        "there was no answer within {seconds} seconds: try again later, or request a smaller region"
     )]
     TimeOver {
         /// The limit.

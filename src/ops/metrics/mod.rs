@@ -402,12 +402,12 @@ const COUNTERS: [(&str, &str); 12] = [
         SPANS,
         "Spans for the collector: sent, or lost because it did not take them",
     ),
-    (CACHE_HITS, "Tables asked for that were ready"),
-    (CACHE_MISSES, "Tables asked for that had to be made ready"),
+    (CACHE_HITS, "Requested tables that were ready"),
+    (CACHE_MISSES, "Requested tables that had to be loaded"),
 ];
 const GAUGES: [(&str, &str); 8] = [
     (IN_FLIGHT, "Requests that are being answered"),
-    (STREAMS, "Answers with points under way"),
+    (STREAMS, "Current answers with points"),
     (MOST_STREAMS, "The most answers with points at once"),
     (CACHE_BYTES, "Memory of the tables that are ready"),
     (MEMORY, "Resident memory"),
