@@ -72,7 +72,7 @@ pub use table::Table;
 /// use strew_core::{ALGORITHM_VERSION, PointId};
 ///
 /// // A saved game that keeps ids keeps the version with them.
-/// let saved = (1, PointId { x: -31, y: 52 });
+/// let saved = (2, PointId { x: -31, y: 52 });
 /// assert_eq!(saved.0, ALGORITHM_VERSION, "made with other points");
 /// ```
-pub const ALGORITHM_VERSION: u32 = 1;
+pub const ALGORITHM_VERSION: u32 = 2;

@@ -6,7 +6,7 @@ use super::{
     format::{Emit, Row},
     lanes::{Lanes, VectorLoop},
 };
-use crate::sample::warp::{CELL_BITS, PatchShears};
+use crate::sample::warp::PatchShears;
 
 /// The starts of vectors that cover `length` items, or none if there are fewer than fill a vector. The
 /// last vector goes back over items that are already written.
@@ -200,8 +200,8 @@ unsafe fn warp<L: Lanes, const K: usize>(
         let sub = |a: [L::Ints; K], b: [L::Ints; K]| -> [L::Ints; K] {
             core::array::from_fn(|k| L::sub_ints(a[k], b[k]))
         };
-        let x = add(x, noise::<L, K>(shears, 0, y));
-        let y = add(y, noise::<L, K>(shears, 1, x));
+        let y = add(y, noise::<L, K>(shears, 0, x));
+        let x = add(x, noise::<L, K>(shears, 1, y));
         let rising = noise::<L, K>(shears, 2, sub(x, y));
         let (x, y) = (add(x, rising), add(y, rising));
         let falling = noise::<L, K>(shears, 3, add(x, y));
@@ -219,17 +219,15 @@ unsafe fn noise<L: Lanes, const K: usize>(
     direction: usize,
     s: [L::Ints; K],
 ) -> [L::Ints; K] {
-    let table = &shears.cubics[direction];
+    let table = &shears.quadratics[direction];
     // SAFETY: as the caller ensures.
     unsafe {
-        let unit = L::splat_single(1.0 / (1u32 << CELL_BITS) as f32);
         let cells: [L::Ints; K] = core::array::from_fn(|k| L::cells(s[k]));
-        let u: [L::Singles; K] =
-            core::array::from_fn(|k| L::mul_singles(L::singles_of(L::places(s[k])), unit));
-        let mut value: [L::Singles; K] = core::array::from_fn(|k| L::pick(&table[3], cells[k]));
-        for power in [2, 1, 0] {
+        let at: [L::Singles; K] = core::array::from_fn(|k| L::singles_of(L::places(s[k])));
+        let mut value: [L::Singles; K] = core::array::from_fn(|k| L::pick(&table[2], cells[k]));
+        for power in [1, 0] {
             for k in 0..K {
-                let term = L::mul_singles(value[k], u[k]);
+                let term = L::mul_singles(value[k], at[k]);
                 value[k] = L::add_singles(term, L::pick(&table[power], cells[k]));
             }
         }

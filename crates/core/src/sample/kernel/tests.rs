@@ -90,7 +90,7 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
     bits: impl Fn(F::Item) -> B + Copy,
 ) {
     let warp = Warp::new(1.0).expect("in range");
-    let shears = Shears::new(warp, Seed(5), 0.317).expect("on");
+    let shears = Shears::new(warp, Seed(5)).expect("on");
     let shears = PatchShears::new(&shears, [1024 * 7, -256 * 3]);
     for example in examples() {
         let Example {

@@ -125,7 +125,7 @@ impl LeastDistance {
     #[must_use]
     pub fn with_warp(&self, warp: Warp) -> f64 {
         // All seeds have the same amplitudes.
-        let shears = Shears::new(warp, Seed(0), self.set_side);
+        let shears = Shears::new(warp, Seed(0));
         let Stretch { factor, slack } = Stretch::of(shears.as_ref());
         let units = libm::sqrt(self.squared as f64) / factor - 2.0 * slack;
         units.max(0.0) / f64::from(1u32 << FRACTION_BITS) * self.set_side
