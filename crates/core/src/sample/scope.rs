@@ -7,10 +7,7 @@ use super::{
     sieve::Sieve,
     stop::Stop,
 };
-use crate::{
-    error::{Error, ErrorKind, number},
-    pattern::Axis,
-};
+use crate::error::{Error, ErrorKind, number};
 
 /// The columns and rows around an area, and what their points must satisfy.
 #[derive(Clone, Debug)]
@@ -52,15 +49,14 @@ impl Scope {
                 return Err(error.because("too far from the origin").with_limit(limit));
             }
         }
-        let x = Span::new(lattice, Axis::X, min_x, max_x);
-        let y = Span::new(lattice, Axis::Y, min_y, max_y);
+        let [x, y] = Span::of_box(lattice, region.min(), region.max());
         debug_assert!(x.all.end < 2 * LATTICE_LIMIT && y.all.end < 2 * LATTICE_LIMIT);
         // Integers decide membership of a box, so it needs no sieve, except together with one.
         let is_box = matches!(area, Some(Area::Region(_)));
         let sieve = if is_box && mask.clear.is_empty() {
             None
         } else {
-            Sieve::new(lattice, mask)
+            Sieve::new(lattice, mask, [x.reach, y.reach])
         };
         Ok(Self {
             lattice: lattice.clone(),

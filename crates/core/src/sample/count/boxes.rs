@@ -127,8 +127,8 @@ mod tests {
         for (i, size) in [0.5, 3.0, 9.5, 31.6, 64.0, 150.0].into_iter().enumerate() {
             for [width, height] in [[size, size], [size, 2.0], [1.0, size]] {
                 let min = [i as f64 * 1e6 - 3e6, 17.3 - i as f64 * 977.0];
-                let x = Span::new(&lattice, Axis::X, min[0], min[0] + width);
-                let y = Span::new(&lattice, Axis::Y, min[1], min[1] + height);
+                let max = [min[0] + width, min[1] + height];
+                let [x, y] = Span::of_box(&lattice, min, max);
                 let by_rows = count_rows(&lattice, &x, &y);
                 assert_eq!(by_rows, count_blocks(&lattice, &x, &y), "{min:?}");
                 assert_eq!(by_rows, count(&lattice, &x, &y));

@@ -91,7 +91,11 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
 ) {
     let warp = Warp::new(1.0).expect("in range");
     let shears = Shears::new(warp, Seed(5)).expect("on");
-    let shears = PatchShears::new(&shears, [1024 * 7, -256 * 3]);
+    let shears = PatchShears::new(
+        &shears,
+        [1024 * 7, -256 * 3],
+        [[-20 << 20, 1040 << 20], [-20 << 20, 280 << 20]],
+    );
     for example in examples() {
         let Example {
             lattice,

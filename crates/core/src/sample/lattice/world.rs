@@ -87,14 +87,6 @@ impl Lattice {
         self.vectors.row(block_y)
     }
 
-    /// The least and the greatest distance of a point from its lattice address along an axis, in
-    /// fixed-point units.
-    pub(crate) fn reach(&self, axis: Axis) -> [i32; 2] {
-        let [least, most] = self.table_reach(axis);
-        let warp = self.shears.map_or(0, |shears| shears.reach());
-        [least - warp, most + warp]
-    }
-
     /// The least and the greatest displacement along an axis, without the warp.
     pub(crate) const fn table_reach(&self, axis: Axis) -> [i32; 2] {
         self.vectors.reach()[axis as usize]

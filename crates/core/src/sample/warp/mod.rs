@@ -14,6 +14,7 @@
 //! points around a place, `patch` for the points of a patch, on which the kernel builds. `stretch`
 //! bounds what the warp does to distances.
 
+mod drift;
 mod near;
 mod patch;
 mod shears;

@@ -2,9 +2,6 @@
 
 use super::shears::{CELL_BITS, KNOT_BITS, Quadratic, Shears, across, evaluate, quadratic};
 
-/// The first cell across each direction, relative to the patch's origin.
-const FIRST_CELLS: [i64; 4] = [-4, -4, -5, -3];
-
 /// The shears of one patch, with all quadratics tabulated. Positions relative to the patch's origin fit 32
 /// bits. The origin is a multiple of the knot distance along both axes.
 #[derive(Clone, Debug)]
@@ -16,28 +13,58 @@ pub struct PatchShears {
 impl PatchShears {
     /// The most cells that the points of a patch touch in a direction: one vector of numbers. A patch is
     /// 1024 × 256 grid units. With displacements below 128, shears along the axes below 40.2 and diagonal
-    /// ones below 20.1, as they are at the greatest strength, coordinates across the diagonals span from
-    /// −377 to 1655 and from −591 to 1359 units, 16 cells of 128.
+    /// ones below 20.1, as they are at the greatest strength, coordinates across the diagonals lie from −377
+    /// to 1655 and from −591 to 1359 units, within 16 cells of 128.
     pub(crate) const CELLS: usize = 16;
 
     /// Selects the place of a coordinate in its cell.
     pub(crate) const CELL_MASK: i32 = (1 << CELL_BITS) - 1;
 
-    pub(crate) fn new(shears: &Shears, origin: [i64; 2]) -> Self {
+    /// The shears of the points whose displaced positions lie in some ranges of x and y, relative to the
+    /// origin. Both ends belong to a range.
+    pub(crate) fn new(shears: &Shears, origin: [i64; 2], [x, y]: [[i32; 2]; 2]) -> Self {
+        let mut patch = Self {
+            quadratics: [[[0.0; Self::CELLS]; 3]; 4],
+        };
+        if x[0] > x[1] || y[0] > y[1] {
+            return patch;
+        }
         let first = across(origin.map(|v| v >> KNOT_BITS));
-        let mut quadratics = [[[0.0; Self::CELLS]; 3]; 4];
-        for (direction, table) in quadratics.iter_mut().enumerate() {
-            let start = FIRST_CELLS[direction];
-            let mut controls = [0; Self::CELLS + 2];
-            shears.controls(direction, first[direction] + start - 1, &mut controls);
-            for (relative, knots) in (start..).zip(controls.windows(3)) {
-                let coefficients = quadratic([knots[0], knots[1], knots[2]]);
-                for (of_power, coefficient) in table.iter_mut().zip(coefficients) {
-                    of_power[relative.rem_euclid(Self::CELLS as i64) as usize] = coefficient;
-                }
+        let mut tabulate =
+            |direction: usize, range| patch.tabulate(shears, direction, first[direction], range);
+        let more = |range: [i32; 2], by: [i32; 2]| [range[0] + by[0], range[1] + by[1]];
+        let y = more(y, tabulate(0, x));
+        let x = more(x, tabulate(1, y));
+        let rising = tabulate(2, [x[0] - y[1], x[1] - y[0]]);
+        let (x, y) = (more(x, rising), more(y, rising));
+        tabulate(3, [x[0] + y[0], x[1] + y[1]]);
+        patch
+    }
+
+    /// Tabulates the cells of a direction that a range of coordinates touches. Returns a range of g there.
+    fn tabulate(
+        &mut self,
+        shears: &Shears,
+        direction: usize,
+        first: i64,
+        [from, to]: [i32; 2],
+    ) -> [i32; 2] {
+        let start = i64::from(from >> CELL_BITS);
+        let cells = ((to >> CELL_BITS) - (from >> CELL_BITS)) as usize + 1;
+        debug_assert!(cells <= Self::CELLS, "{cells} cells");
+        let mut controls = [0; Self::CELLS + 2];
+        let controls = &mut controls[..cells.min(Self::CELLS) + 2];
+        shears.controls(direction, first + start - 1, controls);
+        let table = &mut self.quadratics[direction];
+        for (relative, knots) in (start..).zip(controls.windows(3)) {
+            let coefficients = quadratic([knots[0], knots[1], knots[2]]);
+            for (of_power, coefficient) in table.iter_mut().zip(coefficients) {
+                of_power[relative.rem_euclid(Self::CELLS as i64) as usize] = coefficient;
             }
         }
-        Self { quadratics }
+        // A B-spline stays within its control values. The rest is room for rounding.
+        let least = controls.iter().min().map_or(0, |v| v - 64);
+        [least, controls.iter().max().map_or(0, |v| v + 64)]
     }
 
     #[inline(always)]
@@ -91,7 +118,13 @@ mod tests {
             let origin = [column * 1024, row * 256];
             let base = origin.map(|v| i128::from(v) << FRACTION_BITS);
             let there = shears.apply([base[0] + i128::from(x), base[1] + i128::from(y)]);
-            let patch = PatchShears::new(&shears, origin).apply(x, y);
+            let around = |v: i32, low: i32, high: i32| match corner {
+                0..4 => [-128 << FRACTION_BITS, high << FRACTION_BITS],
+                // Fewer cells serve fewer points.
+                _ => [v.max((-128 << FRACTION_BITS) + low) - low, v.min((high << FRACTION_BITS) - low) + low],
+            };
+            let ranges = [around(x, 9 << FRACTION_BITS, 1152), around(y, 3 << FRACTION_BITS, 384)];
+            let patch = PatchShears::new(&shears, origin, ranges).apply(x, y);
             prop_assert_eq!([there[0] - base[0], there[1] - base[1]], patch.map(i128::from));
         }
     }
