@@ -6,7 +6,7 @@
 
 use rustfft::{FftPlanner, num_complex::Complex};
 
-use super::{Window, nufft::transform, taper};
+use super::{Window, nufft::transform};
 
 /// What two sets have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ impl Shared {
         assert!((a.side() / b.side() - 1.0).abs() < 1e-6, "equal sides");
         let side = a.side();
         let modes = (nu_max * side) as usize;
-        let sums = [a, b].map(|set| tapered(set, modes));
+        let sums = [a, b].map(|set| sums(set, modes));
         let nu = |kx: i64, ky: i64| ((kx * kx + ky * ky) as f64).sqrt() / side;
         let height = 2 * modes + 1;
         let wanted = |i: usize| {
@@ -46,18 +46,15 @@ impl Shared {
     }
 }
 
-/// The sums of a tapered window, without its mean.
-fn tapered(set: &Window, modes: usize) -> Vec<Complex<f64>> {
-    let side = set.side();
-    let turns: Vec<[f64; 2]> = set.points().iter().map(|p| p.map(|v| v / side)).collect();
-    let weights: Vec<f64> = turns
+/// The sums of a window at integer frequencies, where its mean density adds nothing. Without a taper, which
+/// would tie neighboring modes to each other.
+fn sums(set: &Window, modes: usize) -> Vec<Complex<f64>> {
+    let turns: Vec<[f64; 2]> = set
+        .points()
         .iter()
-        .map(|p| taper::value(p[0]) * taper::value(p[1]))
+        .map(|p| p.map(|v| v / set.side()))
         .collect();
-    let area = side * side;
-    transform(&turns, Some(&weights), modes, |kx, ky, sum| {
-        sum - area * taper::coefficient(kx) * taper::coefficient(ky)
-    })
+    transform(&turns, None, modes, |_, _, sum| sum)
 }
 
 type Mode = (i64, i64, f64);

@@ -45,5 +45,5 @@ pub use doubles::F64;
 pub use format::Format;
 pub(super) use format::{Geometry, Row};
 pub use points::Points;
-pub(super) use rows::{WarpedColumns, fill_row, fill_warped_row};
+pub(super) use rows::{WarpedColumns, fill_row, fill_warped_row, warp_all};
 pub use singles::F32;

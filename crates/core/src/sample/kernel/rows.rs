@@ -1,5 +1,7 @@
 //! Rows, plain and warped.
 
+use alloc::vec::Vec;
+
 use super::{
     Backend,
     dispatch::run_vectors,
@@ -175,6 +177,62 @@ impl<F: Emit> WarpedRow<'_, F> {
                     let (lattice, out) = (&columns.lattice[part.clone()], &mut self.out[part]);
                     self.format
                         .vector_items::<L>(row, [xs[k], ys[k]], lattice, out);
+                }
+            }
+        }
+        length
+    }
+}
+
+/// Warps positions: the x and y of all, whose number is a multiple of 32, into as many places.
+pub(crate) fn warp_all(
+    backend: Backend,
+    shears: &PatchShears,
+    displaced: [&[i32]; 2],
+    places: &mut [Vec<i32>; 2],
+) {
+    let [x_places, y_places] = places;
+    let length = displaced[0].len();
+    let mut all = WarpAll {
+        shears,
+        displaced: displaced.map(|list| &list[..length]),
+        places: [&mut x_places[..length], &mut y_places[..length]],
+    };
+    if run_vectors(backend, &mut all) < length {
+        let [xs, ys] = displaced;
+        let [x_places, y_places] = all.places;
+        let places = x_places.iter_mut().zip(y_places);
+        for ((x_place, y_place), (&x, &y)) in places.zip(xs.iter().zip(ys)) {
+            [*x_place, *y_place] = shears.apply(x, y);
+        }
+    }
+}
+
+/// All four slices have the same length.
+struct WarpAll<'a> {
+    shears: &'a PatchShears,
+    displaced: [&'a [i32]; 2],
+    places: [&'a mut [i32]; 2],
+}
+
+impl VectorLoop for WarpAll<'_> {
+    #[inline(always)]
+    unsafe fn run<L: Lanes>(&mut self) -> usize {
+        let length = self.displaced[0].len();
+        if !length.is_multiple_of(2 * L::WIDTH) {
+            return 0;
+        }
+        for start in (0..length).step_by(2 * L::WIDTH) {
+            // SAFETY: the machine has the instructions, and all slices have two vectors from `start` on.
+            unsafe {
+                let [xs, ys] = self.displaced.map(|list| {
+                    core::array::from_fn(|k| L::load_ints(list.as_ptr().add(start + k * L::WIDTH)))
+                });
+                let (xs, ys) = warp::<L, 2>(self.shears, xs, ys);
+                for k in 0..2 {
+                    let [to_x, to_y] = &mut self.places;
+                    L::store_ints(to_x.as_mut_ptr().add(start + k * L::WIDTH), xs[k]);
+                    L::store_ints(to_y.as_mut_ptr().add(start + k * L::WIDTH), ys[k]);
                 }
             }
         }

@@ -5,6 +5,7 @@ use core::ops::Range;
 use super::Lattice;
 use crate::{
     pattern::Axis,
+    sample::warp::Shears,
     table::{FRACTION_BITS, fixed},
 };
 
@@ -26,66 +27,68 @@ pub(crate) struct Span {
 impl Span {
     /// The spans along x and y of the box min ≤ p < max, for bounds within the lattice's limit.
     pub(crate) fn of_box(lattice: &Lattice, min: [f64; 2], max: [f64; 2]) -> [Self; 2] {
-        let axes = [Axis::X, Axis::Y];
-        let table = axes.map(|axis| lattice.table_reach(axis));
         let bounds = [0, 1].map(|i| {
             let [start, end] = [min, max].map(|corner| lattice.first_at_or_above(corner[i]));
             start..end
         });
         let is_empty = bounds.iter().any(Range::is_empty);
-        let shears = lattice.shears.as_ref().filter(|_| !is_empty);
-        let added = |a: [[i32; 2]; 2], b: [[i32; 2]; 2]| -> [[i32; 2]; 2] {
-            [0, 1].map(|i| [a[i][0] + b[i][0], a[i][1] + b[i][1]])
+        let table = reach_of(lattice);
+        let into = match &lattice.shears {
+            Some(shears) if !is_empty => added(table, shears.drift_into([&bounds[0], &bounds[1]])),
+            _ => table,
         };
-        let into = shears.map_or(table, |shears| {
-            added(table, shears.drift_into([&bounds[0], &bounds[1]]))
+        let all = [0, 1].map(|i| match &bounds[i] {
+            Range { start, end } if start == end => first(*start)..first(*start),
+            bounds => reached(bounds, into[i]),
         });
-        // The first lattice coordinate at or above a fixed-point one.
-        let first = |k: i128| -((-k) >> FRACTION_BITS) as i64;
-        let all = [0, 1].map(|i| {
-            let [least, most] = into[i].map(i128::from);
-            let Range { start, end } = bounds[i].clone();
-            if start == end {
-                first(start)..first(start)
-            } else {
-                first(start - most)..first(end - least)
-            }
-        });
-        let reach = match shears {
+        let reach = match &lattice.shears {
             Some(shears) if all.iter().all(|all| !all.is_empty()) => {
-                let displaced = [0, 1].map(|i| {
-                    let [least, most] = table[i].map(i128::from);
-                    [fixed(all[i].start) + least, fixed(all[i].end - 1) + most]
-                });
-                added(table, shears.drift_from(displaced))
+                reach_from(lattice, shears, &all)
             }
             _ => table,
         };
+        [0, 1].map(|i| Self::new(bounds[i].clone(), all[i].clone(), reach[i]))
+    }
+
+    /// The parts of spans in some columns and rows, told apart by how far the warp moves the points there.
+    pub(crate) fn of_piece(
+        lattice: &Lattice,
+        shears: &Shears,
+        spans: [&Self; 2],
+        piece: [Range<i64>; 2],
+    ) -> [Self; 2] {
+        if piece.iter().any(Range::is_empty) {
+            return [0, 1].map(|i| spans[i].within(&piece[i]));
+        }
+        let reach = reach_from(lattice, shears, &piece);
         [0, 1].map(|i| {
-            let [least, most] = reach[i].map(i128::from);
-            let all = all[i].clone();
-            let inner = first(bounds[i].start - least)..first(bounds[i].end - most);
-            let inner = if inner.is_empty() || all.is_empty() {
+            let bounds = spans[i].bounds.clone();
+            let reached = reached(&bounds, reach[i]);
+            let all = overlap(&reached, &piece[i]);
+            Self::new(bounds, all, reach[i])
+        })
+    }
+
+    /// The span of the lattice coordinates in `all`, whose points are `reach` from their addresses.
+    fn new(bounds: Range<i128>, all: Range<i64>, reach: [i32; 2]) -> Self {
+        let [least, most] = reach.map(i128::from);
+        let inner = first(bounds.start - least)..first(bounds.end - most);
+        let inner = overlap(&inner, &all);
+        Self {
+            inner: if inner.is_empty() {
                 all.end..all.end
             } else {
                 inner
-            };
-            Self {
-                bounds: bounds[i].clone(),
-                all,
-                inner,
-                reach: reach[i],
-            }
-        })
+            },
+            bounds,
+            all,
+            reach,
+        }
     }
 
     /// The part of the span in a range of lattice coordinates.
     pub(crate) fn within(&self, range: &Range<i64>) -> Self {
-        let clip = |part: &Range<i64>| {
-            let start = part.start.clamp(range.start, range.end);
-            start..part.end.clamp(start, range.end)
-        };
-        let (all, inner) = (clip(&self.all), clip(&self.inner));
+        let (all, inner) = (overlap(&self.all, range), overlap(&self.inner, range));
         Self {
             bounds: self.bounds.clone(),
             inner: if inner.is_empty() {
@@ -110,4 +113,41 @@ impl Span {
     pub(crate) fn holds(&self, v: i64, displacement: i32) -> bool {
         self.bounds.contains(&(fixed(v) + i128::from(displacement)))
     }
+}
+
+/// The part of a range within another one; empty and within that if there is none.
+fn overlap(part: &Range<i64>, whole: &Range<i64>) -> Range<i64> {
+    let start = part.start.clamp(whole.start, whole.end);
+    start..part.end.clamp(start, whole.end)
+}
+
+/// The first lattice coordinate at or above a fixed-point one.
+const fn first(k: i128) -> i64 {
+    -((-k) >> FRACTION_BITS) as i64
+}
+
+/// The lattice coordinates whose points, between two distances from their addresses, may lie in `bounds`.
+fn reached(bounds: &Range<i128>, [least, most]: [i32; 2]) -> Range<i64> {
+    first(bounds.start - i128::from(most))..first(bounds.end - i128::from(least))
+}
+
+fn reach_of(lattice: &Lattice) -> [[i32; 2]; 2] {
+    [Axis::X, Axis::Y].map(|axis| lattice.table_reach(axis))
+}
+
+fn added(a: [[i32; 2]; 2], b: [[i32; 2]; 2]) -> [[i32; 2]; 2] {
+    [0, 1].map(|i| [a[i][0] + b[i][0], a[i][1] + b[i][1]])
+}
+
+/// The least and the greatest distance of the points of some columns and rows from their addresses, by axis.
+fn reach_from(lattice: &Lattice, shears: &Shears, lines: &[Range<i64>; 2]) -> [[i32; 2]; 2] {
+    let table = reach_of(lattice);
+    let displaced = [0, 1].map(|i| {
+        let [least, most] = table[i].map(i128::from);
+        [
+            fixed(lines[i].start) + least,
+            fixed(lines[i].end - 1) + most,
+        ]
+    });
+    added(table, shears.drift_from(displaced))
 }

@@ -13,7 +13,7 @@ use crate::{
     sample::{
         cursor::Cursor,
         kernel::{Backend, Format, Geometry, Row, compiled},
-        lattice::{BAND_WIDTH, Columns, Patch, PointId, PrefixCounts, clip_to_band},
+        lattice::{BAND_WIDTH, Columns, Flat, Inside, Patch, PointId, PrefixCounts, clip_to_band},
         scope::Scope,
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale},
     },
@@ -21,6 +21,9 @@ use crate::{
 
 /// The number of lattice rows from which a band keeps its templates.
 const TALL: i64 = 512;
+
+/// The most points of a warped patch that are listed before some are written: 20 bytes each.
+const FLAT: usize = 2048;
 
 /// The points of a plan, or of one of its tiles, in order, in blocks of any size.
 ///
@@ -58,6 +61,8 @@ pub struct Blocks<F: Format> {
     patch: Patch,
     base: [f64; 2],
     backend: Backend,
+    /// The points of some rows of a warped patch, and those inside.
+    flat: (Flat, Inside),
 }
 
 /// The place of the next point in a band.
@@ -92,6 +97,11 @@ impl Place {
             done: 0,
             from: None,
         }
+    }
+
+    /// Whether nothing of the row is done.
+    const fn is_fresh(&self) -> bool {
+        self.done == 0 && self.from.is_none()
     }
 
     const fn next_row(&mut self) {
@@ -162,6 +172,7 @@ impl<F: Format> Blocks<F> {
             templates: Templates::new(&scope.lattice, is_tall, kept),
             patch,
             backend: Backend::best(),
+            flat: Default::default(),
             scope,
             window,
         }
@@ -215,6 +226,8 @@ impl<F: Format> Blocks<F> {
             let out = &mut out[filled..];
             filled += if self.sieve.as_ref().is_some_and(|sieve| sieve.is_cut) {
                 self.fill_sifted(end, out)
+            } else if self.patch.is_warped() && self.templates.are_short() && self.at.is_fresh() {
+                self.fill_flat(end, out)
             } else {
                 self.fill_rows(end, out)
             };
@@ -310,6 +323,41 @@ impl<F: Format> Blocks<F> {
         }
     }
 
+    /// Writes points of a warped patch in which few rows share a template, up to row `end` or as many as
+    /// there is room for. Rows are warped several at a time.
+    fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+        let (lattice, patch, base) = (&self.scope.lattice, &self.patch, self.base);
+        let (flat, inside) = &mut self.flat;
+        let places = Class::ALL.map(|class| 0..self.columns.of(class).len());
+        // Some two in three points of a small box's patches lie inside.
+        let enough = (2 * out.len()).clamp(64, FLAT);
+        let rows = self.at.y..end;
+        let columns = (&self.columns, &places);
+        let next = flat.list(lattice, patch, columns, rows, enough, self.backend);
+        flat.sift(patch, self.backend, inside);
+        let [left, bottom] = patch.origin();
+        compiled(self.backend, || {
+            for (out, (place, address)) in out.iter_mut().zip(inside.points()) {
+                let column = self.format.column(base, place[0], left + address[0]);
+                *out = self
+                    .format
+                    .item(base, column, place[1], bottom + address[1]);
+            }
+        });
+        self.at = Place::row(next);
+        if inside.len() > out.len()
+            && let Some((y, done)) = flat.locate(patch, out.len())
+        {
+            self.at = Place {
+                done,
+                ..Place::row(y)
+            };
+            // The rest of this row takes a template of its own.
+            self.templates.clear();
+        }
+        inside.len().min(out.len())
+    }
+
     /// Writes points of the patch's rows up to `end`, or as many as there is room for.
     fn fill_rows(&mut self, end: i64, out: &mut [F::Item]) -> usize {
         let Scope {
@@ -321,8 +369,13 @@ impl<F: Format> Blocks<F> {
         let (format, patch, base) = (&self.format, &self.patch, self.base);
         let is_split = patch.is_warped() && !patch.columns_are_inner;
         let is_direct = self.templates.are_plain() && !patch.is_warped();
+        let is_flat = self.templates.are_short() && patch.is_warped();
         let mut filled = 0;
         while self.at.y < end && filled < out.len() {
+            if is_flat && self.at.is_fresh() {
+                // Only a row that was begun is finished here.
+                break;
+            }
             let y = self.at.y;
             let Some((class, block)) = lattice.row(y) else {
                 self.at.next_row();

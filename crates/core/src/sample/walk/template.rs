@@ -354,6 +354,11 @@ impl<F: Format> Templates<F> {
         columns.map(|column| column.at).nth(n)
     }
 
+    /// Whether each row makes its own template.
+    pub(super) const fn are_short(&self) -> bool {
+        !self.is_tall
+    }
+
     /// Whether each row makes a template of its own, and only for what it writes.
     pub(super) fn are_plain(&self) -> bool {
         !self.is_tall && self.kept == Kept::Columns
