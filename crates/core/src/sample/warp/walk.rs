@@ -49,14 +49,17 @@ const SINES: [i32; 33] = [
     1_073_741_824,
 ];
 
-/// 2³⁰ times the sine of a 128th of a turn. Exactly antisymmetric.
-const fn sine(i: usize) -> i64 {
-    let quarter = SINES[match i % 64 {
-        i if i <= 32 => i,
-        i => 64 - i,
-    }] as i64;
-    if i % 128 < 64 { quarter } else { -quarter }
-}
+/// 2³⁰ times the sines of the 128ths of a turn. Exactly antisymmetric.
+static SINE: [i32; 128] = {
+    let mut all = [0; 128];
+    let mut i = 0;
+    while i < 64 {
+        let sine = SINES[if i <= 32 { i } else { 64 - i }];
+        (all[i], all[i + 64]) = (sine, -sine);
+        i += 1;
+    }
+    all
+};
 
 /// One direction of one seed.
 #[derive(Clone, Copy, Debug)]
@@ -95,21 +98,22 @@ impl Walk {
     /// The control values of a group.
     pub(super) fn group(&self, number: i64) -> Group {
         let hash = split_mix(self.key ^ (number as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
-        // A shuffle (Fisher and Yates) by one byte of the hash at a time, from the lowest on.
-        let mut order: [usize; GROUP] = core::array::from_fn(|i| i);
-        let mut bits = hash;
-        for last in (1..GROUP).rev() {
-            let other = ((bits & 255) as usize * (last + 1)) >> 8;
-            bits >>= 8;
-            order.swap(last, other);
+        // A shuffle (Fisher and Yates) of the bytes of `order`, by one byte of the hash at a time from the
+        // lowest on.
+        let mut order = 0x0706_0504_0302_0100u64;
+        for (i, last) in (1..GROUP as u64).rev().enumerate() {
+            let other = ((hash >> (8 * i) & 255) * (last + 1)) >> 8;
+            let different = (order >> (8 * last) ^ order >> (8 * other)) & 255;
+            order ^= different << (8 * last);
+            order ^= different << (8 * other);
         }
         // The highest byte is left; its lowest four bits turn the angles by up to an eighth of a turn.
-        let phase = (bits & 15) as usize;
+        let phase = (hash >> 56 & 15) as usize;
         let mut sum = 0;
-        order.map(|i| {
-            let product = sine(16 * i + phase) * i64::from(self.step);
+        core::array::from_fn(|i| {
+            let angle = 16 * (order >> (8 * i) & 7) as usize + phase;
             // Toward zero, so that opposite sines make opposite steps.
-            sum += (product / (1 << 30)) as i32;
+            sum += (i64::from(SINE[angle]) * i64::from(self.step) / (1 << 30)) as i32;
             sum
         })
     }
@@ -140,7 +144,7 @@ mod tests {
         for i in 0..128 {
             let expected = libm::sin(core::f64::consts::TAU * i as f64 / 128.0);
             let expected = libm::round(expected * f64::from(1 << 30)) as i64;
-            assert_eq!(sine(i), expected, "{i}");
+            assert_eq!(i64::from(SINE[i]), expected, "{i}");
         }
     }
 
