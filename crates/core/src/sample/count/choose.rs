@@ -14,8 +14,8 @@ pub(crate) fn count(scope: &Scope, columns: &Range<i64>, rows: &Range<i64>) -> u
         sifted::count(lattice, sieve, [&x, &y], stop)
     } else if x.bounds.is_empty() || y.bounds.is_empty() {
         0
-    } else if let Some(shears) = &lattice.shears {
-        margins::count(lattice, shears, [&x, &y], stop)
+    } else if lattice.shears.is_some() {
+        margins::count(lattice, [&x, &y], stop)
     } else {
         boxes::count(lattice, &x, &y)
     }

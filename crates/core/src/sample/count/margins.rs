@@ -11,15 +11,13 @@ use crate::{
         kernel::Backend,
         lattice::{BAND_WIDTH, Columns, Flat, Lattice, PATCH_HEIGHT, Patch, Span},
         stop::Stop,
-        warp::Shears,
     },
 };
 
 /// The number of points of a warped box; meaningless once `stop` is raised.
-pub(super) fn count(lattice: &Lattice, shears: &Shears, [x, y]: [&Span; 2], stop: &Stop) -> u128 {
+pub(super) fn count(lattice: &Lattice, [x, y]: [&Span; 2], stop: &Stop) -> u128 {
     let mut margins = Margins {
         lattice,
-        shears,
         spans: [x, y],
         stop,
         columns: Columns::default(),
@@ -56,7 +54,6 @@ const PIECE: [i64; 2] = [128, 64];
 
 struct Margins<'a> {
     lattice: &'a Lattice,
-    shears: &'a Shears,
     spans: [&'a Span; 2],
     stop: &'a Stop,
     columns: Columns,
@@ -103,7 +100,7 @@ impl Margins<'_> {
 
     fn count_piece(&mut self, patch: &Patch, columns: Range<i64>, rows: Range<i64>) -> usize {
         let (lattice, backend) = (self.lattice, self.backend);
-        let [x, y] = Span::of_piece(lattice, self.shears, self.spans, [columns, rows]);
+        let [x, y] = Span::of_piece(lattice, self.spans, [columns, rows]);
         let [left, right] = x.margins().map(|margin| self.columns.places(&margin));
         let [all, inner] = [&x.all, &x.inner].map(|range| self.columns.places(range));
         let (mut count, mut is_first) = (0, true);

@@ -120,7 +120,7 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
                 emit(&format, *row, own, dys, &mut plain);
                 let moved: Vec<F::Item> = part
                     .map(|i| {
-                        let [x, y] = shears.apply(displaced[i], row.y + displacements[i]);
+                        let [x, y] = shears.apply_others(displaced[i], row.y + displacements[i]);
                         let column = format.column(row.base, x, lattice[i]);
                         format.item(row.base, column, y, row.lattice)
                     })
@@ -128,6 +128,7 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
                 let warped = WarpedColumns {
                     displaced: &displaced[from..],
                     displacements: dys,
+                    range: [dys.iter().min(), dys.iter().max()].map(|v| v.copied().unwrap_or(0)),
                     lattice: &lattice[from..],
                 };
                 for backend in Backend::available() {

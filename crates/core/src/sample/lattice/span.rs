@@ -53,20 +53,20 @@ impl Span {
     /// The parts of spans in some columns and rows, told apart by how far the warp moves the points there.
     pub(crate) fn of_piece(
         lattice: &Lattice,
-        shears: &Shears,
         spans: [&Self; 2],
         piece: [Range<i64>; 2],
     ) -> [Self; 2] {
-        if piece.iter().any(Range::is_empty) {
-            return [0, 1].map(|i| spans[i].within(&piece[i]));
+        match &lattice.shears {
+            Some(shears) if !piece.iter().any(Range::is_empty) => {
+                let reach = reach_from(lattice, shears, &piece);
+                [0, 1].map(|i| {
+                    let bounds = spans[i].bounds.clone();
+                    let all = overlap(&reached(&bounds, reach[i]), &piece[i]);
+                    Self::new(bounds, all, reach[i])
+                })
+            }
+            _ => [0, 1].map(|i| spans[i].within(&piece[i])),
         }
-        let reach = reach_from(lattice, shears, &piece);
-        [0, 1].map(|i| {
-            let bounds = spans[i].bounds.clone();
-            let reached = reached(&bounds, reach[i]);
-            let all = overlap(&reached, &piece[i]);
-            Self::new(bounds, all, reach[i])
-        })
     }
 
     /// The span of the lattice coordinates in `all`, whose points are `reach` from their addresses.

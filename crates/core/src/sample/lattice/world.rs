@@ -4,7 +4,7 @@ use super::{Placement, Point, PointId, rank::side_for};
 use crate::{
     map::Map,
     pattern::{Axis, Class, Pattern},
-    sample::warp::{Shears, Stretch},
+    sample::warp::{NearShears, Shears, Stretch},
     table::{FRACTION_BITS, Table, Vectors, fixed},
 };
 
@@ -110,7 +110,11 @@ impl Lattice {
         let [dx, dy] = self.vectors(block_y)[block_x];
         let displaced = [fixed(id.x) + i128::from(dx), fixed(id.y) + i128::from(dy)];
         let warped = match &self.shears {
-            Some(shears) => shears.apply(displaced),
+            Some(shears) => {
+                let (mut near, origin) = NearShears::new(shears, displaced);
+                let place = near.apply([0, 1].map(|i| (displaced[i] - origin[i]) as i64));
+                [0, 1].map(|i| origin[i] + i128::from(place[i]))
+            }
             None => displaced,
         };
         let [x, y] = warped.map(|k| self.world(k));

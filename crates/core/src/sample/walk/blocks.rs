@@ -13,7 +13,9 @@ use crate::{
     sample::{
         cursor::Cursor,
         kernel::{Backend, Format, Geometry, Row, compiled},
-        lattice::{BAND_WIDTH, Columns, Flat, Inside, Patch, PointId, PrefixCounts, clip_to_band},
+        lattice::{
+            BAND_WIDTH, Columns, Flat, Inside, Patch, PointId, PrefixCounts, Span, clip_to_band,
+        },
         scope::Scope,
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale},
     },
@@ -59,6 +61,8 @@ pub struct Blocks<F: Format> {
     inner: [Range<usize>; 4],
     templates: Templates<F>,
     patch: Patch,
+    /// The scope's spans in the patch.
+    piece: [Span; 2],
     base: [f64; 2],
     backend: Backend,
     /// The points of some rows of a warped patch, and those inside.
@@ -153,6 +157,7 @@ impl<F: Format> Blocks<F> {
         let is_tall = rows.end - rows.start >= TALL;
         Self {
             base: format.base(patch.origin()),
+            piece: [scope.x.clone(), scope.y.clone()],
             format,
             band: bands.start,
             bands,
@@ -314,9 +319,17 @@ impl<F: Format> Blocks<F> {
         let Scope { lattice, x, y, .. } = &*self.scope;
         self.patch = Patch::new(lattice, self.band, self.at.y, x, y);
         self.base = self.format.base(self.patch.origin());
+        let rows = self.at.y..self.patch.end().min(self.rows.end);
+        let columns = clip_to_band(self.band, &x.all);
+        if self.patch.is_warped() {
+            self.piece = Span::of_piece(lattice, [x, y], [columns.clone(), rows.clone()]);
+        }
         if let Some(sifting) = &mut self.sieve {
-            let rows = self.at.y..self.patch.end().min(self.rows.end);
-            let columns = clip_to_band(self.band, &x.all);
+            if self.patch.is_warped() {
+                sifting
+                    .patch
+                    .set_reach([0, 1].map(|axis| self.piece[axis].reach));
+            }
             if sifting.next_patch(&rows, &columns) {
                 self.at = Place::row(rows.end);
             }
@@ -360,12 +373,8 @@ impl<F: Format> Blocks<F> {
 
     /// Writes points of the patch's rows up to `end`, or as many as there is room for.
     fn fill_rows(&mut self, end: i64, out: &mut [F::Item]) -> usize {
-        let Scope {
-            lattice,
-            x,
-            y: span,
-            ..
-        } = &*self.scope;
+        let lattice = &self.scope.lattice;
+        let [x, span] = &self.piece;
         let (format, patch, base) = (&self.format, &self.patch, self.base);
         let is_split = patch.is_warped() && !patch.columns_are_inner;
         let is_direct = self.templates.are_plain() && !patch.is_warped();
@@ -377,7 +386,8 @@ impl<F: Format> Blocks<F> {
                 break;
             }
             let y = self.at.y;
-            let Some((class, block)) = lattice.row(y) else {
+            let line = lattice.row(y).filter(|_| span.all.contains(&y));
+            let Some((class, block)) = line else {
                 self.at.next_row();
                 continue;
             };
@@ -418,7 +428,7 @@ impl<F: Format> Blocks<F> {
                     check: Check::Bounds,
                 }
             } else if is_split {
-                next_part(template, self.at.done, &x.inner)
+                next_part(template, self.at.done, x)
             } else {
                 Part {
                     columns: self.at.done..template.len(),
@@ -487,7 +497,7 @@ impl<F: Format> Blocks<F> {
                 } else {
                     let columns = displaced(patch, &columns[part], vectors);
                     let passes = |place| sifting.patch.passes(run, scale.world(place));
-                    sift(format, patch, row, columns, passes, out)
+                    sift(format, row, columns, (|p| patch.place(p), passes), out)
                 };
                 filled += progress.written;
                 self.at.done = start + progress.done;
@@ -502,16 +512,17 @@ impl<F: Format> Blocks<F> {
 }
 
 /// The next columns of a warped row that need one kind of check: those left of the inner columns, the
-/// inner ones, or those right of them.
-fn next_part<F: Format>(template: &Template<F>, done: usize, inner: &Range<i64>) -> Part {
-    let inner = [inner.start, inner.end].map(|v| template.columns_before(v));
-    let (end, check) = if done < inner[0] {
-        (inner[0], Check::Bounds)
-    } else if done < inner[1] {
-        (inner[1], Check::Nothing)
-    } else {
-        (template.len(), Check::Bounds)
-    };
+/// inner ones, those right of them, or those whose points all lie outside.
+fn next_part<F: Format>(template: &Template<F>, done: usize, x: &Span) -> Part {
+    let before = |v| template.columns_before(v);
+    let parts = [
+        (before(x.all.start), Check::Outside),
+        (before(x.inner.start), Check::Bounds),
+        (before(x.inner.end), Check::Nothing),
+        (before(x.all.end), Check::Bounds),
+    ];
+    let next = parts.into_iter().find(|&(end, _)| done < end);
+    let (end, check) = next.unwrap_or((template.len(), Check::Outside));
     Part {
         columns: done..end,
         check,

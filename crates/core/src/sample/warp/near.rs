@@ -18,10 +18,13 @@ impl<'a> NearShears<'a> {
     pub(crate) fn new(shears: &'a Shears, place: [i128; 2]) -> (Self, [i128; 2]) {
         let [x, y] = place.map(|v| (v >> CELL_BITS) as i64);
         let cells = across([x, y]);
-        let mut last = [(0, [0.0; 3]); 4];
-        for (i, last) in last.iter_mut().enumerate() {
-            last.1 = shears.quadratic(i, cells[i]);
-        }
+        let relative = across(place.map(|v| (v & CELL_MASK) as i64)).map(|s| s >> CELL_BITS);
+        // The cells of the place itself, which one shear after another mostly leaves unchanged. Found
+        // beforehand, they do not wait for each other.
+        let last = core::array::from_fn(|i| {
+            let cell = cells[i].wrapping_add(relative[i]);
+            (relative[i], shears.quadratic(i, cell))
+        });
         let near = Self {
             shears,
             cells,
@@ -30,21 +33,28 @@ impl<'a> NearShears<'a> {
         (near, [x, y].map(|v| i128::from(v) << CELL_BITS))
     }
 
-    /// [`Shears::apply`], relative to the origin.
+    #[inline]
+    fn noise(&mut self, i: usize, s: i64) -> i64 {
+        let cell = s >> CELL_BITS;
+        if self.last[i].0 != cell {
+            let quadratic = self.shears.quadratic(i, self.cells[i].wrapping_add(cell));
+            self.last[i] = (cell, quadratic);
+        }
+        evaluate(&self.last[i].1, (s & CELL_MASK as i64) as i32).into()
+    }
+
+    /// The place to which the warp moves a position, both relative to the origin.
     #[inline]
     pub(crate) fn apply(&mut self, position: [i64; 2]) -> [i64; 2] {
-        (0..4).fold(position, |p, i| {
-            shear(i, p, |s| {
-                let cell = s >> CELL_BITS;
-                if self.last[i].0 != cell {
-                    self.last[i] = (
-                        cell,
-                        self.shears.quadratic(i, self.cells[i].wrapping_add(cell)),
-                    );
-                }
-                evaluate(&self.last[i].1, (s & CELL_MASK as i64) as i32).into()
-            })
-        })
+        (0..4).fold(position, |p, i| shear(i, p, |s| self.noise(i, s)))
+    }
+
+    /// The exact inverse of [`apply`](Self::apply).
+    #[inline]
+    pub(crate) fn invert(&mut self, position: [i64; 2]) -> [i64; 2] {
+        (0..4)
+            .rev()
+            .fold(position, |p, i| shear(i, p, |s| -self.noise(i, s)))
     }
 }
 
@@ -67,6 +77,9 @@ mod tests {
                 let there = shears.apply([left + i128::from(dx), bottom + i128::from(dy)]);
                 let [dx, dy] = relative.apply([dx, dy]).map(i128::from);
                 prop_assert_eq!(there, [left + dx, bottom + dy]);
+                let [x, y] = [there[0] - left, there[1] - bottom].map(|v| v as i64);
+                let back = relative.invert([x, y]).map(i128::from);
+                prop_assert_eq!(shears.invert(there), [left + back[0], bottom + back[1]]);
             }
         }
     }

@@ -74,15 +74,26 @@ impl PatchShears {
         evaluate(&quadratic, s & Self::CELL_MASK)
     }
 
-    /// [`Shears::apply`], relative to the origin.
+    /// The movement along y of the first shear, which depends on x alone.
     #[inline(always)]
-    pub(crate) fn apply(&self, x: i32, y: i32) -> [i32; 2] {
-        let y = y + self.noise(0, x);
+    pub(crate) fn first(&self, x: i32) -> i32 {
+        self.noise(0, x)
+    }
+
+    /// The place of a position after the first shear, both relative to the origin.
+    #[inline(always)]
+    pub(crate) fn apply_others(&self, x: i32, y: i32) -> [i32; 2] {
         let x = x + self.noise(1, y);
         let rising = self.noise(2, x - y);
         let (x, y) = (x + rising, y + rising);
         let falling = self.noise(3, x + y);
         [x + falling, y - falling]
+    }
+
+    /// The place to which the warp moves a position, both relative to the origin.
+    #[inline(always)]
+    pub(crate) fn apply(&self, x: i32, y: i32) -> [i32; 2] {
+        self.apply_others(x, y + self.first(x))
     }
 }
 

@@ -104,17 +104,21 @@ impl Shears {
         quadratic(controls)
     }
 
+    #[cfg(test)]
     fn noise(&self, direction: usize, s: i128) -> i128 {
         let quadratic = self.quadratic(direction, (s >> CELL_BITS) as i64);
         evaluate(&quadratic, (s & CELL_MASK) as i32).into()
     }
 
-    /// The place to which the warp moves a fixed-point position.
+    /// The place to which the warp moves a fixed-point position, without the shortcuts of
+    /// [`NearShears`](super::NearShears) and [`PatchShears`](super::PatchShears).
+    #[cfg(test)]
     pub(crate) fn apply(&self, position: [i128; 2]) -> [i128; 2] {
         (0..4).fold(position, |p, i| shear(i, p, |s| self.noise(i, s)))
     }
 
     /// The exact inverse of [`apply`](Self::apply).
+    #[cfg(test)]
     pub(crate) fn invert(&self, position: [i128; 2]) -> [i128; 2] {
         (0..4)
             .rev()
