@@ -66,8 +66,10 @@ impl TableDraft {
                     vec![fault("map", text, detail, allowed)]
                 })?
             }
-            None if sizes.contains(&Size::S) => Size::S,
-            None => smallest,
+            None => *[Size::M, Size::S]
+                .iter()
+                .find(|size| sizes.contains(size))
+                .unwrap_or(&smallest),
         };
         let entry = catalog.entry(&Key {
             profile: profile.into(),
