@@ -67,23 +67,23 @@ fn power_correlation(
     // Rings four modes wide.
     let ring = |nu: f64| (nu * side / 4.0) as usize;
     let mut means: Vec<[f64; 3]> = Vec::new();
-    for i in 0..sums[0].len() {
+    for (i, (a, b)) in sums[0].iter().zip(&sums[1]).enumerate() {
         if let Some((_, _, nu)) = wanted(i) {
             if means.len() <= ring(nu) {
                 means.resize(ring(nu) + 1, [0.0; 3]);
             }
             let mean = &mut means[ring(nu)];
-            mean[0] += sums[0][i].norm_sqr();
-            mean[1] += sums[1][i].norm_sqr();
+            mean[0] += a.norm_sqr();
+            mean[1] += b.norm_sqr();
             mean[2] += 1.0;
         }
     }
     let (mut both, mut own) = (0.0, [0.0; 2]);
-    for i in 0..sums[0].len() {
+    for (i, (a, b)) in sums[0].iter().zip(&sums[1]).enumerate() {
         if let Some((_, _, nu)) = wanted(i) {
             let mean = means[ring(nu)];
-            let relative = |j: usize| sums[j][i].norm_sqr() * mean[2] / mean[j] - 1.0;
-            let [a, b] = [relative(0), relative(1)];
+            let a = a.norm_sqr() * mean[2] / mean[0] - 1.0;
+            let b = b.norm_sqr() * mean[2] / mean[1] - 1.0;
             both += a * b;
             own = [own[0] + a * a, own[1] + b * b];
         }
@@ -98,9 +98,9 @@ fn phase_peak(
 ) -> f64 {
     let size = 2 * (modes + 1);
     let mut grid = vec![Complex::default(); size * size];
-    for i in 0..sums[0].len() {
+    for (i, (a, b)) in sums[0].iter().zip(&sums[1]).enumerate() {
         if let Some((kx, ky, _)) = wanted(i) {
-            let cross = sums[0][i] * sums[1][i].conj();
+            let cross = a * b.conj();
             let phase = cross / cross.norm().max(f64::MIN_POSITIVE);
             let place = |k: i64| k.rem_euclid(size as i64) as usize;
             grid[place(kx) * size + place(ky)] = phase;

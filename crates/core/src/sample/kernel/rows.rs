@@ -285,8 +285,8 @@ unsafe fn loaded<L: Lanes, const K: usize>(from: *const i32) -> [L::Ints; K] {
     // SAFETY: as the caller ensures.
     unsafe {
         let mut all = [L::load_ints(from); K];
-        for k in 1..K {
-            all[k] = L::load_ints(from.add(k * L::WIDTH));
+        for (k, vector) in all.iter_mut().enumerate().skip(1) {
+            *vector = L::load_ints(from.add(k * L::WIDTH));
         }
         all
     }

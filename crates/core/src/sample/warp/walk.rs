@@ -141,10 +141,10 @@ mod tests {
 
     #[test]
     fn sines_are_those_of_the_library() {
-        for i in 0..128 {
+        for (i, &sine) in SINE.iter().enumerate() {
             let expected = libm::sin(core::f64::consts::TAU * i as f64 / 128.0);
             let expected = libm::round(expected * f64::from(1 << 30)) as i64;
-            assert_eq!(i64::from(SINE[i]), expected, "{i}");
+            assert_eq!(i64::from(sine), expected, "{i}");
         }
     }
 
