@@ -3,7 +3,7 @@
 use alloc::{sync::Arc, vec, vec::Vec};
 use core::fmt;
 
-use super::{Digest, Displacement, Provenance, file, parts::Parts};
+use super::{Digest, Displacement, Provenance, file, parts::Parts, symmetry::Turned};
 use crate::{error::Error, map::Map, once::Once, pattern::Alpha};
 
 /// The displacement vectors of one noise profile for one neighborhood map, with their history.
@@ -29,6 +29,7 @@ struct Content {
     reach: [[i32; 2]; 2],
     /// The least squared distance between two points, once it has been computed.
     least_squared: Once<u64>,
+    turned: Turned,
 }
 
 impl Table {
@@ -81,6 +82,7 @@ impl Table {
             digest,
             reach,
             least_squared: Once::new(),
+            turned: Turned::new(),
         }))
     }
 
@@ -235,7 +237,8 @@ impl Table {
         self.0.digest
     }
 
-    /// About the memory that the table holds, in bytes.
+    /// About the memory that the table may come to hold, in bytes: seeds turn it, and each of the eight
+    /// ways has a copy of the vectors once it is used.
     ///
     /// ```
     /// use strew_core::Table;
@@ -249,7 +252,7 @@ impl Table {
     pub fn memory_bytes(&self) -> usize {
         // A bound, a label and about two buckets for each interval.
         let map = 32 * self.map().intervals();
-        size_of::<Content>() + size_of_val(self.displacements()) + map + 4096
+        size_of::<Content>() + 8 * size_of_val(self.displacements()) + map + 4096
     }
 
     /// The least and the greatest displacement along x and y.
@@ -257,10 +260,9 @@ impl Table {
         self.0.reach
     }
 
-    /// The vectors of all blocks with one interval of dY.
-    pub(crate) fn row(&self, block_y: usize) -> &[Displacement] {
-        let n = self.map().intervals();
-        &self.displacements()[block_y * n..][..n]
+    /// The copies of the vectors for the symmetries of seeds.
+    pub(super) fn turned(&self) -> &Turned {
+        &self.0.turned
     }
 
     /// The result of `compute` when it was first called.

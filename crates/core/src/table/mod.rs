@@ -18,7 +18,7 @@
 //!
 //! `displacement` has the [`Table`], made of the `parts` that a `file` holds; `units` the fixed point,
 //! `provenance` the history, `digest` the name, `text` the published text form. `shipped` has the
-//! tables built into this crate.
+//! tables built into this crate, `symmetry` the ways to turn a table.
 
 mod digest;
 mod displacement;
@@ -27,6 +27,7 @@ mod parts;
 mod provenance;
 #[cfg(feature = "tables")]
 pub(crate) mod shipped;
+mod symmetry;
 mod text;
 mod units;
 
@@ -36,5 +37,6 @@ pub use file::{FORMAT_VERSION, MAX_FILE_BYTES};
 pub use provenance::{Figures, Provenance};
 #[cfg(feature = "tables")]
 pub use shipped::BLUE;
+pub(crate) use symmetry::{Symmetry, Vectors};
 pub(crate) use units::fixed;
 pub use units::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, from_grid_units, to_grid_units};

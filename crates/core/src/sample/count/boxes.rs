@@ -124,15 +124,16 @@ mod tests {
         let table = Table::new(map, "test", vectors, Provenance::default()).expect("valid");
         let placement = Placement::new(Spacing::new(1.0).expect("valid"), Seed(0));
         let lattice = Lattice::new(table, placement);
-        let span = |axis, min: f64, side: f64| {
-            let bounds = [min, min + side].map(|bound| lattice.first_at_or_above(bound));
-            Span::new(&lattice, axis, bounds[0]..bounds[1])
-        };
         for (i, size) in [0.5, 3.0, 9.5, 31.6, 64.0, 150.0].into_iter().enumerate() {
             for [width, height] in [[size, size], [size, 2.0], [1.0, size]] {
                 let min = [i as f64 * 1e6 - 3e6, 17.3 - i as f64 * 977.0];
-                let x = span(Axis::X, min[0], width);
-                let y = span(Axis::Y, min[1], height);
+                let max = [min[0] + width, min[1] + height];
+                let bounds = [0, 1].map(|i| {
+                    let [start, end] =
+                        [min, max].map(|corner| lattice.first_at_or_above(corner[i]));
+                    start..end
+                });
+                let [x, y] = Span::of_box(&lattice, bounds);
                 let by_rows = count_rows(&lattice, &x, &y);
                 assert_eq!(by_rows, count_blocks(&lattice, &x, &y), "{min:?}");
                 assert_eq!(by_rows, count(&lattice, &x, &y));

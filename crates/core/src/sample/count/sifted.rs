@@ -24,6 +24,7 @@ pub(super) fn count(lattice: &Lattice, sieve: &Sieve, [x, y]: [&Span; 2], stop: 
     let mut strip = sieve.local();
     let mut edges = Edges {
         lattice,
+        spans: [x, y],
         stop,
         sieve: sieve.local(),
         bands: vec![Band::default(); BANDS],
@@ -59,6 +60,7 @@ pub(super) fn count(lattice: &Lattice, sieve: &Sieve, [x, y]: [&Span; 2], stop: 
 /// Counts pieces of patches through which an edge may run, row by row.
 struct Edges<'a> {
     lattice: &'a Lattice,
+    spans: [&'a Span; 2],
     stop: &'a Stop,
     sieve: LocalSieve,
     /// By the lowest bits of the band's number.
@@ -87,6 +89,11 @@ impl Edges<'_> {
         columns: Range<i64>,
     ) -> u128 {
         let lattice = self.lattice;
+        if patch.is_warped() {
+            let piece = [columns.clone(), rows.clone()];
+            let piece = Span::of_piece(lattice, self.spans, piece);
+            self.sieve.set_reach(piece.map(|span| span.reach));
+        }
         self.sieve.aim(area, &rows, &columns);
         let kept = &mut self.bands[band.rem_euclid(BANDS as i64) as usize];
         if kept.number != Some(band) {

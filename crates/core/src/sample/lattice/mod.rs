@@ -7,9 +7,11 @@
 //! membership. The bounds of chunks are exact multiples of their size (`multiple`).
 //!
 //! Work proceeds in pieces: `lines` lists the columns and rows that hold points, `prefix` counts them,
-//! `patch` has the bands and patches in which positions fit 32 bits. `point` is what comes out, `rank`
+//! `patch` has the bands and patches in which positions fit 32 bits, `flat` the points of a patch without
+//! gaps. `point` is what comes out, `rank`
 //! the order in which points leave.
 
+mod flat;
 mod keep;
 mod lines;
 mod multiple;
@@ -22,6 +24,7 @@ mod spacing;
 mod span;
 mod world;
 
+pub(super) use flat::{Flat, Inside};
 pub use keep::Keep;
 pub(super) use lines::{Columns, Line, lines_of_class};
 pub(super) use multiple::Multiple;

@@ -51,9 +51,19 @@ impl Patch {
             origin,
             bounds: [relative(x, origin[0]), relative(y, origin[1])],
             columns_are_inner: x.inner.start <= origin[0] && origin[0] + BAND_WIDTH <= x.inner.end,
-            shears: lattice
-                .shears
-                .map(|shears| Box::new(PatchShears::new(&shears, origin))),
+            shears: lattice.shears.map(|shears| {
+                let ranges = [(Axis::X, x, BAND_WIDTH), (Axis::Y, y, PATCH_HEIGHT)].map(
+                    |(axis, span, length)| {
+                        let origin = origin[axis as usize];
+                        let [least, most] = lattice.table_reach(axis);
+                        let first = span.all.start.clamp(origin, origin + length) - origin;
+                        let end = span.all.end.clamp(origin, origin + length) - origin;
+                        let fixed = |v: i64| (v << FRACTION_BITS) as i32;
+                        [fixed(first) + least, fixed(end - 1) + most]
+                    },
+                );
+                Box::new(PatchShears::new(&shears, origin, ranges))
+            }),
         }
     }
 

@@ -4,8 +4,8 @@ use super::{Placement, Point, PointId, rank::side_for};
 use crate::{
     map::Map,
     pattern::{Axis, Class, Pattern},
-    sample::warp::{Shears, Stretch},
-    table::{FRACTION_BITS, Table, fixed},
+    sample::warp::{NearShears, Shears, Stretch},
+    table::{FRACTION_BITS, Table, Vectors, fixed},
 };
 
 /// The largest absolute lattice coordinate of a region and of an id, 2⁵². Up to there `f64` separates
@@ -28,6 +28,8 @@ pub const LATTICE_LIMIT: i64 = 1 << 52;
 pub(crate) struct Lattice {
     pub(crate) table: Table,
     pub(crate) placement: Placement,
+    /// The table's vectors, turned by the seed's symmetry.
+    vectors: Vectors,
     /// The pattern from the seed's origin, thinned to the share that is kept.
     pub(crate) pattern: Pattern,
     pub(crate) shears: Option<Shears>,
@@ -55,9 +57,10 @@ impl Lattice {
         } = placement;
         // The mean spacing in the grid is 1/t, so a scale of spacing · t makes it `spacing`.
         let scale = spacing.get() * alpha.set_side_f64();
-        let shears = Shears::new(warp, seed, alpha.set_side_f64());
+        let shears = Shears::new(warp, seed);
         Self {
             placement,
+            vectors: Vectors::new(&table, seed.symmetry()),
             pattern: Pattern::with_origin(alpha, seed.origin())
                 .thinned(side_for(keep.get(), alpha.set_side())),
             stretch: Stretch::of(shears.as_ref()),
@@ -81,15 +84,12 @@ impl Lattice {
     /// The vectors of all blocks with one interval of dY.
     #[inline]
     pub(crate) fn vectors(&self, block_y: usize) -> &[[i32; 2]] {
-        self.table.row(block_y)
+        self.vectors.row(block_y)
     }
 
-    /// The least and the greatest distance of a point from its lattice address along an axis, in
-    /// fixed-point units.
-    pub(crate) fn reach(&self, axis: Axis) -> [i32; 2] {
-        let [least, most] = self.table.reach()[axis as usize];
-        let warp = self.shears.map_or(0, |shears| shears.reach());
-        [least - warp, most + warp]
+    /// The least and the greatest displacement along an axis, without the warp.
+    pub(crate) const fn table_reach(&self, axis: Axis) -> [i32; 2] {
+        self.vectors.reach()[axis as usize]
     }
 
     /// The blocks of dX and dY of an address, or `None` if it has no point.
@@ -110,7 +110,11 @@ impl Lattice {
         let [dx, dy] = self.vectors(block_y)[block_x];
         let displaced = [fixed(id.x) + i128::from(dx), fixed(id.y) + i128::from(dy)];
         Some(match &self.shears {
-            Some(shears) => shears.apply(displaced),
+            Some(shears) => {
+                let (mut near, origin) = NearShears::new(shears, displaced);
+                let place = near.apply([0, 1].map(|i| (displaced[i] - origin[i]) as i64));
+                [0, 1].map(|i| origin[i] + i128::from(place[i]))
+            }
             None => displaced,
         })
     }

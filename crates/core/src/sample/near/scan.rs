@@ -42,14 +42,15 @@ pub(super) fn scan(
     mut visit: impl FnMut(f64, Point) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let there = at.map(|v| (v / lattice.step) as i128);
-    let center = lattice.shears.map_or(there, |shears| shears.invert(there));
     // Positions relative to `origin` are small.
-    let (mut shears, origin) = match &lattice.shears {
+    let (mut shears, origin, center) = match &lattice.shears {
         Some(shears) => {
-            let (near, origin) = NearShears::new(shears, center);
-            (Some(near), origin)
+            let (mut near, origin) = NearShears::new(shears, there);
+            let center = near.invert([0, 1].map(|i| (there[i] - origin[i]) as i64));
+            let center = [0, 1].map(|i| origin[i] + i128::from(center[i]));
+            (Some(near), origin, center)
         }
-        None => (None, center),
+        None => (None, there, there),
     };
     let [left, bottom] = [0, 1].map(|i| (center[i] - origin[i]) as i64);
     let reach = unwarped_reach(lattice, at, radius);
@@ -96,7 +97,7 @@ fn unwarped_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> f64 {
 
 /// The lattice coordinates along an axis whose points may lie within `reach`.
 fn candidates(lattice: &Lattice, axis: Axis, center: i128, reach: f64) -> RangeInclusive<i64> {
-    let [least, most] = lattice.table.reach()[axis as usize];
+    let [least, most] = lattice.table_reach(axis);
     let reach = reach as i128 + 1;
     let first = center - reach - i128::from(most);
     let last = center + reach - i128::from(least);

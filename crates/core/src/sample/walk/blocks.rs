@@ -13,7 +13,9 @@ use crate::{
     sample::{
         cursor::Cursor,
         kernel::{Backend, Format, Geometry, Row, compiled},
-        lattice::{BAND_WIDTH, Columns, Patch, PointId, PrefixCounts, clip_to_band},
+        lattice::{
+            BAND_WIDTH, Columns, Flat, Inside, Patch, PointId, PrefixCounts, Span, clip_to_band,
+        },
         scope::{Corner, Scope},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale},
     },
@@ -21,6 +23,9 @@ use crate::{
 
 /// The number of lattice rows from which a band keeps its templates.
 const TALL: i64 = 512;
+
+/// The most points of a warped patch that are listed before some are written: 20 bytes each.
+const FLAT: usize = 2048;
 
 /// The points of a plan, or of one of its tiles, in order, in blocks of any size.
 ///
@@ -56,8 +61,12 @@ pub struct Blocks<F: Format> {
     inner: [Range<usize>; 4],
     templates: Templates<F>,
     patch: Patch,
+    /// The scope's spans in the patch.
+    piece: [Span; 2],
     base: [f64; 2],
     backend: Backend,
+    /// The points of some rows of a warped patch, and those inside.
+    flat: (Flat, Inside),
 }
 
 /// The place of the next point in a band.
@@ -92,6 +101,11 @@ impl Place {
             done: 0,
             from: None,
         }
+    }
+
+    /// Whether nothing of the row is done.
+    const fn is_fresh(&self) -> bool {
+        self.done == 0 && self.from.is_none()
     }
 
     const fn next_row(&mut self) {
@@ -151,6 +165,7 @@ impl<F: Format> Blocks<F> {
         let is_tall = rows.end - rows.start >= TALL;
         Self {
             base: format.base(patch.origin()),
+            piece: [scope.x.clone(), scope.y.clone()],
             format,
             band: bands.start,
             bands,
@@ -170,6 +185,7 @@ impl<F: Format> Blocks<F> {
             templates: Templates::new(&scope.lattice, is_tall, kept),
             patch,
             backend: Backend::best(),
+            flat: Default::default(),
             scope,
             window,
         }
@@ -223,6 +239,8 @@ impl<F: Format> Blocks<F> {
             let out = &mut out[filled..];
             filled += if self.sieve.as_ref().is_some_and(|sieve| sieve.is_cut) {
                 self.fill_sifted(end, out)
+            } else if self.patch.is_warped() && self.templates.are_short() && self.at.is_fresh() {
+                self.fill_flat(end, out)
             } else {
                 self.fill_rows(end, out)
             };
@@ -309,30 +327,75 @@ impl<F: Format> Blocks<F> {
         let Scope { lattice, x, y, .. } = &*self.scope;
         self.patch = Patch::new(lattice, self.band, self.at.y, x, y);
         self.base = self.format.base(self.patch.origin());
+        let rows = self.at.y..self.patch.end().min(self.rows.end);
+        let columns = clip_to_band(self.band, &x.all);
+        if self.patch.is_warped() {
+            self.piece = Span::of_piece(lattice, [x, y], [columns.clone(), rows.clone()]);
+        }
         if let Some(sifting) = &mut self.sieve {
-            let rows = self.at.y..self.patch.end().min(self.rows.end);
-            let columns = clip_to_band(self.band, &x.all);
+            if self.patch.is_warped() {
+                sifting
+                    .patch
+                    .set_reach([0, 1].map(|axis| self.piece[axis].reach));
+            }
             if sifting.next_patch(&rows, &columns) {
                 self.at = Place::row(rows.end);
             }
         }
     }
 
+    /// Writes points of a warped patch in which few rows share a template, up to row `end` or as many as
+    /// there is room for. Rows are warped several at a time.
+    fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+        let (lattice, patch, base) = (&self.scope.lattice, &self.patch, self.base);
+        let (flat, inside) = &mut self.flat;
+        let places = Class::ALL.map(|class| 0..self.columns.of(class).len());
+        // Some two in three points of a small box's patches lie inside.
+        let enough = (2 * out.len()).clamp(64, FLAT);
+        let rows = self.at.y..end;
+        let columns = (&self.columns, &places);
+        let next = flat.list(lattice, patch, columns, rows, enough, self.backend);
+        flat.sift(patch, self.backend, inside);
+        let [left, bottom] = patch.origin();
+        compiled(self.backend, || {
+            for (out, (place, address)) in out.iter_mut().zip(inside.points()) {
+                let column = self.format.column(base, place[0], left + address[0]);
+                *out = self
+                    .format
+                    .item(base, column, place[1], bottom + address[1]);
+            }
+        });
+        self.at = Place::row(next);
+        if inside.len() > out.len()
+            && let Some((y, done)) = flat.locate(patch, out.len())
+        {
+            self.at = Place {
+                done,
+                ..Place::row(y)
+            };
+            // The rest of this row takes a template of its own.
+            self.templates.clear();
+        }
+        inside.len().min(out.len())
+    }
+
     /// Writes points of the patch's rows up to `end`, or as many as there is room for.
     fn fill_rows(&mut self, end: i64, out: &mut [F::Item]) -> usize {
-        let Scope {
-            lattice,
-            x,
-            y: span,
-            ..
-        } = &*self.scope;
+        let lattice = &self.scope.lattice;
+        let [x, span] = &self.piece;
         let (format, patch, base) = (&self.format, &self.patch, self.base);
         let is_split = patch.is_warped() && !patch.columns_are_inner;
         let is_direct = self.templates.are_plain() && !patch.is_warped();
+        let is_flat = self.templates.are_short() && patch.is_warped();
         let mut filled = 0;
         while self.at.y < end && filled < out.len() {
+            if is_flat && self.at.is_fresh() {
+                // Only a row that was begun is finished here.
+                break;
+            }
             let y = self.at.y;
-            let Some((class, block)) = lattice.row(y) else {
+            let line = lattice.row(y).filter(|_| span.all.contains(&y));
+            let Some((class, block)) = line else {
                 self.at.next_row();
                 continue;
             };
@@ -373,7 +436,7 @@ impl<F: Format> Blocks<F> {
                     check: Check::Bounds,
                 }
             } else if is_split {
-                next_part(template, self.at.done, &x.inner)
+                next_part(template, self.at.done, x)
             } else {
                 Part {
                     columns: self.at.done..template.len(),
@@ -443,7 +506,7 @@ impl<F: Format> Blocks<F> {
                     let columns = displaced(patch, &columns[part], vectors);
                     let passes =
                         |place| patch.holds(place) && sifting.patch.passes(run, scale.world(place));
-                    sift(format, patch, row, columns, passes, out)
+                    sift(format, row, columns, (|p| patch.place(p), passes), out)
                 };
                 filled += progress.written;
                 self.at.done = start + progress.done;
@@ -458,16 +521,17 @@ impl<F: Format> Blocks<F> {
 }
 
 /// The next columns of a warped row that need one kind of check: those left of the inner columns, the
-/// inner ones, or those right of them.
-fn next_part<F: Format>(template: &Template<F>, done: usize, inner: &Range<i64>) -> Part {
-    let inner = [inner.start, inner.end].map(|v| template.columns_before(v));
-    let (end, check) = if done < inner[0] {
-        (inner[0], Check::Bounds)
-    } else if done < inner[1] {
-        (inner[1], Check::Nothing)
-    } else {
-        (template.len(), Check::Bounds)
-    };
+/// inner ones, those right of them, or those whose points all lie outside.
+fn next_part<F: Format>(template: &Template<F>, done: usize, x: &Span) -> Part {
+    let before = |v| template.columns_before(v);
+    let parts = [
+        (before(x.all.start), Check::Outside),
+        (before(x.inner.start), Check::Bounds),
+        (before(x.inner.end), Check::Nothing),
+        (before(x.all.end), Check::Bounds),
+    ];
+    let next = parts.into_iter().find(|&(end, _)| done < end);
+    let (end, check) = next.unwrap_or((template.len(), Check::Outside));
     Part {
         columns: done..end,
         check,
