@@ -1,8 +1,15 @@
 //! Thinned sets: the order in which blocks leave, and the displacements of those that are left.
 
+mod clearance;
+mod climb;
+mod events;
 mod ground;
+mod make;
 mod order;
+mod polish;
+mod segment;
 mod thinned;
 
+pub use make::trial;
 pub use order::with_ranks;
 pub use thinned::ThinnedTwin;
