@@ -61,7 +61,7 @@ pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
     Cursor, F32, F64, Format, Keep, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
     Placement, Plan, Point, PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed, Spacing,
-    Tile, UniformNumber, Variants, Warp, rank, side_for,
+    Tile, UniformNumber, Variants, Warp,
 };
 pub use table::Table;
 
@@ -72,7 +72,7 @@ pub use table::Table;
 /// use strew_core::{ALGORITHM_VERSION, PointId};
 ///
 /// // A saved game that keeps ids keeps the version with them.
-/// let saved = (1, PointId { x: -31, y: 52 });
+/// let saved = (2, PointId { x: -31, y: 52 });
 /// assert_eq!(saved.0, ALGORITHM_VERSION, "made with other points");
 /// ```
-pub const ALGORITHM_VERSION: u32 = 1;
+pub const ALGORITHM_VERSION: u32 = 2;

@@ -39,7 +39,7 @@ pub use attribute::{
 pub use cursor::Cursor;
 pub use iter::Members;
 pub use kernel::{Backend, F32, F64, Format, Points};
-pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing, rank, side_for};
+pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing};
 pub use member::Member;
 pub use near::{Clearance, LeastDistance};
 pub use plan::Plan;

@@ -272,7 +272,7 @@ mod tests {
     proptest! {
         #[test]
         fn a_cut_keeps_the_points_whose_rank_is_below_the_share(
-            share in prop_oneof![0.0..1.0f64, 0.0..1e-3f64], block in 0usize..529, at: u64, near in 0u64..6,
+            share in prop_oneof![0.0..1.0f64, 0.0..1e-3f64], block in 0usize..441, at: u64, near in 0u64..6,
         ) {
             let (map, order) = order(15);
             let n = map.intervals();
@@ -293,7 +293,7 @@ mod tests {
         }
 
         #[test]
-        fn ranks_ascend_along_blocks_and_from_block_to_block(position in 0usize..528, a: u64, b: u64) {
+        fn ranks_ascend_along_blocks_and_from_block_to_block(position in 0usize..440, a: u64, b: u64) {
             let (_, order) = order(15);
             let length = 1 << 60;
             let (a, b) = (a % length, b % length);

@@ -4,8 +4,9 @@
 
 use core::ops::Range;
 
+use super::tally::product;
 use crate::{
-    pattern::{Axis, Class},
+    pattern::Axis,
     sample::{
         lattice::{BAND_WIDTH, Columns, Lattice, Patch, Span},
         stop::Stop,
@@ -14,13 +15,6 @@ use crate::{
 
 /// The number of points of a warped box; meaningless once `stop` is raised.
 pub(super) fn count(lattice: &Lattice, x: &Span, y: &Span, stop: &Stop) -> u128 {
-    let inner = |class: Class| {
-        let along = |axis, span: &Span| {
-            let set = lattice.pattern.axis_set(axis, class);
-            u128::from(set.count(span.inner.clone()))
-        };
-        along(Axis::X, x) * along(Axis::Y, y)
-    };
     let mut margins = Margins {
         lattice,
         x,
@@ -34,7 +28,7 @@ pub(super) fn count(lattice: &Lattice, x: &Span, y: &Span, stop: &Stop) -> u128 
         + margins.count(&right, &y.inner)
         + margins.count(&x.all, &bottom)
         + margins.count(&x.all, &top);
-    Class::ALL.into_iter().map(inner).sum::<u128>() + tested
+    product(lattice, &x.inner, &y.inner) + tested
 }
 
 struct Margins<'a> {
@@ -66,7 +60,7 @@ impl Margins<'_> {
         count
     }
 
-    fn count_in(&self, patch: &Patch, rows: Range<i64>) -> u128 {
+    fn count_in(&mut self, patch: &Patch, rows: Range<i64>) -> u128 {
         let Some(shears) = patch.shears() else {
             return 0;
         };
@@ -77,7 +71,8 @@ impl Margins<'_> {
             };
             let vectors = self.lattice.vectors(block);
             let row = patch.relative(Axis::Y, y);
-            let inside = self.columns.of(class).iter().filter(|column| {
+            let listed = self.columns.of_row(self.lattice, class, block);
+            let inside = listed.iter().filter(|column| {
                 let [dx, dy] = vectors[column.block as usize];
                 patch.holds(shears.apply(patch.relative(Axis::X, column.at) + dx, row + dy))
             });

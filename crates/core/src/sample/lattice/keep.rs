@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, number};
 
-/// The share of the points that is kept: those whose [rank](crate::rank) is below it. By
+/// The share of the points that is kept: those whose [rank](crate::PointSet::rank) is below it. By
 /// default all are.
 ///
 /// Shares nest: a smaller one keeps a part of what a larger one keeps.

@@ -1,11 +1,11 @@
 //! The lattice of a point set, laid into the world.
 
-use super::{Placement, Point, PointId, rank::side_for};
+use super::{Keep, Line, Placement, Point, PointId, rank};
 use crate::{
     map::Map,
     pattern::{Axis, Class, Pattern},
     sample::warp::{Shears, Stretch},
-    table::{FRACTION_BITS, Table, fixed},
+    table::{Cut, FRACTION_BITS, Table, fixed},
 };
 
 /// The largest absolute lattice coordinate of a region and of an id, 2⁵². Up to there `f64` separates
@@ -28,8 +28,10 @@ pub const LATTICE_LIMIT: i64 = 1 << 52;
 pub(crate) struct Lattice {
     pub(crate) table: Table,
     pub(crate) placement: Placement,
-    /// The pattern from the seed's origin, thinned to the share that is kept.
+    /// The pattern from the seed's origin.
     pub(crate) pattern: Pattern,
+    /// Which of its points are kept, if not all.
+    pub(crate) cut: Option<Cut>,
     pub(crate) shears: Option<Shears>,
     /// The bound of what the warp does to distances.
     pub(crate) stretch: Stretch,
@@ -58,8 +60,8 @@ impl Lattice {
         let shears = Shears::new(warp, seed, alpha.set_side_f64());
         Self {
             placement,
-            pattern: Pattern::with_origin(alpha, seed.origin())
-                .thinned(side_for(keep.get(), alpha.set_side())),
+            pattern: Pattern::with_origin(alpha, seed.origin()),
+            cut: (keep != Keep::ALL).then(|| table.order().cut(table.map(), keep.get())),
             stretch: Stretch::of(shears.as_ref()),
             shears,
             step: scale / f64::from(1u32 << FRACTION_BITS),
@@ -76,6 +78,29 @@ impl Lattice {
     pub(crate) fn row(&self, y: i64) -> Option<(Class, usize)> {
         let (class, index) = self.pattern.visit(Axis::Y, y)?;
         Some((class, self.map().locate(index)))
+    }
+
+    /// The column of an index dX.
+    #[inline]
+    pub(crate) fn line(&self, at: i64, index: u64) -> Line {
+        let block = self.map().locate(index);
+        let is_in_strip = self.cut.is_some_and(|cut| cut.is_in_strip(block, index));
+        Line {
+            at,
+            block: block as u32,
+            is_in_strip,
+        }
+    }
+
+    /// Tells which columns have points in the rows of a block of dY.
+    #[inline]
+    pub(crate) fn keeps(&self, block_y: usize) -> impl Fn(&Line) -> bool + '_ {
+        let n = self.map().intervals();
+        let positions = self.table.order().positions(block_y * n..(block_y + 1) * n);
+        move |line| {
+            let position = positions[line.block as usize];
+            self.cut.is_none_or(|cut| cut.keeps(position, line.is_in_strip))
+        }
     }
 
     /// The vectors of all blocks with one interval of dY.
@@ -95,13 +120,19 @@ impl Lattice {
     /// The blocks of dX and dY of an address, or `None` if it has no point.
     pub(crate) fn block(&self, id: PointId) -> Option<[usize; 2]> {
         let within = -LATTICE_LIMIT..=LATTICE_LIMIT;
-        if !within.contains(&id.x) || !within.contains(&id.y) || !self.pattern.contains(id.x, id.y)
-        {
+        if !within.contains(&id.x) || !within.contains(&id.y) {
             return None;
         }
         let (index_x, index_y) = self.pattern.index(id.x, id.y);
         let map = self.map();
-        Some([map.interval_of(index_x)?, map.interval_of(index_y)?])
+        let [block_x, block_y] = [map.interval_of(index_x)?, map.interval_of(index_y)?];
+        let line = self.line(id.x, index_x);
+        (self.keeps(block_y)(&line)).then_some([block_x, block_y])
+    }
+
+    /// The rank of a point of the pattern; the greatest for other addresses.
+    pub(crate) fn rank(&self, id: PointId) -> f64 {
+        rank(&self.table, &self.pattern, id)
     }
 
     /// The point of an address, or `None` if it has none.

@@ -7,7 +7,7 @@ use crate::{
     error::Error,
     sample::{
         attribute::{Attributes, BoundAttributes},
-        lattice::{Placement, PointId, rank},
+        lattice::{Placement, PointId},
         member::Member,
         near::{Clearance, limits, search},
     },
@@ -100,8 +100,7 @@ impl PointSet {
     /// ```
     #[must_use]
     pub fn rank(&self, id: PointId) -> f64 {
-        let pattern = self.lattice.pattern;
-        rank(pattern.depth(id.x, id.y), pattern.alpha().set_side())
+        self.lattice.rank(id)
     }
 
     /// The `k` nearest points of a place, nearest first; of equally near ones the smaller id first. Takes

@@ -9,11 +9,11 @@ use super::{
     window::Window,
 };
 use crate::{
-    pattern::{Axis, Class},
+    pattern::Axis,
     sample::{
         cursor::Cursor,
         kernel::{Backend, Format, Geometry, Row, compiled},
-        lattice::{BAND_WIDTH, Columns, Patch, PointId, PrefixCounts, clip_to_band},
+        lattice::{BAND_WIDTH, Columns, Patch, PointId, PrefixCounts, clip_to_band, places},
         scope::Scope,
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale},
     },
@@ -269,7 +269,8 @@ impl<F: Format> Blocks<F> {
         }
         let lattice = &self.scope.lattice;
         let column = lattice.row(self.at.y).and_then(|(class, block)| {
-            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
+            let (vectors, keeps) = (lattice.vectors(block), lattice.keeps(block));
+            let columns = self.columns.of(class).iter().filter(|line| keeps(line));
             self.templates
                 .column(&self.patch, columns, vectors, self.at.done)
         });
@@ -334,8 +335,12 @@ impl<F: Format> Blocks<F> {
                 lattice: y,
             };
             let is_inner = span.inner.contains(&y);
-            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
-            let inner = self.inner[class.ordinal()].clone();
+            let columns = self.columns.of_row(lattice, class, block);
+            let vectors = lattice.vectors(block);
+            let inner = match lattice.cut {
+                Some(_) => places(columns, &x.inner),
+                None => self.inner[class.ordinal()].clone(),
+            };
             let out = &mut out[filled..];
             if is_direct && self.at.done == 0 && columns.len() <= out.len() {
                 filled += compiled(self.backend, || {
@@ -402,7 +407,8 @@ impl<F: Format> Blocks<F> {
                 self.at = Place::row(sifting.runs_end);
                 continue;
             }
-            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
+            let columns = self.columns.of_row(lattice, class, block);
+            let vectors = lattice.vectors(block);
             let template = self
                 .templates
                 .get(class, block, self.at.done > 0, |template, kept| {
@@ -411,7 +417,10 @@ impl<F: Format> Blocks<F> {
                 });
             if let Some(from) = self.at.from.take() {
                 let from = from.clamp(range.start, range.end);
-                self.at.done = sifting.prefix.before(class, from);
+                self.at.done = match lattice.cut {
+                    Some(_) => columns.partition_point(|line| line.at < from),
+                    None => sifting.prefix.before(class, from),
+                };
             }
             let row = Row {
                 base,
@@ -419,7 +428,10 @@ impl<F: Format> Blocks<F> {
                 lattice: y,
             };
             for run in &sifting.runs {
-                let places = sifting.places(class, run);
+                let places = match lattice.cut {
+                    Some(_) => places(columns, &run.columns),
+                    None => sifting.prefix.places(class, &run.columns),
+                };
                 let part = places.start.max(self.at.done)..places.end;
                 if part.is_empty() {
                     continue;
@@ -487,11 +499,5 @@ impl Sifting {
             self.patch.runs(y..self.runs_end, columns, &mut self.runs);
         }
         self.runs.is_empty()
-    }
-
-    /// The places of a run in the list of a class.
-    fn places(&self, class: Class, run: &Run) -> Range<usize> {
-        let before = |x| self.prefix.before(class, x);
-        before(run.columns.start)..before(run.columns.end)
     }
 }
