@@ -63,7 +63,7 @@ pub use file::{EXTENSION, file_name, read_table, write_table};
 pub use forge::{Outcome, forge, resume};
 pub use job::{DEFAULT_SEED, Job, MAX_RADIUS, MAX_STEPS};
 pub use judge::{Complaint, Figure};
-pub use ladder::{ThinnedTwin, trial, with_ranks};
+pub use ladder::{LadderJob, LadderOutcome, ThinnedTwin, ladder, with_ranks};
 pub use picture::{PictureError, picture};
 pub use profile::{Aim, Profile};
 pub use report::{Report, Resolution};

@@ -26,8 +26,6 @@ struct Conflict {
     pair: Pair,
     /// Where on the way it is nearest.
     way: f64,
-    /// δ there.
-    delta: f64,
 }
 
 /// The distances along a ladder.
@@ -47,16 +45,16 @@ impl Clearance {
 }
 
 /// The distances of a ladder.
-pub(super) fn clearance(blocks: &Blocks, climb: &Climb, target: f64) -> Clearance {
+pub(super) fn clearance(blocks: &Blocks, climb: &Climb) -> Clearance {
     let found = lists(blocks, climb)
         .par_iter()
         .enumerate()
-        .map(|(segment, lists)| conflicts(blocks, climb, segment, lists, target))
-        .collect();
+        .map(|(segment, lists)| conflicts(blocks, climb, segment, lists, 0.0))
+        .collect::<Vec<_>>();
     summary(&found)
 }
 
-fn summary(found: &Vec<(f64, Vec<Conflict>)>) -> Clearance {
+fn summary(found: &[(f64, Vec<Conflict>)]) -> Clearance {
     Clearance {
         least: found.iter().map(|(least, _)| *least).collect(),
         conflicts: found.iter().map(|(_, conflicts)| conflicts.len()).sum(),
@@ -70,21 +68,16 @@ fn lists(blocks: &Blocks, climb: &Climb) -> Vec<Lists> {
         .collect()
 }
 
-/// Pushes apart the pairs that come nearer than `target`, up to `rounds` times. Returns the distances
-/// before the last round, in which nothing was pushed if no conflict is left.
-pub(super) fn clear(blocks: &Blocks, climb: &mut Climb, target: f64, rounds: usize) -> Clearance {
+/// Pushes apart the pairs that come nearer than `target`, until none do or for a number of rounds.
+pub(super) fn clear(blocks: &Blocks, climb: &mut Climb, target: f64, rounds: usize) {
     let lists = lists(blocks, climb);
-    let mut last = None;
     for _ in 0..rounds {
         let found: Vec<_> = lists
             .par_iter()
             .enumerate()
             .map(|(segment, lists)| conflicts(blocks, climb, segment, lists, target))
             .collect();
-        let clearance = summary(&found);
-        let is_clear = clearance.conflicts == 0;
-        last = Some(clearance);
-        if is_clear {
+        if summary(&found).conflicts == 0 {
             break;
         }
         // One after another, so that a later push sees the earlier ones.
@@ -94,7 +87,6 @@ pub(super) fn clear(blocks: &Blocks, climb: &mut Climb, target: f64, rounds: usi
             }
         }
     }
-    last.unwrap_or_else(|| clearance(blocks, climb, target))
 }
 
 /// The least δ of a segment, and the pairs below the target.
@@ -122,7 +114,6 @@ fn conflicts(
                     own: own as u32,
                     pair: *pair,
                     way,
-                    delta: squared.max(0.0).sqrt(),
                 });
             }
         }
@@ -202,7 +193,7 @@ fn nearest(blocks: &Blocks, climb: &Climb, segment: usize, own: usize, pair: &Pa
 
 /// Pushes a pair apart where it is nearest: the smallest change of its free vectors that suffices.
 fn push(blocks: &Blocks, climb: &mut Climb, segment: usize, conflict: &Conflict, target: f64) {
-    let Conflict { own, pair, way, .. } = conflict;
+    let Conflict { own, pair, way } = conflict;
     let (own, to) = (*own as usize, pair.to as usize);
     if to == own {
         return;
@@ -210,7 +201,8 @@ fn push(blocks: &Blocks, climb: &mut Climb, segment: usize, conflict: &Conflict,
     let share = climb.share_at(segment, *way);
     let by = difference(blocks, climb, segment, own, pair, *way);
     let distance = (by[0] * by[0] + by[1] * by[1]).sqrt();
-    let wanted = target * (HEXAGONAL_SQUARED / share).sqrt();
+    // A little more, or rounding would leave it below.
+    let wanted = target * (1.0 + 1e-4) * (HEXAGONAL_SQUARED / share).sqrt();
     if distance >= wanted {
         return;
     }

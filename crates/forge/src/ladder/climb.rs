@@ -114,17 +114,25 @@ impl Climb {
         [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]))
     }
 
-    /// Rounds vectors and events to what a table file holds.
+    /// Replaces the vectors of all levels, one level after the other.
+    pub(super) fn set_moves(&mut self, moves: &[[f64; 2]]) {
+        self.moves = split(moves, &self.counts);
+    }
+
+    /// Rounds events to what a table file holds.
+    pub(super) fn quantize_events(&mut self) {
+        for event in self.events.iter_mut().flatten() {
+            *event = event_units(*event).map(|v| f64::from(v) / 255.0);
+        }
+    }
+
+    /// Rounds vectors to what a table file holds.
     pub(super) fn quantize(&mut self, scale: f64) {
         let unit = scale / f64::from(1u32 << LADDER_BITS);
         for level in &mut self.moves[1..] {
             for v in level.iter_mut().flatten() {
                 *v = (*v / unit).round() * unit;
             }
-        }
-        for [start, end] in self.events.iter_mut().flatten() {
-            let units = event_units([*start, *end]);
-            [*start, *end] = units.map(|v| f64::from(v) / 255.0);
         }
     }
 
@@ -141,6 +149,17 @@ impl Climb {
         });
         Ok(Ladder::new(levels.collect())?)
     }
+}
+
+/// Vectors by level, of as many as each level has.
+pub(super) fn split(vectors: &[[f64; 2]], counts: &[usize]) -> Vec<Vec<[f64; 2]>> {
+    let mut rest = vectors;
+    let levels = counts.iter().map(|&count| {
+        let (level, after) = rest.split_at(count);
+        rest = after;
+        level.to_vec()
+    });
+    levels.collect()
 }
 
 /// An event in 255ths, at least one long.

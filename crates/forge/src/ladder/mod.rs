@@ -4,12 +4,13 @@ mod clearance;
 mod climb;
 mod events;
 mod ground;
+mod judge;
 mod make;
 mod order;
 mod polish;
 mod segment;
 mod thinned;
 
-pub use make::trial;
+pub use make::{LadderJob, LadderOutcome, ladder};
 pub use order::with_ranks;
 pub use thinned::ThinnedTwin;

@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use super::{
-    climb::{Blocks, Climb},
+    climb::{Blocks, Climb, split},
     segment::{Energy, Lists, Slopes, slopes},
 };
 
@@ -23,10 +23,12 @@ const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
 /// What stays between steps.
 pub(super) struct Polish {
-    pub(super) energy: Energy,
+    energy: Energy,
     /// Shares looked at in each segment.
-    pub(super) samples: usize,
+    samples: usize,
     lists: Vec<Lists>,
+    /// The vectors that the lists were made for.
+    listed_for: Vec<[f64; 2]>,
     velocities: Vec<Vec<[f64; 2]>>,
 }
 
@@ -37,6 +39,7 @@ impl Polish {
             energy,
             samples,
             lists: Vec::new(),
+            listed_for: Vec::new(),
             velocities: velocities.collect(),
         };
         polish.list(blocks, climb);
@@ -49,11 +52,23 @@ impl Polish {
             .into_par_iter()
             .map(|segment| Lists::new(blocks, climb, segment, self.energy.cutoff()))
             .collect();
+        self.listed_for = climb.moves.concat();
     }
 
-    /// The number of pairs in all lists.
-    pub(super) fn pairs(&self) -> usize {
-        self.lists.iter().map(Lists::len).sum()
+    /// The vectors of all levels that the lists were made for.
+    pub(super) fn listed_for(&self) -> Vec<[f64; 2]> {
+        self.listed_for.clone()
+    }
+
+    /// The last moves of all vectors, one level after the other.
+    pub(super) fn velocities(&self) -> Vec<[f64; 2]> {
+        self.velocities.concat()
+    }
+
+    /// Replaces the last moves.
+    pub(super) fn set_velocities(&mut self, velocities: &[[f64; 2]]) {
+        let counts: Vec<usize> = self.velocities.iter().map(Vec::len).collect();
+        self.velocities = split(velocities, &counts);
     }
 
     /// Takes step number `step`, with a rate in proportion to `pace`. Returns the energy before it.

@@ -101,11 +101,6 @@ impl Lists {
     pub(super) fn of(&self, position: usize) -> &[Pair] {
         &self.pairs[self.starts[position]..self.starts[position + 1]]
     }
-
-    /// The number of pairs.
-    pub(super) fn len(&self) -> usize {
-        self.pairs.len()
-    }
 }
 
 /// The slopes of the energy over the vectors of a segment's two levels, and the weights they count with.
