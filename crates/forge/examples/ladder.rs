@@ -23,6 +23,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("which table, and where to?".into());
     };
     let mut table = read_table(Path::new(table))?;
+    if !table.least_distance().is_useful() {
+        println!("{} guarantees no least distance and gets no ranks", table.profile());
+        return Ok(());
+    }
     if table.ranks().is_none() {
         table = with_ranks(&table)?;
     }
