@@ -14,6 +14,13 @@ use super::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, ranks::Order};
 use crate::error::{Error, ErrorKind};
 
 /// Fraction bits of the vectors of a ladder, in grid units: about 1/800 mean spacings.
+///
+/// ```
+/// use strew_core::table::{LADDER_BITS, MAX_DISPLACEMENT};
+///
+/// // Vectors of up to 127 grid units fit 16 bits.
+/// assert!(MAX_DISPLACEMENT * f64::from(1 << LADDER_BITS) < f64::from(i16::MAX));
+/// ```
 pub const LADDER_BITS: u32 = 8;
 
 /// What a fixed-point coordinate of a table is, in units of a ladder's vectors.
@@ -66,6 +73,8 @@ struct Level {
     share: u32,
     /// By position in the order of blocks.
     rungs: Vec<Rung>,
+    /// The largest component of a vector of this level or one above it.
+    reach: u16,
 }
 
 /// A place between two levels.
@@ -75,11 +84,6 @@ pub(crate) struct Stage {
     below: usize,
     /// The part of the way down to it, in units of [`EVENT_UNITS`].
     way: f64,
-}
-
-impl Stage {
-    /// At full density: the table itself.
-    pub(crate) const FULL: Self = Self { below: 0, way: 0.0 };
 }
 
 impl Ladder {
@@ -106,11 +110,12 @@ impl Ladder {
             // A conversion outside 32 bits saturates, and is refused below.
             share: libm::round(share * SHARE_UNITS) as u32,
             rungs,
+            reach: 0,
         };
         Self::of_levels(levels.into_iter().map(level).collect())
     }
 
-    fn of_levels(levels: Vec<Level>) -> Result<Self, Error> {
+    fn of_levels(mut levels: Vec<Level>) -> Result<Self, Error> {
         let refused = |value: alloc::string::String, allowed: &'static str| {
             Err(Error::new(ErrorKind::Table, "ladder", value, allowed))
         };
@@ -129,6 +134,12 @@ impl Ladder {
         if let Some(rung) = rungs.find(|rung| !is_valid(rung)) {
             let allowed = "events that start before they end, and vectors shorter than 127 grid units";
             return refused(format!("{rung:?}"), allowed);
+        }
+        let mut reach = 0;
+        for level in &mut levels {
+            let components = level.rungs.iter().flat_map(|rung| rung.vector);
+            reach = components.fold(reach, |reach: u16, v| reach.max(v.unsigned_abs()));
+            level.reach = reach;
         }
         Ok(Self { levels })
     }
@@ -210,6 +221,14 @@ impl Ladder {
         }
     }
 
+    /// A bound of the components of all vectors at shares from `share` on, in units of a table's vectors;
+    /// those of the table itself not included.
+    pub(crate) fn reach(&self, share: f64) -> i32 {
+        let level = self.stage(share).below.checked_sub(1);
+        let level = level.and_then(|at| self.levels.get(at));
+        level.map_or(0, |level| i32::from(level.reach) << SHIFT)
+    }
+
     /// The displacement of a block at a stage: its position in the order, and its vector in the table.
     /// A block that has left stays where it was when it left, or at the last level that knows it.
     #[inline]
@@ -250,7 +269,11 @@ impl Ladder {
 
     /// The ladder of levels in the file's numbers.
     pub(super) fn from_raw(levels: Vec<(u32, Vec<Rung>)>) -> Result<Self, Error> {
-        let level = |(share, rungs)| Level { share, rungs };
+        let level = |(share, rungs)| Level {
+            share,
+            rungs,
+            reach: 0,
+        };
         Self::of_levels(levels.into_iter().map(level).collect())
     }
 }

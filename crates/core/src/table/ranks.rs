@@ -161,7 +161,8 @@ impl Order {
     }
 
     /// The ranks of the block at a position.
-    pub(super) fn floors(&self, position: usize) -> core::ops::Range<f64> {
+    #[inline]
+    pub(crate) fn floors(&self, position: usize) -> core::ops::Range<f64> {
         self.floors[position]..self.floors[position + 1]
     }
 

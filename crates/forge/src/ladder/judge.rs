@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 use strew_core::{
-    Table,
+    Table, Twin,
     table::Figures,
 };
 
@@ -13,11 +13,14 @@ use super::ThinnedTwin;
 use crate::{
     judge::{Bound, Complaint, Figure},
     measure::{Distances, Spectrum},
-    twins::{LARGE_TWIN, next_to_alpha},
+    twins::{LARGE_TWIN, fraction, next_to_alpha},
     watch::{Meter, Stage, Watch},
 };
 
-/// Shares an octave on the first twin, and on the second, which is larger.
+/// The most points of the twins judged on. Neighbors in a thinned set lie beyond the map's half-width, where
+/// frequencies follow α; so of the twins of these sizes the nearest to α are taken.
+const LARGEST: [u64; 2] = [100_000, 1_000_000];
+/// Shares an octave on each twin.
 const SHARES: [u32; 2] = [101, 23];
 /// Where the first share lies, in steps.
 const PHASE: f64 = 0.37;
@@ -36,8 +39,7 @@ const DELTA: f64 = 0.5;
 /// The figures by twin and octave, or `None` if the watch stopped the work.
 pub(super) fn judge(table: &Table, watch: &dyn Watch) -> Option<Vec<Figures>> {
     let octaves = octaves(table);
-    let twins = next_to_alpha(table.map()).filter(|twin| twin.points() >= LARGE_TWIN);
-    let twins: Vec<_> = twins.take(SHARES.len()).collect();
+    let twins: Vec<Twin> = LARGEST.iter().filter_map(|&most| nearest(table, most)).collect();
     let mut meter = Meter::new(watch, Stage::Measuring, octaves * twins.len() as u32);
     let mut all = Vec::new();
     for (twin, per) in twins.into_iter().zip(SHARES) {
@@ -71,6 +73,15 @@ pub(super) fn judge(table: &Table, watch: &dyn Watch) -> Option<Vec<Figures>> {
         }
     }
     Some(all)
+}
+
+/// Of the twins from [`LARGE_TWIN`] to some number of points the nearest to α.
+fn nearest(table: &Table, most: u64) -> Option<Twin> {
+    let alpha = table.alpha().to_f64();
+    let twins = next_to_alpha(table.map()).take_while(|twin| twin.points() <= most);
+    let large = twins.filter(|twin| twin.points() >= LARGE_TWIN);
+    let far = |twin: &Twin| (fraction(twin) - alpha).abs();
+    large.min_by(|a, b| far(a).total_cmp(&far(b)))
 }
 
 /// The number of times the share halves along the ladder.

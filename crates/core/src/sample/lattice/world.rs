@@ -1,11 +1,13 @@
 //! The lattice of a point set, laid into the world.
 
+use alloc::{sync::Arc, vec::Vec};
+
 use super::{Keep, Line, Placement, Point, PointId, rank};
 use crate::{
     map::Map,
     pattern::{Axis, Class, Pattern},
     sample::warp::{Shears, Stretch},
-    table::{Cut, FRACTION_BITS, Table, fixed},
+    table::{Cut, Displacement, FRACTION_BITS, Ladder, Table, fixed},
 };
 
 /// The largest absolute lattice coordinate of a region and of an id, 2⁵². Up to there `f64` separates
@@ -32,11 +34,44 @@ pub(crate) struct Lattice {
     pub(crate) pattern: Pattern,
     /// Which of its points are kept, if not all.
     pub(crate) cut: Option<Cut>,
+    /// The vectors where points have moved as others left, if they do.
+    moved: Option<Arc<Moved>>,
     pub(crate) shears: Option<Shears>,
     /// The bound of what the warp does to distances.
     pub(crate) stretch: Stretch,
     /// World units per fixed-point unit.
     pub(crate) step: f64,
+}
+
+/// Vectors other than the table's own.
+#[derive(Debug)]
+struct Moved {
+    /// As a table has them; zero for blocks that have left.
+    vectors: Vec<Displacement>,
+    /// The least and the greatest along x and y.
+    reach: [[i32; 2]; 2],
+}
+
+impl Moved {
+    /// The vectors of the blocks that are left at a share.
+    fn new(table: &Table, ladder: &Ladder, share: f64) -> Self {
+        let (order, stage) = (table.order(), ladder.stage(share));
+        let alive = order.alive(share);
+        let mut reach = [[0; 2]; 2];
+        let vector = |(block, &full): (usize, &Displacement)| {
+            let position = order.position(block);
+            if position >= alive {
+                return [0, 0];
+            }
+            let vector = ladder.displacement(stage, position, full);
+            for (ends, v) in reach.iter_mut().zip(vector) {
+                *ends = [ends[0].min(v), ends[1].max(v)];
+            }
+            vector
+        };
+        let vectors = table.displacements().iter().enumerate().map(vector).collect();
+        Self { vectors, reach }
+    }
 }
 
 /// Kept out of line, or both conversions would become the slow one.
@@ -61,7 +96,13 @@ impl Lattice {
         Self {
             placement,
             pattern: Pattern::with_origin(alpha, seed.origin()),
-            cut: (keep != Keep::ALL).then(|| table.order().cut(table.map(), keep.get())),
+            cut: (keep.get() < 1.0).then(|| table.order().cut(table.map(), keep.get())),
+            moved: match table.ladder() {
+                Some(ladder) if keep.moves() && keep.get() < 1.0 => {
+                    Some(Arc::new(Moved::new(&table, ladder, keep.get())))
+                }
+                _ => None,
+            },
             stretch: Stretch::of(shears.as_ref()),
             shears,
             step: scale / f64::from(1u32 << FRACTION_BITS),
@@ -106,13 +147,41 @@ impl Lattice {
     /// The vectors of all blocks with one interval of dY.
     #[inline]
     pub(crate) fn vectors(&self, block_y: usize) -> &[[i32; 2]] {
-        self.table.row(block_y)
+        match &self.moved {
+            None => self.table.row(block_y),
+            Some(moved) => {
+                let n = self.map().intervals();
+                &moved.vectors[block_y * n..(block_y + 1) * n]
+            }
+        }
+    }
+
+    /// The least and the greatest displacement along x and y.
+    pub(crate) fn displaced(&self) -> [[i32; 2]; 2] {
+        self.moved.as_ref().map_or_else(|| self.table.reach(), |moved| moved.reach)
+    }
+
+    /// This lattice at another placement. What does not change is shared.
+    pub(crate) fn replaced(&self, placement: Placement) -> Self {
+        if placement.keep != self.placement.keep {
+            return Self::new(self.table.clone(), placement);
+        }
+        let still = Placement {
+            keep: Keep::ALL,
+            ..placement
+        };
+        Self {
+            placement,
+            cut: self.cut,
+            moved: self.moved.clone(),
+            ..Self::new(self.table.clone(), still)
+        }
     }
 
     /// The least and the greatest distance of a point from its lattice address along an axis, in
     /// fixed-point units.
     pub(crate) fn reach(&self, axis: Axis) -> [i32; 2] {
-        let [least, most] = self.table.reach()[axis as usize];
+        let [least, most] = self.displaced()[axis as usize];
         let warp = self.shears.map_or(0, |shears| shears.reach());
         [least - warp, most + warp]
     }
@@ -138,14 +207,18 @@ impl Lattice {
     /// The point of an address, or `None` if it has none.
     pub(crate) fn point(&self, id: PointId) -> Option<Point> {
         let [block_x, block_y] = self.block(id)?;
-        let [dx, dy] = self.vectors(block_y)[block_x];
+        Some(self.displaced_point(id, self.vectors(block_y)[block_x]))
+    }
+
+    /// The point of an address that has one, with a displacement.
+    pub(crate) fn displaced_point(&self, id: PointId, [dx, dy]: Displacement) -> Point {
         let displaced = [fixed(id.x) + i128::from(dx), fixed(id.y) + i128::from(dy)];
         let warped = match &self.shears {
             Some(shears) => shears.apply(displaced),
             None => displaced,
         };
         let [x, y] = warped.map(|k| self.world(k));
-        Some(Point { id, x, y })
+        Point { id, x, y }
     }
 
     /// The world coordinate of a fixed-point one. Monotone.

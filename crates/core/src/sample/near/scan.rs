@@ -98,7 +98,7 @@ fn unwarped_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> f64 {
 
 /// The lattice coordinates along an axis whose points may lie within `reach`.
 fn candidates(lattice: &Lattice, axis: Axis, center: i128, reach: f64) -> RangeInclusive<i64> {
-    let [least, most] = lattice.table.reach()[axis as usize];
+    let [least, most] = lattice.displaced()[axis as usize];
     let reach = reach as i128 + 1;
     let first = center - reach - i128::from(most);
     let last = center + reach - i128::from(least);

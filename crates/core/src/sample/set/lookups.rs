@@ -183,7 +183,7 @@ impl PointSet {
     }
 
     /// The least distance between any two points, in world units: a guarantee for all of the plane. It is 0
-    /// for profiles that guarantee none.
+    /// for profiles that guarantee none, and for points that [move](Self::keep_moving).
     ///
     /// ```
     /// use strew_core::{PointSet, Table};
@@ -199,7 +199,15 @@ impl PointSet {
     /// ```
     #[must_use]
     pub fn least_distance(&self) -> f64 {
-        let Placement { spacing, warp, .. } = self.placement();
+        let Placement {
+            spacing,
+            warp,
+            keep,
+            ..
+        } = self.placement();
+        if keep.moves() && keep.get() < 1.0 && self.table().ladder().is_some() {
+            return 0.0;
+        }
         self.table().least_distance().with_warp(warp) * spacing.get()
     }
 

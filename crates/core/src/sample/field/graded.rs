@@ -1,0 +1,192 @@
+//! The set in a field.
+
+use alloc::vec::Vec;
+
+use super::{Field, walk::walk};
+use crate::{
+    error::Error,
+    sample::{
+        area::Region,
+        lattice::{Keep, Lattice, Placement, Point, PointId},
+        member::Member,
+        near::Mask,
+    },
+};
+
+/// A point set in a field; see [`PointSet::in_field`](crate::PointSet::in_field).
+///
+/// A point is a pure function of the set, the field and its lattice address. It belongs to the set if its
+/// rank is below the field's share at the place where it is at full density. Sets of one seed share their
+/// points: in a larger share a point stays, and with a [ladder](crate::table::Ladder) it moves a little.
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let set = PointSet::new(table).seed(7);
+/// let glade = set.in_field(|[x, y]: [f64; 2]| ((x - 20.0).hypot(y - 20.0) / 20.0).min(1.0));
+/// let region = Region::new([0.0, 0.0], [40.0, 40.0])?;
+/// for member in glade.within(region)? {
+///     assert_eq!(glade.point(member.id()), Some(member));
+/// }
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Graded<F> {
+    /// At full density.
+    pub(super) lattice: Lattice,
+    pub(super) mask: Mask,
+    pub(super) field: F,
+    /// What the field is multiplied by: the share of the set.
+    pub(super) factor: f64,
+}
+
+impl<F: Field> Graded<F> {
+    pub(crate) fn new(lattice: &Lattice, mask: &Mask, field: F) -> Self {
+        let factor = lattice.placement.keep.get();
+        Self {
+            lattice: lattice.replaced(lattice.placement.with_keep(Keep::ALL)),
+            mask: mask.clone(),
+            field,
+            factor,
+        }
+    }
+
+    /// The share at a place, within [0, 1].
+    #[inline]
+    pub(super) fn share(&self, at: [f64; 2]) -> f64 {
+        // NaN becomes 0.
+        self.field.share(at).max(0.0).min(1.0) * self.factor
+    }
+
+    /// The field.
+    ///
+    /// ```
+    /// use strew_core::{Field, PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).in_field(|_: [f64; 2]| 0.5);
+    /// assert_eq!(set.field().share([0.0, 0.0]), 0.5);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn field(&self) -> &F {
+        &self.field
+    }
+
+    /// The point of an id, or `None` if the set has none there.
+    ///
+    /// This is the definition of the set, point by point.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let all = PointSet::new(table).seed(7);
+    /// let left = all.in_field(|[x, _]: [f64; 2]| if x < 0.0 { 1.0 } else { 0.0 });
+    /// for point in all.chunk(8.0, [-1, 0])? {
+    ///     assert_eq!(left.point(point.id()), Some(point));
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn point(&self, id: PointId) -> Option<Member> {
+        let lattice = &self.lattice;
+        let [block_x, block_y] = lattice.block(id)?;
+        let share = self.share(lattice.point(id)?.at());
+        if lattice.rank(id) >= share {
+            return None;
+        }
+        let block = block_y * lattice.map().intervals() + block_x;
+        let vector = lattice.table.displacement_at(block, share);
+        let point = lattice.displaced_point(id, vector);
+        let member = Member::new(point, lattice.placement.seed);
+        self.has(point).then_some(member)
+    }
+
+    /// Whether a point lies in the set's area and clear of other sets.
+    pub(super) fn has(&self, point: Point) -> bool {
+        let is_plain = self.mask.area.is_none() && self.mask.clear.is_empty();
+        is_plain || self.mask.guards().permit(point.at())
+    }
+
+    /// The points in a box, in the order of their lattice addresses: bands of 1024 columns, in a band rows,
+    /// in a row columns.
+    ///
+    /// # Errors
+    /// [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the box reaches beyond the
+    /// [limit](crate::PointSet::limit).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7).in_field(|[x, _]: [f64; 2]| x / 40.0);
+    /// // The halves of a box have its points, each once.
+    /// let of = |from, to| Ok(set.within(Region::new([from, 0.0], [to, 40.0])?)?.len());
+    /// assert_eq!(of(0.0, 17.0)? + of(17.0, 40.0)?, of(0.0, 40.0)?);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn within(&self, region: Region) -> Result<Vec<Member>, Error> {
+        let mut found = Vec::new();
+        let seed = self.lattice.placement.seed;
+        self.for_each(region, |point, _| found.push(Member::new(point, seed)))?;
+        Ok(found)
+    }
+
+    /// The number of points in a box. They are visited, so it takes time in proportion to the points at
+    /// full density, where the field's bounds leave any.
+    ///
+    /// # Errors
+    /// As [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).in_field(|_: [f64; 2]| 0.25);
+    /// let region = Region::new([0.0, 0.0], [40.0, 40.0])?;
+    /// assert_eq!(set.count(region)?, set.within(region)?.len() as u64);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn count(&self, region: Region) -> Result<u64, Error> {
+        let mut count = 0;
+        self.for_each(region, |_, _| count += 1)?;
+        Ok(count)
+    }
+
+    /// Calls `visit` with each point in a box and the share at its place at full density, in order.
+    ///
+    /// # Errors
+    /// As [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).in_field(|[x, _]: [f64; 2]| x / 40.0);
+    /// set.for_each(Region::new([0.0, 0.0], [40.0, 9.0])?, |point, share| {
+    ///     // Where points are sparse, they can be drawn larger.
+    ///     println!("{} {}: {}", point.x, point.y, 1.0 / share.sqrt());
+    /// })?;
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn for_each(&self, region: Region, visit: impl FnMut(Point, f64)) -> Result<(), Error> {
+        walk(self, region, visit)
+    }
+
+    /// Spacing, seed and warp.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).spacing(4.0)?.in_field(|_: [f64; 2]| 0.5);
+    /// assert_eq!(set.placement().spacing.get(), 4.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn placement(&self) -> Placement {
+        self.lattice.placement
+    }
+}
