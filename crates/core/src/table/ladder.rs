@@ -65,6 +65,8 @@ pub struct Rung {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ladder {
     levels: Vec<Level>,
+    /// For each sixteenth of an octave of shares, from 1 down, the first level that may lie below it.
+    hints: Vec<u16>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -141,7 +143,15 @@ impl Ladder {
             reach = components.fold(reach, |reach: u16, v| reach.max(v.unsigned_abs()));
             level.reach = reach;
         }
-        Ok(Self { levels })
+        let hints = (0..HINTS).map(|bucket| {
+            // Shares of this bucket are below its upper end.
+            let most = f64::from_bits((1.0f64.to_bits() >> HINT_SHIFT) - bucket << HINT_SHIFT);
+            levels.partition_point(|level| level.share() >= most) as u16
+        });
+        Ok(Self {
+            hints: hints.collect(),
+            levels,
+        })
     }
 
     /// Refuses a ladder whose levels do not have the blocks that an order leaves.
@@ -206,7 +216,13 @@ impl Ladder {
 
     /// The place of a share between the levels.
     pub(crate) fn stage(&self, share: f64) -> Stage {
-        let below = self.levels.partition_point(|level| level.share() > share);
+        // The highest bits of a number below 1 fall as it falls.
+        let high = 1.0f64.to_bits() - 1;
+        let bucket = (high >> HINT_SHIFT).saturating_sub(share.to_bits() >> HINT_SHIFT) as usize;
+        let mut below = usize::from(self.hints[bucket.min(self.hints.len() - 1)]);
+        while self.levels.get(below).is_some_and(|level| level.share() > share) {
+            below += 1;
+        }
         let Some(level) = self.levels.get(below) else {
             let (below, way) = (self.levels.len(), EVENT_UNITS);
             return Stage { below, way };
@@ -278,6 +294,11 @@ impl Ladder {
     }
 }
 
+/// The bits of a number below those that make a hint's bucket: 16 buckets an octave.
+const HINT_SHIFT: u32 = 48;
+/// The number of buckets: 10 octaves. Below them the last one starts the search.
+const HINTS: u64 = 160;
+
 /// The unit of a level's share.
 const SHARE_UNITS: f64 = 4_294_967_296.0;
 
@@ -290,4 +311,38 @@ impl Level {
 /// The vector of a rung, in units of a table's vectors.
 fn widened(rung: Rung) -> Displacement {
     rung.vector.map(|v| i32::from(v) << SHIFT)
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_stage_is_between_the_levels_around_the_share(
+            share in prop_oneof![0.0..1.0f64, 0.0..0.01f64, Just(1.0), Just(0.5), Just(2.0)],
+            per_octave in 1u32..20, octaves in 1u32..12,
+        ) {
+            let levels = (1..=per_octave * octaves).map(|k| {
+                let rung = Rung { vector: [0, 0], event: [0, 255] };
+                (libm::exp2(-f64::from(k) / f64::from(per_octave)), vec![rung])
+            });
+            let ladder = Ladder::new(levels.collect()).expect("valid");
+            let shares: Vec<f64> = [1.0].into_iter().chain(ladder.shares()).collect();
+            let Stage { below, way } = ladder.stage(share);
+            if below == 0 {
+                prop_assert!(share >= 1.0);
+            } else if share < ladder.least_share() {
+                prop_assert_eq!((below, way), (shares.len() - 1, EVENT_UNITS));
+            } else {
+                prop_assert!(shares[below] <= share && share < shares[below - 1]);
+                let expected = (shares[below - 1] - share) / (shares[below - 1] - shares[below]);
+                prop_assert!((way - expected * EVENT_UNITS).abs() < 1e-9);
+            }
+        }
+    }
 }

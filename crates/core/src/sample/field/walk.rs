@@ -97,8 +97,7 @@ pub(super) fn walk<F: Field>(
                             continue;
                         }
                         if let Some(ladder) = ladder {
-                            let stage = ladder.stage(share);
-                            let [dx, dy] = ladder.displacement(stage, position, [dx, dy]);
+                            let [dx, dy] = graded.displacement(ladder, position, [dx, dy], at, share);
                             place = patch.place([x + dx, row + dy]);
                             at = scale.world(place);
                         }
