@@ -26,19 +26,26 @@ fn table(with_ladder: bool) -> Table {
     for (position, &block) in (0..).zip(&order) {
         positions[block as usize] = position;
     }
-    let table = table.with_ranks(Ranks::new(positions).expect("all")).expect("valid");
+    let table = table
+        .with_ranks(Ranks::new(positions).expect("all"))
+        .expect("valid");
     if !with_ladder {
         return table;
     }
     let mut above = 1.0;
     let levels = [0.7, 0.4, 0.1].into_iter().zip(1u32..).map(|(share, k)| {
-        let left = (0..blocks as usize).filter(|&b| table.block_ranks(b).start < above).count();
+        let left = (0..blocks as usize)
+            .filter(|&b| table.block_ranks(b).start < above)
+            .count();
         above = (share * 4_294_967_296.0f64).round() / 4_294_967_296.0;
         let rung = |i: u32| {
             let start = (mixed(i ^ 5) % 200) as u8;
             Rung {
                 vector: [i ^ k << 20, !i].map(|i| (mixed(i) % 20_480) as i16 - 10_240),
-                event: [start, start + 1 + (mixed(i ^ 9) % u32::from(255 - start)) as u8],
+                event: [
+                    start,
+                    start + 1 + (mixed(i ^ 9) % u32::from(255 - start)) as u8,
+                ],
             }
         };
         (share, (0..left as u32).map(rung).collect())
@@ -49,7 +56,8 @@ fn table(with_ladder: bool) -> Table {
 
 fn set(with_ladder: bool, seed: u64, warp: f64, spacing: f64) -> PointSet {
     let placement = Placement::new(Spacing::new(spacing).expect("in range"), Seed(seed));
-    PointSet::new(table(with_ladder)).placed(placement.with_warp(Warp::new(warp).expect("in range")))
+    PointSet::new(table(with_ladder))
+        .placed(placement.with_warp(Warp::new(warp).expect("in range")))
 }
 
 /// Smooth, with places of share 0 and of share 1.
@@ -69,7 +77,11 @@ fn raster() -> Raster {
 }
 
 /// Every id near a box, by the definition.
-fn brute(find: impl Fn(PointId) -> Option<[f64; 2]>, region: &Region, unit: f64) -> Vec<(PointId, [f64; 2])> {
+fn brute(
+    find: impl Fn(PointId) -> Option<[f64; 2]>,
+    region: &Region,
+    unit: f64,
+) -> Vec<(PointId, [f64; 2])> {
     let [x0, y0] = region.min().map(|v| (v / unit) as i64 - 70);
     let [x1, y1] = region.max().map(|v| (v / unit) as i64 + 70);
     let ids = (y0..y1).flat_map(|y| (x0..x1).map(move |x| PointId { x, y }));
@@ -81,9 +93,8 @@ fn brute(find: impl Fn(PointId) -> Option<[f64; 2]>, region: &Region, unit: f64)
 
 fn any_region() -> impl Strategy<Value = Region> {
     let corner = prop::array::uniform2(-60.0..40.0f64);
-    (corner, prop::array::uniform2(0.0..30.0f64)).prop_map(|([x, y], [w, h])| {
-        Region::new([x, y], [x + w, y + h]).expect("ordered")
-    })
+    (corner, prop::array::uniform2(0.0..30.0f64))
+        .prop_map(|([x, y], [w, h])| Region::new([x, y], [x + w, y + h]).expect("ordered"))
 }
 
 fn agrees<F: Field>(set: &PointSet, field: F, region: Region) -> Result<(), TestCaseError> {
@@ -162,7 +173,11 @@ proptest! {
 fn shares_outside_the_range_and_nan_are_none_or_all() {
     let set = set(true, 1, 1.0, 1.0);
     let region = Region::new([0.0, 0.0], [20.0, 20.0]).expect("ordered");
-    let count = |share: f64| set.in_field(move |_: [f64; 2]| share).count(region).expect("near");
+    let count = |share: f64| {
+        set.in_field(move |_: [f64; 2]| share)
+            .count(region)
+            .expect("near")
+    };
     let all = u64::try_from(set.count(region).expect("near")).expect("few");
     assert_eq!([count(1.0), count(7.0), count(f64::INFINITY)], [all; 3]);
     assert_eq!([count(0.0), count(-1.0), count(f64::NAN)], [0; 3]);
@@ -171,7 +186,12 @@ fn shares_outside_the_range_and_nan_are_none_or_all() {
 #[test]
 fn bad_rasters_are_refused() {
     let region = Region::new([0.0, 0.0], [20.0, 20.0]).expect("ordered");
-    for (width, pixels) in [(0, vec![0.5]), (3, vec![0.5; 4]), (1, vec![-0.1]), (1, vec![f32::NAN])] {
+    for (width, pixels) in [
+        (0, vec![0.5]),
+        (3, vec![0.5; 4]),
+        (1, vec![-0.1]),
+        (1, vec![f32::NAN]),
+    ] {
         assert!(Raster::new(region, width, pixels).is_err());
     }
 }

@@ -19,7 +19,9 @@ fn fields() -> Vec<(&'static str, Share)> {
     let middle = SIDE / 2.0;
     let gauss = move |[x, y]: [f64; 2]| {
         let squared = (x - middle).powi(2) + (y - middle).powi(2);
-        (-squared / (2.0 * (SIDE / 6.0).powi(2))).exp().max(1.0 / 32.0)
+        (-squared / (2.0 * (SIDE / 6.0).powi(2)))
+            .exp()
+            .max(1.0 / 32.0)
     };
     vec![
         ("constant 0.3", Box::new(|_| 0.3)),
@@ -68,7 +70,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The middle of the window as a picture, two by one.
 fn print_svg(set: &PointSet, field: &Share) -> Result<(), Box<dyn Error>> {
-    println!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='100 150 200 100' width='1600' height='800'>");
+    println!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='100 150 200 100' width='1600' height='800'>"
+    );
     println!("<rect x='100' y='150' width='200' height='100' fill='white'/>");
     let middle = Region::new([99.0, 149.0], [301.0, 251.0])?;
     for member in set.in_field(|at: [f64; 2]| field(at)).within(middle)? {
@@ -116,7 +120,8 @@ fn boxes(
     if expected > 32.0 {
         let half = side / 2.0;
         for corner in [[x, y], [x + half, y], [x, y + half], [x + half, y + half]] {
-            let inside = |p: &&[f64; 2]| (0..2).all(|i| (corner[i]..corner[i] + half).contains(&p[i]));
+            let inside =
+                |p: &&[f64; 2]| (0..2).all(|i| (corner[i]..corner[i] + half).contains(&p[i]));
             let part = points.iter().filter(inside).copied().collect();
             boxes(corner, half, part, share, sums);
         }
@@ -125,7 +130,10 @@ fn boxes(
     let octave = (-(expected / (side * side)).log2()).max(0.0) as usize;
     let error = points.len() as f64 - expected;
     let sum = &mut sums[octave.min(7)];
-    for (sum, v) in sum.iter_mut().zip([1.0, points.len() as f64, expected, error * error / expected]) {
+    for (sum, v) in
+        sum.iter_mut()
+            .zip([1.0, points.len() as f64, expected, error * error / expected])
+    {
         *sum += v;
     }
 }

@@ -12,7 +12,10 @@ struct Printed;
 impl Watch for Printed {
     fn progress(&self, p: &Progress) {
         if p.step % 10 == 0 {
-            eprintln!("{:?} {} of {}, {:.0?} left", p.stage, p.step, p.steps, p.left);
+            eprintln!(
+                "{:?} {} of {}, {:.0?} left",
+                p.stage, p.step, p.steps, p.left
+            );
         }
     }
 }
@@ -24,7 +27,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut table = read_table(Path::new(table))?;
     if !table.least_distance().is_useful() {
-        println!("{} guarantees no least distance and gets no ranks", table.profile());
+        println!(
+            "{} guarantees no least distance and gets no ranks",
+            table.profile()
+        );
         return Ok(());
     }
     if table.ranks().is_none() {

@@ -47,7 +47,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         let share = (-down).exp2();
         let set = thinned.at(share, moves);
         let spectrum = Spectrum::of_torus(&set, number("--nu", "2.5")?);
-        let s = spectrum.summary(if set.points().len() < 4000 { 0.08 } else { 0.04 });
+        let s = spectrum.summary(if set.points().len() < 4000 {
+            0.08
+        } else {
+            0.04
+        });
         let d = Distances::of_torus(&set);
         if !quiet {
             println!(

@@ -125,16 +125,25 @@ impl Ladder {
             return refused(format!("{} levels", levels.len()), "1 to 512 levels");
         }
         let falls = levels.windows(2).all(|pair| pair[0].share > pair[1].share);
-        if !falls || levels.iter().any(|level| [0, u32::MAX].contains(&level.share)) {
-            return refused("not in order".into(), "levels whose shares fall from 1 to 0");
+        if !falls
+            || levels
+                .iter()
+                .any(|level| [0, u32::MAX].contains(&level.share))
+        {
+            return refused(
+                "not in order".into(),
+                "levels whose shares fall from 1 to 0",
+            );
         }
         let limit = (MAX_DISPLACEMENT as i16) << LADDER_BITS;
         let is_valid = |rung: &Rung| {
-            rung.event[0] < rung.event[1] && rung.vector.iter().all(|v| (1 - limit..limit).contains(v))
+            rung.event[0] < rung.event[1]
+                && rung.vector.iter().all(|v| (1 - limit..limit).contains(v))
         };
         let mut rungs = levels.iter().flat_map(|level| &level.rungs);
         if let Some(rung) = rungs.find(|rung| !is_valid(rung)) {
-            let allowed = "events that start before they end, and vectors shorter than 127 grid units";
+            let allowed =
+                "events that start before they end, and vectors shorter than 127 grid units";
             return refused(format!("{rung:?}"), allowed);
         }
         let mut reach = 0;
@@ -220,14 +229,20 @@ impl Ladder {
         let high = 1.0f64.to_bits() - 1;
         let bucket = (high >> HINT_SHIFT).saturating_sub(share.to_bits() >> HINT_SHIFT) as usize;
         let mut below = usize::from(self.hints[bucket.min(self.hints.len() - 1)]);
-        while self.levels.get(below).is_some_and(|level| level.share() > share) {
+        while self
+            .levels
+            .get(below)
+            .is_some_and(|level| level.share() > share)
+        {
             below += 1;
         }
         let Some(level) = self.levels.get(below) else {
             let (below, way) = (self.levels.len(), EVENT_UNITS);
             return Stage { below, way };
         };
-        let above = below.checked_sub(1).map_or(1.0, |at| self.levels[at].share());
+        let above = below
+            .checked_sub(1)
+            .map_or(1.0, |at| self.levels[at].share());
         if share >= above {
             return Stage { below, way: 0.0 };
         }
@@ -248,7 +263,12 @@ impl Ladder {
     /// The displacement of a block at a stage: its position in the order, and its vector in the table.
     /// A block that has left stays where it was when it left, or at the last level that knows it.
     #[inline]
-    pub(crate) fn displacement(&self, stage: Stage, position: usize, full: Displacement) -> Displacement {
+    pub(crate) fn displacement(
+        &self,
+        stage: Stage,
+        position: usize,
+        full: Displacement,
+    ) -> Displacement {
         let Stage { below, way } = stage;
         let Some(&rung) = self.level(below).get(position) else {
             return self.last(below, position, full);

@@ -267,7 +267,14 @@ mod tests {
         let all = order.cut(&map, 1.0);
         assert!((0..order.blocks.len() as u32).all(|position| all.keeps(position, false)));
         let none = order.cut(&map, 0.0);
-        assert!(!none.keeps(0, false) && none.strip() == ([none.partial[0] as usize, none.partial[1] as usize], map.interval(none.partial[0] as usize).start));
+        assert!(
+            !none.keeps(0, false)
+                && none.strip()
+                    == (
+                        [none.partial[0] as usize, none.partial[1] as usize],
+                        map.interval(none.partial[0] as usize).start
+                    )
+        );
     }
 
     proptest! {

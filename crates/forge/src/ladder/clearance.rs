@@ -128,7 +128,14 @@ fn end_of(blocks: &Blocks, climb: &Climb, segment: usize, position: usize) -> f6
 }
 
 /// From one position to the other of a pair at a part of the way.
-fn difference(blocks: &Blocks, climb: &Climb, segment: usize, own: usize, pair: &Pair, way: f64) -> [f64; 2] {
+fn difference(
+    blocks: &Blocks,
+    climb: &Climb,
+    segment: usize,
+    own: usize,
+    pair: &Pair,
+    way: f64,
+) -> [f64; 2] {
     let scale = blocks.ground.scale();
     let (a, b) = (
         climb.vector(segment, own, way),
@@ -145,7 +152,14 @@ fn nearest(blocks: &Blocks, climb: &Climb, segment: usize, own: usize, pair: &Pa
     let to = pair.to as usize;
     let end = end_of(blocks, climb, segment, to.max(own));
     let events = [own, to].map(|position| climb.events[segment + 1][position]);
-    let mut ways = [0.0, events[0][0], events[0][1], events[1][0], events[1][1], end];
+    let mut ways = [
+        0.0,
+        events[0][0],
+        events[0][1],
+        events[1][0],
+        events[1][1],
+        end,
+    ];
     ways[1..5].iter_mut().for_each(|way| *way = way.min(end));
     ways.sort_by(f64::total_cmp);
     let mut least = (f64::INFINITY, 0.0);

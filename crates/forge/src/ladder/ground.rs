@@ -60,7 +60,9 @@ impl Ground {
             }
         }
         let lengths: Vec<f64> = (0..n).map(|i| overlaps.length(i) / scale).collect();
-        let shares = (0..n * n).map(|b| lengths[b % n] * lengths[b / n]).collect();
+        let shares = (0..n * n)
+            .map(|b| lengths[b % n] * lengths[b / n])
+            .collect();
         Self {
             n,
             scale,
@@ -131,5 +133,7 @@ const fn slot(other: i64, own: i64) -> usize {
 pub(super) fn moves_of(table: &Table) -> Vec<[f64; 2]> {
     let scale = table.alpha().set_side_f64();
     let vectors = table.displacements().iter();
-    vectors.map(|v| v.map(|c| to_grid_units(c) * scale)).collect()
+    vectors
+        .map(|v| v.map(|c| to_grid_units(c) * scale))
+        .collect()
 }

@@ -4,10 +4,7 @@
 //! shares here are incommensurate with the levels: 101 an octave, with a phase.
 
 use rayon::prelude::*;
-use strew_core::{
-    Table, Twin,
-    table::Figures,
-};
+use strew_core::{Table, Twin, table::Figures};
 
 use super::ThinnedTwin;
 use crate::{
@@ -39,7 +36,10 @@ const DELTA: f64 = 0.5;
 /// The figures by twin and octave, or `None` if the watch stopped the work.
 pub(super) fn judge(table: &Table, watch: &dyn Watch) -> Option<Vec<Figures>> {
     let octaves = octaves(table);
-    let twins: Vec<Twin> = LARGEST.iter().filter_map(|&most| nearest(table, most)).collect();
+    let twins: Vec<Twin> = LARGEST
+        .iter()
+        .filter_map(|&most| nearest(table, most))
+        .collect();
     let mut meter = Meter::new(watch, Stage::Measuring, octaves * twins.len() as u32);
     let mut all = Vec::new();
     for (twin, per) in twins.into_iter().zip(SHARES) {
@@ -64,9 +64,15 @@ pub(super) fn judge(table: &Table, watch: &dyn Watch) -> Option<Vec<Figures>> {
                 seen: false,
                 points: (twin.points() as f64 * libm::exp2(-f64::from(octave))) as u64,
                 values: vec![
-                    (Figure::LowPower.name().into(), low.clone().fold(0.0, f64::max)),
+                    (
+                        Figure::LowPower.name().into(),
+                        low.clone().fold(0.0, f64::max),
+                    ),
                     ("low_power_mean".into(), low.sum::<f64>() / f64::from(per)),
-                    (Figure::DeltaMin.name().into(), delta.fold(f64::INFINITY, f64::min)),
+                    (
+                        Figure::DeltaMin.name().into(),
+                        delta.fold(f64::INFINITY, f64::min),
+                    ),
                 ],
             });
             meter.advance(None);
@@ -87,7 +93,9 @@ fn nearest(table: &Table, most: u64) -> Option<Twin> {
 /// The number of times the share halves along the ladder.
 fn octaves(table: &Table) -> u32 {
     let least = table.ladder().map_or(1.0, |ladder| ladder.least_share());
-    (1..=32).find(|&k| libm::exp2(-f64::from(k)) <= least * 1.001).unwrap_or(1)
+    (1..=32)
+        .find(|&k| libm::exp2(-f64::from(k)) <= least * 1.001)
+        .unwrap_or(1)
 }
 
 /// The shares of an octave in words.

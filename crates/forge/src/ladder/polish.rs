@@ -82,7 +82,14 @@ impl Polish {
                 let ways: Vec<f64> = (0..self.samples)
                     .map(|i| (i as f64 + phase) / self.samples as f64)
                     .collect();
-                slopes(blocks, climb, segment, &self.lists[segment], &self.energy, &ways)
+                slopes(
+                    blocks,
+                    climb,
+                    segment,
+                    &self.lists[segment],
+                    &self.energy,
+                    &ways,
+                )
             })
             .collect();
         for k in 1..climb.shares.len() {

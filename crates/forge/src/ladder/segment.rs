@@ -147,7 +147,11 @@ pub(super) fn slopes(
                 let sum = &mut all.of[level][own];
                 // Slopes per unit of local spacing, so that one rate serves all levels.
                 let squared = spacing * spacing;
-                *sum = [sum[0] + by * squared * x, sum[1] + by * squared * y, sum[2] + by];
+                *sum = [
+                    sum[0] + by * squared * x,
+                    sum[1] + by * squared * y,
+                    sum[2] + by,
+                ];
             }
         }
         all.energy += 0.5 * total / share / ways.len() as f64;

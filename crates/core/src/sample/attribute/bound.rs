@@ -8,11 +8,11 @@ use super::{
 };
 use crate::{
     pattern::Pattern,
-    table::Table,
     sample::{
         kernel::write_numbers,
         lattice::{Lattice, Point, PointId, rank},
     },
+    table::Table,
 };
 
 /// The values of one attribute for some points.

@@ -52,7 +52,8 @@ fn count_rows(lattice: &Lattice, x: &Span, y: &Span) -> u128 {
         if y.inner.contains(&v) {
             let inner = places(listed, &x.inner);
             count += inner.len();
-            for &Line { at, block, .. } in listed[..inner.start].iter().chain(&listed[inner.end..]) {
+            for &Line { at, block, .. } in listed[..inner.start].iter().chain(&listed[inner.end..])
+            {
                 count += usize::from(x.holds(at, vectors[block as usize][0]));
             }
         } else {
@@ -96,9 +97,7 @@ fn count_class(
             .in_row(block_y)
             .zip(vectors)
             .filter(|(_, [_, dy])| y.holds(row.at, *dy));
-        count += inside
-            .map(|(columns, _)| u128::from(columns))
-            .sum::<u128>();
+        count += inside.map(|(columns, _)| u128::from(columns)).sum::<u128>();
         count += margin_columns
             .iter()
             .filter(|column| keeps(column))

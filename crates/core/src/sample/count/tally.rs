@@ -33,7 +33,10 @@ pub(super) fn product(lattice: &Lattice, columns: &Range<i64>, rows: &Range<i64>
     if lattice.cut.is_none() {
         return lattice.pattern.count(columns.clone(), rows.clone());
     }
-    let tallies = [tally(lattice, Axis::X, columns), tally(lattice, Axis::Y, rows)];
+    let tallies = [
+        tally(lattice, Axis::X, columns),
+        tally(lattice, Axis::Y, rows),
+    ];
     let count = |class: Class| {
         let [inner, rows] = [0, 1].map(|axis| tallies[axis][class.ordinal()].as_slice());
         let columns = ColumnTally::new(lattice, class, columns, inner);
@@ -51,7 +54,12 @@ pub(super) struct ColumnTally<'a> {
 }
 
 impl<'a> ColumnTally<'a> {
-    pub(super) fn new(lattice: &'a Lattice, class: Class, range: &Range<i64>, counts: &'a [u64]) -> Self {
+    pub(super) fn new(
+        lattice: &'a Lattice,
+        class: Class,
+        range: &Range<i64>,
+        counts: &'a [u64],
+    ) -> Self {
         let strip = lattice.cut.map_or(0, |cut| {
             let ([x, _], end) = cut.strip();
             let strip = lattice.map().interval(x).start..end;

@@ -97,7 +97,8 @@ pub(super) fn walk<F: Field>(
                             continue;
                         }
                         if let Some(ladder) = ladder {
-                            let [dx, dy] = graded.displacement(ladder, position, [dx, dy], at, share);
+                            let [dx, dy] =
+                                graded.displacement(ladder, position, [dx, dy], at, share);
                             place = patch.place([x + dx, row + dy]);
                             at = scale.world(place);
                         }
@@ -136,7 +137,10 @@ fn reach_of_full<F: Field>(graded: &Graded<F>) -> i32 {
 fn reach_of_moved<F: Field>(graded: &Graded<F>, share: f64) -> i32 {
     let lattice = &graded.lattice;
     let warp = lattice.shears.map_or(0, |shears| shears.reach());
-    let moved = lattice.table.ladder().map_or(0, |ladder| ladder.reach(share));
+    let moved = lattice
+        .table
+        .ladder()
+        .map_or(0, |ladder| ladder.reach(share));
     reach_of_full(graded).max(moved + warp)
 }
 

@@ -69,7 +69,12 @@ impl Moved {
             }
             vector
         };
-        let vectors = table.displacements().iter().enumerate().map(vector).collect();
+        let vectors = table
+            .displacements()
+            .iter()
+            .enumerate()
+            .map(vector)
+            .collect();
         Self { vectors, reach }
     }
 }
@@ -140,7 +145,8 @@ impl Lattice {
         let positions = self.table.order().positions(block_y * n..(block_y + 1) * n);
         move |line| {
             let position = positions[line.block as usize];
-            self.cut.is_none_or(|cut| cut.keeps(position, line.is_in_strip))
+            self.cut
+                .is_none_or(|cut| cut.keeps(position, line.is_in_strip))
         }
     }
 
@@ -158,7 +164,9 @@ impl Lattice {
 
     /// The least and the greatest displacement along x and y.
     pub(crate) fn displaced(&self) -> [[i32; 2]; 2] {
-        self.moved.as_ref().map_or_else(|| self.table.reach(), |moved| moved.reach)
+        self.moved
+            .as_ref()
+            .map_or_else(|| self.table.reach(), |moved| moved.reach)
     }
 
     /// This lattice at another placement. What does not change is shared.

@@ -61,7 +61,10 @@ pub(super) fn scan(
         };
         let offset = (fixed(y) - center[1]) as i64;
         let (vectors, keeps) = (lattice.vectors(block), lattice.keeps(block));
-        for column in scratch.0[class.ordinal()].iter().filter(|column| keeps(&column.line)) {
+        for column in scratch.0[class.ordinal()]
+            .iter()
+            .filter(|column| keeps(&column.line))
+        {
             let [dx, dy] = vectors[column.line.block as usize];
             let [x_offset, y_offset] = [column.offset + i64::from(dx), offset + i64::from(dy)];
             let (x, y_near) = (x_offset as f64, y_offset as f64);

@@ -273,7 +273,10 @@ fn read_rank(bytes: &[u8], blocks: usize) -> Result<Vec<u32>, String> {
     let width = position_bytes(blocks);
     if bytes.len() != width * blocks {
         let need = width * blocks;
-        return Err(format!("{} bytes; {blocks} blocks need {need}", bytes.len()));
+        return Err(format!(
+            "{} bytes; {blocks} blocks need {need}",
+            bytes.len()
+        ));
     }
     let position = |bytes: &[u8]| {
         let mut wide = [0; 4];

@@ -4,7 +4,8 @@ use alloc::{vec, vec::Vec};
 
 use super::{
     layout::{
-        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, LADDER, MAGIC, RANKS, check_size, position_bytes,
+        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, LADDER, MAGIC, RANKS, check_size,
+        position_bytes,
     },
     wire::Writer,
 };
@@ -110,7 +111,8 @@ fn ladd(ladder: &Ladder) -> Vec<u8> {
         out.u32(share);
         out.length(rungs.len());
         for rung in rungs {
-            out.bytes.extend(rung.vector.into_iter().flat_map(i16::to_le_bytes));
+            out.bytes
+                .extend(rung.vector.into_iter().flat_map(i16::to_le_bytes));
             out.bytes.extend(rung.event);
         }
     }
