@@ -3,6 +3,8 @@
 //!
 //! `cargo run --release -p strew-forge --example served -- TABLE [--seed 3] [--warp 1] [--moving]` prints
 //! the mean power below ν = 0.5, the tallest mode below ν = 0.8 over the mean of its ring, and δ_min.
+//! With `--svg` it writes a picture instead: shares 1/4, 1/16, 1/25 and 1/200, by `keep` above and by
+//! `keep_moving` below.
 
 use std::{error::Error, path::Path};
 
@@ -27,6 +29,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let table = read_table(Path::new(arguments.first().ok_or("which table?")?))?;
     let all = PointSet::new(table).seed(number("--seed", 3.0)? as u64);
     let all = all.warp(number("--warp", 1.0)?)?;
+    if arguments.iter().any(|a| a == "--svg") {
+        return draw(&all);
+    }
     println!("share points low tallest/ring delta_min");
     for octave in 1..=6 {
         let share = (-f64::from(octave)).exp2();
@@ -51,6 +56,34 @@ fn main() -> Result<(), Box<dyn Error>> {
             Distances::of_window(&window).delta_min
         );
     }
+    Ok(())
+}
+
+/// Draws squares of 32 spacings of the thinned sets.
+fn draw(all: &PointSet) -> Result<(), Box<dyn Error>> {
+    const SIDE: f64 = 32.0;
+    println!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 134 67' width='1600' height='800'>"
+    );
+    println!("<rect width='134' height='67' fill='white'/>");
+    for (column, share) in [0.25, 0.0625, 0.04, 0.005].into_iter().enumerate() {
+        for (row, moving) in [false, true].into_iter().enumerate() {
+            let set = match moving {
+                true => all.clone().keep_moving(share)?,
+                false => all.clone().keep(share)?,
+            };
+            let local = (1.0 / share).sqrt();
+            let region = Region::new([0.0; 2], [SIDE * local; 2])?;
+            let [left, top] = [column, row].map(|place| place as f64 * (SIDE + 2.0));
+            println!("<g transform='translate({left} {top})'>");
+            for p in set.within(region)?.to_vec() {
+                let [x, y] = [p.x / local, p.y / local];
+                println!("<circle cx='{x:.2}' cy='{y:.2}' r='0.2'/>");
+            }
+            println!("</g>");
+        }
+    }
+    println!("</svg>");
     Ok(())
 }
 

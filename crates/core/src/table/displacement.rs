@@ -359,7 +359,9 @@ impl Table {
     /// let table = table.with_ladder(Ladder::new(vec![level])?)?;
     /// assert_eq!(table.displacement_at(7, 1.0), [0, 0]);
     /// assert_eq!(table.displacement_at(7, 0.75), [1 << 19, 0]);
-    /// assert_eq!(table.displacement_at(7, 0.1), [1 << 20, 0]);
+    /// assert_eq!(table.displacement_at(7, 0.5), [1 << 20, 0]);
+    /// // Below the last level points return.
+    /// assert_eq!(table.displacement_at(7, 0.25), [0, 0]);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     ///

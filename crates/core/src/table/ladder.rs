@@ -6,7 +6,8 @@
 //! are spread as evenly as a set made for it, nearly.
 //!
 //! Level k has a vector for each block of which any point is left on the way down from level k − 1: the
-//! first positions of the [order](super::Ranks). Below the last level its vectors stay.
+//! first positions of the [order](super::Ranks). Below the last level points return to the table's own vectors
+//! while the share halves: those serve fewer points better than vectors that fitted more.
 
 use alloc::{format, vec::Vec};
 
@@ -86,6 +87,8 @@ pub(crate) struct Stage {
     below: usize,
     /// The part of the way down to it, in units of [`EVENT_UNITS`].
     way: f64,
+    /// Below the last level, the part of the way back to the table's own vectors.
+    back: f64,
 }
 
 impl Ladder {
@@ -192,7 +195,8 @@ impl Ladder {
         self.levels.iter().map(Level::share)
     }
 
-    /// The share of the last level. Below it points are thinned in order and move no more.
+    /// The share of the last level. Below it points return to where they are in the full set, while the share
+    /// halves.
     ///
     /// ```
     /// use strew_core::table::{Ladder, Rung};
@@ -237,18 +241,24 @@ impl Ladder {
             below += 1;
         }
         let Some(level) = self.levels.get(below) else {
-            let (below, way) = (self.levels.len(), EVENT_UNITS);
-            return Stage { below, way };
+            let least = self.least_share();
+            return Stage {
+                below: self.levels.len(),
+                way: EVENT_UNITS,
+                back: ((least - share) / (0.5 * least)).min(1.0),
+            };
         };
         let above = below
             .checked_sub(1)
             .map_or(1.0, |at| self.levels[at].share());
         if share >= above {
-            return Stage { below, way: 0.0 };
+            let (way, back) = (0.0, 0.0);
+            return Stage { below, way, back };
         }
         Stage {
             below: below + 1,
             way: (above - share) / (above - level.share()) * EVENT_UNITS,
+            back: 0.0,
         }
     }
 
@@ -269,7 +279,11 @@ impl Ladder {
         position: usize,
         full: Displacement,
     ) -> Displacement {
-        let Stage { below, way } = stage;
+        let Stage { below, way, back } = stage;
+        if back > 0.0 {
+            let last = self.last(below, position, full);
+            return between(last, full, back);
+        }
         let Some(&rung) = self.level(below).get(position) else {
             return self.last(below, position, full);
         };
@@ -279,11 +293,7 @@ impl Ladder {
             _ => widened(self.level(below - 1)[position]),
         };
         let [start, end] = rung.event.map(f64::from);
-        let part = ((way - start) / (end - start)).clamp(0.0, 1.0);
-        [0, 1].map(|axis| {
-            let by = f64::from(to[axis]) - f64::from(from[axis]);
-            from[axis] + (by * part) as i32
-        })
+        between(from, to, ((way - start) / (end - start)).clamp(0.0, 1.0))
     }
 
     /// The displacement of a block at the last level up to `below` that knows it.
@@ -328,6 +338,14 @@ impl Level {
     }
 }
 
+/// A part of the way from one vector to another.
+fn between(from: Displacement, to: Displacement, part: f64) -> Displacement {
+    [0, 1].map(|axis| {
+        let by = f64::from(to[axis]) - f64::from(from[axis]);
+        from[axis] + (by * part) as i32
+    })
+}
+
 /// The vector of a rung, in units of a table's vectors.
 fn widened(rung: Rung) -> Displacement {
     rung.vector.map(|v| i32::from(v) << SHIFT)
@@ -353,11 +371,12 @@ mod tests {
             });
             let ladder = Ladder::new(levels.collect()).expect("valid");
             let shares: Vec<f64> = [1.0].into_iter().chain(ladder.shares()).collect();
-            let Stage { below, way } = ladder.stage(share);
+            let Stage { below, way, back } = ladder.stage(share);
             if below == 0 {
                 prop_assert!(share >= 1.0);
             } else if share < ladder.least_share() {
                 prop_assert_eq!((below, way), (shares.len() - 1, EVENT_UNITS));
+                prop_assert!(0.0 < back && back <= 1.0);
             } else {
                 prop_assert!(shares[below] <= share && share < shares[below - 1]);
                 let expected = (shares[below - 1] - share) / (shares[below - 1] - shares[below]);
