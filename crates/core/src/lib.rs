@@ -34,7 +34,7 @@
 //!
 //! - `std` (default): vector instructions of x86-64 are found at run time, and some results are kept.
 //!   Without it the crate needs `alloc` only; all results have the same bits.
-//! - `tables` (default): [`PointSet::blue`] and its table of 34 kB. Others are read from files by
+//! - `tables` (default): [`PointSet::blue`] and its table of 42 kB. Others are read from files by
 //!   [`Table::from_bytes`].
 //!
 //! The crate knows no network, no async runtime, no file system and no serialization framework.
