@@ -187,3 +187,16 @@ fn single_points_have_these_bits() {
         "cb67815a5524ba7df97ba2467d7c3622eac07865b88107c7762f9b42e8ba5e2e"
     );
 }
+
+#[cfg(feature = "tables")]
+#[test]
+fn thinned_sets_have_these_bits() {
+    let region = Region::new([0.0, 0.0], [60.0, 40.0]).expect("ordered");
+    let set = PointSet::blue().seed(7);
+    let plan = set
+        .keep(0.3)
+        .expect("a share")
+        .within(region)
+        .expect("near");
+    assert_eq!((plan.count(), &*digest(&plan)), (727, "fbe5fe6d6fe7d358"));
+}

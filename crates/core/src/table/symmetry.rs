@@ -3,11 +3,13 @@
 //! The thresholds of a map are symmetric: a neighbor shift s and its opposite mirror each other about the
 //! middle of the set region. Reflecting the plane along an axis therefore reverses the order of the blocks of
 //! that axis, reflecting it about the diagonal swaps the axes of the blocks, and a table turned with them
-//! makes the reflected point set: the pattern is the same one with another origin.
+//! makes the reflected point set: the pattern is the same one with another origin. The order in which blocks
+//! leave and the vectors of a ladder turn alike. Only the strip of the one block that is partly kept runs along
+//! dX in every turned table.
 
 use alloc::{sync::Arc, vec::Vec};
 
-use super::{Displacement, Table};
+use super::{Displacement, Ladder, Order, Table, ladder::Stage};
 use crate::once::Once;
 
 /// A symmetry of the square: an exchange of the axes, if any, and then reflections along x and y.
@@ -54,38 +56,50 @@ impl Symmetry {
     }
 }
 
-/// The vectors of a table under a symmetry.
+/// The vectors of a table and the order of its blocks under a symmetry.
 #[derive(Clone, Debug)]
-pub(crate) struct Vectors {
+pub(crate) struct TurnedTable {
     /// `None` for the table's own.
-    turned: Option<Arc<[Displacement]>>,
+    turned: Option<Arc<Turned>>,
     table: Table,
-    intervals: usize,
+    symmetry: Symmetry,
     /// The least and the greatest displacement along x and y.
     reach: [[i32; 2]; 2],
 }
 
-/// The turned copies of a table's vectors, made when they are first needed.
-#[derive(Debug, Default)]
-pub(super) struct Turned([Once<Arc<[Displacement]>>; ALL]);
+#[derive(Debug)]
+struct Turned {
+    vectors: Vec<Displacement>,
+    order: Order,
+}
 
-impl Turned {
+/// The turned copies of a table, made when they are first needed.
+#[derive(Debug)]
+pub(super) struct TurnedCopies([Once<Arc<Turned>>; ALL]);
+
+impl TurnedCopies {
+    /// The number of copies that a table may come to hold.
+    pub(super) const MOST: usize = ALL - 1;
+
     pub(super) const fn new() -> Self {
         Self([const { Once::new() }; ALL])
     }
 }
 
-impl Vectors {
+impl TurnedTable {
     pub(crate) fn new(table: &Table, symmetry: Symmetry) -> Self {
         let (n, vectors) = (table.map().intervals(), table.displacements());
         let turned = (symmetry != Symmetry::default()).then(|| {
             table.turned().0[symmetry.number()].get_or(|| {
-                let blocks = (0..n).flat_map(|y| (0..n).map(move |x| [x, y]));
-                let turned = blocks.map(|block| {
-                    let [x, y] = symmetry.source(n, block);
-                    symmetry.turn(vectors[y * n + x])
-                });
-                turned.collect::<Vec<_>>().into()
+                let source = |block: usize| {
+                    let [x, y] = symmetry.source(n, [block % n, block / n]);
+                    y * n + x
+                };
+                let vector = |block| symmetry.turn(vectors[source(block)]);
+                Arc::new(Turned {
+                    vectors: (0..n * n).map(vector).collect(),
+                    order: table.order().turned(source),
+                })
             })
         });
         let [x, y] = table.reach();
@@ -93,7 +107,7 @@ impl Vectors {
         Self {
             turned,
             table: table.clone(),
-            intervals: n,
+            symmetry,
             reach: [0, 1].map(|axis| {
                 let [a, b] = ends.map(|end| end[axis]);
                 [a.min(b), a.max(b)]
@@ -105,10 +119,33 @@ impl Vectors {
     #[inline]
     pub(crate) fn row(&self, block_y: usize) -> &[Displacement] {
         let all = match &self.turned {
-            Some(turned) => turned,
+            Some(turned) => &turned.vectors,
             None => self.table.displacements(),
         };
-        &all[block_y * self.intervals..][..self.intervals]
+        let n = self.table.map().intervals();
+        &all[block_y * n..][..n]
+    }
+
+    /// The order in which blocks leave.
+    #[inline]
+    pub(crate) fn order(&self) -> &Order {
+        match &self.turned {
+            Some(turned) => &turned.order,
+            None => self.table.order(),
+        }
+    }
+
+    /// The displacement of the block at a position of the order, at a stage of the table's ladder.
+    #[inline]
+    pub(crate) fn moved(&self, ladder: &Ladder, stage: Stage, position: usize) -> Displacement {
+        let full = self.table.displacements()[self.table.order().block(position)];
+        self.symmetry
+            .turn(ladder.displacement(stage, position, full))
+    }
+
+    /// The table as it is.
+    pub(crate) const fn table(&self) -> &Table {
+        &self.table
     }
 
     /// The least and the greatest displacement along x and y.
@@ -158,7 +195,7 @@ mod tests {
         let vectors = (0..n * n).map(|i| [i * 37 % 101 - 20, i * 53 % 89 - 70]);
         let table = Table::new(map, "test", vectors.collect(), Default::default()).expect("valid");
         for bits in 0..8 {
-            let vectors = Vectors::new(&table, Symmetry::from_bits(bits));
+            let vectors = TurnedTable::new(&table, Symmetry::from_bits(bits));
             let all = (0..n as usize).flat_map(|row| vectors.row(row));
             let mut reach = [[i32::MAX, i32::MIN]; 2];
             for v in all {

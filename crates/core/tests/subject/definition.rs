@@ -12,31 +12,49 @@ fn mix(state: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// The vector of a point in block (i, j) of an n × n table, turned by the seed's symmetry.
-fn turned_vector(table: &Table, seed: Seed, [mut i, mut j]: [usize; 2]) -> [i128; 2] {
-    let n = table.map().intervals();
-    let symmetry = match seed.0 {
-        0 => 0,
-        seed => mix(seed ^ u64::from_be_bytes(*b"SYMMETRY")) >> 61,
-    };
-    let [reverses_x, reverses_y, swaps] = [1, 2, 4].map(|bit| symmetry & bit != 0);
-    if reverses_x {
-        i = n - 1 - i;
+/// A symmetry of the square: reflections along x and y, after an exchange of the axes.
+#[derive(Clone, Copy)]
+struct Symmetry {
+    reverses: [bool; 2],
+    swaps: bool,
+}
+
+impl Symmetry {
+    fn of(seed: Seed) -> Self {
+        let bits = match seed.0 {
+            0 => 0,
+            seed => mix(seed ^ u64::from_be_bytes(*b"SYMMETRY")) >> 61,
+        };
+        let [reverses_x, reverses_y, swaps] = [1, 2, 4].map(|bit| bits & bit != 0);
+        Self {
+            reverses: [reverses_x, reverses_y],
+            swaps,
+        }
     }
-    if reverses_y {
-        j = n - 1 - j;
+
+    /// The number of the block of an n × n table that points in block (i, j) take.
+    fn source(self, n: usize, [mut i, mut j]: [usize; 2]) -> usize {
+        if self.reverses[0] {
+            i = n - 1 - i;
+        }
+        if self.reverses[1] {
+            j = n - 1 - j;
+        }
+        if self.swaps {
+            (i, j) = (j, i);
+        }
+        j * n + i
     }
-    if swaps {
-        (i, j) = (j, i);
+
+    fn turn(self, [mut dx, mut dy]: [i128; 2]) -> [i128; 2] {
+        if self.swaps {
+            (dx, dy) = (dy, dx);
+        }
+        [
+            if self.reverses[0] { -dx } else { dx },
+            if self.reverses[1] { -dy } else { dy },
+        ]
     }
-    let [mut dx, mut dy] = table.displacements()[j * n + i].map(i128::from);
-    if swaps {
-        (dx, dy) = (dy, dx);
-    }
-    [
-        if reverses_x { -dx } else { dx },
-        if reverses_y { -dy } else { dy },
-    ]
 }
 
 /// The control value of a knot.
@@ -84,19 +102,48 @@ fn warped(seed: Seed, strength: f64, [mut x, mut y]: [i128; 2]) -> [i128; 2] {
     [x + falling, y - falling]
 }
 
-/// The place of a point of the lattice, if the set has one there.
-pub fn place(set: &PointSet, id: PointId) -> Option<[f64; 2]> {
-    let (table, placement) = (set.table(), set.placement());
+/// The indices of an address along both axes, and its block, if the pattern has a point there.
+fn block(table: &Table, seed: Seed, id: PointId) -> Option<([u64; 2], [usize; 2])> {
     let map = table.map();
     let index = |own: i64, other: i64, origin: u64| {
         let turned = table.alpha().half().wrapping_mul(own as u64);
         let crossed = u64::from(other % 2 != 0) << 63;
         turned.wrapping_add(crossed).wrapping_add(origin)
     };
-    let origin = placement.seed.origin();
+    let origin = seed.origin();
     let indices = [index(id.x, id.y, origin.x), index(id.y, id.x, origin.y)];
     let [i, j] = indices.map(|u| (0..map.intervals()).find(|&i| map.interval(i).contains(&u)));
-    let [dx, dy] = turned_vector(table, placement.seed, [i?, j?]);
+    Some((indices, [i?, j?]))
+}
+
+/// The rank of a point of the pattern, whether it is kept or not.
+pub fn rank(set: &PointSet, id: PointId) -> Option<f64> {
+    let (table, seed) = (set.table(), set.placement().seed);
+    let ([index, _], [i, j]) = block(table, seed, id)?;
+    let map = table.map();
+    let ranks = table.block_ranks(Symmetry::of(seed).source(map.intervals(), [i, j]));
+    let interval = map.interval(i);
+    let part = (index - interval.start) as f64 / (interval.end - interval.start) as f64;
+    let rank = ranks.start + (ranks.end - ranks.start) * part;
+    Some(rank.min(ranks.end.next_down()))
+}
+
+/// The place of a point of the lattice, if the set has one there.
+pub fn place(set: &PointSet, id: PointId) -> Option<[f64; 2]> {
+    let (table, placement) = (set.table(), set.placement());
+    let (seed, share) = (placement.seed, placement.keep.get());
+    let (_, [i, j]) = block(table, seed, id)?;
+    if rank(set, id)? >= share {
+        return None;
+    }
+    let symmetry = Symmetry::of(seed);
+    let source = symmetry.source(table.map().intervals(), [i, j]);
+    let vector = if placement.keep.moves() {
+        table.displacement_at(source, share)
+    } else {
+        table.displacements()[source]
+    };
+    let [dx, dy] = symmetry.turn(vector.map(i128::from));
     let displaced = [(i128::from(id.x) << 20) + dx, (i128::from(id.y) << 20) + dy];
     let place = match placement.warp.strength() {
         0.0 => displaced,

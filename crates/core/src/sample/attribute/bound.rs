@@ -12,6 +12,7 @@ use crate::{
         kernel::{Backend, compiled, write_numbers},
         lattice::{Lattice, Point, PointId, rank},
     },
+    table::TurnedTable,
 };
 
 /// The values of one attribute for some points.
@@ -72,7 +73,7 @@ impl Column {
 }
 
 /// The attributes of one point set; see [`PointSet::attributes`](crate::PointSet::attributes). Cheap to
-/// clone, and it holds no table.
+/// clone.
 ///
 /// ```
 /// use strew_core::{Attributes, PointSet, Table};
@@ -88,6 +89,7 @@ impl Column {
 /// ```
 #[derive(Clone, Debug)]
 pub struct BoundAttributes {
+    table: TurnedTable,
     pattern: Pattern,
     list: Vec<Bound>,
 }
@@ -127,14 +129,13 @@ impl Rows {
 impl BoundAttributes {
     pub(crate) fn new(attributes: &Attributes, lattice: &Lattice) -> Self {
         let seed = lattice.placement.seed;
-        // Ranks are those of the whole pattern, also where only a share is kept.
-        let pattern = Pattern::with_origin(lattice.table.alpha(), seed.origin());
         let bind = |attribute: &Attribute| Bound {
             key: key(seed, attribute.code()),
             attribute: attribute.clone(),
         };
         Self {
-            pattern,
+            table: lattice.turned.clone(),
+            pattern: lattice.pattern,
             list: attributes.as_slice().iter().map(bind).collect(),
         }
     }
@@ -269,10 +270,7 @@ impl BoundAttributes {
         match attribute {
             Attribute::Angle => angle(hash(key, id)),
             Attribute::Scale(range) => scale(*range, hash(key, id)),
-            Attribute::Rank => {
-                let depth = self.pattern.depth(id.x, id.y);
-                rank(depth, self.pattern.alpha().set_side())
-            }
+            Attribute::Rank => rank(&self.table, &self.pattern, id),
             Attribute::Uniform(_) => unit(hash(key, id)),
             Attribute::Variant(variants) => variants.pick(hash(key, id)).into(),
         }

@@ -5,13 +5,11 @@
 
 use core::ops::Range;
 
-use crate::{
-    pattern::{Axis, Class},
-    sample::{
-        kernel::Backend,
-        lattice::{BAND_WIDTH, Columns, Flat, Lattice, PATCH_HEIGHT, Patch, Span},
-        stop::Stop,
-    },
+use super::tally::product;
+use crate::sample::{
+    kernel::Backend,
+    lattice::{BAND_WIDTH, Columns, Flat, Lattice, PATCH_HEIGHT, Patch, Span},
+    stop::Stop,
 };
 
 /// The number of points of a warped box; meaningless once `stop` is raised.
@@ -30,20 +28,13 @@ pub(super) fn count(lattice: &Lattice, [x, y]: [&Span; 2], stop: &Stop) -> u128 
         margins.piece = [BAND_WIDTH, PATCH_HEIGHT];
         return margins.count(&x.all, &y.all);
     }
-    let inner = |class: Class| {
-        let along = |axis, span: &Span| {
-            let set = lattice.pattern.axis_set(axis, class);
-            u128::from(set.count(span.inner.clone()))
-        };
-        along(Axis::X, x) * along(Axis::Y, y)
-    };
     let [left, right] = x.margins();
     let [bottom, top] = y.margins();
     let tested = margins.count(&left, &y.inner)
         + margins.count(&right, &y.inner)
         + margins.count(&x.all, &bottom)
         + margins.count(&x.all, &top);
-    Class::ALL.into_iter().map(inner).sum::<u128>() + tested
+    product(lattice, &x.inner, &y.inner) + tested
 }
 
 /// The largest width and height, in lattice units, of boxes that are all margin.
@@ -101,8 +92,8 @@ impl Margins<'_> {
     fn count_piece(&mut self, patch: &Patch, columns: Range<i64>, rows: Range<i64>) -> usize {
         let (lattice, backend) = (self.lattice, self.backend);
         let [x, y] = Span::of_piece(lattice, self.spans, [columns, rows]);
-        let [left, right] = x.margins().map(|margin| self.columns.places(&margin));
-        let [all, inner] = [&x.all, &x.inner].map(|range| self.columns.places(range));
+        let [left, right] = x.margins().map(|margin| self.columns.part(margin));
+        let all = self.columns.part(x.all.clone());
         let (mut count, mut is_first) = (0, true);
         let [below, above] = y.margins();
         let parts = [
@@ -111,29 +102,35 @@ impl Margins<'_> {
             (y.inner.clone(), &left),
             (y.inner, &right),
         ];
-        for (part, (rows, places)) in parts.into_iter().enumerate() {
-            let is_inner = part >= 2;
-            let is_empty = places.iter().all(Range::is_empty);
-            if rows.is_empty() || is_empty && !(is_inner && is_first) {
+        for (number, (rows, part)) in parts.into_iter().enumerate() {
+            let is_inner = number >= 2;
+            if rows.is_empty() || part.is_empty() && !(is_inner && is_first) {
                 continue;
             }
-            self.flat.list(
-                lattice,
-                patch,
-                (&self.columns, places),
-                rows,
-                usize::MAX,
-                backend,
-            );
-            count += self.flat.count(patch, backend);
             if is_inner && is_first {
-                let pairs = self.flat.rows().into_iter().zip(&inner);
-                count += pairs
-                    .map(|(rows, columns)| rows * columns.len())
-                    .sum::<usize>();
+                count += self.count_inner(&x.inner, rows.clone());
                 is_first = false;
             }
+            if part.is_empty() {
+                continue;
+            }
+            let columns = (&mut self.columns, part);
+            self.flat
+                .list(lattice, patch, columns, rows, usize::MAX, backend);
+            count += self.flat.count(patch, backend);
         }
         count
+    }
+
+    /// The number of points with addresses in some columns and rows.
+    fn count_inner(&mut self, columns: &Range<i64>, rows: Range<i64>) -> usize {
+        let part = self.columns.part(columns.clone());
+        let rows = rows.filter_map(|y| self.lattice.row(y));
+        rows.map(|(class, block)| {
+            self.columns
+                .of_part(self.lattice, class, block, &part)
+                .len()
+        })
+        .sum()
     }
 }

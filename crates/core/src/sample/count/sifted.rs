@@ -4,11 +4,12 @@
 use alloc::{vec, vec::Vec};
 use core::ops::Range;
 
+use super::tally::product;
 use crate::{
     pattern::Axis,
     sample::{
         area::Area,
-        lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span},
+        lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span, places},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale, Sieve},
         stop::Stop,
     },
@@ -40,7 +41,7 @@ pub(super) fn count(lattice: &Lattice, sieve: &Sieve, [x, y]: [&Span; 2], stop: 
         strip.runs(rows.clone(), columns, &mut runs);
         for run in &runs {
             if run.passes {
-                count += lattice.pattern.count(run.columns.clone(), rows.clone());
+                count += product(lattice, &run.columns, &rows);
                 continue;
             }
             let mut from = run.columns.start;
@@ -117,11 +118,14 @@ impl Edges<'_> {
                 known = rows.end.min(y + STRIP_ROWS);
                 self.sieve.runs(y..known, &columns, &mut self.runs);
             }
-            let (listed, vectors) = (kept.columns.of(class), lattice.vectors(block));
+            let listed = kept.columns.of_row(lattice, class, block);
+            let vectors = lattice.vectors(block);
             let row = patch.relative(Axis::Y, y);
             for run in &self.runs {
-                let ends = [run.columns.start, run.columns.end];
-                let [start, end] = ends.map(|v| kept.prefix.before(class, v));
+                let Range { start, end } = match lattice.cut {
+                    Some(_) => places(listed, &run.columns),
+                    None => kept.prefix.places(class, &run.columns),
+                };
                 if run.passes {
                     count += end - start;
                     continue;

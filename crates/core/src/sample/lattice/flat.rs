@@ -4,7 +4,7 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::{Columns, Lattice, Patch};
+use super::{Columns, Lattice, Listed, Patch};
 use crate::{
     pattern::Axis,
     sample::kernel::{Backend, compiled, warp_all},
@@ -19,8 +19,6 @@ pub(crate) struct Flat {
     places: [Vec<i32>; 2],
     /// Their addresses: see [`address`].
     addresses: Vec<u32>,
-    /// The number of rows of each class.
-    rows: [usize; 4],
 }
 
 /// The address of a column and row, relative to the patch's origin: 16 bits each, the row in the upper ones.
@@ -32,14 +30,13 @@ const fn address(column: i64, row: i64) -> u32 {
 const WHOLE: usize = 32;
 
 impl Flat {
-    /// Lists the points of a warped patch whose columns are in `places` of the lists of each class, from row
-    /// `rows.start` on, until there are at least `enough` or the rows end. Returns the first row that is not
-    /// listed.
+    /// Lists the points of a warped patch in some columns, from row `rows.start` on, until there are at least
+    /// `enough` or the rows end. Returns the first row that is not listed.
     pub(crate) fn list(
         &mut self,
         lattice: &Lattice,
         patch: &Patch,
-        (columns, places): (&Columns, &[Range<usize>; 4]),
+        (columns, part): (&mut Columns, &Listed),
         rows: Range<i64>,
         enough: usize,
         backend: Backend,
@@ -47,10 +44,8 @@ impl Flat {
         let Self {
             displaced: [xs, ys],
             addresses,
-            rows: visited,
             ..
         } = self;
-        *visited = [0; 4];
         xs.clear();
         ys.clear();
         addresses.clear();
@@ -64,8 +59,7 @@ impl Flat {
             let Some((class, block)) = lattice.row(y) else {
                 continue;
             };
-            visited[class.ordinal()] += 1;
-            let columns = &columns.of(class)[places[class.ordinal()].clone()];
+            let columns = columns.of_part(lattice, class, block, part);
             let vectors = lattice.vectors(block);
             let row = patch.relative(Axis::Y, y);
             let start = xs.len();
@@ -102,11 +96,6 @@ impl Flat {
     /// The number of points listed.
     pub(crate) fn len(&self) -> usize {
         self.addresses.len()
-    }
-
-    /// The number of rows listed, by class.
-    pub(crate) const fn rows(&self) -> [usize; 4] {
-        self.rows
     }
 
     /// The places, by coordinate, and the addresses.

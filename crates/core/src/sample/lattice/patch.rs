@@ -40,6 +40,17 @@ pub(crate) struct Patch {
 impl Patch {
     /// The patch of a band that contains a row.
     pub(crate) fn new(lattice: &Lattice, band: i64, row: i64, x: &Span, y: &Span) -> Self {
+        let reach = [Axis::X, Axis::Y].map(|axis| lattice.table_reach(axis));
+        Self::with_reach(lattice, [band, row], [x, y], reach)
+    }
+
+    /// The patch of a band that contains a row, with the least and the greatest displacement along x and y.
+    pub(crate) fn with_reach(
+        lattice: &Lattice,
+        [band, row]: [i64; 2],
+        [x, y]: [&Span; 2],
+        reach: [[i32; 2]; 2],
+    ) -> Self {
         let origin = [band * BAND_WIDTH, row & !(PATCH_HEIGHT - 1)];
         let relative = |span: &Span, origin: i64| {
             // A bound beyond 32 bits is beyond every point of the patch.
@@ -55,7 +66,7 @@ impl Patch {
                 let ranges = [(Axis::X, x, BAND_WIDTH), (Axis::Y, y, PATCH_HEIGHT)].map(
                     |(axis, span, length)| {
                         let origin = origin[axis as usize];
-                        let [least, most] = lattice.table_reach(axis);
+                        let [least, most] = reach[axis as usize];
                         let first = span.all.start.clamp(origin, origin + length) - origin;
                         let end = span.all.end.clamp(origin, origin + length) - origin;
                         let fixed = |v: i64| (v << FRACTION_BITS) as i32;

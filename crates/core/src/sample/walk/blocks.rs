@@ -9,12 +9,13 @@ use super::{
     window::Window,
 };
 use crate::{
-    pattern::{Axis, Class},
+    pattern::Axis,
     sample::{
         cursor::Cursor,
         kernel::{Backend, Format, Geometry, Row, compiled},
         lattice::{
-            BAND_WIDTH, Columns, Flat, Inside, Patch, PointId, PrefixCounts, Span, clip_to_band,
+            BAND_WIDTH, Columns, Flat, Inside, Listed, Patch, PointId, PrefixCounts, Span,
+            clip_to_band, places,
         },
         scope::{Corner, Scope},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale},
@@ -59,6 +60,8 @@ pub struct Blocks<F: Format> {
     columns: Columns,
     /// The columns that lie inside whatever their displacement, as places in the lists.
     inner: [Range<usize>; 4],
+    /// All columns of the band.
+    listed: Listed,
     templates: Templates<F>,
     patch: Patch,
     /// The scope's spans in the patch.
@@ -182,6 +185,7 @@ impl<F: Format> Blocks<F> {
             }),
             columns: Columns::default(),
             inner: [const { 0..0 }; 4],
+            listed: Listed::default(),
             templates: Templates::new(&scope.lattice, is_tall, kept),
             patch,
             backend: Backend::best(),
@@ -295,7 +299,8 @@ impl<F: Format> Blocks<F> {
         }
         let lattice = &self.scope.lattice;
         let column = lattice.row(self.at.y).and_then(|(class, block)| {
-            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
+            let (vectors, keeps) = (lattice.vectors(block), lattice.keeps(block));
+            let columns = self.columns.of(class).iter().filter(|line| keeps(line));
             self.templates
                 .column(&self.patch, columns, vectors, self.at.done)
         });
@@ -311,6 +316,7 @@ impl<F: Format> Blocks<F> {
         let columns = clip_to_band(band, &x.all);
         self.columns.list(lattice, columns.clone());
         self.inner = self.columns.places(&x.inner);
+        self.listed = self.columns.part(columns.clone());
         if let (Some(sieve), Some(sifting)) = (&self.scope.sieve, &mut self.sieve) {
             sifting.band.aim(sieve.area(), &self.rows, &columns);
             sifting.prefix.update(&columns, &self.columns);
@@ -349,11 +355,10 @@ impl<F: Format> Blocks<F> {
     fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
         let (lattice, patch, base) = (&self.scope.lattice, &self.patch, self.base);
         let (flat, inside) = &mut self.flat;
-        let places = Class::ALL.map(|class| 0..self.columns.of(class).len());
         // Some two in three points of a small box's patches lie inside.
         let enough = (2 * out.len()).clamp(64, FLAT);
         let rows = self.at.y..end;
-        let columns = (&self.columns, &places);
+        let columns = (&mut self.columns, &self.listed);
         let next = flat.list(lattice, patch, columns, rows, enough, self.backend);
         flat.sift(patch, self.backend, inside);
         let [left, bottom] = patch.origin();
@@ -405,8 +410,12 @@ impl<F: Format> Blocks<F> {
                 lattice: y,
             };
             let is_inner = span.inner.contains(&y);
-            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
-            let inner = self.inner[class.ordinal()].clone();
+            let columns = self.columns.of_row(lattice, class, block);
+            let vectors = lattice.vectors(block);
+            let inner = match lattice.cut {
+                Some(_) => places(columns, &x.inner),
+                None => self.inner[class.ordinal()].clone(),
+            };
             let out = &mut out[filled..];
             if is_direct && self.at.done == 0 && columns.len() <= out.len() {
                 filled += compiled(self.backend, || {
@@ -473,7 +482,8 @@ impl<F: Format> Blocks<F> {
                 self.at = Place::row(sifting.runs_end);
                 continue;
             }
-            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
+            let columns = self.columns.of_row(lattice, class, block);
+            let vectors = lattice.vectors(block);
             let template = self
                 .templates
                 .get(class, block, self.at.done > 0, |template, kept| {
@@ -482,7 +492,10 @@ impl<F: Format> Blocks<F> {
                 });
             if let Some(from) = self.at.from.take() {
                 let from = from.clamp(range.start, range.end);
-                self.at.done = sifting.prefix.before(class, from);
+                self.at.done = match lattice.cut {
+                    Some(_) => columns.partition_point(|line| line.at < from),
+                    None => sifting.prefix.before(class, from),
+                };
             }
             let row = Row {
                 base,
@@ -490,7 +503,10 @@ impl<F: Format> Blocks<F> {
                 lattice: y,
             };
             for run in &sifting.runs {
-                let places = sifting.places(class, run);
+                let places = match lattice.cut {
+                    Some(_) => places(columns, &run.columns),
+                    None => sifting.prefix.places(class, &run.columns),
+                };
                 let part = places.start.max(self.at.done)..places.end;
                 if part.is_empty() {
                     continue;
@@ -560,11 +576,5 @@ impl Sifting {
             self.patch.runs(y..self.runs_end, columns, &mut self.runs);
         }
         self.runs.is_empty()
-    }
-
-    /// The places of a run in the list of a class.
-    fn places(&self, class: Class, run: &Run) -> Range<usize> {
-        let before = |x| self.prefix.before(class, x);
-        before(run.columns.start)..before(run.columns.end)
     }
 }

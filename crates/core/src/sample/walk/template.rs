@@ -355,15 +355,15 @@ impl<F: Format> Templates<F> {
     }
 
     /// The lattice column of number `n` of the template of some columns.
-    pub(super) fn column(
+    pub(super) fn column<'l>(
         &self,
         patch: &Patch,
-        columns: &[Line],
+        columns: impl Iterator<Item = &'l Line>,
         vectors: &[[i32; 2]],
         n: usize,
     ) -> Option<i64> {
         let all = self.kept.has_all(patch);
-        let columns = columns.iter().filter(|column| {
+        let columns = columns.filter(|column| {
             let displaced = patch.relative(Axis::X, column.at) + vectors[column.block as usize][0];
             all || patch.holds_along(Axis::X, displaced)
         });
