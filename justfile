@@ -76,4 +76,4 @@ tables:
         target/release/strew forge --profile "$1" --alpha "$2" --radius "$3" \
             --out-dir tables --force || exit 1; \
     done
-    mv tables/blue-5-sqrt3-over-2-s.strew crates/core/tables/
+    mv tables/blue-5-sqrt3-over-2-m.strew crates/core/tables/

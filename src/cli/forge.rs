@@ -1,5 +1,7 @@
 //! `strew forge`: makes a table, judges it, writes it.
 
+mod ladder;
+
 use std::{
     fs,
     io::Read as _,
@@ -48,7 +50,17 @@ pub(super) struct Args {
     /// --profile then names the new profile.
     #[arg(long, value_name = "FILE", requires = "profile")]
     target: Option<PathBuf>,
-    /// Steps of the optimizer [default: the profile's].
+    /// Make a ladder for this table instead of a new table: displacements for thinned sets. Its vectors
+    /// stay as they are.
+    #[arg(long, value_name = "TABLE", conflicts_with_all = ["profile", "alpha", "radius", "seed", "target"])]
+    ladder_of: Option<PathBuf>,
+    /// Levels of the ladder each time the share of points halves.
+    #[arg(long, default_value_t = 16, requires = "ladder_of")]
+    per_octave: u32,
+    /// How often the share halves along the ladder.
+    #[arg(long, default_value_t = 6, requires = "ladder_of")]
+    octaves: u32,
+    /// Steps of the optimizer [default: the profile's, or 100 for a ladder].
     #[arg(long)]
     steps: Option<u32>,
     /// Threads to use; 0 for one per core. The table is the same with any number.
@@ -129,8 +141,11 @@ fn checkpoint_path(table: &Path) -> PathBuf {
     name.into()
 }
 
-/// Makes the table.
+/// Makes the table, or a ladder.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    if let Some(table) = &args.ladder_of {
+        return ladder::run(args, table);
+    }
     let job = args.job()?;
     let path = args.path(&job);
     if path.exists() && !args.force {

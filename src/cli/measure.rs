@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, anyhow, bail};
 use rayon::prelude::*;
 use serde_json::{Map as JsonMap, Value, json};
-use strew_core::{Table, Twin};
+use strew_core::{F64, Placement, Plan, PointSet, Seed, Table, Twin};
 use strew_forge::{
     Aim, Report, Resolution, Target,
-    measure::{Torus, Window, twin_set, window_set},
+    measure::{BANDS, Shared, Torus, Window, recurrence, twin_set, window_set},
     picture,
 };
 
@@ -42,6 +42,12 @@ pub(super) struct Args {
     /// With --points: the set repeats beyond the square.
     #[arg(long, requires = "points")]
     periodic: bool,
+    /// With a query: also compares the sets of this many seeds, from the query's own on: how much of a patch
+    /// of 12 × 12 spacings each of them shows again (boxes of 300 × 300 spacings compare with the
+    /// documentation's), and what each two of them share.
+    #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["table", "points"],
+        value_parser = clap::value_parser!(u64).range(..=16))]
+    seeds: u64,
     /// Frequencies are measured up to this, in units of the square root of the density.
     #[arg(long, default_value_t = 4.0)]
     nu_max: f64,
@@ -83,12 +89,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let mut output = Output::open(args.output.as_deref())?;
     let drawing = args.picture.as_deref();
     let drawing = drawing.map(|path| Output::open(Some(path))).transpose()?;
+    let mut seeds = None;
     let (reports, target) = if let Some(file) = &args.table {
         of_table(args, file)?
     } else if let Some(file) = &args.points {
         (vec![of_points(args, file)?], None)
     } else {
-        let (report, target) = of_query(args)?;
+        let (report, target, compared) = of_query(args)?;
+        seeds = compared;
         (vec![report], target)
     };
     let reports: Vec<Report> = match &target {
@@ -106,7 +114,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         drawing.write(svg.as_bytes())?;
         drawing.finish()?;
     }
-    let text = json!({ "subjects": reports.iter().map(to_json).collect::<Vec<_>>() });
+    let mut text = json!({ "subjects": reports.iter().map(to_json).collect::<Vec<_>>() });
+    if let Some(seeds) = seeds {
+        text["seeds"] = seeds;
+    }
     output.write(format!("{text:#}\n").as_bytes())?;
     Ok(output.finish()?)
 }
@@ -123,12 +134,18 @@ fn to_json(report: &Report) -> Value {
         .iter()
         .map(|r| json!([r.nu, r.power, r.anisotropy_db]))
         .collect();
+    let bands: Vec<Value> = BANDS
+        .iter()
+        .zip(&report.anisotropy_by_band)
+        .map(|([from, to], db)| json!([from, to, db]))
+        .collect();
     json!({
         "subject": report.figures.subject,
         "made_on_it": report.figures.seen,
         "points": report.figures.points,
         "figures": figures,
         "radial": { "columns": ["nu", "power", "anisotropy_db"], "rings": rings },
+        "anisotropy": { "columns": ["from", "to", "db"], "bands": bands },
         "rdf": { "columns": ["distance", "g"], "bins": report.rdf.bins },
     })
 }
@@ -221,7 +238,53 @@ fn square([min_x, min_y, max_x, max_y]: [f64; 4]) -> anyhow::Result<([f64; 2], f
     Ok(([min_x, min_y], width))
 }
 
-fn of_query(args: &Args) -> Result<(Report, Option<Target>), Failure> {
+/// The sets of several seeds, beside each other.
+fn compared(plan: &Plan, side: f64, density: f64, seeds: u64) -> anyhow::Result<Value> {
+    /// Patches of each set that are looked for.
+    const PATCHES: usize = 64;
+    let Placement { seed, .. } = plan.placement();
+    let sets = (0..seeds).map(|i| {
+        let seed = Seed(seed.0.wrapping_add(i));
+        let set = PointSet::new(plan.table().clone());
+        let plan = set
+            .placed(Placement {
+                seed,
+                ..plan.placement()
+            })
+            .within(plan.region())?;
+        let mut points = vec![[0.0; 2]; plan.count() as usize];
+        plan.blocks::<F64>().fill(&mut points);
+        let corner = plan.origin();
+        for p in &mut points {
+            *p = [p[0] - corner[0], p[1] - corner[1]];
+        }
+        Ok((seed.0, Window::new(side, density, points)))
+    });
+    let sets: Vec<(u64, Window)> = sets.collect::<anyhow::Result<_>>()?;
+    let recurrences: Vec<Value> = sets
+        .iter()
+        .map(|(seed, set)| json!([seed, recurrence(set, None, PATCHES, *seed)]))
+        .collect();
+    let chance = match sets.as_slice() {
+        [(seed, a), (_, b), ..] => Some(recurrence(a, Some(b), PATCHES, *seed)),
+        _ => None,
+    };
+    let mut pairs = vec![];
+    for (i, (a, first)) in sets.iter().enumerate() {
+        for (b, second) in &sets[i + 1..] {
+            let shared = Shared::of_windows(first, second, 2.0);
+            pairs.push(json!([a, b, shared.power_correlation, shared.phase_peak]));
+        }
+    }
+    Ok(json!({
+        "recurrence": { "columns": ["seed", "share"], "sets": recurrences, "by_chance": chance },
+        "shared": { "columns": ["a", "b", "power_correlation", "phase_peak"], "pairs": pairs },
+    }))
+}
+
+type Compared = (Report, Option<Target>, Option<Value>);
+
+fn of_query(args: &Args) -> Result<Compared, Failure> {
     let config = args.settings.merged()?;
     let catalog = config.tables()?;
     let checked = Draft::of(args.flags.values()).check(&catalog, 0);
@@ -240,7 +303,11 @@ fn of_query(args: &Args) -> Result<(Report, Option<Target>), Failure> {
     set.plan.blocks_f64().fill(&mut points);
     let name = described(&planned);
     let report = window(corner, side, set.density, points, name).measured(args.resolution());
-    Ok((report, set.entry.aim().and_then(|aim| aim.curve)))
+    let seeds = match args.seeds {
+        0 => None,
+        seeds => Some(compared(&set.plan, side, set.density, seeds)?),
+    };
+    Ok((report, set.entry.aim().and_then(|aim| aim.curve), seeds))
 }
 
 fn window(

@@ -221,6 +221,19 @@ fn describe(text: &mut String, place: &str, table: &Table) -> std::fmt::Result {
     )?;
     writeln!(text, "  bytes      {}", table.to_bytes().len())?;
     writeln!(text, "  digest     {}", table.digest())?;
+    let ranks = match table.ranks() {
+        Some(_) => "yes",
+        None => "none: thinned sets are no more even than random ones",
+    };
+    writeln!(text, "  ranks      {ranks}")?;
+    if let Some(ladder) = table.ladder() {
+        let (levels, least) = (ladder.shares().count(), ladder.least_share());
+        writeln!(
+            text,
+            "  ladder     {levels} levels, to a share of 1/{:.0}",
+            1.0 / least
+        )?;
+    }
     writeln!(
         text,
         "  optimizer  {}, seed {}",

@@ -32,7 +32,7 @@ pub use reload::{Refusal, Reload};
 static EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));
 
 /// The table that is built into the library.
-const DEFAULT: (&str, &[u8]) = ("blue-5-sqrt3-over-2-s.strew", BLUE);
+const DEFAULT: (&str, &[u8]) = ("blue-5-sqrt3-over-2-m.strew", BLUE);
 
 /// What a table is found by. Keys are in the order of their names, then of their numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

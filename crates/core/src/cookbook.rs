@@ -7,6 +7,7 @@
 //! - [A least distance](#a-least-distance)
 //! - [Attributes](#attributes)
 //! - [Layers that keep clear of each other](#layers-that-keep-clear-of-each-other)
+//! - [Density that varies](#density-that-varies)
 //! - [A polygon with holes](#a-polygon-with-holes)
 //! - [Levels of detail](#levels-of-detail)
 //! - [Pages](#pages)
@@ -192,6 +193,24 @@
 //! for tree in far.chunk(256.0, [0, 0])? {
 //!     assert!(near.point(tree.id()).is_some() && near.rank(tree.id()) < 0.25);
 //! }
+//! # Ok::<(), strew_core::Error>(())
+//! ```
+//!
+//! # Density that varies
+//!
+//! A field says which share of the points stays at each place. With a table that has a
+//! [ladder](crate::table::Ladder), the points that are left move a little and stay evenly spread.
+//!
+#![cfg_attr(feature = "tables", doc = "```")]
+#![cfg_attr(not(feature = "tables"), doc = "```ignore")]
+//! use strew_core::{PointSet, Region};
+//!
+//! // Trees thin out within 30 units of a road along the x axis.
+//! let forest = PointSet::blue().spacing(4.0)?.seed(7);
+//! let forest = forest.in_field(|[_, y]: [f64; 2]| (y.abs() / 30.0).min(1.0));
+//! let near = forest.count(Region::new([0.0, 0.0], [200.0, 15.0])?)?;
+//! let far = forest.count(Region::new([0.0, 30.0], [200.0, 45.0])?)?;
+//! assert!(3 * near < far);
 //! # Ok::<(), strew_core::Error>(())
 //! ```
 //!

@@ -74,6 +74,8 @@ pub enum ErrorKind {
     Warp,
     /// A share of points to keep.
     Keep,
+    /// The pixels of a field.
+    Field,
     /// A corner of a box.
     Region,
     /// The size or the place of a chunk.

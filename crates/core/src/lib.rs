@@ -34,7 +34,7 @@
 //!
 //! - `std` (default): vector instructions of x86-64 are found at run time, and some results are kept.
 //!   Without it the crate needs `alloc` only; all results have the same bits.
-//! - `tables` (default): [`PointSet::blue`] and its table of 34 kB. Others are read from files by
+//! - `tables` (default): [`PointSet::blue`] and its table, 2.5 MB with its ladder. Others are read from files by
 //!   [`Table::from_bytes`].
 //!
 //! The crate knows no network, no async runtime, no file system and no serialization framework.
@@ -59,9 +59,9 @@ pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
 pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
-    Cursor, F32, F64, Format, Keep, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
-    Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed,
-    Spacing, Tile, UniformNumber, Variants, Warp, rank, side_for,
+    Cursor, F32, F64, Field, Format, Graded, Keep, LATTICE_LIMIT, LeastDistance, Member, Members,
+    Neighbor, Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster, Region,
+    ScaleRange, Seed, Spacing, Tile, UniformNumber, Variants, Warp,
 };
 pub use table::Table;
 
@@ -72,7 +72,7 @@ pub use table::Table;
 /// use strew_core::{ALGORITHM_VERSION, PointId};
 ///
 /// // A saved game that keeps ids keeps the version with them.
-/// let saved = (1, PointId { x: -31, y: 52 });
+/// let saved = (2, PointId { x: -31, y: 52 });
 /// assert_eq!(saved.0, ALGORITHM_VERSION, "made with other points");
 /// ```
-pub const ALGORITHM_VERSION: u32 = 1;
+pub const ALGORITHM_VERSION: u32 = 2;

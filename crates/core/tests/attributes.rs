@@ -2,8 +2,7 @@
 
 use proptest::prelude::*;
 use strew_core::{
-    Attribute, Attributes, Column, ErrorKind, Point, PointId, PointSet, Region, Seed, Table,
-    Variants, side_for,
+    Attribute, Attributes, Column, ErrorKind, Point, PointId, PointSet, Region, Table, Variants,
 };
 
 fn set(seed: u64) -> PointSet {
@@ -179,16 +178,12 @@ fn names_are_checked() {
 fn ranks_are_fractions_of_the_pattern_and_nest() {
     let points = points(5, [-150.0, -150.0], [150.0, 150.0]);
     let ranks = &numbers(&list(&["rank"]), 5, &points)[0];
-    let alpha = set(5).table().alpha();
-    let pattern = strew_core::Pattern::with_origin(alpha, Seed(5).origin());
     for keep in [0.01, 0.1, 0.25, 0.5, 0.9, 1.0] {
         let kept = ranks.iter().filter(|&&r| r < keep).count() as f64 / points.len() as f64;
         assert!((kept - keep).abs() < 0.006, "{keep}: {kept}");
-        let side = side_for(keep, alpha.set_side());
+        let thinned = set(5).keep(keep).expect("in range");
         for (point, rank) in points.iter().zip(ranks) {
-            let (x, y) = (point.id.x, point.id.y);
-            assert_eq!(pattern.depth(x, y) < side, *rank < keep);
-            assert_eq!(pattern.thinned(side).contains(x, y), *rank < keep);
+            assert_eq!(thinned.point(point.id).is_some(), *rank < keep);
         }
     }
 }
@@ -269,27 +264,27 @@ fn values_are_pinned() {
     assert_eq!(
         values(-31, 1 << 50),
         [
-            2.6039389667524135,
-            0.8544614617336099,
-            1.0,
+            5.247145616794338,
+            1.1458591356331613,
+            2.0,
             none,
-            0.24249765604404494,
-            0.8507424617078189
+            0.20459077190172592,
+            0.483999484139356
         ]
     );
     assert_eq!(
         values(4, -9),
         [
-            2.3160919274731526,
-            0.8893894479661831,
-            2.0,
+            4.306217298483824,
+            0.5647858354433963,
+            1.0,
             none,
-            0.32679493172737895,
-            0.8569940914509141
+            0.5650814719622604,
+            0.42303441569219746
         ]
     );
     assert_eq!(
         bound.value(3, PointId { x: 0, y: 1 }),
-        Some(0.5682505136021064)
+        Some(0.6101640903442529)
     );
 }

@@ -24,8 +24,13 @@ fn table(alpha: &str) -> Table {
 }
 
 fn unwarped(alpha: &str, spacing: f64, seed: u64) -> PointSet {
+    warped(alpha, spacing, seed, 0.0)
+}
+
+fn warped(alpha: &str, spacing: f64, seed: u64, strength: f64) -> PointSet {
     let spacing = Spacing::new(spacing).expect("valid");
-    PointSet::new(table(alpha)).placed(Placement::new(spacing, Seed(seed)).with_warp(Warp::OFF))
+    let warp = Warp::new(strength).expect("in range");
+    PointSet::new(table(alpha)).placed(Placement::new(spacing, Seed(seed)).with_warp(warp))
 }
 
 fn items<F: Format>(plan: &Plan) -> Vec<F::Item> {
@@ -56,28 +61,28 @@ fn digest(plan: &Plan) -> String {
 #[test]
 fn answers_have_these_bits() {
     assert_eq!(
-        ALGORITHM_VERSION, 1,
+        ALGORITHM_VERSION, 2,
         "new golden vectors belong to a new algorithm version"
     );
     let near = ([0.0, 0.0], [40.0, 30.0]);
     let cases = [
         ("(5-sqrt(3))/2", 1.0, 0, near, 1195, "29fef6808c0670b7"),
-        ("(5-sqrt(3))/2", 1.0, 1, near, 1208, "fdc98f96cf109015"),
+        ("(5-sqrt(3))/2", 1.0, 1, near, 1205, "867d44fbd2fe028c"),
         (
             "sqrt(3)",
             0.37,
             42,
             ([-20.0, -10.5], [3.3, 11.1]),
-            3646,
-            "639efcab30d17a30",
+            3670,
+            "0a5ca6b76b219fcc",
         ),
         (
             "(1+sqrt(5))/2",
             2.5,
             u64::MAX,
             ([-1e9, 1e9], [-999_999_800.0, 1_000_000_123.0]),
-            3911,
-            "d7772e96b56f2831",
+            3939,
+            "7c79a05510f43953",
         ),
         (
             "(5-sqrt(3))/2",
@@ -92,16 +97,16 @@ fn answers_have_these_bits() {
             1e3,
             9,
             ([-1e15, 1e15], [-9.999_999_999e14, 1.000_000_000_2e15]),
-            20021,
-            "1e776872b35f0da6",
+            20049,
+            "1fddb355ded81f44",
         ),
         (
             "sqrt(3)",
             1.0,
             3,
             ([0.0, 0.0], [900.0, 700.0]),
-            629825,
-            "42fe32d71bb50c2e",
+            629955,
+            "9ae03594bf5ee2a1",
         ),
     ];
     let found: Vec<_> = cases
@@ -121,6 +126,51 @@ fn answers_have_these_bits() {
 }
 
 #[test]
+fn warped_answers_have_these_bits() {
+    let cases = [
+        ("(5-sqrt(3))/2", 1.0, 1, 1.0, ([0.0, 0.0], [40.0, 30.0])),
+        (
+            "(5-sqrt(3))/2",
+            1.0,
+            7,
+            0.5,
+            ([-700.0, 30.0], [90.0, 700.5]),
+        ),
+        ("sqrt(3)", 0.37, 42, 2.0, ([-20.0, -10.5], [3.3, 11.1])),
+        (
+            "(1+sqrt(5))/2",
+            2.5,
+            u64::MAX,
+            1.0,
+            ([-1e9, 1e9], [-999_999_800.0, 1_000_000_123.0]),
+        ),
+        (
+            "sqrt(3)",
+            1e3,
+            9,
+            1.333,
+            ([-1e15, 1e15], [-9.999_999_999e14, 1.000_000_000_2e15]),
+        ),
+    ];
+    let found = cases.map(|(alpha, spacing, seed, strength, (min, max))| {
+        let region = Region::new(min, max).expect("ordered");
+        let plan = warped(alpha, spacing, seed, strength).within(region);
+        let plan = plan.expect("in range");
+        format!("{} {}", plan.count(), digest(&plan))
+    });
+    assert_eq!(
+        found,
+        [
+            "1196 abf01d3abf5c9ab9",
+            "529609 f509f0381bd2af11",
+            "3690 a7256c448e35b491",
+            "3930 df41470f755771c1",
+            "20051 2a50b83d4416b71f",
+        ]
+    );
+}
+
+#[test]
 fn single_points_have_these_bits() {
     let point = |seed, x, y| {
         let set = unwarped("(5-sqrt(3))/2", 1.0, seed);
@@ -136,4 +186,17 @@ fn single_points_have_these_bits() {
         table("(5-sqrt(3))/2").digest().to_string(),
         "cb67815a5524ba7df97ba2467d7c3622eac07865b88107c7762f9b42e8ba5e2e"
     );
+}
+
+#[cfg(feature = "tables")]
+#[test]
+fn thinned_sets_have_these_bits() {
+    let region = Region::new([0.0, 0.0], [60.0, 40.0]).expect("ordered");
+    let set = PointSet::blue().seed(7);
+    let plan = set
+        .keep(0.3)
+        .expect("a share")
+        .within(region)
+        .expect("near");
+    assert_eq!((plan.count(), &*digest(&plan)), (727, "fbe5fe6d6fe7d358"));
 }

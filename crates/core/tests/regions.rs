@@ -8,24 +8,19 @@ use strew_core::{
     Backend, F32, F64, LATTICE_LIMIT, Pattern, Placement, Point, PointId, PointSet, Points, Region,
     Spacing, Warp, table::FRACTION_BITS,
 };
-use subject::{all, all_by, any_seed, any_table, in_order_of_ids, set, tables, unit};
+use subject::{all, all_by, any_seed, any_table, definition, in_order_of_ids, set, tables, unit};
 
 /// Every point of a region from first principles: for each lattice address near it the index is computed
 /// anew, the block searched, the position converted.
 fn brute_force(set: &PointSet, region: Region) -> Vec<Point> {
-    let Placement {
-        spacing,
-        seed,
-        warp,
-        keep: _,
-    } = set.placement();
+    let Placement { spacing, seed, .. } = set.placement();
     let table = set.table();
     let (map, alpha) = (table.map(), table.alpha());
     let pattern = Pattern::with_origin(alpha, seed.origin());
     let step = spacing.get() * alpha.set_side_f64() / f64::from(1u32 << FRACTION_BITS);
     let lattice = |v: f64| (v / step / f64::from(1u32 << FRACTION_BITS)).floor() as i64;
-    // f64 errs by a few units here; vectors reach 13 units, a warp of strength 2 at most 40.
-    let reach = 13 + 8 + 40;
+    // f64 errs by a few units here; vectors reach 13 units, a warp of strength 2 at most 81.
+    let reach = 13 + 8 + 81;
     let mut points = Vec::new();
     let (min, max) = (region.min().map(lattice), region.max().map(lattice));
     for y in min[1] - reach..=max[1] + reach {
@@ -42,15 +37,7 @@ fn brute_force(set: &PointSet, region: Region) -> Vec<Point> {
             let [column, row] = [find(dx), find(dy)];
             let block = set.block(PointId { x, y });
             assert_eq!(block, Some([column, row]));
-            let vector = table.displacements()[row * map.intervals() + column];
-            let place =
-                |v: i64, d: i32| ((i128::from(v) << FRACTION_BITS) + i128::from(d)) as f64 * step;
-            let p = if warp.is_off() {
-                [place(x, vector[0]), place(y, vector[1])]
-            } else {
-                // The warp's definition has tests of its own.
-                set.point(PointId { x, y }).expect("a member").at()
-            };
+            let p = definition::place(set, PointId { x, y }).expect("a member");
             if region.contains(p) {
                 points.push(Point {
                     id: PointId { x, y },

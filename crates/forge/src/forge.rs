@@ -5,6 +5,7 @@ use strew_core::{Table, table::Provenance};
 use crate::{
     Checkpoint, ForgeError, Job,
     judge::{Complaint, Nearness, complaints},
+    ladder::with_ranks,
     optimize::DescentState,
     plan::Plan,
     watch::{Meter, Stage, Watch},
@@ -112,6 +113,10 @@ fn run(job: &Job, from: Option<Checkpoint>, watch: &dyn Watch) -> Result<Outcome
         ..provenance
     };
     outcome.table = plan.table(&done.moves, judged)?;
+    // Without a least distance a thinned set would have another profile.
+    if outcome.table.least_distance().is_useful() {
+        outcome.table = with_ranks(&outcome.table)?;
+    }
     Ok(outcome)
 }
 

@@ -46,6 +46,8 @@ pub struct Report {
     pub figures: Figures,
     /// Radial power and anisotropy, in the rings that the figures are taken over.
     pub rings: Vec<Ring>,
+    /// The median anisotropy in each of the [`BANDS`](crate::measure::BANDS) that are measured, in dB.
+    pub anisotropy_by_band: Vec<f64>,
     /// The radial distribution function.
     pub rdf: Rdf,
     /// The power of every mode.
@@ -114,6 +116,7 @@ impl Report {
         Self {
             figures,
             rings: spectrum.rings(at.ring_width),
+            anisotropy_by_band: spectrum.anisotropy_by_band(at.ring_width),
             rdf,
             spectrum,
             points: points.to_vec(),

@@ -1,49 +1,39 @@
-//! Thinning by rank leaves more even sets than random thinning.
+//! Thinning by rank leaves evenly spread sets.
 
 mod shipped;
 
-use strew_core::{Attributes, Point, PointSet, Region};
-use strew_forge::measure::{Spectrum, Window};
+use strew_core::{Point, PointSet, Region};
+use strew_forge::measure::{Distances, Spectrum, Window};
 
 fn points(set: &PointSet, side: f64) -> Vec<Point> {
     let region = Region::new([0.0, 0.0], [side, side]).expect("ordered");
     set.within(region).expect("near").to_vec()
 }
 
-/// Mean power below ν = 0.5, in the units of the density after thinning.
-fn low_power(points: impl Iterator<Item = Point>, keep: f64, side: f64) -> f64 {
-    let set = Window::new(side, keep, points.map(|p| [p.x, p.y]).collect());
-    Spectrum::of_window(&set, 0.6).summary(0.05).low_power
-}
-
 #[test]
-fn ranks_thin_more_evenly_than_chance() {
-    let table = shipped::table("blue", "(5-sqrt(3))/2", 49);
-    let attributes = Attributes::new(vec!["u1".parse().expect("plain")]).expect("one");
-    for warp in [0.0, 1.0] {
-        let set = PointSet::new(table.clone()).seed(3).warp(warp);
-        let set = set.expect("in range");
-        // Share kept, side, and the largest power allowed, relative to random thinning.
-        for (keep, side, most) in [(0.5, 360.0, 0.8), (0.25, 500.0, 0.5), (0.0625, 800.0, 0.35)] {
-            let ranked = points(&set.clone().keep(keep).expect("a share"), side);
-            let fraction = ranked.len() as f64 / (side * side);
-            assert!((fraction - keep).abs() < 0.02 * keep, "{keep}: {fraction}");
-            let ranked = low_power(ranked.into_iter(), keep, side);
-
-            let all = points(&set, side);
-            let columns = set.attributes(&attributes);
-            let columns = columns.columns(all.iter().map(|p| p.id));
-            let chances = columns[0].numbers().expect("a number");
-            let chosen = all
-                .iter()
-                .zip(chances)
-                .filter(|(_, chance)| **chance < keep);
-            let random = low_power(chosen.map(|(p, _)| *p), keep, side);
-            assert!(
-                (random / (1.0 - keep) - 1.0).abs() < 0.15,
-                "{keep}: {random}"
-            );
-            assert!(ranked < most * random, "{keep}: {ranked} {random}");
+fn thinned_sets_are_even_with_every_seed_and_warp() {
+    for radius in [49, 100] {
+        let table = shipped::table("blue", "(5-sqrt(3))/2", radius);
+        for (seed, warp) in [(0, 0.0), (3, 0.0), (3, 1.0)] {
+            let set = PointSet::new(table.clone()).seed(seed).warp(warp);
+            let set = set.expect("in range");
+            for (keep, side) in [
+                (0.5, 250.0),
+                (0.25, 360.0),
+                (0.0625, 600.0),
+                (1.0 / 64.0, 1000.0),
+            ] {
+                let left = points(&set.clone().keep(keep).expect("a share"), side);
+                let fraction = left.len() as f64 / (side * side);
+                assert!((fraction / keep - 1.0).abs() < 0.02, "{keep}: {fraction}");
+                let window = Window::new(side, keep, left.iter().map(|p| [p.x, p.y]).collect());
+                let low = Spectrum::of_window(&window, 0.6).summary(0.05).low_power;
+                let delta = Distances::of_window(&window).delta_min;
+                let what = format!("R = {radius}, seed {seed}, warp {warp}, share {keep}");
+                // A random choice leaves 1 − share.
+                assert!(low < 0.095, "{what}: {low}");
+                assert!(delta > 0.37, "{what}: {delta}");
+            }
         }
     }
 }

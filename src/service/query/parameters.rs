@@ -143,7 +143,7 @@ parameters! {
         about: "The size of the neighborhood map: larger maps have better quality and take more memory.",
         group: Group::Table,
         allowed: Some("s, m or l, if the profile is loaded with it"),
-        default: Some("s if it is loaded, else the smallest"),
+        default: Some("m if it is loaded, else s or the smallest"),
         example: "s",
         echo: Some(|set| Some(Value::Text(set.entry.key.size.to_string()))),
         ..Parameter::PLAIN

@@ -64,8 +64,10 @@ pub(super) fn check(
                 )
             })?
         }
-        None if sizes.contains(&Size::S) => Size::S,
-        None => smallest,
+        None => *[Size::M, Size::S]
+            .iter()
+            .find(|size| sizes.contains(size))
+            .unwrap_or(&smallest),
     };
     let key = Key {
         profile: profile.as_str().into(),

@@ -59,8 +59,6 @@ impl IndexOrigin {
 pub struct Pattern {
     alpha: Alpha,
     origin: IndexOrigin,
-    /// The side of the set region: t, or less in a thinned pattern.
-    side: u64,
 }
 
 impl Pattern {
@@ -92,33 +90,7 @@ impl Pattern {
     /// ```
     #[must_use]
     pub const fn with_origin(alpha: Alpha, origin: IndexOrigin) -> Self {
-        Self {
-            alpha,
-            origin,
-            side: alpha.set_side(),
-        }
-    }
-
-    /// The points of this pattern whose [`depth`](Self::depth) is below `side`, in units of 2⁻⁶⁴: a
-    /// share (`side`/t)² of all, and again a union of four products. A side above t changes nothing.
-    ///
-    /// The smaller set region lies at a corner that depends on the class: dX in [0, `side`) in even
-    /// rows and in [t − `side`, t) in odd ones; dY likewise by columns. One corner for all classes
-    /// would keep the classes in step with each other, and the remaining points would clump.
-    ///
-    /// ```
-    /// use strew_core::Pattern;
-    ///
-    /// let all = Pattern::new("sqrt(3)".parse()?);
-    /// let quarter = all.thinned(all.alpha().set_side() / 2);
-    /// let [all, quarter] = [all, quarter].map(|pattern| pattern.count(0..1 << 40, 0..1 << 40));
-    /// assert!((quarter as f64 / all as f64 - 0.25).abs() < 1e-9);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub const fn thinned(self, side: u64) -> Self {
-        let side = if side < self.side { side } else { self.side };
-        Self { side, ..self }
+        Self { alpha, origin }
     }
 
     /// The number α.
@@ -174,8 +146,7 @@ impl Pattern {
         )
     }
 
-    /// Whether a lattice point belongs to the pattern: dX < t and dY < t (paper, Eq. 4), and in a
-    /// thinned pattern its depth is below the side.
+    /// Whether a lattice point belongs to the pattern: dX < t and dY < t (paper, Eq. 4).
     ///
     /// ```
     /// use strew_core::Pattern;
@@ -190,47 +161,9 @@ impl Pattern {
     /// ```
     #[must_use]
     pub const fn contains(&self, x: i64, y: i64) -> bool {
-        self.depth(x, y) < self.side
-    }
-
-    /// The depth of a lattice point, in units of 2⁻⁶⁴: the point belongs to
-    /// [`thinned(side)`](Self::thinned) iff its depth is below `side`. It is below t for the points of
-    /// the pattern and t or more for all others.
-    ///
-    /// ```
-    /// use strew_core::Pattern;
-    ///
-    /// let pattern = Pattern::new("sqrt(3)".parse()?);
-    /// let t = pattern.alpha().set_side();
-    /// assert!((0..99).all(|x| pattern.contains(x, 4) == (pattern.depth(x, 4) < t)));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub const fn depth(&self, x: i64, y: i64) -> u64 {
-        let class = Class::of(x, y);
-        let along_x = self.axis_depth(self.axis_index(Axis::X, x, class.y), class.y);
-        let along_y = self.axis_depth(self.axis_index(Axis::Y, y, class.x), class.x);
-        if along_x > along_y { along_x } else { along_y }
-    }
-
-    /// The distance of an index from the corner of its class, along one axis.
-    const fn axis_depth(&self, index: u64, other_parity: u8) -> u64 {
-        if other_parity & 1 == 0 {
-            index
-        } else {
-            // An index outside the set region wraps round to more than t.
-            (self.alpha.set_side() - 1).wrapping_sub(index)
-        }
-    }
-
-    /// The indices that a (thinned) pattern admits along an axis, by parity of the other coordinate.
-    pub(crate) const fn window(&self, other_parity: u8) -> Range<u64> {
-        let full = self.alpha.set_side();
-        if other_parity & 1 == 0 {
-            0..self.side
-        } else {
-            full - self.side..full
-        }
+        let (index_x, index_y) = self.index(x, y);
+        let side = self.alpha.set_side();
+        index_x < side && index_y < side
     }
 
     /// The columns (`Axis::X`) or rows (`Axis::Y`) of one class: the pattern is the union, over the
@@ -274,8 +207,7 @@ impl Pattern {
             Axis::X => (class.x, class.y),
             Axis::Y => (class.y, class.x),
         };
-        let window = self.window(other);
-        let interval = interval.start.max(window.start)..interval.end.min(window.end);
+        let interval = interval.start..interval.end.min(self.alpha.set_side());
         AxisSet::new(self.alpha, self.axis_index(axis, 0, other), own, interval)
     }
 
@@ -297,9 +229,10 @@ impl Pattern {
     pub const fn visit(&self, axis: Axis, v: i64) -> Option<(Class, u64)> {
         let even = self.axis_index(axis, v, 0);
         let odd = even ^ (1 << 63);
-        let (other, index) = if self.axis_depth(even, 0) < self.side {
+        let side = self.alpha.set_side();
+        let (other, index) = if even < side {
             (0, even)
-        } else if self.axis_depth(odd, 1) < self.side {
+        } else if odd < side {
             (1, odd)
         } else {
             return None;
@@ -372,11 +305,9 @@ mod tests {
         #[test]
         fn four_products_make_the_pattern(
             x0 in any::<i64>(), y0 in any::<i64>(), w in 0i64..60, h in 0i64..60, ox: u64, oy: u64,
-            thinned in 1u64..4,
         ) {
             let (x0, y0) = (x0.min(i64::MAX - 60), y0.min(i64::MAX - 60));
             let pattern = Pattern::with_origin(alpha("(5-sqrt(3))/2"), IndexOrigin { x: ox, y: oy });
-            let pattern = pattern.thinned(pattern.alpha().set_side() / thinned);
             let mut direct = Vec::new();
             for y in y0..y0 + h {
                 direct.extend((x0..x0 + w).filter(|&x| pattern.contains(x, y)).map(|x| (y, x)));

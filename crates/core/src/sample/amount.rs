@@ -51,7 +51,7 @@ pub(super) fn exactly(
             spacing,
             ..lattice.placement
         };
-        let trial = Lattice::new(lattice.table.clone(), placement);
+        let trial = lattice.replaced(placement);
         let plan = match Plan::new(&trial, mask, area.clone(), stop.clone(), None) {
             Ok(plan) => plan,
             // So dense that points cannot be told apart.

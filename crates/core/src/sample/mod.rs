@@ -10,13 +10,15 @@
 //! 6. `kernel` and `walk`: making them, row by row, in blocks;
 //! 7. `attribute` and `member`: the values that points have; `seek`, `cursor`: places in their order;
 //! 8. `plan` (with `iter`): a request made ready; `amount`: one with an exact number of points;
-//! 9. `set`: the [`PointSet`](crate::PointSet), whose methods are all of this.
+//! 9. `field`: sets whose density varies;
+//! 10. `set`: the [`PointSet`](crate::PointSet), whose methods are all of this.
 
 mod amount;
 mod area;
 mod attribute;
 mod count;
 mod cursor;
+mod field;
 mod iter;
 mod kernel;
 mod lattice;
@@ -37,9 +39,10 @@ pub use attribute::{
     Attribute, Attributes, BoundAttributes, Column, ScaleRange, UniformNumber, Variants,
 };
 pub use cursor::Cursor;
+pub use field::{Field, Graded, Raster};
 pub use iter::Members;
 pub use kernel::{Backend, F32, F64, Format, Offsets, Points};
-pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing, rank, side_for};
+pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing};
 pub use member::Member;
 pub use near::{Clearance, LeastDistance};
 pub use plan::Plan;

@@ -9,10 +9,7 @@ use super::{
     sieve::Sieve,
     stop::Stop,
 };
-use crate::{
-    error::{Error, ErrorKind, number},
-    pattern::Axis,
-};
+use crate::error::{Error, ErrorKind, number};
 
 /// The columns and rows around an area, and what their points must satisfy.
 #[derive(Clone, Debug)]
@@ -136,9 +133,7 @@ impl Scope {
         let (chunks, rest) = area.map_or_else(Default::default, |area| {
             (area.chunks(), area.beside_chunks())
         });
-        let [columns, rows] = bounds(lattice, &chunks, rest.as_ref());
-        let x = Span::new(lattice, Axis::X, columns);
-        let y = Span::new(lattice, Axis::Y, rows);
+        let [x, y] = Span::of_box(lattice, bounds(lattice, &chunks, rest.as_ref()));
         debug_assert!(x.all.end < 2 * LATTICE_LIMIT && y.all.end < 2 * LATTICE_LIMIT);
         // Integers decide membership of a box, so it needs no sieve, except together with one.
         let is_box = matches!(rest, None | Some(Area::Region(_)));
@@ -150,7 +145,7 @@ impl Scope {
             None
         } else {
             let area = area.map(Area::around_chunks);
-            Sieve::new(lattice, Mask { area, ..mask })
+            Sieve::new(lattice, Mask { area, ..mask }, [x.reach, y.reach])
         };
         Ok(Self {
             lattice: lattice.clone(),

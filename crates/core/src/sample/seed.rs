@@ -1,9 +1,10 @@
 //! Seeds, and the hash behind everything that looks random.
 
-use crate::pattern::IndexOrigin;
+use crate::{pattern::IndexOrigin, table::Symmetry};
 
-/// A seed chooses a piece of the unbounded pattern: it moves the lattice origin in index space. Seed 0
-/// leaves it at index (0, 0).
+/// A seed chooses a piece of the unbounded pattern, by moving the lattice origin in index space, one of the
+/// eight symmetries of the square, by which the table is turned, and a [warp](crate::Warp). Seed 0 leaves the
+/// origin at index (0, 0) and the table as it is.
 ///
 /// ```
 /// use strew_core::{Placement, Seed, Spacing};
@@ -36,6 +37,14 @@ impl Seed {
             x,
             y: split_mix(x ^ self.0),
         }
+    }
+
+    /// The symmetry by which the table is turned.
+    pub(crate) const fn symmetry(self) -> Symmetry {
+        if self.0 == 0 {
+            return Symmetry::from_bits(0);
+        }
+        Symmetry::from_bits(split_mix(self.0 ^ 0x5359_4d4d_4554_5259) >> 61)
     }
 }
 

@@ -1,9 +1,12 @@
 //! The displacement table.
 
 use alloc::{sync::Arc, vec, vec::Vec};
-use core::fmt;
+use core::{fmt, ops::Range};
 
-use super::{Digest, Displacement, Provenance, file, parts::Parts};
+use super::{
+    Digest, Displacement, Ladder, Order, Provenance, Ranks, file, parts::Parts,
+    symmetry::TurnedCopies,
+};
 use crate::{error::Error, map::Map, once::Once, pattern::Alpha};
 
 /// The displacement vectors of one noise profile for one neighborhood map, with their history.
@@ -27,8 +30,11 @@ struct Content {
     digest: Digest,
     /// The least and the greatest displacement along x and y.
     reach: [[i32; 2]; 2],
+    /// The order in which blocks leave.
+    order: Order,
     /// The least squared distance between two points, once it has been computed.
     least_squared: Once<u64>,
+    turned: TurnedCopies,
 }
 
 impl Table {
@@ -62,26 +68,87 @@ impl Table {
             profile: profile.into(),
             displacements,
             provenance,
+            ranks: None,
+            ladder: None,
         };
+        Self::of_parts(parts)
+    }
+
+    /// A table of parts to check.
+    fn of_parts(parts: Parts) -> Result<Self, Error> {
         parts.check()?;
         let digest = file::digest(&parts)?;
-        Ok(Self::checked(parts, digest))
+        Self::checked(parts, digest)
     }
 
     /// A table of checked parts.
-    fn checked(parts: Parts, digest: Digest) -> Self {
+    fn checked(parts: Parts, digest: Digest) -> Result<Self, Error> {
+        let order = match &parts.ranks {
+            Some(ranks) => Order::new(&parts.map, ranks),
+            None => Order::new(&parts.map, &Ranks::hashed(parts.displacements.len())),
+        };
+        if let Some(ladder) = &parts.ladder {
+            ladder.check(&order)?;
+        }
         let mut reach = [[i32::MAX, i32::MIN]; 2];
         for vector in &parts.displacements {
             for (ends, &v) in reach.iter_mut().zip(vector) {
                 *ends = [ends[0].min(v), ends[1].max(v)];
             }
         }
-        Self(Arc::new(Content {
+        Ok(Self(Arc::new(Content {
             parts,
             digest,
             reach,
+            order,
             least_squared: Once::new(),
-        }))
+            turned: TurnedCopies::new(),
+        })))
+    }
+
+    /// This table with an order in which its blocks leave, and without a ladder.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Table`](crate::ErrorKind::Table) unless there is a position for each block.
+    ///
+    /// ```
+    /// use strew_core::{Table, table::Ranks};
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let blocks = table.displacements().len() as u32;
+    /// let ranked = table.with_ranks(Ranks::new((0..blocks).rev().collect())?)?;
+    /// assert_eq!(ranked.displacements(), table.displacements());
+    /// assert_ne!(ranked.digest(), table.digest());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn with_ranks(&self, ranks: Ranks) -> Result<Self, Error> {
+        let mut parts = self.0.parts.clone();
+        (parts.ranks, parts.ladder) = (Some(ranks), None);
+        Self::of_parts(parts)
+    }
+
+    /// This table with displacements for smaller shares.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Table`](crate::ErrorKind::Table) for a table without ranks, or unless each level has
+    /// as many vectors as blocks are left above it.
+    ///
+    /// ```
+    /// use strew_core::{Table, table::{Ladder, Ranks, Rung}};
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let blocks = table.displacements().len();
+    /// let level = (0.5, vec![Rung { vector: [0, 0], event: [0, 255] }; blocks]);
+    /// let ladder = Ladder::new(vec![level])?;
+    /// assert!(table.with_ladder(ladder.clone()).is_err());
+    /// let ranked = table.with_ranks(Ranks::new((0..blocks as u32).collect())?)?;
+    /// assert_eq!(ranked.with_ladder(ladder.clone())?.ladder(), Some(&ladder));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn with_ladder(&self, ladder: Ladder) -> Result<Self, Error> {
+        let mut parts = self.0.parts.clone();
+        parts.ladder = Some(ladder);
+        Self::of_parts(parts)
     }
 
     /// A table without displacements: the AA pattern itself.
@@ -129,7 +196,7 @@ impl Table {
     /// ```
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         let (parts, digest) = file::read(bytes)?;
-        Ok(Self::checked(parts, digest))
+        Self::checked(parts, digest)
     }
 
     /// The table as a file. Equal tables have equal bytes.
@@ -235,7 +302,91 @@ impl Table {
         self.0.digest
     }
 
-    /// About the memory that the table holds, in bytes.
+    /// The order in which blocks leave when a set is thinned, or `None` if the table has none. Blocks
+    /// then leave in a hashed order, which is no more even than a random choice.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// assert!(Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?.ranks().is_none());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn ranks(&self) -> Option<&Ranks> {
+        self.0.parts.ranks.as_ref()
+    }
+
+    /// The displacements for smaller shares, or `None` if the table has none.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// assert!(Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?.ladder().is_none());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn ladder(&self) -> Option<&Ladder> {
+        self.0.parts.ladder.as_ref()
+    }
+
+    /// The ranks of the points of a block, in [0, 1]: below the start none of them is left, from the end
+    /// on all are. Between them points leave in the order of their dX, the greatest first.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let blocks = 0..table.displacements().len();
+    /// // The widths are the shares of points that blocks have.
+    /// let all: f64 = blocks.map(|block| table.block_ranks(block)).map(|r| r.end - r.start).sum();
+    /// assert!((all - 1.0).abs() < 1e-9);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    ///
+    /// # Panics
+    /// If there is no such block.
+    #[must_use]
+    pub fn block_ranks(&self, block: usize) -> Range<f64> {
+        let order = self.order();
+        order.floors(order.position(block))
+    }
+
+    /// The displacement of a block where a share of the points is left: that of the
+    /// [ladder](Self::ladder), or the table's own if there is none.
+    ///
+    /// ```
+    /// use strew_core::{Table, table::{Ladder, Ranks, Rung}};
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let blocks = table.displacements().len();
+    /// let level = (0.5, vec![Rung { vector: [256, 0], event: [0, 255] }; blocks]);
+    /// let table = table.with_ranks(Ranks::new((0..blocks as u32).collect())?)?;
+    /// let table = table.with_ladder(Ladder::new(vec![level])?)?;
+    /// assert_eq!(table.displacement_at(7, 1.0), [0, 0]);
+    /// assert_eq!(table.displacement_at(7, 0.75), [1 << 19, 0]);
+    /// assert_eq!(table.displacement_at(7, 0.5), [1 << 20, 0]);
+    /// // Below the last level points return.
+    /// assert_eq!(table.displacement_at(7, 0.25), [0, 0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    ///
+    /// # Panics
+    /// If there is no such block.
+    #[must_use]
+    pub fn displacement_at(&self, block: usize, share: f64) -> Displacement {
+        let full = self.displacements()[block];
+        self.ladder().map_or(full, |ladder| {
+            ladder.displacement(ladder.stage(share), self.order().position(block), full)
+        })
+    }
+
+    /// The order in which blocks leave, a hashed one for a table without ranks.
+    pub(crate) fn order(&self) -> &Order {
+        &self.0.order
+    }
+
+    /// About the memory that the table may come to hold, in bytes: seeds turn it, and each of the eight
+    /// ways has a copy of the vectors and their order once it is used.
     ///
     /// ```
     /// use strew_core::Table;
@@ -249,7 +400,11 @@ impl Table {
     pub fn memory_bytes(&self) -> usize {
         // A bound, a label and about two buckets for each interval.
         let map = 32 * self.map().intervals();
-        size_of::<Content>() + size_of_val(self.displacements()) + map + 4096
+        let ladder = self.ladder().map_or(0, Ladder::memory_bytes);
+        let copies = TurnedCopies::MOST;
+        let vectors = (1 + copies) * size_of_val(self.displacements());
+        let order = self.0.order.memory_bytes(copies);
+        size_of::<Content>() + vectors + order + map + ladder + 4096
     }
 
     /// The least and the greatest displacement along x and y.
@@ -257,10 +412,9 @@ impl Table {
         self.0.reach
     }
 
-    /// The vectors of all blocks with one interval of dY.
-    pub(crate) fn row(&self, block_y: usize) -> &[Displacement] {
-        let n = self.map().intervals();
-        &self.displacements()[block_y * n..][..n]
+    /// The copies for the symmetries of seeds.
+    pub(super) fn turned(&self) -> &TurnedCopies {
+        &self.0.turned
     }
 
     /// The result of `compute` when it was first called.

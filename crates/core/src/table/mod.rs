@@ -17,24 +17,32 @@
 //! ```
 //!
 //! `displacement` has the [`Table`], made of the `parts` that a `file` holds; `units` the fixed point,
-//! `provenance` the history, `digest` the name, `text` the published text form. `shipped` has the
-//! tables built into this crate.
+//! `provenance` the history, `digest` the name, `text` the published text form. `ranks` is the order in which
+//! blocks leave when a set is thinned, `ladder` the displacements of those that are left. `symmetry` has the
+//! ways to turn all of these, `shipped` the tables built into this crate.
 
 mod digest;
 mod displacement;
 mod file;
+mod ladder;
 mod parts;
 mod provenance;
+mod ranks;
 #[cfg(feature = "tables")]
 pub(crate) mod shipped;
+mod symmetry;
 mod text;
 mod units;
 
 pub use digest::Digest;
 pub use displacement::Table;
 pub use file::{FORMAT_VERSION, MAX_FILE_BYTES};
+pub use ladder::{LADDER_BITS, Ladder, Rung};
 pub use provenance::{Figures, Provenance};
+pub use ranks::Ranks;
+pub(crate) use ranks::{Cut, Order};
 #[cfg(feature = "tables")]
 pub use shipped::BLUE;
+pub(crate) use symmetry::{Symmetry, TurnedTable};
 pub(crate) use units::fixed;
 pub use units::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, from_grid_units, to_grid_units};

@@ -2,7 +2,9 @@
 
 use alloc::{format, string::String, vec::Vec};
 
-use super::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, Provenance, to_grid_units};
+use super::{
+    Displacement, FRACTION_BITS, Ladder, MAX_DISPLACEMENT, Provenance, Ranks, to_grid_units,
+};
 use crate::{
     error::{Error, ErrorKind},
     map::Map,
@@ -16,6 +18,9 @@ pub(super) struct Parts {
     /// n² vectors, row = interval of dY, column = interval of dX.
     pub(super) displacements: Vec<Displacement>,
     pub(super) provenance: Provenance,
+    /// A position for each block.
+    pub(super) ranks: Option<Ranks>,
+    pub(super) ladder: Option<Ladder>,
 }
 
 impl Parts {
@@ -46,6 +51,17 @@ impl Parts {
         if !(1..=32).contains(&self.profile.len()) || !self.profile.bytes().all(is_allowed) {
             let allowed = "1 to 32 characters of a-z, 0-9 and -".into();
             return refused("profile", format!("{:?}", self.profile), allowed);
+        }
+        if let Some(ranks) = &self.ranks
+            && ranks.positions().len() != expected
+        {
+            let value = format!("{} positions", ranks.positions().len());
+            let allowed = format!("{expected} positions, the number of blocks");
+            return refused("ranks", value, allowed);
+        }
+        if self.ladder.is_some() && self.ranks.is_none() {
+            let (value, allowed) = ("without ranks".into(), "with ranks".into());
+            return refused("ladder", value, allowed);
         }
         self.provenance.check()
     }

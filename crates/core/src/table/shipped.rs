@@ -3,17 +3,17 @@
 use super::Table;
 use crate::{error::Error, once::Once};
 
-/// The file of the default table: profile `blue`, α = (5−√3)/2, R = 49.
+/// The file of the default table: profile `blue`, α = (5−√3)/2, R = 100.
 ///
 /// ```
 /// use strew_core::{PointSet, Table, table::BLUE};
 ///
 /// let table = Table::from_bytes(BLUE)?;
-/// assert_eq!(table.map().intervals(), 63);
+/// assert_eq!(table.map().intervals(), 129);
 /// assert_eq!(PointSet::blue().table(), &table);
 /// # Ok::<(), strew_core::Error>(())
 /// ```
-pub const BLUE: &[u8] = include_bytes!("../../tables/blue-5-sqrt3-over-2-s.strew");
+pub const BLUE: &[u8] = include_bytes!("../../tables/blue-5-sqrt3-over-2-m.strew");
 
 /// The default table.
 pub(crate) fn blue() -> Table {
@@ -28,6 +28,6 @@ mod tests {
     #[test]
     fn the_default_table_is_blue() {
         let table = super::blue();
-        assert_eq!((table.profile(), table.map().intervals()), ("blue", 63));
+        assert_eq!((table.profile(), table.map().intervals()), ("blue", 129));
     }
 }

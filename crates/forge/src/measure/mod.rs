@@ -3,7 +3,8 @@
 //! A set is a [`Torus`] (one period of a periodic set) or a [`Window`] (a box of an unbounded one);
 //! [`twin_set`] and [`window_set`] make them from a table. [`Spectrum`] is computed by `nufft`,
 //! windows with the weights of `taper`; its [`Ring`]s yield the [`Summary`] and the [`Crispness`].
-//! [`Distances`] and [`Rdf`] look up neighbors in a `cell_list`, [`Voronoi`] in a triangulation.
+//! [`Distances`] and [`Rdf`] look up neighbors in a `cell_list`, [`Voronoi`] in a triangulation. [`recurrence`] is how
+//! much of a set is found again elsewhere in it, [`Shared`] what two sets have in common.
 //!
 //! Everything is at unit density: lengths are in mean spacings, frequencies ν in cycles per mean
 //! spacing, and white noise has power 1. Of these results only figures rounded to four digits reach
@@ -14,7 +15,9 @@ mod crispness;
 mod distance;
 mod from_table;
 mod nufft;
+mod pair;
 mod rdf;
+mod recurrence;
 mod set;
 mod spectrum;
 mod taper;
@@ -24,7 +27,9 @@ pub(crate) use cell_list::CellList;
 pub use crispness::Crispness;
 pub use distance::Distances;
 pub use from_table::{twin_set, window_set};
+pub use pair::Shared;
 pub use rdf::Rdf;
+pub use recurrence::recurrence;
 pub use set::{Torus, Window};
-pub use spectrum::{Ring, Spectrum, Summary};
+pub use spectrum::{BANDS, Ring, Spectrum, Summary};
 pub use voronoi::Voronoi;

@@ -47,6 +47,16 @@ const LOW_END: f64 = 0.5;
 /// The range of ν of the median anisotropy.
 const ANISOTROPY_RANGE: std::ops::Range<f64> = 0.8..4.0;
 
+/// The bands of ν in which anisotropy is summarized.
+pub const BANDS: [[f64; 2]; 6] = [
+    [0.05, 0.2],
+    [0.2, 0.4],
+    [0.4, 0.6],
+    [0.6, 0.8],
+    [0.8, 1.2],
+    [1.2, 2.0],
+];
+
 impl Spectrum {
     /// Computes the spectrum of a periodic set for |k| ≤ `nu_max`·√N along either axis, with an
     /// error in amplitude of 10⁻¹⁰·√N. Memory grows as N·`nu_max`².
@@ -152,6 +162,24 @@ impl Spectrum {
                     power: mean,
                     anisotropy_db: 10.0 * (variance / (mean * mean)).max(1e-20).log10(),
                 }
+            })
+            .collect()
+    }
+
+    /// Returns the median anisotropy of the rings of each of the [`BANDS`], in dB, as far as they are
+    /// measured. Where a set has hardly any power, it is that of the floor.
+    #[must_use]
+    pub fn anisotropy_by_band(&self, width: f64) -> Vec<f64> {
+        let rings = self.rings(width);
+        let measured = BANDS.iter().filter(|band| band[1] <= self.nu_max());
+        measured
+            .map(|band| {
+                let inside = rings
+                    .iter()
+                    .filter(|ring| (band[0]..band[1]).contains(&ring.nu));
+                let mut all: Vec<f64> = inside.map(|ring| ring.anisotropy_db).collect();
+                all.sort_by(f64::total_cmp);
+                all.get(all.len() / 2).copied().unwrap_or(0.0)
             })
             .collect()
     }

@@ -20,6 +20,7 @@ mod state;
 
 pub use descent::Descent;
 pub use objective::Objective;
+pub(crate) use overlap::Overlaps;
 pub use pairs::Pairs;
 pub use radial::Radial;
 pub use rings::RadialWeights;

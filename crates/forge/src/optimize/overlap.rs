@@ -13,17 +13,17 @@ const ROUNDING: u64 = 1 << 24;
 
 /// The part of an interval that an offset carries into another interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Overlap {
+pub(crate) struct Overlap {
     /// The other interval, which is the neighbor's.
-    pub(super) to: u32,
+    pub(crate) to: u32,
     /// Its length, as a fraction of the torus.
-    pub(super) length: f64,
+    pub(crate) length: f64,
 }
 
 /// All overlaps of a map along an axis, for all offsets up to a reach.
 ///
 /// They serve both axes: the shift of X by (i, j) is that of Y by (j, i).
-pub(super) struct Overlaps {
+pub(crate) struct Overlaps {
     reach: i64,
     intervals: usize,
     /// Where the items of each offset along the axis, parity across it, and interval start; and the
@@ -38,7 +38,7 @@ pub(super) struct Overlaps {
 const UNIT: f64 = 1.0 / 18_446_744_073_709_551_616.0;
 
 impl Overlaps {
-    pub(super) fn new(map: &Map, reach: i64) -> Self {
+    pub(crate) fn new(map: &Map, reach: i64) -> Self {
         let pattern = Pattern::new(map.alpha());
         let intervals = map.intervals();
         let mut all = Self {
@@ -88,7 +88,7 @@ impl Overlaps {
 
     /// The overlaps of the interval `from` at offset `own` along the axis and, across it, an offset
     /// of the parity of `other`.
-    pub(super) fn of(&self, own: i64, other: i64, from: usize) -> &[Overlap] {
+    pub(crate) fn of(&self, own: i64, other: i64, from: usize) -> &[Overlap] {
         let offset = (own + self.reach) as usize * 2 + (other & 1) as usize;
         let at = offset * self.intervals + from;
         &self.items[self.starts[at] as usize..self.starts[at + 1] as usize]
@@ -100,7 +100,7 @@ impl Overlaps {
     }
 
     /// The length of an interval, as a fraction of the torus.
-    pub(super) fn length(&self, interval: usize) -> f64 {
+    pub(crate) fn length(&self, interval: usize) -> f64 {
         self.lengths[interval]
     }
 }

@@ -4,14 +4,15 @@ use alloc::vec::Vec;
 
 use super::{
     Attribute, Attributes,
-    hash::{angle, hash, key, scale, unit},
+    hash::{angle, hash, in_row, key, of_row, scale, unit},
 };
 use crate::{
     pattern::Pattern,
     sample::{
-        kernel::write_numbers,
+        kernel::{Backend, compiled, write_numbers},
         lattice::{Lattice, Point, PointId, rank},
     },
+    table::TurnedTable,
 };
 
 /// The values of one attribute for some points.
@@ -72,7 +73,7 @@ impl Column {
 }
 
 /// The attributes of one point set; see [`PointSet::attributes`](crate::PointSet::attributes). Cheap to
-/// clone, and it holds no table.
+/// clone.
 ///
 /// ```
 /// use strew_core::{Attributes, PointSet, Table};
@@ -88,6 +89,7 @@ impl Column {
 /// ```
 #[derive(Clone, Debug)]
 pub struct BoundAttributes {
+    table: TurnedTable,
     pattern: Pattern,
     list: Vec<Bound>,
 }
@@ -98,17 +100,42 @@ struct Bound {
     key: u64,
 }
 
+/// Ids by rows.
+struct Rows {
+    ids: Vec<PointId>,
+    /// The numbers of neighbors with the same row.
+    lengths: Vec<usize>,
+}
+
+impl Rows {
+    /// Writes the numbers that `number` makes of hashes.
+    #[inline]
+    fn write(&self, key: u64, number: impl Fn(u64) -> f64, out: &mut [f64]) {
+        compiled(Backend::best(), || {
+            let (mut ids, mut out) = (&self.ids[..], out);
+            for &length in &self.lengths {
+                let (row, more) = ids.split_at(length);
+                let (numbers, rest) = out.split_at_mut(length);
+                let hash = row.first().map_or(0, |id| of_row(key, id.y));
+                for (out, id) in numbers.iter_mut().zip(row) {
+                    *out = number(in_row(hash, id.x));
+                }
+                (ids, out) = (more, rest);
+            }
+        });
+    }
+}
+
 impl BoundAttributes {
     pub(crate) fn new(attributes: &Attributes, lattice: &Lattice) -> Self {
         let seed = lattice.placement.seed;
-        // Ranks are those of the whole pattern, also where only a share is kept.
-        let pattern = Pattern::with_origin(lattice.table.alpha(), seed.origin());
         let bind = |attribute: &Attribute| Bound {
             key: key(seed, attribute.code()),
             attribute: attribute.clone(),
         };
         Self {
-            pattern,
+            table: lattice.turned.clone(),
+            pattern: lattice.pattern,
             list: attributes.as_slice().iter().map(bind).collect(),
         }
     }
@@ -180,10 +207,19 @@ impl BoundAttributes {
     /// ```
     pub fn write(&self, ids: impl Iterator<Item = PointId> + Clone, columns: &mut Vec<Column>) {
         columns.resize_with(self.list.len(), || Column::Numbers(Vec::new()));
+        if self.list.is_empty() {
+            return;
+        }
+        let ids: Vec<PointId> = ids.collect();
+        let rows = ids.chunk_by(|a, b| a.y == b.y).map(<[PointId]>::len);
+        let ids = Rows {
+            lengths: rows.collect(),
+            ids,
+        };
         for (bound, column) in self.list.iter().zip(columns) {
-            let (key, ids) = (bound.key, ids.clone());
+            let key = bound.key;
             if let Attribute::Variant(variants) = &bound.attribute {
-                let picked = ids.map(|id| variants.pick(hash(key, id)));
+                let picked = ids.ids.iter().map(|&id| variants.pick(hash(key, id)));
                 if let Column::Variants(values) = column {
                     values.clear();
                     values.extend(picked);
@@ -196,16 +232,17 @@ impl BoundAttributes {
                 Column::Numbers(values) => values,
                 Column::Variants(_) => Vec::new(),
             };
-            values.resize(ids.clone().count(), 0.0);
+            values.resize(ids.ids.len(), 0.0);
             let out = values.as_mut_slice();
             // Loops of their own, without a branch at each point.
             match bound.attribute {
-                Attribute::Angle => write_numbers(ids.map(|id| angle(hash(key, id))), out),
-                Attribute::Scale(range) => {
-                    write_numbers(ids.map(|id| scale(range, hash(key, id))), out);
+                Attribute::Angle => ids.write(key, angle, out),
+                Attribute::Scale(range) => ids.write(key, |hash| scale(range, hash), out),
+                Attribute::Uniform(_) => ids.write(key, unit, out),
+                ref other => {
+                    let all = ids.ids.iter().map(|&id| self.number(other, key, id));
+                    write_numbers(all, out);
                 }
-                Attribute::Uniform(_) => write_numbers(ids.map(|id| unit(hash(key, id))), out),
-                ref other => write_numbers(ids.map(|id| self.number(other, key, id)), out),
             }
             *column = Column::Numbers(values);
         }
@@ -233,10 +270,7 @@ impl BoundAttributes {
         match attribute {
             Attribute::Angle => angle(hash(key, id)),
             Attribute::Scale(range) => scale(*range, hash(key, id)),
-            Attribute::Rank => {
-                let depth = self.pattern.depth(id.x, id.y);
-                rank(depth, self.pattern.alpha().set_side())
-            }
+            Attribute::Rank => rank(&self.table, &self.pattern, id),
             Attribute::Uniform(_) => unit(hash(key, id)),
             Attribute::Variant(variants) => variants.pick(hash(key, id)).into(),
         }

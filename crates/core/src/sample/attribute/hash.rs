@@ -1,7 +1,7 @@
 //! The hash of a point, and the numbers made from it.
 //!
-//! It is the finalizer of SplitMix64 (Steele, Lea, Flood, 2014) over column and row, under a key made of
-//! the seed and the attribute. Numbers are its upper 53 bits, so they are exact multiples of 2⁻⁵³ below 1.
+//! It is the finalizer of SplitMix64 (Steele, Lea, Flood, 2014) over row and column, under a key made of
+//! the seed and the attribute. The row comes first, so the points of a row share that round. Numbers are its upper 53 bits, so they are exact multiples of 2⁻⁵³ below 1.
 
 use core::f64::consts::TAU;
 
@@ -20,8 +20,19 @@ pub(crate) fn key(seed: Seed, code: u64) -> u64 {
 /// The hash of a point under a key, uniform over `u64`.
 #[inline]
 pub(crate) fn hash(key: u64, id: PointId) -> u64 {
-    let x = split_mix(key ^ (id.x as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
-    split_mix(x.wrapping_add(key) ^ (id.y as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f))
+    in_row(of_row(key, id.y), id.x)
+}
+
+/// The part of the hash that the points of a row share.
+#[inline]
+pub(crate) fn of_row(key: u64, y: i64) -> u64 {
+    split_mix(key ^ (y as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f)).wrapping_add(key)
+}
+
+/// The hash of a point in a row.
+#[inline]
+pub(crate) fn in_row(row: u64, x: i64) -> u64 {
+    split_mix(row ^ (x as u64).wrapping_mul(0xd6e8_feb8_6659_fd93))
 }
 
 /// A number in [0, 1).

@@ -7,10 +7,10 @@
 
 use alloc::vec::Vec;
 
-use super::tally::tally;
+use super::tally::{ColumnTally, tally};
 use crate::{
     pattern::{Axis, Class},
-    sample::lattice::{Columns, Lattice, Line, Span, lines_of_class},
+    sample::lattice::{Columns, Lattice, Line, Span, lines_of_class, places},
 };
 
 /// The number of points of a box.
@@ -42,21 +42,22 @@ const FEW: i64 = 512;
 fn count_rows(lattice: &Lattice, x: &Span, y: &Span) -> u128 {
     let mut columns = Columns::default();
     columns.list(lattice, x.all.clone());
-    let inner = columns.places(&x.inner);
     let mut count = 0;
     for v in y.all.clone() {
         let Some((class, block)) = lattice.row(v) else {
             continue;
         };
-        let (listed, inner) = (columns.of(class), &inner[class.ordinal()]);
+        let listed = columns.of_row(lattice, class, block);
         let vectors = lattice.vectors(block);
         if y.inner.contains(&v) {
+            let inner = places(listed, &x.inner);
             count += inner.len();
-            for &Line { at, block } in listed[..inner.start].iter().chain(&listed[inner.end..]) {
+            for &Line { at, block, .. } in listed[..inner.start].iter().chain(&listed[inner.end..])
+            {
                 count += usize::from(x.holds(at, vectors[block as usize][0]));
             }
         } else {
-            let holds = |&&Line { at, block }: &&Line| {
+            let holds = |&&Line { at, block, .. }: &&Line| {
                 let [dx, dy] = vectors[block as usize];
                 y.holds(v, dy) && x.holds(at, dx)
             };
@@ -77,28 +78,29 @@ fn count_class(
         lines_of_class(lattice, axis, class, span.margins()).collect()
     };
     let (margin_columns, margin_rows) = (margin(Axis::X, x), margin(Axis::Y, y));
-    let total = |counts: &[u64]| counts.iter().map(|&c| u128::from(c)).sum::<u128>();
+    let columns = ColumnTally::new(lattice, class, &x.inner, columns);
 
-    let mut count = total(columns) * total(rows);
+    let mut count = columns.times(rows);
     for (block_y, &rows) in rows.iter().enumerate().filter(|&(_, &rows)| rows > 0) {
-        let vectors = lattice.vectors(block_y);
+        let (vectors, keeps) = (lattice.vectors(block_y), lattice.keeps(block_y));
         let inside = margin_columns
             .iter()
+            .filter(|column| keeps(column))
             .filter(|column| x.holds(column.at, vectors[column.block as usize][0]))
             .count();
         count += inside as u128 * u128::from(rows);
     }
     for row in &margin_rows {
-        let vectors = lattice.vectors(row.block as usize);
+        let block_y = row.block as usize;
+        let (vectors, keeps) = (lattice.vectors(block_y), lattice.keeps(block_y));
         let inside = columns
-            .iter()
+            .in_row(block_y)
             .zip(vectors)
             .filter(|(_, [_, dy])| y.holds(row.at, *dy));
-        count += inside
-            .map(|(&columns, _)| u128::from(columns))
-            .sum::<u128>();
+        count += inside.map(|(columns, _)| u128::from(columns)).sum::<u128>();
         count += margin_columns
             .iter()
+            .filter(|column| keeps(column))
             .map(|column| (column.at, vectors[column.block as usize]))
             .filter(|&(at, [dx, dy])| x.holds(at, dx) && y.holds(row.at, dy))
             .count() as u128;
@@ -111,7 +113,7 @@ mod tests {
     use super::*;
     use crate::{
         map::Map,
-        sample::{Placement, Seed, Spacing},
+        sample::{Keep, Placement, Seed, Spacing},
         table::{Provenance, Table},
     };
 
@@ -123,19 +125,26 @@ mod tests {
         let vectors = (0..blocks).map(vector).collect::<Vec<_>>();
         let table = Table::new(map, "test", vectors, Provenance::default()).expect("valid");
         let placement = Placement::new(Spacing::new(1.0).expect("valid"), Seed(0));
-        let lattice = Lattice::new(table, placement);
-        let span = |axis, min: f64, side: f64| {
-            let bounds = [min, min + side].map(|bound| lattice.first_at_or_above(bound));
-            Span::new(&lattice, axis, bounds[0]..bounds[1])
-        };
+        for share in [1.0, 0.3, 0.01] {
+            let keep = Keep::new(share).expect("in range");
+            agree(&Lattice::new(table.clone(), placement.with_keep(keep)));
+        }
+    }
+
+    fn agree(lattice: &Lattice) {
         for (i, size) in [0.5, 3.0, 9.5, 31.6, 64.0, 150.0].into_iter().enumerate() {
             for [width, height] in [[size, size], [size, 2.0], [1.0, size]] {
                 let min = [i as f64 * 1e6 - 3e6, 17.3 - i as f64 * 977.0];
-                let x = span(Axis::X, min[0], width);
-                let y = span(Axis::Y, min[1], height);
-                let by_rows = count_rows(&lattice, &x, &y);
-                assert_eq!(by_rows, count_blocks(&lattice, &x, &y), "{min:?}");
-                assert_eq!(by_rows, count(&lattice, &x, &y));
+                let max = [min[0] + width, min[1] + height];
+                let bounds = [0, 1].map(|i| {
+                    let [start, end] =
+                        [min, max].map(|corner| lattice.first_at_or_above(corner[i]));
+                    start..end
+                });
+                let [x, y] = Span::of_box(lattice, bounds);
+                let by_rows = count_rows(lattice, &x, &y);
+                assert_eq!(by_rows, count_blocks(lattice, &x, &y), "{min:?}");
+                assert_eq!(by_rows, count(lattice, &x, &y));
             }
         }
     }

@@ -15,7 +15,7 @@ pub(crate) fn count(scope: &Scope, columns: &Range<i64>, rows: &Range<i64>) -> u
     } else if x.bounds.is_empty() || y.bounds.is_empty() {
         0
     } else if lattice.shears.is_some() {
-        margins::count(lattice, &x, &y, stop)
+        margins::count(lattice, [&x, &y], stop)
     } else {
         boxes::count(lattice, &x, &y)
     }

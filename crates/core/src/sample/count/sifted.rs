@@ -4,11 +4,12 @@
 use alloc::{vec, vec::Vec};
 use core::ops::Range;
 
+use super::tally::product;
 use crate::{
     pattern::Axis,
     sample::{
         area::Area,
-        lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span},
+        lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span, places},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale, Sieve},
         stop::Stop,
     },
@@ -24,6 +25,7 @@ pub(super) fn count(lattice: &Lattice, sieve: &Sieve, [x, y]: [&Span; 2], stop: 
     let mut strip = sieve.local();
     let mut edges = Edges {
         lattice,
+        spans: [x, y],
         stop,
         sieve: sieve.local(),
         bands: vec![Band::default(); BANDS],
@@ -39,7 +41,7 @@ pub(super) fn count(lattice: &Lattice, sieve: &Sieve, [x, y]: [&Span; 2], stop: 
         strip.runs(rows.clone(), columns, &mut runs);
         for run in &runs {
             if run.passes {
-                count += lattice.pattern.count(run.columns.clone(), rows.clone());
+                count += product(lattice, &run.columns, &rows);
                 continue;
             }
             let mut from = run.columns.start;
@@ -59,6 +61,7 @@ pub(super) fn count(lattice: &Lattice, sieve: &Sieve, [x, y]: [&Span; 2], stop: 
 /// Counts pieces of patches through which an edge may run, row by row.
 struct Edges<'a> {
     lattice: &'a Lattice,
+    spans: [&'a Span; 2],
     stop: &'a Stop,
     sieve: LocalSieve,
     /// By the lowest bits of the band's number.
@@ -87,6 +90,11 @@ impl Edges<'_> {
         columns: Range<i64>,
     ) -> u128 {
         let lattice = self.lattice;
+        if patch.is_warped() {
+            let piece = [columns.clone(), rows.clone()];
+            let piece = Span::of_piece(lattice, self.spans, piece);
+            self.sieve.set_reach(piece.map(|span| span.reach));
+        }
         self.sieve.aim(area, &rows, &columns);
         let kept = &mut self.bands[band.rem_euclid(BANDS as i64) as usize];
         if kept.number != Some(band) {
@@ -110,11 +118,14 @@ impl Edges<'_> {
                 known = rows.end.min(y + STRIP_ROWS);
                 self.sieve.runs(y..known, &columns, &mut self.runs);
             }
-            let (listed, vectors) = (kept.columns.of(class), lattice.vectors(block));
+            let listed = kept.columns.of_row(lattice, class, block);
+            let vectors = lattice.vectors(block);
             let row = patch.relative(Axis::Y, y);
             for run in &self.runs {
-                let ends = [run.columns.start, run.columns.end];
-                let [start, end] = ends.map(|v| kept.prefix.before(class, v));
+                let Range { start, end } = match lattice.cut {
+                    Some(_) => places(listed, &run.columns),
+                    None => kept.prefix.places(class, &run.columns),
+                };
                 if run.passes {
                     count += end - start;
                     continue;

@@ -47,5 +47,5 @@ pub use format::Format;
 pub(super) use format::{Geometry, Row};
 pub use offsets::Offsets;
 pub use points::Points;
-pub(super) use rows::{WarpedColumns, fill_row, fill_warped_row};
+pub(super) use rows::{WarpedColumns, fill_row, fill_warped_row, warp_all};
 pub use singles::F32;

@@ -90,8 +90,12 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
     bits: impl Fn(F::Item) -> B + Copy,
 ) {
     let warp = Warp::new(1.0).expect("in range");
-    let shears = Shears::new(warp, Seed(5), 0.317).expect("on");
-    let shears = PatchShears::new(&shears, [1024 * 7, -256 * 3]);
+    let shears = Shears::new(warp, Seed(5)).expect("on");
+    let shears = PatchShears::new(
+        &shears,
+        [1024 * 7, -256 * 3],
+        [[-20 << 20, 1040 << 20], [-20 << 20, 280 << 20]],
+    );
     for example in examples() {
         let Example {
             lattice,
@@ -116,7 +120,7 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
                 emit(&format, *row, own, dys, &mut plain);
                 let moved: Vec<F::Item> = part
                     .map(|i| {
-                        let [x, y] = shears.apply(displaced[i], row.y + displacements[i]);
+                        let [x, y] = shears.apply_others(displaced[i], row.y + displacements[i]);
                         let column = format.column(row.base, x, lattice[i]);
                         format.item(row.base, column, y, row.lattice)
                     })
@@ -124,6 +128,7 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
                 let warped = WarpedColumns {
                     displaced: &displaced[from..],
                     displacements: dys,
+                    range: [dys.iter().min(), dys.iter().max()].map(|v| v.copied().unwrap_or(0)),
                     lattice: &lattice[from..],
                 };
                 for backend in Backend::available() {

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, number};
 
-/// The share of the points that is kept: those whose [rank](crate::rank) is below it. By
+/// The share of the points that is kept: those whose [rank](crate::PointSet::rank) is below it. By
 /// default all are.
 ///
 /// Shares nest: a smaller one keeps a part of what a larger one keeps.
@@ -19,11 +19,17 @@ use crate::error::{Error, ErrorKind, number};
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub struct Keep(f64);
+pub struct Keep {
+    share: f64,
+    moves: bool,
+}
 
 impl Keep {
     /// All points.
-    pub const ALL: Self = Self(1.0);
+    pub const ALL: Self = Self {
+        share: 1.0,
+        moves: false,
+    };
     /// The least share. Rows are visited whether or not they keep points, so a smaller share would cost
     /// more than a wider spacing.
     pub const MIN: f64 = 1e-6;
@@ -42,7 +48,10 @@ impl Keep {
     /// ```
     pub fn new(share: f64) -> Result<Self, Error> {
         if (Self::MIN..=1.0).contains(&share) {
-            Ok(Self(share))
+            Ok(Self {
+                share,
+                moves: false,
+            })
         } else {
             let allowed = alloc::format!("a number from {:e} to 1", Self::MIN);
             Err(Error::new(ErrorKind::Keep, "keep", number(share), allowed))
@@ -60,7 +69,38 @@ impl Keep {
     /// ```
     #[must_use]
     pub const fn get(self) -> f64 {
-        self.0
+        self.share
+    }
+
+    /// This share with points that move as others leave, by the [ladder](crate::table::Ladder) of the table:
+    /// at every share they are spread nearly as evenly as a set made for it. Without a ladder they stay.
+    ///
+    /// ```
+    /// use strew_core::Keep;
+    ///
+    /// let half = Keep::new(0.5)?;
+    /// assert!(half.moving().moves() && !half.moves());
+    /// assert_eq!(half.moving().get(), half.get());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn moving(self) -> Self {
+        Self {
+            moves: true,
+            ..self
+        }
+    }
+
+    /// Whether points [move](Self::moving) as others leave.
+    ///
+    /// ```
+    /// use strew_core::Keep;
+    ///
+    /// assert!(!Keep::ALL.moves());
+    /// ```
+    #[must_use]
+    pub const fn moves(self) -> bool {
+        self.moves
     }
 }
 

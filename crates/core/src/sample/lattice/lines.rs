@@ -11,42 +11,117 @@ use crate::pattern::{Axis, Class};
 pub(crate) struct Line {
     pub(crate) at: i64,
     pub(crate) block: u32,
+    /// Of a column: whether its dX lies in the strip of the block that is partly kept.
+    pub(crate) is_in_strip: bool,
 }
 
 /// The columns of a range of the lattice, by class, ascending.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Columns([Vec<Line>; 4]);
+pub(crate) struct Columns {
+    all: [Vec<Line>; 4],
+    /// In a thinned set: those that have points in the rows of a block, by class and block.
+    kept: Vec<Kept>,
+}
+
+/// The columns of a class that have points in the rows of a block.
+#[derive(Clone, Debug, Default)]
+struct Kept {
+    lines: Vec<Line>,
+    is_made: bool,
+}
 
 impl Columns {
     /// Replaces the lists by those of another range.
     pub(crate) fn list(&mut self, lattice: &Lattice, range: Range<i64>) {
         let length = usize::try_from(range.end.saturating_sub(range.start)).unwrap_or(0);
-        for list in &mut self.0 {
+        for list in &mut self.all {
             list.clear();
             // A class has a quarter of all columns at most, where α is largest.
             list.reserve(length / 4 + 4);
         }
         for at in range {
             if let Some((class, index)) = lattice.pattern.visit(Axis::X, at) {
-                let block = lattice.map().locate(index) as u32;
-                self.0[class.ordinal()].push(Line { at, block });
+                self.all[class.ordinal()].push(lattice.line(at, index));
             }
         }
+        self.kept.iter_mut().for_each(|kept| kept.is_made = false);
     }
 
-    /// The columns of a class.
+    /// All columns of a class.
     #[inline]
     pub(crate) fn of(&self, class: Class) -> &[Line] {
-        &self.0[class.ordinal()]
+        &self.all[class.ordinal()]
+    }
+
+    /// The columns that have points in the rows of a class and block.
+    #[inline]
+    pub(crate) fn of_row(&mut self, lattice: &Lattice, class: Class, block_y: usize) -> &[Line] {
+        if lattice.cut.is_none() {
+            return &self.all[class.ordinal()];
+        }
+        self.keep(lattice, class, block_y)
+    }
+
+    fn keep(&mut self, lattice: &Lattice, class: Class, block_y: usize) -> &[Line] {
+        let n = lattice.map().intervals();
+        self.kept.resize_with(4 * n, Kept::default);
+        let kept = &mut self.kept[class.ordinal() * n + block_y];
+        if !kept.is_made {
+            kept.lines.clear();
+            let keeps = lattice.keeps(block_y);
+            let all = self.all[class.ordinal()].iter();
+            kept.lines.extend(all.filter(|line| keeps(line)));
+            kept.is_made = true;
+        }
+        &kept.lines
+    }
+
+    /// The columns of a part that have points in the rows of a class and block.
+    #[inline]
+    pub(crate) fn of_part(
+        &mut self,
+        lattice: &Lattice,
+        class: Class,
+        block_y: usize,
+        part: &Listed,
+    ) -> &[Line] {
+        if lattice.cut.is_none() {
+            return &self.all[class.ordinal()][part.places[class.ordinal()].clone()];
+        }
+        let kept = self.keep(lattice, class, block_y);
+        &kept[places(kept, &part.range)]
+    }
+
+    /// The columns in a range of coordinates.
+    pub(crate) fn part(&self, range: Range<i64>) -> Listed {
+        let places = self.places(&range);
+        Listed { range, places }
     }
 
     /// The places of a range of coordinates in the list of each class.
     pub(crate) fn places(&self, range: &Range<i64>) -> [Range<usize>; 4] {
-        Class::ALL.map(|class| {
-            let before = |v: i64| self.of(class).partition_point(|line| line.at < v);
-            before(range.start)..before(range.end)
-        })
+        Class::ALL.map(|class| places(self.of(class), range))
     }
+}
+
+/// Some columns of a list.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Listed {
+    range: Range<i64>,
+    /// Their places in the list of each class.
+    places: [Range<usize>; 4],
+}
+
+impl Listed {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.places.iter().all(Range::is_empty)
+    }
+}
+
+/// The places of a range of coordinates in a list of columns.
+pub(crate) fn places(lines: &[Line], range: &Range<i64>) -> Range<usize> {
+    let before = |v: i64| lines.partition_point(|line| line.at < v);
+    before(range.start)..before(range.end)
 }
 
 /// The columns or rows of a class in two ranges.
@@ -64,7 +139,6 @@ pub(crate) fn lines_of_class(
     let all = ranges.into_iter().flat_map(move |range| set.iter(range));
     all.map(move |at| {
         let index = lattice.pattern.axis_index(axis, at, other_parity);
-        let block = lattice.map().locate(index) as u32;
-        Line { at, block }
+        lattice.line(at, index)
     })
 }

@@ -7,9 +7,10 @@
 //! membership. The bounds of chunks are exact multiples of their size (`multiple`).
 //!
 //! Work proceeds in pieces: `lines` lists the columns and rows that hold points, `prefix` counts them,
-//! `patch` has the bands and patches in which positions fit 32 bits. `point` is what comes out, `rank`
-//! the order in which points leave.
+//! `patch` has the bands and patches in which positions fit 32 bits, `flat` the points of a patch without
+//! gaps. `point` is what comes out, `rank` its place in the order in which points leave.
 
+mod flat;
 mod keep;
 mod lines;
 mod multiple;
@@ -22,14 +23,15 @@ mod spacing;
 mod span;
 mod world;
 
+pub(super) use flat::{Flat, Inside};
 pub use keep::Keep;
-pub(super) use lines::{Columns, Line, lines_of_class};
+pub(super) use lines::{Columns, Line, Listed, lines_of_class, places};
 pub(super) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
 pub use placement::Placement;
 pub use point::{Point, PointId};
 pub(super) use prefix::PrefixCounts;
-pub use rank::{rank, side_for};
+pub(super) use rank::rank;
 pub use spacing::Spacing;
 pub(super) use span::Span;
 pub use world::LATTICE_LIMIT;

@@ -40,6 +40,17 @@ pub(crate) struct Patch {
 impl Patch {
     /// The patch of a band that contains a row.
     pub(crate) fn new(lattice: &Lattice, band: i64, row: i64, x: &Span, y: &Span) -> Self {
+        let reach = [Axis::X, Axis::Y].map(|axis| lattice.table_reach(axis));
+        Self::with_reach(lattice, [band, row], [x, y], reach)
+    }
+
+    /// The patch of a band that contains a row, with the least and the greatest displacement along x and y.
+    pub(crate) fn with_reach(
+        lattice: &Lattice,
+        [band, row]: [i64; 2],
+        [x, y]: [&Span; 2],
+        reach: [[i32; 2]; 2],
+    ) -> Self {
         let origin = [band * BAND_WIDTH, row & !(PATCH_HEIGHT - 1)];
         let relative = |span: &Span, origin: i64| {
             // A bound beyond 32 bits is beyond every point of the patch.
@@ -51,9 +62,19 @@ impl Patch {
             origin,
             bounds: [relative(x, origin[0]), relative(y, origin[1])],
             columns_are_inner: x.inner.start <= origin[0] && origin[0] + BAND_WIDTH <= x.inner.end,
-            shears: lattice
-                .shears
-                .map(|shears| Box::new(PatchShears::new(&shears, origin))),
+            shears: lattice.shears.map(|shears| {
+                let ranges = [(Axis::X, x, BAND_WIDTH), (Axis::Y, y, PATCH_HEIGHT)].map(
+                    |(axis, span, length)| {
+                        let origin = origin[axis as usize];
+                        let [least, most] = reach[axis as usize];
+                        let first = span.all.start.clamp(origin, origin + length) - origin;
+                        let end = span.all.end.clamp(origin, origin + length) - origin;
+                        let fixed = |v: i64| (v << FRACTION_BITS) as i32;
+                        [fixed(first) + least, fixed(end - 1) + most]
+                    },
+                );
+                Box::new(PatchShears::new(&shears, origin, ranges))
+            }),
         }
     }
 

@@ -35,6 +35,12 @@ impl PrefixCounts {
         }
     }
 
+    /// The places of a range of columns in the list of a class.
+    #[inline]
+    pub(crate) fn places(&self, class: Class, range: &Range<i64>) -> Range<usize> {
+        self.before(class, range.start)..self.before(class, range.end)
+    }
+
     /// The number of columns of a class before a column in the range, or before its end.
     #[inline]
     pub(crate) fn before(&self, class: Class, x: i64) -> usize {

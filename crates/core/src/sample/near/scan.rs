@@ -13,7 +13,7 @@ use core::ops::{ControlFlow, RangeInclusive};
 use crate::{
     pattern::Axis,
     sample::{
-        lattice::{Lattice, Point, PointId},
+        lattice::{Lattice, Line, Point, PointId},
         warp::NearShears,
     },
     table::{FRACTION_BITS, fixed},
@@ -25,10 +25,9 @@ pub(super) struct Scratch([Vec<NearColumn>; 4]);
 
 #[derive(Clone, Copy, Debug)]
 struct NearColumn {
-    x: i64,
     /// From the unwarped place, in fixed-point units.
     offset: i64,
-    block: u32,
+    line: Line,
 }
 
 /// Calls `visit` with the squared distance of every point whose reported coordinates lie within `radius`
@@ -42,14 +41,15 @@ pub(super) fn scan(
     mut visit: impl FnMut(f64, Point) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let there = at.map(|v| (v / lattice.step) as i128);
-    let center = lattice.shears.map_or(there, |shears| shears.invert(there));
     // Positions relative to `origin` are small.
-    let (mut shears, origin) = match &lattice.shears {
+    let (mut shears, origin, center) = match &lattice.shears {
         Some(shears) => {
-            let (near, origin) = NearShears::new(shears, center);
-            (Some(near), origin)
+            let (mut near, origin) = NearShears::new(shears, there);
+            let center = near.invert([0, 1].map(|i| (there[i] - origin[i]) as i64));
+            let center = [0, 1].map(|i| origin[i] + i128::from(center[i]));
+            (Some(near), origin, center)
         }
-        None => (None, center),
+        None => (None, there, there),
     };
     let [left, bottom] = [0, 1].map(|i| (center[i] - origin[i]) as i64);
     let reach = unwarped_reach(lattice, at, radius);
@@ -61,9 +61,12 @@ pub(super) fn scan(
             continue;
         };
         let offset = (fixed(y) - center[1]) as i64;
-        let vectors = lattice.vectors(block);
-        for column in &scratch.0[class.ordinal()] {
-            let [dx, dy] = vectors[column.block as usize];
+        let (vectors, keeps) = (lattice.vectors(block), lattice.keeps(block));
+        for column in scratch.0[class.ordinal()]
+            .iter()
+            .filter(|column| keeps(&column.line))
+        {
+            let [dx, dy] = vectors[column.line.block as usize];
             let [x_offset, y_offset] = [column.offset + i64::from(dx), offset + i64::from(dy)];
             let (x, y_near) = (x_offset as f64, y_offset as f64);
             if x * x + y_near * y_near > most {
@@ -76,7 +79,10 @@ pub(super) fn scan(
             };
             let [x, y_place] = [0, 1].map(|i| lattice.world(origin[i] + i128::from(place[i])));
             let (x_offset, y_offset) = (x - at[0], y_place - at[1]);
-            let id = PointId { x: column.x, y };
+            let id = PointId {
+                x: column.line.at,
+                y,
+            };
             let point = Point { id, x, y: y_place };
             visit(x_offset * x_offset + y_offset * y_offset, point)?;
         }
@@ -96,7 +102,7 @@ fn unwarped_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> f64 {
 
 /// The lattice coordinates along an axis whose points may lie within `reach`.
 fn candidates(lattice: &Lattice, axis: Axis, center: i128, reach: f64) -> RangeInclusive<i64> {
-    let [least, most] = lattice.table.reach()[axis as usize];
+    let [least, most] = lattice.table_reach(axis);
     let reach = reach as i128 + 1;
     let first = center - reach - i128::from(most);
     let last = center + reach - i128::from(least);
@@ -108,9 +114,8 @@ fn list_columns(lattice: &Lattice, columns: &mut [Vec<NearColumn>; 4], center: i
     for x in candidates(lattice, Axis::X, center, reach) {
         if let Some((class, index)) = lattice.pattern.visit(Axis::X, x) {
             columns[class.ordinal()].push(NearColumn {
-                x,
                 offset: (fixed(x) - center) as i64,
-                block: lattice.map().locate(index) as u32,
+                line: lattice.line(x, index),
             });
         }
     }

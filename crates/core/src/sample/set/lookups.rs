@@ -7,7 +7,7 @@ use crate::{
     error::Error,
     sample::{
         attribute::{Attributes, BoundAttributes},
-        lattice::{Placement, PointId, rank},
+        lattice::{Placement, PointId},
         member::Member,
         near::{Clearance, limits, search},
     },
@@ -100,8 +100,7 @@ impl PointSet {
     /// ```
     #[must_use]
     pub fn rank(&self, id: PointId) -> f64 {
-        let pattern = self.lattice.pattern;
-        rank(pattern.depth(id.x, id.y), pattern.alpha().set_side())
+        self.lattice.rank(id)
     }
 
     /// The `k` nearest points of a place, nearest first; of equally near ones the smaller id first. Takes
@@ -185,7 +184,8 @@ impl PointSet {
 
     /// The least distance between any two points, in world units: a guarantee for reported `f64`
     /// coordinates out to [`LeastDistance::RANGE`](crate::LeastDistance::RANGE) times this distance from the
-    /// origin, whatever the region. It is 0 for profiles that guarantee none.
+    /// origin, whatever the region. It is 0 for profiles that guarantee none, and for points that
+    /// [move](Self::keep_moving).
     ///
     /// [`least_distance_within`](Self::least_distance_within) has what holds farther out.
     ///
@@ -221,7 +221,15 @@ impl PointSet {
     /// ```
     #[must_use]
     pub fn least_distance_within(&self, reach: f64) -> f64 {
-        let Placement { spacing, warp, .. } = self.placement();
+        let Placement {
+            spacing,
+            warp,
+            keep,
+            ..
+        } = self.placement();
+        if keep.moves() && keep.get() < 1.0 && self.table().ladder().is_some() {
+            return 0.0;
+        }
         self.table().least_distance().reported(spacing, warp, reach)
     }
 

@@ -10,6 +10,7 @@ pub use lookups::Neighbor;
 
 use super::{
     area::Area,
+    field::{Field, Graded},
     lattice::{Keep, Lattice, Placement, Spacing},
     near::{ClearOf, Mask},
     seed::Seed,
@@ -228,6 +229,30 @@ impl PointSet {
         Ok(self.replaced(|placement| placement.with_keep(keep)))
     }
 
+    /// Keeps a share of the points, as [`keep`](Self::keep) does, and moves them as others leave, by the
+    /// [ladder](crate::table::Ladder) of the table. At every share they are spread nearly as evenly as a set
+    /// made for it; each point's path over shares is continuous. Without a ladder this is `keep`.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Keep`](crate::ErrorKind::Keep) outside 10⁻⁶ to 1.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let all = PointSet::new(table).seed(7);
+    /// let (still, moved) = (all.clone().keep(0.3)?, all.keep_moving(0.3)?);
+    /// // The same points are left.
+    /// for point in still.chunk(20.0, [0, 0])? {
+    ///     assert!(moved.point(point.id()).is_some());
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn keep_moving(self, share: f64) -> Result<Self, Error> {
+        let keep = Keep::new(share)?.moving();
+        Ok(self.replaced(|placement| placement.with_keep(keep)))
+    }
+
     /// Sets spacing, seed, warp and share at once.
     ///
     /// ```
@@ -290,10 +315,27 @@ impl PointSet {
         Ok(self)
     }
 
+    /// The set in a field, whose share of the points varies from place to place.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7).in_field(|[x, _]: [f64; 2]| x / 40.0);
+    /// let region = Region::new([0.0, 0.0], [40.0, 40.0])?;
+    /// // Half of 1600 on average.
+    /// assert!((700..900).contains(&set.count(region)?));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn in_field<F: Field>(&self, field: F) -> Graded<F> {
+        Graded::new(&self.lattice, &self.mask, field)
+    }
+
     fn replaced(mut self, change: impl FnOnce(Placement) -> Placement) -> Self {
         let placement = change(self.lattice.placement);
         if placement != self.lattice.placement {
-            self.lattice = Lattice::new(self.lattice.table, placement);
+            self.lattice = self.lattice.replaced(placement);
         }
         self
     }

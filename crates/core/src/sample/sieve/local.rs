@@ -9,6 +9,7 @@ use crate::{
         area::{Area, Near, Region, State, Stepper},
         near::Guard,
     },
+    table::FRACTION_BITS,
 };
 
 /// A sieve aimed at a piece of the lattice. It keeps memory, so each thread has its own.
@@ -46,6 +47,12 @@ impl LocalSieve {
             per_unit: 1.0 / unit,
             stepper: Stepper::default(),
         }
+    }
+
+    /// Uses other distances of points from their lattice addresses, by axis, in fixed-point units.
+    pub(crate) fn set_reach(&mut self, reach: [[i32; 2]; 2]) {
+        let unit = f64::from(1u32 << FRACTION_BITS);
+        self.reach = reach.map(|reach| reach.map(|v| f64::from(v) / unit));
     }
 
     /// Narrows the sieve to the points of some rows and columns that lie in `area`.

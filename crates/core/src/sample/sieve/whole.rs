@@ -2,7 +2,6 @@
 
 use super::LocalSieve;
 use crate::{
-    pattern::Axis,
     sample::{area::Area, lattice::Lattice, near::Mask},
     table::FRACTION_BITS,
 };
@@ -20,15 +19,16 @@ pub(crate) struct Sieve {
 }
 
 impl Sieve {
-    /// A sieve, or `None` if everything passes.
-    pub(crate) fn new(lattice: &Lattice, mask: Mask) -> Option<Self> {
+    /// A sieve, or `None` if everything passes. `reach` has the least and the greatest distance of a point
+    /// from its lattice address by axis, in fixed-point units.
+    pub(crate) fn new(lattice: &Lattice, mask: Mask, reach: [[i32; 2]; 2]) -> Option<Self> {
         if mask.area.is_none() && mask.clear.is_empty() {
             return None;
         }
         let grid_units = |v: i32| f64::from(v) / f64::from(1u32 << FRACTION_BITS);
         Some(Self {
             mask,
-            reach: [Axis::X, Axis::Y].map(|axis| lattice.reach(axis).map(grid_units)),
+            reach: reach.map(|reach| reach.map(grid_units)),
             unit: lattice.step * f64::from(1u32 << FRACTION_BITS),
         })
     }

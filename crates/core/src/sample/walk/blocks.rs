@@ -9,11 +9,14 @@ use super::{
     window::Window,
 };
 use crate::{
-    pattern::{Axis, Class},
+    pattern::Axis,
     sample::{
         cursor::Cursor,
         kernel::{Backend, Format, Geometry, Row, compiled},
-        lattice::{BAND_WIDTH, Columns, Patch, PointId, PrefixCounts, clip_to_band},
+        lattice::{
+            BAND_WIDTH, Columns, Flat, Inside, Listed, Patch, PointId, PrefixCounts, Span,
+            clip_to_band, places,
+        },
         scope::{Corner, Scope},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale},
     },
@@ -21,6 +24,9 @@ use crate::{
 
 /// The number of lattice rows from which a band keeps its templates.
 const TALL: i64 = 512;
+
+/// The most points of a warped patch that are listed before some are written: 20 bytes each.
+const FLAT: usize = 2048;
 
 /// The points of a plan, or of one of its tiles, in order, in blocks of any size.
 ///
@@ -54,10 +60,16 @@ pub struct Blocks<F: Format> {
     columns: Columns,
     /// The columns that lie inside whatever their displacement, as places in the lists.
     inner: [Range<usize>; 4],
+    /// All columns of the band.
+    listed: Listed,
     templates: Templates<F>,
     patch: Patch,
+    /// The scope's spans in the patch.
+    piece: [Span; 2],
     base: [f64; 2],
     backend: Backend,
+    /// The points of some rows of a warped patch, and those inside.
+    flat: (Flat, Inside),
 }
 
 /// The place of the next point in a band.
@@ -92,6 +104,11 @@ impl Place {
             done: 0,
             from: None,
         }
+    }
+
+    /// Whether nothing of the row is done.
+    const fn is_fresh(&self) -> bool {
+        self.done == 0 && self.from.is_none()
     }
 
     const fn next_row(&mut self) {
@@ -151,6 +168,7 @@ impl<F: Format> Blocks<F> {
         let is_tall = rows.end - rows.start >= TALL;
         Self {
             base: format.base(patch.origin()),
+            piece: [scope.x.clone(), scope.y.clone()],
             format,
             band: bands.start,
             bands,
@@ -167,9 +185,11 @@ impl<F: Format> Blocks<F> {
             }),
             columns: Columns::default(),
             inner: [const { 0..0 }; 4],
+            listed: Listed::default(),
             templates: Templates::new(&scope.lattice, is_tall, kept),
             patch,
             backend: Backend::best(),
+            flat: Default::default(),
             scope,
             window,
         }
@@ -223,6 +243,8 @@ impl<F: Format> Blocks<F> {
             let out = &mut out[filled..];
             filled += if self.sieve.as_ref().is_some_and(|sieve| sieve.is_cut) {
                 self.fill_sifted(end, out)
+            } else if self.patch.is_warped() && self.templates.are_short() && self.at.is_fresh() {
+                self.fill_flat(end, out)
             } else {
                 self.fill_rows(end, out)
             };
@@ -277,7 +299,8 @@ impl<F: Format> Blocks<F> {
         }
         let lattice = &self.scope.lattice;
         let column = lattice.row(self.at.y).and_then(|(class, block)| {
-            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
+            let (vectors, keeps) = (lattice.vectors(block), lattice.keeps(block));
+            let columns = self.columns.of(class).iter().filter(|line| keeps(line));
             self.templates
                 .column(&self.patch, columns, vectors, self.at.done)
         });
@@ -293,6 +316,7 @@ impl<F: Format> Blocks<F> {
         let columns = clip_to_band(band, &x.all);
         self.columns.list(lattice, columns.clone());
         self.inner = self.columns.places(&x.inner);
+        self.listed = self.columns.part(columns.clone());
         if let (Some(sieve), Some(sifting)) = (&self.scope.sieve, &mut self.sieve) {
             sifting.band.aim(sieve.area(), &self.rows, &columns);
             sifting.prefix.update(&columns, &self.columns);
@@ -309,30 +333,74 @@ impl<F: Format> Blocks<F> {
         let Scope { lattice, x, y, .. } = &*self.scope;
         self.patch = Patch::new(lattice, self.band, self.at.y, x, y);
         self.base = self.format.base(self.patch.origin());
+        let rows = self.at.y..self.patch.end().min(self.rows.end);
+        let columns = clip_to_band(self.band, &x.all);
+        if self.patch.is_warped() {
+            self.piece = Span::of_piece(lattice, [x, y], [columns.clone(), rows.clone()]);
+        }
         if let Some(sifting) = &mut self.sieve {
-            let rows = self.at.y..self.patch.end().min(self.rows.end);
-            let columns = clip_to_band(self.band, &x.all);
+            if self.patch.is_warped() {
+                sifting
+                    .patch
+                    .set_reach([0, 1].map(|axis| self.piece[axis].reach));
+            }
             if sifting.next_patch(&rows, &columns) {
                 self.at = Place::row(rows.end);
             }
         }
     }
 
+    /// Writes points of a warped patch in which few rows share a template, up to row `end` or as many as
+    /// there is room for. Rows are warped several at a time.
+    fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+        let (lattice, patch, base) = (&self.scope.lattice, &self.patch, self.base);
+        let (flat, inside) = &mut self.flat;
+        // Some two in three points of a small box's patches lie inside.
+        let enough = (2 * out.len()).clamp(64, FLAT);
+        let rows = self.at.y..end;
+        let columns = (&mut self.columns, &self.listed);
+        let next = flat.list(lattice, patch, columns, rows, enough, self.backend);
+        flat.sift(patch, self.backend, inside);
+        let [left, bottom] = patch.origin();
+        compiled(self.backend, || {
+            for (out, (place, address)) in out.iter_mut().zip(inside.points()) {
+                let column = self.format.column(base, place[0], left + address[0]);
+                *out = self
+                    .format
+                    .item(base, column, place[1], bottom + address[1]);
+            }
+        });
+        self.at = Place::row(next);
+        if inside.len() > out.len()
+            && let Some((y, done)) = flat.locate(patch, out.len())
+        {
+            self.at = Place {
+                done,
+                ..Place::row(y)
+            };
+            // The rest of this row takes a template of its own.
+            self.templates.clear();
+        }
+        inside.len().min(out.len())
+    }
+
     /// Writes points of the patch's rows up to `end`, or as many as there is room for.
     fn fill_rows(&mut self, end: i64, out: &mut [F::Item]) -> usize {
-        let Scope {
-            lattice,
-            x,
-            y: span,
-            ..
-        } = &*self.scope;
+        let lattice = &self.scope.lattice;
+        let [x, span] = &self.piece;
         let (format, patch, base) = (&self.format, &self.patch, self.base);
         let is_split = patch.is_warped() && !patch.columns_are_inner;
         let is_direct = self.templates.are_plain() && !patch.is_warped();
+        let is_flat = self.templates.are_short() && patch.is_warped();
         let mut filled = 0;
         while self.at.y < end && filled < out.len() {
+            if is_flat && self.at.is_fresh() {
+                // Only a row that was begun is finished here.
+                break;
+            }
             let y = self.at.y;
-            let Some((class, block)) = lattice.row(y) else {
+            let line = lattice.row(y).filter(|_| span.all.contains(&y));
+            let Some((class, block)) = line else {
                 self.at.next_row();
                 continue;
             };
@@ -342,8 +410,12 @@ impl<F: Format> Blocks<F> {
                 lattice: y,
             };
             let is_inner = span.inner.contains(&y);
-            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
-            let inner = self.inner[class.ordinal()].clone();
+            let columns = self.columns.of_row(lattice, class, block);
+            let vectors = lattice.vectors(block);
+            let inner = match lattice.cut {
+                Some(_) => places(columns, &x.inner),
+                None => self.inner[class.ordinal()].clone(),
+            };
             let out = &mut out[filled..];
             if is_direct && self.at.done == 0 && columns.len() <= out.len() {
                 filled += compiled(self.backend, || {
@@ -373,7 +445,7 @@ impl<F: Format> Blocks<F> {
                     check: Check::Bounds,
                 }
             } else if is_split {
-                next_part(template, self.at.done, &x.inner)
+                next_part(template, self.at.done, x)
             } else {
                 Part {
                     columns: self.at.done..template.len(),
@@ -410,7 +482,8 @@ impl<F: Format> Blocks<F> {
                 self.at = Place::row(sifting.runs_end);
                 continue;
             }
-            let (columns, vectors) = (self.columns.of(class), lattice.vectors(block));
+            let columns = self.columns.of_row(lattice, class, block);
+            let vectors = lattice.vectors(block);
             let template = self
                 .templates
                 .get(class, block, self.at.done > 0, |template, kept| {
@@ -419,7 +492,10 @@ impl<F: Format> Blocks<F> {
                 });
             if let Some(from) = self.at.from.take() {
                 let from = from.clamp(range.start, range.end);
-                self.at.done = sifting.prefix.before(class, from);
+                self.at.done = match lattice.cut {
+                    Some(_) => columns.partition_point(|line| line.at < from),
+                    None => sifting.prefix.before(class, from),
+                };
             }
             let row = Row {
                 base,
@@ -427,7 +503,10 @@ impl<F: Format> Blocks<F> {
                 lattice: y,
             };
             for run in &sifting.runs {
-                let places = sifting.places(class, run);
+                let places = match lattice.cut {
+                    Some(_) => places(columns, &run.columns),
+                    None => sifting.prefix.places(class, &run.columns),
+                };
                 let part = places.start.max(self.at.done)..places.end;
                 if part.is_empty() {
                     continue;
@@ -443,7 +522,7 @@ impl<F: Format> Blocks<F> {
                     let columns = displaced(patch, &columns[part], vectors);
                     let passes =
                         |place| patch.holds(place) && sifting.patch.passes(run, scale.world(place));
-                    sift(format, patch, row, columns, passes, out)
+                    sift(format, row, columns, (|p| patch.place(p), passes), out)
                 };
                 filled += progress.written;
                 self.at.done = start + progress.done;
@@ -458,16 +537,17 @@ impl<F: Format> Blocks<F> {
 }
 
 /// The next columns of a warped row that need one kind of check: those left of the inner columns, the
-/// inner ones, or those right of them.
-fn next_part<F: Format>(template: &Template<F>, done: usize, inner: &Range<i64>) -> Part {
-    let inner = [inner.start, inner.end].map(|v| template.columns_before(v));
-    let (end, check) = if done < inner[0] {
-        (inner[0], Check::Bounds)
-    } else if done < inner[1] {
-        (inner[1], Check::Nothing)
-    } else {
-        (template.len(), Check::Bounds)
-    };
+/// inner ones, those right of them, or those whose points all lie outside.
+fn next_part<F: Format>(template: &Template<F>, done: usize, x: &Span) -> Part {
+    let before = |v| template.columns_before(v);
+    let parts = [
+        (before(x.all.start), Check::Outside),
+        (before(x.inner.start), Check::Bounds),
+        (before(x.inner.end), Check::Nothing),
+        (before(x.all.end), Check::Bounds),
+    ];
+    let next = parts.into_iter().find(|&(end, _)| done < end);
+    let (end, check) = next.unwrap_or((template.len(), Check::Outside));
     Part {
         columns: done..end,
         check,
@@ -496,11 +576,5 @@ impl Sifting {
             self.patch.runs(y..self.runs_end, columns, &mut self.runs);
         }
         self.runs.is_empty()
-    }
-
-    /// The places of a run in the list of a class.
-    fn places(&self, class: Class, run: &Run) -> Range<usize> {
-        let before = |x| self.prefix.before(class, x);
-        before(run.columns.start)..before(run.columns.end)
     }
 }

@@ -24,8 +24,11 @@ pub(super) struct Template<F: Format> {
     lattice: Vec<i64>,
     /// The displaced x of each column, relative to the patch's origin; with warp only.
     displaced: Vec<i32>,
-    /// The vertical displacement of each column.
+    /// The vertical displacement of each column; with warp also the movement of the first shear, which depends
+    /// on the column alone.
     displacements: Vec<i32>,
+    /// Bounds of these; with warp only.
+    range: [i32; 2],
     is_made: bool,
 }
 
@@ -43,6 +46,8 @@ pub(super) enum Check {
     Nothing,
     /// The bounds of the patch.
     Bounds,
+    /// All lie outside.
+    Outside,
 }
 
 /// What one call wrote: the number of items, and the number of columns that are done with, which is all
@@ -86,6 +91,7 @@ impl<F: Format> Template<F> {
             lattice: Vec::new(),
             displaced: Vec::new(),
             displacements: Vec::new(),
+            range: [0; 2],
             is_made: false,
         }
     }
@@ -120,7 +126,11 @@ impl<F: Format> Template<F> {
         if patch.is_warped() {
             let of_all = || displaced(patch, columns, vectors);
             self.displaced.extend(of_all().map(|column| column.x));
-            self.displacements.extend(of_all().map(|column| column.dy));
+            let first = |x| patch.shears().map_or(0, |shears| shears.first(x));
+            self.displacements
+                .extend(of_all().map(|column| column.dy + first(column.x)));
+            let dys = self.displacements.iter().copied();
+            self.range = [dys.clone().min(), dys.max()].map(Option::unwrap_or_default);
             self.lattice.extend(columns.iter().map(|column| column.at));
         } else {
             let inner = if all { 0..columns.len() } else { inner };
@@ -182,15 +192,20 @@ impl<F: Format> Template<F> {
                     done: written,
                 }
             }
-            (Check::Bounds, Some(_)) => {
+            (Check::Bounds, Some(shears)) => {
                 let dys = &self.displacements[columns.clone()];
                 let WarpedColumns {
                     displaced, lattice, ..
                 } = self.warped(columns);
                 let columns = lattice.iter().zip(displaced).zip(dys);
                 let columns = columns.map(|((&lattice, &x), &dy)| Displaced { lattice, x, dy });
-                sift(format, patch, row, columns, |p| patch.holds(p), out)
+                let place = |[x, y]: [i32; 2]| shears.apply_others(x, y);
+                sift(format, row, columns, (place, |p| patch.holds(p)), out)
             }
+            (Check::Outside, _) => Progress {
+                written: 0,
+                done: columns.len(),
+            },
             // Columns outside along x are not in the template.
             (Check::Bounds, None) => self.clip(format, patch, row, columns, out),
         }
@@ -200,6 +215,7 @@ impl<F: Format> Template<F> {
         WarpedColumns {
             displaced: &self.displaced[columns.clone()],
             displacements: &self.displacements[columns.clone()],
+            range: self.range,
             lattice: &self.lattice[columns],
         }
     }
@@ -266,18 +282,18 @@ pub(super) fn write_row<F: Format>(
     written
 }
 
-/// Writes those points of some columns of a row whose place, relative to the patch's origin, passes.
+/// Writes those points of some columns of a row whose place passes; `place` is the place of a displaced
+/// position, both relative to the patch's origin.
 pub(super) fn sift<F: Format>(
     format: &F,
-    patch: &Patch,
     row: Row,
     columns: impl Iterator<Item = Displaced>,
-    passes: impl Fn([i32; 2]) -> bool,
+    (place, passes): (impl Fn([i32; 2]) -> [i32; 2], impl Fn([i32; 2]) -> bool),
     out: &mut [F::Item],
 ) -> Progress {
     let (mut written, mut done) = (0, 0);
     for Displaced { lattice, x, dy } in columns {
-        let position = patch.place([x, row.y + dy]);
+        let position = place([x, row.y + dy]);
         if passes(position) {
             let Some(out) = out.get_mut(written) else {
                 break;
@@ -339,19 +355,24 @@ impl<F: Format> Templates<F> {
     }
 
     /// The lattice column of number `n` of the template of some columns.
-    pub(super) fn column(
+    pub(super) fn column<'l>(
         &self,
         patch: &Patch,
-        columns: &[Line],
+        columns: impl Iterator<Item = &'l Line>,
         vectors: &[[i32; 2]],
         n: usize,
     ) -> Option<i64> {
         let all = self.kept.has_all(patch);
-        let columns = columns.iter().filter(|column| {
+        let columns = columns.filter(|column| {
             let displaced = patch.relative(Axis::X, column.at) + vectors[column.block as usize][0];
             all || patch.holds_along(Axis::X, displaced)
         });
         columns.map(|column| column.at).nth(n)
+    }
+
+    /// Whether each row makes its own template.
+    pub(super) const fn are_short(&self) -> bool {
+        !self.is_tall
     }
 
     /// Whether each row makes a template of its own, and only for what it writes.

@@ -3,21 +3,24 @@
 //! A displaced pattern repeats itself almost exactly, so the spectrum of a large window consists of
 //! Bragg peaks. The warp moves points along four directions d by smooth random functions of the
 //! coordinate across, p ← p + d·g(d⊥·p), one direction after another, and so decorrelates distant parts.
+//! g is a quadratic spline over a random walk of bounded steps, which bounds its slope.
 //! Each shear preserves area exactly, so the low-frequency power does not rise, and inverts exactly, so
 //! random access remains.
 //!
-//! Everything is integer arithmetic on fixed-point positions except g, whose cubic is evaluated in
+//! Everything is integer arithmetic on fixed-point positions except g, whose quadratic is evaluated in
 //! `f32` with plain multiplications and additions: the same bits on every machine and in every lane.
 //!
-//! `strength` is the setting, `shears` the definition. Two faster forms have the same bits: `near` for
+//! `strength` is the setting, `walk` and `shears` the definition. Two faster forms have the same bits: `near` for
 //! points around a place, `patch` for the points of a patch, on which the kernel builds. `stretch`
 //! bounds what the warp does to distances.
 
+mod drift;
 mod near;
 mod patch;
 mod shears;
 mod strength;
 mod stretch;
+mod walk;
 
 pub(super) use near::NearShears;
 pub(super) use patch::PatchShears;

@@ -1,15 +1,15 @@
 //! The warp of points around a place, in 64-bit positions.
 
-use super::shears::{CELL_BITS, CELL_MASK, Cubic, Shears, evaluate, shear};
+use super::shears::{CELL_BITS, CELL_MASK, Quadratic, Shears, across, evaluate, shear};
 
-/// The shears near one place. Positions are relative to an origin nearby, and the cubic last used in
-/// each direction is kept.
+/// The shears near one place. Positions are relative to an origin nearby, and the quadratic last
+/// used in each direction is kept.
 #[derive(Debug)]
 pub(crate) struct NearShears<'a> {
     shears: &'a Shears,
     /// The cells of the origin, by direction.
     cells: [i64; 4],
-    last: [(i64, Cubic); 4],
+    last: [(i64, Quadratic); 4],
 }
 
 impl<'a> NearShears<'a> {
@@ -17,11 +17,14 @@ impl<'a> NearShears<'a> {
     /// axes, so that cells start there in every direction.
     pub(crate) fn new(shears: &'a Shears, place: [i128; 2]) -> (Self, [i128; 2]) {
         let [x, y] = place.map(|v| (v >> CELL_BITS) as i64);
-        let cells = [y, x, x - y, x + y];
-        let mut last = [(0, [0.0; 4]); 4];
-        for (i, last) in last.iter_mut().enumerate() {
-            last.1 = shears.cubic(i, cells[i]);
-        }
+        let cells = across([x, y]);
+        let relative = across(place.map(|v| (v & CELL_MASK) as i64)).map(|s| s >> CELL_BITS);
+        // The cells of the place itself, which one shear after another mostly leaves unchanged. Found
+        // beforehand, they do not wait for each other.
+        let last = core::array::from_fn(|i| {
+            let cell = cells[i].wrapping_add(relative[i]);
+            (relative[i], shears.quadratic(i, cell))
+        });
         let near = Self {
             shears,
             cells,
@@ -30,18 +33,28 @@ impl<'a> NearShears<'a> {
         (near, [x, y].map(|v| i128::from(v) << CELL_BITS))
     }
 
-    /// [`Shears::apply`], relative to the origin.
+    #[inline]
+    fn noise(&mut self, i: usize, s: i64) -> i64 {
+        let cell = s >> CELL_BITS;
+        if self.last[i].0 != cell {
+            let quadratic = self.shears.quadratic(i, self.cells[i].wrapping_add(cell));
+            self.last[i] = (cell, quadratic);
+        }
+        evaluate(&self.last[i].1, (s & CELL_MASK as i64) as i32).into()
+    }
+
+    /// The place to which the warp moves a position, both relative to the origin.
     #[inline]
     pub(crate) fn apply(&mut self, position: [i64; 2]) -> [i64; 2] {
-        (0..4).fold(position, |p, i| {
-            shear(i, p, |s| {
-                let cell = s >> CELL_BITS;
-                if self.last[i].0 != cell {
-                    self.last[i] = (cell, self.shears.cubic(i, self.cells[i].wrapping_add(cell)));
-                }
-                evaluate(&self.last[i].1, (s & CELL_MASK as i64) as i32).into()
-            })
-        })
+        (0..4).fold(position, |p, i| shear(i, p, |s| self.noise(i, s)))
+    }
+
+    /// The exact inverse of [`apply`](Self::apply).
+    #[inline]
+    pub(crate) fn invert(&mut self, position: [i64; 2]) -> [i64; 2] {
+        (0..4)
+            .rev()
+            .fold(position, |p, i| shear(i, p, |s| -self.noise(i, s)))
     }
 }
 
@@ -58,12 +71,15 @@ mod tests {
             seed: u64, x in -(1i128 << 72)..1 << 72, y in -(1i128 << 72)..1 << 72,
             near in proptest::collection::vec([-1i64 << 30..1 << 30, -1i64 << 30..1 << 30], 1..20),
         ) {
-            let shears = Shears::new(Warp::ON, Seed(seed), 0.317).expect("on");
+            let shears = Shears::new(Warp::ON, Seed(seed)).expect("on");
             let (mut relative, [left, bottom]) = NearShears::new(&shears, [x, y]);
             for [dx, dy] in near {
                 let there = shears.apply([left + i128::from(dx), bottom + i128::from(dy)]);
                 let [dx, dy] = relative.apply([dx, dy]).map(i128::from);
                 prop_assert_eq!(there, [left + dx, bottom + dy]);
+                let [x, y] = [there[0] - left, there[1] - bottom].map(|v| v as i64);
+                let back = relative.invert([x, y]).map(i128::from);
+                prop_assert_eq!(shears.invert(there), [left + back[0], bottom + back[1]]);
             }
         }
     }

@@ -11,7 +11,12 @@
 //!
 //! `HEAD`: α as text, R, n, profile. `PROV`: the history. `DISP`: n² pairs of i32, row by row. A reader
 //! skips a section it does not know if the name starts with a lower-case letter, so later releases can
-//! add sections without a new format.
+//! add sections without a new format. Optional:
+//!
+//! `rank`: for each block its position in the order in which blocks leave, 0 for the last one; 2 bytes,
+//! or 4 in maps of more than 2¹⁶ blocks. `ladd`: a list of levels, each a share as u32 in units of 2⁻³² and a
+//! list of rungs by position: two i16 in units of 2⁻⁸ grid units, and the start and the end of the move
+//! as 255ths of the way from the level before.
 //!
 //! `write` and `read` are each other's inverse over the encodings of `wire`.
 

@@ -4,14 +4,17 @@
 use alloc::{format, string::String, vec::Vec};
 
 use super::{
-    layout::{DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, check_size},
+    layout::{
+        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, LADDER, MAGIC, MAX_SECTIONS, RANKS, RUNG_BYTES,
+        check_size, position_bytes,
+    },
     wire::Reader,
 };
 use crate::{
     error::{Error, ErrorKind},
     map::{Map, Twin},
     pattern::Alpha,
-    table::{Digest, Figures, Provenance, parts::Parts},
+    table::{Digest, Figures, Ladder, Provenance, Ranks, Rung, parts::Parts},
 };
 
 /// The content of a table file, and its digest.
@@ -109,6 +112,8 @@ struct Sections<'a> {
     head: Option<Payload<'a>>,
     prov: Option<Payload<'a>>,
     disp: Option<Payload<'a>>,
+    rank: Option<Payload<'a>>,
+    ladd: Option<Payload<'a>>,
 }
 
 impl<'a> Sections<'a> {
@@ -129,6 +134,8 @@ impl<'a> Sections<'a> {
             b"HEAD" => &mut self.head,
             b"PROV" => &mut self.prov,
             b"DISP" => &mut self.disp,
+            _ if tag == RANKS => &mut self.rank,
+            _ if tag == LADDER => &mut self.ladd,
             _ if tag[0].is_ascii_lowercase() => return Ok(at + 12 + length),
             _ => return Err(wrong(tag, at, "unknown to this release".into())),
         };
@@ -166,11 +173,22 @@ impl<'a> Sections<'a> {
         let provenance = read_prov(prov).map_err(|p| wrong(b"PROV", prov_at, p))?;
         let displacements =
             read_disp(disp, map.intervals()).map_err(|p| wrong(b"DISP", disp_at, p))?;
+        let blocks = displacements.len();
+        let ranks = self.rank.map(|(bytes, at)| {
+            let positions = read_rank(bytes, blocks).map_err(|p| wrong(&RANKS, at, p))?;
+            Ranks::new(positions)
+        });
+        let ladder = self.ladd.map(|(bytes, at)| {
+            let levels = read_ladd(bytes).map_err(|p| wrong(&LADDER, at, p))?;
+            Ladder::from_raw(levels)
+        });
         let parts = Parts {
             map,
             profile: head.profile,
             displacements,
             provenance,
+            ranks: ranks.transpose()?,
+            ladder: ladder.transpose()?,
         };
         parts.check()?;
         Ok(parts)
@@ -249,4 +267,38 @@ fn read_disp(bytes: &[u8], intervals: usize) -> Result<Vec<[i32; 2]>, String> {
     (0..blocks)
         .map(|_| Ok([reader.i32("a vector")?, reader.i32("a vector")?]))
         .collect()
+}
+
+fn read_rank(bytes: &[u8], blocks: usize) -> Result<Vec<u32>, String> {
+    let width = position_bytes(blocks);
+    if bytes.len() != width * blocks {
+        let need = width * blocks;
+        return Err(format!(
+            "{} bytes; {blocks} blocks need {need}",
+            bytes.len()
+        ));
+    }
+    let position = |bytes: &[u8]| {
+        let mut wide = [0; 4];
+        wide[..bytes.len()].copy_from_slice(bytes);
+        u32::from_le_bytes(wide)
+    };
+    Ok(bytes.chunks_exact(width).map(position).collect())
+}
+
+/// The levels of a ladder, each a share in units of 2⁻³² and its rungs.
+fn read_ladd(bytes: &[u8]) -> Result<Vec<(u32, Vec<Rung>)>, String> {
+    let mut reader = Reader::new(bytes);
+    let levels = reader.list(8, "levels", |r| {
+        let share = r.u32("a share")?;
+        let rungs = r.list(RUNG_BYTES, "rungs", |r| {
+            Ok(Rung {
+                vector: [r.i16("a vector")?, r.i16("a vector")?],
+                event: r.array("an event")?,
+            })
+        })?;
+        Ok((share, rungs))
+    })?;
+    reader.end("levels")?;
+    Ok(levels)
 }

@@ -119,7 +119,7 @@ fn sealed_nonsense_is_refused_with_its_place() {
 fn optional_sections_of_later_releases_are_skipped() {
     let good = table().to_bytes();
     let mut bytes = good[..good.len() - DIGEST_BYTES].to_vec();
-    bytes.extend(*b"rank");
+    bytes.extend(*b"hint");
     bytes.extend(3u64.to_le_bytes());
     bytes.extend([1, 2, 3]);
     bytes.extend([0; DIGEST_BYTES]);

@@ -61,7 +61,7 @@ impl<'a> Reader<'a> {
         Ok(taken)
     }
 
-    fn array<const N: usize>(&mut self, what: &str) -> Read<[u8; N]> {
+    pub(super) fn array<const N: usize>(&mut self, what: &str) -> Read<[u8; N]> {
         let mut array = [0; N];
         array.copy_from_slice(self.take(N, what)?);
         Ok(array)
@@ -73,6 +73,10 @@ impl<'a> Reader<'a> {
 
     pub(super) fn u64(&mut self, what: &str) -> Read<u64> {
         self.array(what).map(u64::from_le_bytes)
+    }
+
+    pub(super) fn i16(&mut self, what: &str) -> Read<i16> {
+        self.array(what).map(i16::from_le_bytes)
     }
 
     pub(super) fn i32(&mut self, what: &str) -> Read<i32> {

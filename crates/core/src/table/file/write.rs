@@ -1,14 +1,17 @@
 //! Writing a table file.
 
-use alloc::vec::Vec;
+use alloc::{vec, vec::Vec};
 
 use super::{
-    layout::{DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, check_size},
+    layout::{
+        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, LADDER, MAGIC, RANKS, check_size,
+        position_bytes,
+    },
     wire::Writer,
 };
 use crate::{
     error::Error,
-    table::{Digest, Provenance, parts::Parts},
+    table::{Digest, Ladder, Provenance, Ranks, parts::Parts},
 };
 
 /// A table as a file.
@@ -28,11 +31,13 @@ pub(crate) fn digest(table: &Parts) -> Result<Digest, Error> {
 
 /// Everything before the digest.
 fn body(table: &Parts) -> Vec<u8> {
-    let sections = [
+    let mut sections = vec![
         (*b"HEAD", head(table)),
         (*b"PROV", prov(&table.provenance)),
         (*b"DISP", disp(table)),
     ];
+    sections.extend(table.ranks.as_ref().map(|ranks| (RANKS, rank(ranks))));
+    sections.extend(table.ladder.as_ref().map(|ladder| (LADDER, ladd(ladder))));
     let payload: usize = sections.iter().map(|(_, bytes)| 12 + bytes.len()).sum();
     let mut out = Writer::default();
     out.bytes.extend(MAGIC);
@@ -89,6 +94,27 @@ fn disp(table: &Parts) -> Vec<u8> {
     for [x, y] in &table.displacements {
         out.i32(*x);
         out.i32(*y);
+    }
+    out.bytes
+}
+
+fn rank(ranks: &Ranks) -> Vec<u8> {
+    let width = position_bytes(ranks.positions().len());
+    let bytes = |position: &u32| position.to_le_bytes().into_iter().take(width);
+    ranks.positions().iter().flat_map(bytes).collect()
+}
+
+fn ladd(ladder: &Ladder) -> Vec<u8> {
+    let mut out = Writer::default();
+    out.length(ladder.raw().count());
+    for (share, rungs) in ladder.raw() {
+        out.u32(share);
+        out.length(rungs.len());
+        for rung in rungs {
+            out.bytes
+                .extend(rung.vector.into_iter().flat_map(i16::to_le_bytes));
+            out.bytes.extend(rung.event);
+        }
     }
     out.bytes
 }

@@ -1,0 +1,64 @@
+//! The trait of fields.
+
+use crate::sample::area::Region;
+
+/// A share of the points at each place: 1 keeps all, 0 none.
+///
+/// Closures are fields. A field that knows its bounds over a box lets whole boxes be left out.
+///
+/// ```
+/// use strew_core::{Field, PointSet, Region, Table};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// // Denser toward the right.
+/// let ramp = |[x, _]: [f64; 2]| x / 40.0;
+/// assert_eq!(ramp.share([10.0, 3.0]), 0.25);
+/// let set = PointSet::new(table).seed(7).in_field(ramp);
+/// let count = |x| Ok(set.within(Region::new([x, 0.0], [x + 20.0, 40.0])?)?.len());
+/// assert!(count(20.0)? > 2 * count(0.0)?);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub trait Field: Send + Sync {
+    /// The share at a place, in world units. Below 0 and NaN count as 0, above 1 as 1. It must be the same
+    /// each time.
+    ///
+    /// ```
+    /// use strew_core::Field;
+    ///
+    /// let disk = |[x, y]: [f64; 2]| if x * x + y * y < 1.0 { 1.0 } else { 0.0 };
+    /// assert_eq!([disk.share([0.5, 0.5]), disk.share([1.0, 1.0])], [1.0, 0.0]);
+    /// ```
+    fn share(&self, at: [f64; 2]) -> f64;
+
+    /// Bounds of the share over a box, its edges included: no place in it has a share below the first or
+    /// above the second. [0, 1] is always right.
+    ///
+    /// ```
+    /// use strew_core::{Field, Region};
+    ///
+    /// struct Ramp;
+    ///
+    /// impl Field for Ramp {
+    ///     fn share(&self, [x, _]: [f64; 2]) -> f64 {
+    ///         x
+    ///     }
+    ///
+    ///     fn bounds(&self, within: &Region) -> [f64; 2] {
+    ///         [within.min()[0], within.max()[0]]
+    ///     }
+    /// }
+    ///
+    /// assert_eq!(Ramp.bounds(&Region::new([0.25, 0.0], [0.5, 9.0])?), [0.25, 0.5]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    fn bounds(&self, within: &Region) -> [f64; 2] {
+        let _ = within;
+        [0.0, 1.0]
+    }
+}
+
+impl<F: Fn([f64; 2]) -> f64 + Send + Sync> Field for F {
+    fn share(&self, at: [f64; 2]) -> f64 {
+        self(at)
+    }
+}

@@ -1,0 +1,387 @@
+//! The ladder: displacements of their own for the blocks that are left at smaller shares.
+//!
+//! A *level* holds vectors for a share λ; level 0 is the table itself, at λ = 1. Between two levels a
+//! block moves once, on a part of the way from one share to the next, its *event*: when its near neighbors
+//! leave. So a point is a continuous function of the share, and at every share the points that are left
+//! are spread as evenly as a set made for it, nearly.
+//!
+//! Level k has a vector for each block of which any point is left on the way down from level k − 1: the
+//! first positions of the [order](super::Ranks). Below the last level points return to the table's own vectors
+//! while the share halves: those serve fewer points better than vectors that fitted more.
+
+use alloc::{format, vec::Vec};
+
+use super::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, ranks::Order};
+use crate::error::{Error, ErrorKind};
+
+/// Fraction bits of the vectors of a ladder, in grid units: about 1/800 mean spacings.
+///
+/// ```
+/// use strew_core::table::{LADDER_BITS, MAX_DISPLACEMENT};
+///
+/// // Vectors of up to 127 grid units fit 16 bits.
+/// assert!(MAX_DISPLACEMENT * f64::from(1 << LADDER_BITS) < f64::from(i16::MAX));
+/// ```
+pub const LADDER_BITS: u32 = 8;
+
+/// What a fixed-point coordinate of a table is, in units of a ladder's vectors.
+const SHIFT: u32 = FRACTION_BITS - LADDER_BITS;
+
+/// The unit of [`Rung::event`]: a 255th of the way from one level to the next.
+const EVENT_UNITS: f64 = 255.0;
+
+/// The vector of a block at one level, and when the block moves there from the level before.
+///
+/// ```
+/// use strew_core::table::Rung;
+///
+/// // One grid unit to the right, in the middle third of the way down.
+/// let rung = Rung { vector: [256, 0], event: [85, 170] };
+/// assert!(rung.event[0] < rung.event[1]);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rung {
+    /// In units of 2⁻⁸ grid units; see [`LADDER_BITS`].
+    pub vector: [i16; 2],
+    /// The start and the end of the move, as 255ths of the way from the share of the level before to the
+    /// share of this level. The start is less than the end.
+    pub event: [u8; 2],
+}
+
+/// The displacements of a table's points at smaller shares.
+///
+/// ```
+/// use strew_core::{Table, table::{Ladder, Ranks, Rung}};
+///
+/// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let blocks = table.displacements().len();
+/// let table = table.with_ranks(Ranks::new((0..blocks as u32).collect())?)?;
+/// // On the way to a half all points move by (1, 0) grid units.
+/// let rung = Rung { vector: [256, 0], event: [0, 255] };
+/// let ladder = Ladder::new(vec![(0.5, vec![rung; blocks])])?;
+/// let table = table.with_ladder(ladder)?;
+/// assert_eq!(table.ladder().map(|ladder| ladder.least_share()), Some(0.5));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ladder {
+    levels: Vec<Level>,
+    /// For each sixteenth of an octave of shares, from 1 down, the first level that may lie below it.
+    hints: Vec<u16>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Level {
+    /// λ, in units of 2⁻³².
+    share: u32,
+    /// By position in the order of blocks.
+    rungs: Vec<Rung>,
+    /// The largest component of a vector of this level or one above it.
+    reach: u16,
+}
+
+/// A place between two levels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stage {
+    /// The number of the level below; 0 where the table itself holds.
+    below: usize,
+    /// The part of the way down to it, in units of [`EVENT_UNITS`].
+    way: f64,
+    /// Below the last level, the part of the way back to the table's own vectors.
+    back: f64,
+}
+
+impl Ladder {
+    /// The most levels.
+    pub const MAX_LEVELS: usize = 512;
+
+    /// A ladder of levels below the table itself: the share of each, and its rungs by position in the
+    /// order of blocks. Shares are rounded to 2⁻³².
+    ///
+    /// # Errors
+    /// [`ErrorKind::Table`] unless shares fall from below 1 to above 0, events start before they end, and
+    /// vectors are shorter than [`MAX_DISPLACEMENT`] along each axis.
+    ///
+    /// ```
+    /// use strew_core::table::{Ladder, Rung};
+    ///
+    /// let level = |share| (share, vec![Rung { vector: [0, 0], event: [0, 255] }]);
+    /// assert_eq!(Ladder::new(vec![level(0.5), level(0.25)])?.shares().count(), 2);
+    /// assert!(Ladder::new(vec![level(0.25), level(0.5)]).is_err());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn new(levels: Vec<(f64, Vec<Rung>)>) -> Result<Self, Error> {
+        let level = |(share, rungs): (f64, Vec<Rung>)| Level {
+            // A conversion outside 32 bits saturates, and is refused below.
+            share: libm::round(share * SHARE_UNITS) as u32,
+            rungs,
+            reach: 0,
+        };
+        Self::of_levels(levels.into_iter().map(level).collect())
+    }
+
+    fn of_levels(mut levels: Vec<Level>) -> Result<Self, Error> {
+        let refused = |value: alloc::string::String, allowed: &'static str| {
+            Err(Error::new(ErrorKind::Table, "ladder", value, allowed))
+        };
+        if !(1..=Self::MAX_LEVELS).contains(&levels.len()) {
+            return refused(format!("{} levels", levels.len()), "1 to 512 levels");
+        }
+        let falls = levels.windows(2).all(|pair| pair[0].share > pair[1].share);
+        if !falls
+            || levels
+                .iter()
+                .any(|level| [0, u32::MAX].contains(&level.share))
+        {
+            return refused(
+                "not in order".into(),
+                "levels whose shares fall from 1 to 0",
+            );
+        }
+        let limit = (MAX_DISPLACEMENT as i16) << LADDER_BITS;
+        let is_valid = |rung: &Rung| {
+            rung.event[0] < rung.event[1]
+                && rung.vector.iter().all(|v| (1 - limit..limit).contains(v))
+        };
+        let mut rungs = levels.iter().flat_map(|level| &level.rungs);
+        if let Some(rung) = rungs.find(|rung| !is_valid(rung)) {
+            let allowed =
+                "events that start before they end, and vectors shorter than 127 grid units";
+            return refused(format!("{rung:?}"), allowed);
+        }
+        let mut reach = 0;
+        for level in &mut levels {
+            let components = level.rungs.iter().flat_map(|rung| rung.vector);
+            reach = components.fold(reach, |reach: u16, v| reach.max(v.unsigned_abs()));
+            level.reach = reach;
+        }
+        let hints = (0..HINTS).map(|bucket| {
+            // Shares of this bucket are below its upper end.
+            let most = f64::from_bits((1.0f64.to_bits() >> HINT_SHIFT) - bucket << HINT_SHIFT);
+            levels.partition_point(|level| level.share() >= most) as u16
+        });
+        Ok(Self {
+            hints: hints.collect(),
+            levels,
+        })
+    }
+
+    /// Refuses a ladder whose levels do not have the blocks that an order leaves.
+    pub(super) fn check(&self, order: &Order) -> Result<(), Error> {
+        let mut before = 1.0;
+        for (level, k) in self.levels.iter().zip(1..) {
+            let expected = order.alive(before);
+            if level.rungs.len() != expected {
+                let value = format!("{} vectors at level {k}", level.rungs.len());
+                let allowed = format!("{expected}, the number of blocks left above it");
+                return Err(Error::new(ErrorKind::Table, "ladder", value, allowed));
+            }
+            before = level.share();
+        }
+        Ok(())
+    }
+
+    /// The shares of the levels, falling; that of the table itself, 1, is not among them.
+    ///
+    /// ```
+    /// use strew_core::table::{Ladder, Rung};
+    ///
+    /// let rung = Rung { vector: [0, 0], event: [0, 255] };
+    /// let ladder = Ladder::new(vec![(0.5, vec![rung]), (0.25, vec![rung])])?;
+    /// assert!(ladder.shares().eq([0.5, 0.25]));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn shares(&self) -> impl Iterator<Item = f64> + '_ {
+        self.levels.iter().map(Level::share)
+    }
+
+    /// The share of the last level. Below it points return to where they are in the full set, while the share
+    /// halves.
+    ///
+    /// ```
+    /// use strew_core::table::{Ladder, Rung};
+    ///
+    /// let rung = Rung { vector: [0, 0], event: [0, 255] };
+    /// assert_eq!(Ladder::new(vec![(0.5, vec![rung])])?.least_share(), 0.5);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn least_share(&self) -> f64 {
+        self.levels.last().map_or(1.0, Level::share)
+    }
+
+    /// The rungs of level `k`, from 1 on, by position in the order of blocks; none past the last level.
+    ///
+    /// ```
+    /// use strew_core::table::{Ladder, Rung};
+    ///
+    /// let rung = Rung { vector: [8, 0], event: [0, 255] };
+    /// let ladder = Ladder::new(vec![(0.5, vec![rung])])?;
+    /// assert_eq!(ladder.level(1), [rung]);
+    /// assert!(ladder.level(2).is_empty());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn level(&self, k: usize) -> &[Rung] {
+        let level = k.checked_sub(1).and_then(|at| self.levels.get(at));
+        level.map_or(&[], |level| &level.rungs)
+    }
+
+    /// The place of a share between the levels.
+    pub(crate) fn stage(&self, share: f64) -> Stage {
+        // The highest bits of a number below 1 fall as it falls.
+        let high = 1.0f64.to_bits() - 1;
+        let bucket = (high >> HINT_SHIFT).saturating_sub(share.to_bits() >> HINT_SHIFT) as usize;
+        let mut below = usize::from(self.hints[bucket.min(self.hints.len() - 1)]);
+        while self
+            .levels
+            .get(below)
+            .is_some_and(|level| level.share() > share)
+        {
+            below += 1;
+        }
+        let Some(level) = self.levels.get(below) else {
+            let least = self.least_share();
+            return Stage {
+                below: self.levels.len(),
+                way: EVENT_UNITS,
+                back: ((least - share) / (0.5 * least)).min(1.0),
+            };
+        };
+        let above = below
+            .checked_sub(1)
+            .map_or(1.0, |at| self.levels[at].share());
+        if share >= above {
+            let (way, back) = (0.0, 0.0);
+            return Stage { below, way, back };
+        }
+        Stage {
+            below: below + 1,
+            way: (above - share) / (above - level.share()) * EVENT_UNITS,
+            back: 0.0,
+        }
+    }
+
+    /// A bound of the components of all vectors at shares from `share` on, in units of a table's vectors;
+    /// those of the table itself not included.
+    pub(crate) fn reach(&self, share: f64) -> i32 {
+        let level = self.stage(share).below.checked_sub(1);
+        let level = level.and_then(|at| self.levels.get(at));
+        level.map_or(0, |level| i32::from(level.reach) << SHIFT)
+    }
+
+    /// The displacement of a block at a stage: its position in the order, and its vector in the table.
+    /// A block that has left stays where it was when it left, or at the last level that knows it.
+    #[inline]
+    pub(crate) fn displacement(
+        &self,
+        stage: Stage,
+        position: usize,
+        full: Displacement,
+    ) -> Displacement {
+        let Stage { below, way, back } = stage;
+        if back > 0.0 {
+            let last = self.last(below, position, full);
+            return between(last, full, back);
+        }
+        let Some(&rung) = self.level(below).get(position) else {
+            return self.last(below, position, full);
+        };
+        let to = widened(rung);
+        let from = match below {
+            1 => full,
+            _ => widened(self.level(below - 1)[position]),
+        };
+        let [start, end] = rung.event.map(f64::from);
+        between(from, to, ((way - start) / (end - start)).clamp(0.0, 1.0))
+    }
+
+    /// The displacement of a block at the last level up to `below` that knows it.
+    fn last(&self, below: usize, position: usize, full: Displacement) -> Displacement {
+        let known = (1..=below).rev().find_map(|k| self.level(k).get(position));
+        known.map_or(full, |&rung| widened(rung))
+    }
+
+    /// About the memory that the ladder holds, in bytes.
+    pub(super) fn memory_bytes(&self) -> usize {
+        let rungs = self.levels.iter().map(|level| size_of_val(&*level.rungs));
+        rungs.sum::<usize>() + size_of_val(&*self.levels)
+    }
+
+    /// The levels in the file's numbers.
+    pub(super) fn raw(&self) -> impl Iterator<Item = (u32, &[Rung])> {
+        self.levels.iter().map(|level| (level.share, &*level.rungs))
+    }
+
+    /// The ladder of levels in the file's numbers.
+    pub(super) fn from_raw(levels: Vec<(u32, Vec<Rung>)>) -> Result<Self, Error> {
+        let level = |(share, rungs)| Level {
+            share,
+            rungs,
+            reach: 0,
+        };
+        Self::of_levels(levels.into_iter().map(level).collect())
+    }
+}
+
+/// The bits of a number below those that make a hint's bucket: 16 buckets an octave.
+const HINT_SHIFT: u32 = 48;
+/// The number of buckets: 10 octaves. Below them the last one starts the search.
+const HINTS: u64 = 160;
+
+/// The unit of a level's share.
+const SHARE_UNITS: f64 = 4_294_967_296.0;
+
+impl Level {
+    fn share(&self) -> f64 {
+        f64::from(self.share) / SHARE_UNITS
+    }
+}
+
+/// A part of the way from one vector to another.
+fn between(from: Displacement, to: Displacement, part: f64) -> Displacement {
+    [0, 1].map(|axis| {
+        let by = f64::from(to[axis]) - f64::from(from[axis]);
+        from[axis] + (by * part) as i32
+    })
+}
+
+/// The vector of a rung, in units of a table's vectors.
+fn widened(rung: Rung) -> Displacement {
+    rung.vector.map(|v| i32::from(v) << SHIFT)
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_stage_is_between_the_levels_around_the_share(
+            share in prop_oneof![0.0..1.0f64, 0.0..0.01f64, Just(1.0), Just(0.5), Just(2.0)],
+            per_octave in 1u32..20, octaves in 1u32..12,
+        ) {
+            let levels = (1..=per_octave * octaves).map(|k| {
+                let rung = Rung { vector: [0, 0], event: [0, 255] };
+                (libm::exp2(-f64::from(k) / f64::from(per_octave)), vec![rung])
+            });
+            let ladder = Ladder::new(levels.collect()).expect("valid");
+            let shares: Vec<f64> = [1.0].into_iter().chain(ladder.shares()).collect();
+            let Stage { below, way, back } = ladder.stage(share);
+            if below == 0 {
+                prop_assert!(share >= 1.0);
+            } else if share < ladder.least_share() {
+                prop_assert_eq!((below, way), (shares.len() - 1, EVENT_UNITS));
+                prop_assert!(0.0 < back && back <= 1.0);
+            } else {
+                prop_assert!(shares[below] <= share && share < shares[below - 1]);
+                let expected = (shares[below - 1] - share) / (shares[below - 1] - shares[below]);
+                prop_assert!((way - expected * EVENT_UNITS).abs() < 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! Sets in fields, and sets that move as they are thinned, against their definition point by point.
+
+mod subject;
+
+use proptest::prelude::*;
+use strew_core::{
+    Area, Circle, Field, Map, Placement, PointId, PointSet, Raster, Region, Seed, Spacing, Table,
+    Warp,
+    table::{Ladder, Provenance, Ranks, Rung},
+};
+use subject::definition;
+
+/// A number that looks random.
+fn mixed(i: u32) -> u32 {
+    let z = (i ^ (i >> 16)).wrapping_mul(0x7feb_352d);
+    let z = (z ^ (z >> 15)).wrapping_mul(0x846c_a68b);
+    z ^ (z >> 16)
+}
+
+/// A table with vectors of up to ±6 grid units and a ladder with vectors of up to ±40.
+fn table(with_ladder: bool) -> Table {
+    let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 12).expect("small");
+    let blocks = (map.intervals() * map.intervals()) as u32;
+    let vector = |i: u32| [i, !i].map(|i| (mixed(i) % (12 << 20)) as i32 - (6 << 20));
+    let vectors = (0..blocks).map(vector).collect();
+    let table = Table::new(map, "test", vectors, Provenance::default()).expect("valid");
+    let mut order: Vec<u32> = (0..blocks).collect();
+    order.sort_by_key(|&block| mixed(block + 77));
+    let mut positions = vec![0; blocks as usize];
+    for (position, &block) in (0..).zip(&order) {
+        positions[block as usize] = position;
+    }
+    let table = table
+        .with_ranks(Ranks::new(positions).expect("all"))
+        .expect("valid");
+    if !with_ladder {
+        return table;
+    }
+    let mut above = 1.0;
+    let levels = [0.7, 0.4, 0.1].into_iter().zip(1u32..).map(|(share, k)| {
+        let left = (0..blocks as usize)
+            .filter(|&b| table.block_ranks(b).start < above)
+            .count();
+        above = (share * 4_294_967_296.0f64).round() / 4_294_967_296.0;
+        let rung = |i: u32| {
+            let start = (mixed(i ^ 5) % 200) as u8;
+            Rung {
+                vector: [i ^ k << 20, !i].map(|i| (mixed(i) % 20_480) as i16 - 10_240),
+                event: [
+                    start,
+                    start + 1 + (mixed(i ^ 9) % u32::from(255 - start)) as u8,
+                ],
+            }
+        };
+        (share, (0..left as u32).map(rung).collect())
+    });
+    let ladder = Ladder::new(levels.collect()).expect("valid");
+    table.with_ladder(ladder).expect("valid")
+}
+
+fn set(with_ladder: bool, seed: u64, warp: f64, spacing: f64) -> PointSet {
+    let placement = Placement::new(Spacing::new(spacing).expect("in range"), Seed(seed));
+    PointSet::new(table(with_ladder))
+        .placed(placement.with_warp(Warp::new(warp).expect("in range")))
+}
+
+/// Smooth, with places of share 0 and of share 1.
+fn hills([x, y]: [f64; 2]) -> f64 {
+    let (u, v) = ((x * 0.11).sin(), (y * 0.07).cos());
+    1.4 * u * v + 0.3
+}
+
+/// Hills in pixels, so with bounds.
+fn raster() -> Raster {
+    let region = Region::new([-64.0, -64.0], [64.0, 64.0]).expect("ordered");
+    let pixel = |i: usize| {
+        let at = [i % 128, i / 128].map(|v| v as f64 - 63.5);
+        hills(at).clamp(0.0, 1.0) as f32
+    };
+    Raster::new(region, 128, (0..128 * 128).map(pixel).collect()).expect("shares")
+}
+
+/// Every id near a box, by the definition.
+fn brute(
+    find: impl Fn(PointId) -> Option<[f64; 2]>,
+    region: &Region,
+    unit: f64,
+) -> Vec<(PointId, [f64; 2])> {
+    let [x0, y0] = region.min().map(|v| (v / unit) as i64 - 90);
+    let [x1, y1] = region.max().map(|v| (v / unit) as i64 + 90);
+    let ids = (y0..y1).flat_map(|y| (x0..x1).map(move |x| PointId { x, y }));
+    let found = ids.filter_map(|id| find(id).map(|at| (id, at)));
+    let mut found: Vec<_> = found.filter(|(_, at)| region.contains(*at)).collect();
+    found.sort_by_key(|(id, _)| (id.x.div_euclid(1024), id.y, id.x));
+    found
+}
+
+fn any_region() -> impl Strategy<Value = Region> {
+    let corner = prop::array::uniform2(-60.0..40.0f64);
+    (corner, prop::array::uniform2(0.0..30.0f64))
+        .prop_map(|([x, y], [w, h])| Region::new([x, y], [x + w, y + h]).expect("ordered"))
+}
+
+fn agrees<F: Field>(set: &PointSet, field: F, region: Region) -> Result<(), TestCaseError> {
+    let graded = set.in_field(field);
+    let unit = set.table().alpha().set_side_f64() * set.placement().spacing.get();
+    let expected = brute(|id| graded.point(id).map(|m| m.at()), &region, unit);
+    let found = graded.within(region).expect("near");
+    let found: Vec<_> = found.iter().map(|m| (m.id(), m.at())).collect();
+    prop_assert_eq!(&found, &expected);
+    prop_assert_eq!(graded.count(region).expect("near"), expected.len() as u64);
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_walk_finds_what_the_definition_has(
+        ladder: bool, seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
+        spacing in 0.5..3.0f64, region in any_region(), keep in prop_oneof![Just(1.0), 0.2..1.0f64],
+    ) {
+        let set = set(ladder, seed, warp, spacing).keep(keep).expect("a share");
+        agrees(&set, hills, region)?;
+        agrees(&set, raster(), region)?;
+    }
+
+    #[test]
+    fn a_constant_field_is_a_set_that_moves(
+        ladder: bool, seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
+        region in any_region(), share in prop_oneof![0.01..1.0f64, Just(1.0), Just(0.7)],
+    ) {
+        let set = set(ladder, seed, warp, 1.0);
+        let moving = set.clone().keep_moving(share).expect("a share");
+        let graded = set.in_field(move |_: [f64; 2]| share);
+        let points = moving.within(region).expect("near");
+        let found = graded.within(region).expect("near");
+        prop_assert_eq!(points.iter().collect::<Vec<_>>(), found.clone());
+        prop_assert_eq!(points.count(), found.len() as u128);
+        for member in found {
+            prop_assert_eq!(moving.point(member.id()), Some(member));
+            let near = moving.nearest(member.at(), 1).expect("near");
+            prop_assert_eq!(near[0].distance, 0.0);
+        }
+    }
+
+    #[test]
+    fn what_is_kept_and_moved_turns_with_the_seed(
+        ladder: bool, moves: bool, seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
+        region in any_region(), share in prop_oneof![0.01..1.0f64, Just(1.0), Just(0.7)],
+    ) {
+        let all = set(ladder, seed, warp, 1.0);
+        let kept = if moves { all.clone().keep_moving(share) } else { all.clone().keep(share) };
+        let kept = kept.expect("a share");
+        let unit = all.table().alpha().set_side_f64();
+        let expected = brute(|id| definition::place(&kept, id), &region, unit);
+        let plan = kept.within(region).expect("near");
+        let found: Vec<_> = plan.iter().map(|m| (m.id(), m.at())).collect();
+        prop_assert_eq!(&found, &expected);
+        prop_assert_eq!(plan.count(), expected.len() as u128);
+        // Blocks of any length have the same points.
+        let mut pairs = vec![[0.0; 2]; found.len()];
+        let mut blocks = plan.blocks_f64();
+        let filled: usize = pairs.chunks_mut(7).map(|part| blocks.fill(part)).sum();
+        prop_assert_eq!(filled, found.len());
+        prop_assert!(found.iter().map(|(_, at)| at).eq(&pairs));
+        for (id, _) in found {
+            prop_assert_eq!(Some(all.rank(id)), definition::rank(&all, id));
+            prop_assert_eq!(kept.rank(id), all.rank(id));
+        }
+    }
+
+    #[test]
+    fn parts_of_thinned_sets_count_what_they_hold(
+        ladder: bool, seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
+        corner in prop::array::uniform2(-2000.0..2000.0f64), side in 1.0..900.0f64, narrow in 0.02..1.0f64,
+        share in 0.01..1.0f64, radius in 0.1..0.8f64,
+    ) {
+        let kept = set(ladder, seed, warp, 1.0).keep_moving(share).expect("a share");
+        let max = [corner[0] + side, corner[1] + side * narrow];
+        let region = Region::new(corner, max).expect("ordered");
+        let circle = Circle::new(corner, radius * side).expect("round");
+        for area in [Area::from(region), Area::from(circle), Area::from(region).and(circle.into())] {
+            let plan = kept.within(area).expect("near");
+            prop_assert_eq!(plan.count(), plan.iter().count() as u128);
+        }
+    }
+
+    #[test]
+    fn boxes_share_no_point_and_lose_none(cut in 0.0..1.0f64, region in any_region(), seed in 0u64..3) {
+        let graded = set(true, seed, 1.0, 1.0).in_field(hills);
+        let ([x0, y0], [x1, y1]) = (region.min(), region.max());
+        let middle = x0 + (x1 - x0) * cut;
+        let of = |from: f64, to: f64| {
+            let part = Region::new([from, y0], [to, y1]).expect("ordered");
+            graded.within(part).expect("near")
+        };
+        let mut parts = [of(x0, middle), of(middle, x1)].concat();
+        let mut whole = graded.within(region).expect("near");
+        parts.sort_by_key(|m| m.id());
+        whole.sort_by_key(|m| m.id());
+        prop_assert_eq!(parts, whole);
+    }
+
+    #[test]
+    fn a_path_over_shares_is_continuous(block in 0usize..225, share in 0.02..1.0f64) {
+        let table = table(true);
+        prop_assume!(block < table.displacements().len());
+        // At most 80 grid units in a 255th of a way of at most 0.3, so 7·10⁴ grid units per share.
+        let step = 1e-9;
+        let [a, b] = [share, share - step].map(|share| table.displacement_at(block, share));
+        for axis in 0..2 {
+            prop_assert!((a[axis] - b[axis]).abs() <= 2 + (7e4 * step * f64::from(1 << 20)) as i32);
+        }
+    }
+}
+
+#[test]
+fn far_chunks_of_a_field_are_exact() {
+    for (seed, at) in [(0, [1_000_000_000_000, -77]), (7, [-3, 99_999_999_999])] {
+        let set = set(true, seed, 1.0, 1.0);
+        let moving = set.clone().keep_moving(0.6).expect("a share");
+        let graded = set.in_field(|_: [f64; 2]| 0.6);
+        for at in [at, [at[0] + 1, at[1]], [at[0], at[1] + 1]] {
+            let chunk = Region::chunk(10.0, at).expect("near enough");
+            let points: Vec<_> = moving.within(chunk).expect("near enough").iter().collect();
+            assert_eq!(points, graded.within(chunk).expect("near enough"));
+        }
+    }
+}
+
+#[test]
+fn shares_outside_the_range_and_nan_are_none_or_all() {
+    let set = set(true, 1, 1.0, 1.0);
+    let region = Region::new([0.0, 0.0], [20.0, 20.0]).expect("ordered");
+    let count = |share: f64| {
+        set.in_field(move |_: [f64; 2]| share)
+            .count(region)
+            .expect("near")
+    };
+    let all = u64::try_from(set.count(region).expect("near")).expect("few");
+    assert_eq!([count(1.0), count(7.0), count(f64::INFINITY)], [all; 3]);
+    assert_eq!([count(0.0), count(-1.0), count(f64::NAN)], [0; 3]);
+}
+
+#[test]
+fn bad_rasters_are_refused() {
+    let region = Region::new([0.0, 0.0], [20.0, 20.0]).expect("ordered");
+    for (width, pixels) in [
+        (0, vec![0.5]),
+        (3, vec![0.5; 4]),
+        (1, vec![-0.1]),
+        (1, vec![f32::NAN]),
+    ] {
+        assert!(Raster::new(region, width, pixels).is_err());
+    }
+}

@@ -1,0 +1,154 @@
+//! Where a seed puts a point, written from "A seed" in ARCHITECTURE.md and not from the library's code:
+//! wide integers, one step after another, nothing kept.
+
+use strew_core::{PointId, PointSet, Seed, Table};
+
+const KNOT: i128 = 1 << 27;
+
+fn mix(state: u64) -> u64 {
+    let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// A symmetry of the square: reflections along x and y, after an exchange of the axes.
+#[derive(Clone, Copy)]
+struct Symmetry {
+    reverses: [bool; 2],
+    swaps: bool,
+}
+
+impl Symmetry {
+    fn of(seed: Seed) -> Self {
+        let bits = match seed.0 {
+            0 => 0,
+            seed => mix(seed ^ u64::from_be_bytes(*b"SYMMETRY")) >> 61,
+        };
+        let [reverses_x, reverses_y, swaps] = [1, 2, 4].map(|bit| bits & bit != 0);
+        Self {
+            reverses: [reverses_x, reverses_y],
+            swaps,
+        }
+    }
+
+    /// The number of the block of an n × n table that points in block (i, j) take.
+    fn source(self, n: usize, [mut i, mut j]: [usize; 2]) -> usize {
+        if self.reverses[0] {
+            i = n - 1 - i;
+        }
+        if self.reverses[1] {
+            j = n - 1 - j;
+        }
+        if self.swaps {
+            (i, j) = (j, i);
+        }
+        j * n + i
+    }
+
+    fn turn(self, [mut dx, mut dy]: [i128; 2]) -> [i128; 2] {
+        if self.swaps {
+            (dx, dy) = (dy, dx);
+        }
+        [
+            if self.reverses[0] { -dx } else { dx },
+            if self.reverses[1] { -dy } else { dy },
+        ]
+    }
+}
+
+/// The control value of a knot.
+fn control(key: u64, step: i128, knot: i128) -> i128 {
+    let knot = knot + i128::from(key >> 61);
+    let (group, place) = (knot.div_euclid(8), knot.rem_euclid(8) as usize);
+    let hash = mix(key ^ (group as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
+    let byte = |i: usize| (hash >> (8 * i) & 255) as usize;
+    let mut order = [0, 1, 2, 3, 4, 5, 6, 7usize];
+    for (i, last) in (1..8).rev().enumerate() {
+        order.swap(last, byte(i) * (last + 1) / 256);
+    }
+    let phase = byte(7) % 16;
+    let slope = |j: usize| {
+        let angle = (16 * j + phase) as f64 * std::f64::consts::TAU / 128.0;
+        let sine = (angle.sin() * f64::from(1 << 30)).round() as i128;
+        sine * step / (1 << 30)
+    };
+    order[..=place].iter().map(|&j| slope(j)).sum()
+}
+
+/// g of a direction at a coordinate across it.
+fn shift(key: u64, step: i128, s: i128) -> i128 {
+    let cell = s.div_euclid(KNOT);
+    let [a, b, c] = [-1, 0, 1].map(|i| control(key, step, cell + i));
+    let (half, unit) = (0.5f32, (KNOT as f32).recip());
+    let constant = (a + b) as f32 * half;
+    let linear = (b - a) as f32 * unit;
+    let square = (a - 2 * b + c) as f32 * (half * unit * unit);
+    let at = s.rem_euclid(KNOT) as f32;
+    ((square * at + linear) * at + constant) as i128
+}
+
+/// The place to which the warp moves a position in units of 2⁻²⁰ lattice units.
+fn warped(seed: Seed, strength: f64, [mut x, mut y]: [i128; 2]) -> [i128; 2] {
+    let first = mix(seed.0 ^ u64::from_be_bytes(*b"WEAVERS!"));
+    let key = |i: u64| mix(first.wrapping_add(i << 56));
+    let step = |slope: f64| (slope * strength * KNOT as f64).round() as i128;
+    let (steep, half) = (step(0.06), step(0.03));
+    y += shift(key(1), steep, x);
+    x += shift(key(2), steep, y);
+    let rising = shift(key(3), half, x - y);
+    (x, y) = (x + rising, y + rising);
+    let falling = shift(key(4), half, x + y);
+    [x + falling, y - falling]
+}
+
+/// The indices of an address along both axes, and its block, if the pattern has a point there.
+fn block(table: &Table, seed: Seed, id: PointId) -> Option<([u64; 2], [usize; 2])> {
+    let map = table.map();
+    let index = |own: i64, other: i64, origin: u64| {
+        let turned = table.alpha().half().wrapping_mul(own as u64);
+        let crossed = u64::from(other % 2 != 0) << 63;
+        turned.wrapping_add(crossed).wrapping_add(origin)
+    };
+    let origin = seed.origin();
+    let indices = [index(id.x, id.y, origin.x), index(id.y, id.x, origin.y)];
+    let [i, j] = indices.map(|u| (0..map.intervals()).find(|&i| map.interval(i).contains(&u)));
+    Some((indices, [i?, j?]))
+}
+
+/// The rank of a point of the pattern, whether it is kept or not.
+pub fn rank(set: &PointSet, id: PointId) -> Option<f64> {
+    let (table, seed) = (set.table(), set.placement().seed);
+    let ([index, _], [i, j]) = block(table, seed, id)?;
+    let map = table.map();
+    let ranks = table.block_ranks(Symmetry::of(seed).source(map.intervals(), [i, j]));
+    let interval = map.interval(i);
+    let part = (index - interval.start) as f64 / (interval.end - interval.start) as f64;
+    let rank = ranks.start + (ranks.end - ranks.start) * part;
+    Some(rank.min(ranks.end.next_down()))
+}
+
+/// The place of a point of the lattice, if the set has one there.
+pub fn place(set: &PointSet, id: PointId) -> Option<[f64; 2]> {
+    let (table, placement) = (set.table(), set.placement());
+    let (seed, share) = (placement.seed, placement.keep.get());
+    let (_, [i, j]) = block(table, seed, id)?;
+    if rank(set, id)? >= share {
+        return None;
+    }
+    let symmetry = Symmetry::of(seed);
+    let source = symmetry.source(table.map().intervals(), [i, j]);
+    let vector = if placement.keep.moves() {
+        table.displacement_at(source, share)
+    } else {
+        table.displacements()[source]
+    };
+    let [dx, dy] = symmetry.turn(vector.map(i128::from));
+    let displaced = [(i128::from(id.x) << 20) + dx, (i128::from(id.y) << 20) + dy];
+    let place = match placement.warp.strength() {
+        0.0 => displaced,
+        strength => warped(placement.seed, strength, displaced),
+    };
+    let step = placement.spacing.get() * table.alpha().set_side_f64() / f64::from(1 << 20);
+    Some(place.map(|v| v as f64 * step))
+}

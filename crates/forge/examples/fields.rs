@@ -1,0 +1,208 @@
+//! Measures how a set follows a field: distances in local units, counts of boxes, and the time it takes.
+//!
+//! `cargo run --release -p strew-forge --example fields -- TABLE [--seed 5] [--still]` looks at windows of
+//! 400 mean spacings. Var is Var(N − ∫λ)/∫λ over quadtree boxes of 8 to 32 points (a random set has 1),
+//! bias that of the count, both by octave of λ; distances are nearest-neighbor distances times √λ over the
+//! hexagonal distance. A picture is written with `--svg FIELD`.
+
+use std::{error::Error, path::Path, time::Instant};
+
+use strew_core::{Field, PointSet, Raster, Region, Table};
+use strew_forge::read_table;
+
+/// The side of the window, in mean spacings.
+const SIDE: f64 = 400.0;
+
+type Share = Box<dyn Fn([f64; 2]) -> f64 + Send + Sync>;
+
+fn fields() -> Vec<(&'static str, Share)> {
+    let middle = SIDE / 2.0;
+    let gauss = move |[x, y]: [f64; 2]| {
+        let squared = (x - middle).powi(2) + (y - middle).powi(2);
+        (-squared / (2.0 * (SIDE / 6.0).powi(2)))
+            .exp()
+            .max(1.0 / 32.0)
+    };
+    vec![
+        ("constant 0.3", Box::new(|_| 0.3)),
+        (
+            "ramp 1 to 1/32",
+            Box::new(|[x, _]| (-5.0 * (x / SIDE).clamp(0.0, 1.0)).exp2()),
+        ),
+        ("gauss", Box::new(gauss)),
+        (
+            "edge 1 | 1/16",
+            Box::new(move |[x, _]| if x < middle { 1.0 } else { 1.0 / 16.0 }),
+        ),
+    ]
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let after = |name: &str| {
+        let at = arguments.iter().position(|a| a == name)?;
+        arguments.get(at + 1)
+    };
+    let seed = after("--seed").map_or(Ok(5), |v| v.parse())?;
+    let mut table = read_table(Path::new(arguments.first().ok_or("which table?")?))?;
+    if arguments.iter().any(|a| a == "--still") {
+        let ranks = table.ranks().ok_or("no ranks")?.clone();
+        table = table.with_ranks(ranks)?;
+    }
+    let set = PointSet::new(table.clone()).seed(seed);
+    let window = Region::new([0.0, 0.0], [SIDE, SIDE])?;
+    for (name, field) in fields() {
+        if let Some(wanted) = after("--svg") {
+            if name.starts_with(wanted.as_str()) {
+                print_svg(&set, &field)?;
+            }
+            continue;
+        }
+        let graded = set.in_field(|at: [f64; 2]| field(at));
+        let points: Vec<[f64; 2]> = graded.within(window)?.iter().map(|m| m.at()).collect();
+        println!("{name}: {}", figures(&points, &*field));
+    }
+    if after("--svg").is_none() {
+        time(&table, seed)?;
+    }
+    Ok(())
+}
+
+/// The middle of the window as a picture, two by one.
+fn print_svg(set: &PointSet, field: &Share) -> Result<(), Box<dyn Error>> {
+    println!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='100 150 200 100' width='1600' height='800'>"
+    );
+    println!("<rect x='100' y='150' width='200' height='100' fill='white'/>");
+    let middle = Region::new([99.0, 149.0], [301.0, 251.0])?;
+    for member in set.in_field(|at: [f64; 2]| field(at)).within(middle)? {
+        let [x, y] = member.at();
+        println!("<circle cx='{x:.2}' cy='{y:.2}' r='0.28'/>");
+    }
+    println!("</svg>");
+    Ok(())
+}
+
+fn figures(points: &[[f64; 2]], share: &dyn Fn([f64; 2]) -> f64) -> String {
+    let mut near = distances(points, share);
+    near.sort_by(f64::total_cmp);
+    let mean = near.iter().sum::<f64>() / near.len() as f64;
+    let mut text = format!(
+        "{} points, delta_min {:.3}, 1 % {:.3}, mean {mean:.3}; var, bias % by octave:",
+        points.len(),
+        near[0],
+        near[near.len() / 100]
+    );
+    let mut sums = vec![[0.0; 4]; 8];
+    boxes([0.0, 0.0], SIDE, points.to_vec(), share, &mut sums);
+    for [count, found, expected, squares] in sums {
+        if count > 8.0 {
+            let bias = 100.0 * (found / expected - 1.0);
+            text += &format!(" [{:.3} {bias:+.2}]", squares / count);
+        }
+    }
+    text
+}
+
+/// Splits boxes until they hold 8 to 32 points, and adds up: boxes, points, expected points, squared errors.
+fn boxes(
+    [x, y]: [f64; 2],
+    side: f64,
+    points: Vec<[f64; 2]>,
+    share: &dyn Fn([f64; 2]) -> f64,
+    sums: &mut [[f64; 4]],
+) {
+    let grid = (0..256).map(|i| {
+        let at = [i % 16, i / 16].map(|v| (f64::from(v) + 0.5) / 16.0 * side);
+        share([x + at[0], y + at[1]])
+    });
+    let expected = grid.sum::<f64>() * side * side / 256.0;
+    if expected > 32.0 {
+        let half = side / 2.0;
+        for corner in [[x, y], [x + half, y], [x, y + half], [x + half, y + half]] {
+            let inside =
+                |p: &&[f64; 2]| (0..2).all(|i| (corner[i]..corner[i] + half).contains(&p[i]));
+            let part = points.iter().filter(inside).copied().collect();
+            boxes(corner, half, part, share, sums);
+        }
+        return;
+    }
+    let octave = (-(expected / (side * side)).log2()).max(0.0) as usize;
+    let error = points.len() as f64 - expected;
+    let sum = &mut sums[octave.min(7)];
+    for (sum, v) in
+        sum.iter_mut()
+            .zip([1.0, points.len() as f64, expected, error * error / expected])
+    {
+        *sum += v;
+    }
+}
+
+/// The distance of each point from its nearest neighbor, in local hexagonal distances.
+fn distances(points: &[[f64; 2]], share: &dyn Fn([f64; 2]) -> f64) -> Vec<f64> {
+    const CELL: f64 = 2.0;
+    let cells = (SIDE / CELL) as usize + 1;
+    let mut grid = vec![Vec::new(); cells * cells];
+    let cell = |p: &[f64; 2]| p.map(|v| ((v / CELL) as usize).min(cells - 1));
+    for (i, p) in points.iter().enumerate() {
+        let [x, y] = cell(p);
+        grid[y * cells + x].push(i);
+    }
+    let nearest = |(i, p): (usize, &[f64; 2])| {
+        let [x, y] = cell(p);
+        let mut best = f64::INFINITY;
+        for ring in 1..12 {
+            for cy in y.saturating_sub(ring)..(y + ring + 1).min(cells) {
+                for cx in x.saturating_sub(ring)..(x + ring + 1).min(cells) {
+                    for &j in grid[cy * cells + cx].iter().filter(|&&j| j != i) {
+                        let q: [f64; 2] = points[j];
+                        let denser = share(*p).max(share(q)).sqrt();
+                        best = best.min((q[0] - p[0]).hypot(q[1] - p[1]) * denser);
+                    }
+                }
+            }
+            if best < ring as f64 * CELL * share(*p).sqrt() {
+                break;
+            }
+        }
+        best / (2.0 / 3f64.sqrt()).sqrt()
+    };
+    points.iter().enumerate().map(nearest).collect()
+}
+
+/// The time that a ramp of 512² pixels takes, and a cold box.
+fn time(table: &Table, seed: u64) -> Result<(), Box<dyn Error>> {
+    for (name, octaves) in [("1 to 1/4", 2.0), ("1 to 1/32", 5.0)] {
+        let side = 2000.0;
+        let region = Region::new([0.0, 0.0], [side, side])?;
+        let pixel = |i: usize| (-octaves * (i % 512) as f32 / 511.0).exp2();
+        let raster = Raster::new(region, 512, (0..512 * 512).map(pixel).collect())?;
+        let graded = PointSet::new(table.clone()).seed(seed).in_field(raster);
+        let mut best = f64::INFINITY;
+        let (mut count, mut sum) = (0, 0.0);
+        for _ in 0..5 {
+            let start = Instant::now();
+            count = 0;
+            graded.for_each(region, |point, _| {
+                count += 1;
+                sum += point.x;
+            })?;
+            best = best.min(start.elapsed().as_secs_f64());
+        }
+        let mut small = f64::INFINITY;
+        let corner = Region::new([900.0, 900.0], [940.0, 940.0])?;
+        let expected = graded.count(corner)?;
+        for _ in 0..50 {
+            let start = Instant::now();
+            sum += graded.within(corner)?.len() as f64;
+            small = small.min(start.elapsed().as_secs_f64());
+        }
+        println!(
+            "raster ramp {name}, seed {seed}: {:.1} M points/s; a box of {expected}: {:.0} µs; bounds {:?} ({sum:.0})",
+            count as f64 / best / 1e6,
+            small * 1e6,
+            graded.field().bounds(&corner)
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,139 @@
+//! The ground of a thinned table: which blocks meet across which lattice offsets, and how often.
+//!
+//! As in [`optimize`](crate::optimize), a pair of blocks has an exact frequency, the product of two
+//! interval overlaps. Unlike there, a set may be thinned to 1/64 and less, so neighbors lie many
+//! full spacings apart, and only a few of the blocks on the way are left.
+
+use strew_core::{Map, Table, table::to_grid_units};
+
+use crate::optimize::Overlaps;
+
+/// The exact pair frequencies of a map. Lengths are in mean spacings of the full set.
+pub(crate) struct Ground {
+    /// Intervals along an axis.
+    n: usize,
+    /// Mean spacings per grid unit.
+    scale: f64,
+    /// For each parity of the other offset, parity of the own offset and interval: the intervals met,
+    /// by own offset.
+    meetings: Vec<Vec<Meeting>>,
+    /// The share of all points that each block has.
+    shares: Vec<f64>,
+}
+
+/// An interval met along one axis.
+#[derive(Clone, Copy)]
+struct Meeting {
+    offset: i16,
+    to: u16,
+    length: f64,
+}
+
+/// A neighbor of a block: an instance of block `to` at lattice offset (i, j).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Neighbor {
+    pub(super) to: u32,
+    pub(super) i: i16,
+    pub(super) j: i16,
+    /// The mean number of such neighbors of an instance of the block, in the full set.
+    pub(super) weight: f32,
+}
+
+impl Ground {
+    /// The frequencies of pairs up to `reach` mean spacings apart in the pattern.
+    pub(super) fn new(map: &Map, reach: f64) -> Self {
+        let n = map.intervals();
+        let scale = map.alpha().set_side_f64();
+        let reach = (reach / scale) as i64 + 1;
+        let overlaps = Overlaps::new(map, reach);
+        let mut meetings = vec![Vec::new(); 4 * n];
+        for own in -reach..=reach {
+            for other in 0..2 {
+                for from in 0..n {
+                    let list = &mut meetings[slot(other, own) * n + from];
+                    list.extend(overlaps.of(own, other, from).iter().map(|o| Meeting {
+                        offset: own as i16,
+                        to: o.to as u16,
+                        length: o.length,
+                    }));
+                }
+            }
+        }
+        let lengths: Vec<f64> = (0..n).map(|i| overlaps.length(i) / scale).collect();
+        let shares = (0..n * n)
+            .map(|b| lengths[b % n] * lengths[b / n])
+            .collect();
+        Self {
+            n,
+            scale,
+            meetings,
+            shares,
+        }
+    }
+
+    /// The number of blocks.
+    pub(super) fn blocks(&self) -> usize {
+        self.shares.len()
+    }
+
+    /// Mean spacings per grid unit.
+    pub(super) const fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The share of all points that a block has.
+    pub(super) fn share(&self, block: usize) -> f64 {
+        self.shares[block]
+    }
+
+    /// Calls `visit` with every neighbor of a block within `reach` mean spacings along each axis of the
+    /// pattern, and its weight. `alive` says which blocks count.
+    pub(super) fn neighbors(
+        &self,
+        block: usize,
+        reach: f64,
+        alive: impl Fn(usize) -> bool,
+        mut visit: impl FnMut(Neighbor),
+    ) {
+        let n = self.n;
+        let (bx, by) = (block % n, block / n);
+        let area = self.shares[block] * self.scale * self.scale;
+        let most = (reach / self.scale) as i16 + 1;
+        let within = |list: &'_ [Meeting]| {
+            let start = list.partition_point(|m| m.offset < -most);
+            start..list.partition_point(|m| m.offset <= most)
+        };
+        for (i_parity, j_parity) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let columns = &self.meetings[slot(j_parity, i_parity) * n + bx];
+            let rows = &self.meetings[slot(i_parity, j_parity) * n + by];
+            let columns = &columns[within(columns)];
+            for row in &rows[within(rows)] {
+                for column in columns {
+                    let to = row.to as usize * n + column.to as usize;
+                    if alive(to) && (column.offset, row.offset) != (0, 0) {
+                        visit(Neighbor {
+                            to: to as u32,
+                            i: column.offset,
+                            j: row.offset,
+                            weight: (column.length * row.length / area) as f32,
+                        });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The place of two parities in [`Ground::meetings`].
+const fn slot(other: i64, own: i64) -> usize {
+    ((other & 1) * 2 + (own & 1)) as usize
+}
+
+/// The vectors of a table, in mean spacings.
+pub(super) fn moves_of(table: &Table) -> Vec<[f64; 2]> {
+    let scale = table.alpha().set_side_f64();
+    let vectors = table.displacements().iter();
+    vectors
+        .map(|v| v.map(|c| to_grid_units(c) * scale))
+        .collect()
+}
