@@ -152,7 +152,9 @@ async fn client(at: SocketAddr) -> Result<PointServiceClient<tonic::transport::C
 /// The trouble that a failed call is; `None` if its status is an answer to compare.
 fn refused(status: &Status) -> Option<Trouble> {
     match status.code() {
-        Code::ResourceExhausted if status.message().contains("being streamed") => Some(Trouble::Busy),
+        Code::ResourceExhausted if status.message().contains("being streamed") => {
+            Some(Trouble::Busy)
+        }
         Code::Unavailable | Code::Unknown | Code::Cancelled | Code::Internal => {
             Some(Trouble::Failed(format!("call: {:?}", status.code())))
         }

@@ -32,7 +32,7 @@ pub(super) fn run(args: &Args, of: &Path) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads);
     let pool = pool.build().context("cannot start threads")?;
     let every = Duration::from_secs(args.checkpoint_every);
-    let watcher = Watcher::new(&kept, every, args.quiet)?;
+    let watcher = Watcher::new(&kept, every, args.quiet);
     let outcome = pool.install(|| ladder(&table, &job, found, &watcher));
     watcher.finish();
     let outcome = outcome.map_err(usage)?;
