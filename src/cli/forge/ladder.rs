@@ -6,7 +6,7 @@ use anyhow::{Context as _, anyhow};
 use strew_forge::{Checkpoint, ForgeError, LadderJob, file_name, ladder, read_table, write_table};
 
 use super::{Args, checkpoint_path, gravest};
-use crate::cli::{Failure, watcher::Watcher};
+use crate::cli::{Failure, output, watcher::Watcher};
 
 /// Makes the ladder of a table file.
 pub(super) fn run(args: &Args, of: &Path) -> Result<(), Failure> {
@@ -24,6 +24,7 @@ pub(super) fn run(args: &Args, of: &Path) -> Result<(), Failure> {
         let problem = anyhow!("{} is there already; --force replaces it", path.display());
         return Err(Failure::Usage(problem));
     }
+    output::check(&path)?;
     let kept = checkpoint_path(&path);
     let found = match args.restart {
         true => None,
@@ -32,7 +33,7 @@ pub(super) fn run(args: &Args, of: &Path) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads);
     let pool = pool.build().context("cannot start threads")?;
     let every = Duration::from_secs(args.checkpoint_every);
-    let watcher = Watcher::new(&kept, every, args.quiet)?;
+    let watcher = Watcher::new(&kept, every, args.quiet);
     let outcome = pool.install(|| ladder(&table, &job, found, &watcher));
     watcher.finish();
     let outcome = outcome.map_err(usage)?;
