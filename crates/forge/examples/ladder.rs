@@ -11,7 +11,7 @@ struct Printed;
 
 impl Watch for Printed {
     fn progress(&self, p: &Progress) {
-        if p.step % 10 == 0 {
+        if p.step.is_multiple_of(10) {
             eprintln!(
                 "{:?} {} of {}, {:.0?} left",
                 p.stage, p.step, p.steps, p.left

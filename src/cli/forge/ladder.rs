@@ -6,7 +6,7 @@ use anyhow::{Context as _, anyhow};
 use strew_forge::{Checkpoint, ForgeError, LadderJob, file_name, ladder, read_table, write_table};
 
 use super::{Args, checkpoint_path, gravest};
-use crate::cli::{Failure, watcher::Watcher};
+use crate::cli::{Failure, output, watcher::Watcher};
 
 /// Makes the ladder of a table file.
 pub(super) fn run(args: &Args, of: &Path) -> Result<(), Failure> {
@@ -24,6 +24,7 @@ pub(super) fn run(args: &Args, of: &Path) -> Result<(), Failure> {
         let problem = anyhow!("{} is there already; --force replaces it", path.display());
         return Err(Failure::Usage(problem));
     }
+    output::check(&path)?;
     let kept = checkpoint_path(&path);
     let found = match args.restart {
         true => None,

@@ -157,7 +157,8 @@ impl Ladder {
         }
         let hints = (0..HINTS).map(|bucket| {
             // Shares of this bucket are below its upper end.
-            let most = f64::from_bits((1.0f64.to_bits() >> HINT_SHIFT) - bucket << HINT_SHIFT);
+            let high = (1.0f64.to_bits() >> HINT_SHIFT) - bucket;
+            let most = f64::from_bits(high << HINT_SHIFT);
             levels.partition_point(|level| level.share() >= most) as u16
         });
         Ok(Self {

@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 use strew_core::{Table, Twin, table::Figures};
 
-use super::ThinnedTwin;
+use super::thinned::ThinnedTwin;
 use crate::{
     judge::{Bound, Complaint, Figure},
     measure::{Distances, Spectrum},

@@ -3,7 +3,7 @@
 /// 1.5·2²³: adding it rounds a small number to an integer in the lowest bits.
 const ROUNDER: f32 = 12_582_912.0;
 /// ln 2 in two parts; the first has few bits, so that products with small integers are exact.
-const LN_2_HIGH: f32 = 0.693_359_375;
+const LN_2_HIGH: f32 = 355.0 / 512.0;
 const LN_2_LOW: f32 = -2.121_944_4e-4;
 
 /// eˣ for −80 ≤ x ≤ 80, within a relative error of 2·10⁻⁷.

@@ -9,7 +9,7 @@ use crate::{
     pattern::Axis,
     sample::{
         area::Area,
-        lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span, places},
+        lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale, Sieve},
         stop::Stop,
     },
@@ -122,10 +122,8 @@ impl Edges<'_> {
             let vectors = lattice.vectors(block);
             let row = patch.relative(Axis::Y, y);
             for run in &self.runs {
-                let Range { start, end } = match lattice.cut {
-                    Some(_) => places(listed, &run.columns),
-                    None => kept.prefix.places(class, &run.columns),
-                };
+                let places = kept.prefix.places(lattice, class, listed, &run.columns);
+                let Range { start, end } = places;
                 if run.passes {
                     count += end - start;
                     continue;

@@ -68,8 +68,7 @@ impl<F: Field> Graded<F> {
     /// The share at a place, within [0, 1].
     #[inline]
     pub(super) fn share(&self, at: [f64; 2]) -> f64 {
-        // NaN becomes 0.
-        self.field.share(at).max(0.0).min(1.0) * self.factor
+        self.limited(self.field.share(at))
     }
 
     /// The displacement of a point at a share: the ladder's, less where the field is steep. Where the
@@ -111,6 +110,16 @@ impl<F: Field> Graded<F> {
         };
         let [x, y] = [along(0), along(1)];
         x * x + y * y
+    }
+
+    /// A share of the field within [0, 1], times the factor. NaN becomes 0.
+    #[inline]
+    pub(super) fn limited(&self, share: f64) -> f64 {
+        if share > 0.0 {
+            share.min(1.0) * self.factor
+        } else {
+            0.0
+        }
     }
 
     /// The field.

@@ -1,6 +1,6 @@
 //! Fields of pixels.
 
-use alloc::{format, vec::Vec};
+use alloc::{format, string::ToString as _, vec::Vec};
 
 use super::Field;
 use crate::{
@@ -68,7 +68,7 @@ impl Raster {
         }
         if let Some(pixel) = pixels.iter().find(|v| !(0.0..=1.0).contains(*v)) {
             let value = number(f64::from(*pixel));
-            return Err(refused("pixels", format!("{value}"), "shares from 0 to 1"));
+            return Err(refused("pixels", value.to_string(), "shares from 0 to 1"));
         }
         let size = [width, pixels.len() / width];
         let (min, max) = (region.min(), region.max());

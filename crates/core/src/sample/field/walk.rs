@@ -195,7 +195,7 @@ fn alive<F: Field>(
         Region::between([ends[0][0], ends[1][0]], [ends[0][1], ends[1][1]])
     };
     let [low, high] = graded.field.bounds(&within(seen));
-    let [low, high] = [low, high].map(|share| share.max(0.0).min(1.0) * graded.factor);
+    let [low, high] = [low, high].map(|share| graded.limited(share));
     if high <= 0.0 {
         return None;
     }

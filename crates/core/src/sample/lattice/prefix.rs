@@ -6,7 +6,7 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::Columns;
+use super::{Columns, Lattice, Line, places};
 use crate::pattern::Class;
 
 /// For each lattice column of a range, and for its end, the number of listed columns before it, by
@@ -35,10 +35,20 @@ impl PrefixCounts {
         }
     }
 
-    /// The places of a range of columns in the list of a class.
+    /// The places of a range of columns in the list of a row's columns: all of its class, or in a thinned
+    /// set some of them, which are searched.
     #[inline]
-    pub(crate) fn places(&self, class: Class, range: &Range<i64>) -> Range<usize> {
-        self.before(class, range.start)..self.before(class, range.end)
+    pub(crate) fn places(
+        &self,
+        lattice: &Lattice,
+        class: Class,
+        columns: &[Line],
+        range: &Range<i64>,
+    ) -> Range<usize> {
+        match lattice.cut {
+            Some(_) => places(columns, range),
+            None => self.before(class, range.start)..self.before(class, range.end),
+        }
     }
 
     /// The number of columns of a class before a column in the range, or before its end.

@@ -503,10 +503,7 @@ impl<F: Format> Blocks<F> {
                 lattice: y,
             };
             for run in &sifting.runs {
-                let places = match lattice.cut {
-                    Some(_) => places(columns, &run.columns),
-                    None => sifting.prefix.places(class, &run.columns),
-                };
+                let places = sifting.prefix.places(lattice, class, columns, &run.columns);
                 let part = places.start.max(self.at.done)..places.end;
                 if part.is_empty() {
                     continue;
