@@ -61,7 +61,7 @@ fn a_daemon_starts_without_any_table_and_reports_it() {
 #[test]
 fn a_table_of_the_folder_replaces_a_built_in_one_and_answers_by_default() {
     let folder = tables();
-    let mine = random("(5-sqrt(3))/2", "blue", 49);
+    let mine = random("(5-sqrt(3))/2", "blue", 100);
     write(folder.path(), "mine.strew", &mine);
     let other_size = table("(5-sqrt(3))/2", "blue");
     write(folder.path(), "other-size.strew", &other_size);
