@@ -21,6 +21,7 @@ mod region;
 mod shape;
 mod table;
 mod text;
+mod value;
 mod values;
 
 use std::{fmt, sync::Arc};
@@ -38,8 +39,9 @@ pub use json::{RegionSchema, read_body, read_region};
 pub use nearest::Nearest;
 pub use parameter::{Group, Parameter, groups, of};
 pub use region::{QueryRegion, RegionDraft, Rings, ShapeDraft};
-pub use shape::{Shape, Value};
+pub use shape::Shape;
 pub use text::parse_pairs;
+pub use value::Value;
 pub use values::Values;
 
 /// The profile of a query that names none.

@@ -1,0 +1,107 @@
+//! The values of parameters, whichever way they came, and how they are written.
+
+use serde::{Serialize, Serializer, ser::SerializeMap as _};
+
+use super::number;
+
+/// A value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number, not NaN and not infinite.
+    Number(f64),
+    /// An integer.
+    Integer(u64),
+    /// An integer with a sign.
+    Signed(i64),
+    /// On or off.
+    Switch(bool),
+    /// Several numbers, none of them NaN or infinite.
+    Numbers(Vec<f64>),
+    /// Names.
+    Names(Vec<String>),
+    /// Names with weights, sorted by name.
+    Weights(Vec<(String, f64)>),
+    /// Text.
+    Text(String),
+}
+
+/// What is wrong with a value that is not of the shape's type: only programs can make one.
+pub(super) const OTHER_TYPE: &str = "has another type";
+
+impl Value {
+    /// As text, in the way an address has it.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        let listed = |parts: Vec<String>| parts.join(",");
+        match self {
+            Self::Number(value) => number(*value),
+            Self::Integer(value) => value.to_string(),
+            Self::Signed(value) => value.to_string(),
+            Self::Switch(value) => if *value { "on" } else { "off" }.into(),
+            Self::Numbers(values) => listed(values.iter().map(|value| number(*value)).collect()),
+            Self::Names(names) => names.join(","),
+            Self::Weights(pairs) => {
+                let pair = |(name, weight): &(String, f64)| format!("{name}:{}", number(*weight));
+                listed(pairs.iter().map(pair).collect())
+            }
+            Self::Text(text) => text.clone(),
+        }
+    }
+}
+
+/// Types that values are read as.
+macro_rules! read_as {
+    ($($variant:ident as $kind:ty;)+) => {$(
+        impl TryFrom<&Value> for $kind {
+            type Error = &'static str;
+
+            fn try_from(value: &Value) -> Result<Self, Self::Error> {
+                match value {
+                    Value::$variant(value) => Ok(value.clone()),
+                    _ => Err(OTHER_TYPE),
+                }
+            }
+        }
+    )+};
+}
+
+read_as! {
+    Number as f64;
+    Integer as u64;
+    Signed as i64;
+    Switch as bool;
+    Numbers as Vec<f64>;
+    Names as Vec<String>;
+    Weights as Vec<(String, f64)>;
+    Text as String;
+}
+
+impl<const N: usize> TryFrom<&Value> for [f64; N] {
+    type Error = &'static str;
+
+    fn try_from(value: &Value) -> Result<Self, Self::Error> {
+        let values = Vec::try_from(value)?;
+        values.try_into().map_err(|_| OTHER_TYPE)
+    }
+}
+
+impl Serialize for Value {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Number(value) => value.serialize(serializer),
+            Self::Integer(value) => value.serialize(serializer),
+            Self::Signed(value) => value.serialize(serializer),
+            Self::Switch(value) => value.serialize(serializer),
+            Self::Numbers(values) => values.serialize(serializer),
+            Self::Names(names) => names.serialize(serializer),
+            Self::Weights(pairs) => {
+                let mut map = serializer.serialize_map(Some(pairs.len()))?;
+                for (name, weight) in pairs {
+                    map.serialize_entry(name, weight)?;
+                }
+                map.end()
+            }
+            Self::Text(text) => text.serialize(serializer),
+        }
+    }
+}
