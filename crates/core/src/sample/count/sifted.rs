@@ -9,7 +9,7 @@ use crate::{
     pattern::Axis,
     sample::{
         area::Area,
-        lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span, places},
+        lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale, Sieve},
         stop::Stop,
     },
