@@ -157,7 +157,7 @@ parameters! {
         shape: Shape::Pattern("^[0-9a-fA-F]{64}$"),
         allowed: Some("64 hexadecimal digits, as in the header strew-table"),
         default: Some("any table that fits the query"),
-        example: "985209040b65570b20f8b11cb6d95cad1d2260ad50bd5a1efb61251c18c8a075",
+        example: "fa1115781ca1238868dadf339c84291489d491b478c8689f4d1e42402fda860e",
         ..Parameter::PLAIN
     };
     /// The seed.

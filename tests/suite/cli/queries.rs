@@ -60,9 +60,9 @@ const QUERIES: [(&str, &str); 9] = [
     ),
     (
         "--bbox 0,0,9,9 --spacing 1 --table \
-         985209040b65570b20f8b11cb6d95cad1d2260ad50bd5a1efb61251c18c8a075",
+         fa1115781ca1238868dadf339c84291489d491b478c8689f4d1e42402fda860e",
         "bbox=0,0,9,9&spacing=1&table=\
-         985209040b65570b20f8b11cb6d95cad1d2260ad50bd5a1efb61251c18c8a075",
+         fa1115781ca1238868dadf339c84291489d491b478c8689f4d1e42402fda860e",
     ),
     ("--chunk 64/-3/2 --spacing 5 --seed 1", "spacing=5&seed=1"),
 ];
