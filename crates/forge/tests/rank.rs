@@ -14,7 +14,7 @@ fn points(set: &PointSet, side: f64) -> Vec<Point> {
 fn thinned_sets_are_even_with_every_seed_and_warp() {
     for radius in [49, 100] {
         let table = shipped::table("blue", "(5-sqrt(3))/2", radius);
-        for (seed, warp) in [(0, 0.0), (3, 0.0), (3, 1.0)] {
+        for (seed, warp) in [(0, 0.0), (1, 0.0), (2, 0.0), (3, 0.0), (3, 1.0), (4, 1.0)] {
             let set = PointSet::new(table.clone()).seed(seed).warp(warp);
             let set = set.expect("in range");
             for (keep, side) in [

@@ -71,6 +71,9 @@ impl Margins<'_> {
         let [x, y] = self.spans;
         let (mut count, mut bands) = (0, columns.clone());
         while let Some(columns) = next_piece(&mut bands, BAND_WIDTH) {
+            if self.stop.is_raised() {
+                break;
+            }
             let band = columns.start.div_euclid(BAND_WIDTH);
             self.columns.list(self.lattice, columns.clone());
             let mut rows = rows.clone();
