@@ -8,8 +8,9 @@ use strew_core::{
 use super::{
     Error, Limits, PlannedSet,
     cache::Ready,
-    effort::{self, Selection},
-    query::{Amount, Parameter, Query, Set, Token, parameters},
+    effort::{self, COUNTS, Selection},
+    query::{Amount, Query, Set, Token, parameters},
+    resolve::{least_distance, resolve},
 };
 
 /// Plans sets one after another.
@@ -19,9 +20,6 @@ pub(super) struct Planner<'a> {
     stop: &'a Stop,
     layers: Vec<PointSet>,
 }
-
-/// About how often an area is counted to find the spacing of a count.
-pub(super) const COUNTS: f64 = 32.0;
 
 impl<'a> Planner<'a> {
     /// `stop` ends the counting early; what is planned then means nothing.
@@ -185,43 +183,4 @@ const fn nothing() -> Cursor {
         total: 0,
         at: PointId { x: 0, y: 0 },
     }
-}
-
-/// What an amount is on its table; `None` for a count, which needs a region.
-pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>, Error> {
-    let fault = |parameter: &Parameter, value: f64, detail: String| {
-        set.fault(parameter.name, value, detail, parameter.allowed())
-    };
-    let wrong = |parameter, value: f64| {
-        move |error: strew_core::Error| fault(parameter, value, error.to_string())
-    };
-    match set.amount {
-        Amount::Density(density) => {
-            let spacing =
-                Spacing::from_density(density).map_err(wrong(&parameters::DENSITY, density))?;
-            Ok(Some((spacing, density)))
-        }
-        Amount::Spacing(value) => {
-            let spacing = Spacing::new(value).map_err(wrong(&parameters::SPACING, value))?;
-            Ok(Some((spacing, spacing.density())))
-        }
-        Amount::MinDistance(distance) => {
-            let least = ready.table.least_distance();
-            let spacing = least.spacing_for(distance, set.warp).map_err(|error| {
-                let detail = match error.kind() {
-                    ErrorKind::NoLeastDistance => {
-                        format!("profile `{}`: {}", set.entry.key.profile, error.problem())
-                    }
-                    _ => error.to_string(),
-                };
-                fault(&parameters::MIN_DISTANCE, distance, detail)
-            })?;
-            Ok(Some((spacing, spacing.density())))
-        }
-        Amount::Count(_) => Ok(None),
-    }
-}
-
-pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing) -> f64 {
-    ready.table.least_distance().with_warp(set.warp) * spacing.get()
 }
