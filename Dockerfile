@@ -18,6 +18,10 @@ ENV STREW_BUILD_REVISION=${REVISION} \
     SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH} \
     CARGO_INCREMENTAL=0 \
     RUSTFLAGS="--remap-path-prefix=/src=strew --remap-path-prefix=/usr/local/cargo=cargo"
+# The allocator's build needs make.
+RUN apt-get update \
+    && apt-get install -y --no-install-recommends make \
+    && rm -rf /var/lib/apt/lists/*
 WORKDIR /src
 COPY . .
 RUN --mount=type=cache,target=/usr/local/cargo/registry \

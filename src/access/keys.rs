@@ -62,7 +62,7 @@ pub enum KeysError {
         /// What is allowed.
         allowed: &'static str,
     },
-    /// Keys are asked for, and there are none: nobody could ask anything.
+    /// Keys are required, and there are none: every request would be refused.
     #[error("{place} holds no key; make one with `strew key new NAME`")]
     Empty {
         /// Where.
@@ -95,7 +95,7 @@ struct Written {
 struct Key {
     hash: Hashed,
     caller: Caller,
-    /// Streams under way; the same count after the keys are read again.
+    /// Current streams; kept when the keys are reloaded.
     open: Arc<AtomicUsize>,
 }
 
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_key_is_told() {
+    fn faults_of_keys_are_named() {
         let hash = Hashed::of(b"x").to_string();
         let key = |more: &str| format!("[[key]]\nname = 'a'\nhash = '{hash}'\n{more}");
         let twice = format!("{}{}", key(""), key(""));

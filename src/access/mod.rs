@@ -7,15 +7,12 @@ mod address;
 mod bucket;
 mod caller;
 mod clients;
+mod denied;
 mod keys;
 mod secret;
 mod usage;
 
-use std::{
-    net::IpAddr,
-    sync::Arc,
-    time::{Duration, Instant},
-};
+use std::{net::IpAddr, sync::Arc, time::Instant};
 
 use arc_swap::ArcSwap;
 
@@ -23,6 +20,7 @@ use crate::config::{self, Access as Settings, AddressLimits, Networks};
 
 pub use bucket::{Level, Rate, Short};
 pub use caller::{Caller, Place};
+pub use denied::Denied;
 pub use keys::{KeysError, is_name};
 pub use secret::{Hashed, new_key};
 pub use usage::{InUse, Quota, Usage};
@@ -36,77 +34,6 @@ fn rate_of(settings: &config::Rate) -> Option<Rate> {
     let burst = Some(settings.burst_points).filter(|burst| *burst > 0.0);
     let per_second = settings.points_per_second;
     (per_second > 0.0).then(|| Rate::new(per_second, burst))
-}
-
-/// Why someone is not let in, or not now.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Denied {
-    /// A key is needed, and there is none.
-    #[error("this server needs a key: send `Authorization: Bearer KEY` or `x-api-key: KEY`")]
-    NoKey,
-    /// The key is not known.
-    #[error("the key is not known here: ask the one who runs this server for another")]
-    WrongKey,
-    /// Only administrators may do that.
-    #[error(
-        "{} may not do this: it takes a key with `admin = true`, or the address of `admin.listen`, \
-         if the daemon has one",
-        name.as_ref().map_or("a client without a key".into(), |name| format!("the key `{name}`"))
-    )]
-    NotAdmin {
-        /// Whose key it is.
-        name: Option<String>,
-    },
-    /// The caller has as many streams as it may have.
-    #[error(
-        "{limit} answers to this key are under way, the most at once: try again when one is over"
-    )]
-    TooManyStreams {
-        /// The limit.
-        limit: usize,
-    },
-    /// The client's address uses as much as one address may.
-    #[error("{limit} {what} of this address are in use, the most at once: try again later")]
-    Address {
-        /// What it uses.
-        what: &'static str,
-        /// The limit.
-        limit: usize,
-    },
-    /// The caller takes points too fast.
-    #[error(
-        "{points} points are more than can be taken now: {left} are left, {rate} come back every \
-         second, up to {burst}; try again in {wait} s",
-        left = short.level.left,
-        rate = short.level.rate.points_per_second,
-        burst = short.level.rate.burst_points,
-        wait = self.wait_seconds().unwrap_or_default()
-    )]
-    TooFast {
-        /// What was asked for.
-        points: u128,
-        /// What there is.
-        short: Short,
-    },
-}
-
-impl Denied {
-    /// After how long the same request is worth another try, if it ever is.
-    #[must_use]
-    pub const fn wait(&self) -> Option<Duration> {
-        match self {
-            Self::TooManyStreams { .. } | Self::Address { .. } => Some(Duration::from_secs(1)),
-            Self::TooFast { short, .. } => Some(short.wait),
-            _ => None,
-        }
-    }
-
-    /// The same in whole seconds, rounded up, 1 at least.
-    #[must_use]
-    pub fn wait_seconds(&self) -> Option<u64> {
-        let whole = |wait: Duration| wait.as_secs() + u64::from(wait.subsec_nanos() > 0);
-        self.wait().map(|wait| whole(wait).max(1))
-    }
 }
 
 /// Lets callers in.

@@ -1,6 +1,6 @@
 //! Keys as clients have them, and as the daemon keeps them.
 //!
-//! A key is 256 random bits, so nobody finds one by trying: a slow, salted hash, which makes up for
+//! A key is 256 random bits, so it cannot be guessed: a slow, salted hash, which protects
 //! passwords that people choose, would only slow down every request. What is kept is the BLAKE3 hash,
 //! from which no key can be found either.
 

@@ -12,9 +12,9 @@ pub struct Access {
     pub keys_file: PathBuf,
     /// Keys in the same form as in the file; empty for none.
     pub keys: String,
-    /// Whether those without a key are let in as well, where there are keys.
+    /// Whether clients without a key are admitted although there are keys.
     pub anonymous: bool,
-    /// The proxies whose word is taken on where a request comes from.
+    /// The proxies whose `X-Forwarded-For` is trusted.
     pub trusted_proxies: String,
 }
 
@@ -31,7 +31,7 @@ impl Access {
         self.keys_file().is_some() || !self.keys.is_empty()
     }
 
-    /// Whether nobody is let in without a key.
+    /// Whether only clients with a key are admitted.
     #[must_use]
     pub fn needs_key(&self) -> bool {
         self.has_keys() && !self.anonymous

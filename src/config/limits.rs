@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-/// What a query may ask for, and what answering may hold.
+/// The most that a query may request, and that answers may hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
@@ -17,16 +17,15 @@ pub struct Limits {
     pub max_rows: u64,
     /// The most vertices that the polygons of a query have in all: bounds its memory.
     pub max_vertices: usize,
-    /// The most bytes of a query that comes as a body or a message: bounds what is held of each before it is
-    /// read.
+    /// The most bytes of a body or a message: bounds the memory of each before it is read.
     pub max_body_bytes: usize,
     /// The most requests that are being answered at once: read, counted, planned. Bounds what waits
     /// for the workers.
     pub max_requests: usize,
-    /// The most bytes that requests and answers hold at once: bodies that have come, answers that have
-    /// not left, and what streams are made in.
+    /// The most bytes that requests and answers hold at once: bodies received, answers not yet
+    /// sent, and the buffers of streams.
     pub max_bytes_in_flight: usize,
-    /// The most answers under way at once. Bounds memory: an answer holds 1 to 3 MB,
+    /// The most answers with points at once. Bounds memory: an answer holds 1 to 3 MB,
     /// some blocks and the rows they are made of, and a picture up to 16 MB more.
     pub max_streams: usize,
     /// The size of a block before it is encoded, in bytes.
@@ -57,7 +56,7 @@ impl Tables {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reload {
-    /// The time between two looks at the files, in seconds; 0 for never.
+    /// The time between two checks of the files, in seconds; 0 for never.
     pub watch_seconds: f64,
 }
 

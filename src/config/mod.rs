@@ -1,10 +1,11 @@
 //! Settings: every one has a default in `config/strew.toml`, a meaning there, and a range here.
 //!
 //! Layers, the later the stronger: defaults, a file, the environment, flags. They are merged as
-//! TOML by `layers` and read into [`Config`] once; what is read is checked as a whole, and from
-//! then on nobody checks a setting again.
+//! TOML by `layers` and read into [`Config`] once; the result is checked as a whole, and no
+//! setting is checked again later.
 
 mod access;
+mod error;
 mod layers;
 mod limits;
 mod listen;
@@ -23,7 +24,8 @@ pub use networks::{NETWORKS, Networks};
 pub use reports::{Http, Log, LogFormat, Metrics, Telemetry};
 pub use server::{Admin, Server, Shutdown, Tls};
 
-pub use layers::{ConfigError, Layers};
+pub use error::ConfigError;
+pub use layers::Layers;
 
 /// The defaults, with comments.
 pub const DEFAULTS: &str = include_str!("../../config/strew.toml");
@@ -34,25 +36,25 @@ pub const DEFAULTS: &str = include_str!("../../config/strew.toml");
 pub struct Config {
     /// Where and how to serve.
     pub server: Server,
-    /// How to prove who serves and who asks.
+    /// The certificates of the server and of clients.
     pub tls: Tls,
-    /// Who is let in.
+    /// Who is admitted.
     pub access: Access,
     /// How fast points may be taken.
     pub rate: Rate,
-    /// Where administrators are let in.
+    /// The address of administrators.
     pub admin: Admin,
     /// How HTTP answers.
     pub http: Http,
     /// Which tables to load.
     pub tables: Tables,
-    /// What a query may ask for.
+    /// The limits of queries and of memory.
     pub limits: Limits,
     /// What one address may use.
     pub per_address: AddressLimits,
-    /// When files are read again.
+    /// When files are reloaded.
     pub reload: Reload,
-    /// Who makes points.
+    /// The threads that make points.
     pub workers: Workers,
     /// How to stop.
     pub shutdown: Shutdown,

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Http {
-    /// The origins of pages that may ask: `*` for all, else origins with spaces or commas between
-    /// them.
+    /// The origins of pages that may send requests: `*` for all, or origins separated by spaces or
+    /// commas.
     pub cors_origins: String,
     /// How long an answer may be kept that a restart with other tables could change, in seconds.
     pub cache_seconds: u32,

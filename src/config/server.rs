@@ -21,8 +21,7 @@ pub struct Server {
     pub max_header_bytes: u32,
     /// The most requests at once on one HTTP/2 connection.
     pub max_requests_per_connection: u32,
-    /// How often a quiet HTTP/2 client is asked for a sign of life, and how long it may take, in
-    /// seconds.
+    /// The time between pings on a quiet HTTP/2 connection, and for a reply, in seconds.
     pub http2_keepalive_seconds: f64,
     /// How long an HTTP/2 connection may be without a request, in seconds.
     pub idle_connection_seconds: f64,
@@ -38,7 +37,7 @@ pub struct Server {
     pub min_bytes_per_second: f64,
 }
 
-/// Where administrators are let in.
+/// The address of administrators.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Admin {

@@ -56,7 +56,7 @@ impl Deadline {
     /// The trailers of an answer that is not complete at its deadline.
     #[must_use]
     pub fn trailers(&self) -> Option<HeaderMap> {
-        super::trailers(&status::too_late(self.allowed))
+        status::trailers(&status::too_late(self.allowed))
     }
 }
 

@@ -1,4 +1,4 @@
-//! The gRPC door: messages in, streamed messages out. It decides nothing itself.
+//! gRPC: messages in, streamed messages out. It decides nothing itself.
 
 mod compression;
 mod deadline;
@@ -6,6 +6,7 @@ mod frames;
 mod messages;
 mod points;
 mod profile;
+pub mod proto;
 mod query;
 mod region;
 mod resolved;
@@ -27,14 +28,6 @@ pub use deadline::Deadline;
 use frames::Direct;
 use points::Points;
 use proto::point_service_server::PointServiceServer;
-
-/// The messages, server and client made from `proto/strew/v1/`.
-#[allow(missing_docs, reason = "the contract documents everything")]
-#[allow(clippy::all, reason = "made code")]
-#[allow(clippy::allow_attributes_without_reason, reason = "made code")]
-pub mod proto {
-    tonic::include_proto!("strew.v1");
-}
 
 /// The contract as reflection serves it.
 const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
@@ -73,11 +66,11 @@ pub const fn code_name(code: u32) -> &'static str {
     }
 }
 
-/// Why the gRPC door cannot be built: the contract's descriptors do not read.
+/// Why the gRPC routes cannot be built: the contract's descriptors do not read.
 pub type BuildError = tonic_reflection::server::Error;
 
-/// The routes of the gRPC door, with reflection and health, and the handle that tells the world
-/// when it closes.
+/// The routes of gRPC, with reflection and health, and the handle that reports to health checks
+/// when the daemon stops.
 ///
 /// # Errors
 /// Never, unless the program was built wrongly.
@@ -101,14 +94,14 @@ pub async fn routes(service: Arc<Service>) -> Result<(Routes, Health), BuildErro
     Ok((routes, Health { reporter }))
 }
 
-/// The standard health service's switch.
+/// Sets what the standard health service reports.
 #[derive(Clone, Debug)]
 pub struct Health {
     reporter: HealthReporter,
 }
 
 impl Health {
-    /// Says that nothing more is served.
+    /// Reports from now on that nothing is served.
     pub async fn close(&self) {
         let state = tonic_health::ServingStatus::NotServing;
         self.reporter.set_service_status("", state).await;
@@ -143,13 +136,7 @@ pub fn broken(error: &Error) -> Status {
 /// The trailers of a stream that is not complete.
 #[must_use]
 pub fn interrupted(why: Interrupted) -> Option<HeaderMap> {
-    trailers(&status::interrupted(why))
-}
-
-fn trailers(status: &Status) -> Option<HeaderMap> {
-    let mut trailers = HeaderMap::new();
-    let added = status.add_header(&mut trailers);
-    added.ok().map(|()| trailers)
+    status::trailers(&status::interrupted(why))
 }
 
 /// Trailers as the last data of a gRPC-Web body, in Base64 if that is text.

@@ -2,6 +2,7 @@
 
 use std::{collections::HashMap, time::Duration};
 
+use http::HeaderMap;
 use tonic::{Code, Status};
 use tonic_types::{ErrorDetails, StatusExt as _};
 
@@ -88,6 +89,13 @@ pub(super) fn too_late(allowed: Duration) -> Status {
     details.set_error_info("DEADLINE_EXCEEDED", DOMAIN, HashMap::new());
     let message = format!("the call's deadline of {allowed:?} is over; it is not complete");
     Status::with_error_details(Code::DeadlineExceeded, message, details)
+}
+
+/// A status as the trailers of an answer.
+pub(super) fn trailers(status: &Status) -> Option<HeaderMap> {
+    let mut trailers = HeaderMap::new();
+    let added = status.add_header(&mut trailers);
+    added.ok().map(|()| trailers)
 }
 
 /// Whose reasons they are.

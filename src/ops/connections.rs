@@ -1,9 +1,8 @@
-//! Connections: taken up to a limit, watched for silence, spoken to in TLS or plainly, and ended in
-//! good order.
+//! Connections: accepted up to a limit, with TLS or without, timed out when idle, and closed
+//! gracefully.
 //!
 //! Each connection is a task that runs the HTTP library over a guarded socket. Beyond the limit a
-//! client is told so and goes; who holds a place gives it back by going, by being silent, or by
-//! taking nothing.
+//! client is refused. A connection frees its place when the client leaves, is idle, or takes nothing.
 
 use std::{io, net::SocketAddr, sync::Arc, time::Duration};
 
@@ -52,7 +51,7 @@ struct Shared {
     patience: Patience,
     limit: usize,
     places: Arc<Semaphore>,
-    /// Those that are being told that there is no place.
+    /// Places for refusals in progress.
     telling: Arc<Semaphore>,
     /// The limits of addresses; nothing on the address of administrators.
     gate: Option<Arc<Gate>>,
@@ -75,14 +74,14 @@ struct Patience {
     stalled: Duration,
 }
 
-/// So many refused clients are told why at once; others find the connection closed.
-const TOLD_AT_ONCE: usize = 64;
-/// How long telling may take.
-const TELLING: Duration = Duration::from_secs(1);
+/// The most connections beyond the limit that are answered 503 at once; others are just closed.
+const REFUSALS_AT_ONCE: usize = 64;
+/// How long a refusal may take.
+const REFUSAL_TIME: Duration = Duration::from_secs(1);
 /// How long to wait when the system gives no more connections.
 const OUT_OF_FILES: Duration = Duration::from_millis(50);
-/// The system keeps at most so many bytes for a reader beyond what is on its way. That bounds its
-/// memory, and lets us notice soon that a slow reader has taken something.
+/// The most bytes that the system buffers for a reader beyond those being sent. Bounds its memory, and
+/// shows soon that a slow reader has taken something.
 #[cfg(any(target_os = "android", target_os = "linux"))]
 const UNSENT: u32 = 512 << 10;
 
@@ -104,7 +103,7 @@ impl Connections {
             },
             limit,
             places: Arc::new(Semaphore::new(limit)),
-            telling: Arc::new(Semaphore::new(TOLD_AT_ONCE)),
+            telling: Arc::new(Semaphore::new(REFUSALS_AT_ONCE)),
             gate,
             refused: LogThrottle::default(),
             failed: LogThrottle::default(),
@@ -141,7 +140,7 @@ impl Connections {
         }
     }
 
-    /// Gives a connection a place, or tells it that there is none.
+    /// Gives a connection a place, or refuses it.
     fn place(&self, stream: TcpStream, peer: SocketAddr, router: &Router) {
         let shared = self.shared.clone();
         match shared.places_of(peer) {
@@ -161,7 +160,7 @@ impl Connections {
                 let telling = shared.telling.clone().try_acquire_owned();
                 if let (None, Ok(telling)) = (&shared.tls, telling) {
                     shared.running.spawn(async move {
-                        let _ = tokio::time::timeout(TELLING, tell(stream, error)).await;
+                        let _ = tokio::time::timeout(REFUSAL_TIME, refuse(stream, error)).await;
                         drop(telling);
                     });
                 }
@@ -334,7 +333,7 @@ fn is_of_the_client(error: &io::Error) -> bool {
 
 /// Tells a client that there is no place, and hears it out: a socket that is closed with words
 /// unread takes back what was said.
-async fn tell(mut stream: TcpStream, error: Error) -> io::Result<()> {
+async fn refuse(mut stream: TcpStream, error: Error) -> io::Result<()> {
     /// No more is heard.
     const HEARD: u64 = 1 << 16;
     stream.write_all(&rest::no_place(&error)).await?;

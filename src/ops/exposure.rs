@@ -3,7 +3,7 @@
 use crate::config::Config;
 
 /// The warning about a file of keys that every user of the machine can read. Keys are stored as
-/// hashes, but their names and limits are nobody else's business.
+/// hashes, but their names and limits are confidential.
 #[must_use]
 pub fn readable_keys(config: &Config) -> Option<String> {
     #[cfg(unix)]

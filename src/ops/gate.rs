@@ -1,4 +1,4 @@
-//! Letting requests in: what a client shows, and where it comes from, decide who asks.
+//! The gate: the key and the address of a request decide whether it is admitted.
 //!
 //! REST and gRPC are behind the same gate; what it refuses is a problem by one and a status by the
 //! other. Open to all are `/livez`, `/readyz`, the pages with the description of the API, and of gRPC
@@ -49,7 +49,7 @@ pub(super) async fn of_rest(
         }
     };
     if let Some(level) = level {
-        tell(level, response.headers_mut());
+        add_rate_limit(level, response.headers_mut());
     }
     response
 }
@@ -72,8 +72,8 @@ pub(super) async fn of_calls(
     next.run(request).await
 }
 
-/// The gate of the administrators' own address: who reaches it is one, unless it is a page in
-/// somebody's browser, which could reach what that somebody can.
+/// The gate of the administrators' own address: every client there is an administrator, except web
+/// pages, which can reach what their reader's browser can.
 pub(super) async fn of_admins(mut request: Request, next: Next) -> Response {
     if request.headers().contains_key(header::ORIGIN) {
         let denied = Denied::NotAdmin {
@@ -94,7 +94,7 @@ fn admit(gate: &Gate, request: &Request) -> Result<Caller, Denied> {
     gate.admit(shown(request.headers()), address, usage)
 }
 
-/// The key that a client shows: `x-api-key`, or else `Authorization` of the scheme Bearer.
+/// The key of a request: `x-api-key`, or else `Authorization` of the scheme Bearer.
 fn shown(headers: &HeaderMap) -> Option<&[u8]> {
     let own = headers.get(API_KEY).map(HeaderValue::as_bytes);
     own.or_else(|| {
@@ -105,8 +105,8 @@ fn shown(headers: &HeaderMap) -> Option<&[u8]> {
     })
 }
 
-/// Tells a client how much it may ask (draft-ietf-httpapi-ratelimit-headers).
-fn tell(level: Level, headers: &mut HeaderMap) {
+/// Adds the headers that describe a rate (draft-ietf-httpapi-ratelimit-headers).
+fn add_rate_limit(level: Level, headers: &mut HeaderMap) {
     let rate = level.rate;
     let burst = rate.burst_points as u64;
     let window = (rate.burst_points / rate.points_per_second).ceil().max(1.0) as u64;

@@ -1,7 +1,7 @@
 //! What a request is called: its id (`x-request-id`) and its place in a trace (W3C Trace Context).
 //!
-//! An id that a client or proxy sends is kept if it is short and plain, so that one name runs through
-//! all logs; anything else is replaced, so that nobody writes into our log.
+//! An id that a client or proxy sends is kept if it is short and plain, so that the same id is in
+//! all logs; others are replaced, so that clients cannot write into our log.
 
 use std::{
     hash::{BuildHasher as _, RandomState},

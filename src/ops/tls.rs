@@ -1,4 +1,4 @@
-//! TLS: who serves is proven by a certificate, and if asked for, who asks by one of theirs.
+//! TLS: the server proves its identity with a certificate, and clients theirs if that is required.
 //!
 //! Certificates are read again by [`reload`](super::reload). New ones serve new connections; open
 //! connections go on with those they began with.

@@ -7,8 +7,8 @@ use strew_core::{Area, PointSet, Region, Spacing, Warp, server};
 use super::{
     Lane, Placed, Planned, PlannedSet,
     cache::Ready,
-    planner::{self, COUNTS},
     query::{Amount, Nearest, Query, Set},
+    resolve::resolve,
     single::MOST_WITHIN,
 };
 
@@ -19,6 +19,9 @@ const STRIP: f64 = 256.0 / UNITS;
 /// Points beside an outline are compared with every edge in their strip; so much of a row takes one
 /// comparison for each unit of outline and each edge.
 const COMPARISON: f64 = 5e-4;
+
+/// About how often an area is counted to find the spacing of a count.
+pub(super) const COUNTS: f64 = 32.0;
 
 /// A request for points, as far as it decides what counting costs.
 #[derive(Clone, Debug)]
@@ -65,7 +68,7 @@ fn planning(query: &Query, set: &Set, ready: &Ready) -> f64 {
             (Spacing::new(guess).ok(), COUNTS)
         }
         _ => {
-            let resolved = planner::resolve(set, ready).ok().flatten();
+            let resolved = resolve(set, ready).ok().flatten();
             (resolved.map(|(spacing, _)| spacing), 1.0)
         }
     };

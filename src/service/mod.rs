@@ -12,11 +12,14 @@ pub mod catalog;
 mod effort;
 pub mod encode;
 pub mod error;
+mod lane;
 mod planned;
+mod planned_set;
 mod planner;
 mod portrait;
 pub mod query;
 pub mod record;
+mod resolve;
 mod single;
 pub mod stream;
 mod turns;
@@ -36,13 +39,15 @@ pub use catalog::{Catalog, Entry, Key, Reload};
 pub use effort::{Neighbors, considered};
 pub use encode::{Answer, Encoding, Options, Output};
 pub use error::{Error, Fault, Kind};
-pub use planned::{Placed, Planned, PlannedSet};
+pub use lane::Lane;
+pub use planned::{Placed, Planned};
+pub use planned_set::PlannedSet;
 pub use portrait::Portrait;
 pub use query::{Draft, Nearest, Query, Set, Token};
 pub use record::Record;
 pub use single::Found;
 pub use stream::{BlockStream, Interrupted, Permit, Streams};
-pub use workers::{Lane, Workers};
+pub use workers::Workers;
 
 pub use crate::config::Limits;
 
@@ -148,7 +153,7 @@ impl Service {
     /// Admits a caller and plans a query whose points are to be made, charging the points considered.
     ///
     /// # Errors
-    /// As [`admit`](Self::admit) and [`plan`](Self::plan), and [`Error::Denied`] if the caller takes
+    /// As admitting and [`plan`](Self::plan), and [`Error::Denied`] if the caller takes
     /// points too fast.
     pub async fn open(
         &self,

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use strew_core::{
-    Cursor, Plan, PointSet, Spacing,
+    Cursor, PointSet,
     server::{self, Stop},
 };
 
@@ -12,8 +12,10 @@ use super::{
     attributes::PointAttributes,
     cache::Ready,
     encode::{Attributes, Part},
-    planner::{self, Planner},
+    planned_set::PlannedSet,
+    planner::Planner,
     query::{Amount, Query, Resolved, ResolvedSet, Set, Token},
+    resolve,
 };
 
 /// A query with its tables and plans: the exact count is known, no point is made yet.
@@ -30,36 +32,6 @@ pub struct Planned {
     next: Option<Token>,
     /// What cursors are sealed with, once one is made or read.
     identity: OnceLock<[u8; 32]>,
-}
-
-/// A planned set of points.
-#[derive(Clone, Debug)]
-pub struct PlannedSet {
-    /// The table that answers.
-    pub entry: Arc<Entry>,
-    /// What the amount became: points per unit of area.
-    pub density: f64,
-    /// What the amount became: the mean spacing.
-    pub spacing: Spacing,
-    /// No two points are nearer than this.
-    pub least_distance: f64,
-    /// The points.
-    pub plan: Plan,
-    /// How many points of the query the sets before it have, if it is not before the cursor's.
-    before: u128,
-}
-
-impl PlannedSet {
-    pub(super) fn new(entry: Arc<Entry>, density: f64, least_distance: f64, plan: Plan) -> Self {
-        Self {
-            entry,
-            density,
-            spacing: plan.placement().spacing,
-            least_distance,
-            plan,
-            before: 0,
-        }
-    }
 }
 
 /// A set of points with its table, when there is no region.
@@ -79,7 +51,7 @@ impl Placed {
     /// # Errors
     /// [`Error::Invalid`] for a distance that cannot be kept, or a count.
     pub fn new(set: Set, ready: Ready) -> Result<Self, Error> {
-        let Some((spacing, density)) = planner::resolve(&set, &ready)? else {
+        let Some((spacing, density)) = resolve::resolve(&set, &ready)? else {
             return Err(set.fault(
                 "count",
                 "",
@@ -87,7 +59,7 @@ impl Placed {
                 "density, spacing or min_distance",
             ));
         };
-        let least = planner::least_distance(&set, &ready, spacing, 0.0);
+        let least = resolve::least_distance(&set, &ready, spacing, 0.0);
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least),
             points: PointSet::new(ready.table).placed(set.placement(spacing)),

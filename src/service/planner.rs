@@ -1,15 +1,16 @@
 //! Planning the sets of a query one after another, each knowing the layers before it.
 
 use strew_core::{
-    Cursor, ErrorKind, LeastDistance, Placement, Plan, PointId, PointSet, Region, Spacing,
+    Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Region, Spacing,
     server::{self, Stop},
 };
 
 use super::{
     Error, Limits, PlannedSet,
     cache::Ready,
-    effort::{self, Selection},
-    query::{Amount, Parameter, Query, Set, Token, number, parameters},
+    effort::{self, COUNTS, Selection},
+    query::{Amount, Query, Set, Token, parameters},
+    resolve::{check_reach, least_distance, resolve},
 };
 
 /// Plans sets one after another.
@@ -19,9 +20,6 @@ pub(super) struct Planner<'a> {
     stop: &'a Stop,
     layers: Vec<PointSet>,
 }
-
-/// About how often an area is counted to find the spacing of a count.
-pub(super) const COUNTS: f64 = 32.0;
 
 impl<'a> Planner<'a> {
     /// `stop` ends the counting early; what is planned then means nothing.
@@ -186,71 +184,4 @@ const fn nothing() -> Cursor {
         total: 0,
         at: PointId { x: 0, y: 0 },
     }
-}
-
-/// What an amount is on its table; `None` for a count, which needs a region.
-pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>, Error> {
-    let fault = |parameter: &Parameter, value: f64, detail: String| {
-        set.fault(parameter.name, value, detail, parameter.allowed())
-    };
-    let wrong = |parameter, value: f64| {
-        move |error: strew_core::Error| fault(parameter, value, error.to_string())
-    };
-    match set.amount {
-        Amount::Density(density) => {
-            let spacing =
-                Spacing::from_density(density).map_err(wrong(&parameters::DENSITY, density))?;
-            Ok(Some((spacing, density)))
-        }
-        Amount::Spacing(value) => {
-            let spacing = Spacing::new(value).map_err(wrong(&parameters::SPACING, value))?;
-            Ok(Some((spacing, spacing.density())))
-        }
-        Amount::MinDistance(distance) => {
-            let least = ready.table.least_distance();
-            let spacing = least.spacing_for(distance, set.warp).map_err(|error| {
-                let detail = match error.kind() {
-                    ErrorKind::NoLeastDistance => {
-                        format!("profile `{}`: {}", set.entry.key.profile, error.problem())
-                    }
-                    _ => error.to_string(),
-                };
-                fault(&parameters::MIN_DISTANCE, distance, detail)
-            })?;
-            Ok(Some((spacing, spacing.density())))
-        }
-        Amount::Count(_) => Ok(None),
-    }
-}
-
-/// The distance that coordinates within ±`reach` keep.
-pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing, reach: f64) -> f64 {
-    let least = ready.table.least_distance();
-    let least = least.reported(spacing, set.warp, reach);
-    match set.amount {
-        // The spacing is a little wider than this takes.
-        Amount::MinDistance(distance) => least.min(distance),
-        _ => least,
-    }
-}
-
-/// Refuses a least distance that coordinates within ±`reach` do not keep.
-pub(super) fn check_reach(set: &Set, reach: f64) -> Result<(), Error> {
-    let Amount::MinDistance(distance) = set.amount else {
-        return Ok(());
-    };
-    let limit = LeastDistance::RANGE * distance;
-    if reach <= limit {
-        return Ok(());
-    }
-    let [far, near] = [reach, limit].map(number);
-    let detail = format!(
-        "coordinates up to {far} are rounded too coarsely to keep it: it holds within ±{near}"
-    );
-    let allowed = format!(
-        "coordinates within ±{near}, a distance of at least {}, chunks, whose coordinates are relative to \
-         their corner, or spacing",
-        number(reach / LeastDistance::RANGE)
-    );
-    Err(set.fault("min_distance", distance, detail, allowed))
 }

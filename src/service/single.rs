@@ -6,8 +6,9 @@ use serde_json::{Map, Value};
 use strew_core::{Attribute, ErrorKind, Member, Neighbor, PointId};
 
 use super::{
-    Error, Fault, Placed, planner,
+    Error, Fault, Placed,
     query::{Nearest, number, parameters},
+    resolve,
 };
 
 /// A point with its attributes.
@@ -81,7 +82,7 @@ impl Placed {
     fn check_reach<'a>(&self, members: impl IntoIterator<Item = &'a Member>) -> Result<(), Error> {
         let coordinates = members.into_iter().flat_map(|member| member.at());
         let reach = coordinates.map(f64::abs).fold(0.0, f64::max);
-        planner::check_reach(&self.set, reach)
+        resolve::check_reach(&self.set, reach)
     }
 
     fn found(&self, member: &Member, distance: Option<f64>) -> Found {

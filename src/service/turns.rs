@@ -1,5 +1,5 @@
-//! A semaphore that is fair between addresses: whoever waits longest comes first only among the
-//! requests of one address, and addresses take turns.
+//! A semaphore that is fair between addresses: they take turns, and the requests of one address are
+//! served in order.
 
 use std::{
     collections::{HashMap, VecDeque},

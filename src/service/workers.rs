@@ -10,18 +10,9 @@ use std::{fmt, sync::Arc};
 use strew_core::server::Stop;
 
 use super::{
-    Error, Record,
+    Error, Lane, Record,
     turns::{Turn, Turns},
 };
-
-/// Where work is done.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lane {
-    /// Work of a few milliseconds.
-    Short,
-    /// All other work.
-    Long,
-}
 
 /// The two lanes. Cheap to clone.
 #[derive(Clone)]

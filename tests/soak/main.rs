@@ -13,6 +13,9 @@
 //! Exits with 1 if any answer was wrong, or missing without an excuse, if a daemon died, or if
 //! streams are still in progress afterwards.
 
+#[path = "../suite/support/attack.rs"]
+mod attack;
+mod attacks;
 mod checks;
 #[path = "../queries/generate.rs"]
 mod generate;
@@ -184,13 +187,14 @@ fn client(library: &Library, replicas: [&Replica; 2], tally: &Tally, seed: u64, 
                 "a spoiled query",
                 checks::spoiled(library, at, &mut random, &body),
             ),
-            88..=90 => ("a client that vanishes", hostile::vanish(at, &mut random)),
-            91..=93 => ("half a request", hostile::half(at, &mut random)),
-            94..=96 => ("no HTTP at all", hostile::garbage(at, &mut random)),
-            97..=98 => (
+            88..=89 => ("a client that vanishes", hostile::vanish(at, &mut random)),
+            90..=91 => ("half a request", hostile::half(at, &mut random)),
+            92..=94 => ("no HTTP at all", hostile::garbage(at, &mut random)),
+            95..=96 => (
                 "calls that are reset",
                 runtime.block_on(grpc::resets(at, &mut random)),
             ),
+            97..=98 => ("an attack", runtime.block_on(attacks::any(at, &mut random))),
             _ => ("a command", checks::command(library, &mut random, &body)),
         };
         let later = replica.epoch();

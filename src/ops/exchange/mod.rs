@@ -66,7 +66,7 @@ struct Refused(Error);
 #[derive(Clone, Copy, Debug)]
 struct Probe;
 
-/// The paths of those who watch over the daemon.
+/// The paths of health checks and metrics, which have a reserve of places.
 const PROBES: [&str; 4] = [
     "/livez",
     "/readyz",

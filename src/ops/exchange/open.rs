@@ -1,6 +1,7 @@
-//! The open exchanges of one connection, and what becomes of a connection whose client takes nothing.
+//! The open exchanges of one connection, and the fate of a connection whose client takes nothing.
 
 use std::{
+    fmt,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError, Weak,
         atomic::{AtomicU64, Ordering},
@@ -10,12 +11,15 @@ use std::{
 
 use tokio::time::Instant;
 
-use super::reply::Exchange;
+/// An exchange whose time can be over.
+pub(super) trait Timed: Send + Sync {
+    /// Breaks the answer off if its time is over. Returns when it was broken off, if it was.
+    fn check(&self, now: Instant) -> Option<Instant>;
+}
 
 /// The exchanges of one connection.
-#[derive(Debug)]
 pub(in crate::ops) struct OpenExchanges {
-    all: Mutex<Vec<(u64, Weak<Exchange>)>>,
+    all: Mutex<Vec<(u64, Weak<dyn Timed>)>>,
     next: AtomicU64,
     /// When the last one began or ended.
     changed: Mutex<Instant>,
@@ -33,10 +37,18 @@ pub(in crate::ops) enum Fate {
     Close,
 }
 
-/// The time in which an answer that was broken off tells its client so.
-const TELLING: Duration = Duration::from_secs(1);
-/// The longest time between two looks.
+/// The time for sending the end of an answer that was broken off.
+const ENDING_TIME: Duration = Duration::from_secs(1);
+/// The longest time between two checks.
 const LONGEST: Duration = Duration::from_secs(5);
+
+impl fmt::Debug for OpenExchanges {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("OpenExchanges")
+            .field("open", &lock(&self.all).len())
+            .finish_non_exhaustive()
+    }
+}
 
 impl OpenExchanges {
     pub(in crate::ops) fn new() -> Arc<Self> {
@@ -55,8 +67,8 @@ impl OpenExchanges {
         }
     }
 
-    /// Waits until it is time to look at the exchanges, again and again until one of them, or a want
-    /// of them, decides the fate of the connection.
+    /// Checks the exchanges from time to time. Returns when the connection should not simply go on:
+    /// because of what they do, or because there is none.
     pub(in crate::ops) async fn decided(
         &self,
         idle: Duration,
@@ -90,7 +102,7 @@ impl OpenExchanges {
         let broken: Vec<Instant> = all.iter().filter_map(|one| one.check(now)).collect();
         let since = |at: Option<&Instant>| at.map(|&at| now.saturating_duration_since(at));
         let newest = since(broken.iter().max());
-        if broken.len() == all.len() && newest.is_some_and(|age| age >= TELLING.min(patience)) {
+        if broken.len() == all.len() && newest.is_some_and(|age| age >= ENDING_TIME.min(patience)) {
             return Fate::Close;
         }
         let oldest = since(broken.iter().min());
@@ -114,7 +126,7 @@ pub(super) struct Entry {
 
 impl Entry {
     /// Takes the place for an exchange.
-    pub(super) fn of(self, exchange: Weak<Exchange>) -> Self {
+    pub(super) fn of(self, exchange: Weak<dyn Timed>) -> Self {
         lock(&self.open.all).push((self.number, exchange));
         *lock(&self.open.changed) = Instant::now();
         self

@@ -12,7 +12,7 @@
 use std::{
     fmt,
     pin::Pin,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{Arc, Mutex, MutexGuard, PoisonError, Weak},
     task::{Context, Poll, Waker},
 };
 
@@ -22,7 +22,7 @@ use http_body::{Body as HttpBody, Frame, SizeHint};
 use tokio::time::{Instant, Sleep, sleep_until};
 
 use super::{
-    open::Entry,
+    open::{Entry, Timed},
     progress::{Progress, Terms},
     report::Report,
 };
@@ -70,8 +70,8 @@ struct State {
     rest: Bytes,
     /// The share of a whole document.
     whole: Option<Arc<Held>>,
-    /// Why it was broken off, until the client has been told.
-    untold: Option<Ending>,
+    /// Why it was broken off, until the client has been sent that.
+    unreported: Option<Ending>,
     /// When it was broken off.
     broken: Option<Instant>,
     /// Bytes that left and have not been written.
@@ -102,7 +102,7 @@ impl Exchange {
             body: None,
             rest: Bytes::new(),
             whole: None,
-            untold: None,
+            unreported: None,
             broken: None,
             in_flight: 0,
             progress: Progress::new(terms, now),
@@ -112,7 +112,7 @@ impl Exchange {
             at: now.checked_add(terms.whole),
             why: Ending::Interrupted(Interrupted::TimeOver),
         };
-        Arc::new_cyclic(|exchange| Self {
+        Arc::new_cyclic(|exchange: &Weak<Self>| Self {
             state: Mutex::new(state),
             budget,
             dialect,
@@ -158,8 +158,25 @@ impl Exchange {
         })
     }
 
-    /// Breaks the answer off if its time is over. Returns when it was broken off, if it was.
-    pub(super) fn check(&self, now: Instant) -> Option<Instant> {
+    /// The socket took bytes, or the connection is gone.
+    fn written(&self, bytes: usize) {
+        let now = Instant::now();
+        let mut state = self.lock();
+        state.in_flight -= bytes;
+        state.progress.taken(bytes, now);
+        // The reader is only set while the body has nothing to give.
+        if state.in_flight == 0 && state.reader.is_some() {
+            state.progress.pause(now);
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        lock(&self.state)
+    }
+}
+
+impl Timed for Exchange {
+    fn check(&self, now: Instant) -> Option<Instant> {
         let end = *lock(&self.end);
         let mut state = self.lock();
         if state.broken.is_some() {
@@ -175,7 +192,7 @@ impl Exchange {
         };
         state.broken = Some(now);
         let body = state.body.take();
-        state.untold = body.is_some().then_some(why);
+        state.unreported = body.is_some().then_some(why);
         state.rest = Bytes::new();
         // What has left holds its share of a whole document until it is written or dropped.
         state.whole = None;
@@ -187,22 +204,6 @@ impl Exchange {
             reader.wake();
         }
         Some(now)
-    }
-
-    /// The socket took bytes, or the connection is gone.
-    fn written(&self, bytes: usize) {
-        let now = Instant::now();
-        let mut state = self.lock();
-        state.in_flight -= bytes;
-        state.progress.taken(bytes, now);
-        // The reader is only set while the body has nothing to give.
-        if state.in_flight == 0 && state.reader.is_some() {
-            state.progress.pause(now);
-        }
-    }
-
-    fn lock(&self) -> MutexGuard<'_, State> {
-        lock(&self.state)
     }
 }
 
@@ -271,7 +272,7 @@ impl HttpBody for Reply {
         let mut guard = exchange.lock();
         let state = &mut *guard;
         state.reader = None;
-        if let Some(why) = state.untold.take() {
+        if let Some(why) = state.unreported.take() {
             return Poll::Ready(exchange.dialect.ending(why));
         }
         if !state.rest.is_empty() {
@@ -299,8 +300,8 @@ impl HttpBody for Reply {
                 let sleep = this.sleep.get_or_insert_with(|| Box::pin(sleep_until(at)));
                 if sleep.as_mut().poll(cx).is_ready() {
                     exchange.check(Instant::now());
-                    let untold = exchange.lock().untold.take();
-                    return Poll::Ready(untold.and_then(|why| exchange.dialect.ending(why)));
+                    let unreported = exchange.lock().unreported.take();
+                    return Poll::Ready(unreported.and_then(|why| exchange.dialect.ending(why)));
                 }
                 Poll::Pending
             }
@@ -326,7 +327,7 @@ impl HttpBody for Reply {
     fn is_end_stream(&self) -> bool {
         let state = self.exchange.lock();
         let is_over = state.body.as_ref().is_none_or(Body::is_end_stream);
-        is_over && state.rest.is_empty() && state.untold.is_none()
+        is_over && state.rest.is_empty() && state.unreported.is_none()
     }
 
     fn size_hint(&self) -> SizeHint {
@@ -348,7 +349,7 @@ impl Drop for Reply {
     fn drop(&mut self) {
         let mut state = self.exchange.lock();
         let body = state.body.take();
-        (state.rest, state.whole, state.untold) = (Bytes::new(), None, None);
+        (state.rest, state.whole, state.unreported) = (Bytes::new(), None, None);
         drop(state);
         drop(body);
     }

@@ -1,9 +1,9 @@
 //! Metrics, as Prometheus reads them.
 //!
-//! A daemon has a registry of its own, so that several in one process do not mix. What is counted is
-//! looked up once a request, by names that are few (routes, not paths; formats; kinds of errors);
-//! blocks and points then only add to handles. What the service and the system already know (caches,
-//! streams, tables, memory) is read when somebody asks, in `scrape`.
+//! Each daemon has its own registry, so several in one process do not mix. Counters are looked up once
+//! per request, by few names (routes, not paths; formats; kinds of errors); blocks and points then only
+//! add to handles. What the service and the system already know (caches,
+//! streams, tables, memory) is read at each scrape, in `scrape`.
 
 mod process;
 mod scrape;
@@ -71,7 +71,7 @@ const BUCKETS: [f64; 17] = [
     60.0, 300.0,
 ];
 
-/// How often what histograms gather is folded up, whether somebody scrapes or not.
+/// How often the samples of histograms are aggregated, also without scrapes.
 const UPKEEP: Duration = Duration::from_secs(5);
 
 /// What requests add to by protocol and format.
@@ -306,7 +306,7 @@ impl Metrics {
         self.counter(FAILED_HANDSHAKES, vec![])
     }
 
-    /// Folds up what histograms gather, as long as the daemon runs.
+    /// Aggregates the samples of histograms while the daemon runs.
     pub(super) fn fold_up(&self) -> impl Future<Output = ()> + Send + use<> {
         let inner = Arc::downgrade(&self.inner);
         async move {

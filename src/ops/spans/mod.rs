@@ -195,7 +195,7 @@ struct Task {
 }
 
 impl Task {
-    /// Sends until it is stopped, or nobody has spans any more, and nothing is left.
+    /// Sends until it is stopped, or all senders are gone, and the queue is empty.
     async fn run(mut self, stop: CancellationToken) {
         let mut batch = vec![];
         let mut is_open = true;

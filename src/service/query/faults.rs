@@ -8,7 +8,7 @@ pub const MOST_FAULTS: usize = 16;
 /// A value, or everything that is wrong with it.
 pub type Checked<T> = Result<T, Faults>;
 
-/// At least one fault, at most [`MOST_FAULTS`], one for each field.
+/// At least one fault, at most `MOST_FAULTS`, one for each field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Faults(Vec<Fault>);
 

@@ -115,6 +115,14 @@ fn errors_name_the_setting_and_its_source() {
             &["limits.max_points = 0", "limits.block_bytes = 1", "4096"],
         ),
         ("[server]\nlisten = \"nowhere\"", &["listen"]),
+        (
+            "[http]\ncors_origins = \"https://a.example http//typo\"",
+            &["http.cors_origins", "\"http//typo\" is not an origin"],
+        ),
+        (
+            "[http]\ncors_origins = \"https://a.example/page\"",
+            &["\"https://a.example/page\" is not an origin"],
+        ),
         ("[log]\nfilter = \"info,=x=\"", &["log.filter"]),
         (
             "[shutdown]\ndrain_seconds = nan",

@@ -4,6 +4,7 @@
 
 mod admin;
 mod attacks;
+mod bad_calls;
 mod connections;
 mod fairness;
 mod files;

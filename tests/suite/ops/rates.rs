@@ -72,6 +72,19 @@ fn a_client_above_its_rate_gets_429_and_a_time_to_retry() {
 }
 
 #[test]
+fn points_that_are_thinned_out_are_charged() {
+    let daemon = Daemon::start(&[SLOW, BURST]);
+    let thinned = daemon.get(&format!("{POINTS}&keep=0.1"));
+    assert_eq!(thinned.status, 200, "{}", thinned.text());
+    let count: u64 = thinned.header("strew-count").parse().expect("a number");
+    assert!((10..90).contains(&count), "{count}");
+    assert_eq!(left(&thinned), 1000 - 1 - 10 * count);
+    // A few of a million.
+    let few = "/v1/points?bbox=0,0,1000,1000&density=1&profile=test&keep=1e-5&format=csv";
+    assert_eq!(daemon.get(few).status, 429);
+}
+
+#[test]
 fn points_come_back_with_time() {
     let daemon = Daemon::start(&["rate.points_per_second=2000", "rate.burst_points=450"]);
     until("the rate is exceeded", || {

@@ -26,7 +26,7 @@ pub enum Attribute {
     /// `variant`: one of several named things, chosen by weight.
     Variant(Variants),
     /// `rank`: a number in [0, 1), uniform over the pattern. The points of rank below λ are a share λ of
-    /// all, nested as λ grows; see [`rank`](crate::rank).
+    /// all, nested as λ grows.
     Rank,
     /// `u1` to `u16`: a number uniform in [0, 1), a multiple of 2⁻⁵³.
     Uniform(UniformNumber),

@@ -1,0 +1,288 @@
+#!/usr/bin/env python3
+"""Attacks a daemon of its own from 127.0.0.2 and measures its memory and a victim at 127.0.0.1.
+
+    benches/attacks.py target/release/strew [--keys] [ATTACK ...]
+
+Needs Linux and nothing besides Python. With --keys the daemon requires a key, which attackers of
+closed paths and the victim have. Attackers, victim and daemon share the processors.
+"""
+
+import argparse
+import http.client
+import re
+import socket
+import struct
+import subprocess
+import tempfile
+import threading
+import time
+
+SMALL = "/v1/points?bbox=0,0,10,10&spacing=1"
+LARGE = "/v1/nearest?at=0,0&k=10000&spacing=1&attributes=angle,u1,u2,u3,u4,u5,u6,u7,u8"
+LONG = "/v1/points?bbox=0,0,31700,31700&spacing=1&format=f32"
+COUNT = "/v1/count?circle=0,0,270000&spacing=1&warp=2&seed=7"
+SPECTRUM = "/v1/profiles/blue/spectrum.svg"
+HEALTH = "/grpc.health.v1.Health/"
+CALL = {"content-type": "application/grpc", "te": "trailers"}
+# The attacker's requests on each HTTP/2 connection.
+STREAMS = 99
+
+
+class Daemon:
+    def __init__(self, program, keys):
+        self.key = None
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            self.port = free.getsockname()[1]
+        command = [program, "serve", "--listen", f"127.0.0.1:{self.port}", "--set", "log.filter=error"]
+        if keys:
+            made = subprocess.run([program, "key", "new", "client"], capture_output=True, text=True)
+            self.key = re.search("strew_[0-9a-f]+", made.stderr).group(0)
+            self.file = tempfile.NamedTemporaryFile("w", suffix=".toml")
+            self.file.write(made.stdout)
+            self.file.flush()
+            command += ["--set", f"access.keys_file={self.file.name}"]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        self.process.stdout.readline()
+        self.victim(SMALL, 1)
+        self.idle = self.memory()
+
+    def headers(self):
+        return {"x-api-key": self.key} if self.key else {}
+
+    def memory(self, figure="VmRSS"):
+        """Memory in MiB."""
+        status = open(f"/proc/{self.process.pid}/status").read()
+        return int(re.search(figure + r":\s+(\d+)", status).group(1)) // 1024
+
+    def connect(self):
+        stream = socket.socket()
+        stream.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        stream.settimeout(60)
+        stream.bind(("127.0.0.2", 0))
+        stream.connect(("127.0.0.1", self.port))
+        return stream
+
+    def request(self, method, path, body=b""):
+        """An HTTP/1.1 request."""
+        lines = [f"{method} {path} HTTP/1.1", "host: x", f"content-length: {len(body)}"]
+        lines += [f"{name}: {value}" for name, value in self.headers().items()]
+        return "\r\n".join([*lines, "", ""]).encode() + body
+
+    def unread(self, path, connections):
+        """Connections that send a request and read the status only, which are counted."""
+        streams = [self.connect() for _ in range(connections)]
+        for stream in streams:
+            stream.sendall(self.request("GET", path))
+        statuses = {}
+        for stream in streams:
+            count(statuses, status(stream))
+        return streams, statuses
+
+    def http2(self):
+        """An HTTP/2 connection whose streams have no window."""
+        stream = self.connect()
+        settings = frame(4, 0, 0, struct.pack(">HI", 4, 0))
+        stream.sendall(b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + settings)
+        return stream
+
+    def victim(self, path, seconds):
+        """The latencies and statuses of one request after the other."""
+        times, statuses = [], {}
+        end = time.time() + seconds
+        while time.time() < end:
+            start = time.perf_counter()
+            try:
+                connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
+                connection.request("GET", path, headers=self.headers())
+                answer = connection.getresponse()
+                answer.read()
+                connection.close()
+                count(statuses, answer.status)
+            except OSError as error:
+                count(statuses, type(error).__name__)
+            times.append(1e3 * (time.perf_counter() - start))
+        times.sort()
+        middle, late = times[len(times) // 2], times[int(0.99 * (len(times) - 1))]
+        return f"p50 {middle:.1f}, p99 {late:.1f}, max {times[-1]:.1f} ms {statuses}"
+
+    def report(self, what):
+        print(f"{what}: {self.idle} MiB idle, {self.memory('VmHWM')} at most; victim: {self.victim(SMALL, 2)}", flush=True)
+
+    def report_left(self):
+        """Waits after the attackers have left."""
+        for seconds in (2, 15, 15):
+            time.sleep(seconds)
+            print(f"    {seconds} s later: {self.memory()} MiB", flush=True)
+
+
+def count(counts, what):
+    counts[what] = counts.get(what, 0) + 1
+
+
+def status(stream):
+    try:
+        return stream.recv(12)[9:].decode() or "closed"
+    except OSError as error:
+        return type(error).__name__
+
+
+def frame(kind, flags, stream, payload=b""):
+    return struct.pack(">I", len(payload))[1:] + bytes([kind, flags]) + struct.pack(">I", stream) + payload
+
+
+def head(stream, method, path, headers, ends=True):
+    """A request's HEADERS, as literals without an index."""
+    names = {":method": method, ":scheme": "http", ":path": path, ":authority": "x", **headers}
+    block = b""
+    for name, value in names.items():
+        # Lengths from 127 on continue in a second byte.
+        length = bytes([len(value)]) if len(value) < 127 else bytes([127, len(value) - 127])
+        block += b"\0" + bytes([len(name)]) + name.encode() + length + value.encode()
+    return frame(1, 5 if ends else 4, stream, block)
+
+
+def closed(streams):
+    """The number of connections that the daemon has closed."""
+    number = 0
+    for stream in streams:
+        stream.setblocking(False)
+        try:
+            while stream.recv(65536):
+                pass
+            number += 1
+        except BlockingIOError:
+            pass
+        except OSError:
+            number += 1
+        stream.setblocking(True)
+    return number
+
+
+def without_window(daemon, path, headers, connections, reset_every=None):
+    streams = [daemon.http2() for _ in range(connections)]
+    for stream in streams:
+        for i in range(STREAMS):
+            stream.sendall(head(2 * i + 1, "GET", path, headers))
+    start = last = time.time()
+    time.sleep(4)
+    daemon.report(f"{path}, {connections} connections without a window")
+    number = 2 * STREAMS + 1
+    while closed(streams) < connections and time.time() - start < 120:
+        time.sleep(1)
+        if reset_every and time.time() - last > reset_every:
+            last, number = time.time(), number + 2
+            for stream in streams:
+                try:
+                    stream.sendall(head(number, "GET", "/livez", {}) + frame(3, 0, number, bytes([0, 0, 0, 8])))
+                except OSError:
+                    pass
+    print(f"    {closed(streams)} closed after {time.time() - start:.0f} s", flush=True)
+    for stream in streams:
+        stream.close()
+    daemon.report_left()
+
+
+def calls(daemon, method, message, connections):
+    streams = [daemon.http2() for _ in range(connections)]
+    for stream in streams:
+        for i in range(STREAMS):
+            stream.sendall(head(2 * i + 1, "POST", HEALTH + method, CALL, False))
+            if message is not None:
+                stream.sendall(frame(0, 1, 2 * i + 1, message))
+    time.sleep(4)
+    daemon.report(f"{connections} x {STREAMS} calls of {method}")
+    time.sleep(30)
+    print(f"    30 s later: {daemon.memory()} MiB", flush=True)
+
+
+def repeated(daemon, clients, request, victims):
+    """Victims alone, and while clients repeat a request."""
+    alone = [daemon.victim(path, 3) for path in victims]
+    statuses, is_over = {}, threading.Event()
+
+    def repeat():
+        while not is_over.is_set():
+            try:
+                stream = daemon.connect()
+                stream.sendall(request)
+                count(statuses, status(stream))
+                stream.close()
+            except OSError as error:
+                count(statuses, type(error).__name__)
+
+    for _ in range(clients):
+        threading.Thread(target=repeat, daemon=True).start()
+    time.sleep(2)
+    for path, before in zip(victims, alone):
+        print(f"{path}\n    alone:    {before}\n    attacked: {daemon.victim(path, 4)}", flush=True)
+    print(f"    {clients} attackers: {statuses}", flush=True)
+    is_over.set()
+
+
+def pages(daemon):
+    for coding in ("zstd", "gzip"):
+        without_window(daemon, "/openapi.json", {"accept-encoding": coding}, 20)
+
+
+def answers(daemon):
+    streams, statuses = daemon.unread(LARGE, 400)
+    daemon.report(f"400 unread whole answers {statuses}")
+    for stream in streams:
+        stream.close()
+    daemon.report_left()
+
+
+def bodies(daemon):
+    body = b'{"spacing": 1, "unknown": [0' + b",0" * 1_990_000 + b"]}"
+    repeated(daemon, 8, daemon.request("POST", "/v1/points:query", body), [SMALL, "/livez"])
+
+
+def counts(daemon):
+    victims = [
+        SMALL,
+        "/v1/count?circle=0,0,3000&spacing=1",
+        "/v1/points?bbox=0,0,200,200&spacing=1&warp=1&format=csv",
+        "/v1/chunks/64/3/4?spacing=1&format=f32",
+        "/livez",
+    ]
+    repeated(daemon, 4, daemon.request("GET", COUNT), victims)
+
+
+def readers(daemon):
+    streams, statuses = daemon.unread(LONG, 256)
+    daemon.report(f"256 unread streams {statuses}")
+    for stream in streams:
+        stream.close()
+
+
+def documents(daemon):
+    without_window(daemon, SPECTRUM, daemon.headers(), 60, reset_every=15)
+
+
+def health(daemon):
+    calls(daemon, "Check", None, 40)
+    calls(daemon, "Watch", bytes(5), 60)
+
+
+ATTACKS = [pages, answers, bodies, counts, readers, documents, health]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--keys", action="store_true")
+    parser.add_argument("attack", nargs="*", metavar="ATTACK", help=", ".join(a.__name__ for a in ATTACKS))
+    arguments = parser.parse_intermixed_args()
+    for attack in ATTACKS:
+        if not arguments.attack or attack.__name__ in arguments.attack:
+            print(f"## {attack.__name__}", flush=True)
+            daemon = Daemon(arguments.program, arguments.keys)
+            try:
+                attack(daemon)
+            finally:
+                daemon.process.kill()
+                daemon.process.wait()
+
+
+if __name__ == "__main__":
+    main()

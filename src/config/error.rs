@@ -1,0 +1,73 @@
+//! What can be wrong with the configuration.
+
+use std::path::PathBuf;
+
+/// What is wrong with the configuration.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// The file cannot be read.
+    #[error("cannot read the configuration file {}: {error}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// The file is not TOML.
+    #[error("{source_name} is not valid TOML: {error}")]
+    Syntax {
+        /// The file.
+        source_name: String,
+        /// Where and why.
+        error: Box<toml::de::Error>,
+    },
+    /// A key that does not exist.
+    #[error(
+        "{source_name}: there is no setting `{key}`; {}",
+        suggestion(suggestions)
+    )]
+    UnknownKey {
+        /// Where it was set.
+        source_name: String,
+        /// The key, or the name of the variable.
+        key: String,
+        /// Keys that exist, the likeliest first.
+        suggestions: Vec<String>,
+    },
+    /// A value of the wrong type.
+    #[error("{source_name}: `{key}` is {value}; allowed: {allowed}")]
+    WrongType {
+        /// Where it was set.
+        source_name: String,
+        /// The key.
+        key: String,
+        /// The value.
+        value: String,
+        /// The type it must have.
+        allowed: &'static str,
+    },
+    /// A flag that is not of the form `key=value`.
+    #[error("--set {text}: expected key=value, for example limits.max_points=1000")]
+    Assignment {
+        /// The flag's value.
+        text: String,
+    },
+    /// A value that does not read as what it should be.
+    #[error("the merged configuration is not valid: {0}")]
+    Invalid(Box<toml::de::Error>),
+    /// Values out of range.
+    #[error("the merged configuration is not valid: {}", faults.join("; "))]
+    OutOfRange {
+        /// Each with its key, its value and what is allowed.
+        faults: Vec<String>,
+    },
+}
+
+fn suggestion(keys: &[String]) -> String {
+    match keys {
+        [] => "run `strew config` to see all".into(),
+        [key] => format!("did you mean `{key}`?"),
+        keys => format!("there are {}", keys.join(", ")),
+    }
+}

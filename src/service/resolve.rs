@@ -1,0 +1,76 @@
+//! Amounts of points on their tables, without a region.
+
+use strew_core::{ErrorKind, LeastDistance, Spacing};
+
+use super::{
+    Error,
+    cache::Ready,
+    query::{Amount, Parameter, Set, number, parameters},
+};
+
+/// What an amount is on its table; `None` for a count, which needs a region.
+pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>, Error> {
+    let fault = |parameter: &Parameter, value: f64, detail: String| {
+        set.fault(parameter.name, value, detail, parameter.allowed())
+    };
+    let wrong = |parameter, value: f64| {
+        move |error: strew_core::Error| fault(parameter, value, error.to_string())
+    };
+    match set.amount {
+        Amount::Density(density) => {
+            let spacing =
+                Spacing::from_density(density).map_err(wrong(&parameters::DENSITY, density))?;
+            Ok(Some((spacing, density)))
+        }
+        Amount::Spacing(value) => {
+            let spacing = Spacing::new(value).map_err(wrong(&parameters::SPACING, value))?;
+            Ok(Some((spacing, spacing.density())))
+        }
+        Amount::MinDistance(distance) => {
+            let least = ready.table.least_distance();
+            let spacing = least.spacing_for(distance, set.warp).map_err(|error| {
+                let detail = match error.kind() {
+                    ErrorKind::NoLeastDistance => {
+                        format!("profile `{}`: {}", set.entry.key.profile, error.problem())
+                    }
+                    _ => error.to_string(),
+                };
+                fault(&parameters::MIN_DISTANCE, distance, detail)
+            })?;
+            Ok(Some((spacing, spacing.density())))
+        }
+        Amount::Count(_) => Ok(None),
+    }
+}
+
+/// The distance that coordinates within ±`reach` keep.
+pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing, reach: f64) -> f64 {
+    let least = ready.table.least_distance();
+    let least = least.reported(spacing, set.warp, reach);
+    match set.amount {
+        // The spacing is a little wider than this takes.
+        Amount::MinDistance(distance) => least.min(distance),
+        _ => least,
+    }
+}
+
+/// Refuses a least distance that coordinates within ±`reach` do not keep.
+pub(super) fn check_reach(set: &Set, reach: f64) -> Result<(), Error> {
+    let Amount::MinDistance(distance) = set.amount else {
+        return Ok(());
+    };
+    let limit = LeastDistance::RANGE * distance;
+    if reach <= limit {
+        return Ok(());
+    }
+    let [far, near] = [reach, limit].map(number);
+    let detail = format!(
+        "coordinates up to {far} are rounded too coarsely to keep it: it holds within ±{near}"
+    );
+    let allowed = format!(
+        "coordinates within ±{near}, a distance of at least {}, chunks, whose coordinates are relative to \
+         their corner, or spacing",
+        number(reach / LeastDistance::RANGE)
+    );
+    Err(set.fault("min_distance", distance, detail, allowed))
+}
