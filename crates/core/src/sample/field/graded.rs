@@ -1,12 +1,8 @@
 //! The set in a field.
 
-use alloc::vec::Vec;
-
-use super::{Field, walk::walk};
+use super::Field;
 use crate::{
-    error::Error,
     sample::{
-        area::Region,
         lattice::{Keep, Lattice, Placement, Point, PointId},
         member::Member,
         near::Mask,
@@ -177,71 +173,6 @@ impl<F: Field> Graded<F> {
     pub(super) fn has(&self, point: Point) -> bool {
         let is_plain = self.mask.area.is_none() && self.mask.clear.is_empty();
         is_plain || self.mask.guards().permit(point.at())
-    }
-
-    /// The points in a box, in the order of their lattice addresses: bands of 1024 columns, in a band rows,
-    /// in a row columns.
-    ///
-    /// # Errors
-    /// [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the box reaches beyond the
-    /// [limit](crate::PointSet::limit).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).seed(7).in_field(|[x, _]: [f64; 2]| x / 40.0);
-    /// // The halves of a box have its points, each once.
-    /// let of = |from, to| Ok(set.within(Region::new([from, 0.0], [to, 40.0])?)?.len());
-    /// assert_eq!(of(0.0, 17.0)? + of(17.0, 40.0)?, of(0.0, 40.0)?);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn within(&self, region: Region) -> Result<Vec<Member>, Error> {
-        let mut found = Vec::new();
-        let seed = self.lattice.placement.seed;
-        self.for_each(region, |point, _| found.push(Member::new(point, seed)))?;
-        Ok(found)
-    }
-
-    /// The number of points in a box. They are visited, so it takes time in proportion to the points at
-    /// full density, where the field's bounds leave any.
-    ///
-    /// # Errors
-    /// As [`within`](Self::within).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).in_field(|_: [f64; 2]| 0.25);
-    /// let region = Region::new([0.0, 0.0], [40.0, 40.0])?;
-    /// assert_eq!(set.count(region)?, set.within(region)?.len() as u64);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn count(&self, region: Region) -> Result<u64, Error> {
-        let mut count = 0;
-        self.for_each(region, |_, _| count += 1)?;
-        Ok(count)
-    }
-
-    /// Calls `visit` with each point in a box and the share at its place at full density, in order.
-    ///
-    /// # Errors
-    /// As [`within`](Self::within).
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Region, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let set = PointSet::new(table).in_field(|[x, _]: [f64; 2]| x / 40.0);
-    /// set.for_each(Region::new([0.0, 0.0], [40.0, 9.0])?, |point, share| {
-    ///     // Where points are sparse, they can be drawn larger.
-    ///     println!("{} {}: {}", point.x, point.y, 1.0 / share.sqrt());
-    /// })?;
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn for_each(&self, region: Region, visit: impl FnMut(Point, f64)) -> Result<(), Error> {
-        walk(self, region, visit)
     }
 
     /// Spacing, seed and warp.

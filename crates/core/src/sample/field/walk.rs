@@ -5,6 +5,7 @@
 //! the box is visited in tiles, and bounds of the field over a tile leave out all of it, or the blocks
 //! that have left.
 
+use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{Field, Graded};
@@ -14,6 +15,7 @@ use crate::{
     sample::{
         area::{Area, Region},
         lattice::{BAND_WIDTH, Columns, Patch, Point, PointId, Span, clip_to_band, places},
+        member::Member,
         scope::Scope,
         sieve::Scale,
         stop::Stop,
@@ -30,6 +32,73 @@ struct Tile {
     columns: [Range<usize>; 4],
     /// The number of positions of which any point may be left.
     alive: usize,
+}
+
+impl<F: Field> Graded<F> {
+    /// The points in a box, in the order of their lattice addresses: bands of 1024 columns, in a band rows,
+    /// in a row columns.
+    ///
+    /// # Errors
+    /// [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the box reaches beyond the
+    /// [limit](crate::PointSet::limit).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7).in_field(|[x, _]: [f64; 2]| x / 40.0);
+    /// // The halves of a box have its points, each once.
+    /// let of = |from, to| Ok(set.within(Region::new([from, 0.0], [to, 40.0])?)?.len());
+    /// assert_eq!(of(0.0, 17.0)? + of(17.0, 40.0)?, of(0.0, 40.0)?);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn within(&self, region: Region) -> Result<Vec<Member>, Error> {
+        let mut found = Vec::new();
+        let seed = self.lattice.placement.seed;
+        self.for_each(region, |point, _| found.push(Member::new(point, seed)))?;
+        Ok(found)
+    }
+
+    /// The number of points in a box. They are visited, so it takes time in proportion to the points at
+    /// full density, where the field's bounds leave any.
+    ///
+    /// # Errors
+    /// As [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).in_field(|_: [f64; 2]| 0.25);
+    /// let region = Region::new([0.0, 0.0], [40.0, 40.0])?;
+    /// assert_eq!(set.count(region)?, set.within(region)?.len() as u64);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn count(&self, region: Region) -> Result<u64, Error> {
+        let mut count = 0;
+        self.for_each(region, |_, _| count += 1)?;
+        Ok(count)
+    }
+
+    /// Calls `visit` with each point in a box and the share at its place at full density, in order.
+    ///
+    /// # Errors
+    /// As [`within`](Self::within).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).in_field(|[x, _]: [f64; 2]| x / 40.0);
+    /// set.for_each(Region::new([0.0, 0.0], [40.0, 9.0])?, |point, share| {
+    ///     // Where points are sparse, they can be drawn larger.
+    ///     println!("{} {}: {}", point.x, point.y, 1.0 / share.sqrt());
+    /// })?;
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn for_each(&self, region: Region, visit: impl FnMut(Point, f64)) -> Result<(), Error> {
+        walk(self, region, visit)
+    }
 }
 
 /// Calls `visit` with the points in a box and their shares.
@@ -55,7 +124,7 @@ pub(super) fn walk<F: Field>(
     let moved = displacement_at_most(graded, 0.0);
     let is_masked = graded.mask.area.is_some() || !graded.mask.clear.is_empty();
     let mut listed = Columns::default();
-    let mut tiles: alloc::vec::Vec<Tile> = alloc::vec::Vec::new();
+    let mut tiles: Vec<Tile> = Vec::new();
     for band in columns.start.div_euclid(BAND_WIDTH)..=(columns.end - 1).div_euclid(BAND_WIDTH) {
         let columns = clip_to_band(band, &columns);
         if columns.is_empty() {
