@@ -14,7 +14,7 @@ use super::{
     health::{self, Readiness},
     metrics::{self, Metrics},
     panics,
-    reload::Reloader,
+    reload::{Reloader, Watched},
     shutdown::Hangups,
     spans::{Collector, Spans, SpansError},
     tls::{Tls, TlsError},
@@ -78,6 +78,9 @@ impl App {
     /// # Errors
     /// If a certificate, key or table is not valid or the system gives no threads.
     pub fn new(config: Config) -> Result<Self, ServeError> {
+        let watched = Watched::of(&config);
+        // Before anything is read: what changes from here on is noticed.
+        let first = watched.look();
         let tls = Tls::new(&config.tls)?;
         let collector = Collector::new(&config.telemetry)?;
         let folder = config.tables.folder();
@@ -94,7 +97,7 @@ impl App {
             service.clone(),
             gate.clone(),
             tls.clone(),
-            folder.map(Into::into),
+            (watched, first),
             metrics.clone(),
         );
         Ok(Self {

@@ -1,4 +1,4 @@
-//! What watched files contain.
+//! The files that are watched, and what they contain.
 
 use std::{
     fs,
@@ -7,27 +7,59 @@ use std::{
 
 use strew_core::table::MAX_FILE_BYTES;
 
-use crate::bounded_file;
+use crate::{bounded_file, config::Config};
 
-/// A hash of the names and contents of files. Errors of reading count as content.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Fingerprint(blake3::Hash);
+/// The files that are watched.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Watched {
+    /// The folder of tables.
+    folder: Option<PathBuf>,
+    /// Keys and certificates.
+    files: Vec<PathBuf>,
+}
 
-impl Fingerprint {
-    /// Reads the tables of a folder, and further files. Links are followed: orchestrators change what
-    /// a link points to.
-    pub(super) fn of(folder: Option<&Path>, mut files: Vec<PathBuf>) -> Self {
-        let listed = folder.and_then(|folder| fs::read_dir(folder).ok());
+impl Watched {
+    /// The files that the settings name.
+    pub fn of(config: &Config) -> Self {
+        let files = config.access.keys_file().into_iter();
+        Self {
+            folder: config.tables.folder().map(Into::into),
+            files: files.chain(config.tls.files()).map(Into::into).collect(),
+        }
+    }
+
+    /// The folder of tables, if there is one.
+    pub(super) fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
+    pub(super) const fn is_empty(&self) -> bool {
+        self.folder.is_none() && self.files.is_empty()
+    }
+
+    /// Reads all of them. Links are followed: orchestrators change what a link points to.
+    pub fn look(&self) -> Fingerprint {
+        let listed = self.folder().and_then(|folder| fs::read_dir(folder).ok());
         let tables = listed.into_iter().flatten().filter_map(|file| {
             let path = file.ok()?.path();
             let is_table = path.extension().is_some_and(|e| e == "strew");
             is_table.then_some(path)
         });
-        files.extend(tables);
+        let mut files: Vec<PathBuf> = tables.chain(self.files.iter().cloned()).collect();
         files.sort();
+        Fingerprint::of(&files)
+    }
+}
+
+/// A hash of the names and contents of files. Errors of reading count as content.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fingerprint(blake3::Hash);
+
+impl Fingerprint {
+    fn of(files: &[PathBuf]) -> Self {
         let mut hasher = blake3::Hasher::new();
         for path in files {
-            let content = bounded_file::read(&path, MAX_FILE_BYTES);
+            let content = bounded_file::read(path, MAX_FILE_BYTES);
             let content = content.unwrap_or_else(|error| error.to_string().into_bytes());
             for part in [path.as_os_str().as_encoded_bytes(), &content] {
                 hasher.update(&(part.len() as u64).to_le_bytes());
@@ -52,7 +84,11 @@ mod tests {
             let file = fs::File::options().write(true).open(&path).expect("there");
             file.set_modified(then).expect("settable");
         };
-        let look = || Fingerprint::of(Some(folder.path()), vec![folder.path().join("keys.toml")]);
+        let watched = Watched {
+            folder: Some(folder.path().into()),
+            files: vec![folder.path().join("keys.toml")],
+        };
+        let look = || watched.look();
         let none = look();
         assert_eq!(look(), none);
         write("one");
