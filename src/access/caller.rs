@@ -51,6 +51,14 @@ impl Drop for Place {
 }
 
 impl Caller {
+    /// Who sends a request: the gate notes it there.
+    ///
+    /// # Errors
+    /// [`Denied::NoKey`] for a request that did not pass the gate.
+    pub fn of(extensions: &http::Extensions) -> Result<Self, Denied> {
+        extensions.get::<Self>().cloned().ok_or(Denied::NoKey)
+    }
+
     /// Who came in where only administrators come in.
     #[must_use]
     pub fn admin() -> Self {

@@ -127,10 +127,9 @@ impl Points {
     }
 }
 
-/// Who asks: every request that has been let in says so.
 fn caller<T>(request: &Request<T>) -> Result<Caller, Status> {
-    let caller = request.extensions().get::<Caller>().cloned();
-    caller.ok_or_else(|| status::status(&Error::Internal("nobody has been let in")))
+    let caller = Caller::of(request.extensions());
+    caller.map_err(|denied| status::status(&denied.into()))
 }
 
 /// The query of a request, which must be there.

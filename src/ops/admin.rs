@@ -2,18 +2,16 @@
 
 use std::sync::Arc;
 
-use axum::{
-    body::Body,
-    extract::State,
-    response::{IntoResponse as _, Response},
-    routing,
-};
-use http::{HeaderValue, Method, header};
+use axum::{extract::State, response::Response, routing};
+use http::Method;
 
 use super::reload::{Cause, Done, Reloader};
 use crate::{
     access::Caller,
-    rest::api::{Answer, Endpoint, Operation, Tag},
+    rest::{
+        api::{Answer, Endpoint, Operation, Tag},
+        json,
+    },
     service::{Error, Kind},
 };
 
@@ -48,9 +46,5 @@ pub(super) fn endpoint(reloader: Arc<Reloader>) -> Endpoint {
 async fn reload(State(reloader): State<Arc<Reloader>>, caller: Caller) -> Result<Response, Error> {
     caller.must_be_admin()?;
     let reload = reloader.reload(Cause::Request).await?;
-    let mut body =
-        serde_json::to_vec(&reload).map_err(|_| Error::Internal("the answer cannot be written"))?;
-    body.push(b'\n');
-    let json = HeaderValue::from_static("application/json");
-    Ok(([(header::CONTENT_TYPE, json)], Body::from(body)).into_response())
+    json(&reload)
 }

@@ -33,6 +33,7 @@ use http::StatusCode;
 
 use crate::service::{Error, Service};
 use api::Endpoint;
+pub use document::json;
 pub use finish::finished;
 use problem::Problem;
 

@@ -7,8 +7,8 @@ use strew_core::{Area, PointSet, Region, Spacing, Warp, server};
 use super::{
     Lane, Placed, Planned, PlannedSet,
     cache::Ready,
-    query::{Amount, Nearest, Query, Set},
-    resolve::resolve,
+    query::{Nearest, Query, Set},
+    resolve::{Resolved, resolve},
     single::MOST_WITHIN,
 };
 
@@ -60,16 +60,14 @@ pub(super) fn lane(query: &Query, tables: &[Ready]) -> Lane {
 /// What planning a set takes, in rows of a warped set.
 fn planning(query: &Query, set: &Set, ready: &Ready) -> f64 {
     let bounds = query.region.bbox();
-    let (spacing, counts) = match set.amount {
-        Amount::Count(count) => {
+    let (spacing, counts) = match resolve(set, ready) {
+        Err(_) => return 0.0,
+        Ok(Resolved::Known(spacing, _)) => (Some(spacing), 1.0),
+        Ok(Resolved::Count(count)) => {
             let [min_x, min_y, max_x, max_y] = bounds;
             let area = (max_x - min_x) * (max_y - min_y);
             let guess = (area * set.keep.get() / count.max(1) as f64).sqrt();
             (Spacing::new(guess).ok(), COUNTS)
-        }
-        _ => {
-            let resolved = resolve(set, ready).ok().flatten();
-            (resolved.map(|(spacing, _)| spacing), 1.0)
         }
     };
     let Some(spacing) = spacing else { return 0.0 };

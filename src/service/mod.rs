@@ -325,10 +325,7 @@ impl Service {
     pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
         let mut whole = Bytes::new();
         for block in Recorded::new(answer) {
-            let block = block.map_err(|error| {
-                tracing::error!(%error, "an answer cannot be made");
-                Error::Internal("the answer cannot be encoded")
-            })?;
+            let block = block?;
             whole = match (whole.is_empty(), block.is_empty()) {
                 (true, _) => block,
                 (false, true) => whole,
