@@ -146,6 +146,10 @@ impl Reloader {
     /// Reloads on signals and changes until it is dropped. Without `every`, changes are not looked for.
     pub async fn watch(&self, mut hangups: Option<Hangups>, every: Option<Duration>) {
         let mut seen = self.look().await.ok();
+        if every.is_some() {
+            // What has changed between the start and that look would stay unseen.
+            self.read_again(Cause::Change).await;
+        }
         loop {
             let cause = tokio::select! {
                 () = heard(&mut hangups) => Cause::Signal,
@@ -162,9 +166,13 @@ impl Reloader {
                 continue;
             }
             seen = now;
-            if let Err(error) = self.reload(cause).await {
-                tracing::error!(%error, "files were not read again");
-            }
+            self.read_again(cause).await;
+        }
+    }
+
+    async fn read_again(&self, cause: Cause) {
+        if let Err(error) = self.reload(cause).await {
+            tracing::error!(%error, "files were not read again");
         }
     }
 
@@ -235,7 +243,9 @@ async fn wait(every: Option<Duration>) {
 fn differs(before: &Done, now: &Done) -> bool {
     let tables = &now.tables;
     let has_changed = !tables.loaded.is_empty() || !tables.removed.is_empty();
-    has_changed || tables.refused != before.tables.refused || now.keys != before.keys
+    // The first time, keys are those of the start.
+    let has_new_keys = before.keys.is_some() && now.keys != before.keys;
+    has_changed || tables.refused != before.tables.refused || has_new_keys
 }
 
 fn log(cause: Cause, done: &Done, metrics: &Metrics) {
