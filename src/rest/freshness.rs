@@ -9,13 +9,14 @@ use http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use serde::Serialize;
 use strew_core::ALGORITHM_VERSION;
 
-use super::coding::Coding;
+use super::coding::{Coding, Decided};
 use crate::service::Error;
 
 /// What is known of an answer before it is made.
 #[derive(Clone, Debug)]
 pub(super) struct Freshness {
     tag: HeaderValue,
+    coding: Option<Coding>,
     pinned: bool,
     negotiated: bool,
 }
@@ -53,9 +54,15 @@ impl Freshness {
         let tag = format!("\"{}{suffix}\"", &hash[..32]);
         Self {
             tag: HeaderValue::from_str(&tag).unwrap_or(HeaderValue::from_static("\"\"")),
+            coding,
             pinned: false,
             negotiated: false,
         }
+    }
+
+    /// The coding of the answer, which its tag says.
+    pub(super) const fn coding(&self) -> Option<Coding> {
+        self.coding
     }
 
     /// Says that `Accept` had a say in the content type.
@@ -111,6 +118,7 @@ impl Freshness {
     pub(super) fn stamp(&self, response: &mut Response) {
         let tag = self.tag.clone();
         response.headers_mut().insert(header::ETAG, tag);
+        response.extensions_mut().insert(Decided(self.coding));
         if self.negotiated {
             vary(response.headers_mut(), "accept");
         }

@@ -42,14 +42,22 @@ const PLAIN: f64 = 0.1;
 /// Blocks for which more points than this are considered are made in the lane for long work.
 const SHORT_BLOCK: f64 = 2e7;
 
-/// The lane in which a query is planned.
-pub(super) fn lane(query: &Query, tables: &[Ready]) -> Lane {
+/// What planning a query takes, in rows of warped sets. Sets with more than `most` rows take none:
+/// they are refused.
+pub(super) fn planning(query: &Query, tables: &[Ready], most: u64) -> f64 {
     // With a cursor nothing is counted.
     if query.window.cursor.is_some() {
-        return Lane::Short;
+        return 0.0;
     }
     let sets = query.sets.iter().zip(tables);
-    let rows: f64 = sets.map(|(set, ready)| planning(query, set, ready)).sum();
+    let rows = sets.map(|(set, ready)| counted(query, set, ready));
+    rows.filter(|(rows, _)| *rows <= most as f64)
+        .map(|(rows, weight)| rows * weight)
+        .sum()
+}
+
+/// The lane in which something is planned that takes this many rows.
+pub(super) fn lane(rows: f64) -> Lane {
     if rows > SHORT_ROWS {
         Lane::Long
     } else {
@@ -57,8 +65,8 @@ pub(super) fn lane(query: &Query, tables: &[Ready]) -> Lane {
     }
 }
 
-/// What planning a set takes, in rows of a warped set.
-fn planning(query: &Query, set: &Set, ready: &Ready) -> f64 {
+/// The rows that are counted to plan a set, and how much of a row of a warped set each takes.
+fn counted(query: &Query, set: &Set, ready: &Ready) -> (f64, f64) {
     let bounds = query.region.bbox();
     let (spacing, counts) = match resolve(set, ready) {
         Err(_) => return 0.0,
@@ -70,7 +78,9 @@ fn planning(query: &Query, set: &Set, ready: &Ready) -> f64 {
             (Spacing::new(guess).ok(), COUNTS)
         }
     };
-    let Some(spacing) = spacing else { return 0.0 };
+    let Some(spacing) = spacing else {
+        return (0.0, 0.0);
+    };
     let selection = Selection {
         set: PointSet::new(ready.table.clone()).placed(set.placement(spacing)),
         area: set.area(&query.region),
@@ -80,7 +90,7 @@ fn planning(query: &Query, set: &Set, ready: &Ready) -> f64 {
     let weight = if is_plain { PLAIN } else { 1.0 };
     // Seeking an offset counts again.
     let seeks = 1.0 + f64::from(u8::from(query.window.offset > 0));
-    rows_and_edges(&selection) * weight * counts * seeks
+    (rows_and_edges(&selection) * counts, weight * seeks)
 }
 
 /// The lane in which the blocks of an answer are made: points that are thinned out take as long as
@@ -133,12 +143,17 @@ impl Neighbors {
 }
 
 /// The points that are considered to make those of a plan: with `keep`, those that are thinned out,
-/// too.
+/// too, also after the last one.
 #[must_use]
 pub fn considered(planned: &Planned) -> u128 {
+    let bounds = planned.query.region.bounds;
+    let [width, height] = sides(bounds);
+    let considered = |(set, planned): (&Set, &PlannedSet)| {
+        let count = planned.plan.count() as f64;
+        let most = width * height * planned.spacing.density();
+        ((count + 1.0) / set.keep.get() - 1.0).min(most).max(count)
+    };
     let sets = planned.query.sets.iter().zip(&planned.sets);
-    let considered =
-        |(set, planned): (&Set, &PlannedSet)| planned.plan.count() as f64 / set.keep.get();
     let all: f64 = sets.map(considered).sum();
     all.round() as u128
 }

@@ -162,8 +162,9 @@ impl Service {
         picture: Option<u32>,
     ) -> Result<(Permit, Planned), Error> {
         let permit = self.admit(caller, picture)?;
-        let planned = self.plan(caller, query).await?;
-        caller.charge(considered(&planned))?;
+        let (planned, charged) = self.charged(caller, query).await?;
+        self.check_points(caller, &planned)?;
+        caller.charge(considered(&planned), charged)?;
         Ok((permit, planned))
     }
 
@@ -182,12 +183,20 @@ impl Service {
         self.own_budget().hold(bytes)
     }
 
-    /// Plans a query on the workers, whatever it counts.
+    /// Plans a query on the workers, whatever it counts. Charges the rows that are counted one by one.
     ///
     /// # Errors
     /// [`Error::Invalid`] for a region out of reach or an amount that cannot be had,
-    /// [`Error::TooManyRows`] if counting would take too long.
-    pub async fn count(&self, query: Query) -> Result<Planned, Error> {
+    /// [`Error::TooManyRows`] if counting would take too long, and [`Error::Denied`] if the caller's
+    /// rate does not allow it.
+    pub async fn count(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
+        let (planned, _) = self.charged(caller, query).await?;
+        Ok(planned)
+    }
+
+    /// Plans a query. Returns the plan and what was charged for it.
+    async fn charged(&self, caller: &Caller, query: Query) -> Result<(Planned, u128), Error> {
+        let mut charged = 0;
         let mut tables = vec![];
         for set in &*query.sets {
             tables.push(self.samplers.get(&set.entry, &self.workers).await?);
@@ -197,12 +206,21 @@ impl Service {
             Planned::new(query, &tables, &self.limits)?
         } else {
             let limits = self.limits.clone();
-            let lane = effort::lane(&query, &tables);
+            let rows = effort::planning(&query, &tables, limits.max_rows);
+            charged = rows as u128;
+            // Before the work, which is done even if the answer is refused.
+            if charged > 0 {
+                caller.charge(charged, 0)?;
+            }
+            let lane = effort::lane(rows);
             let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
             self.workers.take_turn(lane, plan).await??
         };
         tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
-        Ok(planned)
+        if let Some(record) = Record::current() {
+            record.take_lane(effort::block_lane(&planned));
+        }
+        Ok((planned, charged))
     }
 
     /// The right of a caller to start one more stream; a picture of that size is held whole.
@@ -228,16 +246,19 @@ impl Service {
     /// # Errors
     /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
     pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
-        let planned = self.count(query).await?;
-        if let Some(record) = Record::current() {
-            record.take_lane(effort::block_lane(&planned));
-        }
+        let planned = self.count(caller, query).await?;
+        self.check_points(caller, &planned)?;
+        Ok(planned)
+    }
+
+    /// Refuses more points than a caller may have.
+    fn check_points(&self, caller: &Caller, planned: &Planned) -> Result<(), Error> {
         let limit = caller.max_points(self.limits.max_points);
         let count = planned.count();
         if count > u128::from(limit) {
             return Err(Error::TooManyPoints { count, limit });
         }
-        Ok(planned)
+        Ok(())
     }
 
     /// The query in parts; see [`Planned::split`].
@@ -303,7 +324,9 @@ impl Service {
         let search = move |_: &Stop| {
             let _held = budget.hold(effort.bytes)?;
             let found = placed.nearest(nearest)?;
-            caller.charge(found.len() as u128)?;
+            // Those that are thinned out take as long to find.
+            let considered = found.len() as f64 / placed.set.keep.get();
+            caller.charge(considered.round() as u128, 0)?;
             answer(&placed, found)
         };
         self.workers.take_turn(effort.lane, search).await?
