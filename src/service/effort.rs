@@ -69,7 +69,7 @@ pub(super) fn lane(rows: f64) -> Lane {
 fn counted(query: &Query, set: &Set, ready: &Ready) -> (f64, f64) {
     let bounds = query.region.bbox();
     let (spacing, counts) = match resolve(set, ready) {
-        Err(_) => return 0.0,
+        Err(_) => return (0.0, 0.0),
         Ok(Resolved::Known(spacing, _)) => (Some(spacing), 1.0),
         Ok(Resolved::Count(count)) => {
             let [min_x, min_y, max_x, max_y] = bounds;
