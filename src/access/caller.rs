@@ -51,12 +51,12 @@ impl Drop for Place {
 }
 
 impl Caller {
-    /// Who sends a request: the gate notes it there.
+    /// The caller that the gate noted.
     ///
     /// # Errors
     /// [`Denied::NoKey`] for a request that did not pass the gate.
-    pub fn of(extensions: &http::Extensions) -> Result<Self, Denied> {
-        extensions.get::<Self>().cloned().ok_or(Denied::NoKey)
+    pub fn noted(noted: Option<&Self>) -> Result<Self, Denied> {
+        noted.cloned().ok_or(Denied::NoKey)
     }
 
     /// Who came in where only administrators come in.

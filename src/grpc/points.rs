@@ -133,7 +133,7 @@ impl Points {
 }
 
 fn caller<T>(request: &Request<T>) -> Result<Caller, Status> {
-    let caller = Caller::of(request.extensions());
+    let caller = Caller::noted(request.extensions().get());
     caller.map_err(|denied| status::status(&denied.into()))
 }
 

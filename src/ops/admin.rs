@@ -1,4 +1,4 @@
-//! What only administrators may ask for: `POST /v1/tables:reload`.
+//! The path for administrators only: `POST /v1/tables:reload`.
 
 use std::sync::Arc;
 
@@ -22,15 +22,15 @@ pub(super) fn endpoint(reloader: Arc<Reloader>) -> Endpoint {
         id: "reloadTables",
         summary: "Read tables and keys again",
         about: "For administrators: takes a key with admin = true, or the address of admin.listen. \
-                What is in order is served from then on; each file that is not is refused, and what \
-                it held serves on. Answers under way end on the tables they began with.",
+                Valid files are served from then on. An invalid file is refused, and its previous \
+                content stays in use. Current answers are completed from the tables they began with.",
         tag: Tag::Operations,
         path_parameters: &[],
         parameters: &[],
         body: None,
         answers: vec![Answer {
             status: 200,
-            about: "What came of it.",
+            about: "The result.",
             headers: vec![],
             contents: vec![("application/json", |generator| {
                 generator.subschema_for::<Done>()

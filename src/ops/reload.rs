@@ -265,7 +265,7 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
             cause,
             source = refusal.source,
             serving = refusal.serving,
-            "refused, what was loaded serves on: {}",
+            "refused; the loaded one stays in use: {}",
             refusal.detail
         );
     }

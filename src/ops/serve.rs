@@ -23,7 +23,7 @@ use crate::{
     access::{Gate, KeysError},
     config::{self, Config},
     grpc, rest,
-    service::{Catalog, Service, Workers, catalog::CatalogError},
+    service::{Catalog, PresetError, Presets, Service, Workers, catalog::CatalogError},
 };
 
 /// Why the daemon cannot start or go on.
@@ -45,6 +45,9 @@ pub enum ServeError {
     /// The keys cannot be used.
     #[error(transparent)]
     Keys(#[from] KeysError),
+    /// A preset cannot be used.
+    #[error(transparent)]
+    Presets(#[from] PresetError),
     /// Spans cannot be sent.
     #[error(transparent)]
     Spans(#[from] SpansError),
@@ -87,7 +90,9 @@ impl App {
         let catalog = Catalog::load(config.tables.embedded, folder)?;
         let workers = Workers::new(config.workers.threads)?;
         let metrics = Metrics::default();
-        let service = Arc::new(Service::new(catalog, config.limits.clone(), workers));
+        let presets = Presets::read(&config.presets, &catalog, config.limits.max_vertices)?;
+        let service = Service::new(catalog, config.limits.clone(), workers);
+        let service = Arc::new(service.with_presets(presets));
         let gate = Arc::new(Gate::new(
             config.access.clone(),
             &config.rate,

@@ -217,7 +217,11 @@ pub(super) fn freshness(
 ) -> Freshness {
     let sets = query.sets.iter();
     let digests: Vec<&str> = sets.map(|set| set.entry.digest.as_str()).collect();
-    let made_of = (digests, service.limits().max_points);
+    let made_of = (
+        digests,
+        service.limits().max_points,
+        query.preset.as_deref(),
+    );
     Freshness::of(&context.uri, &context.headers, content_type, &made_of).pinned(query.is_pinned())
 }
 

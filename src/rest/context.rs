@@ -56,6 +56,6 @@ impl<S: Sync> FromRequestParts<S> for Caller {
     type Rejection = Error;
 
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Error> {
-        Ok(Self::of(&parts.extensions)?)
+        Ok(Self::noted(parts.extensions.get())?)
     }
 }

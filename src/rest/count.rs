@@ -94,7 +94,7 @@ async fn post(
     Whole(body): Whole,
 ) -> Result<Response, Error> {
     context.no_parameters()?;
-    let (_, query, _) = body::query(&service, body, groups::SET).await?;
+    let (_, query, _) = body::query(&service, body, groups::COUNTED).await?;
     counted(&service, &context, query).await
 }
 

@@ -9,7 +9,10 @@ use http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use serde::Serialize;
 use strew_core::ALGORITHM_VERSION;
 
-use super::coding::{Coding, Decided};
+use super::{
+    coding::{Coding, Decided},
+    vary,
+};
 use crate::service::Error;
 
 /// What is known of an answer before it is made.
@@ -120,7 +123,7 @@ impl Freshness {
         response.headers_mut().insert(header::ETAG, tag);
         response.extensions_mut().insert(Decided(self.coding));
         if self.negotiated {
-            vary(response.headers_mut(), "accept");
+            vary::on(response.headers_mut(), "accept");
         }
         if self.pinned {
             response.extensions_mut().insert(Pinned);
@@ -165,18 +168,6 @@ pub(super) fn keep(response: &mut Response, seconds: u32, is_private: bool) {
         HeaderValue::from_static("no-store")
     };
     headers.insert(header::CACHE_CONTROL, value);
-}
-
-/// Says that an answer would be another one with another header of that name.
-pub(super) fn vary(headers: &mut HeaderMap, name: &'static str) {
-    let joined = match headers.get(header::VARY).map(HeaderValue::to_str) {
-        Some(Ok(before)) => HeaderValue::from_str(&format!("{before}, {name}")).ok(),
-        _ => None,
-    };
-    headers.insert(
-        header::VARY,
-        joined.unwrap_or(HeaderValue::from_static(name)),
-    );
 }
 
 #[cfg(test)]

@@ -19,12 +19,14 @@ mod openapi;
 mod page;
 mod points;
 mod portrait;
+mod presets;
 mod problem;
 mod profiles;
 mod quality;
 mod query;
 mod single;
 mod split;
+mod vary;
 
 use std::sync::Arc;
 
@@ -48,6 +50,7 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         single::by_id(service.clone()),
         single::nearest(service.clone()),
         profiles::endpoint(service.clone()),
+        presets::endpoint(service.clone()),
         portrait::endpoint(service.clone()),
         portrait::picture(service.clone()),
     ]

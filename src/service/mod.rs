@@ -17,6 +17,7 @@ mod planned;
 mod planned_set;
 mod planner;
 mod portrait;
+mod presets;
 pub mod query;
 pub mod record;
 mod resolve;
@@ -43,6 +44,7 @@ pub use lane::Lane;
 pub use planned::{Placed, Planned};
 pub use planned_set::PlannedSet;
 pub use portrait::Portrait;
+pub use presets::{PresetError, Presets};
 pub use query::{Draft, Nearest, Query, Set, Token};
 pub use record::Record;
 pub use single::Found;
@@ -60,6 +62,7 @@ use record::Recorded;
 #[derive(Debug)]
 pub struct Service {
     catalog: ArcSwap<Catalog>,
+    presets: Presets,
     limits: Limits,
     samplers: Samplers,
     portraits: Portraits,
@@ -78,9 +81,22 @@ impl Service {
             streams: Arc::new(Streams::new(limits.max_streams)),
             budget: Budget::new(limits.max_bytes_in_flight),
             catalog: ArcSwap::from_pointee(catalog),
+            presets: Presets::default(),
             limits,
             workers,
         }
+    }
+
+    /// The service with presets.
+    #[must_use]
+    pub fn with_presets(self, presets: Presets) -> Self {
+        Self { presets, ..self }
+    }
+
+    /// The presets.
+    #[must_use]
+    pub const fn presets(&self) -> &Presets {
+        &self.presets
     }
 
     /// The tables that are loaded now. A query holds on to those that it was checked against.
@@ -139,7 +155,9 @@ impl Service {
     /// # Errors
     /// As [`Draft::check`], and [`Error::Invalid`] for a format that is for files only.
     pub fn check(&self, draft: &Draft) -> Result<(Query, Options), Error> {
-        let (query, options) = draft.check(&self.catalog(), self.limits.max_vertices)?;
+        let (draft, preset) = self.presets.fill(draft)?;
+        let (mut query, options) = draft.check(&self.catalog(), self.limits.max_vertices)?;
+        query.preset = preset;
         match options.encoding {
             Some(encoding) if !encoding.is_streamed() => {
                 let format = &query::parameters::FORMAT;

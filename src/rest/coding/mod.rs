@@ -15,7 +15,7 @@ use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderValue, header};
 
-use super::freshness;
+use super::vary;
 use crate::service::{Error, Held, Lane, Service, Workers};
 pub(super) use choice::Coding;
 pub(super) use encoder::Encoder;
@@ -34,7 +34,7 @@ pub(super) async fn apply(
     let decided = response.extensions_mut().remove::<Decided>();
     let headers = response.headers_mut();
     // Also of answers that stay plain: with other headers they would not.
-    freshness::vary(headers, "accept-encoding");
+    vary::on(headers, "accept-encoding");
     if headers.contains_key(header::CONTENT_ENCODING) {
         return Ok(response);
     }

@@ -37,6 +37,7 @@ pub use echo::{Resolved, ResolvedSet};
 pub use faults::{Checked, Faults, Together};
 pub use json::{RegionSchema, read_body, read_region};
 pub use nearest::Nearest;
+pub(super) use parameter::unknown;
 pub use parameter::{Group, Parameter, groups, of};
 pub use region::{QueryRegion, RegionDraft, Rings, ShapeDraft};
 pub use shape::Shape;
@@ -67,6 +68,8 @@ pub struct Query {
     pub is_layered: bool,
     /// Which of the points, in their order.
     pub window: Window,
+    /// The preset that a part of it comes from, as JSON.
+    pub preset: Option<Arc<str>>,
 }
 
 /// Which part of the points is asked for, in their order.
@@ -109,10 +112,11 @@ pub struct Set {
 }
 
 impl Query {
-    /// Whether it names the digests of all of its tables, so that its answer never changes.
+    /// Whether it holds all that its answer depends on: it names the digests of all of its tables, and no
+    /// preset.
     #[must_use]
     pub fn is_pinned(&self) -> bool {
-        self.sets.iter().all(|set| set.pin.is_some())
+        self.preset.is_none() && self.sets.iter().all(|set| set.pin.is_some())
     }
 
     /// Whether planning it and making its points takes no longer than handing it to another
