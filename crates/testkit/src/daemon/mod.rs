@@ -59,6 +59,12 @@ impl Launcher {
         self
     }
 
+    /// Adds a file of settings.
+    pub fn config(mut self, file: &Path) -> Self {
+        self.command.arg("--config").arg(file);
+        self
+    }
+
     /// Adds settings, each as `key=value`. The last one of a key wins.
     pub fn settings(mut self, settings: &[&str]) -> Self {
         for setting in settings {
