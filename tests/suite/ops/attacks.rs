@@ -199,7 +199,7 @@ async fn all_attacks_together_stay_within_the_documented_memory() {
         let _ = stream.read(&mut [0; 12]);
     }
     connections += unread.len();
-    let bound = (LIMIT + CACHE) * 115 / 100 + program + (24 << 10) * connections as u64;
+    let bound = (LIMIT + CACHE) * 115 / 100 + program + (32 << 10) * connections as u64;
     let peak = daemon.memory_kib("VmHWM") << 10;
     println!("all attacks: {peak} bytes, documented {bound}");
     assert!(peak < bound, "{peak} bytes, documented {bound}");
