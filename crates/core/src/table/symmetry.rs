@@ -9,7 +9,7 @@
 
 use alloc::{sync::Arc, vec::Vec};
 
-use super::{Displacement, Ladder, Order, Table, ladder::Stage};
+use super::{Displacement, Ladder, Order, Rung, Table, ladder::Stage};
 use crate::once::Once;
 
 /// A symmetry of the square: an exchange of the axes, if any, and then reflections along x and y.
@@ -45,7 +45,19 @@ impl Symmetry {
         if self.is_swapped { [y, x] } else { [x, y] }
     }
 
+    /// The vector of the table that is this one, turned.
+    #[inline(always)]
+    fn unturn(self, [x, y]: Displacement) -> Displacement {
+        let signed = |v: i32, is_reversed: bool| if is_reversed { -v } else { v };
+        let [x, y] = [
+            signed(x, self.is_reversed[0]),
+            signed(y, self.is_reversed[1]),
+        ];
+        if self.is_swapped { [y, x] } else { [x, y] }
+    }
+
     /// A vector of the table, turned.
+    #[inline(always)]
     fn turn(self, [x, y]: Displacement) -> Displacement {
         let [x, y] = if self.is_swapped { [y, x] } else { [x, y] };
         let signed = |v: i32, is_reversed: bool| if is_reversed { -v } else { v };
@@ -126,15 +138,6 @@ impl TurnedTable {
         &all[block_y * n..][..n]
     }
 
-    /// The vector of a block.
-    #[inline]
-    pub(crate) fn vector(&self, block: usize) -> Displacement {
-        match &self.turned {
-            Some(turned) => turned.vectors[block],
-            None => self.table.displacements()[block],
-        }
-    }
-
     /// The order in which blocks leave.
     #[inline]
     pub(crate) fn order(&self) -> &Order {
@@ -150,6 +153,20 @@ impl TurnedTable {
         let full = self.table.displacements()[self.table.order().block(position)];
         self.symmetry
             .turn(ladder.displacement(stage, position, full))
+    }
+
+    /// The same for a block whose displacement in the full set and whose [rungs](Ladder::rungs) are known.
+    #[inline(always)]
+    pub(crate) fn moved_from(
+        &self,
+        ladder: &Ladder,
+        (stage, rungs): (Stage, Option<[Rung; 2]>),
+        position: usize,
+        full: Displacement,
+    ) -> Displacement {
+        let full = self.symmetry.unturn(full);
+        self.symmetry
+            .turn(ladder.displacement_by(stage, rungs, position, full))
     }
 
     /// The table as it is.

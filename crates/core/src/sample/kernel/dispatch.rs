@@ -43,6 +43,23 @@ pub(crate) fn compiled<T>(backend: Backend, work: impl FnOnce() -> T) -> T {
     }
 }
 
+/// A loop of plain code, too long to be inlined by itself. Implementations of `run` are inlined always.
+pub(crate) trait PlainLoop {
+    /// Runs all of it.
+    fn run(&mut self);
+}
+
+/// Runs a loop that is compiled for the backend's instructions.
+#[inline]
+pub(crate) fn compiled_loop(backend: Backend, work: &mut impl PlainLoop) {
+    match backend {
+        // SAFETY: `Backend::available` has found the instructions.
+        #[cfg(target_arch = "x86_64")]
+        Backend::Avx512 => unsafe { arch::avx512::compiled_loop(work) },
+        _ => work.run(),
+    }
+}
+
 /// Writes numbers one after another, as many as `out` has room for.
 pub(crate) fn write_numbers(numbers: impl Iterator<Item = f64>, out: &mut [f64]) {
     compiled(Backend::best(), || {

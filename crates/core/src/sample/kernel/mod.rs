@@ -41,7 +41,7 @@ mod singles;
 mod tests;
 
 pub use backend::Backend;
-pub(super) use dispatch::{compiled, write_numbers};
+pub(super) use dispatch::{PlainLoop, compiled, compiled_loop, write_numbers};
 pub use doubles::F64;
 pub use format::Format;
 pub(super) use format::{Geometry, Row};

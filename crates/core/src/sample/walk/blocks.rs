@@ -6,6 +6,8 @@ pub(super) mod graded;
 use alloc::{boxed::Box, sync::Arc, vec::Vec};
 use core::ops::Range;
 
+use graded::Known;
+
 use super::{
     template::{Check, Kept, Part, Template, Templates, displaced, sift, write_row},
     tile::{Tile, bands},
@@ -76,6 +78,8 @@ pub struct Blocks<F: Format> {
     flat: (Flat, Inside),
     /// The points of some rows in a field.
     graded: Option<Box<FieldRows>>,
+    /// The points of a small plan in a field, and the number of the next.
+    kept: Option<(Arc<[Known]>, usize)>,
 }
 
 /// The place of the next point in a band.
@@ -197,6 +201,7 @@ impl<F: Format> Blocks<F> {
             backend: Backend::best(),
             flat: Default::default(),
             graded: scope.lattice.grade.as_ref().map(|_| Box::default()),
+            kept: None,
             scope,
             window,
         }
@@ -238,7 +243,7 @@ impl<F: Format> Blocks<F> {
     pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
         let most = usize::try_from(self.left).map_or(out.len(), |left| left.min(out.len()));
         let out = &mut out[..most];
-        let mut filled = 0;
+        let mut filled = self.write_kept(out);
         while filled < out.len() {
             if self.has_found() {
                 filled += self.write_found(&mut out[filled..]);
@@ -287,7 +292,15 @@ impl<F: Format> Blocks<F> {
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         let window = self.window.filter(|window| window.count > 0)?;
-        let at = if let Some(next) = self.next_found() {
+        let at = if let Some((kept, next)) = &self.kept {
+            // After the last one, any later place.
+            let after = || {
+                kept.last()
+                    .map(|last| last.id())
+                    .map(|id| PointId { x: id.x + 1, ..id })
+            };
+            kept.get(*next).map(Known::id).or_else(after)?
+        } else if let Some(next) = self.next_found() {
             next
         } else if self.at.y == self.rows.end {
             PointId {
