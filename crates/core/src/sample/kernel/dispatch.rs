@@ -1,6 +1,9 @@
 //! Running a loop by a backend.
 
-use super::{Backend, arch, lanes::VectorLoop};
+use super::{
+    Backend, arch,
+    lanes::{PlainLoop, VectorLoop},
+};
 
 /// Runs a vector loop by a backend. Returns the number of items written; the caller's plain code writes
 /// the rest.
@@ -41,12 +44,6 @@ pub(crate) fn compiled<T>(backend: Backend, work: impl FnOnce() -> T) -> T {
         Backend::Avx512 => unsafe { arch::avx512::compiled(work) },
         _ => work(),
     }
-}
-
-/// A loop of plain code, too long to be inlined by itself. Implementations of `run` are inlined always.
-pub(crate) trait PlainLoop {
-    /// Runs all of it.
-    fn run(&mut self);
 }
 
 /// Runs a loop that is compiled for the backend's instructions.

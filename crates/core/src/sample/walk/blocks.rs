@@ -2,11 +2,13 @@
 //! in a field.
 
 pub(super) mod graded;
+mod sifting;
 
-use alloc::{boxed::Box, sync::Arc, vec::Vec};
+use alloc::{boxed::Box, sync::Arc};
 use core::ops::Range;
 
 use graded::Known;
+use sifting::Sifting;
 
 use super::{
     template::{Check, Kept, Part, Template, Templates, displaced, sift, write_row},
@@ -20,11 +22,10 @@ use crate::{
         field::FieldRows,
         kernel::{Backend, Format, Geometry, Row, compiled},
         lattice::{
-            BAND_WIDTH, Columns, Flat, Inside, Listed, Patch, PointId, PrefixCounts, Span,
-            clip_to_band, places,
+            BAND_WIDTH, Columns, Flat, Inside, Listed, Patch, PointId, Span, clip_to_band, places,
         },
         scope::{Corner, Scope},
-        sieve::{LocalSieve, Run, STRIP_ROWS, Scale},
+        sieve::Scale,
     },
 };
 
@@ -91,20 +92,6 @@ struct Place {
     done: usize,
     /// The lattice column where the current row begins, if it is the first of a window.
     from: Option<i64>,
-}
-
-/// The state of a walk through a sieve.
-#[derive(Clone, Debug)]
-struct Sifting {
-    /// The sieve for the band, and for the patch.
-    band: LocalSieve,
-    patch: LocalSieve,
-    /// Whether the sieve leaves out points of the current patch.
-    is_cut: bool,
-    /// The runs of the current row and those after it, up to `runs_end`.
-    runs: Vec<Run>,
-    runs_end: i64,
-    prefix: PrefixCounts,
 }
 
 impl Place {
@@ -185,14 +172,7 @@ impl<F: Format> Blocks<F> {
             at: Place::row(rows.end),
             rows,
             left: window.map_or(u128::MAX, |window| window.count),
-            sieve: scope.sieve.as_ref().map(|sieve| Sifting {
-                band: sieve.local(),
-                patch: sieve.local(),
-                is_cut: false,
-                runs: Vec::new(),
-                runs_end: i64::MIN,
-                prefix: PrefixCounts::default(),
-            }),
+            sieve: scope.sieve.as_ref().map(Sifting::new),
             columns: Columns::default(),
             inner: [const { 0..0 }; 4],
             listed: Listed::default(),
@@ -581,30 +561,5 @@ fn next_part<F: Format>(template: &Template<F>, done: usize, x: &Span) -> Part {
     Part {
         columns: done..end,
         check,
-    }
-}
-
-impl Sifting {
-    /// Aims at a patch. Returns whether none of its points pass.
-    fn next_patch(&mut self, rows: &Range<i64>, columns: &Range<i64>) -> bool {
-        self.patch.aim(self.band.area(), rows, columns);
-        self.patch.runs(rows.clone(), columns, &mut self.runs);
-        self.runs_end = rows.start;
-        self.is_cut = match self.runs.as_slice() {
-            [] => false,
-            // Such a patch lies inside the plan's box as well, and is filled like one.
-            [run] => !(run.passes && run.columns == *columns),
-            _ => true,
-        };
-        self.runs.is_empty()
-    }
-
-    /// Makes sure that the runs of row `y` are known. Returns whether no point of its strip passes.
-    fn next_strip(&mut self, y: i64, end: i64, columns: &Range<i64>) -> bool {
-        if y >= self.runs_end {
-            self.runs_end = end.min(y + STRIP_ROWS);
-            self.patch.runs(y..self.runs_end, columns, &mut self.runs);
-        }
-        self.runs.is_empty()
     }
 }

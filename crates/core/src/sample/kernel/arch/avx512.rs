@@ -2,10 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::super::{
-    dispatch::PlainLoop,
-    lanes::{Lanes, VectorLoop},
-};
+use super::super::lanes::{Lanes, PlainLoop, VectorLoop};
 use crate::sample::{
     lattice::Point,
     warp::{CELL_BITS, PatchShears},
