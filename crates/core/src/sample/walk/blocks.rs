@@ -7,6 +7,8 @@ pub(super) mod graded;
 use alloc::{boxed::Box, sync::Arc};
 use core::ops::Range;
 
+use graded::Known;
+
 use super::{
     place::Place,
     sifting::Sifting,
@@ -75,6 +77,8 @@ pub struct Blocks<F: Format> {
     flat: (Flat, Inside),
     /// The points of some rows in a field.
     graded: Option<Box<FieldRows>>,
+    /// The points of a small plan in a field, and the number of the next.
+    kept: Option<(Arc<[Known]>, usize)>,
 }
 
 impl<F: Format> Blocks<F> {
@@ -145,6 +149,7 @@ impl<F: Format> Blocks<F> {
             backend: Backend::best(),
             flat: Default::default(),
             graded: scope.lattice.grade.as_ref().map(|_| Box::default()),
+            kept: None,
             scope,
             window,
         }
@@ -186,7 +191,7 @@ impl<F: Format> Blocks<F> {
     pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
         let most = usize::try_from(self.left).map_or(out.len(), |left| left.min(out.len()));
         let out = &mut out[..most];
-        let mut filled = 0;
+        let mut filled = self.write_kept(out);
         while filled < out.len() {
             if self.has_found() {
                 filled += self.write_found(&mut out[filled..]);
@@ -235,7 +240,15 @@ impl<F: Format> Blocks<F> {
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         let window = self.window.filter(|window| window.count > 0)?;
-        let at = if let Some(next) = self.next_found() {
+        let at = if let Some((kept, next)) = &self.kept {
+            // After the last one, any later place.
+            let after = || {
+                kept.last()
+                    .map(|last| last.id())
+                    .map(|id| PointId { x: id.x + 1, ..id })
+            };
+            kept.get(*next).map(Known::id).or_else(after)?
+        } else if let Some(next) = self.next_found() {
             next
         } else if self.at.y == self.rows.end {
             PointId {

@@ -4,7 +4,7 @@ use alloc::{sync::Arc, vec::Vec};
 
 use super::{Blocks, Place};
 use crate::sample::{
-    field::{Source, empty_until},
+    field::{Found, Source, empty_until},
     kernel::{Format, Points, compiled},
     lattice::{BAND_WIDTH, PATCH_HEIGHT, PointId, clip_to_band},
     scope::Scope,
@@ -129,6 +129,66 @@ impl<F: Format> Blocks<F> {
     }
 }
 
+/// A point of a field and the patch it was found in.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Known {
+    origin: [i64; 2],
+    found: Found,
+}
+
+impl Known {
+    /// The address.
+    pub(crate) const fn id(&self) -> PointId {
+        let [x, y] = self.found.address();
+        PointId {
+            x: self.origin[0] + x,
+            y: self.origin[1] + y,
+        }
+    }
+}
+
+/// What is known of a field's points once they are counted.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Counted {
+    pub(crate) count: u128,
+    /// Places in their order.
+    pub(crate) marks: Arc<[Mark]>,
+    /// All of them, if they are few.
+    pub(crate) kept: Option<Arc<[Known]>>,
+}
+
+impl<F: Format> Blocks<F> {
+    /// The points of a window, which were kept when they were counted.
+    pub(crate) fn of_kept(scope: Arc<Scope>, window: Window, kept: Arc<[Known]>) -> Self {
+        let mut blocks = Self::new(scope, Some(window), 0..0, 0..0);
+        blocks.kept = Some((kept, window.offset as usize));
+        blocks
+    }
+
+    /// Writes the next of the points that were kept, as many as there is room for.
+    pub(super) fn write_kept(&mut self, out: &mut [F::Item]) -> usize {
+        let Some((kept, next)) = &mut self.kept else {
+            return 0;
+        };
+        let kept = kept.get(*next..).unwrap_or_default();
+        let (format, mut base, mut origin) = (&self.format, self.base, None);
+        for (out, Known { origin: own, found }) in out.iter_mut().zip(kept) {
+            if origin != Some(*own) {
+                (origin, base) = (Some(*own), format.base(*own));
+            }
+            let ([left, bottom], [x, y]) = (*own, found.address());
+            let column = format.column(base, found.place[0], left + x);
+            *out = format.item(base, column, found.place[1], bottom + y);
+        }
+        let number = kept.len().min(out.len());
+        *next += number;
+        number
+    }
+}
+
+/// The most points that are kept when they are counted: 96 KiB.
+const FEW: usize = 2048;
+
 /// The whole scope.
 const fn all(start: Option<PointId>) -> Window {
     Window {
@@ -141,9 +201,10 @@ const fn all(start: Option<PointId>) -> Window {
 
 /// The number of points of a scope in a field, and places in their order. Meaningless once the scope's stop
 /// flag is raised.
-pub(crate) fn count(scope: &Arc<Scope>) -> (u128, Vec<Mark>) {
+pub(crate) fn count(scope: &Arc<Scope>) -> Counted {
     let mut blocks = Blocks::<Points>::of_window(scope.clone(), all(None));
     let (mut count, mut marks) = (0, Vec::new());
+    let mut kept = Some(Vec::new());
     let (mut number, mut stride) = (0usize, 1);
     let mut patch = None;
     while !scope.stop.is_raised() {
@@ -172,9 +233,20 @@ pub(crate) fn count(scope: &Arc<Scope>) -> (u128, Vec<Mark>) {
             }
         }
         count += found as u128;
+        if count > FEW as u128 {
+            kept = None;
+        }
+        if let (Some(kept), Some(rows)) = (&mut kept, &blocks.graded) {
+            let all = rows.left().iter();
+            kept.extend(all.map(|&found| Known { origin, found }));
+        }
         blocks.pass(found);
     }
-    (count, marks)
+    Counted {
+        count,
+        marks: marks.into(),
+        kept: kept.map(Into::into),
+    }
 }
 
 /// The address of point number `k` of a scope in a field, from a place on before which `mark.before` points
