@@ -47,6 +47,7 @@ extern crate std;
 pub mod comparison;
 pub mod cookbook;
 mod error;
+pub mod field;
 pub mod map;
 mod once;
 pub mod pattern;
