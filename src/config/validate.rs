@@ -20,6 +20,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         telemetry,
         reload,
         tables: _,
+        fields: _,
     } = config;
     let mut faults = vec![];
     let mut within = |key: &str, value: f64, min: f64, max: f64| {

@@ -1,4 +1,4 @@
-//! Reading tables, keys and certificates again while the daemon serves: on SIGHUP, when files change, on
+//! Reading tables, fields, keys and certificates again while the daemon serves: on SIGHUP, when files change, on
 //! request.
 //!
 //! Files are polled, because notifications of changes do not come through network volumes and the
@@ -23,7 +23,12 @@ use tokio::sync::Mutex;
 use super::{metrics::Metrics, shutdown::Hangups, tls::Tls};
 use crate::{
     access::Gate,
-    service::{Error, Reload, Service, catalog::Refusal},
+    config::Fields,
+    service::{
+        Error, Reload, Service,
+        catalog::Refusal,
+        field::{self, Stamp},
+    },
 };
 use fingerprint::Fingerprint;
 
@@ -69,6 +74,7 @@ pub struct Reloader {
     gate: Arc<Gate>,
     tls: Option<Tls>,
     folder: Option<PathBuf>,
+    fields: Arc<Fields>,
     metrics: Metrics,
     /// Whether files are being read.
     is_reading: Arc<AtomicBool>,
@@ -77,12 +83,13 @@ pub struct Reloader {
 }
 
 impl Reloader {
-    /// For a service and its folder of tables, a gate with its keys, and certificates.
+    /// For a service with its folder of tables and its fields, a gate with its keys, and certificates.
     pub(super) fn new(
         service: Arc<Service>,
         gate: Arc<Gate>,
         tls: Option<Tls>,
         folder: Option<PathBuf>,
+        fields: Fields,
         metrics: Metrics,
     ) -> Self {
         Self {
@@ -90,6 +97,7 @@ impl Reloader {
             gate,
             tls,
             folder,
+            fields: Arc::new(fields),
             metrics,
             is_reading: Arc::default(),
             last: Mutex::default(),
@@ -99,7 +107,8 @@ impl Reloader {
     /// Whether there are files to watch.
     pub(super) fn has_files(&self) -> bool {
         let has_keys = self.gate.settings().keys_file().is_some();
-        has_keys || self.folder.is_some() || self.tls.is_some()
+        let has_fields = self.fields.folder().is_some() || !self.fields.named.is_empty();
+        has_keys || has_fields || self.folder.is_some() || self.tls.is_some()
     }
 
     /// Reads everything again and logs the result.
@@ -109,11 +118,12 @@ impl Reloader {
     pub async fn reload(&self, cause: Cause) -> Result<Done, Error> {
         let mut last = self.last.lock().await;
         let (service, gate, tls) = (self.service.clone(), self.gate.clone(), self.tls.clone());
-        let folder = self.folder.clone();
+        let (folder, fields) = (self.folder.clone(), self.fields.clone());
         let read = move || {
             let keys = gate.settings().has_keys().then(|| gate.reload());
             let certificates = tls.map(|tls| tls.reload());
-            (service.read_tables(folder.as_deref()), keys, certificates)
+            let tables = service.read_tables(folder.as_deref(), &fields);
+            (tables, keys, certificates)
         };
         let (tables, keys, certificates) = self.read(read).await?;
         let mut done = Done {
@@ -168,12 +178,16 @@ impl Reloader {
         }
     }
 
-    async fn look(&self) -> Result<Fingerprint, Error> {
+    async fn look(&self) -> Result<(Fingerprint, Stamp), Error> {
         let folder = self.folder.clone();
         let mut files: Vec<PathBuf> = vec![];
         files.extend(self.gate.settings().keys_file().map(Into::into));
         files.extend(self.tls.iter().flat_map(Tls::files));
-        let look = move || Fingerprint::of(folder.as_deref(), files);
+        let fields = self.fields.clone();
+        let look = move || {
+            let tables = Fingerprint::of(folder.as_deref(), files);
+            (tables, field::stamp(&fields))
+        };
         self.read(look).await
     }
 
@@ -234,7 +248,11 @@ async fn wait(every: Option<Duration>) {
 /// Whether a reload did or found anything that the one before did not.
 fn differs(before: &Done, now: &Done) -> bool {
     let tables = &now.tables;
-    let has_changed = !tables.loaded.is_empty() || !tables.removed.is_empty();
+    let fields = &tables.fields;
+    let lists = [&fields.loaded, &fields.removed];
+    let has_changed = !tables.loaded.is_empty()
+        || !tables.removed.is_empty()
+        || lists.iter().any(|list| !list.is_empty());
     has_changed || tables.refused != before.tables.refused || now.keys != before.keys
 }
 
@@ -261,6 +279,12 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
             digest = table.digest,
             "table removed: no file holds it any more"
         );
+    }
+    for name in &reload.fields.loaded {
+        tracing::info!(cause, name, "field loaded");
+    }
+    for name in &reload.fields.removed {
+        tracing::warn!(cause, name, "field removed: nothing describes it any more");
     }
     for refusal in &reload.refused {
         metrics.refused_tables().increment(1);

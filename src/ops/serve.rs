@@ -23,7 +23,11 @@ use crate::{
     access::{Gate, KeysError},
     config::{self, Config},
     grpc, rest,
-    service::{Catalog, Service, Workers, catalog::CatalogError},
+    service::{
+        Catalog, Service, Workers,
+        catalog::CatalogError,
+        field::{FieldError, Fields},
+    },
 };
 
 /// Why the daemon cannot start or go on.
@@ -33,6 +37,9 @@ pub enum ServeError {
     /// The tables cannot be loaded.
     #[error(transparent)]
     Catalog(#[from] CatalogError),
+    /// The fields cannot be loaded.
+    #[error(transparent)]
+    Fields(#[from] FieldError),
     /// No threads to work with.
     #[error("cannot start the workers: {0}")]
     Workers(#[from] rayon::ThreadPoolBuildError),
@@ -81,7 +88,8 @@ impl App {
         let tls = Tls::new(&config.tls)?;
         let collector = Collector::new(&config.telemetry)?;
         let folder = config.tables.folder();
-        let catalog = Catalog::load(config.tables.embedded, folder)?;
+        let fields = Fields::load(&config.fields)?;
+        let catalog = Catalog::load(config.tables.embedded, folder)?.with_fields(fields);
         let workers = Workers::new(config.workers.threads)?;
         let metrics = Metrics::default();
         let service = Arc::new(Service::new(catalog, config.limits.clone(), workers));
@@ -95,6 +103,7 @@ impl App {
             gate.clone(),
             tls.clone(),
             folder.map(Into::into),
+            config.fields.clone(),
             metrics.clone(),
         );
         Ok(Self {

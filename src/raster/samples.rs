@@ -24,6 +24,16 @@ impl Samples {
         }
     }
 
+    /// The bytes of a number.
+    #[must_use]
+    pub const fn width(&self) -> usize {
+        match self {
+            Self::U8(_) => 1,
+            Self::U16(_) => 2,
+            Self::F32(_) => 4,
+        }
+    }
+
     /// How many there are.
     #[must_use]
     pub const fn len(&self) -> usize {

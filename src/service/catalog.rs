@@ -24,7 +24,7 @@ use strew_core::{
 
 use strew_forge::Aim;
 
-use super::Error;
+use super::{Error, field::Fields};
 use crate::bounded_file;
 pub use reload::{Refusal, Reload};
 
@@ -228,6 +228,8 @@ pub struct Catalog {
     entries: BTreeMap<Key, Arc<Entry>>,
     /// The built-in ones, also where a file's table stands in the place of one.
     built_in: BTreeMap<Key, Arc<Entry>>,
+    /// The fields that queries may name.
+    fields: Arc<Fields>,
 }
 
 impl Catalog {
@@ -249,6 +251,19 @@ impl Catalog {
             catalog.add(files.into_iter().map(Entry::from_file))?;
         }
         Ok(catalog)
+    }
+
+    /// The same with these fields.
+    #[must_use]
+    pub fn with_fields(mut self, fields: Fields) -> Self {
+        self.fields = Arc::new(fields);
+        self
+    }
+
+    /// The fields that queries may name.
+    #[must_use]
+    pub fn fields(&self) -> &Fields {
+        &self.fields
     }
 
     /// Adds the tables of one place over what is there; no two of them may have the same key.

@@ -12,6 +12,7 @@ pub mod catalog;
 mod effort;
 pub mod encode;
 pub mod error;
+pub mod field;
 mod lane;
 mod planned;
 mod planned_set;
@@ -51,7 +52,7 @@ pub use workers::Workers;
 
 pub use crate::config::Limits;
 
-use crate::access::Caller;
+use crate::{access::Caller, config};
 use cache::{CacheState, Samplers};
 use portrait::Portraits;
 use record::Recorded;
@@ -89,11 +90,11 @@ impl Service {
         self.catalog.load_full()
     }
 
-    /// Reads the folder of tables again. A file that is not valid is refused, and the table that it
+    /// Reads the folders of tables and of fields again. A file that is not valid is refused, and what it
     /// held so far stays.
     #[must_use]
-    pub fn read_tables(&self, folder: Option<&Path>) -> (Catalog, Reload) {
-        self.catalog.load().reload(folder)
+    pub fn read_tables(&self, folder: Option<&Path>, fields: &config::Fields) -> (Catalog, Reload) {
+        self.catalog.load().reload(folder, fields)
     }
 
     /// Serves the tables that were read, all at once. Reloads come one after another.

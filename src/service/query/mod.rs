@@ -34,7 +34,7 @@ pub use amount::Amount;
 pub use cursor::Token;
 pub use draft::{Draft, LayerDraft, entry, options, parts};
 pub use echo::{Resolved, ResolvedSet};
-pub use faults::{Checked, Faults, Together};
+pub use faults::{Checked, Faults, Together, all};
 pub use json::{RegionSchema, read_body, read_region};
 pub use nearest::Nearest;
 pub use parameter::{Group, Parameter, groups, of};
