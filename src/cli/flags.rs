@@ -79,6 +79,7 @@ impl Takes for Measured {
 
     fn takes(parameter: &Parameter) -> bool {
         let is_other = *parameter == parameters::TABLE
+            || *parameter == parameters::FIELD
             || parameter.group == Group::Attributes
             || parameter.group == Group::Region && *parameter != parameters::BBOX;
         Self::GROUPS.contains(&parameter.group) && !is_other
@@ -212,6 +213,7 @@ fn value_name(parameter: &Parameter) -> String {
             "NUMBER".into()
         }
         Shape::Format => "NAME".into(),
+        Shape::Field => "NAME|FILE".into(),
         Shape::Pattern(_) | Shape::Text => "TEXT".into(),
     }
 }

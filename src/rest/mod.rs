@@ -10,6 +10,7 @@ mod cors;
 mod count;
 mod docs;
 mod document;
+mod fields;
 mod finish;
 mod fixed;
 mod freshness;
@@ -49,6 +50,9 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         profiles::endpoint(service.clone()),
         portrait::endpoint(service.clone()),
         portrait::picture(service.clone()),
+        fields::list(service.clone()),
+        fields::endpoint(service.clone()),
+        fields::picture(service.clone()),
     ]
 }
 

@@ -74,7 +74,7 @@ fn planning(query: &Query, set: &Set, ready: &Ready) -> f64 {
     };
     let Some(spacing) = spacing else { return 0.0 };
     let selection = Selection {
-        set: PointSet::new(ready.table.clone()).placed(set.placement(spacing)),
+        set: set.points(&ready.table, spacing),
         area: set.area(&query.region),
         keeps_clear: !set.clear_of.is_empty(),
     };

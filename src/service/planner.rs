@@ -45,8 +45,7 @@ impl<'a> Planner<'a> {
         let is_over = cursor.is_some_and(|token| i < usize::from(token.set));
         let known = resolved.map(|(spacing, _)| spacing);
         let known = known.or_else(|| here?.spacing);
-        let placement = set.placement(known.unwrap_or(Spacing::ONE));
-        let points = PointSet::new(ready.table.clone()).placed(placement);
+        let points = set.points(&ready.table, known.unwrap_or(Spacing::ONE));
         let mut selection = Selection {
             set: self.keeping_clear(set, points)?,
             area: set.area(region),

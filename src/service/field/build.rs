@@ -28,6 +28,8 @@ pub struct Sources<'a> {
     pub files: Option<&'a ReadFile<'a>>,
     /// How many pixels documents may still hold.
     pub pixels: Cell<usize>,
+    /// A box around all pixels that were read.
+    pub frame: Cell<Option<[f64; 4]>>,
 }
 
 /// Makes the field of a document. `path` is put before the names of members in faults.

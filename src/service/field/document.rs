@@ -47,6 +47,59 @@ pub enum Document {
     Curve(Box<Curve>),
 }
 
+impl Document {
+    /// The name of its shape.
+    #[must_use]
+    pub const fn shape(&self) -> &'static str {
+        match self {
+            Self::Name(_) => "name",
+            Self::Constant(_) => "constant",
+            Self::Ramp(_) => "ramp",
+            Self::Radial(_) => "radial",
+            Self::Distance(_) => "distance",
+            Self::Noise(_) => "noise",
+            Self::Raster(_) => "raster",
+            Self::Height(_) => "height",
+            Self::Slope(_) => "slope",
+            Self::Multiply(_) => "multiply",
+            Self::Min(_) => "min",
+            Self::Max(_) => "max",
+            Self::Invert(_) => "invert",
+            Self::Curve(_) => "curve",
+        }
+    }
+
+    /// The document as clients see it: of files only their names.
+    #[must_use]
+    pub fn without_folders(&self) -> Self {
+        let mut shown = self.clone();
+        shown.each_pixels(&mut |pixels| {
+            if let Some(file) = &mut pixels.file {
+                let name = file.rsplit(['/', '\\']).next().unwrap_or_default();
+                *file = name.to_owned();
+            }
+        });
+        shown
+    }
+
+    /// Visits the pixels of all its parts.
+    pub fn each_pixels(&mut self, visit: &mut impl FnMut(&mut Pixels)) {
+        match self {
+            Self::Raster(pixels) => visit(pixels),
+            Self::Height(height) => visit(&mut height.terrain),
+            Self::Slope(slope) => visit(&mut slope.terrain),
+            Self::Multiply(parts) | Self::Min(parts) | Self::Max(parts) => {
+                for part in &mut parts.0 {
+                    part.each_pixels(visit);
+                }
+            }
+            Self::Invert(of) => of.each_pixels(visit),
+            Self::Curve(curve) => curve.of.each_pixels(visit),
+            _ => {}
+        }
+    }
+}
+
 /// shares[0] at one place, shares[1] at another, linear between them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

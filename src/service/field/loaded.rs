@@ -8,7 +8,7 @@
 use std::{
     cell::{Cell, RefCell},
     collections::BTreeMap,
-    fmt, fs,
+    fmt,
     io::BufReader,
     path::{Path, PathBuf},
     sync::Arc,
@@ -64,6 +64,8 @@ pub struct NamedField {
     pub spec: FieldSpec,
     /// The memory that its pixels take, in bytes.
     pub bytes: usize,
+    /// A box around its pixels, if it has any: min x, min y, max x, max y.
+    pub bbox: Option<[f64; 4]>,
     /// What its files held when it was read.
     stamp: Stamp,
 }
@@ -357,19 +359,21 @@ impl Unbuilt {
             Source::Config(name) => format!("fields.{name}"),
             Source::File(_) => "field".into(),
         };
-        let (spec, bytes) = of_files(&field, &document, &self.base, fields, room)?;
+        let (spec, bytes, bbox) = of_files(&field, &document, &self.base, fields, room)?;
         Ok(NamedField {
             name: self.name.clone(),
             source: self.source.clone(),
             document,
             spec,
             bytes,
+            bbox,
             stamp,
         })
     }
 }
 
-/// The field of a document that may name files and fields, and the memory that its pixels take. `room`
+/// The field of a document that may name files and fields, the memory that its pixels take and a box around
+/// them. `room`
 /// bounds it.
 fn of_files(
     path: &str,
@@ -377,7 +381,7 @@ fn of_files(
     base: &Path,
     fields: &Fields,
     room: usize,
-) -> Result<(FieldSpec, usize), String> {
+) -> Result<Built, String> {
     let taken = RefCell::new(0usize);
     let read = |file: &str, size: Option<[usize; 2]>| {
         let left = room.saturating_sub(*taken.borrow());
@@ -390,6 +394,7 @@ fn of_files(
         names: &|| fields.names(),
         files: Some(&read),
         pixels: Cell::new(room),
+        frame: Cell::new(None),
     };
     let spec = build(path, document, &sources).map_err(|faults| super::listed(&faults))?;
     let taken = *taken.borrow();
@@ -398,7 +403,7 @@ fn of_files(
             "its pixels take {taken} bytes and {room} are left; allowed: fields.max_bytes for all fields"
         ));
     }
-    Ok((spec, taken))
+    Ok((spec, taken, sources.frame.get()))
 }
 
 /// The field of a file that a command names: a document or a raster.
@@ -448,6 +453,9 @@ fn read_file(path: &Path, size: Option<[usize; 2]>, room: usize) -> Result<Image
         ),
     }
 }
+
+/// A field, the memory of its pixels, and a box around them.
+type Built = (FieldSpec, usize, Option<[f64; 4]>);
 
 /// The names of the fields that a document is made of.
 fn names(document: &Document) -> Box<dyn Iterator<Item = &str> + '_> {

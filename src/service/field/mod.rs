@@ -9,6 +9,7 @@ mod build;
 pub mod document;
 mod files;
 pub mod loaded;
+mod picture;
 mod pixels;
 mod read;
 
@@ -20,6 +21,7 @@ pub(crate) use files::{Stamp, stamp};
 pub use build::{MOST_PIXELS, Sources, build};
 pub use document::Document;
 pub use loaded::{FieldError, FieldReload, Fields, NamedField, from_document, from_file};
+pub use picture::SIDE;
 pub use pixels::ReadFile;
 pub use read::{read_json, read_toml};
 

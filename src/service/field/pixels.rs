@@ -25,7 +25,7 @@ pub(super) fn shares(
     sources: &Sources<'_>,
 ) -> Checked<(Region, Grid)> {
     let image = image(path, document, sources)?;
-    let region = region(path, document, &image)?;
+    let region = region(path, document, &image, sources)?;
     let width = image.size[0];
     let full = image.samples.full();
     let (black, white) = (
@@ -68,7 +68,7 @@ pub(super) fn heights(
     sources: &Sources<'_>,
 ) -> Checked<(Region, Grid)> {
     let image = image(path, document, sources)?;
-    let region = region(path, document, &image)?;
+    let region = region(path, document, &image, sources)?;
     let (width, samples) = (image.size[0], image.samples);
     let all = (0..samples.len()).map(|i| samples.get(i) as f32).collect();
     let made = Grid::from_floats(width, flipped(all, width));
@@ -88,12 +88,21 @@ fn flipped<T>(mut pixels: Vec<T>, width: usize) -> Vec<T> {
     pixels
 }
 
-fn region(path: &str, document: &Pixels, image: &Image) -> Checked<Region> {
+fn region(path: &str, document: &Pixels, image: &Image, sources: &Sources<'_>) -> Checked<Region> {
     let [width, height] = image.size.map(|side| side as f64);
     let bbox = document.bbox.or(image.frame);
     let [min_x, min_y, max_x, max_y] = bbox.unwrap_or([0.0, 0.0, width, height]);
     let region = Region::new([min_x, min_y], [max_x, max_y]);
     let region = region.ok().filter(|_| min_x < max_x && min_y < max_y);
+    if region.is_some() {
+        let frame = sources
+            .frame
+            .get()
+            .map_or([min_x, min_y, max_x, max_y], |[a, b, c, d]| {
+                [a.min(min_x), b.min(min_y), c.max(max_x), d.max(max_y)]
+            });
+        sources.frame.set(Some(frame));
+    }
     region.ok_or_else(|| {
         let value = format!("{min_x}, {min_y}, {max_x}, {max_y}");
         let allowed = "four finite numbers min x, min y, max x, max y in ascending order";

@@ -13,6 +13,7 @@ fn sources(pixels: usize) -> Sources<'static> {
         names: &|| "half".into(),
         files: None,
         pixels: Cell::new(pixels),
+        frame: Cell::new(None),
     }
 }
 

@@ -1,5 +1,7 @@
 //! Fields of folders and configurations.
 
+use std::fs;
+
 use strew_core::Field as _;
 
 use super::*;
