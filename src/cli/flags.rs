@@ -170,6 +170,12 @@ fn own_words(name: &str) -> Option<(String, &'static str)> {
             "Where an earlier answer to the same query ended.".into(),
             "the beginning",
         )),
+        "field" => Some((
+            "The field that thins the points out, from place to place: the name of one of the settings, or a \
+             file: a document (.json, .toml) or a raster (.png, .tif, .npy)."
+                .into(),
+            "none",
+        )),
         _ => None,
     }
 }

@@ -138,7 +138,7 @@ impl Answer {
         let count = parts.iter().map(|part| part.plan.count()).sum();
         let (frame, parts) = match output.encoding.is_picture() {
             true => {
-                let frame = Frame::new(&parts, output.size);
+                let frame = Frame::new(&parts, output.size).with_dots(output.dot, &parts);
                 let parts = match output.encoding {
                     Encoding::Png => frame.shown(parts)?,
                     _ => parts,

@@ -71,6 +71,20 @@ pub struct NamedField {
 }
 
 impl NamedField {
+    /// A field that a program has made.
+    #[must_use]
+    pub fn of_spec(name: &str, spec: FieldSpec) -> Self {
+        Self {
+            name: name.into(),
+            source: Source::Config(name.into()),
+            document: Document::Name(name.into()),
+            spec,
+            bytes: 0,
+            bbox: None,
+            stamp: Stamp::default(),
+        }
+    }
+
     /// Its digest, in hexadecimal.
     #[must_use]
     pub fn digest(&self) -> String {
