@@ -58,6 +58,8 @@ impl Tables {
 /// Which fields to load.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fields {
+    /// Whether the built-in one is loaded.
+    pub embedded: bool,
     /// A folder with documents and rasters; empty for none.
     pub folder: PathBuf,
     /// The most memory that the pixels of all fields may take, in bytes.

@@ -33,9 +33,14 @@ use crate::{
 /// The longest document.
 const DOCUMENT_BYTES: u64 = 4 << 20;
 
+/// The field that is built into the program: its name and its document.
+const EMBEDDED: (&str, &str) = ("forest", include_str!("../../../config/fields/forest.toml"));
+
 /// Where a field comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
+    /// The program.
+    Embedded,
     /// The configuration.
     Config(String),
     /// A file of the folder.
@@ -45,6 +50,7 @@ pub enum Source {
 impl fmt::Display for Source {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Embedded => f.write_str("built in"),
             Self::Config(name) => write!(f, "[fields.{name}] of the configuration"),
             Self::File(path) => path.display().fmt(f),
         }
@@ -196,6 +202,10 @@ impl Fields {
         let mut refused = vec![];
         let mut open: Vec<Unbuilt> = vec![];
         let base = settings.folder().unwrap_or(Path::new("."));
+        let mut after = Self::default();
+        if settings.embedded {
+            after.insert_embedded();
+        }
         for (name, table) in &settings.named {
             let source = Source::Config(name.clone());
             let document = read::read_toml(&format!("fields.{name}"), table);
@@ -221,7 +231,6 @@ impl Fields {
                 }
             }
         }
-        let mut after = Self::default();
         let mut seen: BTreeMap<String, String> = BTreeMap::new();
         open.retain(|field| match seen.get(&field.name) {
             Some(first) => {
@@ -250,6 +259,18 @@ impl Fields {
             let _ = self.settle(field, &mut after, &mut room, &mut refused, true);
         }
         (after, refused)
+    }
+
+    /// Adds the built-in field. A test builds it.
+    fn insert_embedded(&mut self) {
+        let (name, text) = EMBEDDED;
+        let table = text.parse::<toml::Table>().ok();
+        let document = table.and_then(|table| read::read_toml("field", &table).ok());
+        let document = document.ok_or_else(|| "the built-in field does not read".into());
+        let field = Unbuilt::new(name.into(), Source::Embedded, document, Path::new(""));
+        if let Ok(field) = field.build(self, 0, Stamp::default()) {
+            self.insert(field);
+        }
     }
 
     fn digest(&self, name: &str) -> Option<String> {
@@ -371,7 +392,7 @@ impl Unbuilt {
         let document = self.document.clone()?;
         let field = match &self.source {
             Source::Config(name) => format!("fields.{name}"),
-            Source::File(_) => "field".into(),
+            Source::File(_) | Source::Embedded => "field".into(),
         };
         let (spec, bytes, bbox) = of_files(&field, &document, &self.base, fields, room)?;
         Ok(NamedField {

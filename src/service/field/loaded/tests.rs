@@ -8,6 +8,7 @@ use super::*;
 
 fn settings(folder: &Path) -> Settings {
     Settings {
+        embedded: false,
         folder: folder.into(),
         max_bytes: 1 << 20,
         named: BTreeMap::new(),
@@ -57,6 +58,23 @@ fn rasters_documents_and_sections_are_fields() {
     assert_eq!(share("bare", [9.0, 1.0]), 0.0);
     assert_eq!(share("a", [50.0, 50.0]), 0.5);
     assert_eq!(fields.get("bare").expect("loaded").bytes, 8);
+}
+
+#[test]
+fn the_built_in_field_is_a_forest_beside_a_road_unless_another_has_its_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut settings = settings(folder.path());
+    settings.embedded = true;
+    let fields = Fields::load(&settings).expect("valid");
+    let forest = |fields: &Fields, at| fields.get("forest").expect("loaded").spec.share(at);
+    assert_eq!(forest(&fields, [-10.0, 22.0]), 0.0);
+    let places = (0..400).map(|i| [f64::from(i % 20) * 20.0, 100.0 + f64::from(i / 20) * 20.0]);
+    let sum: f64 = places.map(|at| forest(&fields, at)).sum();
+    assert!((0.3..0.7).contains(&(sum / 400.0)), "{sum}");
+    write(folder.path(), "forest.toml", "constant = 0.25");
+    let (fields, changes, _) = fields.reload(&settings);
+    assert_eq!(changes.loaded, ["forest"]);
+    assert_eq!(forest(&fields, [-10.0, 22.0]), 0.25);
 }
 
 #[test]
