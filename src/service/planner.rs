@@ -8,7 +8,7 @@ use strew_core::{
 use super::{
     Error, Limits, PlannedSet,
     cache::Ready,
-    effort::{self, COUNTS, Selection},
+    effort::{self, Selection},
     query::{Amount, Query, Set, Token, parameters},
     resolve::{check_reach, least_distance, resolve},
 };
@@ -78,6 +78,13 @@ impl<'a> Planner<'a> {
             }
         };
         let spacing = plan.placement().spacing;
+        let candidates = match set.field {
+            Some(_) => effort::candidates(&Selection {
+                set: selection.set.clone().placed(plan.placement()),
+                ..selection.clone()
+            }),
+            None => 0,
+        };
         let layer = selection.set.placed(plan.placement());
         self.layers.push(match &set.region {
             Some(own) => layer.limited_to(own.area.clone()),
@@ -88,6 +95,7 @@ impl<'a> Planner<'a> {
             resolved.map_or(spacing.density(), |(_, density)| density),
             least_distance(set, ready, spacing, region.reach()),
             plan,
+            candidates,
         ))
     }
 
@@ -131,9 +139,10 @@ impl<'a> Planner<'a> {
                 ..placement
             };
             selection.set = selection.set.clone().placed(trial);
-            self.check_rows(selection, COUNTS)?;
+            self.check_rows(selection, effort::counts(set))?;
         }
-        let least = effort::least_spacing(selection, self.limits.max_rows as f64 / COUNTS);
+        let most = self.limits.max_rows as f64 / effort::counts(set);
+        let least = effort::least_spacing(selection, most);
         let Selection {
             set: points, area, ..
         } = &*selection;

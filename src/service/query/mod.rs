@@ -170,7 +170,7 @@ impl Set {
     pub(super) fn points(&self, table: &Table, spacing: Spacing) -> PointSet {
         let points = PointSet::new(table.clone()).placed(self.placement(spacing));
         match &self.field {
-            Some(_field) => points,
+            Some(field) => points.in_field(field.spec.clone()),
             None => points,
         }
     }
