@@ -132,8 +132,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 /// Errors of the query in the words of this command.
 fn refused(args: &Args, error: crate::service::Error) -> Failure {
     if let Some(fault) = error.faults().iter().find(|fault| fault.field == "count") {
-        let detail = &fault.detail;
-        return Failure::Usage(anyhow!("--points {}: {detail}", args.points));
+        let (detail, allowed) = (&fault.detail, &fault.allowed);
+        let text = format!("--points {}: {detail}; allowed: {allowed}", args.points);
+        return Failure::Usage(anyhow!(text));
     }
     Source::Flags.refused(error)
 }

@@ -176,5 +176,13 @@ fn at(path: &str, name: &str, error: &strew_core::Error) -> Faults {
         allowed => allowed,
     };
     let field = format!("{path}.{name}");
-    Fault::new(&field, error.value(), error.problem(), allowed).into()
+    Fault::new(&field, error.value(), problem(error), allowed).into()
+}
+
+/// What the library says is wrong; often the value says it all.
+pub(super) fn problem(error: &strew_core::Error) -> &str {
+    match error.problem() {
+        "" => "not allowed",
+        problem => problem,
+    }
 }

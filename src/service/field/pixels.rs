@@ -3,7 +3,10 @@
 use base64::{Engine as _, prelude::BASE64_STANDARD};
 use strew_core::{Region, field::Pixels as Grid};
 
-use super::{build::Sources, document::Pixels};
+use super::{
+    build::{Sources, problem},
+    document::Pixels,
+};
 use crate::{
     raster::{Image, Limits, MOST_SIDE, Meaning, RasterError, Samples},
     service::{
@@ -179,7 +182,7 @@ fn wrong(field: &str, value: &str, error: &RasterError) -> Faults {
 }
 
 fn refused(path: &str, value: &str, error: &strew_core::Error) -> Faults {
-    Fault::new(path, value, error.problem(), error.allowed()).into()
+    Fault::new(path, value, problem(error), error.allowed()).into()
 }
 
 /// What a document calls its pixels.

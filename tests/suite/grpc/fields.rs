@@ -98,13 +98,13 @@ async fn fields_are_listed_and_their_faults_have_paths() {
     let noise = of(Shape::Noise(FieldNoise { wavelength: -1.0, ..FieldNoise::default() }));
     let mut request = counted(set(noise.clone()));
     let status = client.count_points(request.clone()).await.expect_err("invalid");
-    assert!(status.message().contains("`set.field.noise.wavelength`"), "{status:?}");
+    assert!(status.message().contains("`query.set.field.noise.wavelength`"), "{status:?}");
     let query = request.query.as_mut().expect("a query");
     query.layers = vec![Layer { name: "a".into(), set: Some(set(noise)), ..Layer::default() }];
     query.set = None;
     let status = client.count_points(request).await.expect_err("invalid");
-    assert!(status.message().contains("`layers[0].set.field.noise.wavelength`"), "{status:?}");
+    assert!(status.message().contains("`query.layers[0].set.field.noise.wavelength`"), "{status:?}");
     let empty = counted(set(Field { shape: None }));
     let status = client.count_points(empty).await.expect_err("invalid");
-    assert!(status.message().contains("`set.field`"), "{status:?}");
+    assert!(status.message().contains("`query.set.field`"), "{status:?}");
 }
