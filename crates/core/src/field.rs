@@ -18,6 +18,4 @@
 //!
 //! [`PointSet::in_field`]: crate::PointSet::in_field
 
-pub use crate::sample::{
-    Edges, Field, FieldSpec, Filter, Graded, Marks, Noise, Pixels, Raster, Terrain,
-};
+pub use crate::sample::{Edges, Field, FieldSpec, Filter, Marks, Noise, Pixels, Raster, Terrain};

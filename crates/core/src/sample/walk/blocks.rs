@@ -1,6 +1,9 @@
-//! The walk over a plan: bands of columns, rows within a band, columns within a row.
+//! The walk over a plan: bands of columns, rows within a band, columns within a row. `graded` has what differs
+//! in a field.
 
-use alloc::{sync::Arc, vec::Vec};
+pub(super) mod graded;
+
+use alloc::{boxed::Box, sync::Arc, vec::Vec};
 use core::ops::Range;
 
 use super::{
@@ -12,6 +15,7 @@ use crate::{
     pattern::Axis,
     sample::{
         cursor::Cursor,
+        field::FieldRows,
         kernel::{Backend, Format, Geometry, Row, compiled},
         lattice::{
             BAND_WIDTH, Columns, Flat, Inside, Listed, Patch, PointId, PrefixCounts, Span,
@@ -70,6 +74,8 @@ pub struct Blocks<F: Format> {
     backend: Backend,
     /// The points of some rows of a warped patch, and those inside.
     flat: (Flat, Inside),
+    /// The points of some rows in a field.
+    graded: Option<Box<FieldRows>>,
 }
 
 /// The place of the next point in a band.
@@ -190,6 +196,7 @@ impl<F: Format> Blocks<F> {
             patch,
             backend: Backend::best(),
             flat: Default::default(),
+            graded: scope.lattice.grade.as_ref().map(|_| Box::default()),
             scope,
             window,
         }
@@ -233,15 +240,22 @@ impl<F: Format> Blocks<F> {
         let out = &mut out[..most];
         let mut filled = 0;
         while filled < out.len() {
+            if self.has_found() {
+                filled += self.write_found(&mut out[filled..]);
+                continue;
+            }
             if self.at.y == self.rows.end && !self.next_band() {
                 break;
             }
-            if self.at.y == self.patch.end() {
+            if self.at.y >= self.patch.end() {
                 self.next_patch();
             }
             let end = self.rows.end.min(self.patch.end());
             let out = &mut out[filled..];
-            filled += if self.sieve.as_ref().is_some_and(|sieve| sieve.is_cut) {
+            filled += if self.graded.is_some() {
+                self.find(end, out.len());
+                0
+            } else if self.sieve.as_ref().is_some_and(|sieve| sieve.is_cut) {
                 self.fill_sifted(end, out)
             } else if self.patch.is_warped() && self.templates.are_short() && self.at.is_fresh() {
                 self.fill_flat(end, out)
@@ -273,7 +287,9 @@ impl<F: Format> Blocks<F> {
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         let window = self.window.filter(|window| window.count > 0)?;
-        let at = if self.at.y == self.rows.end {
+        let at = if let Some(next) = self.next_found() {
+            next
+        } else if self.at.y == self.rows.end {
             PointId {
                 x: self.bands.start * BAND_WIDTH,
                 y: self.rows.start,
@@ -330,6 +346,10 @@ impl<F: Format> Blocks<F> {
 
     /// Moves to the patch of the current row.
     fn next_patch(&mut self) {
+        self.skip_empty();
+        if self.at.y == self.rows.end {
+            return;
+        }
         let Scope { lattice, x, y, .. } = &*self.scope;
         self.patch = Patch::new(lattice, self.band, self.at.y, x, y);
         self.base = self.format.base(self.patch.origin());
