@@ -57,6 +57,7 @@ impl Takes for Parted {
         Group::Region,
         Group::Amount,
         Group::Count,
+        Group::Preset,
         Group::Profile,
         Group::Table,
         Group::Points,

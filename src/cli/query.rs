@@ -16,7 +16,7 @@ use super::{
 use crate::{
     config::Config,
     service::{
-        Catalog, Draft, Error, Options, Placed, Planned, PlannedSet, Ready, Set,
+        Catalog, Draft, Error, Options, Placed, Planned, PlannedSet, Presets, Ready, Set,
         catalog::CatalogError,
         query::{Faults, Group, RegionDraft, ShapeDraft, groups, of, read_body, read_region},
     },
@@ -59,6 +59,12 @@ impl<T: Takes> QueryArgs<T> {
         let (mut draft, source) = self.read()?;
         let catalog = self.field.load(&mut draft.values, config.tables()?)?;
         let limits = &config.limits;
+        let presets = Presets::read(&config.presets, &catalog, limits.max_vertices)
+            .map_err(|error| Failure::Usage(error.into()))?;
+        let filled = presets
+            .fill(&draft)
+            .map_err(|faults| source.refused(faults.into()))?;
+        let draft = filled.0.into_owned();
         let checked = draft.check(&catalog, limits.max_vertices);
         let planned = checked.and_then(|(query, options)| {
             let planned = Planned::at_once(query, limits)?;
@@ -77,7 +83,7 @@ impl<T: Takes> QueryArgs<T> {
     fn in_file() -> &'static [Group] {
         match T::GROUPS.contains(&Group::Output) {
             true => groups::QUERY,
-            false => groups::SET,
+            false => groups::COUNTED,
         }
     }
 

@@ -66,6 +66,8 @@ pub struct Config {
     pub metrics: Metrics,
     /// Where to send spans.
     pub telemetry: Telemetry,
+    /// Parts of queries by their names.
+    pub presets: toml::Table,
 }
 
 impl Config {

@@ -1,6 +1,9 @@
 //! Settings of connections: where to serve, TLS, administrators, stopping.
 
-use std::{net::SocketAddr, path::PathBuf};
+use std::{
+    net::SocketAddr,
+    path::{Path, PathBuf},
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -70,6 +73,14 @@ pub struct Tls {
 }
 
 impl Tls {
+    /// The files that are named.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        let all = [&self.certificate, &self.key, &self.client_ca];
+        all.into_iter()
+            .map(PathBuf::as_path)
+            .filter(|path| !path.as_os_str().is_empty())
+    }
+
     /// Whether TLS is spoken.
     #[must_use]
     pub fn is_on(&self) -> bool {

@@ -21,6 +21,8 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         reload,
         tables: _,
         fields: _,
+        // Checked with the tables at hand.
+        presets: _,
     } = config;
     let mut faults = vec![];
     let mut within = |key: &str, value: f64, min: f64, max: f64| {

@@ -8,7 +8,6 @@
 mod fingerprint;
 
 use std::{
-    path::PathBuf,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -23,14 +22,9 @@ use tokio::sync::Mutex;
 use super::{metrics::Metrics, shutdown::Hangups, tls::Tls};
 use crate::{
     access::Gate,
-    config::Fields,
-    service::{
-        Error, Reload, Service,
-        catalog::Refusal,
-        field::{self, Stamp},
-    },
+    service::{Error, Reload, Service, catalog::Refusal},
 };
-use fingerprint::Fingerprint;
+pub use fingerprint::{Fingerprint, Watched};
 
 /// Why files are read again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,8 +67,9 @@ pub struct Reloader {
     service: Arc<Service>,
     gate: Arc<Gate>,
     tls: Option<Tls>,
-    folder: Option<PathBuf>,
-    fields: Arc<Fields>,
+    watched: Watched,
+    /// What the files were before they were read for the first time.
+    first: Fingerprint,
     metrics: Metrics,
     /// Whether files are being read.
     is_reading: Arc<AtomicBool>,
@@ -83,21 +78,20 @@ pub struct Reloader {
 }
 
 impl Reloader {
-    /// For a service with its folder of tables and its fields, a gate with its keys, and certificates.
+    /// For a service, a gate with its keys, and certificates, all read from files after `first` was taken.
     pub(super) fn new(
         service: Arc<Service>,
         gate: Arc<Gate>,
         tls: Option<Tls>,
-        folder: Option<PathBuf>,
-        fields: Fields,
+        (watched, first): (Watched, Fingerprint),
         metrics: Metrics,
     ) -> Self {
         Self {
             service,
             gate,
             tls,
-            folder,
-            fields: Arc::new(fields),
+            watched,
+            first,
             metrics,
             is_reading: Arc::default(),
             last: Mutex::default(),
@@ -106,9 +100,7 @@ impl Reloader {
 
     /// Whether there are files to watch.
     pub(super) fn has_files(&self) -> bool {
-        let has_keys = self.gate.settings().keys_file().is_some();
-        let has_fields = self.fields.folder().is_some() || !self.fields.named.is_empty();
-        has_keys || has_fields || self.folder.is_some() || self.tls.is_some()
+        !self.watched.is_empty()
     }
 
     /// Reads everything again and logs the result.
@@ -118,11 +110,11 @@ impl Reloader {
     pub async fn reload(&self, cause: Cause) -> Result<Done, Error> {
         let mut last = self.last.lock().await;
         let (service, gate, tls) = (self.service.clone(), self.gate.clone(), self.tls.clone());
-        let (folder, fields) = (self.folder.clone(), self.fields.clone());
+        let watched = self.watched.clone();
         let read = move || {
             let keys = gate.settings().has_keys().then(|| gate.reload());
             let certificates = tls.map(|tls| tls.reload());
-            let tables = service.read_tables(folder.as_deref(), &fields);
+            let tables = service.read_tables(watched.folder(), watched.fields());
             (tables, keys, certificates)
         };
         let (tables, keys, certificates) = self.read(read).await?;
@@ -155,14 +147,14 @@ impl Reloader {
 
     /// Reloads on signals and changes until it is dropped. Without `every`, changes are not looked for.
     pub async fn watch(&self, mut hangups: Option<Hangups>, every: Option<Duration>) {
-        let mut seen = self.look().await.ok();
+        let mut seen = self.first;
         loop {
             let cause = tokio::select! {
                 () = heard(&mut hangups) => Cause::Signal,
                 () = wait(every) => Cause::Change,
             };
             let now = match self.look().await {
-                Ok(now) => Some(now),
+                Ok(now) => now,
                 Err(error) => {
                     tracing::error!(%error, "files cannot be looked at");
                     continue;
@@ -178,17 +170,9 @@ impl Reloader {
         }
     }
 
-    async fn look(&self) -> Result<(Fingerprint, Stamp), Error> {
-        let folder = self.folder.clone();
-        let mut files: Vec<PathBuf> = vec![];
-        files.extend(self.gate.settings().keys_file().map(Into::into));
-        files.extend(self.tls.iter().flat_map(Tls::files));
-        let fields = self.fields.clone();
-        let look = move || {
-            let tables = Fingerprint::of(folder.as_deref(), files);
-            (tables, field::stamp(&fields))
-        };
-        self.read(look).await
+    async fn look(&self) -> Result<Fingerprint, Error> {
+        let watched = self.watched.clone();
+        self.read(move || watched.look()).await
     }
 
     /// Reads files on a thread that may block, and waits for a limited time. A file system that hangs
@@ -292,7 +276,7 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
             cause,
             source = refusal.source,
             serving = refusal.serving,
-            "refused, what was loaded serves on: {}",
+            "refused; the loaded one stays in use: {}",
             refusal.detail
         );
     }

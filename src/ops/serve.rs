@@ -14,7 +14,7 @@ use super::{
     health::{self, Readiness},
     metrics::{self, Metrics},
     panics,
-    reload::Reloader,
+    reload::{Reloader, Watched},
     shutdown::Hangups,
     spans::{Collector, Spans, SpansError},
     tls::{Tls, TlsError},
@@ -24,7 +24,7 @@ use crate::{
     config::{self, Config},
     grpc, rest,
     service::{
-        Catalog, Service, Workers,
+        Catalog, PresetError, Presets, Service, Workers,
         catalog::CatalogError,
         field::{FieldError, Fields},
     },
@@ -52,6 +52,9 @@ pub enum ServeError {
     /// The keys cannot be used.
     #[error(transparent)]
     Keys(#[from] KeysError),
+    /// A preset cannot be used.
+    #[error(transparent)]
+    Presets(#[from] PresetError),
     /// Spans cannot be sent.
     #[error(transparent)]
     Spans(#[from] SpansError),
@@ -85,6 +88,9 @@ impl App {
     /// # Errors
     /// If a certificate, key or table is not valid or the system gives no threads.
     pub fn new(config: Config) -> Result<Self, ServeError> {
+        let watched = Watched::of(&config);
+        // Before anything is read: what changes from here on is noticed.
+        let first = watched.look();
         let tls = Tls::new(&config.tls)?;
         let collector = Collector::new(&config.telemetry)?;
         let folder = config.tables.folder();
@@ -92,7 +98,9 @@ impl App {
         let catalog = Catalog::load(config.tables.embedded, folder)?.with_fields(fields);
         let workers = Workers::new(config.workers.threads)?;
         let metrics = Metrics::default();
-        let service = Arc::new(Service::new(catalog, config.limits.clone(), workers));
+        let presets = Presets::read(&config.presets, &catalog, config.limits.max_vertices)?;
+        let service = Service::new(catalog, config.limits.clone(), workers);
+        let service = Arc::new(service.with_presets(presets));
         let gate = Arc::new(Gate::new(
             config.access.clone(),
             &config.rate,
@@ -102,8 +110,7 @@ impl App {
             service.clone(),
             gate.clone(),
             tls.clone(),
-            folder.map(Into::into),
-            config.fields.clone(),
+            (watched, first),
             metrics.clone(),
         );
         Ok(Self {

@@ -20,12 +20,14 @@ mod openapi;
 mod page;
 mod points;
 mod portrait;
+mod presets;
 mod problem;
 mod profiles;
 mod quality;
 mod query;
 mod single;
 mod split;
+mod vary;
 
 use std::sync::Arc;
 
@@ -34,6 +36,7 @@ use http::StatusCode;
 
 use crate::service::{Error, Service};
 use api::Endpoint;
+pub use document::json;
 pub use finish::finished;
 use problem::Problem;
 
@@ -48,6 +51,7 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         single::by_id(service.clone()),
         single::nearest(service.clone()),
         profiles::endpoint(service.clone()),
+        presets::endpoint(service.clone()),
         portrait::endpoint(service.clone()),
         portrait::picture(service.clone()),
         fields::list(service.clone()),

@@ -7,8 +7,8 @@ use strew_core::{Area, PointSet, Region, Spacing, Warp, server};
 use super::{
     Lane, Placed, Planned, PlannedSet,
     cache::Ready,
-    query::{Amount, Nearest, Query, Set},
-    resolve::resolve,
+    query::{Nearest, Query, Set},
+    resolve::{Resolved, resolve},
     single::MOST_WITHIN,
 };
 
@@ -54,14 +54,22 @@ const PLAIN: f64 = 0.1;
 /// Blocks for which more points than this are considered are made in the lane for long work.
 const SHORT_BLOCK: f64 = 2e7;
 
-/// The lane in which a query is planned.
-pub(super) fn lane(query: &Query, tables: &[Ready]) -> Lane {
+/// What planning a query takes, in rows of warped sets. Sets with more than `most` rows take none:
+/// they are refused.
+pub(super) fn planning(query: &Query, tables: &[Ready], most: u64) -> f64 {
     // With a cursor nothing is counted.
     if query.window.cursor.is_some() {
-        return Lane::Short;
+        return 0.0;
     }
     let sets = query.sets.iter().zip(tables);
-    let rows: f64 = sets.map(|(set, ready)| planning(query, set, ready)).sum();
+    let rows = sets.map(|(set, ready)| counted(query, set, ready));
+    rows.filter(|(rows, _)| *rows <= most as f64)
+        .map(|(rows, weight)| rows * weight)
+        .sum()
+}
+
+/// The lane in which something is planned that takes this many rows.
+pub(super) fn lane(rows: f64) -> Lane {
     if rows > SHORT_ROWS {
         Lane::Long
     } else {
@@ -69,22 +77,22 @@ pub(super) fn lane(query: &Query, tables: &[Ready]) -> Lane {
     }
 }
 
-/// What planning a set takes, in rows of a warped set.
-fn planning(query: &Query, set: &Set, ready: &Ready) -> f64 {
+/// The rows that are counted to plan a set, and how much of a row of a warped set each takes.
+fn counted(query: &Query, set: &Set, ready: &Ready) -> (f64, f64) {
     let bounds = query.region.bbox();
-    let (spacing, counts) = match set.amount {
-        Amount::Count(count) => {
+    let (spacing, counts) = match resolve(set, ready) {
+        Err(_) => return (0.0, 0.0),
+        Ok(Resolved::Known(spacing, _)) => (Some(spacing), 1.0),
+        Ok(Resolved::Count(count)) => {
             let [min_x, min_y, max_x, max_y] = bounds;
             let area = (max_x - min_x) * (max_y - min_y);
             let guess = (area * set.keep.get() / count.max(1) as f64).sqrt();
             (Spacing::new(guess).ok(), counts(set))
         }
-        _ => {
-            let resolved = resolve(set, ready).ok().flatten();
-            (resolved.map(|(spacing, _)| spacing), 1.0)
-        }
     };
-    let Some(spacing) = spacing else { return 0.0 };
+    let Some(spacing) = spacing else {
+        return (0.0, 0.0);
+    };
     let selection = Selection {
         set: set.points(&ready.table, spacing),
         area: set.area(&query.region),
@@ -95,7 +103,7 @@ fn planning(query: &Query, set: &Set, ready: &Ready) -> f64 {
     let weight = if is_plain { PLAIN } else { 1.0 };
     // Seeking an offset counts again.
     let seeks = 1.0 + f64::from(u8::from(query.window.offset > 0));
-    rows_and_edges(&selection) * weight * counts * seeks
+    (rows_and_edges(&selection) * counts, weight * seeks)
 }
 
 /// The lane in which the blocks of an answer are made: points that are thinned out take as long as
@@ -147,19 +155,26 @@ impl Neighbors {
     }
 }
 
-/// The points that are considered to count and make those of a plan: with `keep`, those that are thinned out,
-/// too, and in a field those that it leaves out.
+/// The points that are considered to make those of a plan: with `keep`, those that are thinned out,
+/// too, also after the last one; in a field also those that are counted and left out.
 #[must_use]
 pub fn considered(planned: &Planned) -> u128 {
+    let bounds = planned.query.region.bounds;
+    let [width, height] = sides(bounds);
     let is_counted = planned.query.window.cursor.is_none();
-    let sets = planned.query.sets.iter().zip(&planned.sets);
     let considered = |(set, planned): (&Set, &PlannedSet)| {
-        let made = planned.plan.count() as f64 * planned.looks_by_point(set);
-        match is_counted {
-            true => made.max(planned.candidates as f64),
-            false => made,
+        let count = planned.plan.count() as f64;
+        if set.field.is_some() {
+            let made = count * planned.looks_by_point(set);
+            return match is_counted {
+                true => made.max(planned.candidates as f64),
+                false => made,
+            };
         }
+        let most = width * height * planned.spacing.density();
+        ((count + 1.0) / set.keep.get() - 1.0).min(most).max(count)
     };
+    let sets = planned.query.sets.iter().zip(&planned.sets);
     let all: f64 = sets.map(considered).sum();
     all.round() as u128
 }

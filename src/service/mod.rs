@@ -18,6 +18,7 @@ mod planned;
 mod planned_set;
 mod planner;
 mod portrait;
+mod presets;
 pub mod query;
 pub mod record;
 mod resolve;
@@ -44,6 +45,7 @@ pub use lane::Lane;
 pub use planned::{Placed, Planned};
 pub use planned_set::PlannedSet;
 pub use portrait::Portrait;
+pub use presets::{PresetError, Presets};
 pub use query::{Draft, Nearest, Query, Set, Token};
 pub use record::Record;
 pub use single::Found;
@@ -61,6 +63,7 @@ use record::Recorded;
 #[derive(Debug)]
 pub struct Service {
     catalog: ArcSwap<Catalog>,
+    presets: Presets,
     limits: Limits,
     samplers: Samplers,
     portraits: Portraits,
@@ -79,9 +82,22 @@ impl Service {
             streams: Arc::new(Streams::new(limits.max_streams)),
             budget: Budget::new(limits.max_bytes_in_flight),
             catalog: ArcSwap::from_pointee(catalog),
+            presets: Presets::default(),
             limits,
             workers,
         }
+    }
+
+    /// The service with presets.
+    #[must_use]
+    pub fn with_presets(self, presets: Presets) -> Self {
+        Self { presets, ..self }
+    }
+
+    /// The presets.
+    #[must_use]
+    pub const fn presets(&self) -> &Presets {
+        &self.presets
     }
 
     /// The tables that are loaded now. A query holds on to those that it was checked against.
@@ -140,7 +156,9 @@ impl Service {
     /// # Errors
     /// As [`Draft::check`], and [`Error::Invalid`] for a format that is for files only.
     pub fn check(&self, draft: &Draft) -> Result<(Query, Options), Error> {
-        let (query, options) = draft.check(&self.catalog(), self.limits.max_vertices)?;
+        let (draft, preset) = self.presets.fill(draft)?;
+        let (mut query, options) = draft.check(&self.catalog(), self.limits.max_vertices)?;
+        query.preset = preset;
         match options.encoding {
             Some(encoding) if !encoding.is_streamed() => {
                 let format = &query::parameters::FORMAT;
@@ -163,8 +181,9 @@ impl Service {
         picture: Option<u32>,
     ) -> Result<(Permit, Planned), Error> {
         let permit = self.admit(caller, picture)?;
-        let planned = self.plan(caller, query).await?;
-        caller.charge(considered(&planned))?;
+        let (planned, charged) = self.charged(caller, query).await?;
+        self.check_points(caller, &planned)?;
+        caller.charge(considered(&planned), charged)?;
         Ok((permit, planned))
     }
 
@@ -183,12 +202,20 @@ impl Service {
         self.own_budget().hold(bytes)
     }
 
-    /// Plans a query on the workers, whatever it counts.
+    /// Plans a query on the workers, whatever it counts. Charges the rows that are counted one by one.
     ///
     /// # Errors
     /// [`Error::Invalid`] for a region out of reach or an amount that cannot be had,
-    /// [`Error::TooManyRows`] if counting would take too long.
-    pub async fn count(&self, query: Query) -> Result<Planned, Error> {
+    /// [`Error::TooManyRows`] if counting would take too long, and [`Error::Denied`] if the caller's
+    /// rate does not allow it.
+    pub async fn count(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
+        let (planned, _) = self.charged(caller, query).await?;
+        Ok(planned)
+    }
+
+    /// Plans a query. Returns the plan and what was charged for it.
+    async fn charged(&self, caller: &Caller, query: Query) -> Result<(Planned, u128), Error> {
+        let mut charged = 0;
         let mut tables = vec![];
         for set in &*query.sets {
             tables.push(self.samplers.get(&set.entry, &self.workers).await?);
@@ -198,12 +225,21 @@ impl Service {
             Planned::new(query, &tables, &self.limits)?
         } else {
             let limits = self.limits.clone();
-            let lane = effort::lane(&query, &tables);
+            let rows = effort::planning(&query, &tables, limits.max_rows);
+            charged = rows as u128;
+            // Before the work, which is done even if the answer is refused.
+            if charged > 0 {
+                caller.charge(charged, 0)?;
+            }
+            let lane = effort::lane(rows);
             let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
             self.workers.take_turn(lane, plan).await??
         };
         tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
-        Ok(planned)
+        if let Some(record) = Record::current() {
+            record.take_lane(effort::block_lane(&planned));
+        }
+        Ok((planned, charged))
     }
 
     /// The right of a caller to start one more stream; a picture of that size is held whole.
@@ -229,16 +265,19 @@ impl Service {
     /// # Errors
     /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
     pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
-        let planned = self.count(query).await?;
-        if let Some(record) = Record::current() {
-            record.take_lane(effort::block_lane(&planned));
-        }
+        let planned = self.count(caller, query).await?;
+        self.check_points(caller, &planned)?;
+        Ok(planned)
+    }
+
+    /// Refuses more points than a caller may have.
+    fn check_points(&self, caller: &Caller, planned: &Planned) -> Result<(), Error> {
         let limit = caller.max_points(self.limits.max_points);
         let count = planned.count();
         if count > u128::from(limit) {
             return Err(Error::TooManyPoints { count, limit });
         }
-        Ok(planned)
+        Ok(())
     }
 
     /// The query in parts; see [`Planned::split`].
@@ -304,7 +343,9 @@ impl Service {
         let search = move |_: &Stop| {
             let _held = budget.hold(effort.bytes)?;
             let found = placed.nearest(nearest)?;
-            caller.charge(found.len() as u128)?;
+            // Those that are thinned out take as long to find.
+            let considered = found.len() as f64 / placed.set.keep.get();
+            caller.charge(considered.round() as u128, 0)?;
             answer(&placed, found)
         };
         self.workers.take_turn(effort.lane, search).await?
@@ -326,10 +367,7 @@ impl Service {
     pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
         let mut whole = Bytes::new();
         for block in Recorded::new(answer) {
-            let block = block.map_err(|error| {
-                tracing::error!(%error, "an answer cannot be made");
-                Error::Internal("the answer cannot be encoded")
-            })?;
+            let block = block?;
             whole = match (whole.is_empty(), block.is_empty()) {
                 (true, _) => block,
                 (false, true) => whole,

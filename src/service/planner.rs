@@ -10,7 +10,7 @@ use super::{
     cache::Ready,
     effort::{self, Selection},
     query::{Amount, Query, Set, Token, parameters},
-    resolve::{check_reach, least_distance, resolve},
+    resolve::{Resolved, check_reach, least_distance, resolve},
 };
 
 /// Plans sets one after another.
@@ -43,8 +43,10 @@ impl<'a> Planner<'a> {
         let cursor = self.query.window.cursor;
         let here = cursor.filter(|token| i == usize::from(token.set));
         let is_over = cursor.is_some_and(|token| i < usize::from(token.set));
-        let known = resolved.map(|(spacing, _)| spacing);
-        let known = known.or_else(|| here?.spacing);
+        let known = match resolved {
+            Resolved::Known(spacing, _) => Ok(spacing),
+            Resolved::Count(count) => here.and_then(|token| token.spacing).ok_or(count),
+        };
         let points = set.points(&ready.table, known.unwrap_or(Spacing::ONE));
         let mut selection = Selection {
             set: self.keeping_clear(set, points)?,
@@ -52,7 +54,7 @@ impl<'a> Planner<'a> {
             keeps_clear: !set.clear_of.is_empty(),
         };
         let plan = match (known, here) {
-            (Some(spacing), _) if is_over || here.is_some() => {
+            (Ok(spacing), _) if is_over || here.is_some() => {
                 let cursor = here.map_or_else(nothing, |token| token.cursor);
                 let plan = selection.set.resume(selection.area.clone(), cursor);
                 let plan = plan.map_err(|error| region.too_far(spacing, &error))?;
@@ -66,13 +68,13 @@ impl<'a> Planner<'a> {
                     _ => plan,
                 }
             }
-            (Some(spacing), _) => {
+            (Ok(spacing), _) => {
                 self.check_rows(&selection, 1.0)?;
                 let plan = server::within(&selection.set, selection.area.clone(), self.stop);
                 plan.map_err(|error| region.too_far(spacing, &error))?
             }
-            (None, here) => {
-                let plan = self.count(set, &mut selection)?;
+            (Err(count), here) => {
+                let plan = self.count(set, count, &mut selection)?;
                 let start = here.map_or(0, |token: Token| token.cursor.offset);
                 plan.window(start, is_over.then_some(0))
             }
@@ -92,7 +94,10 @@ impl<'a> Planner<'a> {
         });
         Ok(PlannedSet::new(
             ready.entry.clone(),
-            resolved.map_or(spacing.density(), |(_, density)| density),
+            match resolved {
+                Resolved::Known(_, density) => density,
+                Resolved::Count(_) => spacing.density(),
+            },
             least_distance(set, ready, spacing, region.reach()),
             plan,
             candidates,
@@ -118,11 +123,8 @@ impl<'a> Planner<'a> {
             })
     }
 
-    /// The plan with exactly as many points as are asked for.
-    fn count(&self, set: &Set, selection: &mut Selection) -> Result<Plan, Error> {
-        let Amount::Count(count) = set.amount else {
-            return Err(Error::Internal("an amount is not resolved"));
-        };
+    /// The plan with exactly `count` points.
+    fn count(&self, set: &Set, count: u64, selection: &mut Selection) -> Result<Plan, Error> {
         let limit = self.limits.max_points;
         if count > limit {
             let count = count.into();

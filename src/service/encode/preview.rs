@@ -8,6 +8,7 @@
 use strew_core::server;
 
 use super::{
+    EncodeError,
     part::Part,
     rows::Row,
     schema::{Kind, Schema},
@@ -120,10 +121,7 @@ impl Frame {
                 let fault = Fault::new("format", "png", detail, allowed);
                 return Err(fault.into());
             }
-            let plan = server::preview(&part.plan, coarse).map_err(|error| {
-                tracing::error!(%error, "a picture cannot be planned");
-                Error::Internal("the picture cannot be drawn")
-            })?;
+            let plan = server::preview(&part.plan, coarse).map_err(EncodeError::of)?;
             Ok(Part { plan, ..part })
         };
         parts.into_iter().map(shown).collect()

@@ -69,6 +69,12 @@ pub(super) fn of_document(document: &Document, visit: &mut impl FnMut(&str)) {
 pub(crate) struct Stamp(Vec<blake3::Hash>);
 
 impl Stamp {
+    pub(crate) fn hash(&self, hasher: &mut blake3::Hasher) {
+        for file in &self.0 {
+            hasher.update(file.as_bytes());
+        }
+    }
+
     pub(crate) fn add(&mut self, path: &Path) {
         let mut hasher = blake3::Hasher::new();
         let name = path.as_os_str().as_encoded_bytes();

@@ -14,11 +14,12 @@ use super::{
     number,
     parameter::{Group, groups},
     parameters::{
-        BBOX, COUNT, CRS, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, PARTS, SEED, SIZE,
+        BBOX, COUNT, CRS, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, PARTS, PRESET, SEED, SIZE,
         SUMMARY, WARP,
     },
     region::REGION,
     table,
+    text::parse_pairs,
 };
 use crate::service::{Catalog, Encoding, Entry, Error, Fault, encode::Options};
 
@@ -79,6 +80,35 @@ impl Draft {
         self
     }
 
+    /// Takes over what a preset has and this query lacks.
+    pub fn fill_from(&mut self, preset: &Self) {
+        self.values.replace(&PRESET, None);
+        let is_layered =
+            |layers: &Checked<Vec<LayerDraft>>| !matches!(layers, Ok(layers) if layers.is_empty());
+        let groups = if is_layered(&self.layers) {
+            // They take the place of all sets of the preset.
+            groups::ANSWER
+        } else {
+            self.layers.clone_from(&preset.layers);
+            groups::QUERY
+        };
+        self.values.fill_from(&preset.values, groups);
+    }
+
+    /// Checks a part of a query, with a region and an amount of its own in place of those that it lacks.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check).
+    pub fn try_out(&self, catalog: &Catalog, most_vertices: usize) -> Result<(), Error> {
+        let missing = parse_pairs("bbox=0,0,1,1&spacing=1", groups::COUNT);
+        let mut whole = self.clone();
+        whole.region = RegionDraft::of(&missing);
+        if matches!(&self.layers, Ok(layers) if layers.is_empty()) {
+            whole.values.fill_from(&missing, groups::SET);
+        }
+        whole.check(catalog, most_vertices).map(drop)
+    }
+
     /// Checks everything against what is loaded; `most_vertices` bounds the polygons of all regions.
     ///
     /// # Errors
@@ -112,6 +142,7 @@ impl Draft {
             sets: sets.into(),
             is_layered: !matches!(&self.layers, Ok(layers) if layers.is_empty()),
             window,
+            preset: None,
         };
         Ok((query, options))
     }

@@ -41,6 +41,7 @@ pub use faults::{Checked, Faults, Together, all};
 pub use field::SetField;
 pub use json::{RegionSchema, read_body, read_region};
 pub use nearest::Nearest;
+pub(super) use parameter::unknown;
 pub use parameter::{Group, Parameter, groups, of};
 pub use region::{QueryRegion, RegionDraft, Rings, ShapeDraft};
 pub use shape::Shape;
@@ -71,6 +72,8 @@ pub struct Query {
     pub is_layered: bool,
     /// Which of the points, in their order.
     pub window: Window,
+    /// The preset that a part of it comes from, as JSON.
+    pub preset: Option<Arc<str>>,
 }
 
 /// Which part of the points is asked for, in their order.
@@ -115,13 +118,13 @@ pub struct Set {
 }
 
 impl Query {
-    /// Whether it names the digests of all of its tables and no field that may change, so that its answer never
-    /// changes.
+    /// Whether it holds all that its answer depends on: it names the digests of all of its tables, no preset, and
+    /// no field that may change.
     #[must_use]
     pub fn is_pinned(&self) -> bool {
         let is_named = |field: &SetField| field.name.is_some();
         let is_fixed = |set: &Set| set.pin.is_some() && !set.field.as_ref().is_some_and(is_named);
-        self.sets.iter().all(is_fixed)
+        self.preset.is_none() && self.sets.iter().all(is_fixed)
     }
 
     /// The digests of all that its points are made of besides what it says: tables, then fields.

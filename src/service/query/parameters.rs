@@ -114,6 +114,17 @@ parameters! {
         example: "100",
         ..Parameter::PLAIN
     };
+    /// The name of a preset.
+    PRESET = Parameter {
+        name: "preset",
+        about: "The preset of the server's settings that everything is taken from that the query leaves \
+                open. The list of presets shows them.",
+        group: Group::Preset,
+        allowed: Some("the name of a preset"),
+        default: Some("none"),
+        example: "forest",
+        ..Parameter::PLAIN
+    };
     /// The name of the profile.
     PROFILE = Parameter {
         name: "profile",

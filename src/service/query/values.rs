@@ -240,10 +240,16 @@ impl Values {
         self.given.extend(value);
     }
 
-    /// Takes over the values that others have and these lack.
-    pub fn fill_from(&mut self, others: &Self) {
+    /// Takes over the values of some groups that others have and these lack. Of amounts there is one.
+    pub fn fill_from(&mut self, others: &Self, groups: &[Group]) {
+        let is_amount =
+            |parameter: &Parameter| [Group::Amount, Group::Count].contains(&parameter.group);
+        let has_amount = self.given.iter().any(|(parameter, _)| is_amount(parameter));
         for (parameter, value) in &others.given {
-            if !self.has(parameter) {
+            let is_wanted =
+                self.groups.contains(&parameter.group) && groups.contains(&parameter.group);
+            let is_second = has_amount && is_amount(parameter);
+            if is_wanted && !is_second && !self.has(parameter) {
                 self.given.push((parameter, value.clone()));
             }
         }

@@ -4,7 +4,7 @@ use std::{path::Path, process::Command, time::Instant};
 
 use strew_testkit::wait::{PATIENCE, until};
 
-use crate::support::daemon::Daemon;
+use crate::support::daemon::{Daemon, strew};
 
 fn pipe(path: &Path) {
     let made = Command::new("mkfifo").arg(path).status();
@@ -27,6 +27,29 @@ fn pipes_and_devices_among_the_tables_are_refused_and_the_daemon_stops() {
     daemon.signal("-TERM");
     until("it stops", || daemon.ended());
     assert!(start.elapsed() < PATIENCE / 2);
+}
+
+#[test]
+fn a_pipe_in_the_place_of_keys_or_certificates_is_refused_at_the_start() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("pipe");
+    pipe(&file);
+    let file = file.display();
+    let tls = format!("tls.certificate={file}");
+    for settings in [
+        vec![format!("access.keys_file={file}")],
+        vec![tls, format!("tls.key={file}")],
+    ] {
+        let mut command = strew();
+        command.args(["serve", "--listen", "127.0.0.1:0"]);
+        for setting in &settings {
+            command.args(["--set", setting]);
+        }
+        let output = command.output().expect("the program runs");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains("not a regular file"), "{message}");
+    }
 }
 
 #[test]

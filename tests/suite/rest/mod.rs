@@ -17,6 +17,7 @@ mod invalid_parameters;
 mod invalid_queries;
 mod layers;
 mod paging;
+mod presets;
 mod profiles;
 mod regions;
 mod single_points;

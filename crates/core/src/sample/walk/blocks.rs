@@ -3,11 +3,13 @@
 
 pub(super) mod graded;
 
-use alloc::{boxed::Box, sync::Arc, vec::Vec};
+use alloc::{boxed::Box, sync::Arc};
 use core::ops::Range;
 
 use super::{
-    template::{Check, Kept, Part, Template, Templates, displaced, sift, write_row},
+    place::Place,
+    sifting::Sifting,
+    template::{Check, Kept, Part, Templates, displaced, sift, write_row},
     tile::{Tile, bands},
     window::Window,
 };
@@ -18,11 +20,10 @@ use crate::{
         field::FieldRows,
         kernel::{Backend, Format, Geometry, Row, compiled},
         lattice::{
-            BAND_WIDTH, Columns, Flat, Inside, Listed, Patch, PointId, PrefixCounts, Span,
-            clip_to_band, places,
+            BAND_WIDTH, Columns, Flat, Inside, Listed, Patch, PointId, Span, clip_to_band, places,
         },
         scope::{Corner, Scope},
-        sieve::{LocalSieve, Run, STRIP_ROWS, Scale},
+        sieve::Scale,
     },
 };
 
@@ -76,50 +77,6 @@ pub struct Blocks<F: Format> {
     flat: (Flat, Inside),
     /// The points of some rows in a field.
     graded: Option<Box<FieldRows>>,
-}
-
-/// The place of the next point in a band.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    /// The current row; the end of the rows when a new band is due.
-    y: i64,
-    /// The number of columns of the row's template that are done.
-    done: usize,
-    /// The lattice column where the current row begins, if it is the first of a window.
-    from: Option<i64>,
-}
-
-/// The state of a walk through a sieve.
-#[derive(Clone, Debug)]
-struct Sifting {
-    /// The sieve for the band, and for the patch.
-    band: LocalSieve,
-    patch: LocalSieve,
-    /// Whether the sieve leaves out points of the current patch.
-    is_cut: bool,
-    /// The runs of the current row and those after it, up to `runs_end`.
-    runs: Vec<Run>,
-    runs_end: i64,
-    prefix: PrefixCounts,
-}
-
-impl Place {
-    const fn row(y: i64) -> Self {
-        Self {
-            y,
-            done: 0,
-            from: None,
-        }
-    }
-
-    /// Whether nothing of the row is done.
-    const fn is_fresh(&self) -> bool {
-        self.done == 0 && self.from.is_none()
-    }
-
-    const fn next_row(&mut self) {
-        *self = Self::row(self.y + 1);
-    }
 }
 
 impl<F: Format> Blocks<F> {
@@ -181,14 +138,7 @@ impl<F: Format> Blocks<F> {
             at: Place::row(rows.end),
             rows,
             left: window.map_or(u128::MAX, |window| window.count),
-            sieve: scope.sieve.as_ref().map(|sieve| Sifting {
-                band: sieve.local(),
-                patch: sieve.local(),
-                is_cut: false,
-                runs: Vec::new(),
-                runs_end: i64::MIN,
-                prefix: PrefixCounts::default(),
-            }),
+            sieve: scope.sieve.as_ref().map(Sifting::new),
             columns: Columns::default(),
             inner: [const { 0..0 }; 4],
             listed: Listed::default(),
@@ -465,7 +415,7 @@ impl<F: Format> Blocks<F> {
                     check: Check::Bounds,
                 }
             } else if is_split {
-                next_part(template, self.at.done, x)
+                template.next_part(self.at.done, x)
             } else {
                 Part {
                     columns: self.at.done..template.len(),
@@ -550,48 +500,5 @@ impl<F: Format> Blocks<F> {
             self.at.next_row();
         }
         filled
-    }
-}
-
-/// The next columns of a warped row that need one kind of check: those left of the inner columns, the
-/// inner ones, those right of them, or those whose points all lie outside.
-fn next_part<F: Format>(template: &Template<F>, done: usize, x: &Span) -> Part {
-    let before = |v| template.columns_before(v);
-    let parts = [
-        (before(x.all.start), Check::Outside),
-        (before(x.inner.start), Check::Bounds),
-        (before(x.inner.end), Check::Nothing),
-        (before(x.all.end), Check::Bounds),
-    ];
-    let next = parts.into_iter().find(|&(end, _)| done < end);
-    let (end, check) = next.unwrap_or((template.len(), Check::Outside));
-    Part {
-        columns: done..end,
-        check,
-    }
-}
-
-impl Sifting {
-    /// Aims at a patch. Returns whether none of its points pass.
-    fn next_patch(&mut self, rows: &Range<i64>, columns: &Range<i64>) -> bool {
-        self.patch.aim(self.band.area(), rows, columns);
-        self.patch.runs(rows.clone(), columns, &mut self.runs);
-        self.runs_end = rows.start;
-        self.is_cut = match self.runs.as_slice() {
-            [] => false,
-            // Such a patch lies inside the plan's box as well, and is filled like one.
-            [run] => !(run.passes && run.columns == *columns),
-            _ => true,
-        };
-        self.runs.is_empty()
-    }
-
-    /// Makes sure that the runs of row `y` are known. Returns whether no point of its strip passes.
-    fn next_strip(&mut self, y: i64, end: i64, columns: &Range<i64>) -> bool {
-        if y >= self.runs_end {
-            self.runs_end = end.min(y + STRIP_ROWS);
-            self.patch.runs(y..self.runs_end, columns, &mut self.runs);
-        }
-        self.runs.is_empty()
     }
 }
