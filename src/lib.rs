@@ -23,3 +23,8 @@ pub mod service;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;
+
+/// Compiles and runs the Rust example of the page on fields.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/fields.md")]
+struct FieldExamples;

@@ -64,6 +64,8 @@ pub struct Fields {
     pub folder: PathBuf,
     /// The most memory that the pixels of all fields may take, in bytes.
     pub max_bytes: usize,
+    /// The most memory that fields may take which clients send to name them later, in bytes; 0 for none.
+    pub max_sent_bytes: usize,
     /// Fields by name, as documents.
     #[serde(flatten)]
     pub named: BTreeMap<String, toml::Table>,

@@ -96,6 +96,7 @@ impl App {
         let folder = config.tables.folder();
         let fields = Fields::load(&config.fields)?;
         let catalog = Catalog::load(config.tables.embedded, folder)?.with_fields(fields);
+        let catalog = catalog.with_room(config.fields.max_sent_bytes);
         let workers = Workers::new(config.workers.threads)?;
         let metrics = Metrics::default();
         let presets = Presets::read(&config.presets, &catalog, config.limits.max_vertices)?;

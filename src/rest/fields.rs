@@ -11,17 +11,20 @@ use axum::{
 use http::{HeaderValue, Method, header};
 use schemars::JsonSchema;
 use serde::Serialize;
+use serde_json::json;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
+    body::Whole,
     chunks::{COLUMN, ROW, SIZE},
     context::Context,
     document,
     freshness::Freshness,
+    query,
 };
 use crate::service::{
     Error, Kind, Service,
-    field::{Document, NamedField, SIDE},
+    field::{self, Document, NamedField, SIDE},
     query::{Parameter, Together as _, groups},
 };
 
@@ -39,7 +42,7 @@ const PNG: &str = "image/png";
 
 /// The path of the list.
 pub(super) fn list(service: Arc<Service>) -> Endpoint {
-    let operation = Operation {
+    let listed = Operation {
         id: "listFields",
         summary: "The fields that are loaded",
         about: "Fields of the daemon's configuration and of its folder, which queries name.",
@@ -48,7 +51,42 @@ pub(super) fn list(service: Arc<Service>) -> Endpoint {
         example: "/v1/fields".into(),
         ..operation(api::Answer::json::<Fields<'_>>("The list, sorted by name."))
     };
-    Endpoint::new("/v1/fields", service, vec![(operation, routing::get(all))])
+    let sent = Operation {
+        method: Method::POST,
+        id: "sendField",
+        summary: "Sends a field to be named later",
+        about: "Queries name it by its digest: field=DIGEST. So a mask is sent once, and asked for chunk by chunk. \
+                It is held for as long as there is room; one that is gone is \
+                no loaded field, and is sent again.",
+        path_parameters: &[],
+        body: Some(query::body(schemas::of::<Document>, example())),
+        answers: vec![api::Answer::json::<Summary<'_>>(
+            "What is held; its name is its digest.",
+        )],
+        problems: vec![Kind::Invalid, Kind::BodyTooLarge],
+        example: format!("/v1/fields -d '{}'", example()),
+        ..operation(api::Answer::unchanged())
+    };
+    let operations = vec![(listed, routing::get(all)), (sent, routing::post(post))];
+    Endpoint::new("/v1/fields", service, operations)
+}
+
+fn example() -> serde_json::Value {
+    json!({ "radial": { "center": [10, 10], "radii": [5, 20] } })
+}
+
+async fn post(
+    State(service): State<Arc<Service>>,
+    context: Context,
+    Whole(body): Whole,
+) -> Result<Response, Error> {
+    context.no_parameters()?;
+    let read = move |service: &Service| {
+        let text = String::from_utf8_lossy(&body);
+        service.hold_field(field::read_json("field", text.trim())?)
+    };
+    let held = service.process(1 << 16, read).await??;
+    document::json(&Summary::new(&held))
 }
 
 /// The path of one field.
@@ -207,8 +245,7 @@ async fn chunk(
 /// The field of a path.
 fn named(service: &Service, name: &str, context: &Context) -> Result<Arc<NamedField>, Error> {
     let catalog = service.catalog();
-    let field = catalog.fields().get(name).cloned();
-    field.ok_or_else(|| Error::NoSuchPath {
+    catalog.field(name).ok_or_else(|| Error::NoSuchPath {
         path: context.uri.path().into(),
         available: format!(
             "/v1/fields/{{name}}, where name is {}",

@@ -150,7 +150,11 @@ impl Neighbors {
         let values = placed.set.attributes.as_slice().len();
         Self {
             bytes: most * (POINT + values * VALUE),
-            lane: if most > MANY { Lane::Long } else { Lane::Short },
+            // In a field there may be nothing for long.
+            lane: match most > MANY || placed.set.field.is_some() {
+                true => Lane::Long,
+                false => Lane::Short,
+            },
         }
     }
 }

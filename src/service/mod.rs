@@ -56,6 +56,7 @@ pub use crate::config::Limits;
 
 use crate::{access::Caller, config};
 use cache::{CacheState, Samplers};
+use field::{Document, NamedField};
 use portrait::Portraits;
 use record::Recorded;
 
@@ -120,6 +121,31 @@ impl Service {
             self.samplers.forget(digest).await;
         }
         reload
+    }
+
+    /// Holds a field that a client sends, under its digest.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a field that is not valid or too large to be held.
+    pub fn hold_field(&self, document: Document) -> Result<Arc<NamedField>, Error> {
+        let catalog = self.catalog();
+        let (spec, built) = catalog.build_field("field", &document, field::MOST_PIXELS);
+        let field = NamedField::sent(document, spec?, built.bytes, built.frame);
+        let name = field.name.clone();
+        let held = catalog
+            .sent()
+            .hold(field)
+            .then(|| catalog.sent().get(&name));
+        held.flatten().ok_or_else(|| {
+            let detail = format!("takes {} bytes, which there is no room for", built.bytes);
+            Fault::new(
+                "field",
+                "",
+                detail,
+                "a smaller field, or fields.max_sent_bytes raised",
+            )
+            .into()
+        })
     }
 
     /// The limits.

@@ -104,6 +104,7 @@ mod tests {
                 embedded: false,
                 folder: PathBuf::new(),
                 max_bytes: 0,
+                max_sent_bytes: 0,
                 named: Default::default(),
             },
             files: vec![folder.path().join("keys.toml")],

@@ -30,6 +30,8 @@ pub struct Sources<'a> {
     pub pixels: Cell<usize>,
     /// A box around all pixels that were read.
     pub frame: Cell<Option<[f64; 4]>>,
+    /// The memory that all pixels take, in bytes.
+    pub bytes: Cell<usize>,
 }
 
 /// Makes the field of a document. `path` is put before the names of members in faults.

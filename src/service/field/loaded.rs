@@ -6,7 +6,7 @@
 //! unchanged is kept as it is.
 
 use std::{
-    cell::{Cell, RefCell},
+    cell::Cell,
     collections::BTreeMap,
     fmt,
     io::BufReader,
@@ -88,6 +88,24 @@ impl NamedField {
             bytes: 0,
             bbox: None,
             stamp: Stamp::default(),
+        }
+    }
+
+    /// A field that a client has sent; its name is its digest. Pixels are not held twice.
+    #[must_use]
+    pub fn sent(
+        mut document: Document,
+        spec: FieldSpec,
+        bytes: usize,
+        bbox: Option<[f64; 4]>,
+    ) -> Self {
+        document.each_pixels(&mut |pixels| (pixels.png, pixels.f32) = (None, None));
+        let name = spec.digest().to_string();
+        Self {
+            document,
+            bytes,
+            bbox,
+            ..Self::of_spec(&name, spec)
         }
     }
 
@@ -417,22 +435,17 @@ fn of_files(
     fields: &Fields,
     room: usize,
 ) -> Result<Built, String> {
-    let taken = RefCell::new(0usize);
-    let read = |file: &str, size: Option<[usize; 2]>| {
-        let left = room.saturating_sub(*taken.borrow());
-        let image = read_file(&base.join(file), size, left)?;
-        *taken.borrow_mut() += image.samples.len() * image.samples.width();
-        Ok(image)
-    };
+    let read = |file: &str, size: Option<[usize; 2]>| read_file(&base.join(file), size, room);
     let sources = Sources {
         named: &|name| Some(fields.get(name)?.spec.clone()),
         names: &|| fields.names(),
         files: Some(&read),
         pixels: Cell::new(room),
         frame: Cell::new(None),
+        bytes: Cell::new(0),
     };
     let spec = build(path, document, &sources).map_err(|faults| super::listed(&faults))?;
-    let taken = *taken.borrow();
+    let taken = sources.bytes.get();
     if taken > room {
         return Err(format!(
             "its pixels take {taken} bytes and {room} are left; allowed: fields.max_bytes for all fields"

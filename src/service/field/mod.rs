@@ -12,6 +12,7 @@ pub mod loaded;
 mod picture;
 mod pixels;
 mod read;
+pub mod sent;
 
 #[cfg(test)]
 mod tests;
@@ -24,6 +25,7 @@ pub use loaded::{FieldError, FieldReload, Fields, NamedField, from_document, fro
 pub use picture::SIDE;
 pub use pixels::ReadFile;
 pub use read::{read_json, read_toml};
+pub use sent::Sent;
 
 use super::query::Faults;
 

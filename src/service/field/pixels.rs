@@ -74,6 +74,10 @@ pub(super) fn heights(
     let region = region(path, document, &image, sources)?;
     let (width, samples) = (image.size[0], image.samples);
     let all = (0..samples.len()).map(|i| samples.get(i) as f32).collect();
+    // Heights and slopes are floats.
+    sources
+        .bytes
+        .set(sources.bytes.get() + 2 * size_of::<f32>() * samples.len());
     let made = Grid::from_floats(width, flipped(all, width));
     Ok((
         region,
@@ -152,6 +156,8 @@ fn image(path: &str, document: &Pixels, sources: &Sources<'_>) -> Checked<Image>
         }
     };
     let image = read?;
+    let bytes = image.samples.len() * image.samples.width();
+    sources.bytes.set(sources.bytes.get() + bytes);
     if document.file.is_none() {
         let left = sources.pixels.get();
         let count = image.size[0] * image.size[1];

@@ -14,6 +14,7 @@ fn sources(pixels: usize) -> Sources<'static> {
         files: None,
         pixels: Cell::new(pixels),
         frame: Cell::new(None),
+        bytes: Cell::new(0),
     }
 }
 

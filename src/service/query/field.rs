@@ -7,7 +7,7 @@ use strew_core::field::FieldSpec;
 use super::{Checked, Value, Values, parameters::FIELD};
 use crate::service::{
     Catalog,
-    field::{self, Document, MOST_PIXELS, Sources},
+    field::{Document, MOST_PIXELS},
 };
 
 /// The field that a set is in.
@@ -48,17 +48,11 @@ impl<'a> Loaded<'a> {
         let Some(document) = values.get::<std::sync::Arc<Document>>(&FIELD)? else {
             return Ok(None);
         };
-        let fields = self.catalog.fields();
-        let sources = Sources {
-            named: &|name| Some(fields.get(name)?.spec.clone()),
-            names: &|| fields.names(),
-            files: None,
-            pixels: self.pixels.clone(),
-            frame: Cell::new(None),
-        };
         let path = format!("{}{}", values.path(), FIELD.name);
-        let spec = field::build(&path, &document, &sources);
-        self.pixels.set(sources.pixels.get());
+        let (spec, sources) = self
+            .catalog
+            .build_field(&path, &document, self.pixels.get());
+        self.pixels.set(sources.left);
         let spec = spec?;
         Ok(Some(SetField {
             name: match &*document {

@@ -11,6 +11,7 @@ fn settings(folder: &Path) -> Settings {
         embedded: false,
         folder: folder.into(),
         max_bytes: 1 << 20,
+        max_sent_bytes: 0,
         named: BTreeMap::new(),
     }
 }
