@@ -454,7 +454,7 @@ fn of_files(
     Ok((spec, taken, sources.frame.get()))
 }
 
-/// The field of a file that a command names: a document or a raster.
+/// The field of a file that a command names: a document or a raster. A document may name others in its folder.
 ///
 /// # Errors
 /// What is wrong with it.
@@ -464,8 +464,25 @@ pub fn from_file(path: &Path, fields: &Fields) -> Result<NamedField, FieldError>
     if field.name.is_empty() {
         field.name = "field".into();
     }
-    let stamp = Stamp::default();
-    let built = field.build(fields, usize::MAX, stamp);
+    let is_known = |name: &str| fields.get(name).is_some();
+    let has_others = (field.document.as_ref()).is_ok_and(|document| !names(document).all(is_known));
+    let mut all = fields.clone();
+    if has_others {
+        let (beside, _) = Fields::default().read(&Settings {
+            embedded: false,
+            folder: match base.as_os_str().is_empty() {
+                true => Path::new(".").into(),
+                false => base.into(),
+            },
+            max_bytes: usize::MAX,
+            max_sent_bytes: 0,
+            named: BTreeMap::new(),
+        });
+        for (name, other) in beside.entries {
+            all.entries.entry(name).or_insert(other);
+        }
+    }
+    let built = field.build(&all, usize::MAX, Stamp::default());
     built.map_err(|detail| field.error(detail))
 }
 
