@@ -141,7 +141,7 @@ export class Controls {
     const choices = [["", "Everywhere"], ...names.map((name) => [name, name])];
     if (isSent(layer.field)) choices.push([layer.field, "A picture that was sent"]);
     const file = make("input", {
-      type: "file", id: "picture", accept: "image/*", class: "unseen",
+      type: "file", id: "picture", accept: "image/*", hidden: true,
       onchange: (event) => event.target.files[0] && this.stipple(event.target.files[0]),
     });
     const shade = make("input", {

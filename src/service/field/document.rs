@@ -13,9 +13,8 @@ use serde::{
 use strew_core::field::{Edges, FieldSpec, Filter};
 
 /// A field: a share of the density, from 0 to 1, at each place. Exactly one member.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-#[schemars(rename = "Field")]
 pub enum Document {
     /// The name of a field that is loaded.
     Name(String),
@@ -306,9 +305,8 @@ impl From<FilterName> for Filter {
 }
 
 /// Fields that are joined: at least one.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[schemars(rename = "FieldParts")]
-pub struct Parts(#[schemars(length(min = 1, max = 64))] pub Vec<Document>);
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parts(pub Vec<Document>);
 
 impl<'de> Deserialize<'de> for Parts {
     /// Stops at more than a field may have, so that a long list takes no memory.

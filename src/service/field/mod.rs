@@ -12,6 +12,7 @@ pub mod loaded;
 mod picture;
 mod pixels;
 mod read;
+mod schema;
 pub mod sent;
 
 #[cfg(test)]

@@ -32,8 +32,9 @@ fn a_field_thins_the_points_and_is_shaded_under_them() {
     assert!(hash.contains("shade=0"), "{hash}");
     browser.look(&daemon, &hash);
     assert_eq!((browser.hash(), browser.ready()), (hash, count));
-    // Nothing for a long way: the page shows that as well.
-    browser.look(&daemon, "#at=1e6,1e6&span=100&field=nothing");
+    // A field that is not there is told.
+    browser.go("about:blank");
+    browser.go(&daemon.url("/#at=0,0&span=100&field=nothing"));
     browser.until("document.documentElement.dataset.state === 'failed'");
     assert!(browser.text("#wrong").contains("no such field is loaded"));
     assert_eq!(browser.errors(), Vec::<String>::new());
@@ -53,7 +54,7 @@ fn a_picture_is_sent_once_and_becomes_dots_where_it_is_dark() {
         const blob = await new Promise((done) => c.toBlob(done)); \
         await strew.stipple(new File([blob], 'half.png')); })()";
     let before = browser.value("strew.plane.chunks.identity");
-    browser.value(&format!("{picture}; 0"));
+    browser.value(&format!("({picture}, 0)"));
     browser.until(&format!("strew.plane.chunks.identity !== {before}"));
     let count = browser.ready();
     assert!((20_000..40_000).contains(&count), "{count}");
@@ -62,6 +63,6 @@ fn a_picture_is_sent_once_and_becomes_dots_where_it_is_dark() {
     browser.until(SHADED);
     assert_eq!(browser.errors(), Vec::<String>::new());
     // What is no picture is told.
-    browser.value("strew.stipple(new File(['GIF'], 'other.gif')); 0");
+    browser.value("(strew.stipple(new File(['GIF'], 'other.gif')), 0)");
     browser.until("document.querySelector('#banner').textContent.includes('is no picture')");
 }
