@@ -1,4 +1,5 @@
-//! Settings: every one has a default in `config/strew.toml`, a meaning there, and a range here.
+//! Settings: every one has a default in `config/strew.toml`, a meaning there, and a range beside its
+//! field.
 //!
 //! Layers, the later the stronger: defaults, a file, the environment, flags. They are merged as
 //! TOML by `layers` and read into [`Config`] once; the result is checked as a whole, and no
@@ -10,6 +11,7 @@ mod layers;
 mod limits;
 mod listen;
 mod networks;
+mod range;
 mod reports;
 mod server;
 mod validate;

@@ -11,8 +11,8 @@
 //! let river = Marks::Lines(vec![vec![[0.0, 8.0], [30.0, 21.0], [64.0, 30.0]]]);
 //! let reeds = FieldSpec::distance(river, [1.0, 9.0], [1.0, 0.0])?;
 //! let set = PointSet::new(table).seed(7).in_field(reeds);
-//! let near = set.within(Region::chunk(64.0, [0, 0])?)?;
-//! assert!(near.len() > 300 && near.len() < 2000);
+//! let number = set.count(Region::chunk(64.0, [0, 0])?)?;
+//! assert!(number > 300 && number < 2000);
 //! # Ok::<(), strew_core::Error>(())
 //! ```
 //!

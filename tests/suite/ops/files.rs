@@ -2,9 +2,12 @@
 
 use std::{path::Path, process::Command, time::Instant};
 
-use strew_testkit::wait::{PATIENCE, until};
+use strew_testkit::{
+    daemon::Launcher,
+    wait::{PATIENCE, until},
+};
 
-use crate::support::daemon::{Daemon, strew};
+use crate::support::daemon::{Daemon, PROGRAM};
 
 fn pipe(path: &Path) {
     let made = Command::new("mkfifo").arg(path).status();
@@ -40,15 +43,12 @@ fn a_pipe_in_the_place_of_keys_or_certificates_is_refused_at_the_start() {
         vec![format!("access.keys_file={file}")],
         vec![tls, format!("tls.key={file}")],
     ] {
-        let mut command = strew();
-        command.args(["serve", "--listen", "127.0.0.1:0"]);
-        for setting in &settings {
-            command.args(["--set", setting]);
+        let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+        let started = Launcher::new(PROGRAM).settings(&settings).start();
+        let refused = started.err().expect("refused").to_string();
+        for words in ["exit status: 2", "not a regular file"] {
+            assert!(refused.contains(words), "no `{words}`: {refused}");
         }
-        let output = command.output().expect("the program runs");
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(message.contains("not a regular file"), "{message}");
     }
 }
 

@@ -97,7 +97,7 @@ impl Launcher {
         let process = Process { child, log };
         let line = output.next("");
         let Some(address) = line.as_deref().and_then(address_in) else {
-            return Err(process.not_ready(line));
+            return Err(process.not_ready(line, output.is_closed()));
         };
         Ok(Daemon {
             process,
@@ -149,9 +149,9 @@ struct Process {
 }
 
 impl Process {
-    fn not_ready(mut self, line: Option<String>) -> NotReady {
+    fn not_ready(mut self, line: Option<String>, has_ended: bool) -> NotReady {
         // One that printed nothing closed its output, and ends by itself.
-        if line.is_some() {
+        if line.is_some() || !has_ended {
             let _ = self.child.kill();
         }
         NotReady {

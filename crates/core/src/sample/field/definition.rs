@@ -14,7 +14,7 @@ use crate::sample::area::Region;
 /// let ramp = |[x, _]: [f64; 2]| x / 40.0;
 /// assert_eq!(ramp.share([10.0, 3.0]), 0.25);
 /// let set = PointSet::new(table).seed(7).in_field(ramp);
-/// let count = |x| Ok(set.within(Region::new([x, 0.0], [x + 20.0, 40.0])?)?.len());
+/// let count = |x| set.count(Region::new([x, 0.0], [x + 20.0, 40.0])?);
 /// assert!(count(20.0)? > 2 * count(0.0)?);
 /// # Ok::<(), strew_core::Error>(())
 /// ```

@@ -1,6 +1,7 @@
-//! The walk over a plan: bands of columns, rows within a band, columns within a row. `graded` has what differs
-//! in a field.
+//! The walk over a plan: bands of columns, rows within a band, columns within a row. `flat` has what differs
+//! in small warped boxes, `graded` what differs in a field.
 
+mod flat;
 pub(super) mod graded;
 
 use alloc::{boxed::Box, sync::Arc};
@@ -29,9 +30,6 @@ use crate::{
 
 /// The number of lattice rows from which a band keeps its templates.
 const TALL: i64 = 512;
-
-/// The most points of a warped patch that are listed before some are written: 20 bytes each.
-const FLAT: usize = 2048;
 
 /// The points of a plan, or of one of its tiles, in order, in blocks of any size.
 ///
@@ -318,40 +316,6 @@ impl<F: Format> Blocks<F> {
                 self.at = Place::row(rows.end);
             }
         }
-    }
-
-    /// Writes points of a warped patch in which few rows share a template, up to row `end` or as many as
-    /// there is room for. Rows are warped several at a time.
-    fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
-        let (lattice, patch, base) = (&self.scope.lattice, &self.patch, self.base);
-        let (flat, inside) = &mut self.flat;
-        // Some two in three points of a small box's patches lie inside.
-        let enough = (2 * out.len()).clamp(64, FLAT);
-        let rows = self.at.y..end;
-        let columns = (&mut self.columns, &self.listed);
-        let next = flat.list(lattice, patch, columns, rows, enough, self.backend);
-        flat.sift(patch, self.backend, inside);
-        let [left, bottom] = patch.origin();
-        compiled(self.backend, || {
-            for (out, (place, address)) in out.iter_mut().zip(inside.points()) {
-                let column = self.format.column(base, place[0], left + address[0]);
-                *out = self
-                    .format
-                    .item(base, column, place[1], bottom + address[1]);
-            }
-        });
-        self.at = Place::row(next);
-        if inside.len() > out.len()
-            && let Some((y, done)) = flat.locate(patch, out.len())
-        {
-            self.at = Place {
-                done,
-                ..Place::row(y)
-            };
-            // The rest of this row takes a template of its own.
-            self.templates.clear();
-        }
-        inside.len().min(out.len())
     }
 
     /// Writes points of the patch's rows up to `end`, or as many as there is room for.
