@@ -9,6 +9,7 @@ use anyhow::{Context as _, anyhow};
 
 use super::{
     Failure, config,
+    fields::FieldArgs,
     flags::{Flags, Takes, WHERE, flag},
     refusal::Source,
 };
@@ -38,6 +39,8 @@ pub(super) struct QueryArgs<T: Takes> {
     #[command(flatten)]
     pub(super) flags: Flags<T>,
     #[command(flatten)]
+    field: FieldArgs,
+    #[command(flatten)]
     pub(super) settings: config::Args,
 }
 
@@ -53,8 +56,8 @@ pub(super) struct PlannedQuery {
 impl<T: Takes> QueryArgs<T> {
     /// The query, checked and planned.
     pub(super) fn plan(&self, config: &Config) -> Result<PlannedQuery, Failure> {
-        let (draft, source) = self.read()?;
-        let catalog = config.tables()?;
+        let (mut draft, source) = self.read()?;
+        let catalog = self.field.load(&mut draft.values, config.tables()?)?;
         let limits = &config.limits;
         let presets = Presets::read(&config.presets, &catalog, limits.max_vertices)
             .map_err(|error| Failure::Usage(error.into()))?;
@@ -228,8 +231,11 @@ impl Config {
         Catalog::load(self.tables.embedded, self.tables.folder())
     }
 
-    /// The same; settings that lead to none are wrong usage.
+    /// The tables and the fields; settings that lead to none are wrong usage.
     pub(super) fn tables(&self) -> Result<Catalog, Failure> {
-        self.catalog().map_err(|error| Failure::Usage(error.into()))
+        let catalog = self
+            .catalog()
+            .map_err(|error| Failure::Usage(error.into()))?;
+        Ok(catalog.with_fields(self.loaded_fields()?))
     }
 }

@@ -43,6 +43,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let scheme = if config.tls.is_on() { "https" } else { "http" };
     let app = App::new(config).map_err(|error| match error {
         ServeError::Catalog(_)
+        | ServeError::Fields(_)
         | ServeError::Tls(_)
         | ServeError::Keys(_)
         | ServeError::Presets(_)

@@ -16,6 +16,9 @@ const FREE: [&str; 1] = ["presets"];
 /// The variable that names a configuration file: the only one with the prefix that is no setting.
 const FILE_VARIABLE: &str = "STREW_CONFIG";
 
+/// The section whose tables are named by files.
+const NAMED: &str = "fields.";
+
 /// Layers of settings, merged so far, of which a [`Config`] is made.
 #[derive(Clone, Debug)]
 pub struct Layers {
@@ -176,6 +179,11 @@ fn merge(
 ) -> Result<(), ConfigError> {
     for (name, value) in over {
         let key = format!("{prefix}{name}");
+        // Fields have names of their own; what they say is read when they are loaded.
+        if prefix == NAMED && value.is_table() {
+            under.insert(name, value);
+            continue;
+        }
         let Some(slot) = under.get_mut(&name) else {
             return Err(ConfigError::UnknownKey {
                 source_name: source_name.into(),

@@ -1,6 +1,9 @@
-//! Settings of work: tables, limits of queries and of memory, threads.
+//! Settings of work: tables, fields, limits of queries and of memory, threads.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -69,6 +72,30 @@ pub struct Tables {
 }
 
 impl Tables {
+    /// The folder, if there is one.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        Some(self.folder.as_path()).filter(|folder| !folder.as_os_str().is_empty())
+    }
+}
+
+/// Which fields to load.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fields {
+    /// Whether the built-in one is loaded.
+    pub embedded: bool,
+    /// A folder with documents and rasters; empty for none.
+    pub folder: PathBuf,
+    /// The most memory that the pixels of all fields may take, in bytes.
+    pub max_bytes: usize,
+    /// The most memory that fields may take which clients send to name them later, in bytes; 0 for none.
+    pub max_sent_bytes: usize,
+    /// Fields by name, as documents.
+    #[serde(flatten)]
+    pub named: BTreeMap<String, toml::Table>,
+}
+
+impl Fields {
     /// The folder, if there is one.
     #[must_use]
     pub fn folder(&self) -> Option<&Path> {

@@ -21,7 +21,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 pub use access::{Access, AddressLimits, Rate};
-pub use limits::{Limits, Reload, Tables, Workers};
+pub use limits::{Fields, Limits, Reload, Tables, Workers};
 pub use networks::{NETWORKS, Networks};
 pub use reports::{Http, Log, LogFormat, Metrics, Telemetry};
 pub use server::{Admin, Server, Shutdown, Tls};
@@ -50,6 +50,8 @@ pub struct Config {
     pub http: Http,
     /// Which tables to load.
     pub tables: Tables,
+    /// Which fields to load.
+    pub fields: Fields,
     /// The limits of queries and of memory.
     pub limits: Limits,
     /// What one address may use.

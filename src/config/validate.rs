@@ -20,6 +20,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         telemetry,
         reload,
         tables: _,
+        fields: _,
         // Checked with the tables at hand.
         presets: _,
     } = config;

@@ -2,6 +2,7 @@
 
 mod compression;
 mod deadline;
+mod field;
 mod frames;
 mod messages;
 mod points;
@@ -33,13 +34,14 @@ use proto::point_service_server::PointServiceServer;
 const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
 
 /// The methods of the contract, by their paths.
-pub const METHODS: [&str; 6] = [
+pub const METHODS: [&str; 7] = [
     "/strew.v1.PointService/StreamPoints",
     "/strew.v1.PointService/CountPoints",
     "/strew.v1.PointService/SplitPoints",
     "/strew.v1.PointService/GetPoint",
     "/strew.v1.PointService/FindNearest",
     "/strew.v1.PointService/ListProfiles",
+    "/strew.v1.PointService/ListFields",
 ];
 
 /// The name of a code, as the protocol writes it.

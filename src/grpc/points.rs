@@ -8,15 +8,15 @@ use strew_core::ALGORITHM_VERSION;
 use tonic::{Request, Response, Status};
 
 use super::{
-    compression,
+    compression, field,
     frames::Frames,
     messages::{Framed, Messages},
     profile,
     proto::{
         CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
-        GetPointRequest, GetPointResponse, ListProfilesRequest, ListProfilesResponse,
-        SplitPointsRequest, SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
-        point_service_server::PointService,
+        GetPointRequest, GetPointResponse, ListFieldsRequest, ListFieldsResponse,
+        ListProfilesRequest, ListProfilesResponse, SplitPointsRequest, SplitPointsResponse,
+        StreamPointsRequest, StreamPointsResponse, point_service_server::PointService,
     },
     query, resolved, set, single, split, status,
 };
@@ -212,6 +212,17 @@ impl PointService for Points {
         Ok(Response::new(ListProfilesResponse {
             profiles: entries.map(|entry| profile::profile(entry)).collect(),
             algorithm: ALGORITHM_VERSION,
+        }))
+    }
+
+    async fn list_fields(
+        &self,
+        _request: Request<ListFieldsRequest>,
+    ) -> Result<Response<ListFieldsResponse>, Status> {
+        let catalog = self.service.catalog();
+        let fields = catalog.fields().iter().map(|loaded| field::loaded(loaded));
+        Ok(Response::new(ListFieldsResponse {
+            fields: fields.collect(),
         }))
     }
 }

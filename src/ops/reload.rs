@@ -1,4 +1,4 @@
-//! Reading tables, keys and certificates again while the daemon serves: on SIGHUP, when files change, on
+//! Reading tables, fields, keys and certificates again while the daemon serves: on SIGHUP, when files change, on
 //! request.
 //!
 //! Files are polled, because notifications of changes do not come through network volumes and the
@@ -99,7 +99,7 @@ impl Reloader {
     }
 
     /// Whether there are files to watch.
-    pub(super) const fn has_files(&self) -> bool {
+    pub(super) fn has_files(&self) -> bool {
         !self.watched.is_empty()
     }
 
@@ -114,7 +114,8 @@ impl Reloader {
         let read = move || {
             let keys = gate.settings().has_keys().then(|| gate.reload());
             let certificates = tls.map(|tls| tls.reload());
-            (service.read_tables(watched.folder()), keys, certificates)
+            let tables = service.read_tables(watched.folder(), watched.fields());
+            (tables, keys, certificates)
         };
         let (tables, keys, certificates) = self.read(read).await?;
         let mut done = Done {
@@ -231,7 +232,11 @@ async fn wait(every: Option<Duration>) {
 /// Whether a reload did or found anything that the one before did not.
 fn differs(before: &Done, now: &Done) -> bool {
     let tables = &now.tables;
-    let has_changed = !tables.loaded.is_empty() || !tables.removed.is_empty();
+    let fields = &tables.fields;
+    let lists = [&fields.loaded, &fields.removed];
+    let has_changed = !tables.loaded.is_empty()
+        || !tables.removed.is_empty()
+        || lists.iter().any(|list| !list.is_empty());
     has_changed || tables.refused != before.tables.refused || now.keys != before.keys
 }
 
@@ -258,6 +263,12 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
             digest = table.digest,
             "table removed: no file holds it any more"
         );
+    }
+    for name in &reload.fields.loaded {
+        tracing::info!(cause, name, "field loaded");
+    }
+    for name in &reload.fields.removed {
+        tracing::warn!(cause, name, "field removed: nothing describes it any more");
     }
     for refusal in &reload.refused {
         metrics.refused_tables().increment(1);

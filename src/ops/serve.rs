@@ -23,7 +23,11 @@ use crate::{
     access::{Gate, KeysError},
     config::{self, Config},
     grpc, rest,
-    service::{Catalog, PresetError, Presets, Service, Workers, catalog::CatalogError},
+    service::{
+        Catalog, PresetError, Presets, Service, Workers,
+        catalog::CatalogError,
+        field::{FieldError, Fields},
+    },
 };
 
 /// Why the daemon cannot start or go on.
@@ -33,6 +37,9 @@ pub enum ServeError {
     /// The tables cannot be loaded.
     #[error(transparent)]
     Catalog(#[from] CatalogError),
+    /// The fields cannot be loaded.
+    #[error(transparent)]
+    Fields(#[from] FieldError),
     /// No threads to work with.
     #[error("cannot start the workers: {0}")]
     Workers(#[from] rayon::ThreadPoolBuildError),
@@ -87,7 +94,9 @@ impl App {
         let tls = Tls::new(&config.tls)?;
         let collector = Collector::new(&config.telemetry)?;
         let folder = config.tables.folder();
-        let catalog = Catalog::load(config.tables.embedded, folder)?;
+        let fields = Fields::load(&config.fields)?;
+        let catalog = Catalog::load(config.tables.embedded, folder)?.with_fields(fields);
+        let catalog = catalog.with_room(config.fields.max_sent_bytes);
         let workers = Workers::new(config.workers.threads)?;
         let metrics = Metrics::default();
         let presets = Presets::read(&config.presets, &catalog, config.limits.max_vertices)?;

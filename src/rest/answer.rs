@@ -215,8 +215,7 @@ pub(super) fn freshness(
     query: &Query,
     content_type: &'static str,
 ) -> Freshness {
-    let sets = query.sets.iter();
-    let digests: Vec<&str> = sets.map(|set| set.entry.digest.as_str()).collect();
+    let digests: Vec<&str> = query.digests().collect();
     let made_of = (
         digests,
         service.limits().max_points,

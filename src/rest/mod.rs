@@ -10,6 +10,7 @@ mod cors;
 mod count;
 mod docs;
 mod document;
+mod fields;
 mod finish;
 mod fixed;
 mod freshness;
@@ -53,6 +54,9 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         presets::endpoint(service.clone()),
         portrait::endpoint(service.clone()),
         portrait::picture(service.clone()),
+        fields::list(service.clone()),
+        fields::endpoint(service.clone()),
+        fields::picture(service.clone()),
     ]
 }
 

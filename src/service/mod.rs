@@ -12,6 +12,7 @@ pub mod catalog;
 mod effort;
 pub mod encode;
 pub mod error;
+pub mod field;
 mod lane;
 mod planned;
 mod planned_set;
@@ -53,8 +54,9 @@ pub use workers::Workers;
 
 pub use crate::config::Limits;
 
-use crate::access::Caller;
+use crate::{access::Caller, config};
 use cache::{CacheState, Samplers};
+use field::{Document, NamedField};
 use portrait::Portraits;
 use record::Recorded;
 
@@ -105,11 +107,11 @@ impl Service {
         self.catalog.load_full()
     }
 
-    /// Reads the folder of tables again. A file that is not valid is refused, and the table that it
+    /// Reads the folders of tables and of fields again. A file that is not valid is refused, and what it
     /// held so far stays.
     #[must_use]
-    pub fn read_tables(&self, folder: Option<&Path>) -> (Catalog, Reload) {
-        self.catalog.load().reload(folder)
+    pub fn read_tables(&self, folder: Option<&Path>, fields: &config::Fields) -> (Catalog, Reload) {
+        self.catalog.load().reload(folder, fields)
     }
 
     /// Serves the tables that were read, all at once. Reloads come one after another.
@@ -119,6 +121,31 @@ impl Service {
             self.samplers.forget(digest).await;
         }
         reload
+    }
+
+    /// Holds a field that a client sends, under its digest.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a field that is not valid or too large to be held.
+    pub fn hold_field(&self, document: Document) -> Result<Arc<NamedField>, Error> {
+        let catalog = self.catalog();
+        let (spec, built) = catalog.build_field("field", &document, field::MOST_PIXELS);
+        let field = NamedField::sent(document, spec?, built.bytes, built.frame);
+        let name = field.name.clone();
+        let held = catalog
+            .sent()
+            .hold(field)
+            .then(|| catalog.sent().get(&name));
+        held.flatten().ok_or_else(|| {
+            let detail = format!("takes {} bytes, which there is no room for", built.bytes);
+            Fault::new(
+                "field",
+                "",
+                detail,
+                "a smaller field, or fields.max_sent_bytes raised",
+            )
+            .into()
+        })
     }
 
     /// The limits.

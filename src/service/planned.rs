@@ -62,7 +62,7 @@ impl Placed {
         let least = resolve::least_distance(&set, &ready, spacing, 0.0);
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least),
-            points: PointSet::new(ready.table).placed(set.placement(spacing)),
+            points: set.points(&ready.table, spacing),
             set,
         })
     }

@@ -8,7 +8,7 @@ use strew_core::{
 use super::{
     Error, Limits, PlannedSet,
     cache::Ready,
-    effort::{self, COUNTS, Selection},
+    effort::{self, Selection},
     query::{Amount, Query, Set, Token, parameters},
     resolve::{Resolved, check_reach, least_distance, resolve},
 };
@@ -47,8 +47,7 @@ impl<'a> Planner<'a> {
             Resolved::Known(spacing, _) => Ok(spacing),
             Resolved::Count(count) => here.and_then(|token| token.spacing).ok_or(count),
         };
-        let placement = set.placement(known.unwrap_or(Spacing::ONE));
-        let points = PointSet::new(ready.table.clone()).placed(placement);
+        let points = set.points(&ready.table, known.unwrap_or(Spacing::ONE));
         let mut selection = Selection {
             set: self.keeping_clear(set, points)?,
             area: set.area(region),
@@ -81,6 +80,13 @@ impl<'a> Planner<'a> {
             }
         };
         let spacing = plan.placement().spacing;
+        let candidates = match set.field {
+            Some(_) => effort::candidates(&Selection {
+                set: selection.set.clone().placed(plan.placement()),
+                ..selection.clone()
+            }),
+            None => 0,
+        };
         let layer = selection.set.placed(plan.placement());
         self.layers.push(match &set.region {
             Some(own) => layer.limited_to(own.area.clone()),
@@ -94,6 +100,7 @@ impl<'a> Planner<'a> {
             },
             least_distance(set, ready, spacing, region.reach()),
             plan,
+            candidates,
         ))
     }
 
@@ -134,9 +141,10 @@ impl<'a> Planner<'a> {
                 ..placement
             };
             selection.set = selection.set.clone().placed(trial);
-            self.check_rows(selection, COUNTS)?;
+            self.check_rows(selection, effort::counts(set))?;
         }
-        let least = effort::least_spacing(selection, self.limits.max_rows as f64 / COUNTS);
+        let most = self.limits.max_rows as f64 / effort::counts(set);
+        let least = effort::least_spacing(selection, most);
         let Selection {
             set: points, area, ..
         } = &*selection;

@@ -35,6 +35,11 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
             let spacing = Spacing::new(value).map_err(wrong(&parameters::SPACING, value))?;
             Ok(Resolved::Known(spacing, spacing.density()))
         }
+        Amount::MinDistance(distance) if moves(set, ready) => {
+            let detail = "not with a field on this table: points move a little as they thin out";
+            let allowed = "density, spacing or count; or a table without a ladder";
+            Err(set.fault(parameters::MIN_DISTANCE.name, distance, detail, allowed))
+        }
         Amount::MinDistance(distance) => {
             let least = ready.table.least_distance();
             let spacing = least.spacing_for(distance, set.warp).map_err(|error| {
@@ -52,8 +57,17 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
     }
 }
 
+/// Whether points move as they thin out, so that no least distance is guaranteed: in a field, by the table's
+/// ladder.
+fn moves(set: &Set, ready: &Ready) -> bool {
+    set.field.is_some() && ready.table.ladder().is_some()
+}
+
 /// The distance that coordinates within ±`reach` keep.
 pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing, reach: f64) -> f64 {
+    if moves(set, ready) {
+        return 0.0;
+    }
     let least = ready.table.least_distance();
     let least = least.reported(spacing, set.warp, reach);
     match set.amount {

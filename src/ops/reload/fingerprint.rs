@@ -7,13 +7,19 @@ use std::{
 
 use strew_core::table::MAX_FILE_BYTES;
 
-use crate::{bounded_file, config::Config};
+use crate::{
+    bounded_file,
+    config::{Config, Fields},
+    service::field::{self, Stamp},
+};
 
 /// The files that are watched.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Watched {
     /// The folder of tables.
     folder: Option<PathBuf>,
+    /// The fields.
+    fields: Fields,
     /// Keys and certificates.
     files: Vec<PathBuf>,
 }
@@ -24,6 +30,7 @@ impl Watched {
         let files = config.access.keys_file().into_iter();
         Self {
             folder: config.tables.folder().map(Into::into),
+            fields: config.fields.clone(),
             files: files.chain(config.tls.files()).map(Into::into).collect(),
         }
     }
@@ -33,8 +40,14 @@ impl Watched {
         self.folder.as_deref()
     }
 
-    pub(super) const fn is_empty(&self) -> bool {
-        self.folder.is_none() && self.files.is_empty()
+    /// The fields.
+    pub(super) const fn fields(&self) -> &Fields {
+        &self.fields
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        let has_fields = self.fields.folder().is_some() || !self.fields.named.is_empty();
+        self.folder.is_none() && self.files.is_empty() && !has_fields
     }
 
     /// Reads all of them. Links are followed: orchestrators change what a link points to.
@@ -47,7 +60,7 @@ impl Watched {
         });
         let mut files: Vec<PathBuf> = tables.chain(self.files.iter().cloned()).collect();
         files.sort();
-        Fingerprint::of(&files)
+        Fingerprint::of(&files, &field::stamp(&self.fields))
     }
 }
 
@@ -56,7 +69,7 @@ impl Watched {
 pub struct Fingerprint(blake3::Hash);
 
 impl Fingerprint {
-    fn of(files: &[PathBuf]) -> Self {
+    fn of(files: &[PathBuf], fields: &Stamp) -> Self {
         let mut hasher = blake3::Hasher::new();
         for path in files {
             let content = bounded_file::read(path, MAX_FILE_BYTES);
@@ -66,6 +79,7 @@ impl Fingerprint {
                 hasher.update(part);
             }
         }
+        fields.hash(&mut hasher);
         Self(hasher.finalize())
     }
 }
@@ -86,6 +100,13 @@ mod tests {
         };
         let watched = Watched {
             folder: Some(folder.path().into()),
+            fields: Fields {
+                embedded: false,
+                folder: PathBuf::new(),
+                max_bytes: 0,
+                max_sent_bytes: 0,
+                named: Default::default(),
+            },
             files: vec![folder.path().join("keys.toml")],
         };
         let look = || watched.look();

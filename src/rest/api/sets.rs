@@ -155,6 +155,8 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
         let mut echoed = match parameter.name {
             // Text in requests, too, but always a number in answers.
             "warp" => json!({ "type": "number" }),
+            // Described ones are known by their digests.
+            "field" => json!({ "type": "string" }),
             _ => schema(parameter.shape),
         };
         echoed["description"] = parameter.about.into();
@@ -163,6 +165,10 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
             || ["seed", "warp"].contains(&parameter.name);
         always.extend(is_always.then_some(parameter.name));
     }
+    put(
+        "field_digest",
+        json!({ "type": "string", "description": "The digest of the field, if there is one." }),
+    );
     put(
         "clear_of",
         json!({ "type": "object", "additionalProperties": { "type": "number" } }),

@@ -145,7 +145,7 @@ impl Answer {
     ) -> Result<Self, Error> {
         let coordinates = Coordinates::of(output, &parts);
         let count = parts.iter().map(|part| part.plan.count()).sum();
-        let frame = Frame::new(&parts, output.size);
+        let frame = Frame::new(&parts, output.size).with_dots(output.dot, &parts);
         let parts = match output.encoding {
             Encoding::Png => frame.shown(parts)?,
             _ => parts,

@@ -82,6 +82,15 @@ impl Frame {
         }
     }
 
+    /// The same with dots of another size: in spacings of the first part's points at full density.
+    pub(super) fn with_dots(mut self, dot: Option<f64>, parts: &[Part]) -> Self {
+        if let (Some(dot), Some(part)) = (dot, parts.first()) {
+            let spacing = part.plan.placement().spacing.get() * self.scale;
+            self.radius = 0.5 * dot * spacing;
+        }
+        self
+    }
+
     /// The parts to draw in place of these, so that a picture costs what it shows. Where points are so
     /// much finer than pixels that dots cover every pixel, a sparser set in the same area covers them as
     /// well.

@@ -10,6 +10,7 @@ use super::{
     Value, Values, Window, attributes,
     cursor::Token,
     faults::all,
+    field::Loaded,
     number,
     parameter::{Group, groups},
     parameters::{
@@ -118,9 +119,10 @@ impl Draft {
         most_vertices: usize,
     ) -> Result<(Query, Options), Error> {
         self.check_vertices(most_vertices)?;
+        let loaded = Loaded::new(catalog);
         let sets = match &self.layers {
-            Ok(layers) if layers.is_empty() => Set::of(&self.values, catalog).map(|set| vec![set]),
-            Ok(layers) => self.layers(layers, catalog),
+            Ok(layers) if layers.is_empty() => Set::of(&self.values, &loaded).map(|set| vec![set]),
+            Ok(layers) => self.layers(layers, &loaded),
             Err(faults) => Err(faults.clone()),
         };
         let (read, region, sets, window, options) = (
@@ -173,7 +175,7 @@ impl Draft {
         }
     }
 
-    fn layers(&self, layers: &[LayerDraft], catalog: &Catalog) -> Checked<Vec<Set>> {
+    fn layers(&self, layers: &[LayerDraft], loaded: &Loaded<'_>) -> Checked<Vec<Set>> {
         if layers.len() > MOST_LAYERS {
             let allowed = format!("at most {MOST_LAYERS} layers");
             return Err(Fault::new("layers", layers.len(), "too many layers", allowed).into());
@@ -190,7 +192,7 @@ impl Draft {
             Err::<(), _>(Fault::new(&field, text, detail, "either layers or one set").into())
         });
         let sets = layers.iter().enumerate();
-        let sets = sets.map(|(i, layer)| layer.check(&layers[..i], catalog));
+        let sets = sets.map(|(i, layer)| layer.check(&layers[..i], loaded));
         let (_, sets) = (all(beside), all(sets)).together()?;
         Ok(sets)
     }
@@ -237,7 +239,7 @@ impl LayerDraft {
     }
 
     /// Checks the layer after some others.
-    fn check(&self, before: &[Self], catalog: &Catalog) -> Checked<Set> {
+    fn check(&self, before: &[Self], loaded: &Loaded<'_>) -> Checked<Set> {
         let names: Vec<Option<&str>> = before.iter().map(Self::known_name).collect();
         let region = match &self.region {
             Ok(region) => region.as_ref().map(RegionDraft::check).transpose(),
@@ -245,7 +247,7 @@ impl LayerDraft {
         };
         let (read, set, name, region, clear_of) = (
             self.values.read(),
-            Set::of(&self.values, catalog),
+            Set::of(&self.values, loaded),
             self.name(&names),
             region,
             self.clear_of(&names),
@@ -339,16 +341,17 @@ fn written(values: &Values) -> Map<String, Json> {
 
 impl Set {
     /// Checks the set of some values.
-    fn of(values: &Values, catalog: &Catalog) -> Checked<Self> {
+    fn of(values: &Values, loaded: &Loaded<'_>) -> Checked<Self> {
         let checked = (
             Amount::of(values),
             values.get::<u64>(&SEED),
             warp(values),
             keep(values),
             attributes::check(values),
-            table::check(values, None, catalog),
+            table::check(values, None, loaded.catalog),
+            loaded.field(values),
         );
-        let (amount, seed, warp, keep, attributes, (entry, pin)) = checked.together()?;
+        let (amount, seed, warp, keep, attributes, (entry, pin), field) = checked.together()?;
         let seed = Seed(seed.unwrap_or(0));
         Ok(Self {
             path: values.path().into(),
@@ -360,6 +363,7 @@ impl Set {
             warp: warp.unwrap_or_else(|| Placement::default_warp(seed)),
             keep: keep.unwrap_or(Keep::ALL),
             attributes,
+            field,
             region: None,
             clear_of: vec![],
         })
@@ -370,7 +374,7 @@ impl Set {
     /// # Errors
     /// As [`Draft::check`].
     pub fn single(values: &Values, catalog: &Catalog) -> Result<Self, Error> {
-        let ((), set) = (values.read(), Self::of(values, catalog)).together()?;
+        let ((), set) = (values.read(), Self::of(values, &Loaded::new(catalog))).together()?;
         table::hold(&set.entry, set.pin.as_deref())?;
         Ok(set)
     }

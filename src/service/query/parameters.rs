@@ -206,6 +206,18 @@ parameters! {
         echo: Some(|set| (set.keep != Keep::ALL).then(|| Value::Number(set.keep.get()))),
         ..Parameter::PLAIN
     };
+    /// The field that the set is in.
+    FIELD = Parameter {
+        name: "field",
+        about: "The field that thins the points out, from place to place: a share of the density, which is \
+                that where the field is 1. The list of fields shows what is loaded.",
+        group: Group::Points,
+        shape: Shape::Field,
+        default: Some("none"),
+        example: "forest",
+        echo: Some(|set| set.field.as_ref()?.echo()),
+        ..Parameter::PLAIN
+    };
     /// The names of the points' attributes.
     ATTRIBUTES = Parameter {
         name: "attributes",

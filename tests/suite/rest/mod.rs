@@ -8,6 +8,7 @@ mod browsers;
 mod caching;
 mod compression;
 mod curl;
+mod fields;
 mod format_readers;
 mod formats;
 mod http;
