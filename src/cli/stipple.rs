@@ -115,12 +115,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     });
     let (planned, options) = planned.map_err(|error| refused(args, error))?;
     let encoding = options.encoding.unwrap_or(encoding);
-    let looks = options.output(encoding).and_then(|mut looks| {
+    let looks = options.output(encoding).map(|mut looks| {
         if encoding.is_picture() {
             looks.size = size;
             looks.dot = Some(args.dot);
         }
-        Ok(looks)
+        looks
     });
     let looks = looks.map_err(|error| refused(args, error))?;
     write(&planned, &looks, &config, output, args.quiet, "dots").map_err(|failure| match failure {

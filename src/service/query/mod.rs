@@ -150,11 +150,8 @@ impl Query {
         let [width, height] = [(max_x - min_x) / spacing, (max_y - min_y) / spacing];
         let is_plain = set.region.is_none() && set.clear_of.is_empty();
         // A look at a field of many parts takes longer.
-        let is_plain = is_plain
-            && !set
-                .field
-                .as_ref()
-                .is_some_and(|field| field.spec.parts() > 4);
+        let is_quick = |field: &SetField| field.spec.parts() <= 4;
+        let is_plain = is_plain && set.field.as_ref().is_none_or(is_quick);
         is_plain && width * height <= 2048.0 && width.max(height) <= 128.0
     }
 }

@@ -32,12 +32,12 @@ fn a_field_thins_the_points_and_is_shaded_under_them() {
     assert!(hash.contains("shade=0"), "{hash}");
     browser.look(&daemon, &hash);
     assert_eq!((browser.hash(), browser.ready()), (hash, count));
+    assert_eq!(browser.errors(), Vec::<String>::new());
     // A field that is not there is told.
     browser.go("about:blank");
     browser.go(&daemon.url("/#at=0,0&span=100&field=nothing"));
     browser.until("document.documentElement.dataset.state === 'failed'");
     assert!(browser.text("#wrong").contains("no such field is loaded"));
-    assert_eq!(browser.errors(), Vec::<String>::new());
 }
 
 #[test]

@@ -312,3 +312,44 @@ fn changed_fields_change_answers_and_tags() {
         "{left}"
     );
 }
+
+#[test]
+fn a_field_is_sent_once_and_named_by_its_digest() {
+    let daemon = Daemon::with_tables(no_tables(), &["fields.max_sent_bytes=100000"]);
+    let mask = json!({ "raster": { "png": base64(&left_half()), "bbox": [0, 0, 32, 32] } });
+    let sent = daemon.post("/v1/fields", &mask);
+    assert_eq!(sent.status, 200, "{}", sent.text());
+    let name = sent.json()["name"].as_str().expect("text").to_owned();
+    assert_eq!(sent.json()["digest"], name);
+    let path = format!("bbox=0,0,32,32&spacing=1&seed=7&field={name}");
+    let named = Csv::get(&daemon, &path);
+    let described = Csv::post(
+        &daemon,
+        &json!({ "region": { "bbox": [0, 0, 32, 32] }, "spacing": 1, "seed": 7, "field": mask }),
+    );
+    assert!(named.points.len() > 300);
+    assert_eq!(named.points, described.points);
+    // It has a picture, and is described without its pixels; the list has loaded ones only.
+    let one = daemon.get(&format!("/v1/fields/{name}")).json();
+    assert!(one["field"]["raster"]["png"].is_null(), "{one}");
+    let picture = daemon.get(&format!("/v1/fields/{name}/chunks/32/0/0"));
+    assert_eq!(picture.status, 200);
+    let list = daemon.get("/v1/fields").json();
+    assert_eq!(list["fields"].as_array().expect("a list").len(), 1);
+    // Others make it go; what does not fit is refused.
+    for x in 0..8 {
+        let other = json!({ "radial": { "center": [x, 0], "radii": [1, 2] } });
+        assert_eq!(daemon.post("/v1/fields", &other).status, 200);
+    }
+    assert_fault(
+        &daemon.get(&format!("/v1/count?{path}")),
+        &path,
+        "field",
+        &["no such field"],
+    );
+    let large = json!({ "raster": { "png": base64(&png([400, 400], |x, _| x as u8)) } });
+    let refused = daemon.post("/v1/fields", &large);
+    assert_fault(&refused, "large", "field", &["no room", "max_sent_bytes"]);
+    let wrong = daemon.post("/v1/fields", &json!({ "noise": {} }));
+    assert_fault(&wrong, "wrong", "field.noise", &["wavelength"]);
+}
