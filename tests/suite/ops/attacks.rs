@@ -393,7 +393,7 @@ async fn unfinished_health_checks_hold_little() {
     others_are_served(&daemon);
     let grown = grown(&daemon, before);
     println!("20 x 99 unfinished health checks: {grown} KiB");
-    assert!(grown < 32 << 10, "{grown} KiB");
+    assert!(grown < 14 << 10, "{grown} KiB");
 }
 
 #[tokio::test(flavor = "multi_thread")]
