@@ -47,6 +47,7 @@ extern crate std;
 pub mod comparison;
 pub mod cookbook;
 mod error;
+pub mod field;
 pub mod map;
 mod once;
 pub mod pattern;
@@ -59,8 +60,8 @@ pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
 pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
-    Cursor, F32, F64, Field, Format, Graded, Keep, LATTICE_LIMIT, LeastDistance, Member, Members,
-    Neighbor, Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster, Region,
+    Cursor, F32, F64, Field, Format, Keep, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
+    Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster, Region,
     ScaleRange, Seed, Spacing, Tile, UniformNumber, Variants, Warp,
 };
 pub use table::Table;

@@ -70,6 +70,31 @@ pub fn exactly(
     set.exactly_until(count, area, least, stop)
 }
 
+/// About the number of points that [`within`] visits one by one to count those of a set in a
+/// [field](PointSet::in_field), and that are visited again to make them: the points at full density, times the
+/// greatest share in each of up to some thousand pieces of the area's box. 0 for sets in no field, and where
+/// the field is the same in all of the box. Takes a millisecond at most with bounds that take 100 ns.
+///
+/// # Errors
+/// As [`PointSet::within`].
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table, field::FieldSpec, server};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let set = PointSet::new(table);
+/// let region = Region::new([0.0, 0.0], [1000.0, 1000.0])?;
+/// assert_eq!(server::candidates(&set, region)?, 0);
+/// // One hundredth of the box.
+/// let pond = FieldSpec::radial([500.0, 500.0], [50.0, 56.4], [1.0, 0.0])?;
+/// let (visited, kept) = (server::candidates(&set.in_field(pond.clone()), region)?, set.in_field(pond).count(region)?);
+/// assert!(visited > kept && visited < 3 * kept);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub fn candidates(set: &PointSet, area: impl Into<Area>) -> Result<u128, Error> {
+    set.candidates(area.into())
+}
+
 /// The plan with another flag: its windows and cursors, which may have to count, stop once that is raised.
 /// What they return then is meaningless.
 ///

@@ -1,19 +1,19 @@
-//! Measures how a set follows a field: distances in local units, counts of boxes, and the time it takes.
+//! Measures how a set follows a field: distances in local units, and counts of boxes.
 //!
 //! `cargo run --release -p strew-forge --example fields -- TABLE [--seed 5] [--still]` looks at windows of
 //! 400 mean spacings. Var is Var(N − ∫λ)/∫λ over quadtree boxes of 8 to 32 points (a random set has 1),
 //! bias that of the count, both by octave of λ; distances are nearest-neighbor distances times √λ over the
 //! hexagonal distance. A picture is written with `--svg FIELD`.
 
-use std::{error::Error, path::Path, time::Instant};
+use std::{error::Error, path::Path, sync::Arc};
 
-use strew_core::{Field, PointSet, Raster, Region, Table};
+use strew_core::{PointSet, Region};
 use strew_forge::read_table;
 
 /// The side of the window, in mean spacings.
 const SIDE: f64 = 400.0;
 
-type Share = Box<dyn Fn([f64; 2]) -> f64 + Send + Sync>;
+type Share = Arc<dyn Fn([f64; 2]) -> f64 + Send + Sync>;
 
 fn fields() -> Vec<(&'static str, Share)> {
     let middle = SIDE / 2.0;
@@ -24,15 +24,15 @@ fn fields() -> Vec<(&'static str, Share)> {
             .max(1.0 / 32.0)
     };
     vec![
-        ("constant 0.3", Box::new(|_| 0.3)),
+        ("constant 0.3", Arc::new(|_| 0.3)),
         (
             "ramp 1 to 1/32",
-            Box::new(|[x, _]| (-5.0 * (x / SIDE).clamp(0.0, 1.0)).exp2()),
+            Arc::new(|[x, _]| (-5.0 * (x / SIDE).clamp(0.0, 1.0)).exp2()),
         ),
-        ("gauss", Box::new(gauss)),
+        ("gauss", Arc::new(gauss)),
         (
             "edge 1 | 1/16",
-            Box::new(move |[x, _]| if x < middle { 1.0 } else { 1.0 / 16.0 }),
+            Arc::new(move |[x, _]| if x < middle { 1.0 } else { 1.0 / 16.0 }),
         ),
     ]
 }
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let ranks = table.ranks().ok_or("no ranks")?.clone();
         table = table.with_ranks(ranks)?;
     }
-    let set = PointSet::new(table.clone()).seed(seed);
+    let set = PointSet::new(table).seed(seed);
     let window = Region::new([0.0, 0.0], [SIDE, SIDE])?;
     for (name, field) in fields() {
         if let Some(wanted) = after("--svg") {
@@ -58,12 +58,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
             continue;
         }
-        let graded = set.in_field(|at: [f64; 2]| field(at));
+        let share = field.clone();
+        let graded = set.in_field(move |at: [f64; 2]| share(at));
         let points: Vec<[f64; 2]> = graded.within(window)?.iter().map(|m| m.at()).collect();
         println!("{name}: {}", figures(&points, &*field));
-    }
-    if after("--svg").is_none() {
-        time(&table, seed)?;
     }
     Ok(())
 }
@@ -75,7 +73,8 @@ fn print_svg(set: &PointSet, field: &Share) -> Result<(), Box<dyn Error>> {
     );
     println!("<rect x='100' y='150' width='200' height='100' fill='white'/>");
     let middle = Region::new([99.0, 149.0], [301.0, 251.0])?;
-    for member in set.in_field(|at: [f64; 2]| field(at)).within(middle)? {
+    let share = field.clone();
+    for member in set.in_field(move |at: [f64; 2]| share(at)).within(middle)? {
         let [x, y] = member.at();
         println!("<circle cx='{x:.2}' cy='{y:.2}' r='0.28'/>");
     }
@@ -168,41 +167,4 @@ fn distances(points: &[[f64; 2]], share: &dyn Fn([f64; 2]) -> f64) -> Vec<f64> {
         best / (2.0 / 3f64.sqrt()).sqrt()
     };
     points.iter().enumerate().map(nearest).collect()
-}
-
-/// The time that a ramp of 512² pixels takes, and a cold box.
-fn time(table: &Table, seed: u64) -> Result<(), Box<dyn Error>> {
-    for (name, octaves) in [("1 to 1/4", 2.0), ("1 to 1/32", 5.0)] {
-        let side = 2000.0;
-        let region = Region::new([0.0, 0.0], [side, side])?;
-        let pixel = |i: usize| (-octaves * (i % 512) as f32 / 511.0).exp2();
-        let raster = Raster::new(region, 512, (0..512 * 512).map(pixel).collect())?;
-        let graded = PointSet::new(table.clone()).seed(seed).in_field(raster);
-        let mut best = f64::INFINITY;
-        let (mut count, mut sum) = (0, 0.0);
-        for _ in 0..5 {
-            let start = Instant::now();
-            count = 0;
-            graded.for_each(region, |point, _| {
-                count += 1;
-                sum += point.x;
-            })?;
-            best = best.min(start.elapsed().as_secs_f64());
-        }
-        let mut small = f64::INFINITY;
-        let corner = Region::new([900.0, 900.0], [940.0, 940.0])?;
-        let expected = graded.count(corner)?;
-        for _ in 0..50 {
-            let start = Instant::now();
-            sum += graded.within(corner)?.len() as f64;
-            small = small.min(start.elapsed().as_secs_f64());
-        }
-        println!(
-            "raster ramp {name}, seed {seed}: {:.1} M points/s; a box of {expected}: {:.0} µs; bounds {:?} ({sum:.0})",
-            count as f64 / best / 1e6,
-            small * 1e6,
-            graded.field().bounds(&corner)
-        );
-    }
-    Ok(())
 }

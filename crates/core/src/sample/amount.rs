@@ -1,8 +1,8 @@
 //! The spacing at which an area holds a given number of points.
 
 use super::{
-    area::Area,
-    lattice::{Lattice, Placement, Spacing},
+    area::{Area, Region},
+    lattice::{Grade, Lattice, Placement, Spacing},
     near::Mask,
     plan::Plan,
     stop::Stop,
@@ -19,6 +19,10 @@ const MOST_STEPS: usize = 400;
 /// As the spacing shrinks, points enter an area mostly one at a time. Without warp those of one column
 /// and block have the same x, and two may enter a box at once. Then the plan is a window that leaves out
 /// the last point. The search takes up to some fifty counts and finds the same spacing everywhere.
+///
+/// In a field the count does not fall with each step of the spacing, but it changes by a point at a time, so a
+/// bracket of too many and too few still has a spacing of the count in it. Counting visits points there, so
+/// the search begins at the mean share and interpolates: some ten counts.
 pub(super) fn exactly(
     lattice: &Lattice,
     mask: &Mask,
@@ -36,13 +40,18 @@ pub(super) fn exactly(
         .and_then(Area::bounds)
         .ok_or_else(|| Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box"))?;
     let [width, height] = [0, 1].map(|i| bounds.max()[i] - bounds.min()[i]);
-    let share = lattice.placement.keep.get();
+    let share = match &lattice.grade {
+        Some(grade) => mean_share(grade, &bounds),
+        None => lattice.placement.keep.get(),
+    };
     let wanted = count as f64;
     let mut guess = libm::sqrt(width) * libm::sqrt(height) * libm::sqrt(share / wanted);
     let mut more: Option<Plan> = None;
     // Spacings with too many points, and with too few.
     let (mut low, mut high) = (0.0, f64::INFINITY);
-    for _ in 0..MOST_STEPS {
+    // The counts there.
+    let mut ends = [0.0, 0.0];
+    for step in 0..MOST_STEPS {
         guess = guess.max(least);
         let Ok(spacing) = Spacing::new(guess) else {
             break;
@@ -67,7 +76,7 @@ pub(super) fn exactly(
             return Ok(plan);
         }
         if found > count {
-            low = guess;
+            (low, ends[0]) = (guess, found as f64);
             if more.as_ref().is_none_or(|more| found < more.total()) {
                 more = Some(plan);
             }
@@ -78,7 +87,7 @@ pub(super) fn exactly(
                 alloc::format!("{count} points take a spacing below {} here", number(least));
             return Err(error.because(problem).with_limit(least));
         } else {
-            high = guess;
+            (high, ends[1]) = (guess, found as f64);
         }
         // Counts go as spacing⁻², which leads near; from there the bracket is halved.
         let law = guess * libm::sqrt(found.max(1) as f64 / wanted);
@@ -89,6 +98,13 @@ pub(super) fn exactly(
                 high * 0.7
             } else {
                 law.min(high * 0.999_999)
+            }
+        } else if lattice.grade.is_some() && ends[0] > 0.0 && step % 3 != 0 {
+            let next = interpolated([low, high], ends, wanted);
+            if low < next && next < high {
+                next
+            } else {
+                between(low, high)
             }
         } else if high - low > 1e-3 * high && low < law && law < high {
             law
@@ -105,6 +121,26 @@ pub(super) fn exactly(
         error.because("no spacing places this number of points here")
     })?;
     Ok(more.window(0, Some(count)))
+}
+
+/// The mean share of a field over a box, from a grid of places; at least a quarter of one place's.
+fn mean_share(grade: &Grade, bounds: &Region) -> f64 {
+    const SIDE: u32 = 64;
+    let (min, max) = (bounds.min(), bounds.max());
+    let along = |axis: usize, i: u32| {
+        let part = (f64::from(i) + 0.5) / f64::from(SIDE);
+        min[axis] + (max[axis] - min[axis]) * part
+    };
+    let row = |y: u32| (0..SIDE).map(move |x| grade.share([along(0, x), along(1, y)]));
+    let sum: f64 = (0..SIDE).flat_map(row).sum();
+    sum.max(0.25) / f64::from(SIDE * SIDE)
+}
+
+/// The spacing between two at which a count lies as far between theirs, as counts go as spacing⁻².
+fn interpolated(spacings: [f64; 2], counts: [f64; 2], wanted: f64) -> f64 {
+    let [dense, sparse] = spacings.map(|spacing| 1.0 / (spacing * spacing));
+    let part = (wanted + 0.5 - counts[1]) / (counts[0] - counts[1]);
+    1.0 / libm::sqrt(sparse + (dense - sparse) * part)
 }
 
 fn between(low: f64, high: f64) -> f64 {

@@ -39,7 +39,7 @@ pub use attribute::{
     Attribute, Attributes, BoundAttributes, Column, ScaleRange, UniformNumber, Variants,
 };
 pub use cursor::Cursor;
-pub use field::{Field, Graded, Raster};
+pub use field::{Edges, Field, FieldSpec, Filter, Marks, Noise, Pixels, Raster, Terrain};
 pub use iter::Members;
 pub use kernel::{Backend, F32, F64, Format, Offsets, Points};
 pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing};

@@ -4,6 +4,7 @@ use core::ops::Range;
 
 use super::{
     area::{Area, CORNERS, Chunk, Region},
+    field::constant,
     lattice::{LATTICE_LIMIT, Lattice, Multiple, Span},
     near::Mask,
     sieve::Sieve,
@@ -25,6 +26,9 @@ pub(crate) struct Scope {
     pub(crate) region: Region,
     /// What offsets are relative to.
     pub(crate) corner: Corner,
+    /// The lattice in its field, where that has the same share in all of the scope and
+    /// [`lattice`](Self::lattice) has that share.
+    in_field: Option<Lattice>,
 }
 
 /// The place that offsets of points are relative to, on the fixed-point grid.
@@ -134,6 +138,19 @@ impl Scope {
             (area.chunks(), area.beside_chunks())
         });
         let [x, y] = Span::of_box(lattice, bounds(lattice, &chunks, rest.as_ref()));
+        let piece = [x.all.clone(), y.all.clone()];
+        let share = lattice
+            .grade
+            .as_ref()
+            .and_then(|grade| constant(lattice, grade, &piece));
+        if let Some(share) = share {
+            let area = area.cloned().unwrap_or(Area::Region(region));
+            let mask = Mask { area: None, ..mask };
+            return Ok(Self {
+                in_field: Some(lattice.clone()),
+                ..Self::new(&lattice.in_constant(share), &mask, area, stop)?
+            });
+        }
         debug_assert!(x.all.end < 2 * LATTICE_LIMIT && y.all.end < 2 * LATTICE_LIMIT);
         // Integers decide membership of a box, so it needs no sieve, except together with one.
         let is_box = matches!(rest, None | Some(Area::Region(_)));
@@ -155,6 +172,12 @@ impl Scope {
             stop,
             region,
             corner,
+            in_field: None,
         })
+    }
+
+    /// The lattice of the set.
+    pub(crate) fn whole_lattice(&self) -> &Lattice {
+        self.in_field.as_ref().unwrap_or(&self.lattice)
     }
 }

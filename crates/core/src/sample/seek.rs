@@ -48,8 +48,11 @@ fn search(
 ) -> (i64, u128) {
     let (mut low, mut high) = ((range.start, 0), (range.end, total));
     while high.0 - low.0 > 1 {
-        let share = (k - low.1) as f64 / (high.1 - low.1) as f64;
-        let guess = low.0 + (share * (high.0 - low.0) as f64) as i64;
+        // Counts that were stopped may fall.
+        let share = (k - low.1) as f64 / high.1.saturating_sub(low.1) as f64;
+        let guess = low
+            .0
+            .saturating_add((share * (high.0 - low.0) as f64) as i64);
         let mut probe = guess.clamp(low.0 + 1, high.0 - 1);
         let mut stride = 1;
         // From a good guess the other end is near: stride toward it, farther each time.

@@ -47,6 +47,15 @@ impl TurnedTable {
         &all[block_y * n..][..n]
     }
 
+    /// The vector of a block.
+    #[inline]
+    pub(crate) fn vector(&self, block: usize) -> Displacement {
+        match &self.turned {
+            Some(turned) => turned.vectors[block],
+            None => self.table.displacements()[block],
+        }
+    }
+
     /// The order in which blocks leave.
     #[inline]
     pub(crate) fn order(&self) -> &Order {

@@ -1,7 +1,7 @@
 //! Where a seed puts a point, written from "A seed" in ARCHITECTURE.md and not from the library's code:
 //! wide integers, one step after another, nothing kept.
 
-use strew_core::{PointId, PointSet, Seed, Table};
+use strew_core::{Field, PointId, PointSet, Seed, Table};
 
 const KNOT: i128 = 1 << 27;
 
@@ -136,19 +136,65 @@ pub fn place(set: &PointSet, id: PointId) -> Option<[f64; 2]> {
     if rank(set, id)? >= share {
         return None;
     }
-    let symmetry = Symmetry::of(seed);
-    let source = symmetry.source(table.map().intervals(), [i, j]);
+    let source = Symmetry::of(seed).source(table.map().intervals(), [i, j]);
     let vector = if placement.keep.moves() {
         table.displacement_at(source, share)
     } else {
         table.displacements()[source]
     };
-    let [dx, dy] = symmetry.turn(vector.map(i128::from));
+    Some(displaced(set, id, vector))
+}
+
+/// The place of a lattice address with a vector of the table.
+fn displaced(set: &PointSet, id: PointId, vector: [i32; 2]) -> [f64; 2] {
+    placed(
+        set,
+        id,
+        Symmetry::of(set.placement().seed).turn(vector.map(i128::from)),
+    )
+}
+
+/// The place of a lattice address with a turned vector.
+fn placed(set: &PointSet, id: PointId, [dx, dy]: [i128; 2]) -> [f64; 2] {
+    let (table, placement) = (set.table(), set.placement());
     let displaced = [(i128::from(id.x) << 20) + dx, (i128::from(id.y) << 20) + dy];
     let place = match placement.warp.strength() {
         0.0 => displaced,
         strength => warped(placement.seed, strength, displaced),
     };
     let step = placement.spacing.get() * table.alpha().set_side_f64() / f64::from(1 << 20);
-    Some(place.map(|v| v as f64 * step))
+    place.map(|v| v as f64 * step)
+}
+
+/// The place of a point of the lattice in a field, if the set, which is in no field, has one there: written
+/// from "Fields" in ARCHITECTURE.md.
+pub fn place_in(set: &PointSet, field: &dyn Field, id: PointId) -> Option<[f64; 2]> {
+    let (table, placement) = (set.table(), set.placement());
+    let (_, [i, j]) = block(table, placement.seed, id)?;
+    let source = Symmetry::of(placement.seed).source(table.map().intervals(), [i, j]);
+    let full = table.displacements()[source];
+    let share = |at| {
+        let share = field.share(at);
+        if share > 0.0 {
+            share.min(1.0) * placement.keep.get()
+        } else {
+            0.0
+        }
+    };
+    let [x, y] = displaced(set, id, full);
+    let here = share([x, y]);
+    if rank(set, id)? >= here {
+        return None;
+    }
+    let moved = table.displacement_at(source, here);
+    let half = 0.5 * placement.spacing.get() / here.sqrt();
+    let change = |a: f64, b: f64| 2.0 * (b - a) / (a + b);
+    let across = change(share([x - half, y]), share([x + half, y]));
+    let up = change(share([x, y - half]), share([x, y + half]));
+    let part = 1.0 / (1.0 + (across * across + up * up) / (0.03 * 0.03));
+    let turn = |v: [i32; 2]| Symmetry::of(placement.seed).turn(v.map(i128::from));
+    let ([a, b], [c, d]) = (turn(full), turn(moved));
+    let way = |from: i128, to: i128| from + ((to - from) as f64 * part) as i128;
+    let [dx, dy] = [way(a, c), way(b, d)];
+    Some(placed(set, id, [dx, dy]))
 }

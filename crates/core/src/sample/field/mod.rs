@@ -5,15 +5,33 @@
 //! nothing else of the field matters to the point. Where the table has a [ladder](crate::table::Ladder), the
 //! point then moves to its place at that share.
 //!
-//! `definition` has the trait, `raster` fields of pixels, `graded` the set in a field, and `walk` its points in
-//! a box. [`Graded::point`] is the definition; the walk leaves out what bounds of the field rule out and
-//! finds the same points with the same bits.
+//! `definition` has the trait. `spec` has the descriptions that a program can keep, compare and name by a digest,
+//! `evaluate` their shares; they are made of `raster` and `terrain` (both `pixels` laid over the plane by `grid`),
+//! `marks`, `noise` and the lines of `scale`. `rows` finds the points of a field in some rows, many at a time, where
+//! `tiles` leaves any. `Lattice::place` is the definition, point by point; walks leave out what bounds of the field rule out
+//! and find the same points with the same bits.
 
+mod canon;
 mod definition;
-mod graded;
+mod evaluate;
+mod grid;
+mod marks;
+mod noise;
+mod pixels;
 mod raster;
-mod walk;
+mod rows;
+mod scale;
+mod spec;
+mod terrain;
+mod tiles;
 
 pub use definition::Field;
-pub use graded::Graded;
+pub use grid::{Edges, Filter};
+pub use marks::Marks;
+pub use noise::Noise;
+pub use pixels::Pixels;
 pub use raster::Raster;
+pub(super) use rows::{FieldRows, Source};
+pub use spec::FieldSpec;
+pub use terrain::Terrain;
+pub(super) use tiles::{candidates, constant, empty_until};

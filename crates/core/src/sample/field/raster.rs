@@ -1,21 +1,22 @@
 //! Fields of pixels.
 
-use alloc::{format, string::ToString as _, vec::Vec};
+use alloc::{format, sync::Arc, vec::Vec};
 
-use super::Field;
+use super::{
+    Field,
+    canon::Canon,
+    grid::{Edges, Filter, Grid},
+    pixels::{Pixels, Store, check_shares},
+    scale::{check_share, unit, widened},
+};
 use crate::{
     error::{Error, ErrorKind, number},
     sample::area::Region,
+    table::Digest,
 };
 
-/// The least and the greatest share of a square of pixels.
-type Ends = [f32; 2];
-
-/// The width of the squares of the finest level of bounds, in pixels.
-const SQUARE: usize = 8;
-
-/// Pixels over a box: shares at the centers of pixels, linear between them, and constant beyond the
-/// outermost centers.
+/// Shares of pixels over a box: at the centers of pixels, by default linear between them and constant
+/// beyond the outermost centers.
 ///
 /// ```
 /// use strew_core::{Field, Raster, Region};
@@ -28,21 +29,16 @@ const SQUARE: usize = 8;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Raster {
-    region: Region,
-    /// Pixels per world unit.
-    scale: [f64; 2],
-    /// In pixels.
-    size: [usize; 2],
-    pixels: Vec<f32>,
-    /// The bounds of squares of pixels; each level has squares of twice the width of the one before.
-    levels: Vec<Level>,
+    grid: Grid,
+    /// The digest of the pixels that were handed in.
+    source: Digest,
+    tone: [f64; 3],
+    /// The share of each integer pixel.
+    tones: Option<Arc<[f32]>>,
 }
 
-#[derive(Clone, Debug)]
-struct Level {
-    size: [usize; 2],
-    ends: Vec<Ends>,
-}
+/// Shares are the pixels themselves: low, high and gamma.
+const PLAIN: [f64; 3] = [0.0, 1.0, 1.0];
 
 impl Raster {
     /// A raster of `width` pixels a row over a box, the rows from the least y upward.
@@ -61,136 +57,177 @@ impl Raster {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn new(region: Region, width: usize, pixels: Vec<f32>) -> Result<Self, Error> {
-        let refused = |field, value, allowed| Error::new(ErrorKind::Field, field, value, allowed);
-        if width == 0 || pixels.is_empty() || !pixels.len().is_multiple_of(width) {
-            let value = format!("{} in rows of {width}", pixels.len());
-            return Err(refused("pixels", value, "whole rows, at least one"));
-        }
-        if let Some(pixel) = pixels.iter().find(|v| !(0.0..=1.0).contains(*v)) {
-            let value = number(f64::from(*pixel));
-            return Err(refused("pixels", value.to_string(), "shares from 0 to 1"));
-        }
-        let size = [width, pixels.len() / width];
-        let (min, max) = (region.min(), region.max());
-        let scale = [0, 1].map(|axis| size[axis] as f64 / (max[axis] - min[axis]));
-        if scale.iter().any(|scale| !scale.is_finite()) {
-            return Err(refused("region", "empty".into(), "a box with an inside"));
-        }
-        let levels = levels(size, &pixels);
+        Self::of(region, Pixels::from_floats(width, pixels)?)
+    }
+
+    /// A raster of pixels, which it shares with others, over a box.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Field`] unless the pixels are shares from 0 to 1 and the box has an inside.
+    ///
+    /// ```
+    /// use strew_core::{Field, Raster, Region, field::Pixels};
+    ///
+    /// let mask = Pixels::from_bytes(2, vec![0, 255])?;
+    /// let [a, b] = [Region::chunk(64.0, [0, 0])?, Region::chunk(64.0, [1, 0])?]
+    ///     .map(|region| Raster::of(region, mask.clone()));
+    /// assert_eq!((a?.share([64.0, 0.0]), b?.share([64.0, 0.0])), (1.0, 0.0));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn of(region: Region, pixels: Pixels) -> Result<Self, Error> {
+        check_shares(&pixels)?;
         Ok(Self {
-            region,
-            scale,
-            size,
-            pixels,
-            levels,
+            source: pixels.digest(),
+            grid: Grid::new(region, pixels)?,
+            tone: PLAIN,
+            tones: None,
         })
     }
 
-    /// The place of a coordinate along an axis, in pixels from the first center, within the centers.
-    #[inline]
-    fn place(&self, axis: usize, v: f64) -> f64 {
-        let place = (v - self.region.min()[axis]) * self.scale[axis] - 0.5;
-        // Not clamp(), which keeps NaN.
-        place.max(0.0).min((self.size[axis] - 1) as f64)
+    /// Sets what lies beyond the box.
+    ///
+    /// ```
+    /// use strew_core::{Field, Raster, Region, field::Edges};
+    ///
+    /// let raster = Raster::new(Region::new([0.0, 0.0], [2.0, 1.0])?, 2, vec![0.5, 1.0])?;
+    /// assert_eq!(raster.edges(Edges::Zero).share([2.0, 0.5]), 0.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn edges(mut self, edges: Edges) -> Self {
+        self.grid.edges = edges;
+        self
+    }
+
+    /// Sets what lies between the centers of pixels.
+    ///
+    /// ```
+    /// use strew_core::{Field, Raster, Region, field::Filter};
+    ///
+    /// let raster = Raster::new(Region::new([0.0, 0.0], [2.0, 1.0])?, 2, vec![0.0, 1.0])?;
+    /// assert_eq!(raster.filter(Filter::Nearest).share([0.99, 0.5]), 0.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn filter(mut self, filter: Filter) -> Self {
+        self.grid.filter = filter;
+        self
+    }
+
+    /// Sets the share of each pixel v: low + (high − low)·v^gamma, rounded to `f32`. `low` may be above
+    /// `high`. It is computed here, once.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Field`] unless `low` and `high` are from 0 to 1 and `gamma` is from 0.01 to 100.
+    ///
+    /// ```
+    /// use strew_core::{Field, Raster, Region};
+    ///
+    /// let raster = Raster::new(Region::new([0.0, 0.0], [1.0, 1.0])?, 1, vec![0.5])?;
+    /// let share = |low, high, gamma| {
+    ///     Ok::<_, strew_core::Error>(raster.clone().tone(low, high, gamma)?.share([0.5, 0.5]))
+    /// };
+    /// assert_eq!(share(0.0, 1.0, 2.0)?, 0.25);
+    /// assert_eq!(share(1.0, 0.0, 1.0)?, 0.5);
+    /// assert_eq!(share(0.5, 1.0, 1.0)?, 0.75);
+    /// assert_eq!(share(0.0, 1.0, 0.0).unwrap_err().field(), "gamma");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn tone(mut self, low: f64, high: f64, gamma: f64) -> Result<Self, Error> {
+        check_share("low", low)?;
+        check_share("high", high)?;
+        if !(0.01..=100.0).contains(&gamma) {
+            let allowed = "a number from 0.01 to 100";
+            return Err(Error::new(
+                ErrorKind::Field,
+                "gamma",
+                number(gamma),
+                allowed,
+            ));
+        }
+        if self.tone != PLAIN {
+            let value = format!("{:?}", self.tone);
+            return Err(Error::new(ErrorKind::Field, "tone", value, "set once"));
+        }
+        self.tone = [low, high, gamma];
+        if self.tone == PLAIN {
+            return Ok(self);
+        }
+        let share = |v: f64| {
+            let v = if gamma == 1.0 { v } else { libm::pow(v, gamma) };
+            unit(low + (high - low) * v) as f32
+        };
+        let tones = |last: u32| {
+            (0..=last)
+                .map(|v| share(f64::from(v) / f64::from(last)))
+                .collect()
+        };
+        match self.grid.pixels.store() {
+            Store::Bytes(_) => self.tones = Some(tones(255)),
+            Store::Words(_) => self.tones = Some(tones(65535)),
+            Store::Floats(_) => {
+                self.grid.pixels = self.grid.pixels.map(|v| share(f64::from(v)));
+            }
+        }
+        Ok(self)
+    }
+
+    /// The digest of the pixels, the box and the settings.
+    ///
+    /// ```
+    /// use strew_core::{Raster, Region, field::Edges};
+    ///
+    /// let raster = Raster::new(Region::chunk(64.0, [0, 0])?, 2, vec![0.0, 1.0])?;
+    /// assert_eq!(raster.clone().digest(), raster.digest());
+    /// assert_ne!(raster.clone().edges(Edges::Zero).digest(), raster.digest());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn digest(&self) -> Digest {
+        let mut canon = Canon::new("raster");
+        canon.digest(self.source);
+        self.grid.describe(&mut canon);
+        canon.numbers(&self.tone);
+        canon.finish()
+    }
+
+    /// The pixels.
+    ///
+    /// ```
+    /// use strew_core::{Raster, Region};
+    ///
+    /// let raster = Raster::new(Region::chunk(64.0, [0, 0])?, 2, vec![0.0, 1.0])?;
+    /// assert_eq!(raster.pixels().size(), [2, 1]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn pixels(&self) -> &Pixels {
+        &self.grid.pixels
     }
 }
 
 impl Field for Raster {
     #[inline]
     fn share(&self, at: [f64; 2]) -> f64 {
-        let [x, y] = [self.place(0, at[0]), self.place(1, at[1])];
-        let (left, bottom) = (x as usize, y as usize);
-        let (u, v) = (x - left as f64, y - bottom as f64);
-        let right = (left + 1).min(self.size[0] - 1);
-        let top = (bottom + 1).min(self.size[1] - 1);
-        let pixel = |x: usize, y: usize| f64::from(self.pixels[y * self.size[0] + x]);
-        let along = |y: usize| {
-            let (a, b) = (pixel(left, y), pixel(right, y));
-            a + (b - a) * u
-        };
-        let (low, high) = (along(bottom), along(top));
-        low + (high - low) * v
+        // Interpolation rounds.
+        self.grid.at(at, self.tones.as_deref()).min(1.0)
     }
 
     fn bounds(&self, within: &Region) -> [f64; 2] {
-        let (min, max) = (within.min(), within.max());
-        let first = [0, 1].map(|axis| self.place(axis, min[axis]) as usize);
-        let last = [0, 1].map(|axis| {
-            let place = self.place(axis, max[axis]) as usize + 1;
-            place.min(self.size[axis] - 1)
-        });
-        let mut width = SQUARE;
-        let mut ends = [1f32, 0f32];
-        for level in &self.levels {
-            let [x, y] = [0, 1].map(|axis| first[axis] / width..=last[axis] / width);
-            let is_coarse = x.end() - x.start() < 4 && y.end() - y.start() < 4;
-            if is_coarse || level.ends.len() == 1 {
-                for y in y {
-                    for x in x.clone() {
-                        let [low, high] = level.ends[y * level.size[0] + x];
-                        ends = [ends[0].min(low), ends[1].max(high)];
-                    }
-                }
-                break;
+        let (ends, is_outside) = self.grid.bounds(within);
+        let Some(ends) = ends else {
+            return [0.0; 2];
+        };
+        let ends = match &self.tones {
+            // Tones rise or fall with the pixels.
+            Some(tones) => {
+                let last = (tones.len() - 1) as f32;
+                let [a, b] = ends.map(|v| tones[libm::roundf(v * last) as usize]);
+                [a.min(b), a.max(b)]
             }
-            width *= 2;
-        }
-        // Interpolation rounds.
-        [f64::from(ends[0]) - 1e-12, f64::from(ends[1]) + 1e-12]
-    }
-}
-
-/// The levels of bounds, from the finest to a single square.
-fn levels(size: [usize; 2], pixels: &[f32]) -> Vec<Level> {
-    let of = |size: [usize; 2], width: usize, at: &dyn Fn(usize, usize) -> Ends| {
-        let squares = size.map(|v| v.div_ceil(width));
-        let mut ends = Vec::with_capacity(squares[0] * squares[1]);
-        for square in 0..squares[0] * squares[1] {
-            let [x, y] = [square % squares[0] * width, square / squares[0] * width];
-            let mut found = [1f32, 0f32];
-            for y in y..(y + width).min(size[1]) {
-                for x in x..(x + width).min(size[0]) {
-                    let [low, high] = at(x, y);
-                    found = [found[0].min(low), found[1].max(high)];
-                }
-            }
-            ends.push(found);
-        }
-        Level {
-            size: squares,
-            ends,
-        }
-    };
-    let mut levels = alloc::vec![of(size, SQUARE, &|x, y| [pixels[y * size[0] + x]; 2])];
-    while let Some(last) = levels.last().filter(|last| last.ends.len() > 1) {
-        let next = of(last.size, 2, &|x, y| last.ends[y * last.size[0] + x]);
-        levels.push(next);
-    }
-    levels
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    proptest! {
-        #[test]
-        fn no_place_of_a_box_leaves_its_bounds(
-            width in 1usize..70, height in 1usize..40, salt: u32, x in -5.0..25.0f64, y in -5.0..25.0f64,
-            w in 0.001..30.0f64, h in 0.001..30.0f64, inside in prop::array::uniform2(0.0..=1.0f64),
-        ) {
-            let pixel = |i: usize| ((i as u32).wrapping_mul(0x9e37_79b9) ^ salt) as f32 / u32::MAX as f32;
-            let pixels = (0..width * height).map(|i| pixel(i).powi(8).clamp(0.0, 1.0)).collect();
-            let region = Region::new([0.0, 0.0], [20.0, 20.0]).expect("ordered");
-            let raster = Raster::new(region, width, pixels).expect("shares");
-            let within = Region::new([x, y], [x + w, y + h]).expect("ordered");
-            let [low, high] = raster.bounds(&within);
-            for [u, v] in [inside, [0.0, 0.0], [1.0, 1.0], [0.0, 1.0]] {
-                let share = raster.share([x + w * u, y + h * v]);
-                prop_assert!(low <= share && share <= high, "{} {} {}", low, share, high);
-            }
-        }
+            None => ends,
+        };
+        let [low, high] = widened(ends.map(f64::from));
+        [if is_outside { 0.0 } else { low }, high]
     }
 }

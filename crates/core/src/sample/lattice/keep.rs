@@ -58,6 +58,14 @@ impl Keep {
         }
     }
 
+    /// Any share from 0 to 1.
+    pub(super) const fn unchecked(share: f64) -> Self {
+        Self {
+            share,
+            moves: false,
+        }
+    }
+
     /// The share, from [`MIN`](Self::MIN) to 1.
     ///
     /// ```

@@ -8,9 +8,11 @@
 //!
 //! Work proceeds in pieces: `lines` lists the columns and rows that hold points (each a `line`), `prefix` counts them,
 //! `patch` has the bands and patches in which positions fit 32 bits, `flat` the points of a patch without
-//! gaps. `point` is what comes out, `rank` its place in the order in which points leave.
+//! gaps. `point` is what comes out, `rank` its place in the order in which points leave, `grade` the field that says
+//! how many have left.
 
 mod flat;
+mod grade;
 mod keep;
 mod line;
 mod lines;
@@ -25,6 +27,7 @@ mod span;
 mod world;
 
 pub(super) use flat::{Flat, Inside};
+pub(super) use grade::{Grade, around, damping};
 pub use keep::Keep;
 pub(super) use line::Line;
 pub(super) use lines::{Columns, Listed, lines_of_class, places};
@@ -37,4 +40,4 @@ pub(super) use rank::rank;
 pub use spacing::Spacing;
 pub(super) use span::Span;
 pub use world::LATTICE_LIMIT;
-pub(super) use world::Lattice;
+pub(super) use world::{Lattice, part_of_way};

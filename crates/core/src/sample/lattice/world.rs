@@ -2,11 +2,18 @@
 
 use alloc::{sync::Arc, vec::Vec};
 
-use super::{Keep, Line, Placement, Point, PointId, rank};
+use super::{
+    Keep, Line, Placement, Point, PointId,
+    grade::{Grade, around, damping},
+    rank,
+};
 use crate::{
     map::Map,
     pattern::{Axis, Class, Pattern},
-    sample::warp::{NearShears, Shears, Stretch},
+    sample::{
+        field::Field,
+        warp::{NearShears, Shears, Stretch},
+    },
     table::{Cut, Displacement, FRACTION_BITS, Ladder, Order, Table, TurnedTable, fixed},
 };
 
@@ -38,6 +45,8 @@ pub(crate) struct Lattice {
     pub(crate) cut: Option<Cut>,
     /// The vectors where points have moved as others left, if they do.
     moved: Option<Arc<Moved>>,
+    /// The field that decides which points are kept, and how far they have moved.
+    pub(crate) grade: Option<Grade>,
     pub(crate) shears: Option<Shears>,
     /// The bound of what the warp does to distances.
     pub(crate) stretch: Stretch,
@@ -76,6 +85,15 @@ impl Moved {
     }
 }
 
+/// A part of the way from one displacement to another.
+#[inline(always)]
+pub(crate) fn part_of_way(from: Displacement, to: Displacement, part: f64) -> Displacement {
+    [0, 1].map(|axis| {
+        let by = f64::from(to[axis]) - f64::from(from[axis]);
+        from[axis] + (by * part) as i32
+    })
+}
+
 /// Kept out of line, or both conversions would become the slow one.
 #[cold]
 #[inline(never)]
@@ -106,11 +124,36 @@ impl Lattice {
                 }
                 _ => None,
             },
+            grade: None,
             turned,
             stretch: Stretch::of(shears.as_ref()),
             shears,
             step: scale / f64::from(1u32 << FRACTION_BITS),
             table,
+        }
+    }
+
+    /// This lattice in a field, which the share of the placement multiplies.
+    pub(crate) fn in_field(&self, field: Arc<dyn Field>) -> Self {
+        let grade = Grade::new(field, 1.0);
+        self.graded(self.placement, &grade)
+    }
+
+    /// The lattice of a placement in a field.
+    fn graded(&self, placement: Placement, grade: &Grade) -> Self {
+        Self {
+            placement,
+            grade: Some(grade.times(placement.keep.get())),
+            ..Self::new(self.table.clone(), placement.with_keep(Keep::ALL))
+        }
+    }
+
+    /// The lattice where a field has the same share everywhere.
+    pub(crate) fn in_constant(&self, share: f64) -> Self {
+        let keep = Keep::unchecked(share).moving();
+        Self {
+            placement: self.placement,
+            ..Self::new(self.table.clone(), self.placement.with_keep(keep))
         }
     }
 
@@ -173,11 +216,26 @@ impl Lattice {
             None => self.turned.reach(),
             Some(moved) => moved.reach,
         };
-        reach[axis as usize]
+        let [least, most] = reach[axis as usize];
+        match &self.grade {
+            None => [least, most],
+            Some(_) => {
+                let moved = self.ladder_reach(0.0);
+                [least.min(-moved), most.max(moved)]
+            }
+        }
+    }
+
+    /// The largest displacement along an axis by which the ladder places points at shares from `share` on.
+    pub(crate) fn ladder_reach(&self, share: f64) -> i32 {
+        self.table.ladder().map_or(0, |ladder| ladder.reach(share))
     }
 
     /// This lattice at another placement. What does not change is shared.
     pub(crate) fn replaced(&self, placement: Placement) -> Self {
+        if let Some(grade) = &self.grade {
+            return self.graded(placement, grade);
+        }
         let is_turned = placement.seed.symmetry() != self.placement.seed.symmetry();
         if placement.keep != self.placement.keep || is_turned {
             return Self::new(self.table.clone(), placement);
@@ -215,7 +273,53 @@ impl Lattice {
     /// The fixed-point place of an address, or `None` if it has no point.
     pub(crate) fn place(&self, id: PointId) -> Option<[i128; 2]> {
         let [block_x, block_y] = self.block(id)?;
-        Some(self.displaced_place(id, self.vectors(block_y)[block_x]))
+        let vector = self.vectors(block_y)[block_x];
+        let place = self.displaced_place(id, vector);
+        let Some(grade) = &self.grade else {
+            return Some(place);
+        };
+        let at = place.map(|k| self.world(k));
+        let moved = self.displacement_at(grade, id, [block_x, block_y], at)?;
+        Some(self.displaced_place(id, moved))
+    }
+
+    /// The share of the field at the place that a point has at full density; `None` without a field or a
+    /// point.
+    pub(crate) fn share_of(&self, id: PointId) -> Option<f64> {
+        let grade = self.grade.as_ref()?;
+        let [block_x, block_y] = self.block(id)?;
+        let place = self.displaced_place(id, self.vectors(block_y)[block_x]);
+        let share = grade.share(place.map(|k| self.world(k)));
+        (self.rank(id) < share).then_some(share)
+    }
+
+    /// The displacement in a field of a point in some blocks of dX and dY, by its place at full density: the
+    /// ladder's at the share there, less where the field is steep. `None` if the point has left.
+    pub(crate) fn displacement_at(
+        &self,
+        grade: &Grade,
+        id: PointId,
+        [block_x, block_y]: [usize; 2],
+        at: [f64; 2],
+    ) -> Option<Displacement> {
+        let share = grade.share(at);
+        if self.rank(id) >= share {
+            return None;
+        }
+        let full = self.vectors(block_y)[block_x];
+        let Some(ladder) = self.table.ladder() else {
+            return Some(full);
+        };
+        let position = self
+            .order()
+            .position(block_y * self.map().intervals() + block_x);
+        let moved = self.turned.moved(ladder, ladder.stage(share), position);
+        if moved == full {
+            return Some(full);
+        }
+        let around = around(at, share, self.placement.spacing.get());
+        let part = damping(around.map(|at| grade.share(at)));
+        Some(part_of_way(full, moved, part))
     }
 
     /// The fixed-point place of an address that has a point, with a displacement.
@@ -234,11 +338,6 @@ impl Lattice {
     /// The point of an address, or `None` if it has none.
     pub(crate) fn point(&self, id: PointId) -> Option<Point> {
         Some(self.point_at(id, self.place(id)?))
-    }
-
-    /// The point of an address that has one, with a displacement.
-    pub(crate) fn displaced_point(&self, id: PointId, vector: Displacement) -> Point {
-        self.point_at(id, self.displaced_place(id, vector))
     }
 
     fn point_at(&self, id: PointId, place: [i128; 2]) -> Point {

@@ -16,7 +16,7 @@ use super::{
     near::Mask,
     scope::Scope,
     stop::Stop,
-    walk::{Blocks, Tile, Window, tiles},
+    walk::{Blocks, Mark, Tile, Window, count_graded, tiles},
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -49,6 +49,8 @@ use crate::{
 pub struct Plan {
     scope: Arc<Scope>,
     window: Window,
+    /// In a field: places in the order of the points, found while these were counted.
+    marks: Arc<[Mark]>,
 }
 
 impl Plan {
@@ -61,20 +63,25 @@ impl Plan {
         stop: Stop,
         known: Option<u128>,
     ) -> Result<Self, Error> {
-        let scope = Scope::new(lattice, mask, area, stop)?;
-        let total = known.unwrap_or_else(|| count(&scope, &scope.x.all, &scope.y.all));
+        let scope = Arc::new(Scope::new(lattice, mask, area, stop)?);
+        let (total, marks) = match known {
+            Some(total) => (total, Vec::new()),
+            None if scope.lattice.grade.is_some() => count_graded(&scope),
+            None => (count(&scope, &scope.x.all, &scope.y.all), Vec::new()),
+        };
         if scope.stop.is_raised() {
             let (field, value) = ("the count", "not finished");
             return Err(Error::new(ErrorKind::Stopped, field, value, "").because("stopped"));
         }
         Ok(Self {
-            scope: Arc::new(scope),
+            scope,
             window: Window {
                 start: None,
                 offset: 0,
                 count: total,
                 total,
             },
+            marks: marks.into(),
         })
     }
 
@@ -376,12 +383,15 @@ impl Plan {
             region,
             ..
         } = &*self.scope;
-        let placement = Placement {
+        let mut placement = Placement {
             spacing,
-            keep: Keep::ALL,
             ..lattice.placement
         };
-        let lattice = Lattice::new(lattice.table.clone(), placement);
+        let whole = self.scope.whole_lattice();
+        if whole.grade.is_none() {
+            placement.keep = Keep::ALL;
+        }
+        let lattice = whole.replaced(placement);
         let mut mask = sieve
             .as_ref()
             .map_or_else(Mask::default, |sieve| sieve.mask().clone());
@@ -396,6 +406,7 @@ impl Plan {
         Self {
             scope: Arc::new(scope),
             window: self.window,
+            marks: self.marks,
         }
     }
 }

@@ -1,7 +1,12 @@
 //! Windows: parts of a request's points, and the cursors between them.
 
 use super::Plan;
-use crate::sample::{cursor::Cursor, seek::locate, walk::Window};
+use crate::sample::{
+    cursor::Cursor,
+    lattice::PointId,
+    seek::locate,
+    walk::{Mark, Window, locate_graded},
+};
 
 impl Plan {
     /// The number of points of the whole request, of which the plan may be a window.
@@ -76,7 +81,7 @@ impl Plan {
         let offset = offset.min(count);
         let count = (count - offset).min(limit.unwrap_or(u128::MAX));
         if offset > 0 && count > 0 {
-            start = locate(&self.scope, total, before + offset);
+            start = self.locate(before + offset);
         }
         let window = Window {
             start,
@@ -114,7 +119,31 @@ impl Plan {
         Self {
             scope: self.scope.clone(),
             window,
+            marks: self.marks.clone(),
         }
+    }
+
+    /// The lattice address of point number `k` of the request, if it has as many.
+    fn locate(&self, k: u128) -> Option<PointId> {
+        let Window {
+            start,
+            offset,
+            total,
+            ..
+        } = self.window;
+        if self.scope.lattice.grade.is_none() {
+            return locate(&self.scope, total, k);
+        }
+        if k >= total {
+            return None;
+        }
+        let after = self.marks.partition_point(|mark| mark.before <= k);
+        let mark = after.checked_sub(1).map(|last| self.marks[last]);
+        // A window may begin nearer.
+        let own = start.map(|at| Mark { at, before: offset });
+        let own = own.filter(|own| own.before <= k);
+        let nearest = [mark, own].into_iter().flatten();
+        locate_graded(&self.scope, nearest.max_by_key(|mark| mark.before), k)
     }
 
     /// The place of the first point, or `None` if there are no points.
@@ -140,7 +169,7 @@ impl Plan {
         if count == 0 {
             return None;
         }
-        let at = start.or_else(|| locate(&self.scope, total, offset))?;
+        let at = start.or_else(|| self.locate(offset))?;
         Some(Cursor { offset, total, at })
     }
 
@@ -161,7 +190,7 @@ impl Plan {
     pub fn next_cursor(&self) -> Option<Cursor> {
         let total = self.window.total;
         let offset = self.window.offset + self.window.count;
-        let at = locate(&self.scope, total, offset)?;
+        let at = self.locate(offset)?;
         Some(Cursor { offset, total, at })
     }
 

@@ -103,6 +103,26 @@ impl PointSet {
         self.lattice.rank(id)
     }
 
+    /// The share of the [field](Self::in_field) that a point is there for: that at its place at full density, times
+    /// the share of the set. `None` if the set is in no field, or has no such point.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7).in_field(|[x, _]: [f64; 2]| x / 40.0);
+    /// for point in set.within(Region::new([10.0, 0.0], [40.0, 9.0])?)? {
+    ///     // Where points are sparse, they can be drawn larger.
+    ///     let size = set.share(point.id()).map(|share| share.sqrt().recip());
+    ///     assert!(size.is_some_and(|size| (1.0..3.0).contains(&size)));
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn share(&self, id: PointId) -> Option<f64> {
+        self.lattice.share_of(id)
+    }
+
     /// The `k` nearest points of a place, nearest first; of equally near ones the smaller id first. Takes
     /// microseconds for small `k`.
     ///
@@ -227,7 +247,8 @@ impl PointSet {
             keep,
             ..
         } = self.placement();
-        if keep.moves() && keep.get() < 1.0 && self.table().ladder().is_some() {
+        let is_moving = keep.moves() && keep.get() < 1.0 || self.lattice.grade.is_some();
+        if is_moving && self.table().ladder().is_some() {
             return 0.0;
         }
         self.table().least_distance().reported(spacing, warp, reach)

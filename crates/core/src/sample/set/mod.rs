@@ -8,9 +8,11 @@ mod requests;
 
 pub use lookups::Neighbor;
 
+use alloc::sync::Arc;
+
 use super::{
     area::Area,
-    field::{Field, Graded},
+    field::Field,
     lattice::{Keep, Lattice, Placement, Spacing},
     near::{ClearOf, Mask},
     seed::Seed,
@@ -315,7 +317,17 @@ impl PointSet {
         Ok(self)
     }
 
-    /// The set in a field, whose share of the points varies from place to place.
+    /// The set in a field, whose share of the points varies from place to place. A field that it was in before
+    /// is replaced. [`keep`](Self::keep) multiplies the shares.
+    ///
+    /// A point belongs to the set if its rank is below the field's share at the place where it is at full
+    /// density. Sets of one seed share their points: in a larger share a point stays, and with a
+    /// [ladder](crate::table::Ladder) it moves a little. Where the field is steep it moves less: by
+    /// 1/(1 + (g/0.03)²) of the ladder's move, where g is the relative change of the share across a local
+    /// spacing, from four more looks at the field around the place.
+    ///
+    /// Points are counted by visiting them, in time proportional to the points at full density where bounds of
+    /// the field leave any; where the field is the same in all of an area, as in a set without a field.
     ///
     /// ```
     /// use strew_core::{PointSet, Region, Table};
@@ -325,11 +337,18 @@ impl PointSet {
     /// let region = Region::new([0.0, 0.0], [40.0, 40.0])?;
     /// // Half of 1600 on average.
     /// assert!((700..900).contains(&set.count(region)?));
+    /// // A point is a function of the set, the field and its id.
+    /// for member in set.within(region)? {
+    ///     assert_eq!(set.point(member.id()), Some(member));
+    /// }
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     #[must_use]
-    pub fn in_field<F: Field>(&self, field: F) -> Graded<F> {
-        Graded::new(&self.lattice, &self.mask, field)
+    pub fn in_field(&self, field: impl Field + 'static) -> Self {
+        Self {
+            lattice: self.lattice.in_field(Arc::new(field)),
+            ..self.clone()
+        }
     }
 
     fn replaced(mut self, change: impl FnOnce(Placement) -> Placement) -> Self {

@@ -7,7 +7,9 @@ use crate::{
         amount,
         area::{Area, Region},
         cursor::Cursor,
+        field::candidates,
         plan::Plan,
+        scope::Scope,
         stop::Stop,
     },
 };
@@ -64,6 +66,9 @@ impl PointSet {
     /// that of the plan's [placement](Plan::placement) is what was found.
     ///
     /// Without warp two points may enter a box at the same spacing. Then the last one is left out.
+    ///
+    /// In a [field](Self::in_field) the spacing is that where the share is 1. More than one spacing may place the
+    /// count; the same one is found everywhere.
     ///
     /// # Errors
     /// [`ErrorKind::Count`](crate::ErrorKind::Count) if the count is 0 or no spacing places it, and as
@@ -143,6 +148,16 @@ impl PointSet {
     #[must_use]
     pub fn limit(&self) -> f64 {
         self.lattice.limit()
+    }
+
+    /// About the number of points that counting an area visits one by one; 0 without a field.
+    pub(crate) fn candidates(&self, area: Area) -> Result<u128, Error> {
+        let scope = Scope::new(&self.lattice, &self.mask, area, Stop::default())?;
+        let Some(grade) = &scope.lattice.grade else {
+            return Ok(0);
+        };
+        let piece = [scope.x.all.clone(), scope.y.all.clone()];
+        Ok(candidates(&scope.lattice, grade, piece))
     }
 
     /// [`within`](Self::within), whose counting a flag stops.

@@ -88,6 +88,12 @@ impl LocalSieve {
         inside && self.guards.iter().all(|guard| guard.permits(p))
     }
 
+    /// Whether a point of the piece passes.
+    pub(crate) fn permits(&self, p: [f64; 2]) -> bool {
+        self.area.as_ref().is_none_or(|area| area.contains(p))
+            && self.guards.iter().all(|guard| guard.permits(p))
+    }
+
     /// The columns whose points may pass in any of some rows. The points of a run that passes do so in
     /// all of the rows.
     pub(crate) fn runs(&mut self, rows: Range<i64>, columns: &Range<i64>, runs: &mut Vec<Run>) {

@@ -1,6 +1,10 @@
-//! The walk over a plan: bands of columns, rows within a band, columns within a row.
+//! The walk over a plan: bands of columns, rows within a band, columns within a row. `flat` has what differs
+//! in small warped boxes, `graded` what differs in a field.
 
-use alloc::sync::Arc;
+mod flat;
+pub(super) mod graded;
+
+use alloc::{boxed::Box, sync::Arc};
 use core::ops::Range;
 
 use super::{
@@ -14,6 +18,7 @@ use crate::{
     pattern::Axis,
     sample::{
         cursor::Cursor,
+        field::FieldRows,
         kernel::{Backend, Format, Geometry, Row, compiled},
         lattice::{
             BAND_WIDTH, Columns, Flat, Inside, Listed, Patch, PointId, Span, clip_to_band, places,
@@ -25,9 +30,6 @@ use crate::{
 
 /// The number of lattice rows from which a band keeps its templates.
 const TALL: i64 = 512;
-
-/// The most points of a warped patch that are listed before some are written: 20 bytes each.
-const FLAT: usize = 2048;
 
 /// The points of a plan, or of one of its tiles, in order, in blocks of any size.
 ///
@@ -71,6 +73,8 @@ pub struct Blocks<F: Format> {
     backend: Backend,
     /// The points of some rows of a warped patch, and those inside.
     flat: (Flat, Inside),
+    /// The points of some rows in a field.
+    graded: Option<Box<FieldRows>>,
 }
 
 impl<F: Format> Blocks<F> {
@@ -140,6 +144,7 @@ impl<F: Format> Blocks<F> {
             patch,
             backend: Backend::best(),
             flat: Default::default(),
+            graded: scope.lattice.grade.as_ref().map(|_| Box::default()),
             scope,
             window,
         }
@@ -183,15 +188,22 @@ impl<F: Format> Blocks<F> {
         let out = &mut out[..most];
         let mut filled = 0;
         while filled < out.len() {
+            if self.has_found() {
+                filled += self.write_found(&mut out[filled..]);
+                continue;
+            }
             if self.at.y == self.rows.end && !self.next_band() {
                 break;
             }
-            if self.at.y == self.patch.end() {
+            if self.at.y >= self.patch.end() {
                 self.next_patch();
             }
             let end = self.rows.end.min(self.patch.end());
             let out = &mut out[filled..];
-            filled += if self.sieve.as_ref().is_some_and(|sieve| sieve.is_cut) {
+            filled += if self.graded.is_some() {
+                self.find(end, out.len());
+                0
+            } else if self.sieve.as_ref().is_some_and(|sieve| sieve.is_cut) {
                 self.fill_sifted(end, out)
             } else if self.patch.is_warped() && self.templates.are_short() && self.at.is_fresh() {
                 self.fill_flat(end, out)
@@ -223,7 +235,9 @@ impl<F: Format> Blocks<F> {
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         let window = self.window.filter(|window| window.count > 0)?;
-        let at = if self.at.y == self.rows.end {
+        let at = if let Some(next) = self.next_found() {
+            next
+        } else if self.at.y == self.rows.end {
             PointId {
                 x: self.bands.start * BAND_WIDTH,
                 y: self.rows.start,
@@ -280,6 +294,10 @@ impl<F: Format> Blocks<F> {
 
     /// Moves to the patch of the current row.
     fn next_patch(&mut self) {
+        self.skip_empty();
+        if self.at.y == self.rows.end {
+            return;
+        }
         let Scope { lattice, x, y, .. } = &*self.scope;
         self.patch = Patch::new(lattice, self.band, self.at.y, x, y);
         self.base = self.format.base(self.patch.origin());
@@ -298,40 +316,6 @@ impl<F: Format> Blocks<F> {
                 self.at = Place::row(rows.end);
             }
         }
-    }
-
-    /// Writes points of a warped patch in which few rows share a template, up to row `end` or as many as
-    /// there is room for. Rows are warped several at a time.
-    fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
-        let (lattice, patch, base) = (&self.scope.lattice, &self.patch, self.base);
-        let (flat, inside) = &mut self.flat;
-        // Some two in three points of a small box's patches lie inside.
-        let enough = (2 * out.len()).clamp(64, FLAT);
-        let rows = self.at.y..end;
-        let columns = (&mut self.columns, &self.listed);
-        let next = flat.list(lattice, patch, columns, rows, enough, self.backend);
-        flat.sift(patch, self.backend, inside);
-        let [left, bottom] = patch.origin();
-        compiled(self.backend, || {
-            for (out, (place, address)) in out.iter_mut().zip(inside.points()) {
-                let column = self.format.column(base, place[0], left + address[0]);
-                *out = self
-                    .format
-                    .item(base, column, place[1], bottom + address[1]);
-            }
-        });
-        self.at = Place::row(next);
-        if inside.len() > out.len()
-            && let Some((y, done)) = flat.locate(patch, out.len())
-        {
-            self.at = Place {
-                done,
-                ..Place::row(y)
-            };
-            // The rest of this row takes a template of its own.
-            self.templates.clear();
-        }
-        inside.len().min(out.len())
     }
 
     /// Writes points of the patch's rows up to `end`, or as many as there is room for.

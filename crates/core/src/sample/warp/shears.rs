@@ -74,6 +74,7 @@ impl Shears {
     }
 
     /// The largest movement along x or y, in fixed-point units.
+    #[cfg(test)]
     pub(crate) fn reach(&self) -> i32 {
         // A B-spline stays within its control values. The rest is room for rounding.
         let [y, x, rising, falling] = self.amplitudes();

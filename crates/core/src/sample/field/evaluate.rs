@@ -1,0 +1,192 @@
+//! The shares of described fields.
+
+use core::fmt;
+
+use super::{
+    Field,
+    scale::{unit, widened},
+    spec::{FieldSpec, Shape},
+};
+use crate::{sample::area::Region, table::Digest};
+
+impl FieldSpec {
+    /// The BLAKE3 digest of a canonical encoding of the description. Descriptions of one digest are equal.
+    ///
+    /// ```
+    /// use strew_core::field::FieldSpec;
+    ///
+    /// let of = |share| Ok::<_, strew_core::Error>(FieldSpec::constant(share)?.digest());
+    /// assert_eq!(of(0.5)?, of(0.5)?);
+    /// assert_ne!(of(0.5)?, of(0.25)?);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn digest(&self) -> Digest {
+        self.digest
+    }
+
+    /// The number of shapes, those that join others included.
+    ///
+    /// ```
+    /// use strew_core::field::FieldSpec;
+    ///
+    /// assert_eq!(FieldSpec::constant(0.5)?.invert()?.parts(), 2);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn parts(&self) -> usize {
+        self.parts
+    }
+
+    /// How deep shapes lie within others; 1 for a single one.
+    ///
+    /// ```
+    /// use strew_core::field::FieldSpec;
+    ///
+    /// assert_eq!(FieldSpec::constant(0.5)?.invert()?.depth(), 2);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn depth(&self) -> usize {
+        self.depth
+    }
+
+    /// The number of vertices.
+    ///
+    /// ```
+    /// use strew_core::field::{FieldSpec, Marks};
+    ///
+    /// let wells = Marks::Points(vec![[0.0, 0.0], [9.0, 4.0]]);
+    /// assert_eq!(FieldSpec::distance(wells, [0.0, 1.0], [0.0, 1.0])?.vertices(), 2);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn vertices(&self) -> usize {
+        self.vertices
+    }
+}
+
+impl PartialEq for FieldSpec {
+    fn eq(&self, other: &Self) -> bool {
+        self.digest == other.digest
+    }
+}
+
+impl Eq for FieldSpec {}
+
+impl core::hash::Hash for FieldSpec {
+    fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+        self.digest.hash(state);
+    }
+}
+
+impl fmt::Debug for FieldSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FieldSpec")
+            .field("parts", &self.parts)
+            .field("digest", &self.digest)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Field for FieldSpec {
+    fn share(&self, at: [f64; 2]) -> f64 {
+        let over = |parts: &[Self], first: f64, join: fn(f64, f64) -> f64| {
+            parts
+                .iter()
+                .fold(first, |share, part| join(share, part.share(at)))
+        };
+        match &*self.shape {
+            Shape::Constant(share) => *share,
+            Shape::Ramp { from, per, shares } => along(*from, *per, *shares, at),
+            Shape::Radial { center, slide } => {
+                slide.share(length(at[0] - center[0], at[1] - center[1]))
+            }
+            Shape::Distance(measure, slide) => slide.share(measure.distance(at)),
+            Shape::Noise(noise) => noise.share(at),
+            Shape::Raster(raster) => raster.share(at),
+            Shape::Terrain(terrain, slide) => terrain.share(slide, at),
+            Shape::Multiply(parts) => over(parts, 1.0, |a, b| a * b),
+            Shape::Min(parts) => over(parts, 1.0, f64::min),
+            Shape::Max(parts) => over(parts, 0.0, f64::max),
+            Shape::Invert(part) => 1.0 - part.share(at),
+            Shape::Curve(part, points) => on(points, part.share(at)),
+        }
+    }
+
+    fn bounds(&self, within: &Region) -> [f64; 2] {
+        let over = |parts: &[Self], first: f64, join: fn(f64, f64) -> f64| {
+            parts.iter().fold([first; 2], |ends, part| {
+                let bounds = part.bounds(within);
+                [0, 1].map(|i| join(ends[i], bounds[i]))
+            })
+        };
+        let ends = match &*self.shape {
+            Shape::Constant(share) => [*share; 2],
+            Shape::Ramp { from, per, shares } => {
+                // Monotone along both axes, rounding included.
+                let (min, max) = (within.min(), within.max());
+                let [low, high] = [0, 1].map(|end| {
+                    let is_max = |axis: usize| (per[axis] < 0.0) != (end == 1);
+                    let at = [0, 1].map(|axis| if is_max(axis) { max[axis] } else { min[axis] });
+                    along(*from, *per, *shares, at)
+                });
+                widened([low.min(high), low.max(high)])
+            }
+            Shape::Radial { center, slide } => {
+                let (min, max) = (within.min(), within.max());
+                let near = [0, 1].map(|i| (min[i] - center[i]).max(center[i] - max[i]).max(0.0));
+                let far = [0, 1].map(|i| (max[i] - center[i]).max(center[i] - min[i]));
+                slide.bounds([length(near[0], near[1]), length(far[0], far[1])])
+            }
+            Shape::Distance(measure, slide) => slide.bounds(measure.bounds(within)),
+            Shape::Noise(noise) => noise.bounds(within),
+            Shape::Raster(raster) => raster.bounds(within),
+            Shape::Terrain(terrain, slide) => terrain.bounds(slide, within),
+            Shape::Multiply(parts) => over(parts, 1.0, |a, b| a * b),
+            Shape::Min(parts) => over(parts, 1.0, f64::min),
+            Shape::Max(parts) => over(parts, 0.0, f64::max),
+            Shape::Invert(part) => {
+                let [low, high] = part.bounds(within);
+                [1.0 - high, 1.0 - low]
+            }
+            Shape::Curve(part, points) => {
+                let [low, high] = part.bounds(within);
+                let [a, b] = [on(points, low), on(points, high)];
+                let between = points.iter().filter(|[x, _]| low < *x && *x < high);
+                let ends = between.fold([a.min(b), a.max(b)], |ends, [_, y]| {
+                    [ends[0].min(*y), ends[1].max(*y)]
+                });
+                widened(ends)
+            }
+        };
+        ends.map(unit)
+    }
+}
+
+/// The square root of a sum of squares. Rounds alike everywhere, unlike `hypot`.
+fn length(x: f64, y: f64) -> f64 {
+    libm::sqrt(x * x + y * y)
+}
+
+/// The share of a ramp.
+fn along(from: [f64; 2], per: [f64; 2], [low, high]: [f64; 2], at: [f64; 2]) -> f64 {
+    let t = (at[0] - from[0]) * per[0] + (at[1] - from[1]) * per[1];
+    if t >= 1.0 {
+        high
+    } else if t > 0.0 {
+        low + (high - low) * t
+    } else {
+        low
+    }
+}
+
+/// The height of a curve.
+fn on(points: &[[f64; 2]], share: f64) -> f64 {
+    let after = points.partition_point(|[x, _]| *x <= share);
+    match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {
+        (Some([a, low]), Some([b, high])) => low + (high - low) * ((share - a) / (b - a)).min(1.0),
+        (Some([_, last]), None) => last,
+        (None, first) => first.map_or(0.0, |[_, share]| *share),
+    }
+}

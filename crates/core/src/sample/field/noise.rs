@@ -1,0 +1,156 @@
+//! Noise.
+
+use super::{
+    canon::Canon,
+    scale::{check_numbers, check_share, unit, widened},
+};
+use crate::{
+    error::{Error, ErrorKind, number},
+    sample::{area::Region, seed::split_mix},
+};
+
+/// Smooth patches of a size, of no end and without a pattern: value noise.
+///
+/// Octave i has hashed numbers in [0, 1) at the corners of squares with a side of wavelength / 2ⁱ, joined
+/// by 6t⁵ − 15t⁴ + 10t³ along both axes, and half the weight of the octave before. Each octave is turned by
+/// atan ¾ from the one before. The weighted mean is laid between the two ends of `range`.
+///
+/// ```
+/// use strew_core::{Field, field::{FieldSpec, Noise}};
+///
+/// let noise = Noise { seed: 7, wavelength: 50.0, octaves: 3, range: [0.2, 0.9] };
+/// let patches = FieldSpec::noise(noise)?;
+/// for x in 0..100 {
+///     assert!((0.2..=0.9).contains(&patches.share([f64::from(x), 3.5])));
+/// }
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Another seed makes other patches. It has nothing to do with the seed of the points.
+    pub seed: u64,
+    /// The size of the largest patches in world units, above 0.
+    pub wavelength: f64,
+    /// The number of sizes, 1 to 8: more makes patches rougher.
+    pub octaves: u32,
+    /// The shares between which the noise lies, each in [0, 1]. The first may be above the second.
+    pub range: [f64; 2],
+}
+
+/// Cells of an octave up to which bounds look at each corner.
+const FEW: f64 = 6.0;
+
+impl Noise {
+    pub(super) fn check(&self) -> Result<(), Error> {
+        let refused =
+            |name, value, allowed| Err(Error::new(ErrorKind::Field, name, value, allowed));
+        check_numbers("wavelength", &[self.wavelength])?;
+        if self.wavelength < 1e-100 {
+            let allowed = "a number from 1e-100 to 1e100";
+            return refused("wavelength", number(self.wavelength), allowed);
+        }
+        if !(1..=8).contains(&self.octaves) {
+            let value = alloc::format!("{}", self.octaves);
+            return refused("octaves", value, "an integer from 1 to 8");
+        }
+        check_share("range", self.range[0])?;
+        check_share("range", self.range[1])
+    }
+
+    pub(super) fn describe(&self, canon: &mut Canon) {
+        canon.number(self.seed);
+        canon.numbers(&[self.wavelength]);
+        canon.number(self.octaves.into());
+        canon.numbers(&self.range);
+    }
+
+    #[inline]
+    pub(super) fn share(&self, at: [f64; 2]) -> f64 {
+        let mut place = at.map(|v| v / self.wavelength);
+        let (mut sum, mut weight, mut weights) = (0.0, 1.0, 0.0);
+        for octave in 0..self.octaves {
+            sum += weight * octave_at(self.key(octave), place);
+            weights += weight;
+            weight *= 0.5;
+            place = next(place);
+        }
+        self.within_range(sum / weights)
+    }
+
+    pub(super) fn bounds(&self, within: &Region) -> [f64; 2] {
+        let (min, max) = (within.min(), within.max());
+        let mut center = [0, 1].map(|i| (0.5 * min[i] + 0.5 * max[i]) / self.wavelength);
+        let mut half = [0, 1].map(|i| (0.5 * max[i] - 0.5 * min[i]) / self.wavelength);
+        let (mut low, mut high, mut weight, mut weights) = (0.0, 0.0, 1.0, 0.0);
+        for octave in 0..self.octaves {
+            let ends = octave_between(self.key(octave), center, half);
+            low += weight * ends[0];
+            high += weight * ends[1];
+            weights += weight;
+            weight *= 0.5;
+            center = next(center);
+            half = [
+                2.0 * (0.8 * half[0] + 0.6 * half[1]),
+                2.0 * (0.6 * half[0] + 0.8 * half[1]),
+            ];
+        }
+        let [a, b] = [low / weights - 1e-9, high / weights + 1e-9].map(|v| self.within_range(v));
+        widened([a.min(b), a.max(b)])
+    }
+
+    fn within_range(&self, v: f64) -> f64 {
+        let [low, high] = self.range;
+        low + (high - low) * unit(v)
+    }
+
+    fn key(&self, octave: u32) -> u64 {
+        split_mix(self.seed.wrapping_add(u64::from(octave) << 56))
+    }
+}
+
+/// The place of a place in the next octave.
+#[inline(always)]
+fn next([x, y]: [f64; 2]) -> [f64; 2] {
+    [2.0 * (0.8 * x - 0.6 * y), 2.0 * (0.6 * x + 0.8 * y)]
+}
+
+/// The number at a corner, in [0, 1).
+#[inline(always)]
+fn corner(key: u64, x: i64, y: i64) -> f64 {
+    let row = split_mix(key ^ (y as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f));
+    let hash = split_mix(row ^ (x as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
+    (hash >> 11) as f64 / (1u64 << 53) as f64
+}
+
+#[inline(always)]
+fn octave_at(key: u64, place: [f64; 2]) -> f64 {
+    let cell = place.map(libm::floor);
+    let [x, y] = cell.map(|v| v as i64);
+    let [u, v] = [0, 1].map(|i| {
+        let t = place[i] - cell[i];
+        t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
+    });
+    let along = |y: i64| {
+        let (a, b) = (corner(key, x, y), corner(key, x.wrapping_add(1), y));
+        a + (b - a) * u
+    };
+    let (low, high) = (along(y), along(y.wrapping_add(1)));
+    low + (high - low) * v
+}
+
+fn octave_between(key: u64, center: [f64; 2], half: [f64; 2]) -> [f64; 2] {
+    // Room for what rounds.
+    let room = 1e-9;
+    let ends = [0, 1].map(|i| {
+        let (half, room) = (half[i] + room, 1e-12 * center[i].abs());
+        [center[i] - half - room, center[i] + half + room].map(libm::floor)
+    });
+    let is_far = |v: &f64| v.is_nan() || v.abs() > 1e9;
+    let is_large = ends.iter().any(|[a, b]| b - a > FEW);
+    if is_large || ends.iter().flatten().any(is_far) {
+        return [0.0, 1.0];
+    }
+    let [[left, right], [bottom, top]] = ends.map(|ends| ends.map(|v| v as i64));
+    let all = (bottom..=top + 1).flat_map(|y| (left..=right + 1).map(move |x| corner(key, x, y)));
+    all.fold([1.0, 0.0], |[low, high], v| [low.min(v), high.max(v)])
+}

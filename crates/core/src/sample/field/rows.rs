@@ -1,0 +1,320 @@
+//! The points of rows of a patch in a field, many at a time.
+
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use super::tiles::{self, TILE, Tile};
+use crate::{
+    pattern::Axis,
+    sample::{
+        kernel::{Backend, compiled, warp_all},
+        lattice::{Columns, Grade, Lattice, Patch, PointId, Span, around, damping, part_of_way},
+        sieve::Scale,
+    },
+    table::Displacement,
+};
+
+/// Lists end at a multiple of this, a pair of the widest vectors.
+const WHOLE: usize = 32;
+
+/// The points of some rows of a patch, and the memory to find them.
+///
+/// They are found in stages, each for all candidates before the next: addresses that tiles leave, their
+/// places at full density, the shares there, those that are left, how far they have moved, and their
+/// places.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FieldRows {
+    /// The tiles of the strip that ends at `strip_end`.
+    tiles: Vec<Tile>,
+    strip: Option<[i64; 2]>,
+    /// Positions relative to the patch, and where the warp moves them.
+    displaced: [Vec<i32>; 2],
+    places: [Vec<i32>; 2],
+    /// Columns in the lower 16 bits and rows in the upper ones, relative to the patch.
+    addresses: Vec<u32>,
+    /// By position in the order of blocks.
+    positions: Vec<u32>,
+    at: Vec<[f64; 2]>,
+    shares: Vec<f64>,
+    /// The vectors of points that have moved, and which these are.
+    moved: Vec<(u32, Displacement)>,
+    around: Vec<[f64; 2]>,
+    steep: Vec<f64>,
+    /// What was found.
+    found: Vec<Found>,
+    next: usize,
+}
+
+/// A point: its place and its address, both relative to the patch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    pub(crate) place: [i32; 2],
+    address: u32,
+}
+
+impl Found {
+    /// The column and the row, relative to the patch.
+    #[inline(always)]
+    pub(crate) const fn address(self) -> [i64; 2] {
+        [(self.address & 0xffff) as i64, (self.address >> 16) as i64]
+    }
+}
+
+/// What rows are listed of: a patch, the spans of the box, and the columns of the band in a range.
+#[derive(Clone, Copy)]
+pub(crate) struct Source<'a> {
+    pub(crate) lattice: &'a Lattice,
+    pub(crate) grade: &'a Grade,
+    pub(crate) patch: &'a Patch,
+    pub(crate) spans: [&'a Span; 2],
+    pub(crate) columns: (&'a Columns, &'a Range<i64>),
+}
+
+impl FieldRows {
+    /// Forgets the points and the tiles, before another patch.
+    pub(crate) fn clear(&mut self) {
+        self.strip = None;
+        self.found.clear();
+        self.next = 0;
+    }
+
+    /// The points that were found and not yet taken.
+    pub(crate) fn left(&self) -> &[Found] {
+        &self.found[self.next..]
+    }
+
+    /// Takes the next points.
+    pub(crate) const fn take(&mut self, number: usize) {
+        self.next += number;
+    }
+
+    /// Keeps the points that pass.
+    pub(crate) fn retain(&mut self, mut passes: impl FnMut(Found) -> bool) {
+        self.found.retain(|found| passes(*found));
+    }
+
+    /// Finds the points of a patch that lie inside, from row `rows.start` on, until there are at least
+    /// `enough` candidates or the rows end. Returns the first row that is not listed.
+    pub(crate) fn list(
+        &mut self,
+        source: Source<'_>,
+        rows: Range<i64>,
+        enough: usize,
+        backend: Backend,
+    ) -> i64 {
+        self.found.clear();
+        self.next = 0;
+        self.addresses.clear();
+        self.positions.clear();
+        self.displaced.iter_mut().for_each(Vec::clear);
+        let mut next = rows.start;
+        while next < rows.end && self.addresses.len() < enough {
+            let strip = next..rows.end.min((next & !(TILE - 1)) + TILE);
+            let known = self
+                .strip
+                .is_some_and(|[start, end]| start <= next && next < end);
+            if !known {
+                let Source {
+                    lattice,
+                    grade,
+                    spans,
+                    columns,
+                    ..
+                } = source;
+                tiles::list(lattice, grade, spans, columns, &strip, &mut self.tiles);
+                self.strip = Some([strip.start, strip.end]);
+            }
+            next = self.candidates(source, strip, enough);
+        }
+        if !self.addresses.is_empty() {
+            compiled(backend, || self.find(source, backend));
+        }
+        next
+    }
+
+    /// Lists what the tiles of a strip leave. Returns the first row that is not listed.
+    fn candidates(&mut self, source: Source<'_>, strip: Range<i64>, enough: usize) -> i64 {
+        let Source {
+            lattice,
+            patch,
+            columns: (columns, _),
+            ..
+        } = source;
+        if self.tiles.is_empty() {
+            return strip.end;
+        }
+        let [left, bottom] = patch.origin();
+        let n = lattice.map().intervals();
+        for y in strip.clone() {
+            if self.addresses.len() >= enough {
+                return y;
+            }
+            let Some((class, block_y)) = lattice.row(y) else {
+                continue;
+            };
+            let listed = columns.of(class);
+            let vectors = lattice.vectors(block_y);
+            let positions = lattice.order().positions(block_y * n..(block_y + 1) * n);
+            let row = patch.relative(Axis::Y, y);
+            let first = ((y - bottom) as u32) << 16;
+            for tile in self.tiles.iter().filter(|tile| tile.rows.contains(&y)) {
+                let lines = &listed[tile.columns[class.ordinal()].clone()];
+                let start = self.addresses.len();
+                let end = start + lines.len();
+                self.addresses.resize(end, 0);
+                self.positions.resize(end, 0);
+                self.displaced
+                    .iter_mut()
+                    .for_each(|list| list.resize(end, 0));
+                let [xs, ys] = &mut self.displaced;
+                let (xs, ys) = (&mut xs[start..end], &mut ys[start..end]);
+                let (addresses, all) = (
+                    &mut self.addresses[start..end],
+                    &mut self.positions[start..end],
+                );
+                let mut number = 0;
+                for line in lines {
+                    let block = line.block as usize;
+                    let (position, [dx, dy]) = (positions[block], vectors[block]);
+                    // Written in any case; the next one goes to the same place if this has left.
+                    xs[number] = patch.relative(Axis::X, line.at) + dx;
+                    ys[number] = row + dy;
+                    addresses[number] = first | (line.at - left) as u32;
+                    all[number] = position;
+                    number += usize::from(position < tile.alive);
+                }
+                let end = start + number;
+                self.addresses.truncate(end);
+                self.positions.truncate(end);
+                self.displaced
+                    .iter_mut()
+                    .for_each(|list| list.truncate(end));
+            }
+        }
+        strip.end
+    }
+
+    /// Finds the points among the candidates.
+    fn find(&mut self, source: Source<'_>, backend: Backend) {
+        let Source {
+            lattice,
+            grade,
+            patch,
+            ..
+        } = source;
+        let scale = Scale::new(lattice, patch);
+        self.place(patch, backend);
+        let number = self.addresses.len();
+        let [xs, ys] = &self.places;
+        self.at.clear();
+        self.at.extend(
+            xs.iter()
+                .zip(ys)
+                .take(number)
+                .map(|(&x, &y)| scale.world([x, y])),
+        );
+        self.shares.clear();
+        self.shares.resize(number, 0.0);
+        grade.shares(&self.at, &mut self.shares);
+        self.keep(lattice, patch);
+        if lattice.table.ladder().is_some() {
+            self.displace(lattice, grade);
+            if !self.moved.is_empty() {
+                self.place(patch, backend);
+            }
+        }
+        let [xs, ys] = &self.places;
+        let places = xs.iter().zip(ys).map(|(&x, &y)| [x, y]);
+        let all = places.zip(&self.addresses);
+        let all = all.filter(|(place, _)| patch.holds(*place));
+        self.found
+            .extend(all.map(|(place, &address)| Found { place, address }));
+    }
+
+    /// Moves displaced positions by the warp.
+    fn place(&mut self, patch: &Patch, backend: Backend) {
+        let whole = self.addresses.len().next_multiple_of(WHOLE);
+        for (list, places) in self.displaced.iter_mut().zip(&mut self.places) {
+            let last = list.last().copied().unwrap_or(0);
+            list.resize(whole, last);
+            places.resize(whole, 0);
+        }
+        let [x, y] = &self.displaced;
+        match patch.shears() {
+            Some(shears) => warp_all(backend, shears, [x, y], &mut self.places),
+            None => {
+                for (list, places) in self.displaced.iter().zip(&mut self.places) {
+                    places.copy_from_slice(list);
+                }
+            }
+        }
+    }
+
+    /// Leaves the candidates whose rank is below the share.
+    fn keep(&mut self, lattice: &Lattice, patch: &Patch) {
+        let order = lattice.order();
+        let [left, bottom] = patch.origin();
+        let mut next = 0;
+        for i in 0..self.addresses.len() {
+            let (address, position) = (self.addresses[i], self.positions[i]);
+            let share = self.shares[i];
+            // Ranks of a position are at least the number before its start, and less than its end.
+            let ranks = order.floors(position as usize);
+            let mut is_left = share >= ranks.end;
+            if !is_left && share >= ranks.start {
+                let id = PointId {
+                    x: left + i64::from(address & 0xffff),
+                    y: bottom + i64::from(address >> 16),
+                };
+                is_left = lattice.rank(id) < share;
+            }
+            self.addresses[next] = address;
+            self.positions[next] = position;
+            self.shares[next] = share;
+            self.at[next] = self.at[i];
+            for list in self.displaced.iter_mut().chain(&mut self.places) {
+                list[next] = list[i];
+            }
+            next += usize::from(is_left);
+        }
+        self.addresses.truncate(next);
+        self.positions.truncate(next);
+        self.shares.truncate(next);
+        self.at.truncate(next);
+        for list in self.displaced.iter_mut().chain(&mut self.places) {
+            list.truncate(next);
+        }
+    }
+
+    /// Moves the points that are left as the ladder says.
+    fn displace(&mut self, lattice: &Lattice, grade: &Grade) {
+        let Some(ladder) = lattice.table.ladder() else {
+            return;
+        };
+        let spacing = lattice.placement.spacing.get();
+        self.moved.clear();
+        self.around.clear();
+        let (turned, order) = (&lattice.turned, lattice.order());
+        for (i, (&position, &share)) in (0..).zip(self.positions.iter().zip(&self.shares)) {
+            let position = position as usize;
+            let full = turned.vector(order.block(position));
+            let moved = turned.moved(ladder, ladder.stage(share), position);
+            if moved != full {
+                self.moved.push((i, moved));
+                self.around
+                    .extend(around(self.at[i as usize], share, spacing));
+            }
+        }
+        self.steep.clear();
+        self.steep.resize(self.around.len(), 0.0);
+        grade.shares(&self.around, &mut self.steep);
+        for (&(i, moved), steep) in self.moved.iter().zip(self.steep.as_chunks().0) {
+            let i = i as usize;
+            let full = turned.vector(order.block(self.positions[i] as usize));
+            let vector = part_of_way(full, moved, damping(*steep));
+            for axis in 0..2 {
+                self.displaced[axis][i] += vector[axis] - full[axis];
+            }
+        }
+    }
+}

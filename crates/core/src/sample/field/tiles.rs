@@ -1,0 +1,204 @@
+//! Tiles: which pieces of the lattice may have points of a field, and of which blocks.
+//!
+//! A point lies near its lattice address: its full displacement and the warp away when the field is
+//! looked at, and up to a displacement of the ladder and the warp when it is placed. So bounds of the
+//! field around a tile leave out all of it, or the blocks that have left, and the ladder's reach at the least
+//! share tells how far outside of the box its addresses can be.
+
+use alloc::collections::VecDeque;
+use core::ops::Range;
+
+use crate::{
+    pattern::Class,
+    sample::{
+        area::Region,
+        lattice::{Columns, Grade, Lattice, Span, places},
+    },
+    table::{FRACTION_BITS, fixed},
+};
+
+/// The sides of a tile in lattice units. Both divide those of a band and a patch.
+pub(super) const TILE: i64 = 64;
+
+/// Some columns and rows of a strip of tiles.
+#[derive(Clone, Debug)]
+pub(super) struct Tile {
+    /// The places of its columns in the list of each class.
+    pub(super) columns: [Range<usize>; 4],
+    pub(super) rows: Range<i64>,
+    /// The number of positions of which any point may be left.
+    pub(super) alive: u32,
+}
+
+/// Some columns and rows of the lattice.
+pub(super) type Piece = [Range<i64>; 2];
+
+/// The least and the greatest distance of points from their addresses by axis, up to `reach` without the
+/// warp, in fixed-point units.
+fn distances(lattice: &Lattice, piece: &Piece, reach: [[i32; 2]; 2]) -> [[i32; 2]; 2] {
+    let Some(shears) = &lattice.shears else {
+        return reach;
+    };
+    let displaced = [0, 1].map(|i| {
+        [
+            fixed(piece[i].start) + i128::from(reach[i][0]),
+            fixed(piece[i].end - 1) + i128::from(reach[i][1]),
+        ]
+    });
+    let drift = shears.drift_from(displaced);
+    [0, 1].map(|i| [reach[i][0] + drift[i][0], reach[i][1] + drift[i][1]])
+}
+
+/// The least and the greatest share of the points of a piece, which is not empty.
+pub(super) fn shares(lattice: &Lattice, grade: &Grade, piece: &Piece) -> [f64; 2] {
+    grade.bounds(&around(lattice, piece, lattice.turned.reach()))
+}
+
+/// The box around the places of a piece's points with displacements up to `reach`.
+fn around(lattice: &Lattice, piece: &Piece, reach: [[i32; 2]; 2]) -> Region {
+    let distances = distances(lattice, piece, reach);
+    // The conversion is monotone.
+    let [x, y] = [0, 1].map(|i| {
+        [
+            lattice.world(fixed(piece[i].start) + i128::from(distances[i][0])),
+            lattice.world(fixed(piece[i].end - 1) + i128::from(distances[i][1])),
+        ]
+    });
+    Region::between([x[0], y[0]], [x[1], y[1]])
+}
+
+/// The share that a field has at all places that matter to the points of a piece, if it is only one: those
+/// where they are at full density and those around that tell how steep it is.
+pub(crate) fn constant(lattice: &Lattice, grade: &Grade, piece: &Piece) -> Option<f64> {
+    if piece.iter().any(Range::is_empty) {
+        return Some(0.0);
+    }
+    let is_one = |[low, high]: [f64; 2]| low.to_bits() == high.to_bits();
+    let near = around(lattice, piece, lattice.turned.reach());
+    let bounds = grade.bounds(&near);
+    if !is_one(bounds) {
+        return None;
+    }
+    let share = bounds[0];
+    if share == 0.0 || lattice.table.ladder().is_none() {
+        return Some(share);
+    }
+    // A little more than the half spacing, which is rounded.
+    let room = 0.5 * lattice.placement.spacing.get() / libm::sqrt(share) * (1.0 + 1e-9);
+    let room = |v: f64| room + 1e-15 * v.abs();
+    let (min, max) = (near.min(), near.max());
+    let min = min.map(|v| v - room(v));
+    let max = max.map(|v| v + room(v));
+    let wide = grade.bounds(&Region::between(min, max));
+    (is_one(wide) && wide[0].to_bits() == share.to_bits()).then_some(share)
+}
+
+/// The end of the first rows of a piece that have no points because the field has none there; its rows
+/// begin anywhere and are cut at multiples of `height`.
+pub(crate) fn empty_until(
+    lattice: &Lattice,
+    grade: &Grade,
+    [columns, rows]: &Piece,
+    height: i64,
+) -> i64 {
+    let is_empty = |rows: Range<i64>| shares(lattice, grade, &[columns.clone(), rows])[1] <= 0.0;
+    let mut start = rows.start;
+    let mut step = height;
+    while start < rows.end && !columns.is_empty() {
+        // Ever higher pieces while they are empty, then lower ones.
+        let end = rows.end.min(start.div_euclid(height) * height + step);
+        if is_empty(start..end) {
+            start = end;
+            step = step.saturating_mul(2).min(1 << 40);
+        } else if step > height {
+            step /= 2;
+        } else {
+            break;
+        }
+    }
+    start
+}
+
+/// The most pieces whose shares an estimate looks up: about a millisecond.
+const MOST_PIECES: usize = 8192;
+
+/// About the number of points of a piece that are visited to find those that are left: in smaller and smaller
+/// pieces, the greatest share times the points at full density.
+pub(crate) fn candidates(lattice: &Lattice, grade: &Grade, piece: Piece) -> u128 {
+    let side = lattice.table.alpha().set_side_f64();
+    let mut open = VecDeque::from([piece]);
+    let (mut looked, mut sum) = (0, 0.0);
+    while let Some([columns, rows]) = open.pop_front() {
+        let [width, height] = [&columns, &rows].map(|range| range.end - range.start);
+        if width <= 0 || height <= 0 {
+            continue;
+        }
+        let [low, high] = shares(lattice, grade, &[columns.clone(), rows.clone()]);
+        looked += 1;
+        let is_small = width <= TILE && height <= TILE;
+        if high <= 0.0 {
+            continue;
+        }
+        if is_small || high <= low * 1.1 || looked + open.len() >= MOST_PIECES {
+            sum += width as f64 * height as f64 * side * side * high;
+        } else if width > height {
+            let middle = columns.start + width / 2;
+            open.push_back([columns.start..middle, rows.clone()]);
+            open.push_back([middle..columns.end, rows]);
+        } else {
+            let middle = rows.start + height / 2;
+            open.push_back([columns.clone(), rows.start..middle]);
+            open.push_back([columns, middle..rows.end]);
+        }
+    }
+    sum as u128
+}
+
+/// Lists the tiles of some rows of a strip whose points may be left and lie inside.
+pub(super) fn list(
+    lattice: &Lattice,
+    grade: &Grade,
+    [x, y]: [&Span; 2],
+    (columns, range): (&Columns, &Range<i64>),
+    rows: &Range<i64>,
+    tiles: &mut alloc::vec::Vec<Tile>,
+) {
+    tiles.clear();
+    let mut start = range.start;
+    while start < range.end {
+        let end = range.end.min((start & !(TILE - 1)) + TILE);
+        let piece = [start..end, rows.clone()];
+        start = end;
+        let [low, high] = shares(lattice, grade, &piece);
+        if high <= 0.0 {
+            continue;
+        }
+        let [across, up] = inside(lattice, low, [x, y], &piece);
+        if across.is_empty() || up.is_empty() {
+            continue;
+        }
+        tiles.push(Tile {
+            columns: Class::ALL.map(|class| places(columns.of(class), &across)),
+            rows: up,
+            // One more: a rank may lie just below the start of its position.
+            alive: lattice.order().alive(high.next_up()) as u32,
+        });
+    }
+}
+
+/// The part of a piece whose points may lie inside if their shares are from `low` on.
+fn inside(lattice: &Lattice, low: f64, spans: [&Span; 2], piece: &Piece) -> Piece {
+    let ladder = lattice.ladder_reach(low);
+    let reach = lattice
+        .turned
+        .reach()
+        .map(|[least, most]| [least.min(-ladder), most.max(ladder)]);
+    let distances = distances(lattice, piece, reach);
+    [0, 1].map(|i| {
+        let bounds = &spans[i].bounds;
+        let first = |k: i128| (-((-k) >> FRACTION_BITS)) as i64;
+        let start = first(bounds.start - i128::from(distances[i][1]));
+        let end = first(bounds.end - i128::from(distances[i][0]));
+        piece[i].start.max(start)..piece[i].end.min(end)
+    })
+}

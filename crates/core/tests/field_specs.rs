@@ -1,0 +1,394 @@
+//! Described fields: bounds hold, shares are shares, digests tell descriptions apart, bad ones are refused.
+
+use std::collections::HashSet;
+
+use proptest::prelude::*;
+use strew_core::{
+    ErrorKind, Field, Raster, Region,
+    field::{Edges, FieldSpec, Filter, Marks, Noise, Pixels, Terrain},
+};
+
+fn place() -> impl Strategy<Value = [f64; 2]> {
+    prop::array::uniform2(-50.0..50.0f64)
+}
+
+fn share() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(0.0), Just(1.0), 0.0..=1.0f64]
+}
+
+fn shares() -> impl Strategy<Value = [f64; 2]> {
+    prop::array::uniform2(share())
+}
+
+/// Two numbers in ascending order.
+fn range(from: f64, to: f64) -> impl Strategy<Value = [f64; 2]> {
+    (from..to, 0.01..to - from).prop_map(|(a, by)| [a, a + by])
+}
+
+fn region() -> impl Strategy<Value = Region> {
+    (
+        place(),
+        prop::array::uniform2(prop_oneof![0.001..1.0f64, 1.0..80.0f64]),
+    )
+        .prop_map(|([x, y], [w, h])| Region::new([x, y], [x + w, y + h]).expect("ordered"))
+}
+
+fn edges() -> impl Strategy<Value = Edges> {
+    prop::sample::select(vec![
+        Edges::Zero,
+        Edges::Clamp,
+        Edges::Repeat,
+        Edges::Mirror,
+    ])
+}
+
+fn filter() -> impl Strategy<Value = Filter> {
+    prop::sample::select(vec![Filter::Linear, Filter::Nearest])
+}
+
+/// Pixels of each kind, with plains of zeros.
+fn pixels() -> impl Strategy<Value = Pixels> {
+    (1usize..60, 1usize..40, any::<u32>(), 0..3u32).prop_map(|(width, height, salt, kind)| {
+        let pixel = move |i: usize| {
+            let z = (i as u32 / 7).wrapping_mul(0x9e37_79b9) ^ salt;
+            let z = (z ^ (z >> 15)).wrapping_mul(0x846c_a68b);
+            z.saturating_sub(1 << 31) << 1
+        };
+        let all = 0..width * height;
+        match kind {
+            0 => Pixels::from_bytes(width, all.map(|i| (pixel(i) >> 24) as u8).collect()),
+            1 => Pixels::from_words(width, all.map(|i| (pixel(i) >> 16) as u16).collect()),
+            _ => {
+                let share = |i| (f64::from(pixel(i)) / f64::from(u32::MAX)) as f32;
+                Pixels::from_floats(width, all.map(share).collect())
+            }
+        }
+        .expect("whole rows")
+    })
+}
+
+fn marks() -> impl Strategy<Value = Marks> {
+    let line = |least| prop::collection::vec(place(), least..30);
+    prop_oneof![
+        prop::collection::vec(place(), 1..60).prop_map(Marks::Points),
+        prop::collection::vec(line(2), 1..5).prop_map(Marks::Lines),
+        prop::collection::vec(line(3), 1..5).prop_map(Marks::Polygons),
+    ]
+}
+
+fn raster() -> impl Strategy<Value = FieldSpec> {
+    (region(), pixels(), edges(), filter(), shares(), 0.2..4.0f64).prop_map(
+        |(region, pixels, edges, filter, [low, high], gamma)| {
+            let raster = Raster::of(region, pixels).expect("shares").edges(edges);
+            let raster = raster.filter(filter).tone(low, high, gamma);
+            FieldSpec::raster(raster.expect("in range")).expect("valid")
+        },
+    )
+}
+
+fn terrain() -> impl Strategy<Value = FieldSpec> {
+    (
+        region(),
+        pixels(),
+        edges(),
+        filter(),
+        range(-0.1, 1.0),
+        shares(),
+        any::<bool>(),
+    )
+        .prop_map(|(region, pixels, edges, filter, range, shares, is_slope)| {
+            let terrain = Terrain::new(region, pixels).expect("an inside");
+            let terrain = terrain.edges(edges).filter(filter);
+            let of = if is_slope {
+                FieldSpec::slope
+            } else {
+                FieldSpec::height
+            };
+            of(terrain, range, shares).expect("valid")
+        })
+}
+
+fn simple() -> impl Strategy<Value = FieldSpec> {
+    let noise = (any::<u64>(), 0.5..100.0f64, 1..=8u32, shares());
+    prop_oneof![
+        share().prop_map(|share| FieldSpec::constant(share).expect("a share")),
+        (place(), place(), shares())
+            .prop_filter_map("apart", |(a, b, shares)| FieldSpec::ramp(a, b, shares).ok()),
+        (place(), range(0.0, 60.0), shares())
+            .prop_map(|(at, radii, shares)| FieldSpec::radial(at, radii, shares).expect("valid")),
+        (marks(), range(-20.0, 30.0), shares()).prop_map(|(marks, range, shares)| {
+            FieldSpec::distance(marks, range, shares).expect("valid")
+        }),
+        noise.prop_map(|(seed, wavelength, octaves, range)| {
+            let noise = Noise {
+                seed,
+                wavelength,
+                octaves,
+                range,
+            };
+            FieldSpec::noise(noise).expect("valid")
+        }),
+        raster(),
+        terrain(),
+    ]
+}
+
+fn spec() -> impl Strategy<Value = FieldSpec> {
+    simple().prop_recursive(3, 12, 3, |inner| {
+        let parts = || prop::collection::vec(inner.clone(), 1..4);
+        let curve = prop::collection::vec((1..100u32, share()), 2..6);
+        prop_oneof![
+            parts().prop_map(|parts| FieldSpec::multiply(parts).expect("few")),
+            parts().prop_map(|parts| FieldSpec::min(parts).expect("few")),
+            parts().prop_map(|parts| FieldSpec::max(parts).expect("few")),
+            inner.clone().prop_map(|part| part.invert().expect("few")),
+            (inner, curve).prop_map(|(part, steps)| {
+                let mut x = 0;
+                let total: u32 = steps.iter().map(|(step, _)| step).sum();
+                let point = |(step, y): (u32, f64)| {
+                    x += step;
+                    [f64::from(x) / f64::from(total), y]
+                };
+                part.curve(steps.into_iter().map(point).collect())
+                    .expect("ascending")
+            }),
+        ]
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1500, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_place_of_a_box_leaves_its_bounds(
+        spec in spec(), within in region(),
+        inside in prop::collection::vec(prop::array::uniform2(0.0..=1.0f64), 12),
+    ) {
+        let [low, high] = spec.bounds(&within);
+        let (min, max) = (within.min(), within.max());
+        let corners = [[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0]];
+        for part in inside.into_iter().chain(corners) {
+            let at = [0, 1].map(|i| (min[i] + (max[i] - min[i]) * part[i]).min(max[i]));
+            let share = spec.share(at);
+            prop_assert!((0.0..=1.0).contains(&share), "{share}");
+            prop_assert!(low <= share && share <= high, "{low} {share} {high} at {at:?}");
+        }
+    }
+
+    #[test]
+    fn the_tree_of_marks_finds_the_nearest(marks in marks(), at in place()) {
+        let field = FieldSpec::distance(marks.clone(), [-200.0, 200.0], [0.0, 1.0]).expect("valid");
+        let distance = |[a, b]: [[f64; 2]; 2]| {
+            let way = [b[0] - a[0], b[1] - a[1]];
+            let square = way[0] * way[0] + way[1] * way[1];
+            let along = (at[0] - a[0]) * way[0] + (at[1] - a[1]) * way[1];
+            let t = if square > 0.0 { (along / square).clamp(0.0, 1.0) } else { 0.0 };
+            let [x, y] = [0, 1].map(|i| at[i] - (a[i] + t * way[i]));
+            (x * x + y * y).sqrt()
+        };
+        let (sides, is_area): (Vec<[[f64; 2]; 2]>, bool) = match &marks {
+            Marks::Points(all) => (all.iter().map(|&p| [p, p]).collect(), false),
+            Marks::Lines(all) => {
+                let sides = all.iter().flat_map(|line| line.windows(2));
+                (sides.map(|w| [w[0], w[1]]).collect(), false)
+            }
+            Marks::Polygons(all) => {
+                let ring = |ring: &Vec<[f64; 2]>| {
+                    let ring = ring.clone();
+                    (0..ring.len()).map(move |i| [ring[i], ring[(i + 1) % ring.len()]])
+                };
+                (all.iter().flat_map(ring).collect(), true)
+            }
+        };
+        let nearest = sides.iter().copied().map(distance).fold(f64::INFINITY, f64::min);
+        let crossings = sides.iter().filter(|[a, b]| {
+            (a[1] <= at[1]) != (b[1] <= at[1])
+                && at[0] < a[0] + (at[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+        });
+        let is_inside = is_area && crossings.count() % 2 == 1;
+        let expected = if is_inside { -nearest } else { nearest };
+        prop_assert_eq!(field.share(at), (expected + 200.0) / 400.0);
+    }
+}
+
+#[test]
+fn each_setting_changes_the_digest_and_copies_do_not() {
+    let unit = Region::chunk(1.0, [0, 0]).expect("small");
+    let bytes = |v: u8| Pixels::from_bytes(2, vec![v, 255]).expect("rows");
+    let raster = || Raster::of(unit, bytes(3)).expect("shares");
+    let heights = || Terrain::new(unit, bytes(3)).expect("an inside");
+    let triangle = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    let noise = Noise {
+        seed: 1,
+        wavelength: 2.0,
+        octaves: 3,
+        range: [0.0, 1.0],
+    };
+    let make = || -> Result<Vec<FieldSpec>, strew_core::Error> {
+        let half = FieldSpec::constant(0.5)?;
+        let ramp = FieldSpec::ramp([0.0, 0.0], [1.0, 0.0], [0.0, 1.0])?;
+        let distance = |marks, to| FieldSpec::distance(marks, [0.0, to], [0.0, 1.0]);
+        Ok(vec![
+            half.clone(),
+            FieldSpec::constant(0.25)?,
+            ramp.clone(),
+            FieldSpec::ramp([0.0, 0.0], [1.0, 0.0], [1.0, 0.0])?,
+            FieldSpec::ramp([0.0, 0.0], [0.0, 1.0], [0.0, 1.0])?,
+            FieldSpec::radial([0.0, 0.0], [1.0, 2.0], [0.0, 1.0])?,
+            FieldSpec::radial([0.0, 0.0], [1.0, 3.0], [0.0, 1.0])?,
+            distance(Marks::Points(triangle.clone()), 1.0)?,
+            distance(Marks::Points(triangle.clone()), 2.0)?,
+            distance(Marks::Lines(vec![triangle.clone()]), 1.0)?,
+            distance(Marks::Polygons(vec![triangle.clone()]), 1.0)?,
+            distance(Marks::Polygons(vec![triangle.clone(); 2]), 1.0)?,
+            FieldSpec::noise(noise)?,
+            FieldSpec::noise(Noise { seed: 2, ..noise })?,
+            FieldSpec::noise(Noise {
+                wavelength: 3.0,
+                ..noise
+            })?,
+            FieldSpec::noise(Noise {
+                octaves: 2,
+                ..noise
+            })?,
+            FieldSpec::noise(Noise {
+                range: [0.0, 0.5],
+                ..noise
+            })?,
+            FieldSpec::raster(raster())?,
+            FieldSpec::raster(Raster::of(unit, bytes(4))?)?,
+            FieldSpec::raster(Raster::of(Region::chunk(2.0, [0, 0])?, bytes(3))?)?,
+            FieldSpec::raster(raster().edges(Edges::Zero))?,
+            FieldSpec::raster(raster().filter(Filter::Nearest))?,
+            FieldSpec::raster(raster().tone(0.0, 1.0, 2.0)?)?,
+            FieldSpec::raster(raster().tone(0.0, 0.9, 1.0)?)?,
+            FieldSpec::height(heights(), [0.0, 1.0], [0.0, 1.0])?,
+            FieldSpec::height(heights(), [0.0, 2.0], [0.0, 1.0])?,
+            FieldSpec::height(heights().edges(Edges::Mirror), [0.0, 1.0], [0.0, 1.0])?,
+            FieldSpec::slope(heights(), [0.0, 1.0], [0.0, 1.0])?,
+            FieldSpec::multiply(vec![half.clone(), ramp.clone()])?,
+            FieldSpec::multiply(vec![ramp.clone(), half.clone()])?,
+            FieldSpec::multiply(vec![FieldSpec::multiply(vec![half.clone()])?, ramp.clone()])?,
+            FieldSpec::min(vec![half.clone(), ramp.clone()])?,
+            FieldSpec::max(vec![half.clone(), ramp.clone()])?,
+            ramp.clone().invert()?,
+            ramp.clone().curve(vec![[0.0, 0.0], [1.0, 1.0]])?,
+            ramp.curve(vec![[0.0, 0.0], [0.5, 0.4], [1.0, 1.0]])?,
+        ])
+    };
+    let (all, again) = (make().expect("valid"), make().expect("valid"));
+    assert_eq!(all, again);
+    let different: HashSet<_> = all.iter().map(FieldSpec::digest).collect();
+    assert_eq!(different.len(), all.len());
+}
+
+#[test]
+fn a_digest_and_a_share_are_those_of_every_machine() {
+    let noise = Noise {
+        seed: 7,
+        wavelength: 12.5,
+        octaves: 4,
+        range: [0.1, 0.9],
+    };
+    let field = FieldSpec::noise(noise).expect("valid");
+    assert_eq!(
+        (
+            field.digest().to_string(),
+            field.share([1.25, -7.5]).to_bits()
+        ),
+        (
+            "3810b03aa82435398a0798dfc9ef4aeb171d4c51f3db5bbdcb8d72fc47a63c8a".to_owned(),
+            4_603_272_320_237_672_945
+        )
+    );
+}
+
+#[test]
+fn bad_descriptions_are_refused_by_name() {
+    let (here, shares) = ([0.0, 0.0], [0.0, 1.0]);
+    let half = || FieldSpec::constant(0.5).expect("a share");
+    let many = Marks::Points(vec![here; FieldSpec::MAX_VERTICES + 1]);
+    let noise = Noise {
+        seed: 1,
+        wavelength: 2.0,
+        octaves: 3,
+        range: shares,
+    };
+    let pixels = || Pixels::from_bytes(1, vec![1]).expect("a row");
+    let deep = (0..FieldSpec::MAX_DEPTH).try_fold(half(), |field, _| field.invert());
+    let flat = Region::new(here, [0.0, 1.0]).expect("ordered");
+    let cases = [
+        ("share", FieldSpec::constant(f64::NAN)),
+        ("from", FieldSpec::ramp([f64::INFINITY, 0.0], here, shares)),
+        ("to", FieldSpec::ramp(here, here, shares)),
+        ("to", FieldSpec::ramp(here, [1e-200, 0.0], shares)),
+        ("shares", FieldSpec::ramp(here, [1.0, 0.0], [0.0, 1.1])),
+        ("radii", FieldSpec::radial(here, [2.0, 2.0], shares)),
+        ("radii", FieldSpec::radial(here, [-1.0, 2.0], shares)),
+        (
+            "center",
+            FieldSpec::radial([1e101, 0.0], [1.0, 2.0], shares),
+        ),
+        ("vertices", FieldSpec::distance(many, [0.0, 1.0], shares)),
+        (
+            "points",
+            FieldSpec::distance(Marks::Points(vec![]), [0.0, 1.0], shares),
+        ),
+        (
+            "lines",
+            FieldSpec::distance(Marks::Lines(vec![vec![here]]), [0.0, 1.0], shares),
+        ),
+        (
+            "polygons",
+            FieldSpec::distance(Marks::Polygons(vec![]), [0.0, 1.0], shares),
+        ),
+        (
+            "distances",
+            FieldSpec::distance(Marks::Points(vec![here]), [1.0, 0.0], shares),
+        ),
+        (
+            "octaves",
+            FieldSpec::noise(Noise {
+                octaves: 0,
+                ..noise
+            }),
+        ),
+        (
+            "wavelength",
+            FieldSpec::noise(Noise {
+                wavelength: 0.0,
+                ..noise
+            }),
+        ),
+        (
+            "range",
+            FieldSpec::noise(Noise {
+                range: [-0.1, 1.0],
+                ..noise
+            }),
+        ),
+        ("multiply", FieldSpec::multiply(vec![])),
+        ("parts", FieldSpec::min(vec![half(); FieldSpec::MAX_PARTS])),
+        ("depth", deep),
+        ("curve", half().curve(vec![[0.0, 0.0]])),
+        ("curve", half().curve(vec![[0.0, 0.0], [1.0, f64::NAN]])),
+        (
+            "region",
+            Raster::of(flat, pixels()).and_then(FieldSpec::raster),
+        ),
+        (
+            "heights",
+            Terrain::new(Region::chunk(1.0, [0, 0]).expect("small"), pixels())
+                .and_then(|terrain| FieldSpec::height(terrain, [1.0, 1.0], shares)),
+        ),
+    ];
+    for (name, result) in cases {
+        let error = result.expect_err(name);
+        assert_eq!(
+            (error.field(), error.kind()),
+            (name, ErrorKind::Field),
+            "{error}"
+        );
+        assert!(!error.allowed().is_empty());
+    }
+}
