@@ -127,6 +127,7 @@ impl Field for FieldSpec {
                 }
             }
             Shape::Raster(raster) => raster.shares(places, shares),
+            Shape::Noise(noise) => noise.shares(places, shares),
             Shape::Multiply(parts) => together(parts, 1.0, |a, b| a * b, places, shares),
             Shape::Min(parts) => together(parts, 1.0, f64::min, places, shares),
             Shape::Max(parts) => together(parts, 0.0, f64::max, places, shares),

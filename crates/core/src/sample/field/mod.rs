@@ -34,4 +34,4 @@ pub use raster::Raster;
 pub(super) use rows::{FieldRows, Found, Source};
 pub use spec::FieldSpec;
 pub use terrain::Terrain;
-pub(super) use tiles::{candidates, constant, empty_until};
+pub(super) use tiles::{candidates, constant, constant_until, empty_until};

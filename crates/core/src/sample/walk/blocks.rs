@@ -7,7 +7,7 @@ pub(super) mod graded;
 use alloc::{boxed::Box, sync::Arc};
 use core::ops::Range;
 
-use graded::Known;
+use graded::{Constant, Known};
 
 use super::{
     place::Place,
@@ -79,6 +79,8 @@ pub struct Blocks<F: Format> {
     graded: Option<Box<FieldRows>>,
     /// The points of a small plan in a field, and the number of the next.
     kept: Option<(Arc<[Known]>, usize)>,
+    /// The last rows of a band in which a field is constant.
+    constant: Option<Box<Constant<F>>>,
 }
 
 impl<F: Format> Blocks<F> {
@@ -150,6 +152,7 @@ impl<F: Format> Blocks<F> {
             flat: Default::default(),
             graded: scope.lattice.grade.as_ref().map(|_| Box::default()),
             kept: None,
+            constant: None,
             scope,
             window,
         }
@@ -197,11 +200,18 @@ impl<F: Format> Blocks<F> {
                 filled += self.write_found(&mut out[filled..]);
                 continue;
             }
+            if self.has_constant() {
+                filled += self.fill_constant(&mut out[filled..]);
+                continue;
+            }
             if self.at.y == self.rows.end && !self.next_band() {
                 break;
             }
-            if self.at.y >= self.patch.end() {
+            if !self.has_constant() && self.needs_patch() {
                 self.next_patch();
+            }
+            if self.has_constant() {
+                continue;
             }
             let end = self.rows.end.min(self.patch.end());
             let out = &mut out[filled..];
@@ -240,7 +250,9 @@ impl<F: Format> Blocks<F> {
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         let window = self.window.filter(|window| window.count > 0)?;
-        let at = if let Some((kept, next)) = &self.kept {
+        let at = if let Some(within) = self.constant_place() {
+            within
+        } else if let Some((kept, next)) = &self.kept {
             // After the last one, any later place.
             let after = || {
                 kept.last()
@@ -307,9 +319,11 @@ impl<F: Format> Blocks<F> {
 
     /// Moves to the patch of the current row.
     fn next_patch(&mut self) {
-        self.skip_empty();
-        if self.at.y == self.rows.end {
-            return;
+        if self.graded.is_some() {
+            self.skip_empty();
+            if self.at.y == self.rows.end || self.has_constant() {
+                return;
+            }
         }
         let Scope { lattice, x, y, .. } = &*self.scope;
         self.patch = Patch::new(lattice, self.band, self.at.y, x, y);
