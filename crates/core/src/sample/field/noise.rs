@@ -91,8 +91,8 @@ impl Noise {
                 sums: [0.0; SOME],
             };
             for (i, place) in places.iter().enumerate() {
-                for axis in 0..2 {
-                    work.places[axis][i] = place[axis] / self.wavelength;
+                for (all, v) in work.places.iter_mut().zip(place) {
+                    all[i] = v / self.wavelength;
                 }
             }
             let is_far = |v: &f64| v.is_nan() || v.abs() > FAR;
