@@ -5,6 +5,7 @@
 //! one number for each pixel: see [`Meaning`] for how colors become one.
 
 mod error;
+mod limits;
 mod npy;
 mod picture;
 mod png;
@@ -15,28 +16,11 @@ mod tone;
 use std::io::{BufRead, Cursor, Read, Seek, SeekFrom};
 
 pub use error::RasterError;
+pub use limits::{Limits, MOST_SIDE};
 pub use samples::Samples;
 pub use tone::Meaning;
 
-/// The longest side of a raster, in pixels.
-pub const MOST_SIDE: usize = 16_384;
-
-/// What a raster may have at most.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// The longest side, in pixels.
-    pub side: usize,
-    /// The most pixels.
-    pub pixels: usize,
-}
-
 impl Limits {
-    /// Those of files: 16,384 × 16,384 pixels.
-    pub const FILES: Self = Self {
-        side: MOST_SIDE,
-        pixels: MOST_SIDE * MOST_SIDE,
-    };
-
     /// The number of pixels of a size.
     ///
     /// # Errors

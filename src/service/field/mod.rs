@@ -1,7 +1,7 @@
 //! Fields: their grammar, and those that are loaded.
 //!
 //! [`document`] has the grammar as types: JSON bodies, TOML files and messages become a [`Document`], and
-//! [`build`] makes the core's [`FieldSpec`] of it. Both report what is wrong by its path, such as
+//! [`build`] makes the core's `FieldSpec` of it. Both report what is wrong by its path, such as
 //! `field.multiply[1].noise.octaves`. [`loaded`] has the fields of the configuration and of a folder, which
 //! queries name.
 
@@ -9,24 +9,27 @@ mod build;
 pub mod document;
 mod files;
 pub mod loaded;
+mod named;
 mod picture;
 mod pixels;
 mod read;
 mod schema;
 pub mod sent;
+mod sources;
 
 #[cfg(test)]
 mod tests;
 
 pub(crate) use files::{Stamp, stamp};
 
-pub use build::{MOST_PIXELS, Sources, build};
+pub use build::build;
 pub use document::Document;
-pub use loaded::{FieldError, FieldReload, Fields, NamedField, from_document, from_file};
+pub use loaded::{FieldError, FieldReload, Fields, from_document, from_file};
+pub use named::{NamedField, Source};
 pub use picture::SIDE;
-pub use pixels::ReadFile;
 pub use read::{read_json, read_toml};
 pub use sent::Sent;
+pub use sources::{MOST_PIXELS, ReadFile, Sources};
 
 use super::query::Faults;
 
