@@ -91,9 +91,8 @@ impl Noise {
                 sums: [0.0; SOME],
             };
             for (i, place) in places.iter().enumerate() {
-                for axis in 0..2 {
-                    work.places[axis][i] = place[axis] / self.wavelength;
-                }
+                work.places[0][i] = place[0] / self.wavelength;
+                work.places[1][i] = place[1] / self.wavelength;
             }
             let is_far = |v: &f64| v.is_nan() || v.abs() > FAR;
             if work.places.as_flattened().iter().any(is_far) {
