@@ -68,6 +68,9 @@ fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<
                 "vec![v.min, v.max]",
                 "ScaleRange { min: v[0], max: v[1] }",
             ),
+            Type::Message if field.type_name() == ".strew.v1.Field" => {
+                ("Field", "Arc::new(document(v))", "message_of(&v)")
+            }
             other => return Err(format!("PointSet.{name}: no value is a {other:?}").into()),
         };
         if in_oneof {

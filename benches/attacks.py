@@ -4,11 +4,13 @@
     benches/attacks.py target/release/strew [--keys] [ATTACK ...]
 
 Needs Linux and nothing besides Python. With --keys the daemon requires a key, which attackers of
-closed paths and the victim have. Attackers, victim and daemon share the processors.
+closed paths and the victim have. Attackers, victim and daemon share the processors; attackers that
+keep sending are processes of their own.
 """
 
 import argparse
 import http.client
+import multiprocessing
 import re
 import socket
 import struct
@@ -195,12 +197,36 @@ def calls(daemon, method, message, connections):
     print(f"    30 s later: {daemon.memory()} MiB", flush=True)
 
 
-def repeated(daemon, clients, request, victims):
-    """Victims alone, and while clients repeat a request."""
+def compared(daemon, clients, attack, victims, wait=2):
+    """Victims alone, and while clients attack: in a process that ends when the event is set, with a
+    thread for each, which counts statuses."""
     alone = [daemon.victim(path, 3) for path in victims]
-    statuses, is_over = {}, threading.Event()
+    is_over, counted = multiprocessing.Event(), multiprocessing.Queue()
 
-    def repeat():
+    def run():
+        statuses = {}
+        threads = [threading.Thread(target=attack, args=(is_over, statuses)) for _ in range(clients)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        counted.put(statuses)
+
+    attackers = multiprocessing.Process(target=run)
+    attackers.start()
+    time.sleep(wait)
+    for path, before in zip(victims, alone):
+        print(f"{path}\n    alone:    {before}\n    attacked: {daemon.victim(path, 4)}", flush=True)
+    print(f"    {daemon.memory('VmHWM')} MiB at most", flush=True)
+    is_over.set()
+    print(f"    {clients} attackers: {counted.get()}", flush=True)
+    attackers.join()
+
+
+def repeated(daemon, clients, request, victims):
+    """Victims while clients repeat a request."""
+
+    def repeat(is_over, statuses):
         while not is_over.is_set():
             try:
                 stream = daemon.connect()
@@ -210,13 +236,7 @@ def repeated(daemon, clients, request, victims):
             except OSError as error:
                 count(statuses, type(error).__name__)
 
-    for _ in range(clients):
-        threading.Thread(target=repeat, daemon=True).start()
-    time.sleep(2)
-    for path, before in zip(victims, alone):
-        print(f"{path}\n    alone:    {before}\n    attacked: {daemon.victim(path, 4)}", flush=True)
-    print(f"    {clients} attackers: {statuses}", flush=True)
-    is_over.set()
+    compared(daemon, clients, repeat, victims)
 
 
 def pages(daemon):
@@ -235,6 +255,23 @@ def answers(daemon):
 def bodies(daemon):
     body = b'{"spacing": 1, "unknown": [0' + b",0" * 1_990_000 + b"]}"
     repeated(daemon, 8, daemon.request("POST", "/v1/points:query", body), [SMALL, "/livez"])
+
+
+def arriving(daemon):
+    """Bodies of 4 MiB without their last byte."""
+    request = daemon.request("POST", "/v1/points:query", bytes(4 << 20))[:-1]
+
+    def send(is_over, statuses):
+        try:
+            stream = daemon.connect()
+            stream.sendall(request)
+            is_over.wait()
+            stream.setblocking(False)
+            count(statuses, status(stream))
+        except OSError as error:
+            count(statuses, type(error).__name__)
+
+    compared(daemon, 300, send, [SMALL, SMALL, "/livez"], wait=0)
 
 
 def counts(daemon):
@@ -264,7 +301,7 @@ def health(daemon):
     calls(daemon, "Watch", bytes(5), 60)
 
 
-ATTACKS = [pages, answers, bodies, counts, readers, documents, health]
+ATTACKS = [pages, answers, bodies, arriving, counts, readers, documents, health]
 
 
 def main():

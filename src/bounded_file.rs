@@ -14,12 +14,7 @@ use std::{
 /// [`io::ErrorKind::InvalidInput`] if the path is not a regular file,
 /// [`io::ErrorKind::FileTooLarge`] if it has more bytes, or the error of the file system.
 pub(crate) fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    let file = open(path)?;
-    let metadata = file.metadata()?;
-    if !metadata.is_file() {
-        let problem = "it is not a regular file";
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
-    }
+    let file = open_regular(path)?;
     let mut content = vec![];
     file.take(most.saturating_add(1))
         .read_to_end(&mut content)?;
@@ -37,6 +32,19 @@ pub(crate) fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 pub(crate) fn read_text(path: &Path, most: u64) -> io::Result<String> {
     let not_text = |error| io::Error::new(io::ErrorKind::InvalidData, error);
     String::from_utf8(read(path, most)?).map_err(not_text)
+}
+
+/// Opens a regular file.
+///
+/// # Errors
+/// [`io::ErrorKind::InvalidInput`] if the path is not one, or the error of the file system.
+pub(crate) fn open_regular(path: &Path) -> io::Result<File> {
+    let file = open(path)?;
+    if !file.metadata()?.is_file() {
+        let problem = "it is not a regular file";
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+    }
+    Ok(file)
 }
 
 /// Opens without waiting for the other end of a pipe.

@@ -4,6 +4,7 @@
 //! - [`ops`] runs the daemon: one port, its connections, limits, metrics and shutdown.
 //! - [`rest`] and [`grpc`] translate requests and responses; neither uses the other.
 //! - [`service`] answers checked queries and knows no protocol.
+//! - [`raster`] reads rasters and pictures from files.
 //! - [`access`] identifies clients and limits how much each may take.
 //! - [`config`] holds the settings, [`error_map`] maps each error to its status on both protocols.
 
@@ -14,6 +15,7 @@ pub mod config;
 pub mod error_map;
 pub mod grpc;
 pub mod ops;
+pub mod raster;
 pub mod rest;
 pub mod service;
 
@@ -21,3 +23,8 @@ pub mod service;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeExamples;
+
+/// Compiles and runs the Rust example of the page on fields.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/fields.md")]
+struct FieldExamples;

@@ -144,15 +144,9 @@ fn unsafe_code_stands_only_in_the_kernel() {
 #[test]
 fn files_hold_one_idea_and_say_what_it_is() {
     for (name, text) in sources() {
-        // The warped walk has to be split: it grew with the new definition of seeds.
-        let most = if name.ends_with("walk/blocks.rs") {
-            600
-        } else {
-            500
-        };
         assert!(
-            text.lines().count() <= most,
-            "{name} has more than {most} lines"
+            text.lines().count() <= 500,
+            "{name} has more than 500 lines"
         );
         assert!(
             text.starts_with("//!"),

@@ -12,6 +12,7 @@ pub mod cursor;
 pub mod import;
 pub mod message;
 mod protocols;
+pub mod raster;
 pub mod table;
 
 /// A subject by its name, which is also that of its seeds' folder.
@@ -20,7 +21,7 @@ pub struct Subject {
     pub run: fn(&[u8]),
 }
 
-pub const SUBJECTS: [Subject; 7] = [
+pub const SUBJECTS: [Subject; 8] = [
     Subject {
         name: "address",
         run: address::run,
@@ -44,6 +45,10 @@ pub const SUBJECTS: [Subject; 7] = [
     Subject {
         name: "message",
         run: message::run,
+    },
+    Subject {
+        name: "raster",
+        run: raster::run,
     },
     Subject {
         name: "table",

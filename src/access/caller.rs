@@ -51,6 +51,14 @@ impl Drop for Place {
 }
 
 impl Caller {
+    /// The caller that the gate noted.
+    ///
+    /// # Errors
+    /// [`Denied::NoKey`] for a request that did not pass the gate.
+    pub fn noted(noted: Option<&Self>) -> Result<Self, Denied> {
+        noted.cloned().ok_or(Denied::NoKey)
+    }
+
     /// Who came in where only administrators come in.
     #[must_use]
     pub fn admin() -> Self {
@@ -108,12 +116,13 @@ impl Caller {
         Ok(place)
     }
 
-    /// Takes the points of an answer from the caller's rate.
+    /// Takes points from the caller's rate. `charged` are those that were charged for the same request
+    /// before, besides the request itself.
     ///
     /// # Errors
     /// [`Denied::TooFast`] if there are too few; then nothing is taken.
-    pub fn charge(&self, points: u128) -> Result<(), Denied> {
-        self.take(points, REQUEST)
+    pub fn charge(&self, points: u128, charged: u128) -> Result<(), Denied> {
+        self.take(points, REQUEST + charged as f64)
     }
 
     /// Takes what a request costs, whatever it asks for.

@@ -4,14 +4,14 @@ use std::time::Duration;
 
 use super::bucket::Short;
 
-/// Why someone is not let in, or not now.
+/// Why a request is refused, for good or for now.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Denied {
     /// A key is needed, and there is none.
     #[error("this server needs a key: send `Authorization: Bearer KEY` or `x-api-key: KEY`")]
     NoKey,
     /// The key is not known.
-    #[error("the key is not known here: ask the one who runs this server for another")]
+    #[error("this server does not know the key: request another from its administrator")]
     WrongKey,
     /// Only administrators may do that.
     #[error(
@@ -25,14 +25,14 @@ pub enum Denied {
     },
     /// The caller has as many streams as it may have.
     #[error(
-        "{limit} answers to this key are under way, the most at once: try again when one is over"
+        "{limit} answers are being streamed to this key, the limit: try again when one has ended"
     )]
     TooManyStreams {
         /// The limit.
         limit: usize,
     },
     /// The client's address uses as much as one address may.
-    #[error("{limit} {what} of this address are in use, the most at once: try again later")]
+    #[error("{limit} {what} of this address are in use, the limit: try again later")]
     Address {
         /// What it uses.
         what: &'static str,
@@ -41,8 +41,8 @@ pub enum Denied {
     },
     /// The caller takes points too fast.
     #[error(
-        "{points} points are more than can be taken now: {left} are left, {rate} come back every \
-         second, up to {burst}; try again in {wait} s",
+        "{points} points exceed the rate: {left} are left, and {rate} return every second, up to {burst}; \
+         try again in {wait} s",
         left = short.level.left,
         rate = short.level.rate.points_per_second,
         burst = short.level.rate.burst_points,

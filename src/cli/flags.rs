@@ -57,6 +57,7 @@ impl Takes for Parted {
         Group::Region,
         Group::Amount,
         Group::Count,
+        Group::Preset,
         Group::Profile,
         Group::Table,
         Group::Points,
@@ -79,6 +80,7 @@ impl Takes for Measured {
 
     fn takes(parameter: &Parameter) -> bool {
         let is_other = *parameter == parameters::TABLE
+            || *parameter == parameters::FIELD
             || parameter.group == Group::Attributes
             || parameter.group == Group::Region && *parameter != parameters::BBOX;
         Self::GROUPS.contains(&parameter.group) && !is_other
@@ -169,6 +171,12 @@ fn own_words(name: &str) -> Option<(String, &'static str)> {
             "Where an earlier answer to the same query ended.".into(),
             "the beginning",
         )),
+        "field" => Some((
+            "The field that thins the points out, from place to place: the name of one of the settings, or a \
+             file: a document (.json, .toml) or a raster (.png, .tif, .npy)."
+                .into(),
+            "none",
+        )),
         _ => None,
     }
 }
@@ -212,6 +220,7 @@ fn value_name(parameter: &Parameter) -> String {
             "NUMBER".into()
         }
         Shape::Format => "NAME".into(),
+        Shape::Field => "NAME|FILE".into(),
         Shape::Pattern(_) | Shape::Text => "TEXT".into(),
     }
 }

@@ -2,6 +2,7 @@
 
 mod config;
 mod count;
+mod fields;
 mod flags;
 mod forge;
 mod key;
@@ -16,6 +17,7 @@ mod sample;
 mod serve;
 mod signals;
 mod split;
+mod stipple;
 mod table;
 mod watcher;
 
@@ -37,6 +39,8 @@ enum Command {
     Serve(serve::Args),
     /// Write the points of a region to a file or standard output, without a server.
     Sample(sample::Args),
+    /// Turn a picture into dots.
+    Stipple(stipple::Args),
     /// Say how many points a query has, exactly, without making them.
     Count(count::Args),
     /// Find a point by its id.
@@ -87,6 +91,7 @@ pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Serve(args) => serve::run(&args),
         Command::Sample(args) => sample::run(&args),
+        Command::Stipple(args) => stipple::run(&args),
         Command::Count(args) => count::run(&args),
         Command::Point(args) => point::point(&args),
         Command::Nearest(args) => point::nearest(&args),

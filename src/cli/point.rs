@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::{
     Failure, config,
+    fields::FieldArgs,
     flags::{Flags, Near, Single},
     output,
     query::placed,
@@ -23,6 +24,8 @@ pub(super) struct PointArgs {
     #[command(flatten)]
     flags: Flags<Single>,
     #[command(flatten)]
+    field: FieldArgs,
+    #[command(flatten)]
     settings: config::Args,
 }
 
@@ -34,6 +37,8 @@ pub(super) struct NearestArgs {
     json: bool,
     #[command(flatten)]
     flags: Flags<Near>,
+    #[command(flatten)]
+    field: FieldArgs,
     #[command(flatten)]
     settings: config::Args,
 }
@@ -53,8 +58,9 @@ struct Several {
 /// Prints a point.
 pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
     let config = args.settings.merged()?;
-    let catalog = config.tables()?;
-    let set = Set::single(&args.flags.values(), &catalog);
+    let mut values = args.flags.values();
+    let catalog = args.field.load(&mut values, config.tables()?)?;
+    let set = Set::single(&values, &catalog);
     let found = set.and_then(placed).and_then(|placed| {
         let point = placed.point(&args.id)?;
         Ok((placed, point))
@@ -70,8 +76,9 @@ pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
 /// Prints the points near a place.
 pub(super) fn nearest(args: &NearestArgs) -> Result<(), Failure> {
     let config = args.settings.merged()?;
-    let catalog = config.tables()?;
-    let near = Nearest::of_set(&args.flags.values(), &catalog);
+    let mut values = args.flags.values();
+    let catalog = args.field.load(&mut values, config.tables()?)?;
+    let near = Nearest::of_set(&values, &catalog);
     let found = near.and_then(|(set, nearest)| {
         let placed = placed(set)?;
         let neighbors = placed.nearest(nearest)?;

@@ -9,13 +9,14 @@ use anyhow::{Context as _, anyhow};
 
 use super::{
     Failure, config,
+    fields::FieldArgs,
     flags::{Flags, Takes, WHERE, flag},
     refusal::Source,
 };
 use crate::{
     config::Config,
     service::{
-        Catalog, Draft, Error, Options, Placed, Planned, PlannedSet, Ready, Set,
+        Catalog, Draft, Error, Options, Placed, Planned, PlannedSet, Presets, Ready, Set,
         catalog::CatalogError,
         query::{Faults, Group, RegionDraft, ShapeDraft, groups, of, read_body, read_region},
     },
@@ -38,6 +39,8 @@ pub(super) struct QueryArgs<T: Takes> {
     #[command(flatten)]
     pub(super) flags: Flags<T>,
     #[command(flatten)]
+    field: FieldArgs,
+    #[command(flatten)]
     pub(super) settings: config::Args,
 }
 
@@ -53,9 +56,15 @@ pub(super) struct PlannedQuery {
 impl<T: Takes> QueryArgs<T> {
     /// The query, checked and planned.
     pub(super) fn plan(&self, config: &Config) -> Result<PlannedQuery, Failure> {
-        let (draft, source) = self.read()?;
-        let catalog = config.tables()?;
+        let (mut draft, source) = self.read()?;
+        let catalog = self.field.load(&mut draft.values, config.tables()?)?;
         let limits = &config.limits;
+        let presets = Presets::read(&config.presets, &catalog, limits.max_vertices)
+            .map_err(|error| Failure::Usage(error.into()))?;
+        let filled = presets
+            .fill(&draft)
+            .map_err(|faults| source.refused(faults.into()))?;
+        let draft = filled.0.into_owned();
         let checked = draft.check(&catalog, limits.max_vertices);
         let planned = checked.and_then(|(query, options)| {
             let planned = Planned::at_once(query, limits)?;
@@ -74,7 +83,7 @@ impl<T: Takes> QueryArgs<T> {
     fn in_file() -> &'static [Group] {
         match T::GROUPS.contains(&Group::Output) {
             true => groups::QUERY,
-            false => groups::SET,
+            false => groups::COUNTED,
         }
     }
 
@@ -222,8 +231,11 @@ impl Config {
         Catalog::load(self.tables.embedded, self.tables.folder())
     }
 
-    /// The same; settings that lead to none are wrong usage.
+    /// The tables and the fields; settings that lead to none are wrong usage.
     pub(super) fn tables(&self) -> Result<Catalog, Failure> {
-        self.catalog().map_err(|error| Failure::Usage(error.into()))
+        let catalog = self
+            .catalog()
+            .map_err(|error| Failure::Usage(error.into()))?;
+        Ok(catalog.with_fields(self.loaded_fields()?))
     }
 }

@@ -1,6 +1,6 @@
 //! `strew sample`: the answers of `GET /v1/points`, to a file or standard output, without a server.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use bytemuck::cast_slice;
@@ -17,7 +17,7 @@ use super::{
 use crate::{
     config::Config,
     service::{
-        Answer, Encoding, Output, Planned,
+        Answer, Encoding, Error, Output, Planned,
         encode::{Plain, Scalars, write_number},
     },
 };
@@ -35,65 +35,82 @@ pub(super) struct Args {
     query: QueryArgs<Answered>,
 }
 
-impl Args {
-    /// The format that the output's name asks for; JSON if it has no ending.
-    fn by_ending(&self) -> Result<Encoding, Failure> {
-        let Some(ending) = self.output.as_ref().and_then(|path| path.extension()) else {
-            return Ok(Encoding::Json);
-        };
-        let ending = ending.to_string_lossy();
-        let encoding = match &*ending {
-            "arrow" => Some(Encoding::Feather),
-            "arrows" => Some(Encoding::Arrow),
-            "geojsons" | "geojsonl" => Some(Encoding::Geojsonseq),
-            "jsonl" => Some(Encoding::Ndjson),
-            name => Encoding::from_name(name),
-        };
-        encoding.ok_or_else(|| {
-            Failure::Usage(anyhow!(
-                "--output ends with .{ending}, which names no format: give --format, or one of the \
-                 endings {}, arrows, {}",
-                Encoding::ALL.map(Encoding::name).join(", "),
-                Encoding::FILES.map(Encoding::name).join(", ")
-            ))
-        })
-    }
+/// The format that an output's name asks for; JSON if it has no ending.
+pub(super) fn encoding_of(output: Option<&Path>) -> Result<Encoding, Failure> {
+    let Some(ending) = output.and_then(Path::extension) else {
+        return Ok(Encoding::Json);
+    };
+    let ending = ending.to_string_lossy();
+    let encoding = match &*ending {
+        "arrow" => Some(Encoding::Feather),
+        "arrows" => Some(Encoding::Arrow),
+        "geojsons" | "geojsonl" => Some(Encoding::Geojsonseq),
+        "jsonl" => Some(Encoding::Ndjson),
+        name => Encoding::from_name(name),
+    };
+    encoding.ok_or_else(|| {
+        Failure::Usage(anyhow!(
+            "--output ends with .{ending}, which names no format: give --format, or one of the endings \
+             {}, arrows, {}",
+            Encoding::ALL.map(Encoding::name).join(", "),
+            Encoding::FILES.map(Encoding::name).join(", ")
+        ))
+    })
 }
 
 /// Writes the points.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.query.settings.merged()?;
-    let mut output = Target::open(args.output.as_deref())?;
+    let output = Target::open(args.output.as_deref())?;
     let ask = args.query.plan(&config)?;
     let (planned, options) = (&ask.planned, ask.options);
     let encoding = match options.encoding {
         Some(encoding) => encoding,
-        None => args.by_ending()?,
+        None => encoding_of(args.output.as_deref())?,
     };
     let looks = options.output(encoding).map(|looks| Output {
         relative_to: planned.query.region.corner,
         ..looks
     });
-    let answer = looks.and_then(|looks| Answer::new(planned, &looks, config.limits.block_bytes));
-    let answer = answer.map_err(|error| ask.source.refused(error))?;
+    let looks = looks.map_err(|error| ask.source.refused(error))?;
+    let written = write(planned, &looks, &config, output, args.quiet, "points");
+    written.map_err(|failure| match failure {
+        Ok(failure) => failure,
+        Err(error) => ask.source.refused(error),
+    })
+}
+
+/// Writes an answer. What the service refuses is returned as it is, because flags have other names than
+/// parameters.
+pub(super) fn write(
+    planned: &Planned,
+    looks: &Output,
+    config: &Config,
+    mut output: Target,
+    quiet: bool,
+    what: &'static str,
+) -> Result<(), Result<Failure, Error>> {
+    let encoding = looks.encoding;
+    let answer = Answer::new(planned, looks, config.limits.block_bytes).map_err(Err)?;
     let count = u64::try_from(planned.count()).map_err(|_| {
         let count = planned.count();
-        Failure::Usage(anyhow!(
+        Ok(Failure::Usage(anyhow!(
             "the region holds {count} points, too many to write"
-        ))
+        )))
     })?;
-    if !args.quiet {
+    if !quiet {
         announce(planned, encoding, &answer);
     }
-    let pool = workers(&config)?;
-    let mut progress = Progress::new("points", count, args.quiet);
+    let failed = |error: anyhow::Error| Ok(Failure::from(error));
+    let pool = workers(config).map_err(failed)?;
+    let mut progress = Progress::new(what, count, quiet);
     let written = pool.install(|| match answer.plain().cloned() {
         Some(plain) => packed(&plain, &mut output, &mut progress),
         None => blocks(answer, &mut output, &mut progress),
     });
     progress.finish();
-    written?;
-    Ok(output.finish()?)
+    written.map_err(failed)?;
+    output.finish().map_err(failed)
 }
 
 /// Says on standard error what comes, and what the packed formats have no room for.

@@ -43,8 +43,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let scheme = if config.tls.is_on() { "https" } else { "http" };
     let app = App::new(config).map_err(|error| match error {
         ServeError::Catalog(_)
+        | ServeError::Fields(_)
         | ServeError::Tls(_)
         | ServeError::Keys(_)
+        | ServeError::Presets(_)
         | ServeError::Spans(_) => Failure::Usage(error.into()),
         _ => Failure::Other(error.into()),
     })?;

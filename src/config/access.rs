@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::{Limits, NETWORKS, Networks, range::out_of_range};
+
 /// Who is let in.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -36,6 +38,16 @@ impl Access {
     pub fn needs_key(&self) -> bool {
         self.has_keys() && !self.anonymous
     }
+
+    pub(super) fn faults(&self) -> Vec<String> {
+        let proxies = &self.trusted_proxies;
+        let fault = Networks::read(proxies).err().map(|part| {
+            format!(
+                "access.trusted_proxies = {proxies:?}: {part:?} is not one; allowed: {NETWORKS}"
+            )
+        });
+        fault.into_iter().collect()
+    }
 }
 
 /// How fast points may be taken, by each client.
@@ -50,6 +62,16 @@ pub struct Rate {
     pub max_clients: usize,
 }
 
+impl Rate {
+    pub(super) fn faults(&self) -> Vec<String> {
+        out_of_range!(self, "rate",
+            points_per_second: 0.0..=1e15,
+            burst_points: 0.0..=1e15,
+            max_clients: 64.0..=1e7,
+        )
+    }
+}
+
 /// What one address may use at once.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -62,4 +84,15 @@ pub struct AddressLimits {
     pub max_streams: usize,
     /// Bytes that its requests and answers hold.
     pub max_bytes_in_flight: usize,
+}
+
+impl AddressLimits {
+    pub(super) fn faults(&self, limits: &Limits) -> Vec<String> {
+        out_of_range!(self, "per_address",
+            max_connections: 1.0..=1e6,
+            max_requests: 1.0..=1e6,
+            max_streams: 1.0..=1e6,
+            max_bytes_in_flight: limits.least_bytes() as f64..=1e15,
+        )
+    }
 }

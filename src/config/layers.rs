@@ -1,6 +1,7 @@
 //! Merging settings: defaults < file < environment < flags.
 //!
-//! The defaults name every key and fix its type; a later layer can change values, never add keys.
+//! The defaults name every key and fix its type; a later layer can change values, never add keys. Only the
+//! sections of [`FREE`] hold what a file puts there.
 
 use std::path::Path;
 
@@ -10,8 +11,13 @@ use super::{Config, ConfigError, DEFAULTS, validate::validate};
 
 /// Variables of the environment that begin so are settings.
 const PREFIX: &str = "STREW_";
+/// The sections whose keys are free.
+const FREE: [&str; 1] = ["presets"];
 /// The variable that names a configuration file: the only one with the prefix that is no setting.
 const FILE_VARIABLE: &str = "STREW_CONFIG";
+
+/// The section whose tables are named by files.
+const NAMED: &str = "fields.";
 
 /// Layers of settings, merged so far, of which a [`Config`] is made.
 #[derive(Clone, Debug)]
@@ -119,6 +125,7 @@ impl Layers {
     fn keys(&self) -> Vec<String> {
         self.merged
             .iter()
+            .filter(|(section, _)| !FREE.contains(&section.as_str()))
             .filter_map(|(section, value)| Some((section, value.as_table()?)))
             .flat_map(|(section, table)| table.keys().map(move |key| format!("{section}.{key}")))
             .collect()
@@ -172,6 +179,11 @@ fn merge(
 ) -> Result<(), ConfigError> {
     for (name, value) in over {
         let key = format!("{prefix}{name}");
+        // Fields have names of their own; what they say is read when they are loaded.
+        if prefix == NAMED && value.is_table() {
+            under.insert(name, value);
+            continue;
+        }
         let Some(slot) = under.get_mut(&name) else {
             return Err(ConfigError::UnknownKey {
                 source_name: source_name.into(),
@@ -180,6 +192,9 @@ fn merge(
             });
         };
         match (slot, value) {
+            (Value::Table(under), Value::Table(over)) if FREE.contains(&key.as_str()) => {
+                under.extend(over);
+            }
             (Value::Table(under), Value::Table(over)) => {
                 merge(under, over, &format!("{key}."), source_name, keys)?;
             }

@@ -1,8 +1,13 @@
-//! Settings of work: tables, limits of queries and of memory, threads.
+//! Settings of work: tables, fields, limits of queries and of memory, threads.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 use serde::{Deserialize, Serialize};
+
+use super::range::{DAY, out_of_range};
 
 /// The most that a query may request, and that answers may hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,6 +39,28 @@ pub struct Limits {
     pub cache_bytes: u64,
 }
 
+impl Limits {
+    /// The bytes of one answer and one query of the largest size, which have to fit.
+    pub(super) const fn least_bytes(&self) -> usize {
+        4 * self.block_bytes + (19 << 20) + self.max_body_bytes
+    }
+
+    pub(super) fn faults(&self) -> Vec<String> {
+        out_of_range!(self, "limits",
+            max_points: 1.0..=1e15,
+            max_rows: 1.0..=1e12,
+            max_vertices: 3.0..=1e8,
+            max_body_bytes: 1024.0..=f64::from(1 << 30),
+            max_requests: 1.0..=1e6,
+            max_bytes_in_flight: self.least_bytes() as f64..=1e15,
+            max_streams: 1.0..=1e6,
+            // gRPC clients refuse messages above 4 MiB, and ours stay below 1 MiB.
+            block_bytes: 4096.0..=f64::from(512 << 10),
+            cache_bytes: 0.0..=1e15,
+        )
+    }
+}
+
 /// Which tables to load.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -52,6 +79,30 @@ impl Tables {
     }
 }
 
+/// Which fields to load.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fields {
+    /// Whether the built-in one is loaded.
+    pub embedded: bool,
+    /// A folder with documents and rasters; empty for none.
+    pub folder: PathBuf,
+    /// The most memory that the pixels of all fields may take, in bytes.
+    pub max_bytes: usize,
+    /// The most memory that fields may take which clients send to name them later, in bytes; 0 for none.
+    pub max_sent_bytes: usize,
+    /// Fields by name, as documents.
+    #[serde(flatten)]
+    pub named: BTreeMap<String, toml::Table>,
+}
+
+impl Fields {
+    /// The folder, if there is one.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        Some(self.folder.as_path()).filter(|folder| !folder.as_os_str().is_empty())
+    }
+}
+
 /// When files are read again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -60,10 +111,22 @@ pub struct Reload {
     pub watch_seconds: f64,
 }
 
+impl Reload {
+    pub(super) fn faults(&self) -> Vec<String> {
+        out_of_range!(self, "reload", watch_seconds: 0.0..=DAY)
+    }
+}
+
 /// Who makes points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Workers {
     /// Threads that make points; 0 for one per core.
     pub threads: usize,
+}
+
+impl Workers {
+    pub(super) fn faults(&self) -> Vec<String> {
+        out_of_range!(self, "workers", threads: 0.0..=1024.0)
+    }
 }

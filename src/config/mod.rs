@@ -1,4 +1,5 @@
-//! Settings: every one has a default in `config/strew.toml`, a meaning there, and a range here.
+//! Settings: every one has a default in `config/strew.toml`, a meaning there, and a range beside its
+//! field.
 //!
 //! Layers, the later the stronger: defaults, a file, the environment, flags. They are merged as
 //! TOML by `layers` and read into [`Config`] once; the result is checked as a whole, and no
@@ -10,6 +11,7 @@ mod layers;
 mod limits;
 mod listen;
 mod networks;
+mod range;
 mod reports;
 mod server;
 mod validate;
@@ -19,7 +21,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 pub use access::{Access, AddressLimits, Rate};
-pub use limits::{Limits, Reload, Tables, Workers};
+pub use limits::{Fields, Limits, Reload, Tables, Workers};
 pub use networks::{NETWORKS, Networks};
 pub use reports::{Http, Log, LogFormat, Metrics, Telemetry};
 pub use server::{Admin, Server, Shutdown, Tls};
@@ -48,6 +50,8 @@ pub struct Config {
     pub http: Http,
     /// Which tables to load.
     pub tables: Tables,
+    /// Which fields to load.
+    pub fields: Fields,
     /// The limits of queries and of memory.
     pub limits: Limits,
     /// What one address may use.
@@ -64,6 +68,8 @@ pub struct Config {
     pub metrics: Metrics,
     /// Where to send spans.
     pub telemetry: Telemetry,
+    /// Parts of queries by their names.
+    pub presets: toml::Table,
 }
 
 impl Config {

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::range::{DAY, HOUR, SECOND, out_of_range};
+
 /// How HTTP answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -21,6 +23,32 @@ impl Http {
         let parts = self.cors_origins.split([' ', ',']);
         parts.filter(|origin| !origin.is_empty())
     }
+
+    pub(super) fn faults(&self) -> Vec<String> {
+        let mut faults = out_of_range!(self, "http", cache_seconds: 0.0..=365.0 * DAY);
+        let origins = &self.cors_origins;
+        let wrong = self.origins().find(|origin| !is_origin(origin));
+        if let Some(origin) = wrong.filter(|_| origins.trim() != "*") {
+            faults.push(format!(
+                "http.cors_origins = {origins:?}: {origin:?} is not an origin; allowed: * or origins \
+                 such as https://a.example and http://localhost:3000, with spaces or commas between them"
+            ));
+        }
+        faults
+    }
+}
+
+/// Whether a text is an origin as browsers send it: a scheme, a host, perhaps a port.
+fn is_origin(text: &str) -> bool {
+    let Some((scheme, authority)) = text.split_once("://") else {
+        return false;
+    };
+    let is_scheme = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);
+    let is_host = |c: char| c.is_ascii_alphanumeric() || "-._[]:".contains(c);
+    !scheme.is_empty()
+        && scheme.chars().all(is_scheme)
+        && !authority.is_empty()
+        && authority.chars().all(is_host)
 }
 
 /// What to log.
@@ -31,6 +59,20 @@ pub struct Log {
     pub filter: String,
     /// How a line looks.
     pub format: LogFormat,
+}
+
+impl Log {
+    pub(super) fn faults(&self) -> Vec<String> {
+        let filter = &self.filter;
+        let error = filter.parse::<tracing_subscriber::EnvFilter>().err();
+        let fault = error.map(|error| {
+            format!(
+                "log.filter = {filter:?}; allowed: a level (error, warn, info, debug, trace) or levels \
+                 by module (info,strew=debug): {error}"
+            )
+        });
+        fault.into_iter().collect()
+    }
 }
 
 /// How a line of the log looks.
@@ -70,8 +112,18 @@ pub struct Telemetry {
 }
 
 impl Telemetry {
+    pub(super) fn faults(&self) -> Vec<String> {
+        let mut faults = out_of_range!(self, "telemetry",
+            sample_ratio: 0.0..=1.0,
+            max_queued_spans: 1.0..=1e6,
+            export_timeout_seconds: 0.1 * SECOND..=HOUR,
+        );
+        faults.extend(self.fault());
+        faults
+    }
+
     /// What is wrong with the address, if there is one.
-    pub(crate) fn fault(&self) -> Option<String> {
+    fn fault(&self) -> Option<String> {
         let endpoint = &self.otlp_endpoint;
         if endpoint.is_empty() {
             return None;

@@ -2,6 +2,7 @@
 
 mod compression;
 mod deadline;
+mod field;
 mod frames;
 mod messages;
 mod points;
@@ -33,13 +34,14 @@ use proto::point_service_server::PointServiceServer;
 const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
 
 /// The methods of the contract, by their paths.
-pub const METHODS: [&str; 6] = [
+pub const METHODS: [&str; 7] = [
     "/strew.v1.PointService/StreamPoints",
     "/strew.v1.PointService/CountPoints",
     "/strew.v1.PointService/SplitPoints",
     "/strew.v1.PointService/GetPoint",
     "/strew.v1.PointService/FindNearest",
     "/strew.v1.PointService/ListProfiles",
+    "/strew.v1.PointService/ListFields",
 ];
 
 /// The name of a code, as the protocol writes it.
@@ -160,14 +162,18 @@ pub fn web_trailers(trailers: &HeaderMap, is_text: bool) -> Bytes {
     frame.into()
 }
 
-/// Corrects the statuses that the gRPC library answers bad messages with: one that is too large is
-/// RESOURCE_EXHAUSTED, and bytes that are not a message are the client's fault.
+/// Corrects the statuses that the gRPC library answers with: a message that is too large is
+/// RESOURCE_EXHAUSTED, bytes that are not a message are the client's fault, and an unknown method has a
+/// text.
 pub fn improve(headers: &mut HeaderMap) {
     let code = headers.get(GRPC_STATUS).map(HeaderValue::as_bytes);
     let message = headers.get(GRPC_MESSAGE).map(HeaderValue::as_bytes);
     let message = String::from_utf8_lossy(message.unwrap_or_default());
     let better = match code {
         Some(b"11") if message.contains("message%20length%20too%20large") => "8",
+        Some(b"12") if message.is_empty() => {
+            return headers.extend(unimplemented().into_parts().0.headers);
+        }
         Some(b"13") if MALFORMED.iter().any(|part| message.contains(part)) => "3",
         _ => return,
     };

@@ -8,15 +8,15 @@ use strew_core::ALGORITHM_VERSION;
 use tonic::{Request, Response, Status};
 
 use super::{
-    compression,
+    compression, field,
     frames::Frames,
     messages::{Framed, Messages},
     profile,
     proto::{
         CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
-        GetPointRequest, GetPointResponse, ListProfilesRequest, ListProfilesResponse,
-        SplitPointsRequest, SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
-        point_service_server::PointService,
+        GetPointRequest, GetPointResponse, ListFieldsRequest, ListFieldsResponse,
+        ListProfilesRequest, ListProfilesResponse, SplitPointsRequest, SplitPointsResponse,
+        StreamPointsRequest, StreamPointsResponse, point_service_server::PointService,
     },
     query, resolved, set, single, split, status,
 };
@@ -75,9 +75,13 @@ impl Points {
         Ok(response)
     }
 
-    async fn count(&self, request: &StreamPointsRequest) -> Result<CountPointsResponse, Error> {
+    async fn count(
+        &self,
+        caller: &Caller,
+        request: &StreamPointsRequest,
+    ) -> Result<CountPointsResponse, Error> {
         let (query, encoding) = self.read(request).await?;
-        let planned = self.service.count(query).await?;
+        let planned = self.service.count(caller, query).await?;
         Ok(CountPointsResponse {
             count: u64::try_from(planned.count()).unwrap_or(u64::MAX),
             digits: planned.count().to_string(),
@@ -87,11 +91,12 @@ impl Points {
 
     async fn split(
         &self,
+        caller: &Caller,
         request: &StreamPointsRequest,
         parts: u32,
     ) -> Result<SplitPointsResponse, Error> {
         let (query, _) = self.read(request).await?;
-        let planned = self.service.count(query).await?;
+        let planned = self.service.count(caller, query).await?;
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
         let places = self.service.split(planned, parts).await?;
         let part = |place| split::part(request, place);
@@ -127,10 +132,9 @@ impl Points {
     }
 }
 
-/// Who asks: every request that has been let in says so.
 fn caller<T>(request: &Request<T>) -> Result<Caller, Status> {
-    let caller = request.extensions().get::<Caller>().cloned();
-    caller.ok_or_else(|| status::status(&Error::Internal("nobody has been let in")))
+    let caller = Caller::noted(request.extensions().get());
+    caller.map_err(|denied| status::status(&denied.into()))
 }
 
 /// The query of a request, which must be there.
@@ -166,8 +170,9 @@ impl PointService for Points {
         &self,
         request: Request<CountPointsRequest>,
     ) -> Result<Response<CountPointsResponse>, Status> {
+        let caller = caller(&request)?;
         let query = required(request.into_inner().query)?;
-        let answer = self.count(&query).await;
+        let answer = self.count(&caller, &query).await;
         answered(answer.map_err(|error| status::within("query", query::by_field(error))))
     }
 
@@ -175,10 +180,11 @@ impl PointService for Points {
         &self,
         request: Request<SplitPointsRequest>,
     ) -> Result<Response<SplitPointsResponse>, Status> {
+        let caller = caller(&request)?;
         let SplitPointsRequest { query, parts } = request.into_inner();
         let query = required(query)?;
         let parts = split::check(&query, parts).map_err(|error| status::status(&error))?;
-        let answer = self.split(&query, parts).await;
+        let answer = self.split(&caller, &query, parts).await;
         answered(answer.map_err(|error| status::within("query", query::by_field(error))))
     }
 
@@ -206,6 +212,17 @@ impl PointService for Points {
         Ok(Response::new(ListProfilesResponse {
             profiles: entries.map(|entry| profile::profile(entry)).collect(),
             algorithm: ALGORITHM_VERSION,
+        }))
+    }
+
+    async fn list_fields(
+        &self,
+        _request: Request<ListFieldsRequest>,
+    ) -> Result<Response<ListFieldsResponse>, Status> {
+        let catalog = self.service.catalog();
+        let fields = catalog.fields().iter().map(|loaded| field::loaded(loaded));
+        Ok(Response::new(ListFieldsResponse {
+            fields: fields.collect(),
         }))
     }
 }

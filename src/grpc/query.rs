@@ -8,7 +8,7 @@ use crate::service::{
     Draft, Error, Fault, Nearest, Query, Service, Set,
     query::{
         Checked, LayerDraft, Parameter, RegionDraft, Value, groups,
-        parameters::{AT, CURSOR, K, LIMIT, OFFSET, RADIUS},
+        parameters::{AT, CURSOR, K, LIMIT, OFFSET, PRESET, RADIUS},
     },
 };
 
@@ -47,7 +47,8 @@ pub(super) fn query(
 fn draft(request: &StreamPointsRequest) -> Draft {
     let mut values = set::values(request.set.as_ref(), groups::QUERY, "");
     let cursor = &request.cursor;
-    let window: [(&'static Parameter, Option<Value>); 3] = [
+    let others: [(&'static Parameter, Option<Value>); 4] = [
+        (&PRESET, request.preset.clone().map(Value::Text)),
         (&OFFSET, Some(Value::Integer(request.offset))),
         (&LIMIT, request.limit.map(Value::Integer)),
         (
@@ -55,7 +56,7 @@ fn draft(request: &StreamPointsRequest) -> Draft {
             (!cursor.is_empty()).then(|| Value::Text(cursor.clone())),
         ),
     ];
-    for (parameter, value) in window {
+    for (parameter, value) in others {
         if let Some(value) = value {
             values.add_value(parameter, value);
         }

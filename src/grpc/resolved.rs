@@ -65,6 +65,7 @@ fn resolved(echo: ResolvedSet, entry: &Entry, region: Option<Region>) -> proto::
         )),
         density: echo.density,
         least_distance: echo.least_distance,
+        field_digest: echo.field_digest,
         clear_of: echo.clear_of.into_iter().collect(),
         delta_min: entry.measured("delta_min"),
         delta_avg: entry.measured("delta_avg"),

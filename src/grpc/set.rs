@@ -1,6 +1,11 @@
 //! Sets of messages as values of parameters, and back.
 
-use super::proto::{PointSet, ScaleRange, point_set::Amount};
+use std::sync::Arc;
+
+use super::{
+    field::{document, message_of},
+    proto::{PointSet, ScaleRange, point_set::Amount},
+};
 use crate::service::query::{Faults, Group, Parameter, Value, Values, groups};
 
 // Made by build.rs from the contract: `fields`, the values of a message by name, and `put`, which sets
@@ -32,14 +37,15 @@ pub(super) fn message(values: impl IntoIterator<Item = (&'static Parameter, Valu
 /// Names fields of sets by their path in messages: `layers[2].seed` is `layers[2].set.seed`.
 pub(super) fn in_messages(faults: Faults) -> Faults {
     faults.rename(|field| {
-        let (before, name) = match field.rfind('.') {
-            Some(dot) => field.split_at(dot + 1),
-            None => ("", field),
+        let (layer, rest) = match field.split_once("].") {
+            Some((layer, rest)) if layer.starts_with("layers[") => (format!("{layer}]."), rest),
+            _ => (String::new(), field),
         };
-        let is_layer = before.is_empty() || before.starts_with("layers[") && before.ends_with("].");
+        // A part of a value has the value's name before it.
+        let name = rest.split(['.', '[']).next().unwrap_or_default();
         let parameter = Parameter::named(name);
-        match parameter.filter(|parameter| is_layer && groups::SET.contains(&parameter.group)) {
-            Some(_) => format!("{before}set.{name}"),
+        match parameter.filter(|parameter| groups::SET.contains(&parameter.group)) {
+            Some(_) => format!("{layer}set.{rest}"),
             None => field.into(),
         }
     })
@@ -70,6 +76,8 @@ mod tests {
             ("seed", "set.seed"),
             ("layers[3].spacing", "layers[3].set.spacing"),
             ("layers[3].name", "layers[3].name"),
+            ("field.min[2].noise", "set.field.min[2].noise"),
+            ("layers[3].field.name", "layers[3].set.field.name"),
             ("limit", "limit"),
             ("region.bbox", "region.bbox"),
         ] {

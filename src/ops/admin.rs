@@ -1,19 +1,17 @@
-//! What only administrators may ask for: `POST /v1/tables:reload`.
+//! The path for administrators only: `POST /v1/tables:reload`.
 
 use std::sync::Arc;
 
-use axum::{
-    body::Body,
-    extract::State,
-    response::{IntoResponse as _, Response},
-    routing,
-};
-use http::{HeaderValue, Method, header};
+use axum::{extract::State, response::Response, routing};
+use http::Method;
 
 use super::reload::{Cause, Done, Reloader};
 use crate::{
     access::Caller,
-    rest::api::{Answer, Endpoint, Operation, Tag},
+    rest::{
+        api::{Answer, Endpoint, Operation, Tag},
+        json,
+    },
     service::{Error, Kind},
 };
 
@@ -24,15 +22,15 @@ pub(super) fn endpoint(reloader: Arc<Reloader>) -> Endpoint {
         id: "reloadTables",
         summary: "Read tables and keys again",
         about: "For administrators: takes a key with admin = true, or the address of admin.listen. \
-                What is in order is served from then on; each file that is not is refused, and what \
-                it held serves on. Answers under way end on the tables they began with.",
+                Valid files are served from then on. An invalid file is refused, and its previous \
+                content stays in use. Current answers are completed from the tables they began with.",
         tag: Tag::Operations,
         path_parameters: &[],
         parameters: &[],
         body: None,
         answers: vec![Answer {
             status: 200,
-            about: "What came of it.",
+            about: "The result.",
             headers: vec![],
             contents: vec![("application/json", |generator| {
                 generator.subschema_for::<Done>()
@@ -48,9 +46,5 @@ pub(super) fn endpoint(reloader: Arc<Reloader>) -> Endpoint {
 async fn reload(State(reloader): State<Arc<Reloader>>, caller: Caller) -> Result<Response, Error> {
     caller.must_be_admin()?;
     let reload = reloader.reload(Cause::Request).await?;
-    let mut body =
-        serde_json::to_vec(&reload).map_err(|_| Error::Internal("the answer cannot be written"))?;
-    body.push(b'\n');
-    let json = HeaderValue::from_static("application/json");
-    Ok(([(header::CONTENT_TYPE, json)], Body::from(body)).into_response())
+    json(&reload)
 }

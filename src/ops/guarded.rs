@@ -2,7 +2,7 @@
 //!
 //! The HTTP library bounds the head of an HTTP/1.1 request and asks quiet HTTP/2 clients for a sign of
 //! life. What it leaves open is closed here: a connection that never says which HTTP it speaks, and
-//! one whose receiver has stopped receiving.
+//! one whose receiver has stopped receiving. Reads are short, so that buffers stay small.
 
 use std::{
     io,
@@ -16,6 +16,9 @@ use tokio::{
     time::{Instant, Sleep, sleep},
 };
 
+/// No more is read at once. The HTTP library reads into a buffer of 8 KiB, which it doubles each time it
+/// is filled: a connection would then hold 256 KiB until it is closed.
+const AT_ONCE: usize = (8 << 10) - 1;
 /// As many bytes tell HTTP/1.1 from HTTP/2: from then on the HTTP library keeps the time.
 const OPENING: usize = 24;
 
@@ -23,7 +26,7 @@ fn too_late(what: &'static str) -> io::Error {
     io::Error::new(io::ErrorKind::TimedOut, what)
 }
 
-/// A socket whose client must say something soon.
+/// A socket whose client must say something soon, and is read in small parts.
 #[derive(Debug)]
 pub(super) struct FirstWords<S> {
     stream: S,
@@ -49,8 +52,11 @@ impl<S: AsyncRead + Unpin> AsyncRead for FirstWords<S> {
         cx: &mut Context<'_>,
         buffer: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
-        let before = buffer.filled().len();
-        let polled = Pin::new(&mut self.stream).poll_read(cx, buffer);
+        let room = buffer.remaining().min(AT_ONCE);
+        let mut part = ReadBuf::new(buffer.initialize_unfilled_to(room));
+        let polled = Pin::new(&mut self.stream).poll_read(cx, &mut part);
+        let read = part.filled().len();
+        buffer.advance(read);
         if let Some(deadline) = &mut self.deadline {
             match &polled {
                 Poll::Pending => {
@@ -59,7 +65,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for FirstWords<S> {
                     }
                 }
                 Poll::Ready(_) => {
-                    self.read += buffer.filled().len() - before;
+                    self.read += read;
                     if self.read >= OPENING {
                         self.deadline = None;
                     }

@@ -1,4 +1,4 @@
-//! Reading tables, keys and certificates again while the daemon serves: on SIGHUP, when files change, on
+//! Reading tables, fields, keys and certificates again while the daemon serves: on SIGHUP, when files change, on
 //! request.
 //!
 //! Files are polled, because notifications of changes do not come through network volumes and the
@@ -8,7 +8,6 @@
 mod fingerprint;
 
 use std::{
-    path::PathBuf,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -25,7 +24,7 @@ use crate::{
     access::Gate,
     service::{Error, Reload, Service, catalog::Refusal},
 };
-use fingerprint::Fingerprint;
+pub use fingerprint::{Fingerprint, Watched};
 
 /// Why files are read again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +67,9 @@ pub struct Reloader {
     service: Arc<Service>,
     gate: Arc<Gate>,
     tls: Option<Tls>,
-    folder: Option<PathBuf>,
+    watched: Watched,
+    /// What the files were before they were read for the first time.
+    first: Fingerprint,
     metrics: Metrics,
     /// Whether files are being read.
     is_reading: Arc<AtomicBool>,
@@ -77,19 +78,20 @@ pub struct Reloader {
 }
 
 impl Reloader {
-    /// For a service and its folder of tables, a gate with its keys, and certificates.
+    /// For a service, a gate with its keys, and certificates, all read from files after `first` was taken.
     pub(super) fn new(
         service: Arc<Service>,
         gate: Arc<Gate>,
         tls: Option<Tls>,
-        folder: Option<PathBuf>,
+        (watched, first): (Watched, Fingerprint),
         metrics: Metrics,
     ) -> Self {
         Self {
             service,
             gate,
             tls,
-            folder,
+            watched,
+            first,
             metrics,
             is_reading: Arc::default(),
             last: Mutex::default(),
@@ -98,8 +100,7 @@ impl Reloader {
 
     /// Whether there are files to watch.
     pub(super) fn has_files(&self) -> bool {
-        let has_keys = self.gate.settings().keys_file().is_some();
-        has_keys || self.folder.is_some() || self.tls.is_some()
+        !self.watched.is_empty()
     }
 
     /// Reads everything again and logs the result.
@@ -109,11 +110,12 @@ impl Reloader {
     pub async fn reload(&self, cause: Cause) -> Result<Done, Error> {
         let mut last = self.last.lock().await;
         let (service, gate, tls) = (self.service.clone(), self.gate.clone(), self.tls.clone());
-        let folder = self.folder.clone();
+        let watched = self.watched.clone();
         let read = move || {
             let keys = gate.settings().has_keys().then(|| gate.reload());
             let certificates = tls.map(|tls| tls.reload());
-            (service.read_tables(folder.as_deref()), keys, certificates)
+            let tables = service.read_tables(watched.folder(), watched.fields());
+            (tables, keys, certificates)
         };
         let (tables, keys, certificates) = self.read(read).await?;
         let mut done = Done {
@@ -145,14 +147,14 @@ impl Reloader {
 
     /// Reloads on signals and changes until it is dropped. Without `every`, changes are not looked for.
     pub async fn watch(&self, mut hangups: Option<Hangups>, every: Option<Duration>) {
-        let mut seen = self.look().await.ok();
+        let mut seen = self.first;
         loop {
             let cause = tokio::select! {
                 () = heard(&mut hangups) => Cause::Signal,
                 () = wait(every) => Cause::Change,
             };
             let now = match self.look().await {
-                Ok(now) => Some(now),
+                Ok(now) => now,
                 Err(error) => {
                     tracing::error!(%error, "files cannot be looked at");
                     continue;
@@ -169,12 +171,8 @@ impl Reloader {
     }
 
     async fn look(&self) -> Result<Fingerprint, Error> {
-        let folder = self.folder.clone();
-        let mut files: Vec<PathBuf> = vec![];
-        files.extend(self.gate.settings().keys_file().map(Into::into));
-        files.extend(self.tls.iter().flat_map(Tls::files));
-        let look = move || Fingerprint::of(folder.as_deref(), files);
-        self.read(look).await
+        let watched = self.watched.clone();
+        self.read(move || watched.look()).await
     }
 
     /// Reads files on a thread that may block, and waits for a limited time. A file system that hangs
@@ -234,7 +232,11 @@ async fn wait(every: Option<Duration>) {
 /// Whether a reload did or found anything that the one before did not.
 fn differs(before: &Done, now: &Done) -> bool {
     let tables = &now.tables;
-    let has_changed = !tables.loaded.is_empty() || !tables.removed.is_empty();
+    let fields = &tables.fields;
+    let lists = [&fields.loaded, &fields.removed];
+    let has_changed = !tables.loaded.is_empty()
+        || !tables.removed.is_empty()
+        || lists.iter().any(|list| !list.is_empty());
     has_changed || tables.refused != before.tables.refused || now.keys != before.keys
 }
 
@@ -262,13 +264,19 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
             "table removed: no file holds it any more"
         );
     }
+    for name in &reload.fields.loaded {
+        tracing::info!(cause, name, "field loaded");
+    }
+    for name in &reload.fields.removed {
+        tracing::warn!(cause, name, "field removed: nothing describes it any more");
+    }
     for refusal in &reload.refused {
         metrics.refused_tables().increment(1);
         tracing::error!(
             cause,
             source = refusal.source,
             serving = refusal.serving,
-            "refused, what was loaded serves on: {}",
+            "refused; the loaded one stays in use: {}",
             refusal.detail
         );
     }

@@ -14,7 +14,7 @@ use super::{
     health::{self, Readiness},
     metrics::{self, Metrics},
     panics,
-    reload::Reloader,
+    reload::{Reloader, Watched},
     shutdown::Hangups,
     spans::{Collector, Spans, SpansError},
     tls::{Tls, TlsError},
@@ -23,7 +23,11 @@ use crate::{
     access::{Gate, KeysError},
     config::{self, Config},
     grpc, rest,
-    service::{Catalog, Service, Workers, catalog::CatalogError},
+    service::{
+        Catalog, PresetError, Presets, Service, Workers,
+        catalog::CatalogError,
+        field::{FieldError, Fields},
+    },
 };
 
 /// Why the daemon cannot start or go on.
@@ -33,6 +37,9 @@ pub enum ServeError {
     /// The tables cannot be loaded.
     #[error(transparent)]
     Catalog(#[from] CatalogError),
+    /// The fields cannot be loaded.
+    #[error(transparent)]
+    Fields(#[from] FieldError),
     /// No threads to work with.
     #[error("cannot start the workers: {0}")]
     Workers(#[from] rayon::ThreadPoolBuildError),
@@ -45,6 +52,9 @@ pub enum ServeError {
     /// The keys cannot be used.
     #[error(transparent)]
     Keys(#[from] KeysError),
+    /// A preset cannot be used.
+    #[error(transparent)]
+    Presets(#[from] PresetError),
     /// Spans cannot be sent.
     #[error(transparent)]
     Spans(#[from] SpansError),
@@ -78,13 +88,20 @@ impl App {
     /// # Errors
     /// If a certificate, key or table is not valid or the system gives no threads.
     pub fn new(config: Config) -> Result<Self, ServeError> {
+        let watched = Watched::of(&config);
+        // Before anything is read: what changes from here on is noticed.
+        let first = watched.look();
         let tls = Tls::new(&config.tls)?;
         let collector = Collector::new(&config.telemetry)?;
         let folder = config.tables.folder();
-        let catalog = Catalog::load(config.tables.embedded, folder)?;
+        let fields = Fields::load(&config.fields)?;
+        let catalog = Catalog::load(config.tables.embedded, folder)?.with_fields(fields);
+        let catalog = catalog.with_room(config.fields.max_sent_bytes);
         let workers = Workers::new(config.workers.threads)?;
         let metrics = Metrics::default();
-        let service = Arc::new(Service::new(catalog, config.limits.clone(), workers));
+        let presets = Presets::read(&config.presets, &catalog, config.limits.max_vertices)?;
+        let service = Service::new(catalog, config.limits.clone(), workers);
+        let service = Arc::new(service.with_presets(presets));
         let gate = Arc::new(Gate::new(
             config.access.clone(),
             &config.rate,
@@ -94,7 +111,7 @@ impl App {
             service.clone(),
             gate.clone(),
             tls.clone(),
-            folder.map(Into::into),
+            (watched, first),
             metrics.clone(),
         );
         Ok(Self {

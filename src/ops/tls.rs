@@ -97,19 +97,6 @@ impl Tls {
         *current = Current { content, config };
         Ok(true)
     }
-
-    /// The files that are in use.
-    pub(super) fn files(&self) -> Vec<PathBuf> {
-        let Settings {
-            certificate,
-            key,
-            client_ca,
-        } = &self.settings;
-        let all = [certificate, key, client_ca].into_iter();
-        all.filter(|path| !path.as_os_str().is_empty())
-            .cloned()
-            .collect()
-    }
 }
 
 /// The most bytes of a file of certificates.

@@ -215,9 +215,12 @@ pub(super) fn freshness(
     query: &Query,
     content_type: &'static str,
 ) -> Freshness {
-    let sets = query.sets.iter();
-    let digests: Vec<&str> = sets.map(|set| set.entry.digest.as_str()).collect();
-    let made_of = (digests, service.limits().max_points);
+    let digests: Vec<&str> = query.digests().collect();
+    let made_of = (
+        digests,
+        service.limits().max_points,
+        query.preset.as_deref(),
+    );
     Freshness::of(&context.uri, &context.headers, content_type, &made_of).pinned(query.is_pinned())
 }
 
@@ -226,8 +229,8 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
     let text = |text: &str| {
         HeaderValue::from_str(text).map_err(|_| Error::Internal("a header is not text"))
     };
-    let count = u64::try_from(planned.count())
-        .map_err(|_| Error::Internal("a count within the limit is too large"))?;
+    // Answers of more points than the limit, which has 64 bits, are refused.
+    let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
     // With what is put onto it later there are a dozen: a map that grows is filled anew.
     let mut headers = HeaderMap::with_capacity(16);
     headers.insert(

@@ -31,15 +31,50 @@ impl FromRequest<Arc<Service>> for Whole {
             return Err(Error::BodyTooLarge { limit });
         }
         let mut pieces = request.into_body().into_data_stream();
-        let mut whole = Vec::new();
+        let (mut length, mut segments) = (0, Segments::default());
         while let Some(piece) = pieces.next().await {
             let piece = piece.map_err(|error| why(&error))?;
-            if whole.len() + piece.len() > limit {
+            length += piece.len();
+            if length > limit {
                 return Err(Error::BodyTooLarge { limit });
             }
-            whole.extend_from_slice(&piece);
+            segments.append(&piece);
         }
-        Ok(Self(whole.into()))
+        Ok(Self(segments.joined()))
+    }
+}
+
+/// What has come of a body. A vector that grows would leave behind as much memory as it takes, and
+/// hundreds of bodies may arrive at once.
+#[derive(Debug, Default)]
+struct Segments(Vec<Vec<u8>>);
+
+impl Segments {
+    const SIZE: usize = 64 << 10;
+
+    fn append(&mut self, mut piece: &[u8]) {
+        while !piece.is_empty() {
+            let last = self.0.last_mut();
+            let Some(last) = last.filter(|last| last.len() < last.capacity()) else {
+                // Most bodies come in one piece.
+                let is_first = self.0.is_empty();
+                let size = if is_first { piece.len() } else { Self::SIZE };
+                self.0.push(Vec::with_capacity(size));
+                continue;
+            };
+            let room = last.capacity() - last.len();
+            let (now, later) = piece.split_at(piece.len().min(room));
+            last.extend_from_slice(now);
+            piece = later;
+        }
+    }
+
+    fn joined(mut self) -> Bytes {
+        let whole = match self.0.len() {
+            1 => self.0.swap_remove(0),
+            _ => self.0.concat(),
+        };
+        whole.into()
     }
 }
 

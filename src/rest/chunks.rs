@@ -48,7 +48,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 /// How far from the origin chunks are counted.
 const CELLS: Shape = Shape::Signed { limit: 1 << 52 };
 
-const SIZE: Parameter = Parameter {
+pub(super) const SIZE: Parameter = Parameter {
     name: "size",
     about: "The side of a chunk in world units.",
     shape: Shape::Number {
@@ -60,7 +60,7 @@ const SIZE: Parameter = Parameter {
     is_required: true,
     ..Parameter::PLAIN
 };
-const COLUMN: Parameter = Parameter {
+pub(super) const COLUMN: Parameter = Parameter {
     name: "cx",
     about: "The column of the chunk.",
     shape: CELLS,
@@ -68,7 +68,7 @@ const COLUMN: Parameter = Parameter {
     is_required: true,
     ..Parameter::PLAIN
 };
-const ROW: Parameter = Parameter {
+pub(super) const ROW: Parameter = Parameter {
     name: "cy",
     about: "The row of the chunk.",
     shape: CELLS,

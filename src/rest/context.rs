@@ -56,7 +56,6 @@ impl<S: Sync> FromRequestParts<S> for Caller {
     type Rejection = Error;
 
     async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Error> {
-        let caller = parts.extensions.get::<Self>().cloned();
-        caller.ok_or(Error::Internal("nobody has been let in"))
+        Ok(Self::noted(parts.extensions.get())?)
     }
 }

@@ -4,7 +4,7 @@
 use axum::{body::Body, response::Response};
 use http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 
-use super::freshness;
+use super::vary;
 
 /// Who may ask, from a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,7 +76,7 @@ pub(super) fn preflight(
 /// Lets the pages that may read an answer do so, with all its headers.
 pub(super) fn allow(origins: &Origins, origin: Option<&HeaderValue>, answer: &mut HeaderMap) {
     if *origins != Origins::All {
-        freshness::vary(answer, "origin");
+        vary::on(answer, "origin");
     }
     let Some(allowed) = origin.and_then(|origin| origins.allowed(origin)) else {
         return;

@@ -84,7 +84,7 @@ async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Re
     let (query, _) = service.check(&draft)?;
     let freshness = answer::freshness(&service, &context, &query, document::JSON);
     freshness
-        .answer(&context.headers, counted(&service, query))
+        .answer(&context.headers, counted(&service, &context, query))
         .await
 }
 
@@ -94,12 +94,12 @@ async fn post(
     Whole(body): Whole,
 ) -> Result<Response, Error> {
     context.no_parameters()?;
-    let (_, query, _) = body::query(&service, body, groups::SET).await?;
-    counted(&service, query).await
+    let (_, query, _) = body::query(&service, body, groups::COUNTED).await?;
+    counted(&service, &context, query).await
 }
 
-async fn counted(service: &Service, query: Query) -> Result<Response, Error> {
-    let planned = service.count(query).await?;
+async fn counted(service: &Service, context: &Context, query: Query) -> Result<Response, Error> {
+    let planned = service.count(&context.caller, query).await?;
     document::json(&Count {
         count: planned.count(),
         query: planned.resolved(),

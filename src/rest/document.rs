@@ -10,7 +10,7 @@ use crate::service::Error;
 pub(super) const JSON: &str = "application/json";
 
 /// A document as an answer.
-pub(super) fn json(document: &impl Serialize) -> Result<Response, Error> {
+pub fn json(document: &impl Serialize) -> Result<Response, Error> {
     let mut body = serde_json::to_vec(document)
         .map_err(|_| Error::Internal("a document cannot be written"))?;
     body.push(b'\n');

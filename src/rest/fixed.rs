@@ -53,7 +53,7 @@ impl Fixed {
         if let Some(unchanged) = unchanged.or_else(|| freshness.unwanted(headers)) {
             return unchanged;
         }
-        let chosen = Coding::chosen(headers, inner.content_type);
+        let chosen = freshness.coding();
         let coded = inner
             .coded
             .iter()

@@ -9,13 +9,17 @@ use http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use serde::Serialize;
 use strew_core::ALGORITHM_VERSION;
 
-use super::coding::Coding;
+use super::{
+    coding::{Coding, Decided},
+    vary,
+};
 use crate::service::Error;
 
 /// What is known of an answer before it is made.
 #[derive(Clone, Debug)]
 pub(super) struct Freshness {
     tag: HeaderValue,
+    coding: Option<Coding>,
     pinned: bool,
     negotiated: bool,
 }
@@ -53,9 +57,15 @@ impl Freshness {
         let tag = format!("\"{}{suffix}\"", &hash[..32]);
         Self {
             tag: HeaderValue::from_str(&tag).unwrap_or(HeaderValue::from_static("\"\"")),
+            coding,
             pinned: false,
             negotiated: false,
         }
+    }
+
+    /// The coding of the answer, which its tag says.
+    pub(super) const fn coding(&self) -> Option<Coding> {
+        self.coding
     }
 
     /// Says that `Accept` had a say in the content type.
@@ -111,8 +121,9 @@ impl Freshness {
     pub(super) fn stamp(&self, response: &mut Response) {
         let tag = self.tag.clone();
         response.headers_mut().insert(header::ETAG, tag);
+        response.extensions_mut().insert(Decided(self.coding));
         if self.negotiated {
-            vary(response.headers_mut(), "accept");
+            vary::on(response.headers_mut(), "accept");
         }
         if self.pinned {
             response.extensions_mut().insert(Pinned);
@@ -157,18 +168,6 @@ pub(super) fn keep(response: &mut Response, seconds: u32, is_private: bool) {
         HeaderValue::from_static("no-store")
     };
     headers.insert(header::CACHE_CONTROL, value);
-}
-
-/// Says that an answer would be another one with another header of that name.
-pub(super) fn vary(headers: &mut HeaderMap, name: &'static str) {
-    let joined = match headers.get(header::VARY).map(HeaderValue::to_str) {
-        Some(Ok(before)) => HeaderValue::from_str(&format!("{before}, {name}")).ok(),
-        _ => None,
-    };
-    headers.insert(
-        header::VARY,
-        joined.unwrap_or(HeaderValue::from_static(name)),
-    );
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ mod cors;
 mod count;
 mod docs;
 mod document;
+mod fields;
 mod finish;
 mod fixed;
 mod freshness;
@@ -19,12 +20,14 @@ mod openapi;
 mod page;
 mod points;
 mod portrait;
+mod presets;
 mod problem;
 mod profiles;
 mod quality;
 mod query;
 mod single;
 mod split;
+mod vary;
 
 use std::sync::Arc;
 
@@ -33,6 +36,7 @@ use http::StatusCode;
 
 use crate::service::{Error, Service};
 use api::Endpoint;
+pub use document::json;
 pub use finish::finished;
 use problem::Problem;
 
@@ -47,8 +51,12 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         single::by_id(service.clone()),
         single::nearest(service.clone()),
         profiles::endpoint(service.clone()),
+        presets::endpoint(service.clone()),
         portrait::endpoint(service.clone()),
         portrait::picture(service.clone()),
+        fields::list(service.clone()),
+        fields::endpoint(service.clone()),
+        fields::picture(service.clone()),
     ]
 }
 

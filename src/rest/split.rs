@@ -82,7 +82,7 @@ async fn post(
     let size = body.len();
     let (draft, query, _) = body::query(&service, body, groups::QUERY).await?;
     let parts = parts?;
-    let planned = service.count(query).await?;
+    let planned = service.count(&context.caller, query).await?;
     let count = planned.count();
     let places = service.split(planned, parts).await?;
     // Each part repeats the body, in memory and in the answer.

@@ -89,6 +89,10 @@ impl Held {
     /// # Errors
     /// As [`Budget::hold`]; what was held before still is.
     pub fn grow(&mut self, bytes: usize) -> Result<(), Error> {
+        if bytes == 0 {
+            // Also where more is held than the limit, by [`Budget::hold_anyway`].
+            return Ok(());
+        }
         let Budget { all, address } = &self.budget;
         if !address.bytes.take(bytes) {
             let (what, limit) = ("bytes", address.bytes.limit());
@@ -139,7 +143,9 @@ mod tests {
         assert_eq!(budget.held(), 100);
         first.shrink_to(30);
         assert_eq!(budget.held(), 30);
-        drop(first);
+        let beyond = budget.hold_anyway(100);
+        assert!(budget.hold(0).is_ok() && budget.hold(1).is_err());
+        drop((first, beyond));
         assert_eq!(budget.held(), 0);
     }
 }

@@ -8,6 +8,7 @@
 mod reload;
 
 use std::{
+    cell::Cell,
     cmp::Ordering,
     collections::BTreeMap,
     fmt, fs, io,
@@ -18,13 +19,18 @@ use std::{
 use bytes::Bytes;
 use strew_core::{
     Alpha, Table,
+    field::FieldSpec,
     map::Size,
     table::{BLUE, MAX_FILE_BYTES, Provenance},
 };
 
 use strew_forge::Aim;
 
-use super::Error;
+use super::{
+    Error,
+    field::{self, Document, Fields, NamedField, Sent},
+    query::Checked,
+};
 use crate::bounded_file;
 pub use reload::{Refusal, Reload};
 
@@ -228,6 +234,21 @@ pub struct Catalog {
     entries: BTreeMap<Key, Arc<Entry>>,
     /// The built-in ones, also where a file's table stands in the place of one.
     built_in: BTreeMap<Key, Arc<Entry>>,
+    /// The fields that queries may name.
+    fields: Arc<Fields>,
+    /// The fields that clients have sent.
+    sent: Arc<Sent>,
+}
+
+/// What building a field has left and taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Built {
+    /// How many pixels the query may still bring along.
+    pub left: usize,
+    /// The memory that the field's pixels take, in bytes.
+    pub bytes: usize,
+    /// A box around them.
+    pub frame: Option<[f64; 4]>,
 }
 
 impl Catalog {
@@ -249,6 +270,63 @@ impl Catalog {
             catalog.add(files.into_iter().map(Entry::from_file))?;
         }
         Ok(catalog)
+    }
+
+    /// The same with these fields.
+    #[must_use]
+    pub fn with_fields(mut self, fields: Fields) -> Self {
+        self.fields = Arc::new(fields);
+        self
+    }
+
+    /// The fields that queries may name.
+    #[must_use]
+    pub fn fields(&self) -> &Fields {
+        &self.fields
+    }
+
+    /// The same with room for fields that clients send, in bytes.
+    #[must_use]
+    pub fn with_room(mut self, bytes: usize) -> Self {
+        self.sent = Arc::new(Sent::new(bytes));
+        self
+    }
+
+    /// The fields that clients have sent.
+    #[must_use]
+    pub fn sent(&self) -> &Sent {
+        &self.sent
+    }
+
+    /// The field of a name, or of the digest of one that was sent.
+    #[must_use]
+    pub fn field(&self, name: &str) -> Option<Arc<NamedField>> {
+        let loaded = self.fields.get(name).cloned();
+        loaded.or_else(|| self.sent.get(name))
+    }
+
+    /// Makes the field of a document that a client has written, with at most so many pixels in it.
+    pub fn build_field(
+        &self,
+        path: &str,
+        document: &Document,
+        pixels: usize,
+    ) -> (Checked<FieldSpec>, Built) {
+        let sources = field::Sources {
+            named: &|name| Some(self.field(name)?.spec.clone()),
+            names: &|| self.fields.names(),
+            files: None,
+            pixels: Cell::new(pixels),
+            frame: Cell::new(None),
+            bytes: Cell::new(0),
+        };
+        let spec = field::build(path, document, &sources);
+        let built = Built {
+            left: sources.pixels.get(),
+            bytes: sources.bytes.get(),
+            frame: sources.frame.get(),
+        };
+        (spec, built)
     }
 
     /// Adds the tables of one place over what is there; no two of them may have the same key.

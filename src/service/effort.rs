@@ -7,8 +7,8 @@ use strew_core::{Area, PointSet, Region, Spacing, Warp, server};
 use super::{
     Lane, Placed, Planned, PlannedSet,
     cache::Ready,
-    query::{Amount, Nearest, Query, Set},
-    resolve::resolve,
+    query::{Nearest, Query, Set},
+    resolve::{Resolved, resolve},
     single::MOST_WITHIN,
 };
 
@@ -20,8 +20,20 @@ const STRIP: f64 = 256.0 / UNITS;
 /// comparison for each unit of outline and each edge.
 const COMPARISON: f64 = 5e-4;
 
-/// About how often an area is counted to find the spacing of a count.
-pub(super) const COUNTS: f64 = 32.0;
+/// Looking at a point of a field takes this much of a row.
+const CANDIDATE: f64 = 0.03;
+
+/// About how often an area is counted to find the spacing of a count; in a field less often.
+const COUNTS: f64 = 32.0;
+const COUNTS_IN_FIELD: f64 = 12.0;
+
+/// About how often an area is counted to find the spacing of a count of a set.
+pub(super) const fn counts(set: &Set) -> f64 {
+    match set.field {
+        Some(_) => COUNTS_IN_FIELD,
+        None => COUNTS,
+    }
+}
 
 /// A request for points, as far as it decides what counting costs.
 #[derive(Clone, Debug)]
@@ -42,14 +54,22 @@ const PLAIN: f64 = 0.1;
 /// Blocks for which more points than this are considered are made in the lane for long work.
 const SHORT_BLOCK: f64 = 2e7;
 
-/// The lane in which a query is planned.
-pub(super) fn lane(query: &Query, tables: &[Ready]) -> Lane {
+/// What planning a query takes, in rows of warped sets. Sets with more than `most` rows take none:
+/// they are refused.
+pub(super) fn planning(query: &Query, tables: &[Ready], most: u64) -> f64 {
     // With a cursor nothing is counted.
     if query.window.cursor.is_some() {
-        return Lane::Short;
+        return 0.0;
     }
     let sets = query.sets.iter().zip(tables);
-    let rows: f64 = sets.map(|(set, ready)| planning(query, set, ready)).sum();
+    let rows = sets.map(|(set, ready)| counted(query, set, ready));
+    rows.filter(|(rows, _)| *rows <= most as f64)
+        .map(|(rows, weight)| rows * weight)
+        .sum()
+}
+
+/// The lane in which something is planned that takes this many rows.
+pub(super) fn lane(rows: f64) -> Lane {
     if rows > SHORT_ROWS {
         Lane::Long
     } else {
@@ -57,32 +77,33 @@ pub(super) fn lane(query: &Query, tables: &[Ready]) -> Lane {
     }
 }
 
-/// What planning a set takes, in rows of a warped set.
-fn planning(query: &Query, set: &Set, ready: &Ready) -> f64 {
+/// The rows that are counted to plan a set, and how much of a row of a warped set each takes.
+fn counted(query: &Query, set: &Set, ready: &Ready) -> (f64, f64) {
     let bounds = query.region.bbox();
-    let (spacing, counts) = match set.amount {
-        Amount::Count(count) => {
+    let (spacing, counts) = match resolve(set, ready) {
+        Err(_) => return (0.0, 0.0),
+        Ok(Resolved::Known(spacing, _)) => (Some(spacing), 1.0),
+        Ok(Resolved::Count(count)) => {
             let [min_x, min_y, max_x, max_y] = bounds;
             let area = (max_x - min_x) * (max_y - min_y);
             let guess = (area * set.keep.get() / count.max(1) as f64).sqrt();
-            (Spacing::new(guess).ok(), COUNTS)
-        }
-        _ => {
-            let resolved = resolve(set, ready).ok().flatten();
-            (resolved.map(|(spacing, _)| spacing), 1.0)
+            (Spacing::new(guess).ok(), counts(set))
         }
     };
-    let Some(spacing) = spacing else { return 0.0 };
+    let Some(spacing) = spacing else {
+        return (0.0, 0.0);
+    };
     let selection = Selection {
-        set: PointSet::new(ready.table.clone()).placed(set.placement(spacing)),
+        set: set.points(&ready.table, spacing),
         area: set.area(&query.region),
         keeps_clear: !set.clear_of.is_empty(),
     };
     let is_plain = selection.set.placement().warp == Warp::OFF && !selection.keeps_clear;
+    let is_plain = is_plain && set.field.is_none();
     let weight = if is_plain { PLAIN } else { 1.0 };
     // Seeking an offset counts again.
     let seeks = 1.0 + f64::from(u8::from(query.window.offset > 0));
-    rows_and_edges(&selection) * weight * counts * seeks
+    (rows_and_edges(&selection) * counts, weight * seeks)
 }
 
 /// The lane in which the blocks of an answer are made: points that are thinned out take as long as
@@ -93,7 +114,7 @@ pub(super) fn block_lane(planned: &Planned) -> Lane {
     let sets = planned.query.sets.iter().zip(&planned.sets);
     let is_long = sets.into_iter().any(|(set, planned)| {
         let block = planned.plan.count().min(BLOCK) as f64;
-        block / set.keep.get() > SHORT_BLOCK
+        block * planned.looks_by_point(set) > SHORT_BLOCK
     });
     if is_long { Lane::Long } else { Lane::Short }
 }
@@ -129,20 +150,43 @@ impl Neighbors {
         let values = placed.set.attributes.as_slice().len();
         Self {
             bytes: most * (POINT + values * VALUE),
-            lane: if most > MANY { Lane::Long } else { Lane::Short },
+            // In a field there may be nothing for long.
+            lane: match most > MANY || placed.set.field.is_some() {
+                true => Lane::Long,
+                false => Lane::Short,
+            },
         }
     }
 }
 
 /// The points that are considered to make those of a plan: with `keep`, those that are thinned out,
-/// too.
+/// too, also after the last one; in a field also those that are counted and left out.
 #[must_use]
 pub fn considered(planned: &Planned) -> u128 {
+    let bounds = planned.query.region.bounds;
+    let [width, height] = sides(bounds);
+    let is_counted = planned.query.window.cursor.is_none();
+    let considered = |(set, planned): (&Set, &PlannedSet)| {
+        let count = planned.plan.count() as f64;
+        if set.field.is_some() {
+            let made = count * planned.looks_by_point(set);
+            return match is_counted {
+                true => made.max(planned.candidates as f64),
+                false => made,
+            };
+        }
+        let most = width * height * planned.spacing.density();
+        ((count + 1.0) / set.keep.get() - 1.0).min(most).max(count)
+    };
     let sets = planned.query.sets.iter().zip(&planned.sets);
-    let considered =
-        |(set, planned): (&Set, &PlannedSet)| planned.plan.count() as f64 / set.keep.get();
     let all: f64 = sets.map(considered).sum();
     all.round() as u128
+}
+
+/// The points that counting a selection looks at one by one; none without a field.
+pub(super) fn candidates(selection: &Selection) -> u128 {
+    // Where it is too far out is told when it is planned.
+    server::candidates(&selection.set, selection.area.clone()).unwrap_or_default()
 }
 
 /// The number of rows that are counted one by one, or points tested, which takes as long: none for a
@@ -152,8 +196,9 @@ pub(super) fn rows(selection: &Selection) -> f64 {
     let placement = selection.set.placement();
     let is_box = matches!(area, Area::Region(_));
     let is_closed = placement.warp == Warp::OFF && !selection.keeps_clear;
+    let looks = candidates(selection) as f64 * CANDIDATE;
     let Some(bounds) = area.bounds().filter(|_| !(is_box && is_closed)) else {
-        return 0.0;
+        return looks;
     };
     let spacing = placement.spacing.get();
     let [width, height] = sides(bounds);
@@ -168,7 +213,7 @@ pub(super) fn rows(selection: &Selection) -> f64 {
     } else {
         0.0
     };
-    along + across + cleared
+    along + across + cleared + looks
 }
 
 /// The same with what polygons of many edges take; bounded by what [`rows`] says.

@@ -1,4 +1,4 @@
-//! What can go wrong with a question, in words for the one who asked.
+//! What can be wrong with a request, in words for the client.
 //!
 //! One type for both protocols; [`error_map`](crate::error_map) has the status of each. Text here is for clients; what only operators should see goes
 //! to the log where it happens.
@@ -61,7 +61,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// How many characters of input are echoed.
+/// The most characters of input that are echoed.
 const SHOWN: usize = 120;
 
 /// Input is echoed, but not by the kilobyte.
@@ -76,7 +76,7 @@ fn cut(text: &str, most: usize) -> String {
     }
 }
 
-/// Why a question has no answer.
+/// Why a request has no answer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -157,29 +157,29 @@ pub enum Error {
         /// What the path takes.
         allowed: String,
     },
-    /// The caller is not let in, or not now.
+    /// The caller is refused, for good or for now.
     #[error(transparent)]
     Denied(#[from] Denied),
     /// As many answers are being streamed as the server allows at once.
-    #[error("{limit} answers are being streamed, the most at once: try again later")]
+    #[error("{limit} answers are being streamed, the limit of this server: try again later")]
     Busy {
         /// The limit.
         limit: usize,
     },
     /// As many connections are open as the server takes.
-    #[error("{limit} connections are open, the most at once: try again later")]
+    #[error("{limit} connections are open, the limit of this server: try again later")]
     TooManyConnections {
         /// The limit.
         limit: usize,
     },
     /// As many requests are being answered as the server takes on at once.
-    #[error("{limit} requests are being answered, the most at once: try again later")]
+    #[error("{limit} requests are being answered, the limit of this server: try again later")]
     TooManyRequests {
         /// The limit.
         limit: usize,
     },
     /// Requests and answers hold as much memory as they may.
-    #[error("requests and answers hold {limit} bytes, the most at once: try again later")]
+    #[error("requests and answers hold {limit} bytes, the limit of this server: try again later")]
     TooManyBytes {
         /// The limit.
         limit: usize,

@@ -12,11 +12,13 @@ pub mod catalog;
 mod effort;
 pub mod encode;
 pub mod error;
+pub mod field;
 mod lane;
 mod planned;
 mod planned_set;
 mod planner;
 mod portrait;
+mod presets;
 pub mod query;
 pub mod record;
 mod resolve;
@@ -43,6 +45,7 @@ pub use lane::Lane;
 pub use planned::{Placed, Planned};
 pub use planned_set::PlannedSet;
 pub use portrait::Portrait;
+pub use presets::{PresetError, Presets};
 pub use query::{Draft, Nearest, Query, Set, Token};
 pub use record::Record;
 pub use single::Found;
@@ -51,8 +54,9 @@ pub use workers::Workers;
 
 pub use crate::config::Limits;
 
-use crate::access::Caller;
+use crate::{access::Caller, config};
 use cache::{CacheState, Samplers};
+use field::{Document, NamedField};
 use portrait::Portraits;
 use record::Recorded;
 
@@ -60,6 +64,7 @@ use record::Recorded;
 #[derive(Debug)]
 pub struct Service {
     catalog: ArcSwap<Catalog>,
+    presets: Presets,
     limits: Limits,
     samplers: Samplers,
     portraits: Portraits,
@@ -78,9 +83,22 @@ impl Service {
             streams: Arc::new(Streams::new(limits.max_streams)),
             budget: Budget::new(limits.max_bytes_in_flight),
             catalog: ArcSwap::from_pointee(catalog),
+            presets: Presets::default(),
             limits,
             workers,
         }
+    }
+
+    /// The service with presets.
+    #[must_use]
+    pub fn with_presets(self, presets: Presets) -> Self {
+        Self { presets, ..self }
+    }
+
+    /// The presets.
+    #[must_use]
+    pub const fn presets(&self) -> &Presets {
+        &self.presets
     }
 
     /// The tables that are loaded now. A query holds on to those that it was checked against.
@@ -89,11 +107,11 @@ impl Service {
         self.catalog.load_full()
     }
 
-    /// Reads the folder of tables again. A file that is not valid is refused, and the table that it
+    /// Reads the folders of tables and of fields again. A file that is not valid is refused, and what it
     /// held so far stays.
     #[must_use]
-    pub fn read_tables(&self, folder: Option<&Path>) -> (Catalog, Reload) {
-        self.catalog.load().reload(folder)
+    pub fn read_tables(&self, folder: Option<&Path>, fields: &config::Fields) -> (Catalog, Reload) {
+        self.catalog.load().reload(folder, fields)
     }
 
     /// Serves the tables that were read, all at once. Reloads come one after another.
@@ -103,6 +121,31 @@ impl Service {
             self.samplers.forget(digest).await;
         }
         reload
+    }
+
+    /// Holds a field that a client sends, under its digest.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a field that is not valid or too large to be held.
+    pub fn hold_field(&self, document: Document) -> Result<Arc<NamedField>, Error> {
+        let catalog = self.catalog();
+        let (spec, built) = catalog.build_field("field", &document, field::MOST_PIXELS);
+        let field = NamedField::sent(document, spec?, built.bytes, built.frame);
+        let name = field.name.clone();
+        let held = catalog
+            .sent()
+            .hold(field)
+            .then(|| catalog.sent().get(&name));
+        held.flatten().ok_or_else(|| {
+            let detail = format!("takes {} bytes, which there is no room for", built.bytes);
+            Fault::new(
+                "field",
+                "",
+                detail,
+                "a smaller field, or fields.max_sent_bytes raised",
+            )
+            .into()
+        })
     }
 
     /// The limits.
@@ -139,7 +182,9 @@ impl Service {
     /// # Errors
     /// As [`Draft::check`], and [`Error::Invalid`] for a format that is for files only.
     pub fn check(&self, draft: &Draft) -> Result<(Query, Options), Error> {
-        let (query, options) = draft.check(&self.catalog(), self.limits.max_vertices)?;
+        let (draft, preset) = self.presets.fill(draft)?;
+        let (mut query, options) = draft.check(&self.catalog(), self.limits.max_vertices)?;
+        query.preset = preset;
         match options.encoding {
             Some(encoding) if !encoding.is_streamed() => {
                 let format = &query::parameters::FORMAT;
@@ -162,8 +207,9 @@ impl Service {
         picture: Option<u32>,
     ) -> Result<(Permit, Planned), Error> {
         let permit = self.admit(caller, picture)?;
-        let planned = self.plan(caller, query).await?;
-        caller.charge(considered(&planned))?;
+        let (planned, charged) = self.charged(caller, query).await?;
+        self.check_points(caller, &planned)?;
+        caller.charge(considered(&planned), charged)?;
         Ok((permit, planned))
     }
 
@@ -182,12 +228,20 @@ impl Service {
         self.own_budget().hold(bytes)
     }
 
-    /// Plans a query on the workers, whatever it counts.
+    /// Plans a query on the workers, whatever it counts. Charges the rows that are counted one by one.
     ///
     /// # Errors
     /// [`Error::Invalid`] for a region out of reach or an amount that cannot be had,
-    /// [`Error::TooManyRows`] if counting would take too long.
-    pub async fn count(&self, query: Query) -> Result<Planned, Error> {
+    /// [`Error::TooManyRows`] if counting would take too long, and [`Error::Denied`] if the caller's
+    /// rate does not allow it.
+    pub async fn count(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
+        let (planned, _) = self.charged(caller, query).await?;
+        Ok(planned)
+    }
+
+    /// Plans a query. Returns the plan and what was charged for it.
+    async fn charged(&self, caller: &Caller, query: Query) -> Result<(Planned, u128), Error> {
+        let mut charged = 0;
         let mut tables = vec![];
         for set in &*query.sets {
             tables.push(self.samplers.get(&set.entry, &self.workers).await?);
@@ -197,12 +251,21 @@ impl Service {
             Planned::new(query, &tables, &self.limits)?
         } else {
             let limits = self.limits.clone();
-            let lane = effort::lane(&query, &tables);
+            let rows = effort::planning(&query, &tables, limits.max_rows);
+            charged = rows as u128;
+            // Before the work, which is done even if the answer is refused.
+            if charged > 0 {
+                caller.charge(charged, 0)?;
+            }
+            let lane = effort::lane(rows);
             let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
             self.workers.take_turn(lane, plan).await??
         };
         tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
-        Ok(planned)
+        if let Some(record) = Record::current() {
+            record.take_lane(effort::block_lane(&planned));
+        }
+        Ok((planned, charged))
     }
 
     /// The right of a caller to start one more stream; a picture of that size is held whole.
@@ -228,16 +291,19 @@ impl Service {
     /// # Errors
     /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
     pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
-        let planned = self.count(query).await?;
-        if let Some(record) = Record::current() {
-            record.take_lane(effort::block_lane(&planned));
-        }
+        let planned = self.count(caller, query).await?;
+        self.check_points(caller, &planned)?;
+        Ok(planned)
+    }
+
+    /// Refuses more points than a caller may have.
+    fn check_points(&self, caller: &Caller, planned: &Planned) -> Result<(), Error> {
         let limit = caller.max_points(self.limits.max_points);
         let count = planned.count();
         if count > u128::from(limit) {
             return Err(Error::TooManyPoints { count, limit });
         }
-        Ok(planned)
+        Ok(())
     }
 
     /// The query in parts; see [`Planned::split`].
@@ -303,7 +369,9 @@ impl Service {
         let search = move |_: &Stop| {
             let _held = budget.hold(effort.bytes)?;
             let found = placed.nearest(nearest)?;
-            caller.charge(found.len() as u128)?;
+            // Those that are thinned out take as long to find.
+            let considered = found.len() as f64 / placed.set.keep.get();
+            caller.charge(considered.round() as u128, 0)?;
             answer(&placed, found)
         };
         self.workers.take_turn(effort.lane, search).await?
@@ -325,10 +393,7 @@ impl Service {
     pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
         let mut whole = Bytes::new();
         for block in Recorded::new(answer) {
-            let block = block.map_err(|error| {
-                tracing::error!(%error, "an answer cannot be made");
-                Error::Internal("the answer cannot be encoded")
-            })?;
+            let block = block?;
             whole = match (whole.is_empty(), block.is_empty()) {
                 (true, _) => block,
                 (false, true) => whole,

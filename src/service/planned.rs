@@ -51,7 +51,7 @@ impl Placed {
     /// # Errors
     /// [`Error::Invalid`] for a distance that cannot be kept, or a count.
     pub fn new(set: Set, ready: Ready) -> Result<Self, Error> {
-        let Some((spacing, density)) = resolve::resolve(&set, &ready)? else {
+        let resolve::Resolved::Known(spacing, density) = resolve::resolve(&set, &ready)? else {
             return Err(set.fault(
                 "count",
                 "",
@@ -62,7 +62,7 @@ impl Placed {
         let least = resolve::least_distance(&set, &ready, spacing, 0.0);
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least),
-            points: PointSet::new(ready.table).placed(set.placement(spacing)),
+            points: set.points(&ready.table, spacing),
             set,
         })
     }

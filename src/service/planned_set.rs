@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use strew_core::{Plan, Spacing};
 
-use super::Entry;
+use super::{Entry, query::Set};
 
 /// A planned set of points.
 #[derive(Clone, Debug)]
@@ -19,19 +19,39 @@ pub struct PlannedSet {
     pub least_distance: f64,
     /// The points.
     pub plan: Plan,
+    /// The points that counting all of them looks at one by one; none without a field.
+    pub candidates: u128,
+    /// How many there are of them, as far as that is known.
+    total: u128,
     /// How many points of the query the sets before it have, if it is not before the cursor's.
     pub(super) before: u128,
 }
 
 impl PlannedSet {
-    pub(super) fn new(entry: Arc<Entry>, density: f64, least_distance: f64, plan: Plan) -> Self {
+    pub(super) fn new(
+        entry: Arc<Entry>,
+        density: f64,
+        least_distance: f64,
+        plan: Plan,
+        candidates: u128,
+    ) -> Self {
         Self {
             entry,
             density,
             spacing: plan.placement().spacing,
             least_distance,
+            total: plan.total(),
             plan,
+            candidates,
             before: 0,
+        }
+    }
+
+    /// How many points are looked at to make one.
+    pub(super) fn looks_by_point(&self, set: &Set) -> f64 {
+        match set.field {
+            Some(_) => (self.candidates as f64 / self.total.max(1) as f64).max(1.0),
+            None => 1.0 / set.keep.get(),
         }
     }
 }

@@ -8,9 +8,9 @@ use strew_core::{
 use super::{
     Error, Limits, PlannedSet,
     cache::Ready,
-    effort::{self, COUNTS, Selection},
+    effort::{self, Selection},
     query::{Amount, Query, Set, Token, parameters},
-    resolve::{check_reach, least_distance, resolve},
+    resolve::{Resolved, check_reach, least_distance, resolve},
 };
 
 /// Plans sets one after another.
@@ -43,17 +43,18 @@ impl<'a> Planner<'a> {
         let cursor = self.query.window.cursor;
         let here = cursor.filter(|token| i == usize::from(token.set));
         let is_over = cursor.is_some_and(|token| i < usize::from(token.set));
-        let known = resolved.map(|(spacing, _)| spacing);
-        let known = known.or_else(|| here?.spacing);
-        let placement = set.placement(known.unwrap_or(Spacing::ONE));
-        let points = PointSet::new(ready.table.clone()).placed(placement);
+        let known = match resolved {
+            Resolved::Known(spacing, _) => Ok(spacing),
+            Resolved::Count(count) => here.and_then(|token| token.spacing).ok_or(count),
+        };
+        let points = set.points(&ready.table, known.unwrap_or(Spacing::ONE));
         let mut selection = Selection {
             set: self.keeping_clear(set, points)?,
             area: set.area(region),
             keeps_clear: !set.clear_of.is_empty(),
         };
         let plan = match (known, here) {
-            (Some(spacing), _) if is_over || here.is_some() => {
+            (Ok(spacing), _) if is_over || here.is_some() => {
                 let cursor = here.map_or_else(nothing, |token| token.cursor);
                 let plan = selection.set.resume(selection.area.clone(), cursor);
                 let plan = plan.map_err(|error| region.too_far(spacing, &error))?;
@@ -67,18 +68,25 @@ impl<'a> Planner<'a> {
                     _ => plan,
                 }
             }
-            (Some(spacing), _) => {
+            (Ok(spacing), _) => {
                 self.check_rows(&selection, 1.0)?;
                 let plan = server::within(&selection.set, selection.area.clone(), self.stop);
                 plan.map_err(|error| region.too_far(spacing, &error))?
             }
-            (None, here) => {
-                let plan = self.count(set, &mut selection)?;
+            (Err(count), here) => {
+                let plan = self.count(set, count, &mut selection)?;
                 let start = here.map_or(0, |token: Token| token.cursor.offset);
                 plan.window(start, is_over.then_some(0))
             }
         };
         let spacing = plan.placement().spacing;
+        let candidates = match set.field {
+            Some(_) => effort::candidates(&Selection {
+                set: selection.set.clone().placed(plan.placement()),
+                ..selection.clone()
+            }),
+            None => 0,
+        };
         let layer = selection.set.placed(plan.placement());
         self.layers.push(match &set.region {
             Some(own) => layer.limited_to(own.area.clone()),
@@ -86,9 +94,13 @@ impl<'a> Planner<'a> {
         });
         Ok(PlannedSet::new(
             ready.entry.clone(),
-            resolved.map_or(spacing.density(), |(_, density)| density),
+            match resolved {
+                Resolved::Known(_, density) => density,
+                Resolved::Count(_) => spacing.density(),
+            },
             least_distance(set, ready, spacing, region.reach()),
             plan,
+            candidates,
         ))
     }
 
@@ -111,11 +123,8 @@ impl<'a> Planner<'a> {
             })
     }
 
-    /// The plan with exactly as many points as are asked for.
-    fn count(&self, set: &Set, selection: &mut Selection) -> Result<Plan, Error> {
-        let Amount::Count(count) = set.amount else {
-            return Err(Error::Internal("an amount is not resolved"));
-        };
+    /// The plan with exactly `count` points.
+    fn count(&self, set: &Set, count: u64, selection: &mut Selection) -> Result<Plan, Error> {
         let limit = self.limits.max_points;
         if count > limit {
             let count = count.into();
@@ -132,9 +141,10 @@ impl<'a> Planner<'a> {
                 ..placement
             };
             selection.set = selection.set.clone().placed(trial);
-            self.check_rows(selection, COUNTS)?;
+            self.check_rows(selection, effort::counts(set))?;
         }
-        let least = effort::least_spacing(selection, self.limits.max_rows as f64 / COUNTS);
+        let most = self.limits.max_rows as f64 / effort::counts(set);
+        let least = effort::least_spacing(selection, most);
         let Selection {
             set: points, area, ..
         } = &*selection;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use moka::future::Cache;
 use strew_forge::{Report, Resolution, measure::window_set, picture};
 
-use super::{Entry, Error, Lane, Workers};
+use super::{Entry, Error, Lane, Workers, encode::EncodeError};
 
 /// How many points a portrait is taken of.
 const POINTS: u64 = 20_000;
@@ -33,10 +33,8 @@ impl Portrait {
         let set = window_set(&table, POINTS, 1);
         let report = Report::of_window("window seed 1".into(), false, &set, Resolution::default());
         let target = entry.aim().and_then(|aim| aim.curve);
-        let svg = picture(&report, &entry.key.to_string(), target.as_ref()).map_err(|error| {
-            tracing::error!(key = %entry.key, %error, "no picture");
-            Error::Internal("the picture cannot be drawn")
-        })?;
+        let svg =
+            picture(&report, &entry.key.to_string(), target.as_ref()).map_err(EncodeError::of)?;
         Ok(Self {
             points: report.figures.points,
             radial: report

@@ -8,8 +8,17 @@ use super::{
     query::{Amount, Parameter, Set, number, parameters},
 };
 
-/// What an amount is on its table; `None` for a count, which needs a region.
-pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>, Error> {
+/// What an amount is on its table.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Resolved {
+    /// A mean spacing, and the density as requested.
+    Known(Spacing, f64),
+    /// A number of points, which needs a region.
+    Count(u64),
+}
+
+/// Finds what an amount is on its table.
+pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
     let fault = |parameter: &Parameter, value: f64, detail: String| {
         set.fault(parameter.name, value, detail, parameter.allowed())
     };
@@ -20,11 +29,16 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>
         Amount::Density(density) => {
             let spacing =
                 Spacing::from_density(density).map_err(wrong(&parameters::DENSITY, density))?;
-            Ok(Some((spacing, density)))
+            Ok(Resolved::Known(spacing, density))
         }
         Amount::Spacing(value) => {
             let spacing = Spacing::new(value).map_err(wrong(&parameters::SPACING, value))?;
-            Ok(Some((spacing, spacing.density())))
+            Ok(Resolved::Known(spacing, spacing.density()))
+        }
+        Amount::MinDistance(distance) if moves(set, ready) => {
+            let detail = "not with a field on this table: points move a little as they thin out";
+            let allowed = "density, spacing or count; or a table without a ladder";
+            Err(set.fault(parameters::MIN_DISTANCE.name, distance, detail, allowed))
         }
         Amount::MinDistance(distance) => {
             let least = ready.table.least_distance();
@@ -37,14 +51,23 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Option<(Spacing, f64)>
                 };
                 fault(&parameters::MIN_DISTANCE, distance, detail)
             })?;
-            Ok(Some((spacing, spacing.density())))
+            Ok(Resolved::Known(spacing, spacing.density()))
         }
-        Amount::Count(_) => Ok(None),
+        Amount::Count(count) => Ok(Resolved::Count(count)),
     }
+}
+
+/// Whether points move as they thin out, so that no least distance is guaranteed: in a field, by the table's
+/// ladder.
+fn moves(set: &Set, ready: &Ready) -> bool {
+    set.field.is_some() && ready.table.ladder().is_some()
 }
 
 /// The distance that coordinates within ±`reach` keep.
 pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing, reach: f64) -> f64 {
+    if moves(set, ready) {
+        return 0.0;
+    }
     let least = ready.table.least_distance();
     let least = least.reported(spacing, set.warp, reach);
     match set.amount {

@@ -125,7 +125,7 @@ fn fault(nearest: Nearest, error: &strew_core::Error) -> Error {
             "k",
             k,
             error.to_string(),
-            "fewer neighbors, or a larger share to keep",
+            "fewer neighbors, a larger share to keep, or a place nearer to where the field leaves points",
         ),
         _ => {
             let value = format!("{},{}", number(at[0]), number(at[1]));

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use rcgen::{
     BasicConstraints, CertificateParams, CertifiedIssuer, ExtendedKeyUsagePurpose, IsCa, KeyPair,
+    date_time_ymd,
 };
 
 /// A certificate authority of its own.
@@ -34,18 +35,25 @@ impl Authority {
 
     /// Issues a server certificate for `localhost` and `127.0.0.1`.
     pub fn issue_server(&self) -> Certificate {
-        self.issue(ExtendedKeyUsagePurpose::ServerAuth)
+        self.issue(ExtendedKeyUsagePurpose::ServerAuth, 4000)
+    }
+
+    /// Issues a server certificate that has expired.
+    pub fn issue_expired_server(&self) -> Certificate {
+        self.issue(ExtendedKeyUsagePurpose::ServerAuth, 2020)
     }
 
     /// Issues a client certificate.
     pub fn issue_client(&self) -> Certificate {
-        self.issue(ExtendedKeyUsagePurpose::ClientAuth)
+        self.issue(ExtendedKeyUsagePurpose::ClientAuth, 4000)
     }
 
-    fn issue(&self, purpose: ExtendedKeyUsagePurpose) -> Certificate {
+    /// A certificate that is valid to the beginning of a year.
+    fn issue(&self, purpose: ExtendedKeyUsagePurpose, year: i32) -> Certificate {
         let names = vec!["localhost".to_owned(), "127.0.0.1".to_owned()];
         let mut params = CertificateParams::new(names).expect("names");
         params.extended_key_usages = vec![purpose];
+        params.not_after = date_time_ymd(year, 1, 1);
         let key = KeyPair::generate().expect("a key");
         let certificate = params.signed_by(&key, &self.issuer).expect("signed");
         Certificate {

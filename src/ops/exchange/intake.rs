@@ -97,9 +97,10 @@ impl Shared {
         next: Next,
     ) -> Result<Response, Error> {
         let limit = self.limit;
-        let place = match request.extensions().get::<Probe>() {
-            Some(_) => None,
-            None => {
+        let is_probe = request.extensions().get::<Probe>().is_some();
+        let place = match is_probe {
+            true => None,
+            false => {
                 let place = self.places.try_acquire();
                 Some(place.map_err(|_| Error::TooManyRequests { limit })?)
             }
@@ -109,7 +110,7 @@ impl Shared {
             .as_ref()
             .map_or(&self.budget, |record| record.budget());
         let received = Arc::new(Receiving {
-            held: Mutex::new(budget.hold(0)?),
+            held: Mutex::new(budget.hold_anyway(0)),
             done: Notify::new(),
         });
         let request = request.map(|body| {
@@ -124,6 +125,7 @@ impl Shared {
                 receiving: received.clone(),
                 dialect,
                 at_once: 0,
+                free: if is_probe { PROBE_BODY } else { 0 },
             })
         });
         // The body has a deadline of its own; the time for the answer begins when it is there.
@@ -141,7 +143,11 @@ impl Shared {
         drop((place, received));
         let whole = response.body().size_hint().exact();
         if let Some(bytes @ 1..) = whole {
-            let held = budget.hold(usize::try_from(bytes).unwrap_or(usize::MAX))?;
+            let bytes = usize::try_from(bytes).unwrap_or(usize::MAX);
+            let held = match is_probe {
+                true => budget.hold_anyway(bytes),
+                false => budget.hold(bytes)?,
+            };
             response.extensions_mut().insert(Arc::new(held));
         }
         Ok(response)
@@ -160,6 +166,8 @@ struct Receiving {
 /// As much is read before other requests have their turn: clients that send fast would keep the
 /// thread.
 const AT_ONCE: usize = 64 << 10;
+/// The bytes of a health check that are taken although the budget is used up: it names a service.
+const PROBE_BODY: usize = 1 << 10;
 
 /// The body of a request: in time, and within the budget.
 struct Received {
@@ -170,6 +178,8 @@ struct Received {
     dialect: Dialect,
     /// The bytes that were read since the reader last waited.
     at_once: usize,
+    /// The bytes that do not count.
+    free: usize,
 }
 
 impl HttpBody for Received {
@@ -190,9 +200,11 @@ impl HttpBody for Received {
             Poll::Ready(Some(Ok(frame))) => {
                 let bytes = frame.data_ref().map_or(0, Bytes::len);
                 self.at_once += bytes;
+                let counted = bytes.saturating_sub(self.free);
+                self.free -= bytes - counted;
                 let held = self.receiving.held.lock();
                 held.unwrap_or_else(PoisonError::into_inner)
-                    .grow(bytes)
+                    .grow(counted)
                     .err()
             }
             Poll::Ready(_) => None,

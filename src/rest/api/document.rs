@@ -159,6 +159,7 @@ fn as_text(shape: Shape) -> Value {
             json!({ "type": "string", "pattern": format!("^{pair}(,{pair})*$") })
         }
         Shape::Switch => json!({ "type": "string", "enum": ["on", "off"] }),
+        Shape::Field => json!({ "type": "string", "pattern": format!("^{}$", sets::NAME) }),
         other => schema(other),
     }
 }
@@ -200,6 +201,10 @@ pub(super) fn schema(shape: Shape) -> Value {
             json!({ "type": "string", "enum": Encoding::ALL.map(Encoding::name) })
         }
         Shape::Pattern(pattern) => json!({ "type": "string", "pattern": pattern }),
+        Shape::Field => json!({ "anyOf": [
+            { "type": "string", "pattern": format!("^{}$", sets::NAME) },
+            { "$ref": "#/components/schemas/Field" },
+        ] }),
         Shape::Quadratic | Shape::Text => json!({ "type": "string" }),
     }
 }

@@ -67,6 +67,8 @@ pub enum Tag {
     Points,
     /// Noise profiles.
     Profiles,
+    /// Fields.
+    Fields,
     /// Pages and documents about the daemon.
     About,
     /// What operators use.
@@ -75,7 +77,13 @@ pub enum Tag {
 
 impl Tag {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Points, Self::Profiles, Self::About, Self::Operations];
+    pub const ALL: [Self; 5] = [
+        Self::Points,
+        Self::Profiles,
+        Self::Fields,
+        Self::About,
+        Self::Operations,
+    ];
 
     /// The name.
     #[must_use]
@@ -83,6 +91,7 @@ impl Tag {
         match self {
             Self::Points => "points",
             Self::Profiles => "profiles",
+            Self::Fields => "fields",
             Self::About => "about",
             Self::Operations => "operations",
         }
@@ -94,6 +103,7 @@ impl Tag {
         match self {
             Self::Points => "Points of regions, counts, and single points.",
             Self::Profiles => "The noise profiles that are loaded.",
+            Self::Fields => "The fields that are loaded.",
             Self::About => "Pages for people and this document.",
             Self::Operations => "Health, metrics and administration.",
         }

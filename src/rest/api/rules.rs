@@ -21,6 +21,9 @@ pub(super) enum Rule {
     ExactlyOneOf {
         /// Their names.
         parameters: Vec<&'static str>,
+        /// A parameter with which none of them needs to be given.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        unless: Option<&'static str>,
     },
     /// A parameter may only be given if another has one of some values (of a list: among its items).
     OnlyWith {
@@ -59,14 +62,15 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
         let taken = parameters_of(groups).filter(|parameter| wanted.contains(&parameter.group));
         taken.map(|parameter| parameter.name).collect()
     };
+    let preset = names(&[Group::Preset]).first().copied();
     let alternatives = [
-        names(&[Group::Region]),
-        names(&[Group::Amount, Group::Count]),
+        (names(&[Group::Region]), None),
+        (names(&[Group::Amount, Group::Count]), preset),
     ];
     let mut rules: Vec<Rule> = alternatives
         .into_iter()
-        .filter(|parameters| !parameters.is_empty())
-        .map(|parameters| Rule::ExactlyOneOf { parameters })
+        .filter(|(parameters, _)| !parameters.is_empty())
+        .map(|(parameters, unless)| Rule::ExactlyOneOf { parameters, unless })
         .collect();
     let only_with =
         |parameter: &Parameter, other: &Parameter, values: Vec<&'static str>| Rule::OnlyWith {
@@ -99,8 +103,12 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
 /// The rules as sentences.
 pub(super) fn in_words(rules: &[Rule]) -> String {
     let sentence = |rule: &Rule| match rule {
-        Rule::ExactlyOneOf { parameters } => {
-            format!("Exactly one of {} must be given.", parameters.join(", "))
+        Rule::ExactlyOneOf { parameters, unless } => {
+            let unless = unless.map_or_else(String::new, |other| format!(", unless {other} is"));
+            format!(
+                "Exactly one of {} must be given{unless}.",
+                parameters.join(", ")
+            )
         }
         Rule::OnlyWith {
             parameter,

@@ -6,7 +6,10 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, generate::SchemaSettings, js
 use serde_json::{Value, json};
 
 use super::sets;
-use crate::service::query::{RegionSchema, Resolved, ResolvedSet};
+use crate::service::{
+    field::Document,
+    query::{RegionSchema, Resolved, ResolvedSet},
+};
 
 /// Makes the schema of a content, with what it refers to among the generator's definitions.
 pub type Content = fn(&mut SchemaGenerator) -> Schema;
@@ -84,6 +87,7 @@ from_table! {
     Layer = "Layer", |_| sets::layer();
     ResolvedSet = "Set", |generator| {
         of::<RegionSchema>(generator);
+        of::<Document>(generator);
         let (required, properties) = sets::echo();
         json!({
             "type": "object",
@@ -115,5 +119,6 @@ from_table! {
 /// Defines what queries refer to.
 fn refer(generator: &mut SchemaGenerator) {
     of::<RegionSchema>(generator);
+    of::<Document>(generator);
     of::<Layer>(generator);
 }

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 use super::{document::schema, rules, schemas::reference};
 use crate::service::query::{
     Group, MOST_LAYERS, Parameter, groups, of,
-    parameters::{COUNT, PARAMETERS},
+    parameters::{COUNT, PARAMETERS, PRESET},
 };
 
 /// The names of layers and variants.
@@ -26,13 +26,17 @@ fn nothing() -> Value {
     json!({ "not": {} })
 }
 
-/// What the members of a set must fulfill together.
-fn rules_of_set() -> Vec<Value> {
+/// What the members of a set must fulfill together, with what may stand for the amount.
+fn rules_of_set(instead: Option<Value>) -> Vec<Value> {
     let is_amount = |group: Group| [Group::Amount, Group::Count].contains(&group);
     let amounts = of(groups::SET).filter(|parameter| is_amount(parameter.group));
     let one: Vec<Value> = amounts
         .map(|amount| json!({ "required": [amount.name] }))
         .collect();
+    let amount = match instead {
+        None => json!({ "oneOf": one }),
+        Some(instead) => json!({ "anyOf": [{ "oneOf": one }, instead] }),
+    };
     let with = |name: &str| {
         json!({
             "required": ["attributes"],
@@ -42,7 +46,7 @@ fn rules_of_set() -> Vec<Value> {
     let only_with =
         |member: &str, name: &str| json!({ "if": { "required": [member] }, "then": with(name) });
     vec![
-        json!({ "oneOf": one }),
+        amount,
         only_with("scale_range", "scale"),
         only_with("variants", "variant"),
         json!({ "if": with("variant"), "then": { "required": ["variants"] } }),
@@ -61,9 +65,10 @@ fn query(groups: &'static [Group], about: &str) -> Value {
     properties.insert("layers".into(), layers);
     let of_set = of(groups::SET).map(|parameter| (parameter.name.to_owned(), nothing()));
     let of_set: Map<String, Value> = of_set.collect();
+    let preset = json!({ "required": [PRESET.name] });
     let rules_of_all = vec![json!({ "oneOf": [
         { "required": ["layers"], "properties": of_set },
-        { "properties": { "layers": nothing() }, "allOf": rules_of_set() },
+        { "properties": { "layers": nothing() }, "allOf": rules_of_set(Some(preset)) },
     ] })];
     let published = rules::of(groups);
     json!({
@@ -87,7 +92,7 @@ pub(super) fn points_query() -> Value {
 /// A query for a count.
 pub(super) fn count_query() -> Value {
     let about = "Which points: a region with one set of points, or with layers.";
-    query(groups::SET, about)
+    query(groups::COUNTED, about)
 }
 
 /// One of several sets of points.
@@ -108,7 +113,7 @@ pub(super) fn layer() -> Value {
     if let Value::Object(others) = others {
         properties.extend(others);
     }
-    let mut rules = rules_of_set();
+    let mut rules = rules_of_set(None);
     rules.push(json!({
         "if": { "required": ["clear_of"], "properties": { "clear_of": { "minProperties": 1 } } },
         "then": { "properties": { COUNT.name: nothing() } },
@@ -150,6 +155,8 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
         let mut echoed = match parameter.name {
             // Text in requests, too, but always a number in answers.
             "warp" => json!({ "type": "number" }),
+            // Described ones are known by their digests.
+            "field" => json!({ "type": "string" }),
             _ => schema(parameter.shape),
         };
         echoed["description"] = parameter.about.into();
@@ -158,6 +165,10 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
             || ["seed", "warp"].contains(&parameter.name);
         always.extend(is_always.then_some(parameter.name));
     }
+    put(
+        "field_digest",
+        json!({ "type": "string", "description": "The digest of the field, if there is one." }),
+    );
     put(
         "clear_of",
         json!({ "type": "object", "additionalProperties": { "type": "number" } }),

@@ -2,7 +2,8 @@
 //!
 //! Packed formats, pictures and Arrow stay as they are: noise does not compress. What coding an
 //! answer gets depends on nothing but `Accept-Encoding` and the content type, so that its tag
-//! (`freshness`) can be known before it is made.
+//! (`freshness`) can be known before it is made. It is chosen once: an answer with a tag carries it as
+//! [`Decided`].
 
 mod choice;
 mod encoder;
@@ -14,10 +15,14 @@ use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderValue, header};
 
-use super::freshness;
+use super::vary;
 use crate::service::{Error, Held, Lane, Service, Workers};
 pub(super) use choice::Coding;
 pub(super) use encoder::Encoder;
+
+/// The coding of an answer whose tag says it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Decided(pub(super) Option<Coding>);
 
 /// Compresses an answer as its content type and the client's headers say.
 pub(super) async fn apply(
@@ -26,27 +31,32 @@ pub(super) async fn apply(
     service: &Service,
     mut response: Response,
 ) -> Result<Response, Error> {
+    let decided = response.extensions_mut().remove::<Decided>();
     let headers = response.headers_mut();
     // Also of answers that stay plain: with other headers they would not.
-    freshness::vary(headers, "accept-encoding");
+    vary::on(headers, "accept-encoding");
     if headers.contains_key(header::CONTENT_ENCODING) {
         return Ok(response);
     }
     let content_type = headers.get(header::CONTENT_TYPE);
     let content_type = content_type.and_then(|value| value.to_str().ok());
-    let Some(coding) = content_type.and_then(|of| Coding::chosen(accept, of)) else {
+    let chosen = content_type.and_then(|of| match decided {
+        Some(Decided(coding)) => coding,
+        None => Coding::chosen(accept, of),
+    });
+    let Some(coding) = chosen else {
         return Ok(response);
     };
     let whole = http_body::Body::size_hint(response.body()).exact();
-    // Tags tell what coding an answer has; what has none may stay plain where that is shorter.
-    let is_short = response
-        .headers()
-        .get(header::CONTENT_LENGTH)
-        .and_then(|value| value.to_str().ok()?.parse::<u64>().ok())
-        .or(whole)
-        .is_some_and(|length| length < SHORT);
-    if is_short && !response.headers().contains_key(header::ETAG) {
-        return Ok(response);
+    // Without a tag, which tells the coding, an answer may stay plain: where that is shorter, and where
+    // there is no room for a compressor.
+    if decided.is_none() {
+        let length = response.headers().get(header::CONTENT_LENGTH);
+        let length = length.and_then(|value| value.to_str().ok()?.parse::<u64>().ok());
+        let is_short = length.or(whole).is_some_and(|length| length < SHORT);
+        if is_short || service.hold(coding.memory()).is_err() {
+            return Ok(response);
+        }
     }
     let (mut parts, body) = response.into_parts();
     let body = match whole {

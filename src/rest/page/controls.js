@@ -1,6 +1,7 @@
 // The tab Choose: layers, and for the one that is picked everything that makes its points.
 
 import { byId, icon, make, settled, spoken } from "./dom.js";
+import { isSent } from "./picture.js";
 import { COLOR_NAMES, LAYER, MOST_LAYERS } from "./state.js";
 import { SHAPES, SHAPE_SIGNS } from "./marks.js";
 import { allVariants, variantNames } from "./query.js";
@@ -10,10 +11,12 @@ const WARP_WORDS = { "": "As the seed asks", off: "Off", on: "On", 0.5: "Half as
 const DIE = "M5 3h14a2 2 0 0 1 2 2v14a2 2 0 0 1-2 2H5a2 2 0 0 1-2-2V5a2 2 0 0 1 2-2zM8.5 8.5h.01M15.5 8.5h.01M12 12h.01M8.5 15.5h.01M15.5 15.5h.01";
 
 export class Controls {
-  /** `profiles` is the server's list of tables. */
-  constructor(session, profiles) {
+  /** `profiles` is the server's list of tables, `fields` that of fields; `stipple` takes a picture's file. */
+  constructor(session, profiles, fields, stipple) {
     this.session = session;
     this.profiles = profiles;
+    this.fields = fields.map(({ name }) => name);
+    this.stipple = stipple;
     this.picked = 0;
     this.notes = [];
     this.root = byId("choose");
@@ -42,7 +45,7 @@ export class Controls {
     const focused = document.activeElement?.id;
     const selection = [document.activeElement?.selectionStart, document.activeElement?.selectionEnd];
     const typed = this.root.contains(document.activeElement) ? document.activeElement.value : null;
-    this.root.replaceChildren(this.layerBar(), ...this.kind(), ...this.amount(), this.shown(), this.looks());
+    this.root.replaceChildren(this.layerBar(), ...this.kind(), ...this.amount(), this.where(), this.shown(), this.looks());
     this.tell();
     const again = focused && this.root.querySelector(`#${CSS.escape(focused)}`);
     if (!again) return;
@@ -129,6 +132,28 @@ export class Controls {
     const understood = this.notes[this.picked]?.understood;
     const value = understood?.[{ spacing: "spacing", density: "density", min_distance: "least_distance" }[to]];
     return value ? String(Number(value.toPrecision(6))) : this.layer.amount;
+  }
+
+  /** Where the points are: everywhere, in a field, or as a picture is dark. */
+  where() {
+    const { layer } = this;
+    const names = isSent(layer.field) || !layer.field ? this.fields : including(this.fields, layer.field);
+    const choices = [["", "Everywhere"], ...names.map((name) => [name, name])];
+    if (isSent(layer.field)) choices.push([layer.field, "A picture that was sent"]);
+    const file = make("input", {
+      type: "file", id: "picture", accept: "image/*", hidden: true,
+      onchange: (event) => event.target.files[0] && this.stipple(event.target.files[0]),
+    });
+    const shade = make("input", {
+      type: "checkbox", id: "shade-field", checked: layer.shade,
+      onchange: (event) => this.change({ shade: event.target.checked }),
+    });
+    return make("div", { class: "group", role: "group", "aria-label": "Where" },
+      field("Field", "field", select("field", choices, layer.field, (value) => this.change({ field: value }))),
+      layer.field && make("label", { class: "check" }, shade, "Show it under the points"),
+      file,
+      make("button", { type: "button", id: "choose-picture", onclick: () => file.click() }, "Stipple a picture …"),
+      make("p", { class: "note" }, "Or drop one on the plane: dots lie where it is dark."));
   }
 
   shown() {

@@ -7,8 +7,10 @@ import { byId, icon, make, settled } from "./dom.js";
 import { Gallery } from "./gallery.js";
 import { moveBy } from "./gestures.js";
 import { parsePlace, place } from "./place.js";
+import { sendPicture, takeDrops } from "./picture.js";
 import { Plane } from "./plane.js";
 import { Session } from "./session.js";
+import { Shade } from "./shade.js";
 import { Status } from "./status.js";
 import { LAYER, initial } from "./state.js";
 import { Take } from "./take.js";
@@ -182,8 +184,10 @@ function showTab() {
 let controls = null;
 
 const [understand, take] = [new Understand(session, plane), new Take(session, plane)];
-parts.push(new Card(session, plane), understand, take);
+const shade = new Shade(plane);
+parts.push(new Card(session, plane), understand, take, shade);
 tools();
+takeDrops(byId("stage"), stipple);
 tabs();
 showTab();
 moveBy(byId("plane"), plane, {
@@ -196,6 +200,19 @@ session.on((changed) => {
   if (changed.has("layers")) refresh();
   if (changed.has("tab")) showTab();
 });
+
+/** Stipples a picture with the layer that is picked. */
+async function stipple(file) {
+  if (!controls) return;
+  try {
+    banner(`Sending “${file.name}” …`);
+    const members = await sendPicture(file, plane.view);
+    banner(null);
+    controls.change(members);
+  } catch (error) {
+    banner(error.message, [["Close", () => banner(null)]]);
+  }
+}
 
 /** A server without the profile that everybody begins with shows its first one. */
 function settle(profiles) {
@@ -218,9 +235,9 @@ function askForKey(words) {
 /** Begins as soon as the server has told which profiles it has. */
 async function begin() {
   try {
-    const { profiles } = await askJson("/v1/profiles");
+    const [{ profiles }, { fields }] = await Promise.all([askJson("/v1/profiles"), askJson("/v1/fields")]);
     settle(profiles);
-    controls = new Controls(session, profiles);
+    controls = new Controls(session, profiles, fields, stipple);
     const gallery = new Gallery(session, profiles);
     parts.push(gallery);
     gallery.opened(session.state.tab);
@@ -234,5 +251,5 @@ async function begin() {
 }
 
 // For the curious, and for tests.
-globalThis.strew = { plane, session, status, understand, take };
+globalThis.strew = { plane, shade, stipple, session, status, understand, take };
 begin();

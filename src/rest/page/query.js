@@ -20,6 +20,7 @@ export function setOf(layer, keep = 1) {
   if (layer.map) pairs.push(["map", layer.map]);
   pairs.push([layer.by, layer.amount.trim()], ["seed", layer.seed.trim()]);
   if (layer.warp !== "") pairs.push(["warp", layer.warp]);
+  if (layer.field) pairs.push(["field", layer.field]);
   if (keep < 1) pairs.push(["keep", String(keep)]);
   const attributes = attributesOf(layer);
   if (attributes.length > 0) pairs.push(["attributes", attributes.join(",")]);

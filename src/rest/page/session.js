@@ -56,7 +56,9 @@ export class Session {
   async understand(layer) {
     const query = joined(setOf(layer));
     if (!this.understood.has(query)) {
-      const { query: understood } = await askJson(`/v1/nearest?at=0,0&k=1&${query}`);
+      // In a field there may be no point for long; a box of no size has none to count.
+      const path = layer.field ? "/v1/count?bbox=0,0,1e-300,1e-300" : "/v1/nearest?at=0,0&k=1";
+      const { query: understood } = await askJson(`${path}&${query}`);
       if (this.understood.size > 200) this.understood.clear();
       this.understood.set(query, understood);
     }

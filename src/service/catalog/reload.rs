@@ -14,6 +14,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Catalog, CatalogError, Entry, Key, Source, table_files};
+use crate::{config, service::field::FieldReload};
 
 /// What reading the folder again gave.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
@@ -26,6 +27,8 @@ pub struct Reload {
     pub removed: Vec<Serving>,
     /// Files that were not taken, and why.
     pub refused: Vec<Refusal>,
+    /// The fields.
+    pub fields: FieldReload,
 }
 
 /// A table, as told to who runs the daemon.
@@ -79,8 +82,26 @@ impl Reload {
 }
 
 impl Catalog {
-    /// The catalog after reading the folder again, and what came of it.
-    pub(in crate::service) fn reload(&self, folder: Option<&Path>) -> (Self, Reload) {
+    /// The catalog after reading the folders of tables and of fields again, and what came of it.
+    pub(in crate::service) fn reload(
+        &self,
+        folder: Option<&Path>,
+        fields: &config::Fields,
+    ) -> (Self, Reload) {
+        let (after, mut reload) = self.reload_tables(folder);
+        let (fields, changes, refused) = self.fields.reload(fields);
+        reload.fields = changes;
+        reload
+            .refused
+            .extend(refused.into_iter().map(|(error, serving)| Refusal {
+                source: error.source_name.clone(),
+                detail: error.to_string(),
+                serving,
+            }));
+        (after.with_fields(fields), reload)
+    }
+
+    fn reload_tables(&self, folder: Option<&Path>) -> (Self, Reload) {
         let mut reload = Reload::default();
         let files = folder.map_or(Ok(vec![]), table_files);
         let files = match files {

@@ -69,8 +69,17 @@ pub use text::id_text;
 pub struct EncodeError(pub String);
 
 impl EncodeError {
-    fn of(error: impl fmt::Display) -> Self {
+    /// For something that has failed.
+    pub fn of(error: impl fmt::Display) -> Self {
         Self(error.to_string())
+    }
+}
+
+impl From<EncodeError> for Error {
+    /// Logs the reason, which is not for clients.
+    fn from(error: EncodeError) -> Self {
+        tracing::error!(%error);
+        Self::Internal("the answer cannot be encoded")
     }
 }
 
@@ -136,16 +145,10 @@ impl Answer {
     ) -> Result<Self, Error> {
         let coordinates = Coordinates::of(output, &parts);
         let count = parts.iter().map(|part| part.plan.count()).sum();
-        let (frame, parts) = match output.encoding.is_picture() {
-            true => {
-                let frame = Frame::new(&parts, output.size);
-                let parts = match output.encoding {
-                    Encoding::Png => frame.shown(parts)?,
-                    _ => parts,
-                };
-                (Some(frame), parts)
-            }
-            false => (None, parts),
+        let frame = Frame::new(&parts, output.size).with_dots(output.dot, &parts);
+        let parts = match output.encoding {
+            Encoding::Png => frame.shown(parts)?,
+            _ => parts,
         };
         let rows = Rows::new(parts, coordinates);
         let head = || Head::new(planned, output, count);
@@ -156,7 +159,6 @@ impl Answer {
             Encoding::Npy => (Layout::F64, Some(npy::head(&rows))),
             Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head()))),
             Encoding::Png => {
-                let frame = frame.ok_or(Error::Internal("a picture has no frame"))?;
                 return Ok(Self {
                     head: None,
                     size: None,
@@ -175,7 +177,6 @@ impl Answer {
                     let fault = Fault::new("format", "svg", detail, allowed);
                     return Err(fault.into());
                 }
-                let frame = frame.ok_or(Error::Internal("a picture has no frame"))?;
                 let format = svg::Svg::new(&rows, head(), frame, output.decimals);
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
@@ -230,10 +231,7 @@ impl Answer {
         block_bytes: usize,
     ) -> Result<Self, Error> {
         let origin = rows.coordinates().origin();
-        let writer = writer.map_err(|error| {
-            tracing::error!(%error, "an answer cannot begin");
-            Error::Internal("the format cannot be written")
-        })?;
+        let writer = writer?;
         Ok(Self {
             head: None,
             size: None,

@@ -78,6 +78,9 @@ pub struct Output {
     pub has_summary: bool,
     /// What plane coordinates are in.
     pub crs: Option<Crs>,
+    /// The diameter of dots in a picture, in spacings of points at full density; by default half of a mean
+    /// spacing.
+    pub dot: Option<f64>,
 }
 
 impl Output {
@@ -91,6 +94,7 @@ impl Output {
             size: DEFAULT_SIZE,
             has_summary: true,
             crs: None,
+            dot: None,
         }
     }
 

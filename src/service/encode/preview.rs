@@ -8,6 +8,7 @@
 use strew_core::server;
 
 use super::{
+    EncodeError,
     part::Part,
     rows::Row,
     schema::{Kind, Schema},
@@ -81,6 +82,15 @@ impl Frame {
         }
     }
 
+    /// The same with dots of another size: in spacings of the first part's points at full density.
+    pub(super) fn with_dots(mut self, dot: Option<f64>, parts: &[Part]) -> Self {
+        if let (Some(dot), Some(part)) = (dot, parts.first()) {
+            let spacing = part.plan.placement().spacing.get() * self.scale;
+            self.radius = 0.5 * dot * spacing;
+        }
+        self
+    }
+
     /// The parts to draw in place of these, so that a picture costs what it shows. Where points are so
     /// much finer than pixels that dots cover every pixel, a sparser set in the same area covers them as
     /// well.
@@ -111,10 +121,7 @@ impl Frame {
                 let fault = Fault::new("format", "png", detail, allowed);
                 return Err(fault.into());
             }
-            let plan = server::preview(&part.plan, coarse).map_err(|error| {
-                tracing::error!(%error, "a picture cannot be planned");
-                Error::Internal("the picture cannot be drawn")
-            })?;
+            let plan = server::preview(&part.plan, coarse).map_err(EncodeError::of)?;
             Ok(Part { plan, ..part })
         };
         parts.into_iter().map(shown).collect()

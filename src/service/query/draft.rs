@@ -10,14 +10,16 @@ use super::{
     Value, Values, Window, attributes,
     cursor::Token,
     faults::all,
+    field::Loaded,
     number,
     parameter::{Group, groups},
     parameters::{
-        BBOX, COUNT, CRS, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, PARTS, SEED, SIZE,
+        BBOX, COUNT, CRS, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, PARTS, PRESET, SEED, SIZE,
         SUMMARY, WARP,
     },
     region::REGION,
     table,
+    text::parse_pairs,
 };
 use crate::service::{Catalog, Encoding, Entry, Error, Fault, encode::Options};
 
@@ -78,6 +80,35 @@ impl Draft {
         self
     }
 
+    /// Takes over what a preset has and this query lacks.
+    pub fn fill_from(&mut self, preset: &Self) {
+        self.values.replace(&PRESET, None);
+        let is_layered =
+            |layers: &Checked<Vec<LayerDraft>>| !matches!(layers, Ok(layers) if layers.is_empty());
+        let groups = if is_layered(&self.layers) {
+            // They take the place of all sets of the preset.
+            groups::ANSWER
+        } else {
+            self.layers.clone_from(&preset.layers);
+            groups::QUERY
+        };
+        self.values.fill_from(&preset.values, groups);
+    }
+
+    /// Checks a part of a query, with a region and an amount of its own in place of those that it lacks.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check).
+    pub fn try_out(&self, catalog: &Catalog, most_vertices: usize) -> Result<(), Error> {
+        let missing = parse_pairs("bbox=0,0,1,1&spacing=1", groups::COUNT);
+        let mut whole = self.clone();
+        whole.region = RegionDraft::of(&missing);
+        if matches!(&self.layers, Ok(layers) if layers.is_empty()) {
+            whole.values.fill_from(&missing, groups::SET);
+        }
+        whole.check(catalog, most_vertices).map(drop)
+    }
+
     /// Checks everything against what is loaded; `most_vertices` bounds the polygons of all regions.
     ///
     /// # Errors
@@ -88,9 +119,10 @@ impl Draft {
         most_vertices: usize,
     ) -> Result<(Query, Options), Error> {
         self.check_vertices(most_vertices)?;
+        let loaded = Loaded::new(catalog);
         let sets = match &self.layers {
-            Ok(layers) if layers.is_empty() => Set::of(&self.values, catalog).map(|set| vec![set]),
-            Ok(layers) => self.layers(layers, catalog),
+            Ok(layers) if layers.is_empty() => Set::of(&self.values, &loaded).map(|set| vec![set]),
+            Ok(layers) => self.layers(layers, &loaded),
             Err(faults) => Err(faults.clone()),
         };
         let (read, region, sets, window, options) = (
@@ -110,6 +142,7 @@ impl Draft {
             sets: sets.into(),
             is_layered: !matches!(&self.layers, Ok(layers) if layers.is_empty()),
             window,
+            preset: None,
         };
         Ok((query, options))
     }
@@ -142,7 +175,7 @@ impl Draft {
         }
     }
 
-    fn layers(&self, layers: &[LayerDraft], catalog: &Catalog) -> Checked<Vec<Set>> {
+    fn layers(&self, layers: &[LayerDraft], loaded: &Loaded<'_>) -> Checked<Vec<Set>> {
         if layers.len() > MOST_LAYERS {
             let allowed = format!("at most {MOST_LAYERS} layers");
             return Err(Fault::new("layers", layers.len(), "too many layers", allowed).into());
@@ -159,7 +192,7 @@ impl Draft {
             Err::<(), _>(Fault::new(&field, text, detail, "either layers or one set").into())
         });
         let sets = layers.iter().enumerate();
-        let sets = sets.map(|(i, layer)| layer.check(&layers[..i], catalog));
+        let sets = sets.map(|(i, layer)| layer.check(&layers[..i], loaded));
         let (_, sets) = (all(beside), all(sets)).together()?;
         Ok(sets)
     }
@@ -206,7 +239,7 @@ impl LayerDraft {
     }
 
     /// Checks the layer after some others.
-    fn check(&self, before: &[Self], catalog: &Catalog) -> Checked<Set> {
+    fn check(&self, before: &[Self], loaded: &Loaded<'_>) -> Checked<Set> {
         let names: Vec<Option<&str>> = before.iter().map(Self::known_name).collect();
         let region = match &self.region {
             Ok(region) => region.as_ref().map(RegionDraft::check).transpose(),
@@ -214,7 +247,7 @@ impl LayerDraft {
         };
         let (read, set, name, region, clear_of) = (
             self.values.read(),
-            Set::of(&self.values, catalog),
+            Set::of(&self.values, loaded),
             self.name(&names),
             region,
             self.clear_of(&names),
@@ -308,16 +341,17 @@ fn written(values: &Values) -> Map<String, Json> {
 
 impl Set {
     /// Checks the set of some values.
-    fn of(values: &Values, catalog: &Catalog) -> Checked<Self> {
+    fn of(values: &Values, loaded: &Loaded<'_>) -> Checked<Self> {
         let checked = (
             Amount::of(values),
             values.get::<u64>(&SEED),
             warp(values),
             keep(values),
             attributes::check(values),
-            table::check(values, None, catalog),
+            table::check(values, None, loaded.catalog),
+            loaded.field(values),
         );
-        let (amount, seed, warp, keep, attributes, (entry, pin)) = checked.together()?;
+        let (amount, seed, warp, keep, attributes, (entry, pin), field) = checked.together()?;
         let seed = Seed(seed.unwrap_or(0));
         Ok(Self {
             path: values.path().into(),
@@ -329,6 +363,7 @@ impl Set {
             warp: warp.unwrap_or_else(|| Placement::default_warp(seed)),
             keep: keep.unwrap_or(Keep::ALL),
             attributes,
+            field,
             region: None,
             clear_of: vec![],
         })
@@ -339,7 +374,7 @@ impl Set {
     /// # Errors
     /// As [`Draft::check`].
     pub fn single(values: &Values, catalog: &Catalog) -> Result<Self, Error> {
-        let ((), set) = (values.read(), Self::of(values, catalog)).together()?;
+        let ((), set) = (values.read(), Self::of(values, &Loaded::new(catalog))).together()?;
         table::hold(&set.entry, set.pin.as_deref())?;
         Ok(set)
     }

@@ -4,7 +4,10 @@ use serde::{Serialize, Serializer, ser::SerializeMap as _};
 use serde_json::{Map, Value as Json, json};
 use strew_core::{ALGORITHM_VERSION, Spacing};
 
-use super::{Parameter, Query, QueryRegion, Set, Value, parameters::PARAMETERS};
+use super::{
+    Parameter, Query, QueryRegion, Set, Value,
+    parameters::{FIELD, PARAMETERS},
+};
 
 /// A query as answers echo it, with everything filled in.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -41,6 +44,8 @@ pub struct ResolvedSet {
     pub spacing: f64,
     /// No two points are nearer than this.
     pub least_distance: f64,
+    /// The digest of the field.
+    pub field_digest: Option<String>,
     /// The parameters that say which points, with everything filled in.
     pub values: Vec<(&'static Parameter, Value)>,
     /// The layers that are kept clear of, with the distances.
@@ -61,6 +66,9 @@ impl Serialize for ResolvedSet {
         map.serialize_entry("least_distance", &self.least_distance)?;
         for (parameter, value) in &self.values {
             map.serialize_entry(parameter.name, value)?;
+        }
+        if let Some(digest) = &self.field_digest {
+            map.serialize_entry("field_digest", digest)?;
         }
         if !self.clear_of.is_empty() {
             map.serialize_entry("clear_of", &distances(&self.clear_of))?;
@@ -95,6 +103,7 @@ impl Set {
             density,
             spacing: spacing.get(),
             least_distance,
+            field_digest: self.field.as_ref().map(|field| field.digest.clone()),
             values: self.echoes().collect(),
             clear_of: self.named_clear_of(all),
         }
@@ -121,7 +130,10 @@ impl Set {
             "amount": self.amount,
             "clear_of": distances(&self.named_clear_of(all)),
         });
-        for (parameter, value) in self.echoes() {
+        if let Some(field) = &self.field {
+            identity["field_digest"] = json!(field.digest);
+        }
+        for (parameter, value) in self.echoes().filter(|(parameter, _)| **parameter != FIELD) {
             identity[parameter.name] = json!(value);
         }
         identity

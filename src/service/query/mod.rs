@@ -11,6 +11,7 @@ mod cursor;
 mod draft;
 mod echo;
 mod faults;
+mod field;
 mod json;
 mod nearest;
 mod parameter;
@@ -26,7 +27,9 @@ mod values;
 
 use std::{fmt, sync::Arc};
 
-use strew_core::{Area, Attributes, ErrorKind, Keep, Placement, Seed, Spacing, Warp};
+use strew_core::{
+    Area, Attributes, ErrorKind, Keep, Placement, PointSet, Seed, Spacing, Table, Warp,
+};
 
 use super::{Entry, Error, Fault};
 
@@ -34,9 +37,11 @@ pub use amount::Amount;
 pub use cursor::Token;
 pub use draft::{Draft, LayerDraft, entry, options, parts};
 pub use echo::{Resolved, ResolvedSet};
-pub use faults::{Checked, Faults, Together};
+pub use faults::{Checked, Faults, Together, all};
+pub use field::SetField;
 pub use json::{RegionSchema, read_body, read_region};
 pub use nearest::Nearest;
+pub(super) use parameter::unknown;
 pub use parameter::{Group, Parameter, groups, of};
 pub use region::{QueryRegion, RegionDraft, Rings, ShapeDraft};
 pub use shape::Shape;
@@ -67,6 +72,8 @@ pub struct Query {
     pub is_layered: bool,
     /// Which of the points, in their order.
     pub window: Window,
+    /// The preset that a part of it comes from, as JSON.
+    pub preset: Option<Arc<str>>,
 }
 
 /// Which part of the points is asked for, in their order.
@@ -100,6 +107,8 @@ pub struct Set {
     pub warp: Warp,
     /// Which share of the points is kept.
     pub keep: Keep,
+    /// The field that the set is in.
+    pub field: Option<SetField>,
     /// The further values of points.
     pub attributes: Attributes,
     /// Where the layer is; everywhere if `None`.
@@ -109,10 +118,20 @@ pub struct Set {
 }
 
 impl Query {
-    /// Whether it names the digests of all of its tables, so that its answer never changes.
+    /// Whether it holds all that its answer depends on: it names the digests of all of its tables, no preset, and
+    /// no field that may change.
     #[must_use]
     pub fn is_pinned(&self) -> bool {
-        self.sets.iter().all(|set| set.pin.is_some())
+        let is_named = |field: &SetField| field.name.is_some();
+        let is_fixed = |set: &Set| set.pin.is_some() && !set.field.as_ref().is_some_and(is_named);
+        self.preset.is_none() && self.sets.iter().all(is_fixed)
+    }
+
+    /// The digests of all that its points are made of besides what it says: tables, then fields.
+    pub fn digests(&self) -> impl Iterator<Item = &str> {
+        let tables = self.sets.iter().map(|set| set.entry.digest.as_str());
+        let fields = self.sets.iter().map(|set| set.field.as_ref());
+        tables.chain(fields.map(|field| field.map_or("", |field| &field.digest)))
     }
 
     /// Whether planning it and making its points takes no longer than handing it to another
@@ -130,6 +149,9 @@ impl Query {
         let [min_x, min_y, max_x, max_y] = self.region.bbox();
         let [width, height] = [(max_x - min_x) / spacing, (max_y - min_y) / spacing];
         let is_plain = set.region.is_none() && set.clear_of.is_empty();
+        // A look at a field of many parts takes longer.
+        let is_quick = |field: &SetField| field.spec.parts() <= 4;
+        let is_plain = is_plain && set.field.as_ref().is_none_or(is_quick);
         is_plain && width * height <= 2048.0 && width.max(height) <= 128.0
     }
 }
@@ -141,6 +163,16 @@ impl Set {
         Placement::new(spacing, self.seed)
             .with_warp(self.warp)
             .with_keep(self.keep)
+    }
+
+    /// The points of a table at a spacing.
+    #[must_use]
+    pub(super) fn points(&self, table: &Table, spacing: Spacing) -> PointSet {
+        let points = PointSet::new(table.clone()).placed(self.placement(spacing));
+        match &self.field {
+            Some(field) => points.in_field(field.spec.clone()),
+            None => points,
+        }
     }
 
     /// The part of the query's region in which the layer lies.

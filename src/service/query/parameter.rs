@@ -45,6 +45,8 @@ pub enum Group {
     Amount,
     /// The number of points in the region: an amount where there is a region.
     Count,
+    /// The name of a preset.
+    Preset,
     /// The name of the profile.
     Profile,
     /// The table of the profile.
@@ -75,20 +77,26 @@ pub mod groups {
     pub const SINGLE: &[Group] = &[Amount, Profile, Table, Points, Attributes];
     /// `GET /v1/points`.
     pub const POINTS: &[Group] = &[
-        Region, Amount, Count, Profile, Table, Points, Attributes, Window, Output,
+        Region, Amount, Count, Preset, Profile, Table, Points, Attributes, Window, Output,
     ];
     /// `GET /v1/chunks/…`, whose region is in the path, and bodies, in which it is a member.
     pub const QUERY: &[Group] = &[
-        Amount, Count, Profile, Table, Points, Attributes, Window, Output,
+        Amount, Count, Preset, Profile, Table, Points, Attributes, Window, Output,
     ];
     /// `GET /v1/count`.
-    pub const COUNT: &[Group] = &[Region, Amount, Count, Profile, Table, Points, Attributes];
+    pub const COUNT: &[Group] = &[
+        Region, Amount, Count, Preset, Profile, Table, Points, Attributes,
+    ];
+    /// `POST /v1/count`.
+    pub const COUNTED: &[Group] = &[Amount, Count, Preset, Profile, Table, Points, Attributes];
     /// `GET /v1/nearest`.
     pub const NEAREST: &[Group] = &[Nearest, Amount, Profile, Table, Points, Attributes];
     /// `POST /v1/points:split`, beside the body.
     pub const SPLIT: &[Group] = &[Split];
     /// What is about one table of a profile.
     pub const TABLE: &[Group] = &[Table];
+    /// What is about an answer, and not about the points of a set.
+    pub const ANSWER: &[Group] = &[Window, Output];
     /// What the answer looks like.
     pub const OUTPUT: &[Group] = &[Output];
     /// What takes no parameters.
@@ -153,7 +161,11 @@ pub(super) fn names(groups: &'static [Group]) -> String {
 }
 
 /// Words for an unknown name, with the known one that is most like it.
-pub(super) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
+pub(in crate::service) fn unknown<'a>(
+    what: &str,
+    name: &str,
+    known: impl Iterator<Item = &'a str>,
+) -> String {
     // `minDistance` and `min-distance` are `min_distance` in other notations.
     let plain = |name: &str| name.to_lowercase().replace(['_', '-', ' '], "");
     // Longer names are nobody's slip, and cost time.

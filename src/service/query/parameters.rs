@@ -114,6 +114,17 @@ parameters! {
         example: "100",
         ..Parameter::PLAIN
     };
+    /// The name of a preset.
+    PRESET = Parameter {
+        name: "preset",
+        about: "The preset of the server's settings that everything is taken from that the query leaves \
+                open. The list of presets shows them.",
+        group: Group::Preset,
+        allowed: Some("the name of a preset"),
+        default: Some("none"),
+        example: "forest",
+        ..Parameter::PLAIN
+    };
     /// The name of the profile.
     PROFILE = Parameter {
         name: "profile",
@@ -193,6 +204,18 @@ parameters! {
         default: Some("1"),
         example: "0.5",
         echo: Some(|set| (set.keep != Keep::ALL).then(|| Value::Number(set.keep.get()))),
+        ..Parameter::PLAIN
+    };
+    /// The field that the set is in.
+    FIELD = Parameter {
+        name: "field",
+        about: "The field that thins the points out, from place to place: a share of the density, which is \
+                that where the field is 1. The list of fields shows what is loaded.",
+        group: Group::Points,
+        shape: Shape::Field,
+        default: Some("none"),
+        example: "forest",
+        echo: Some(|set| set.field.as_ref()?.echo()),
         ..Parameter::PLAIN
     };
     /// The names of the points' attributes.

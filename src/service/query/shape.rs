@@ -5,7 +5,7 @@ use std::{borrow::Cow, str::FromStr};
 use serde_json::value::RawValue;
 
 use super::{Value, json, number, value::OTHER_TYPE};
-use crate::service::Encoding;
+use crate::service::{Encoding, field::Document};
 
 /// The values that a parameter takes.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +53,8 @@ pub enum Shape {
     Quadratic,
     /// Text that matches a regular expression.
     Pattern(&'static str),
+    /// A field: a name, or in JSON also a description.
+    Field,
     /// Any text: whether it is right shows when it is looked up.
     Text,
 }
@@ -96,6 +98,9 @@ impl Shape {
                 "a decimal, a fraction or a quadratic irrational, such as (5-sqrt(3))/2".into()
             }
             Self::Pattern(pattern) => format!("text that matches {pattern}"),
+            Self::Field => {
+                "the name of a loaded field, or in JSON an object that describes one".into()
+            }
             Self::Text => "text".into(),
         }
     }
@@ -103,7 +108,10 @@ impl Shape {
     /// Whether its values are names, which begin with no sign.
     #[must_use]
     pub const fn is_of_names(self) -> bool {
-        matches!(self, Self::Names { .. } | Self::Weights | Self::Format)
+        matches!(
+            self,
+            Self::Names { .. } | Self::Weights | Self::Format | Self::Field
+        )
     }
 
     /// Reads a value from text.
@@ -132,6 +140,7 @@ impl Shape {
                 Value::Names(text.split(',').map(|name| name.trim().into()).collect())
             }
             Self::Weights => Value::Weights(weights(text)?),
+            Self::Field => Value::Field(Document::Name(text.into()).into()),
             Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text => {
                 Value::Text(text.into())
             }
@@ -176,6 +185,7 @@ impl Shape {
                 Value::Names(names.map_err(|_| "must be an array of names")?)
             }
             (Self::Weights, _) => Value::Weights(json::weights(json)?),
+            (Self::Field, _) => return Err("must be a name".into()),
             (Self::Quadratic, _) if is_number => Value::Text(json.get().into()),
             (Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text, _) => {
                 return Err("must be text".into());
@@ -246,6 +256,7 @@ impl Shape {
             }
             (Self::Switch, Value::Switch(_))
             | (Self::Names { .. }, Value::Names(_))
+            | (Self::Field, Value::Field(_))
             | (Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text, Value::Text(_)) => {
                 Ok(value)
             }

@@ -1,8 +1,11 @@
 //! The values of parameters, whichever way they came, and how they are written.
 
+use std::sync::Arc;
+
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
 
 use super::number;
+use crate::service::field::Document;
 
 /// A value of a parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +26,8 @@ pub enum Value {
     Weights(Vec<(String, f64)>),
     /// Text.
     Text(String),
+    /// A field.
+    Field(Arc<Document>),
 }
 
 /// What is wrong with a value that is not of the shape's type: only programs can make one.
@@ -45,6 +50,10 @@ impl Value {
                 listed(pairs.iter().map(pair).collect())
             }
             Self::Text(text) => text.clone(),
+            Self::Field(field) => match &**field {
+                Document::Name(name) => name.clone(),
+                field => serde_json::to_string(field).unwrap_or_default(),
+            },
         }
     }
 }
@@ -74,6 +83,7 @@ read_as! {
     Names as Vec<String>;
     Weights as Vec<(String, f64)>;
     Text as String;
+    Field as Arc<Document>;
 }
 
 impl<const N: usize> TryFrom<&Value> for [f64; N] {
@@ -102,6 +112,10 @@ impl Serialize for Value {
                 map.end()
             }
             Self::Text(text) => text.serialize(serializer),
+            Self::Field(field) => match &**field {
+                Document::Name(name) => name.serialize(serializer),
+                field => field.serialize(serializer),
+            },
         }
     }
 }

@@ -5,10 +5,10 @@ use std::borrow::Cow;
 use serde_json::value::RawValue;
 
 use super::{
-    Checked, Faults, Parameter, Value,
+    Checked, Faults, Parameter, Shape, Value,
     parameter::{self, Group, names, unknown},
 };
-use crate::service::Fault;
+use crate::service::{Fault, field};
 
 /// The values of parameters, each read or with its fault in its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,7 +51,7 @@ impl Values {
             return;
         };
         let value = parameter.shape.read(text);
-        let fault = |detail| self.described(parameter, text, detail);
+        let fault = |detail| self.described(parameter, text, detail).into();
         self.add(parameter, value.map_err(fault), || text.into());
     }
 
@@ -60,6 +60,13 @@ impl Values {
         let Some(parameter) = self.parameter("member", name, || shown(json).into()) else {
             return;
         };
+        // Faults of a field have paths of their own.
+        if let Shape::Field = parameter.shape {
+            let path = format!("{}{name}", self.path);
+            let field = field::read_json(&path, json.get());
+            let value = field.map(|field| Value::Field(field.into()));
+            return self.add(parameter, value, || shown(json).into());
+        }
         let value = parameter.shape.read_json(json);
         let fault = |detail: Cow<'static, str>| {
             // Some programs write what they leave open.
@@ -67,7 +74,7 @@ impl Values {
                 "null" => format!("{detail}; leave the member out for its default").into(),
                 _ => detail,
             };
-            self.described(parameter, shown(json), detail)
+            self.described(parameter, shown(json), detail).into()
         };
         self.add(parameter, value.map_err(fault), || shown(json).into());
     }
@@ -85,7 +92,7 @@ impl Values {
             ));
         }
         let checked = parameter.shape.check(value.clone());
-        let fault = |detail| self.described(parameter, &value.to_text(), detail);
+        let fault = |detail| self.described(parameter, &value.to_text(), detail).into();
         self.add(parameter, checked.map_err(fault), || value.to_text());
     }
 
@@ -124,11 +131,11 @@ impl Values {
     fn add(
         &mut self,
         parameter: &'static Parameter,
-        value: Result<Value, Fault>,
+        value: Checked<Value>,
         text: impl FnOnce() -> String,
     ) {
         let Some((_, first)) = self.given.iter().find(|(known, _)| *known == parameter) else {
-            self.given.push((parameter, value.map_err(Into::into)));
+            self.given.push((parameter, value));
             return;
         };
         let first = match first {
@@ -233,10 +240,16 @@ impl Values {
         self.given.extend(value);
     }
 
-    /// Takes over the values that others have and these lack.
-    pub fn fill_from(&mut self, others: &Self) {
+    /// Takes over the values of some groups that others have and these lack. Of amounts there is one.
+    pub fn fill_from(&mut self, others: &Self, groups: &[Group]) {
+        let is_amount =
+            |parameter: &Parameter| [Group::Amount, Group::Count].contains(&parameter.group);
+        let has_amount = self.given.iter().any(|(parameter, _)| is_amount(parameter));
         for (parameter, value) in &others.given {
-            if !self.has(parameter) {
+            let is_wanted =
+                self.groups.contains(&parameter.group) && groups.contains(&parameter.group);
+            let is_second = has_amount && is_amount(parameter);
+            if is_wanted && !is_second && !self.has(parameter) {
                 self.given.push((parameter, value.clone()));
             }
         }

@@ -3,6 +3,7 @@
 //! flags and full disks lead to.
 
 mod config;
+mod fields;
 mod forge;
 mod full_disk;
 mod invalid_flags;

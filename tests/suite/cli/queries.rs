@@ -80,7 +80,15 @@ fn path_of(query: &str) -> String {
 fn the_flags_are_the_parameters_of_rest() {
     let golden = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/openapi.json");
     let document = read(&std::fs::read(golden).expect("there"));
-    let own = ["help", "config", "listen", "tables", "set"];
+    let own = [
+        "help",
+        "config",
+        "listen",
+        "tables",
+        "set",
+        "raster",
+        "raster-bbox",
+    ];
     let query = ["query", "region", "chunk"];
     for (command, path, more) in [
         ("sample", "/v1/points", &["output", "quiet"][..]),

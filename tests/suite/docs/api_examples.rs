@@ -1,4 +1,4 @@
-//! The examples of docs/api.md and README.md run against a daemon and must print what the documents show.
+//! The examples of docs/api.md, docs/fields.md and README.md run against a daemon and must print what the documents show.
 //!
 //! An example is a fenced `sh` block that begins with `curl`, `grpcurl` or `strew`, and the block right
 //! after it shows its output; or a `console` block of `$ `, such a command and its output. In an output a
@@ -9,7 +9,7 @@ use std::{path::Path, process::Command};
 
 use crate::support::{
     clients,
-    daemon::{Daemon, strew},
+    daemon::{Daemon, no_tables, strew},
 };
 
 /// The daemon's address in the documents.
@@ -112,13 +112,17 @@ fn examples(lines: &[String]) -> Vec<Example> {
     for (i, block) in blocks.iter().enumerate() {
         if block.language == "console" {
             examples.extend(dialogue(lines, block));
-        } else if block.language == "sh" {
+        } else if ["sh", "python"].contains(&&*block.language) {
             let next = blocks.get(i + 1).filter(|next| {
                 let between = &lines[block.end + 1..next.first - 1];
                 next.language != "sh" && between.iter().all(String::is_empty)
             });
+            let text = lines[block.first..block.end].join("\n");
             examples.push(Example {
-                script: lines[block.first..block.end].join("\n"),
+                script: match &*block.language {
+                    "python" => format!("python3 - <<'END'\n{text}\nEND"),
+                    _ => text,
+                },
                 shown: next.map_or(block.end..block.end, |next| next.first..next.end),
             });
         }
@@ -126,8 +130,8 @@ fn examples(lines: &[String]) -> Vec<Example> {
     examples.retain(|example| {
         let program = example.script.split(' ').next().unwrap_or_default();
         match program {
-            "curl" | "grpcurl" => clients::find(program).is_some(),
-            other => other == "strew",
+            "curl" | "grpcurl" | "python3" => clients::find(program).is_some(),
+            other => ["strew", "for"].contains(&other),
         }
     });
     examples
@@ -160,7 +164,11 @@ fn dialogue(lines: &[String], block: &Block) -> Vec<Example> {
 /// Fails unless the examples of a document print what it shows.
 fn check(name: &str) {
     let folder = tempfile::tempdir().expect("a folder");
-    let daemon = Daemon::built_in();
+    check_in(name, folder.path(), &Daemon::built_in());
+}
+
+/// The same with a folder and a daemon that the examples find.
+fn check_in(name: &str, folder: &Path, daemon: &Daemon) {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
     let text = std::fs::read_to_string(&file).expect("readable");
     let lines: Vec<String> = text.lines().map(Into::into).collect();
@@ -168,7 +176,7 @@ fn check(name: &str) {
     let mut copied = 0;
     let mut differences = vec![];
     for Example { script, shown } in examples(&lines) {
-        let printed = run(&script, &daemon, folder.path());
+        let printed = run(&script, daemon, folder);
         let now = shortened(&printed, &lines[shown.clone()]);
         if now != lines[shown.clone()] {
             let (now, shown) = (now.join("\n"), lines[shown.clone()].join("\n"));
@@ -199,4 +207,34 @@ fn the_api_document_shows_what_its_examples_print() {
 #[test]
 fn the_readme_shows_what_its_examples_print() {
     check("README.md");
+}
+
+#[test]
+fn the_page_on_fields_shows_what_its_examples_print_and_draw() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let copied = folder.path().join("docs/fields");
+    std::fs::create_dir_all(&copied).expect("writable");
+    for entry in std::fs::read_dir(root.join("docs/fields")).expect("readable") {
+        let path = entry.expect("readable").path();
+        std::fs::copy(&path, copied.join(path.file_name().expect("a file"))).expect("copied");
+    }
+    let setting = format!("fields.folder={}", copied.display());
+    let daemon = Daemon::with_tables(no_tables(), &[&setting]);
+    check_in("docs/fields.md", folder.path(), &daemon);
+    for name in ["valley.png", "woods.png", "clearing.png", "hills.png"] {
+        let drawn = std::fs::read(folder.path().join(name));
+        let kept = root.join("docs/pictures/fields").join(name);
+        match drawn {
+            Ok(drawn) if std::env::var_os("UPDATE_GOLDEN").is_some() => {
+                std::fs::write(kept, drawn).expect("writable");
+            }
+            Ok(drawn) => assert!(
+                std::fs::read(kept).is_ok_and(|kept| kept == drawn),
+                "{name}"
+            ),
+            // Its example takes a program that is not installed.
+            Err(_) => {}
+        }
+    }
 }

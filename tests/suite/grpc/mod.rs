@@ -6,6 +6,7 @@
 mod calls;
 mod discovery;
 mod encodings;
+mod fields;
 mod invalid_queries;
 mod invalid_requests;
 mod python;

@@ -103,10 +103,10 @@ async fn answers_that_nobody_takes_are_closed_although_their_connections_are_bus
                 return;
             }
             for (client, _) in &mut held {
-                let request = http::Request::get(daemon.url("/livez")).body(());
-                // One request after the other is reset as soon as it is sent.
-                if let Ok((_, mut sent)) = client.send_request(request.expect("valid"), false) {
-                    sent.send_reset(h2::Reason::CANCEL);
+                // One request after the other is answered. (Resets would be counted.)
+                let request = http::Request::head(daemon.url("/livez")).body(());
+                if let Ok((answer, _)) = client.send_request(request.expect("valid"), true) {
+                    let _ = answer.await;
                 }
             }
             others_are_served(&daemon);
@@ -166,6 +166,8 @@ async fn all_attacks_together_stay_within_the_documented_memory() {
         "limits.max_requests=5000",
     ]);
     others_are_served(&daemon);
+    // Of the 48 MiB of the documented bound the program takes 32; without optimization it is larger.
+    let program = (daemon.memory_kib("VmRSS") + (16 << 10)) << 10;
     let mut connections = 0;
     let pages = hold(&daemon, 10, "/openapi.json", ("accept-encoding", "zstd")).await;
     let drawings = "/v1/profiles/blue/spectrum.svg";
@@ -197,11 +199,16 @@ async fn all_attacks_together_stay_within_the_documented_memory() {
         let _ = stream.read(&mut [0; 12]);
     }
     connections += unread.len();
-    let bound = (LIMIT + CACHE) * 115 / 100 + (32 << 20) + (24 << 10) * connections as u64;
+    let bound = (LIMIT + CACHE) * 115 / 100 + program + (32 << 10) * connections as u64;
     let peak = daemon.memory_kib("VmHWM") << 10;
     println!("all attacks: {peak} bytes, documented {bound}");
     assert!(peak < bound, "{peak} bytes, documented {bound}");
-    assert_eq!(daemon.get("/livez").status, 200);
+    // Nothing is left, but for health checks and metrics.
+    for path in ["/livez", "/readyz", "/metrics"] {
+        let answer = http1::get(daemon.address(), path, &[("accept-encoding", "gzip")]);
+        assert_eq!(answer.status, 200, "{path}: {}", answer.text());
+    }
+    assert_eq!(daemon.get(SMALL).status, 503);
     drop((pages, drawings, checks, unread));
 }
 
@@ -386,7 +393,7 @@ async fn unfinished_health_checks_hold_little() {
     others_are_served(&daemon);
     let grown = grown(&daemon, before);
     println!("20 x 99 unfinished health checks: {grown} KiB");
-    assert!(grown < 32 << 10, "{grown} KiB");
+    assert!(grown < 14 << 10, "{grown} KiB");
 }
 
 #[tokio::test(flavor = "multi_thread")]

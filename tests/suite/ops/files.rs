@@ -2,9 +2,12 @@
 
 use std::{path::Path, process::Command, time::Instant};
 
-use strew_testkit::wait::{PATIENCE, until};
+use strew_testkit::{
+    daemon::Launcher,
+    wait::{PATIENCE, until},
+};
 
-use crate::support::daemon::Daemon;
+use crate::support::daemon::{Daemon, PROGRAM};
 
 fn pipe(path: &Path) {
     let made = Command::new("mkfifo").arg(path).status();
@@ -27,6 +30,26 @@ fn pipes_and_devices_among_the_tables_are_refused_and_the_daemon_stops() {
     daemon.signal("-TERM");
     until("it stops", || daemon.ended());
     assert!(start.elapsed() < PATIENCE / 2);
+}
+
+#[test]
+fn a_pipe_in_the_place_of_keys_or_certificates_is_refused_at_the_start() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("pipe");
+    pipe(&file);
+    let file = file.display();
+    let tls = format!("tls.certificate={file}");
+    for settings in [
+        vec![format!("access.keys_file={file}")],
+        vec![tls, format!("tls.key={file}")],
+    ] {
+        let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+        let started = Launcher::new(PROGRAM).settings(&settings).start();
+        let refused = started.err().expect("refused").to_string();
+        for words in ["exit status: 2", "not a regular file"] {
+            assert!(refused.contains(words), "no `{words}`: {refused}");
+        }
+    }
 }
 
 #[test]

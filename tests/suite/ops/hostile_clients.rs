@@ -2,7 +2,7 @@
 //! readers that never read. Memory stays bounded, others are served, and everything is freed.
 
 use std::{
-    io::Write as _,
+    io::{Read as _, Write as _},
     net::TcpStream,
     time::{Duration, Instant},
 };
@@ -86,6 +86,46 @@ fn ten_thousand_idle_connections_take_little_memory_and_others_are_served() {
         (daemon.open_files() < 100).then_some(())
     });
     assert_eq!(daemon.get(SMALL).status, 200);
+}
+
+/// Connections that send bodies of 1 MB without the last `missing` bytes, each as fast as it can.
+fn bodies(daemon: &Daemon, connections: usize, missing: usize) -> Vec<TcpStream> {
+    let body = vec![b' '; 1_000_000 - missing];
+    let head = "POST /v1/count HTTP/1.1\r\nhost: x\r\ncontent-length: 1000000\r\n\r\n";
+    let send = |_| {
+        let mut stream = TcpStream::connect(daemon.address()).expect("connected");
+        stream.write_all(head.as_bytes()).expect("sent");
+        stream.write_all(&body).expect("sent");
+        stream
+    };
+    (0..connections).map(send).collect()
+}
+
+#[test]
+fn bodies_take_their_length_and_leave_nothing_to_their_connections() {
+    let daemon = Daemon::start(&[]);
+    let answered = || {
+        let mut stream = bodies(&daemon, 1, 0).remove(0);
+        let mut head = [0; 12];
+        stream.read_exact(&mut head).expect("a status");
+        assert_eq!(&head[9..], b"400");
+        stream
+    };
+    // What the first ones load of the program stays.
+    let mut open: Vec<_> = (0..10).map(|_| answered()).collect();
+    let before = daemon.memory_kib("VmRSS");
+    open.extend((0..100).map(|_| answered()));
+    let grown = daemon.memory_kib("VmRSS").saturating_sub(before);
+    println!("100 connections that sent 1 MB: {grown} KiB");
+    assert!(grown < 100 * 128, "{grown} KiB");
+    let waiting = bodies(&daemon, 50, 1);
+    until("all have come", || {
+        (daemon.cpu_ticks_over(Duration::from_millis(100)) == 0).then_some(())
+    });
+    let peak = daemon.memory_kib("VmHWM").saturating_sub(before);
+    println!("50 bodies of 1 MB that wait: {peak} KiB at most");
+    assert!(peak < 75_000 + 100 * 128, "{peak} KiB");
+    drop((open, waiting));
 }
 
 #[test]

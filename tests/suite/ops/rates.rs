@@ -78,10 +78,38 @@ fn points_that_are_thinned_out_are_charged() {
     assert_eq!(thinned.status, 200, "{}", thinned.text());
     let count: u64 = thinned.header("strew-count").parse().expect("a number");
     assert!((10..90).contains(&count), "{count}");
-    assert_eq!(left(&thinned), 1000 - 1 - 10 * count);
-    // A few of a million.
-    let few = "/v1/points?bbox=0,0,1000,1000&density=1&profile=test&keep=1e-5&format=csv";
-    assert_eq!(daemon.get(few).status, 429);
+    assert!((300..=400).contains(&(999 - left(&thinned))));
+    // About ten of a million, and the first of a billion.
+    for few in [
+        "bbox=0,0,1000,1000&keep=1e-5",
+        "bbox=0,0,3e4,3e4&keep=1e-6&limit=50",
+    ] {
+        let few = format!("/v1/points?{few}&density=1&profile=test&format=csv");
+        let refused = daemon.get(&few);
+        assert_eq!(refused.status, 429, "{few}: {}", refused.text());
+    }
+    let near = "/v1/nearest?at=0,0&k=10&density=1&profile=test&keep=0.1";
+    let before = left(&daemon.get("/v1/profiles"));
+    let found = daemon.get(near);
+    assert_eq!(found.status, 200, "{}", found.text());
+    assert_eq!(left(&found), before - 1 - 100);
+}
+
+#[test]
+fn rows_that_are_counted_one_by_one_are_charged() {
+    let daemon = Daemon::start(&[SLOW, "rate.burst_points=20000"]);
+    let count = "/v1/count?circle=0,0,1e4&density=1&profile=test";
+    let first = daemon.get(count);
+    assert_eq!(first.status, 200, "{}", first.text());
+    assert!((1000..19_000).contains(&left(&first)), "{}", left(&first));
+    until("the rate is exceeded", || {
+        (daemon.get(count).status == 429).then_some(())
+    });
+    // What is refused for its size costs the request only.
+    let before = left(&daemon.get("/v1/profiles"));
+    let large = daemon.get("/v1/count?circle=0,0,1e8&density=1&profile=test");
+    assert_eq!(large.status, 413, "{}", large.text());
+    assert_eq!(left(&large), before - 1);
 }
 
 #[test]

@@ -217,6 +217,37 @@ async fn a_stalled_stream_ends_although_its_connection_lives() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn a_reader_that_is_too_slow_is_broken_off_although_its_socket_never_is_full() {
+    let daemon = Daemon::start(&[
+        "server.stalled_reader_seconds=1",
+        "server.min_bytes_per_second=1e9",
+    ]);
+    let stream = tokio::net::TcpStream::connect(daemon.address()).await;
+    let (mut client, connection) = h2::client::Builder::new()
+        .initial_window_size(1000)
+        .handshake::<_, bytes::Bytes>(stream.expect("connected"))
+        .await
+        .expect("HTTP/2");
+    tokio::spawn(connection);
+    let request = http::Request::get(daemon.url(&long("f32"))).body(());
+    let (answer, _) = client
+        .send_request(request.expect("valid"), true)
+        .expect("sent");
+    let mut body = answer.await.expect("an answer").into_body();
+    let broken = async {
+        loop {
+            let data = match body.data().await.expect("more") {
+                Ok(data) => data,
+                Err(error) => return error,
+            };
+            let _ = body.flow_control().release_capacity(data.len());
+        }
+    };
+    let broken = tokio::time::timeout(PATIENCE, broken).await;
+    assert!(broken.expect("in time").is_reset());
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn a_connection_without_a_window_is_closed() {
     let daemon = Daemon::start(&["server.stalled_reader_seconds=0.5"]);
     let stream = tokio::net::TcpStream::connect(daemon.address()).await;

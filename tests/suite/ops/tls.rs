@@ -350,3 +350,23 @@ fn listening_on_the_network_without_tls_warns() {
     let text = warned(&format!("0.0.0.0:{port}"), &tls);
     assert!(!text.contains("without TLS"), "{text}");
 }
+
+#[test]
+fn an_expired_certificate_warns() {
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = taken.local_addr().expect("an address").to_string();
+    let folder = tempfile::tempdir().expect("a folder");
+    let files = ["certificate=server.pem", "key=server.key"]
+        .map(|file| file.replace('=', &format!("={}/", folder.path().display())))
+        .map(|file| format!("tls.{file}"));
+    let authority = Authority::new();
+    for (issued, is_expired) in [
+        (authority.issue_expired_server(), true),
+        (authority.issue_server(), false),
+    ] {
+        issued.write_server(folder.path());
+        let text = warned(&address, &files);
+        let is_warned = text.contains("WARN") && text.contains("the certificate expired");
+        assert_eq!(is_warned, is_expired, "{text}");
+    }
+}

@@ -56,7 +56,10 @@ fn every_control_changes_the_points_and_the_url() {
     let alone = browser.ready();
     browser.click("#add-layer");
     browser.until("location.hash.includes('layers=2')");
-    assert!(browser.ready() > alone);
+    let more = format!("Number(document.documentElement.dataset.count) > {alone}");
+    browser.until(&format!(
+        "document.documentElement.dataset.state === 'ready' && {more}"
+    ));
     let both = browser.ready();
     chosen(&browser, "#clear", "0.3");
     assert!(browser.ready() < both);

@@ -4,4 +4,5 @@
 
 mod controls;
 mod export;
+mod fields;
 mod view;

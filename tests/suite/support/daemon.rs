@@ -69,6 +69,14 @@ impl Daemon {
         Self::launch(quiet().settings(settings), tables).expect("ready")
     }
 
+    /// Starts one with the test tables and a file of settings.
+    pub fn with_config(text: &str) -> Self {
+        let folder = tables();
+        let file = folder.path().join("strew.toml");
+        std::fs::write(&file, text).expect("writable");
+        Self::launch(quiet().config(&file), folder).expect("ready")
+    }
+
     /// Starts one with the test tables and the default log.
     pub fn with_log(settings: &[&str]) -> Self {
         Self::launch(Launcher::new(PROGRAM).settings(settings), tables()).expect("ready")

@@ -19,7 +19,7 @@
 //! `displacement` has the [`Table`], made of the `parts` that a `file` holds; `units` the fixed point,
 //! `provenance` the history, `digest` the name, `text` the published text form. `ranks` is the order in which
 //! blocks leave when a set is thinned, `ladder` the displacements of those that are left. `symmetry` has the
-//! ways to turn all of these, `shipped` the tables built into this crate.
+//! ways to turn all of these, `turned` a table that is turned, `shipped` the tables built into this crate.
 
 mod digest;
 mod displacement;
@@ -32,6 +32,7 @@ mod ranks;
 pub(crate) mod shipped;
 mod symmetry;
 mod text;
+mod turned;
 mod units;
 
 pub use digest::Digest;
@@ -44,6 +45,7 @@ pub use ranks::Ranks;
 pub(crate) use ranks::{Cut, Order};
 #[cfg(feature = "tables")]
 pub use shipped::BLUE;
-pub(crate) use symmetry::{Symmetry, TurnedTable};
+pub(crate) use symmetry::Symmetry;
+pub(crate) use turned::TurnedTable;
 pub(crate) use units::fixed;
 pub use units::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, from_grid_units, to_grid_units};

@@ -1,4 +1,4 @@
-//! Turned tables: the vectors under the symmetries of the square.
+//! The symmetries of the square, and the copies of a table that are turned by them.
 //!
 //! The thresholds of a map are symmetric: a neighbor shift s and its opposite mirror each other about the
 //! middle of the set region. Reflecting the plane along an axis therefore reverses the order of the blocks of
@@ -9,7 +9,7 @@
 
 use alloc::{sync::Arc, vec::Vec};
 
-use super::{Displacement, Ladder, Order, Rung, Table, ladder::Stage};
+use super::{Displacement, Order};
 use crate::once::Once;
 
 /// A symmetry of the square: an exchange of the axes, if any, and then reflections along x and y.
@@ -47,7 +47,7 @@ impl Symmetry {
 
     /// The vector of the table that is this one, turned.
     #[inline(always)]
-    fn unturn(self, [x, y]: Displacement) -> Displacement {
+    pub(super) fn unturn(self, [x, y]: Displacement) -> Displacement {
         let signed = |v: i32, is_reversed: bool| if is_reversed { -v } else { v };
         let [x, y] = [
             signed(x, self.is_reversed[0]),
@@ -58,7 +58,7 @@ impl Symmetry {
 
     /// A vector of the table, turned.
     #[inline(always)]
-    fn turn(self, [x, y]: Displacement) -> Displacement {
+    pub(super) fn turn(self, [x, y]: Displacement) -> Displacement {
         let [x, y] = if self.is_swapped { [y, x] } else { [x, y] };
         let signed = |v: i32, is_reversed: bool| if is_reversed { -v } else { v };
         [
@@ -68,21 +68,25 @@ impl Symmetry {
     }
 }
 
-/// The vectors of a table and the order of its blocks under a symmetry.
-#[derive(Clone, Debug)]
-pub(crate) struct TurnedTable {
-    /// `None` for the table's own.
-    turned: Option<Arc<Turned>>,
-    table: Table,
-    symmetry: Symmetry,
-    /// The least and the greatest displacement along x and y.
-    reach: [[i32; 2]; 2],
+/// The vectors of a table and the order of its blocks, turned.
+#[derive(Debug)]
+pub(super) struct Turned {
+    pub(super) vectors: Vec<Displacement>,
+    pub(super) order: Order,
 }
 
-#[derive(Debug)]
-struct Turned {
-    vectors: Vec<Displacement>,
-    order: Order,
+impl Turned {
+    fn new(symmetry: Symmetry, n: usize, vectors: &[Displacement], order: &Order) -> Self {
+        let source = |block: usize| {
+            let [x, y] = symmetry.source(n, [block % n, block / n]);
+            y * n + x
+        };
+        let vector = |block| symmetry.turn(vectors[source(block)]);
+        Self {
+            vectors: (0..n * n).map(vector).collect(),
+            order: order.turned(source),
+        }
+    }
 }
 
 /// The turned copies of a table, made when they are first needed.
@@ -96,87 +100,18 @@ impl TurnedCopies {
     pub(super) const fn new() -> Self {
         Self([const { Once::new() }; ALL])
     }
-}
 
-impl TurnedTable {
-    pub(crate) fn new(table: &Table, symmetry: Symmetry) -> Self {
-        let (n, vectors) = (table.map().intervals(), table.displacements());
-        let turned = (symmetry != Symmetry::default()).then(|| {
-            table.turned().0[symmetry.number()].get_or(|| {
-                let source = |block: usize| {
-                    let [x, y] = symmetry.source(n, [block % n, block / n]);
-                    y * n + x
-                };
-                let vector = |block| symmetry.turn(vectors[source(block)]);
-                Arc::new(Turned {
-                    vectors: (0..n * n).map(vector).collect(),
-                    order: table.order().turned(source),
-                })
-            })
-        });
-        let [x, y] = table.reach();
-        let ends = [0, 1].map(|end| symmetry.turn([x[end], y[end]]));
-        Self {
-            turned,
-            table: table.clone(),
-            symmetry,
-            reach: [0, 1].map(|axis| {
-                let [a, b] = ends.map(|end| end[axis]);
-                [a.min(b), a.max(b)]
-            }),
-        }
-    }
-
-    /// The vectors of all blocks with one interval of dY.
-    #[inline]
-    pub(crate) fn row(&self, block_y: usize) -> &[Displacement] {
-        let all = match &self.turned {
-            Some(turned) => &turned.vectors,
-            None => self.table.displacements(),
-        };
-        let n = self.table.map().intervals();
-        &all[block_y * n..][..n]
-    }
-
-    /// The order in which blocks leave.
-    #[inline]
-    pub(crate) fn order(&self) -> &Order {
-        match &self.turned {
-            Some(turned) => &turned.order,
-            None => self.table.order(),
-        }
-    }
-
-    /// The displacement of the block at a position of the order, at a stage of the table's ladder.
-    #[inline]
-    pub(crate) fn moved(&self, ladder: &Ladder, stage: Stage, position: usize) -> Displacement {
-        let full = self.table.displacements()[self.table.order().block(position)];
-        self.symmetry
-            .turn(ladder.displacement(stage, position, full))
-    }
-
-    /// The same for a block whose displacement in the full set and whose [rungs](Ladder::rungs) are known.
-    #[inline(always)]
-    pub(crate) fn moved_from(
+    /// The copy for a symmetry, of the vectors and the order of a map of `n` intervals; `None` for the table
+    /// as it is.
+    pub(super) fn get(
         &self,
-        ladder: &Ladder,
-        (stage, rungs): (Stage, Option<[Rung; 2]>),
-        position: usize,
-        full: Displacement,
-    ) -> Displacement {
-        let full = self.symmetry.unturn(full);
-        self.symmetry
-            .turn(ladder.displacement_by(stage, rungs, position, full))
-    }
-
-    /// The table as it is.
-    pub(crate) const fn table(&self) -> &Table {
-        &self.table
-    }
-
-    /// The least and the greatest displacement along x and y.
-    pub(crate) const fn reach(&self) -> [[i32; 2]; 2] {
-        self.reach
+        symmetry: Symmetry,
+        n: usize,
+        vectors: &[Displacement],
+        order: &Order,
+    ) -> Option<Arc<Turned>> {
+        let make = || Arc::new(Turned::new(symmetry, n, vectors, order));
+        (symmetry != Symmetry::default()).then(|| self.0[symmetry.number()].get_or(make))
     }
 }
 
@@ -211,25 +146,6 @@ mod tests {
             // Turning a place and turning its block agree.
             let [x, y] = a.source(5, [3, 1]).map(|v| v as i32 - 2);
             assert_eq!(a.turn([x, y]), [1, -1]);
-        }
-    }
-
-    #[test]
-    fn a_turned_table_reaches_as_far() {
-        let map = Map::new("sqrt(3)".parse().expect("valid"), 9).expect("small");
-        let n = map.intervals() as i32;
-        let vectors = (0..n * n).map(|i| [i * 37 % 101 - 20, i * 53 % 89 - 70]);
-        let table = Table::new(map, "test", vectors.collect(), Default::default()).expect("valid");
-        for bits in 0..8 {
-            let vectors = TurnedTable::new(&table, Symmetry::from_bits(bits));
-            let all = (0..n as usize).flat_map(|row| vectors.row(row));
-            let mut reach = [[i32::MAX, i32::MIN]; 2];
-            for v in all {
-                for axis in 0..2 {
-                    reach[axis] = [reach[axis][0].min(v[axis]), reach[axis][1].max(v[axis])];
-                }
-            }
-            assert_eq!(reach, vectors.reach());
         }
     }
 }

@@ -59,6 +59,12 @@ impl Launcher {
         self
     }
 
+    /// Adds a file of settings.
+    pub fn config(mut self, file: &Path) -> Self {
+        self.command.arg("--config").arg(file);
+        self
+    }
+
     /// Adds settings, each as `key=value`. The last one of a key wins.
     pub fn settings(mut self, settings: &[&str]) -> Self {
         for setting in settings {
@@ -91,7 +97,7 @@ impl Launcher {
         let process = Process { child, log };
         let line = output.next("");
         let Some(address) = line.as_deref().and_then(address_in) else {
-            return Err(process.not_ready(line));
+            return Err(process.not_ready(line, output.is_closed()));
         };
         Ok(Daemon {
             process,
@@ -143,9 +149,9 @@ struct Process {
 }
 
 impl Process {
-    fn not_ready(mut self, line: Option<String>) -> NotReady {
+    fn not_ready(mut self, line: Option<String>, has_ended: bool) -> NotReady {
         // One that printed nothing closed its output, and ends by itself.
-        if line.is_some() {
+        if line.is_some() || !has_ended {
             let _ = self.child.kill();
         }
         NotReady {
@@ -253,12 +259,22 @@ impl Daemon {
 
     /// The processor time used so far, in clock ticks (usually hundredths of a second).
     pub fn cpu_ticks(&self) -> u64 {
-        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.pid())).expect("Linux");
-        // The name of the program, in parentheses, may contain spaces.
-        let (_, fields) = stat.rsplit_once(')').expect("a name");
-        let user_and_system = fields.split_whitespace().skip(11).take(2);
-        user_and_system
-            .map(|ticks| ticks.parse::<u64>().expect("a number"))
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.pid()));
+        ticks(&stat.expect("Linux")).1
+    }
+
+    /// The processor time used so far by the threads whose names begin with `name`, in clock ticks.
+    pub fn cpu_ticks_of_threads(&self, name: &str) -> u64 {
+        let threads = std::fs::read_dir(format!("/proc/{}/task", self.pid())).expect("Linux");
+        let stats = threads.filter_map(|thread| {
+            // A thread may have ended meanwhile.
+            std::fs::read_to_string(thread.ok()?.path().join("stat")).ok()
+        });
+        stats
+            .filter_map(|stat| {
+                let (thread, ticks) = ticks(&stat);
+                thread.starts_with(name).then_some(ticks)
+            })
             .sum()
     }
 
@@ -267,6 +283,16 @@ impl Daemon {
         let folder = format!("/proc/{}/fd", self.pid());
         std::fs::read_dir(folder).expect("Linux").count()
     }
+}
+
+/// The name of a process or thread and the processor time that it has used, of a `stat` of `/proc`.
+fn ticks(stat: &str) -> (&str, u64) {
+    // The name, in parentheses, may contain spaces.
+    let (start, fields) = stat.rsplit_once(')').expect("a name");
+    let (_, name) = start.split_once('(').expect("a name");
+    let user_and_system = fields.split_whitespace().skip(11).take(2);
+    let ticks = user_and_system.map(|ticks| ticks.parse::<u64>().expect("a number"));
+    (name, ticks.sum())
 }
 
 #[cfg(all(test, unix))]

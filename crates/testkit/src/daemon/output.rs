@@ -89,6 +89,11 @@ impl Output {
         }
     }
 
+    /// Whether the pipe is closed.
+    pub fn is_closed(&self) -> bool {
+        self.shared.lines().is_closed
+    }
+
     /// Everything printed so far.
     pub fn text(&self) -> String {
         let lines = self.shared.lines();

@@ -91,8 +91,9 @@ impl Noise {
                 sums: [0.0; SOME],
             };
             for (i, place) in places.iter().enumerate() {
-                work.places[0][i] = place[0] / self.wavelength;
-                work.places[1][i] = place[1] / self.wavelength;
+                for (all, v) in work.places.iter_mut().zip(place) {
+                    all[i] = v / self.wavelength;
+                }
             }
             let is_far = |v: &f64| v.is_nan() || v.abs() > FAR;
             if work.places.as_flattened().iter().any(is_far) {

@@ -13,7 +13,7 @@ pub(super) struct Slide {
 }
 
 impl Slide {
-    /// Maps from[0] to to[0] and from[1], which is greater, to to[1].
+    /// Maps `from[0]` to `to[0]` and `from[1]`, which is greater, to `to[1]`.
     pub(super) fn new(name: &'static str, from: [f64; 2], to: [f64; 2]) -> Result<Self, Error> {
         check_numbers(name, &from)?;
         if from[0] >= from[1] {

@@ -122,7 +122,7 @@ impl FieldSpec {
         Self::new(Shape::Constant(share), canon, 0)
     }
 
-    /// shares[0] at one place, shares[1] at another, linear between them, constant before and beyond.
+    /// `shares[0]` at one place, `shares[1]` at another, linear between them, constant before and beyond.
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless the shares are from 0 to 1, the coordinates finite, and the places
@@ -158,7 +158,7 @@ impl FieldSpec {
         Self::new(Shape::Ramp { from, per, shares }, canon, 0)
     }
 
-    /// shares[0] up to the first radius around a place, shares[1] from the second on, linear between.
+    /// `shares[0]` up to the first radius around a place, `shares[1]` from the second on, linear between.
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless the shares are from 0 to 1, the numbers finite, and the radii, from 0 on,
@@ -183,7 +183,7 @@ impl FieldSpec {
         Self::new(Shape::Radial { center, slide }, canon, 0)
     }
 
-    /// A share by the distance to marks: shares[0] up to distances[0], shares[1] from distances[1] on,
+    /// A share by the distance to marks: `shares[0]` up to `distances[0]`, `shares[1]` from `distances[1]` on,
     /// linear between. Distances inside of polygons are below 0.
     ///
     /// # Errors
@@ -260,7 +260,7 @@ impl FieldSpec {
         Self::new(Shape::Raster(raster), canon, 0)
     }
 
-    /// A share by height: shares[0] up to heights[0], shares[1] from heights[1] on, linear between.
+    /// A share by height: `shares[0]` up to `heights[0]`, `shares[1]` from `heights[1]` on, linear between.
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless the shares are from 0 to 1 and the heights in ascending order.
@@ -280,7 +280,7 @@ impl FieldSpec {
         Self::new(Shape::Terrain(terrain, slide), canon, 0)
     }
 
-    /// A share by slope, rise over run: shares[0] up to slopes[0], shares[1] from slopes[1] on, linear
+    /// A share by slope, rise over run: `shares[0]` up to `slopes[0]`, `shares[1]` from `slopes[1]` on, linear
     /// between. Takes 4 bytes and some time a pixel, so keep the description.
     ///
     /// # Errors

@@ -3,17 +3,8 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::Lattice;
+use super::{Lattice, Line};
 use crate::pattern::{Axis, Class};
-
-/// A column or row that holds points: its coordinate, and its interval of dX or dY.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Line {
-    pub(crate) at: i64,
-    pub(crate) block: u32,
-    /// Of a column: whether its dX lies in the strip of the block that is partly kept.
-    pub(crate) is_in_strip: bool,
-}
 
 /// The columns of a range of the lattice, by class, ascending.
 #[derive(Clone, Debug, Default)]

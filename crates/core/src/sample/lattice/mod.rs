@@ -6,7 +6,7 @@
 //! conversion is monotone, so the bounds of a region become integers once (`span`), and integers decide
 //! membership. The bounds of chunks are exact multiples of their size (`multiple`).
 //!
-//! Work proceeds in pieces: `lines` lists the columns and rows that hold points, `prefix` counts them,
+//! Work proceeds in pieces: `lines` lists the columns and rows that hold points (each a `line`), `prefix` counts them,
 //! `patch` has the bands and patches in which positions fit 32 bits, `flat` the points of a patch without
 //! gaps. `point` is what comes out, `rank` its place in the order in which points leave, `grade` the field that says
 //! how many have left.
@@ -14,6 +14,7 @@
 mod flat;
 mod grade;
 mod keep;
+mod line;
 mod lines;
 mod multiple;
 mod patch;
@@ -28,7 +29,8 @@ mod world;
 pub(super) use flat::{Flat, Inside};
 pub(super) use grade::{Grade, around, damping};
 pub use keep::Keep;
-pub(super) use lines::{Columns, Line, Listed, lines_of_class, places};
+pub(super) use line::Line;
+pub(super) use lines::{Columns, Listed, lines_of_class, places};
 pub(super) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
 pub use placement::Placement;

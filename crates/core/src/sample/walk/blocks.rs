@@ -1,17 +1,18 @@
-//! The walk over a plan: bands of columns, rows within a band, columns within a row. `graded` has what differs
-//! in a field.
+//! The walk over a plan: bands of columns, rows within a band, columns within a row. `flat` has what differs
+//! in small warped boxes, `graded` what differs in a field.
 
+mod flat;
 pub(super) mod graded;
-mod sifting;
 
 use alloc::{boxed::Box, sync::Arc};
 use core::ops::Range;
 
 use graded::{Constant, Known};
-use sifting::Sifting;
 
 use super::{
-    template::{Check, Kept, Part, Template, Templates, displaced, sift, write_row},
+    place::Place,
+    sifting::Sifting,
+    template::{Check, Kept, Part, Templates, displaced, sift, write_row},
     tile::{Tile, bands},
     window::Window,
 };
@@ -31,9 +32,6 @@ use crate::{
 
 /// The number of lattice rows from which a band keeps its templates.
 const TALL: i64 = 512;
-
-/// The most points of a warped patch that are listed before some are written: 20 bytes each.
-const FLAT: usize = 2048;
 
 /// The points of a plan, or of one of its tiles, in order, in blocks of any size.
 ///
@@ -83,36 +81,6 @@ pub struct Blocks<F: Format> {
     kept: Option<(Arc<[Known]>, usize)>,
     /// The last rows of a band in which a field is constant.
     constant: Option<Box<Constant<F>>>,
-}
-
-/// The place of the next point in a band.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    /// The current row; the end of the rows when a new band is due.
-    y: i64,
-    /// The number of columns of the row's template that are done.
-    done: usize,
-    /// The lattice column where the current row begins, if it is the first of a window.
-    from: Option<i64>,
-}
-
-impl Place {
-    const fn row(y: i64) -> Self {
-        Self {
-            y,
-            done: 0,
-            from: None,
-        }
-    }
-
-    /// Whether nothing of the row is done.
-    const fn is_fresh(&self) -> bool {
-        self.done == 0 && self.from.is_none()
-    }
-
-    const fn next_row(&mut self) {
-        *self = Self::row(self.y + 1);
-    }
 }
 
 impl<F: Format> Blocks<F> {
@@ -377,40 +345,6 @@ impl<F: Format> Blocks<F> {
         }
     }
 
-    /// Writes points of a warped patch in which few rows share a template, up to row `end` or as many as
-    /// there is room for. Rows are warped several at a time.
-    fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
-        let (lattice, patch, base) = (&self.scope.lattice, &self.patch, self.base);
-        let (flat, inside) = &mut self.flat;
-        // Some two in three points of a small box's patches lie inside.
-        let enough = (2 * out.len()).clamp(64, FLAT);
-        let rows = self.at.y..end;
-        let columns = (&mut self.columns, &self.listed);
-        let next = flat.list(lattice, patch, columns, rows, enough, self.backend);
-        flat.sift(patch, self.backend, inside);
-        let [left, bottom] = patch.origin();
-        compiled(self.backend, || {
-            for (out, (place, address)) in out.iter_mut().zip(inside.points()) {
-                let column = self.format.column(base, place[0], left + address[0]);
-                *out = self
-                    .format
-                    .item(base, column, place[1], bottom + address[1]);
-            }
-        });
-        self.at = Place::row(next);
-        if inside.len() > out.len()
-            && let Some((y, done)) = flat.locate(patch, out.len())
-        {
-            self.at = Place {
-                done,
-                ..Place::row(y)
-            };
-            // The rest of this row takes a template of its own.
-            self.templates.clear();
-        }
-        inside.len().min(out.len())
-    }
-
     /// Writes points of the patch's rows up to `end`, or as many as there is room for.
     fn fill_rows(&mut self, end: i64, out: &mut [F::Item]) -> usize {
         let lattice = &self.scope.lattice;
@@ -472,7 +406,7 @@ impl<F: Format> Blocks<F> {
                     check: Check::Bounds,
                 }
             } else if is_split {
-                next_part(template, self.at.done, x)
+                template.next_part(self.at.done, x)
             } else {
                 Part {
                     columns: self.at.done..template.len(),
@@ -557,23 +491,5 @@ impl<F: Format> Blocks<F> {
             self.at.next_row();
         }
         filled
-    }
-}
-
-/// The next columns of a warped row that need one kind of check: those left of the inner columns, the
-/// inner ones, those right of them, or those whose points all lie outside.
-fn next_part<F: Format>(template: &Template<F>, done: usize, x: &Span) -> Part {
-    let before = |v| template.columns_before(v);
-    let parts = [
-        (before(x.all.start), Check::Outside),
-        (before(x.inner.start), Check::Bounds),
-        (before(x.inner.end), Check::Nothing),
-        (before(x.all.end), Check::Bounds),
-    ];
-    let next = parts.into_iter().find(|&(end, _)| done < end);
-    let (end, check) = next.unwrap_or((template.len(), Check::Outside));
-    Part {
-        columns: done..end,
-        check,
     }
 }

@@ -11,7 +11,7 @@ use crate::{
     pattern::{Axis, Class},
     sample::{
         kernel::{Backend, Format, Row, WarpedColumns, fill_row, fill_warped_row},
-        lattice::{Lattice, Line, Patch},
+        lattice::{Lattice, Line, Patch, Span},
     },
 };
 
@@ -162,6 +162,24 @@ impl<F: Format> Template<F> {
             }
         }
         self.is_made = true;
+    }
+
+    /// The next columns of a warped row that need one kind of check: those left of the inner columns, the
+    /// inner ones, those right of them, or those whose points all lie outside.
+    pub(super) fn next_part(&self, done: usize, x: &Span) -> Part {
+        let before = |v| self.columns_before(v);
+        let parts = [
+            (before(x.all.start), Check::Outside),
+            (before(x.inner.start), Check::Bounds),
+            (before(x.inner.end), Check::Nothing),
+            (before(x.all.end), Check::Bounds),
+        ];
+        let next = parts.into_iter().find(|&(end, _)| done < end);
+        let (end, check) = next.unwrap_or((self.len(), Check::Outside));
+        Part {
+            columns: done..end,
+            check,
+        }
     }
 
     /// Writes the points of a part of a row.

@@ -1,4 +1,4 @@
-//! The walk through a sieve: which columns of the current rows pass.
+//! A walk through a sieve.
 
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -23,6 +23,7 @@ pub(super) struct Sifting {
 }
 
 impl Sifting {
+    /// Before the first patch.
     pub(super) fn new(sieve: &Sieve) -> Self {
         Self {
             band: sieve.local(),

@@ -1,0 +1,115 @@
+//! A table turned by a symmetry.
+
+use alloc::sync::Arc;
+
+use super::{
+    Displacement, Ladder, Order, Rung, Table,
+    ladder::Stage,
+    symmetry::{Symmetry, Turned},
+};
+
+/// The vectors of a table and the order of its blocks under a symmetry.
+#[derive(Clone, Debug)]
+pub(crate) struct TurnedTable {
+    /// `None` for the table's own.
+    turned: Option<Arc<Turned>>,
+    table: Table,
+    symmetry: Symmetry,
+    /// The least and the greatest displacement along x and y.
+    reach: [[i32; 2]; 2],
+}
+
+impl TurnedTable {
+    pub(crate) fn new(table: &Table, symmetry: Symmetry) -> Self {
+        let (n, vectors) = (table.map().intervals(), table.displacements());
+        let turned = table.turned().get(symmetry, n, vectors, table.order());
+        let [x, y] = table.reach();
+        let ends = [0, 1].map(|end| symmetry.turn([x[end], y[end]]));
+        Self {
+            turned,
+            table: table.clone(),
+            symmetry,
+            reach: [0, 1].map(|axis| {
+                let [a, b] = ends.map(|end| end[axis]);
+                [a.min(b), a.max(b)]
+            }),
+        }
+    }
+
+    /// The vectors of all blocks with one interval of dY.
+    #[inline]
+    pub(crate) fn row(&self, block_y: usize) -> &[Displacement] {
+        let all = match &self.turned {
+            Some(turned) => &turned.vectors,
+            None => self.table.displacements(),
+        };
+        let n = self.table.map().intervals();
+        &all[block_y * n..][..n]
+    }
+
+    /// The order in which blocks leave.
+    #[inline]
+    pub(crate) fn order(&self) -> &Order {
+        match &self.turned {
+            Some(turned) => &turned.order,
+            None => self.table.order(),
+        }
+    }
+
+    /// The displacement of the block at a position of the order, at a stage of the table's ladder.
+    #[inline]
+    pub(crate) fn moved(&self, ladder: &Ladder, stage: Stage, position: usize) -> Displacement {
+        let full = self.table.displacements()[self.table.order().block(position)];
+        self.symmetry
+            .turn(ladder.displacement(stage, position, full))
+    }
+
+    /// The same for a block whose displacement in the full set and whose [rungs](Ladder::rungs) are known.
+    #[inline(always)]
+    pub(crate) fn moved_from(
+        &self,
+        ladder: &Ladder,
+        (stage, rungs): (Stage, Option<[Rung; 2]>),
+        position: usize,
+        full: Displacement,
+    ) -> Displacement {
+        let full = self.symmetry.unturn(full);
+        self.symmetry
+            .turn(ladder.displacement_by(stage, rungs, position, full))
+    }
+
+    /// The table as it is.
+    pub(crate) const fn table(&self) -> &Table {
+        &self.table
+    }
+
+    /// The least and the greatest displacement along x and y.
+    pub(crate) const fn reach(&self) -> [[i32; 2]; 2] {
+        self.reach
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::Map;
+
+    #[test]
+    fn a_turned_table_reaches_as_far() {
+        let map = Map::new("sqrt(3)".parse().expect("valid"), 9).expect("small");
+        let n = map.intervals() as i32;
+        let vectors = (0..n * n).map(|i| [i * 37 % 101 - 20, i * 53 % 89 - 70]);
+        let table = Table::new(map, "test", vectors.collect(), Default::default()).expect("valid");
+        for bits in 0..8 {
+            let vectors = TurnedTable::new(&table, Symmetry::from_bits(bits));
+            let all = (0..n as usize).flat_map(|row| vectors.row(row));
+            let mut reach = [[i32::MAX, i32::MIN]; 2];
+            for v in all {
+                for axis in 0..2 {
+                    reach[axis] = [reach[axis][0].min(v[axis]), reach[axis][1].max(v[axis])];
+                }
+            }
+            assert_eq!(reach, vectors.reach());
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Fuzzes `subjects::raster`.
+#![no_main]
+
+#[path = "../subjects/mod.rs"]
+mod subjects;
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| subjects::raster::run(data));

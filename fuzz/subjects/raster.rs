@@ -1,0 +1,37 @@
+//! Rasters and pictures: any file, in each of the ways in which it is read.
+
+use std::io::Cursor;
+
+use strew::raster::{Image, Limits, Meaning, RasterError, Samples};
+
+const LIMITS: Limits = Limits {
+    side: 256,
+    pixels: 1 << 14,
+};
+
+pub fn run(data: &[u8]) {
+    for read in [
+        Image::from_bytes(data, Meaning::Data, LIMITS),
+        Image::from_bytes(data, Meaning::Picture, LIMITS),
+        Image::read_picture(Cursor::new(data), LIMITS),
+        Image::read_floats(Cursor::new(data), [4, data.len() / 16], LIMITS),
+    ] {
+        check(read);
+    }
+}
+
+fn check(read: Result<Image, RasterError>) {
+    let image = match read {
+        Ok(image) => image,
+        Err(error) => return assert!(!error.to_string().is_empty()),
+    };
+    let [width, height] = image.size;
+    assert!(width.max(height) <= LIMITS.side);
+    assert_eq!(image.samples.len(), width * height);
+    if let Samples::F32(values) = &image.samples {
+        assert!(values.iter().all(|value| value.is_finite()));
+    }
+    if let Some([min_x, min_y, max_x, max_y]) = image.frame {
+        assert!(min_x < max_x && min_y < max_y);
+    }
+}

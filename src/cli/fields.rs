@@ -1,0 +1,107 @@
+//! The field of a command: one that is loaded, a file, or a raster with its place.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::anyhow;
+
+use super::{Failure, flags::WHERE};
+use crate::{
+    config::Config,
+    service::{
+        Catalog,
+        field::{
+            Document, Fields, NamedField,
+            document::{EdgesName, Pixels},
+            from_document, from_file,
+        },
+        query::{Shape, Value, Values, parameters},
+    },
+};
+
+/// Flags of a field that are no parameters.
+#[derive(Clone, Debug, Default, clap::Args)]
+#[group(skip)]
+pub(super) struct FieldArgs {
+    /// The field is a raster: a PNG, GeoTIFF or npy file. White is 1, black and what lies beyond is 0.
+    #[arg(
+        long,
+        value_name = "FILE",
+        help_heading = "Set of points",
+        conflicts_with = "field"
+    )]
+    raster: Option<PathBuf>,
+    /// Where the raster lies [default: where its GeoTIFF says, else one unit for each pixel]
+    #[arg(
+        long,
+        value_name = "MINX,MINY,MAXX,MAXY",
+        help_heading = WHERE,
+        requires = "raster",
+        allow_hyphen_values = true
+    )]
+    raster_bbox: Option<String>,
+}
+
+/// The name of a field that only a command knows.
+const OWN: &str = "file";
+
+impl FieldArgs {
+    /// Adds the field of the flags to what is loaded; in the values it then has a name.
+    pub(super) fn load(&self, values: &mut Values, catalog: Catalog) -> Result<Catalog, Failure> {
+        let fields = catalog.fields();
+        let field = match (&self.raster, values.text(&parameters::FIELD)) {
+            (Some(raster), _) => Some(self.raster(raster, fields)?),
+            (None, given) if is_file(&given, fields) => {
+                let loaded = from_file(Path::new(&given), fields);
+                Some(loaded.map_err(|error| Failure::Usage(anyhow!("--field {given}: {error}")))?)
+            }
+            _ => None,
+        };
+        let Some(field) = field else {
+            return Ok(catalog);
+        };
+        let value = Value::Field(Document::Name(field.name.clone()).into());
+        values.replace(&parameters::FIELD, Some(value));
+        let mut fields = fields.clone();
+        fields.insert(field);
+        Ok(catalog.with_fields(fields))
+    }
+
+    fn raster(&self, file: &Path, fields: &Fields) -> Result<NamedField, Failure> {
+        const BOX: Shape = parameters::BBOX.shape;
+        let wrong = |text: &str, detail: &str| {
+            let allowed = "min_x,min_y,max_x,max_y with min_x < max_x and min_y < max_y";
+            Failure::Usage(anyhow!(
+                "--raster-bbox {text}: {detail}; allowed: {allowed}"
+            ))
+        };
+        let bbox = self.raster_bbox.as_deref().map(|text| {
+            let value = BOX.read(text).map_err(|detail| wrong(text, &detail))?;
+            <[f64; 4]>::try_from(&value).map_err(|detail| wrong(text, detail))
+        });
+        let document = Document::Raster(Box::new(Pixels {
+            file: Some(file.to_string_lossy().into_owned()),
+            bbox: bbox.transpose()?,
+            edges: EdgesName::Zero,
+            ..Pixels::default()
+        }));
+        let field = from_document(OWN, document, fields);
+        field.map_err(|error| {
+            Failure::Usage(anyhow!("--raster {}: {}", file.display(), error.detail))
+        })
+    }
+}
+
+/// Whether a value of `--field` is a file instead of a name.
+fn is_file(given: &str, fields: &Fields) -> bool {
+    let endings = ["json", "toml", "png", "tif", "tiff", "npy"];
+    let ending = Path::new(given).extension();
+    let is_like_one = ending.is_some_and(|ending| endings.iter().any(|known| ending == *known));
+    fields.get(given).is_none() && !given.is_empty() && (is_like_one || given.contains('/'))
+}
+
+impl Config {
+    /// The fields that the settings ask for; those that are not valid are wrong usage.
+    pub(super) fn loaded_fields(&self) -> Result<Fields, Failure> {
+        Fields::load(&self.fields).map_err(|error| Failure::Usage(error.into()))
+    }
+}

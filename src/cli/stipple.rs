@@ -1,0 +1,187 @@
+//! `strew stipple`: a picture as dots.
+
+use std::{
+    fs::File,
+    io::BufReader,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context as _, anyhow};
+use strew_core::{
+    Raster, Region,
+    field::{Edges, FieldSpec, Pixels},
+};
+
+use super::{
+    Failure, config,
+    output::Output as Target,
+    refusal::Source,
+    sample::{encoding_of, write},
+};
+use crate::{
+    raster::{Image, Limits, Samples},
+    service::{
+        Draft, Planned,
+        encode::preview::MOST_SIZE,
+        field::{Document, NamedField},
+        query::{Value, Values, groups, parameters},
+    },
+};
+
+/// Flags of `strew stipple`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// The picture: a PNG, JPEG, WebP, TIFF or npy file.
+    #[arg(value_name = "IMAGE")]
+    image: PathBuf,
+    /// The number of dots, exactly.
+    #[arg(long, short = 'n', value_name = "NUMBER")]
+    points: u64,
+    /// The file to write; - is standard output. Its ending is the format: svg, png, csv, and all others of
+    /// `strew sample`. Coordinates are pixels of the picture, x to the right and y upward.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// The format, if the ending does not say it.
+    #[arg(long, value_name = "NAME")]
+    format: Option<String>,
+    /// Put dots where the picture is light instead of where it is dark.
+    #[arg(long)]
+    invert: bool,
+    /// The density is darkness to this power: above 1 for more contrast, below 1 for less, 0.01 to 100. At 1
+    /// the dots have the darkness of the picture, in linear light.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0)]
+    gamma: f64,
+    /// The diameter of dots in svg and png, 0.01 to 10, in spacings of dots where they are densest.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1.0)]
+    dot: f64,
+    /// The longer side of svg and png in pixels [default: that of the picture, 512 to 4096]
+    #[arg(long, value_name = "NUMBER")]
+    size: Option<u32>,
+    /// Another seed places other dots.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    seed: u64,
+    /// The noise profile of the dots.
+    #[arg(long, value_name = "NAME", default_value = "blue")]
+    profile: String,
+    /// Say nothing on standard error but errors.
+    #[arg(long, short)]
+    quiet: bool,
+    #[command(flatten)]
+    settings: config::Args,
+}
+
+/// The name of the picture's field.
+const PICTURE: &str = "picture";
+
+/// Writes the dots.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let config = args.settings.merged()?;
+    for (flag, value, [least, most]) in [
+        ("--gamma", args.gamma, [0.01, 100.0]),
+        ("--dot", args.dot, [0.01, 10.0]),
+    ] {
+        if !(least..=most).contains(&value) {
+            let allowed = format!("a number from {least} to {most}");
+            return Err(Failure::Usage(anyhow!(
+                "{flag} {value}: out of range; allowed: {allowed}"
+            )));
+        }
+    }
+    let encoding = encoding_of(args.output.as_deref())?;
+    // Before the work: what cannot be written need not be made.
+    let output = Target::open(args.output.as_deref())?;
+    let image = read(&args.image)?;
+    let [width, height] = image.size;
+    let mut fields = config.loaded_fields()?;
+    fields.insert(NamedField::of_spec(PICTURE, darkness(image, args)?));
+    let catalog = config.tables()?.with_fields(fields);
+    let mut values = Values::new(groups::POINTS, "");
+    let bbox = vec![0.0, 0.0, width as f64, height as f64];
+    values.add_value(&parameters::BBOX, Value::Numbers(bbox));
+    values.add_value(&parameters::COUNT, Value::Integer(args.points));
+    values.add_value(&parameters::SEED, Value::Integer(args.seed));
+    values.add_value(&parameters::PROFILE, Value::Text(args.profile.clone()));
+    let field = Value::Field(Document::Name(PICTURE.into()).into());
+    values.add_value(&parameters::FIELD, field);
+    if let Some(format) = &args.format {
+        values.add_text(parameters::FORMAT.name, format);
+    }
+    let longer = u32::try_from(width.max(height)).unwrap_or(u32::MAX);
+    let size = args.size.unwrap_or_else(|| longer.clamp(512, MOST_SIZE));
+    let checked = Draft::of(values).check(&catalog, config.limits.max_vertices);
+    let planned = checked.and_then(|(query, options)| {
+        let planned = Planned::at_once(query, &config.limits)?;
+        Ok((planned, options))
+    });
+    let (planned, options) = planned.map_err(|error| refused(args, error))?;
+    let encoding = options.encoding.unwrap_or(encoding);
+    let looks = options.output(encoding).map(|mut looks| {
+        if encoding.is_picture() {
+            looks.size = size;
+            looks.dot = Some(args.dot);
+        }
+        looks
+    });
+    let looks = looks.map_err(|error| refused(args, error))?;
+    write(&planned, &looks, &config, output, args.quiet, "dots").map_err(|failure| match failure {
+        Ok(failure) => failure,
+        Err(error) => refused(args, error),
+    })
+}
+
+/// Errors of the query in the words of this command.
+fn refused(args: &Args, error: crate::service::Error) -> Failure {
+    if let Some(fault) = error.faults().iter().find(|fault| fault.field == "count") {
+        let (detail, allowed) = (&fault.detail, &fault.allowed);
+        let text = format!("--points {}: {detail}; allowed: {allowed}", args.points);
+        return Failure::Usage(anyhow!(text));
+    }
+    Source::Flags.refused(error)
+}
+
+fn read(path: &Path) -> Result<Image, Failure> {
+    let read = || {
+        let file = File::open(path)?;
+        if file.metadata()?.is_dir() {
+            return Err(anyhow!("it is a folder"));
+        }
+        let file = BufReader::with_capacity(1 << 16, file);
+        Ok(Image::read_picture(file, Limits::FILES)?)
+    };
+    let image = read().with_context(|| format!("cannot read the picture {}", path.display()));
+    image.map_err(Failure::Usage)
+}
+
+/// The share of dots at each place: darkness, or light if it is inverted.
+fn darkness(image: Image, args: &Args) -> Result<FieldSpec, Failure> {
+    let [width, height] = image.size;
+    let full = image.samples.full();
+    let light = |i: usize| (image.samples.get(i) / full).clamp(0.0, 1.0);
+    // Rows of fields begin at the bottom.
+    let places = (0..height)
+        .rev()
+        .flat_map(|y| (0..width).map(move |x| y * width + x));
+    let word = |light: f64| (light * 65535.0 + 0.5) as u16;
+    let shares: Vec<u16> = match (&image.samples, args.invert) {
+        (Samples::U16(values), true) => places.map(|i| values[i]).collect(),
+        (Samples::U16(values), false) => places.map(|i| u16::MAX - values[i]).collect(),
+        (_, true) => places.map(|i| word(light(i))).collect(),
+        (_, false) => places.map(|i| word(1.0 - light(i))).collect(),
+    };
+    if shares.iter().all(|share| *share == 0) {
+        let (is, other) = match args.invert {
+            true => ("black", "without --invert"),
+            false => ("white", "with --invert"),
+        };
+        return Err(Failure::Usage(anyhow!(
+            "the picture {} is all {is}: no dot has a place; allowed: another picture, or {other}",
+            args.image.display()
+        )));
+    }
+    let made = || {
+        let region = Region::new([0.0, 0.0], [width as f64, height as f64])?;
+        let raster = Raster::of(region, Pixels::from_words(width, shares)?)?;
+        FieldSpec::raster(raster.edges(Edges::Clamp).tone(0.0, 1.0, args.gamma)?)
+    };
+    Ok(made().context("the picture cannot be used")?)
+}

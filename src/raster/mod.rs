@@ -1,0 +1,160 @@
+//! Rasters and pictures from files: PNG, GeoTIFF, npy, raw floats; for pictures also JPEG and WebP.
+//!
+//! A raster is read in one pass. Its header is checked against [`Limits`] before memory is taken, and memory
+//! grows with what the file really holds, so a short file with a huge header takes nothing. What is read is
+//! one number for each pixel: see [`Meaning`] for how colors become one.
+
+mod error;
+mod npy;
+mod picture;
+mod png;
+mod samples;
+mod tiff;
+mod tone;
+
+use std::io::{BufRead, Cursor, Read, Seek, SeekFrom};
+
+pub use error::RasterError;
+pub use samples::Samples;
+pub use tone::Meaning;
+
+/// The longest side of a raster, in pixels.
+pub const MOST_SIDE: usize = 16_384;
+
+/// What a raster may have at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// The longest side, in pixels.
+    pub side: usize,
+    /// The most pixels.
+    pub pixels: usize,
+}
+
+impl Limits {
+    /// Those of files: 16,384 × 16,384 pixels.
+    pub const FILES: Self = Self {
+        side: MOST_SIDE,
+        pixels: MOST_SIDE * MOST_SIDE,
+    };
+
+    /// The number of pixels of a size.
+    ///
+    /// # Errors
+    /// [`RasterError::Size`] if it is empty or beyond the limits.
+    fn check(self, width: u64, height: u64) -> Result<[usize; 2], RasterError> {
+        let side = self.side as u64;
+        let is_within = (1..=side).contains(&width) && (1..=side).contains(&height);
+        if !is_within || width * height > self.pixels as u64 {
+            return Err(RasterError::Size {
+                width,
+                height,
+                limits: self,
+            });
+        }
+        Ok([width as usize, height as usize])
+    }
+}
+
+/// A raster as it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Width and height in pixels.
+    pub size: [usize; 2],
+    /// A number for each pixel, row by row from the top.
+    pub samples: Samples,
+    /// Where it lies, if the file tells: min x, min y, max x, max y.
+    pub frame: Option<[f64; 4]>,
+}
+
+impl Image {
+    /// Reads a PNG, a TIFF or a npy file, whichever it is.
+    ///
+    /// # Errors
+    /// [`RasterError`].
+    pub fn read(
+        mut from: impl BufRead + Seek,
+        meaning: Meaning,
+        limits: Limits,
+    ) -> Result<Self, RasterError> {
+        match Format::of(&mut from)? {
+            Some(Format::Png) => png::read(from, meaning, limits),
+            Some(Format::Tiff) => tiff::read(from, meaning, limits),
+            Some(Format::Npy) => npy::read(from, limits),
+            _ => Err(RasterError::Unknown("a PNG, TIFF or npy file")),
+        }
+    }
+
+    /// Reads 32-bit floats, little endian, row by row from the top.
+    ///
+    /// # Errors
+    /// [`RasterError`], if there are not exactly as many as the size says.
+    pub fn read_floats(
+        from: impl Read + Seek,
+        [width, height]: [usize; 2],
+        limits: Limits,
+    ) -> Result<Self, RasterError> {
+        let size = limits.check(width as u64, height as u64)?;
+        npy::read_floats(from, size)
+    }
+
+    /// Reads a picture: also JPEG and WebP. Its numbers are shares of the greatest light.
+    ///
+    /// # Errors
+    /// [`RasterError`].
+    pub fn read_picture(
+        mut from: impl BufRead + Seek,
+        limits: Limits,
+    ) -> Result<Self, RasterError> {
+        match Format::of(&mut from)? {
+            Some(Format::Jpeg) => picture::jpeg(from, limits),
+            Some(Format::WebP) => picture::webp(from, limits),
+            Some(_) => Self::read(from, Meaning::Picture, limits),
+            None => Err(RasterError::Unknown("a PNG, JPEG, WebP, TIFF or npy file")),
+        }
+    }
+
+    /// Reads what is in memory.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn from_bytes(bytes: &[u8], meaning: Meaning, limits: Limits) -> Result<Self, RasterError> {
+        Self::read(Cursor::new(bytes), meaning, limits)
+    }
+}
+
+/// A format, by how its files begin.
+enum Format {
+    Png,
+    Tiff,
+    Npy,
+    Jpeg,
+    WebP,
+}
+
+impl Format {
+    fn of(from: &mut (impl BufRead + Seek)) -> Result<Option<Self>, RasterError> {
+        let mut head = vec![];
+        from.by_ref().take(12).read_to_end(&mut head)?;
+        from.seek(SeekFrom::Start(0))?;
+        let begins = |magic: &[u8]| head.starts_with(magic);
+        Ok(if begins(b"\x89PNG\r\n\x1a\n") {
+            Some(Self::Png)
+        } else if [b"II*\0", b"II+\0", b"MM\0*", b"MM\0+"]
+            .iter()
+            .any(|magic| begins(*magic))
+        {
+            Some(Self::Tiff)
+        } else if begins(b"\x93NUMPY") {
+            Some(Self::Npy)
+        } else if begins(b"\xff\xd8\xff") {
+            Some(Self::Jpeg)
+        } else if begins(b"RIFF") && head.get(8..12) == Some(b"WEBP") {
+            Some(Self::WebP)
+        } else {
+            None
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,112 @@
+// The field of the first layer that has one, shaded under the points: where it is dense, the ground is darker.
+
+import { ask } from "./api.js";
+import { byId } from "./dom.js";
+import { chunksOf, cornerFrom } from "./grid.js";
+import { themeColor } from "./theme.js";
+
+/** A tile is about so many CSS pixels wide. */
+const SIDE = 360;
+/** So many tiles are kept. */
+const MOST = 200;
+/** How dark the ground becomes where the field is 1. */
+const STRENGTH = 0.28;
+
+export class Shade {
+  constructor(plane) {
+    this.plane = plane;
+    this.canvas = byId("shade");
+    this.field = "";
+    this.tiles = new Map();
+  }
+
+  /** The layers that are shown now. */
+  shown(layers) {
+    const field = layers.find((layer) => layer.field && layer.shade)?.field ?? "";
+    if (field !== this.field) this.tiles.clear();
+    this.field = field;
+    this.canvas.hidden = !field;
+    this.draw();
+  }
+
+  moved() {
+    this.draw();
+  }
+
+  themed() {
+    for (const tile of this.tiles.values()) tile.tinted = null;
+    this.draw();
+  }
+
+  draw() {
+    if (!this.field || this.isWaiting || !this.plane.span) return;
+    this.isWaiting = true;
+    requestAnimationFrame(() => {
+      this.isWaiting = false;
+      this.paint();
+    });
+  }
+
+  paint() {
+    const { view } = this.plane;
+    const [width, height] = view.pixels;
+    if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
+    const context = this.canvas.getContext("2d");
+    context.clearRect(0, 0, width, height);
+    const size = 2 ** Math.round(Math.log2(SIDE * view.unit));
+    const pixel = view.unit / view.ratio;
+    const side = size / pixel;
+    let missing = 0;
+    for (const { cx, cy } of chunksOf(view, size)) {
+      const tile = this.tile(size, cx, cy);
+      if (!tile.picture) {
+        missing += tile.isGone ? 0 : 1;
+        continue;
+      }
+      tile.tinted ??= tinted(tile.picture);
+      const left = width / 2 + cornerFrom(cx, size, view.x) / pixel;
+      const top = height / 2 - cornerFrom(cy, size, view.y) / pixel - side;
+      context.drawImage(tile.tinted, left, top, side, side);
+    }
+    this.canvas.dataset.missing = String(missing);
+  }
+
+  tile(size, cx, cy) {
+    const key = `${size}/${cx}/${cy}`;
+    let tile = this.tiles.get(key);
+    if (tile) return tile;
+    if (this.tiles.size >= MOST) this.tiles.delete(this.tiles.keys().next().value);
+    tile = {};
+    this.tiles.set(key, tile);
+    this.load(tile, `/v1/fields/${encodeURIComponent(this.field)}/chunks/${key}`);
+    return tile;
+  }
+
+  async load(tile, path) {
+    try {
+      const answer = await ask(path);
+      tile.picture = await createImageBitmap(await answer.blob());
+    } catch {
+      // Without it the points show well enough.
+      tile.isGone = true;
+    }
+    this.draw();
+  }
+}
+
+/** A gray picture in the accent of the theme: clear where it is black. */
+function tinted(picture) {
+  const canvas = document.createElement("canvas");
+  Object.assign(canvas, { width: picture.width, height: picture.height });
+  const context = canvas.getContext("2d");
+  context.drawImage(picture, 0, 0);
+  const pixels = context.getImageData(0, 0, canvas.width, canvas.height);
+  const [red, green, blue] = themeColor("accent").match(/[\d.]+/g).map(Number);
+  const { data } = pixels;
+  for (let i = 0; i < data.length; i += 4) {
+    const share = data[i];
+    [data[i], data[i + 1], data[i + 2], data[i + 3]] = [red, green, blue, STRENGTH * share];
+  }
+  context.putImageData(pixels, 0, 0);
+  return canvas;
+}

@@ -1,0 +1,125 @@
+//! The files of fields: which there are, and whether they have changed.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use super::{Document, document::Pixels};
+use crate::bounded_file;
+
+/// The endings of documents, then of rasters.
+const DOCUMENTS: [&str; 2] = ["json", "toml"];
+const RASTERS: [&str; 4] = ["png", "tif", "tiff", "npy"];
+
+/// Files up to this size are compared by content.
+const COMPARED: u64 = 4 << 20;
+
+/// The files of a folder that are fields, documents first, in the order of their names. A raster with the
+/// name of a document belongs to it.
+pub(super) fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let listed = all(folder).map_err(|error| error.to_string())?;
+    let has_ending = |path: &Path, endings: &[&str]| {
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        ending.is_some_and(|ending| endings.contains(&ending))
+    };
+    let of = |endings| listed.iter().filter(move |path| has_ending(path, endings));
+    let documents: Vec<&PathBuf> = of(&DOCUMENTS).collect();
+    let rasters = of(&RASTERS).filter(|raster| {
+        !documents
+            .iter()
+            .any(|document| document.file_stem() == raster.file_stem())
+    });
+    Ok(documents.iter().copied().chain(rasters).cloned().collect())
+}
+
+/// All files of a folder, in the order of their names.
+fn all(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut paths = vec![];
+    for entry in fs::read_dir(folder)? {
+        paths.push(entry?.path());
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+/// Visits the files that a document names.
+pub(super) fn of_document(document: &Document, visit: &mut impl FnMut(&str)) {
+    let mut pixels = |pixels: &Pixels| {
+        if let Some(file) = &pixels.file {
+            visit(file);
+        }
+    };
+    match document {
+        Document::Raster(raster) => pixels(raster),
+        Document::Height(height) => pixels(&height.terrain),
+        Document::Slope(slope) => pixels(&slope.terrain),
+        Document::Multiply(parts) | Document::Min(parts) | Document::Max(parts) => {
+            parts.0.iter().for_each(|part| of_document(part, visit));
+        }
+        Document::Invert(of) => of_document(of, visit),
+        Document::Curve(curve) => of_document(&curve.of, visit),
+        _ => {}
+    }
+}
+
+/// What some files hold: their content where they are small, else their size, time of change and place on
+/// the disk. Reading a gigabyte every few seconds would tell no more.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Stamp(Vec<blake3::Hash>);
+
+impl Stamp {
+    pub(crate) fn hash(&self, hasher: &mut blake3::Hasher) {
+        for file in &self.0 {
+            hasher.update(file.as_bytes());
+        }
+    }
+
+    pub(crate) fn add(&mut self, path: &Path) {
+        let mut hasher = blake3::Hasher::new();
+        let name = path.as_os_str().as_encoded_bytes();
+        hasher.update(&(name.len() as u64).to_le_bytes());
+        hasher.update(name);
+        match fs::metadata(path) {
+            Ok(metadata) if metadata.len() > COMPARED => {
+                hasher.update(&metadata.len().to_le_bytes());
+                hasher.update(
+                    format!("{:?} {}", metadata.modified().ok(), place(&metadata)).as_bytes(),
+                );
+            }
+            Ok(_) => match bounded_file::read(path, COMPARED) {
+                Ok(content) => drop(hasher.update(&content)),
+                Err(error) => drop(hasher.update(error.to_string().as_bytes())),
+            },
+            Err(error) => drop(hasher.update(error.to_string().as_bytes())),
+        }
+        self.0.push(hasher.finalize());
+    }
+}
+
+/// The number of a file on its disk: another file in its place has another one.
+#[cfg(unix)]
+fn place(metadata: &fs::Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::ino(metadata)
+}
+
+#[cfg(not(unix))]
+const fn place(_: &fs::Metadata) -> u64 {
+    0
+}
+
+/// What the fields of some settings hold now, whether it is valid or not.
+pub(crate) fn stamp(settings: &crate::config::Fields) -> Stamp {
+    let mut stamp = Stamp::default();
+    if let Some(folder) = settings.folder() {
+        for path in all(folder).unwrap_or_default() {
+            stamp.add(&path);
+        }
+    }
+    for (name, table) in &settings.named {
+        if let Ok(document) = super::read_toml(name, table) {
+            of_document(&document, &mut |file| stamp.add(Path::new(file)));
+        }
+    }
+    stamp
+}

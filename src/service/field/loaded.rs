@@ -1,0 +1,539 @@
+//! The fields that queries may name: those of the configuration and those of a folder.
+//!
+//! In the folder, a `.json` or `.toml` file is a document, and a raster (`.png`, `.tif`, `.tiff`, `.npy`)
+//! is a field of its pixels, unless a document has the same name: then it says how to read the raster. Every
+//! field is read and checked once, at the start or when the folder is read again; one whose files are
+//! unchanged is kept as it is.
+
+use std::{
+    cell::Cell,
+    collections::BTreeMap,
+    fmt,
+    io::BufReader,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use schemars::JsonSchema;
+use serde::Serialize;
+use strew_core::field::FieldSpec;
+
+use super::{
+    Document, Sources, build,
+    document::Pixels,
+    files::{self, Stamp},
+    read,
+};
+use crate::{
+    bounded_file,
+    config::Fields as Settings,
+    raster::{Image, Limits, MOST_SIDE, Meaning, RasterError},
+};
+
+/// The longest document.
+const DOCUMENT_BYTES: u64 = 4 << 20;
+
+/// The field that is built into the program: its name and its document.
+const EMBEDDED: (&str, &str) = ("forest", include_str!("../../../config/fields/forest.toml"));
+
+/// Where a field comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The program.
+    Embedded,
+    /// The configuration.
+    Config(String),
+    /// A file of the folder.
+    File(PathBuf),
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Embedded => f.write_str("built in"),
+            Self::Config(name) => write!(f, "[fields.{name}] of the configuration"),
+            Self::File(path) => path.display().fmt(f),
+        }
+    }
+}
+
+/// A field that is loaded.
+#[derive(Clone, Debug)]
+pub struct NamedField {
+    /// Its name.
+    pub name: String,
+    /// Where it comes from.
+    pub source: Source,
+    /// How it is described.
+    pub document: Document,
+    /// The field.
+    pub spec: FieldSpec,
+    /// The memory that its pixels take, in bytes.
+    pub bytes: usize,
+    /// A box around its pixels, if it has any: min x, min y, max x, max y.
+    pub bbox: Option<[f64; 4]>,
+    /// What its files held when it was read.
+    stamp: Stamp,
+}
+
+impl NamedField {
+    /// A field that a program has made.
+    #[must_use]
+    pub fn of_spec(name: &str, spec: FieldSpec) -> Self {
+        Self {
+            name: name.into(),
+            source: Source::Config(name.into()),
+            document: Document::Name(name.into()),
+            spec,
+            bytes: 0,
+            bbox: None,
+            stamp: Stamp::default(),
+        }
+    }
+
+    /// A field that a client has sent; its name is its digest. Pixels are not held twice.
+    #[must_use]
+    pub fn sent(
+        mut document: Document,
+        spec: FieldSpec,
+        bytes: usize,
+        bbox: Option<[f64; 4]>,
+    ) -> Self {
+        document.each_pixels(&mut |pixels| (pixels.png, pixels.f32) = (None, None));
+        let name = spec.digest().to_string();
+        Self {
+            document,
+            bytes,
+            bbox,
+            ..Self::of_spec(&name, spec)
+        }
+    }
+
+    /// Its digest, in hexadecimal.
+    #[must_use]
+    pub fn digest(&self) -> String {
+        self.spec.digest().to_string()
+    }
+}
+
+/// Why fields cannot be loaded.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("the field {source_name} is not valid: {detail}")]
+pub struct FieldError {
+    /// The file, the folder or the section of the configuration.
+    pub source_name: String,
+    /// What is wrong.
+    pub detail: String,
+}
+
+/// The fields that are loaded, by name.
+#[derive(Clone, Debug, Default)]
+pub struct Fields {
+    entries: BTreeMap<String, Arc<NamedField>>,
+}
+
+/// What reading the fields again changed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "ReloadedFields")]
+pub struct FieldReload {
+    /// Names of fields that were not there before, or not with this content.
+    pub loaded: Vec<String>,
+    /// Names of fields that answer as before.
+    pub kept: Vec<String>,
+    /// Names of fields that are gone.
+    pub removed: Vec<String>,
+}
+
+impl Fields {
+    /// Loads the fields that the settings name.
+    ///
+    /// # Errors
+    /// The first that is not valid.
+    pub fn load(settings: &Settings) -> Result<Self, FieldError> {
+        let (fields, refused) = Self::default().read(settings);
+        match refused.into_iter().next() {
+            Some((error, _)) => Err(error),
+            None => Ok(fields),
+        }
+    }
+
+    /// The fields after reading everything again, what changed, and what was refused, with the digest of the
+    /// field that stays in its place.
+    #[must_use]
+    pub fn reload(
+        &self,
+        settings: &Settings,
+    ) -> (Self, FieldReload, Vec<(FieldError, Option<String>)>) {
+        let (after, refused) = self.read(settings);
+        let mut changes = FieldReload::default();
+        for (name, new) in &after.entries {
+            let old = self.entries.get(name);
+            let is_same = old.is_some_and(|old| old.spec.digest() == new.spec.digest());
+            let list = if is_same {
+                &mut changes.kept
+            } else {
+                &mut changes.loaded
+            };
+            list.push(name.clone());
+        }
+        let gone = self.entries.keys();
+        let gone = gone.filter(|name| !after.entries.contains_key(*name));
+        changes.removed = gone.cloned().collect();
+        (after, changes, refused)
+    }
+
+    /// The field of a name.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<&Arc<NamedField>> {
+        self.entries.get(name)
+    }
+
+    /// All fields, by name.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Arc<NamedField>> {
+        self.entries.values()
+    }
+
+    /// Adds a field, in the place of one of the same name.
+    pub fn insert(&mut self, field: NamedField) {
+        self.entries.insert(field.name.clone(), Arc::new(field));
+    }
+
+    /// The names, for faults: not all of a long list.
+    #[must_use]
+    pub fn names(&self) -> String {
+        const SHOWN: usize = 16;
+        let mut names: Vec<&str> = self.entries.keys().map(String::as_str).collect();
+        let more = names.len().saturating_sub(SHOWN);
+        names.truncate(SHOWN);
+        match (names.as_slice(), more) {
+            ([], _) => "nothing: no field is loaded".into(),
+            (names, 0) => names.join(", "),
+            (names, more) => format!(
+                "{}, and {more} more (see the list of fields)",
+                names.join(", ")
+            ),
+        }
+    }
+
+    /// Reads everything; what is refused keeps the field that it was before.
+    fn read(&self, settings: &Settings) -> (Self, Vec<(FieldError, Option<String>)>) {
+        let mut refused = vec![];
+        let mut open: Vec<Unbuilt> = vec![];
+        let base = settings.folder().unwrap_or(Path::new("."));
+        let mut after = Self::default();
+        if settings.embedded {
+            after.insert_embedded();
+        }
+        for (name, table) in &settings.named {
+            let source = Source::Config(name.clone());
+            let document = read::read_toml(&format!("fields.{name}"), table);
+            let document = document.map_err(|faults| super::listed(&faults));
+            open.push(Unbuilt::new(name.clone(), source, document, Path::new(".")));
+        }
+        if let Some(folder) = settings.folder() {
+            match files::of_folder(folder) {
+                Ok(paths) => {
+                    open.extend(paths.into_iter().map(|path| Unbuilt::of_file(path, base)))
+                }
+                Err(detail) => {
+                    let source_name = format!("folder {}", folder.display());
+                    refused.push((
+                        FieldError {
+                            source_name,
+                            detail,
+                        },
+                        None,
+                    ));
+                    // All of the folder stays.
+                    return (self.clone(), refused);
+                }
+            }
+        }
+        let mut seen: BTreeMap<String, String> = BTreeMap::new();
+        open.retain(|field| match seen.get(&field.name) {
+            Some(first) => {
+                let detail = format!("{first} has the name `{}`, too: keep one", field.name);
+                refused.push((field.error(detail), self.digest(&field.name)));
+                false
+            }
+            None => {
+                seen.insert(field.name.clone(), field.source.to_string());
+                true
+            }
+        });
+        let mut room = settings.max_bytes;
+        // Documents may name other fields, in any order: those that do not yet are built first.
+        loop {
+            let before = open.len();
+            open = open
+                .into_iter()
+                .filter_map(|field| self.settle(field, &mut after, &mut room, &mut refused, false))
+                .collect();
+            if open.len() == before {
+                break;
+            }
+        }
+        for field in open {
+            let _ = self.settle(field, &mut after, &mut room, &mut refused, true);
+        }
+        (after, refused)
+    }
+
+    /// Adds the built-in field. A test builds it.
+    fn insert_embedded(&mut self) {
+        let (name, text) = EMBEDDED;
+        let table = text.parse::<toml::Table>().ok();
+        let document = table.and_then(|table| read::read_toml("field", &table).ok());
+        let document = document.ok_or_else(|| "the built-in field does not read".into());
+        let field = Unbuilt::new(name.into(), Source::Embedded, document, Path::new(""));
+        if let Ok(field) = field.build(self, 0, Stamp::default()) {
+            self.insert(field);
+        }
+    }
+
+    fn digest(&self, name: &str) -> Option<String> {
+        self.entries.get(name).map(|field| field.digest())
+    }
+
+    /// Builds a field, keeps it, or refuses it; `None` if it is done. A field that names others that are not
+    /// there yet waits, unless it is the last chance.
+    fn settle(
+        &self,
+        field: Unbuilt,
+        after: &mut Self,
+        room: &mut usize,
+        refused: &mut Vec<(FieldError, Option<String>)>,
+        is_last: bool,
+    ) -> Option<Unbuilt> {
+        let waits = match &field.document {
+            Ok(document) => !is_last && names(document).any(|name| after.get(name).is_none()),
+            Err(_) => false,
+        };
+        if waits {
+            return Some(field);
+        }
+        let old = self.entries.get(&field.name);
+        let stamp = field.stamp();
+        let unchanged = old.filter(|old| {
+            let is_alone = names(&old.document).next().is_none();
+            is_alone && old.source == field.source && old.stamp == stamp
+        });
+        let built = match unchanged {
+            Some(old) if field.document.as_ref() == Ok(&old.document) => Ok(Arc::clone(old)),
+            _ => field.build(after, *room, stamp).map(Arc::new),
+        };
+        match built {
+            Ok(built) => {
+                *room = room.saturating_sub(built.bytes);
+                after.entries.insert(built.name.clone(), built);
+            }
+            Err(detail) => {
+                refused.push((field.error(detail), old.map(|old| old.digest())));
+                if let Some(old) = old {
+                    after.entries.insert(old.name.clone(), Arc::clone(old));
+                }
+            }
+        }
+        None
+    }
+}
+
+/// A field that is read, but not built.
+struct Unbuilt {
+    name: String,
+    source: Source,
+    document: Result<Document, String>,
+    /// Where the files that it names are.
+    base: PathBuf,
+}
+
+impl Unbuilt {
+    fn new(name: String, source: Source, document: Result<Document, String>, base: &Path) -> Self {
+        let is_allowed = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
+        let is_name = (1..=64).contains(&name.len()) && name.chars().all(is_allowed);
+        let document = match is_name {
+            true => document,
+            false => Err(format!(
+                "`{name}` is no name; allowed: 1 to 64 ASCII letters, digits, _, - and ."
+            )),
+        };
+        Self {
+            name,
+            source,
+            document,
+            base: base.into(),
+        }
+    }
+
+    fn of_file(path: PathBuf, base: &Path) -> Self {
+        let part = |part: Option<&std::ffi::OsStr>| {
+            part.unwrap_or_default().to_string_lossy().into_owned()
+        };
+        let (name, file) = (part(path.file_stem()), part(path.file_name()));
+        let text = |path: &Path| {
+            bounded_file::read_text(path, DOCUMENT_BYTES).map_err(|error| error.to_string())
+        };
+        let listed = |faults| super::listed(&faults);
+        let document = match part(path.extension()).as_str() {
+            "json" => text(&path).and_then(|text| read::read_json("field", &text).map_err(listed)),
+            "toml" => text(&path).and_then(|text| {
+                let table = text
+                    .parse()
+                    .map_err(|error: toml::de::Error| error.to_string())?;
+                read::read_toml("field", &table).map_err(listed)
+            }),
+            _ => Ok(Document::Raster(Box::new(Pixels {
+                file: Some(file),
+                ..Pixels::default()
+            }))),
+        };
+        Self::new(name, Source::File(path), document, base)
+    }
+
+    fn error(&self, detail: String) -> FieldError {
+        FieldError {
+            source_name: self.source.to_string(),
+            detail,
+        }
+    }
+
+    /// What its files hold.
+    fn stamp(&self) -> Stamp {
+        let mut stamp = Stamp::default();
+        if let Ok(document) = &self.document {
+            files::of_document(document, &mut |file| stamp.add(&self.base.join(file)));
+        }
+        stamp
+    }
+
+    fn build(&self, fields: &Fields, room: usize, stamp: Stamp) -> Result<NamedField, String> {
+        let document = self.document.clone()?;
+        let field = match &self.source {
+            Source::Config(name) => format!("fields.{name}"),
+            Source::File(_) | Source::Embedded => "field".into(),
+        };
+        let (spec, bytes, bbox) = of_files(&field, &document, &self.base, fields, room)?;
+        Ok(NamedField {
+            name: self.name.clone(),
+            source: self.source.clone(),
+            document,
+            spec,
+            bytes,
+            bbox,
+            stamp,
+        })
+    }
+}
+
+/// The field of a document that may name files and fields, the memory that its pixels take and a box around
+/// them. `room`
+/// bounds it.
+fn of_files(
+    path: &str,
+    document: &Document,
+    base: &Path,
+    fields: &Fields,
+    room: usize,
+) -> Result<Built, String> {
+    let read = |file: &str, size: Option<[usize; 2]>| read_file(&base.join(file), size, room);
+    let sources = Sources {
+        named: &|name| Some(fields.get(name)?.spec.clone()),
+        names: &|| fields.names(),
+        files: Some(&read),
+        pixels: Cell::new(room),
+        frame: Cell::new(None),
+        bytes: Cell::new(0),
+    };
+    let spec = build(path, document, &sources).map_err(|faults| super::listed(&faults))?;
+    let taken = sources.bytes.get();
+    if taken > room {
+        return Err(format!(
+            "its pixels take {taken} bytes and {room} are left; allowed: fields.max_bytes for all fields"
+        ));
+    }
+    Ok((spec, taken, sources.frame.get()))
+}
+
+/// The field of a file that a command names: a document or a raster. A document may name others in its folder.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn from_file(path: &Path, fields: &Fields) -> Result<NamedField, FieldError> {
+    let base = path.parent().unwrap_or(Path::new(""));
+    let mut field = Unbuilt::of_file(path.into(), base);
+    if field.name.is_empty() {
+        field.name = "field".into();
+    }
+    let is_known = |name: &str| fields.get(name).is_some();
+    let has_others = (field.document.as_ref()).is_ok_and(|document| !names(document).all(is_known));
+    let mut all = fields.clone();
+    if has_others {
+        let (beside, _) = Fields::default().read(&Settings {
+            embedded: false,
+            folder: match base.as_os_str().is_empty() {
+                true => Path::new(".").into(),
+                false => base.into(),
+            },
+            max_bytes: usize::MAX,
+            max_sent_bytes: 0,
+            named: BTreeMap::new(),
+        });
+        for (name, other) in beside.entries {
+            all.entries.entry(name).or_insert(other);
+        }
+    }
+    let built = field.build(&all, usize::MAX, Stamp::default());
+    built.map_err(|detail| field.error(detail))
+}
+
+/// The field of a document that a command makes.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn from_document(
+    name: &str,
+    document: Document,
+    fields: &Fields,
+) -> Result<NamedField, FieldError> {
+    let source = Source::Config(name.into());
+    let field = Unbuilt::new(name.into(), source, Ok(document), Path::new(""));
+    let built = field.build(fields, usize::MAX, Stamp::default());
+    built.map_err(|detail| field.error(detail))
+}
+
+fn read_file(path: &Path, size: Option<[usize; 2]>, room: usize) -> Result<Image, RasterError> {
+    let limits = Limits {
+        side: MOST_SIDE,
+        pixels: room.min(Limits::FILES.pixels),
+    };
+    let file = bounded_file::open_regular(path)?;
+    match size {
+        Some(size) if path.extension().is_some_and(|e| e == "f32") => {
+            Image::read_floats(file, size, limits)
+        }
+        _ => Image::read(
+            BufReader::with_capacity(1 << 16, file),
+            Meaning::Data,
+            limits,
+        ),
+    }
+}
+
+/// A field, the memory of its pixels, and a box around them.
+type Built = (FieldSpec, usize, Option<[f64; 4]>);
+
+/// The names of the fields that a document is made of.
+fn names(document: &Document) -> Box<dyn Iterator<Item = &str> + '_> {
+    match document {
+        Document::Name(name) => Box::new(std::iter::once(name.as_str())),
+        Document::Multiply(parts) | Document::Min(parts) | Document::Max(parts) => {
+            Box::new(parts.0.iter().flat_map(names))
+        }
+        Document::Invert(of) => names(of),
+        Document::Curve(curve) => names(&curve.of),
+        _ => Box::new(std::iter::empty()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

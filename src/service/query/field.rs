@@ -1,0 +1,66 @@
+//! The field of a set: by name, or as the query describes it.
+
+use std::cell::Cell;
+
+use strew_core::field::FieldSpec;
+
+use super::{Checked, Value, Values, parameters::FIELD};
+use crate::service::{
+    Catalog,
+    field::{Document, MOST_PIXELS},
+};
+
+/// The field that a set is in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetField {
+    /// Its name, if it is one that is loaded.
+    pub name: Option<String>,
+    /// The field.
+    pub spec: FieldSpec,
+    /// Its digest, in hexadecimal.
+    pub digest: String,
+}
+
+impl SetField {
+    /// What answers echo: the name of a loaded field. Another one is known by its digest.
+    pub(super) fn echo(&self) -> Option<Value> {
+        let name = self.name.clone()?;
+        Some(Value::Field(Document::Name(name).into()))
+    }
+}
+
+/// What is loaded, and how many pixels the fields of a query may still bring along.
+pub(super) struct Loaded<'a> {
+    pub(super) catalog: &'a Catalog,
+    pixels: Cell<usize>,
+}
+
+impl<'a> Loaded<'a> {
+    pub(super) const fn new(catalog: &'a Catalog) -> Self {
+        Self {
+            catalog,
+            pixels: Cell::new(MOST_PIXELS),
+        }
+    }
+
+    /// The field of some values, if they have one.
+    pub(super) fn field(&self, values: &Values) -> Checked<Option<SetField>> {
+        let Some(document) = values.get::<std::sync::Arc<Document>>(&FIELD)? else {
+            return Ok(None);
+        };
+        let path = format!("{}{}", values.path(), FIELD.name);
+        let (spec, sources) = self
+            .catalog
+            .build_field(&path, &document, self.pixels.get());
+        self.pixels.set(sources.left);
+        let spec = spec?;
+        Ok(Some(SetField {
+            name: match &*document {
+                Document::Name(name) => Some(name.clone()),
+                _ => None,
+            },
+            digest: spec.digest().to_string(),
+            spec,
+        }))
+    }
+}

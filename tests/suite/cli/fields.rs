@@ -1,0 +1,306 @@
+//! Fields and pictures on the command line.
+
+use std::{fs, path::Path};
+
+use crate::support::{
+    command::{errors, run},
+    fields::{folder, left_half, png},
+};
+
+/// What a command prints.
+fn printed(arguments: &[&str]) -> String {
+    let output = run(arguments, "");
+    assert!(
+        output.status.success(),
+        "{arguments:?}: {}",
+        errors(&output)
+    );
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+fn refused(arguments: &[&str]) -> String {
+    let output = run(arguments, "");
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    errors(&output)
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("Unicode")
+}
+
+const SAMPLE: [&str; 9] = [
+    "sample",
+    "-q",
+    "--bbox",
+    "0,0,40,40",
+    "--spacing",
+    "1",
+    "--seed",
+    "7",
+    "--format",
+];
+
+fn sample(more: &[&str]) -> String {
+    printed(&[&SAMPLE, &["csv"][..], more].concat())
+}
+
+#[test]
+fn names_documents_and_rasters_are_the_same_field() {
+    let folder = folder();
+    let setting = format!("fields.folder={}", folder.path().display());
+    let named = sample(&["--set", &setting, "--field", "left"]);
+    assert!(named.lines().count() > 700);
+    let document = folder.path().join("left.toml");
+    assert_eq!(sample(&["--field", text(&document)]), named);
+    let mask = folder.path().join("left.png");
+    let by_raster = sample(&["--raster", text(&mask), "--raster-bbox", "0,0,40,40"]);
+    // It is linear between pixels.
+    let lines = |text: &str| text.lines().count();
+    assert!(lines(&by_raster).abs_diff(lines(&named)) < 100);
+    let counted = printed(&[
+        "count",
+        "--bbox",
+        "0,0,40,40",
+        "--spacing",
+        "1",
+        "--seed",
+        "7",
+        "--field",
+        text(&document),
+    ]);
+    assert_eq!(counted.trim(), (lines(&named) - 1).to_string());
+    let id = named
+        .lines()
+        .nth(50)
+        .and_then(|line| line.split(',').next())
+        .expect("a row");
+    let point = [
+        "point",
+        id,
+        "--spacing",
+        "1",
+        "--seed",
+        "7",
+        "--field",
+        text(&document),
+    ];
+    assert!(printed(&point).contains(id));
+}
+
+#[test]
+fn bad_fields_name_the_file_and_what_is_allowed() {
+    let folder = folder();
+    let bad = folder.path().join("bad.json");
+    fs::write(&bad, r#"{"noise": {"wavelength": 9, "octaves": 20}}"#).expect("writable");
+    let query = |more: &[&str]| refused(&[&SAMPLE, &["csv"][..], more].concat());
+    let error = query(&["--field", text(&bad)]);
+    assert!(
+        error.contains("bad.json") && error.contains("field.noise.octaves"),
+        "{error}"
+    );
+    let error = query(&["--field", "nowhere.png"]);
+    assert!(error.contains("nowhere.png"), "{error}");
+    let error = query(&["--field", "nothing"]);
+    assert!(
+        error.contains("--field nothing: no such field is loaded; allowed: forest"),
+        "{error}"
+    );
+    let mask = folder.path().join("left.png");
+    let error = query(&["--raster", text(&mask), "--raster-bbox", "0,0,1"]);
+    assert!(
+        error.contains("--raster-bbox 0,0,1: expected 4 numbers"),
+        "{error}"
+    );
+    let error = query(&["--raster-bbox", "0,0,1,1"]);
+    assert!(error.contains("--raster"), "{error}");
+    fs::write(&mask, &left_half()[..45]).expect("writable");
+    let error = query(&["--raster", text(&mask)]);
+    assert!(
+        error.contains("left.png") && error.contains("damaged or truncated"),
+        "{error}"
+    );
+}
+
+/// A picture that is black on the left, white on the right, in shades between.
+fn shades(folder: &Path) -> std::path::PathBuf {
+    let path = folder.join("shades.png");
+    fs::write(&path, png([64, 32], |x, _| (x * 4) as u8)).expect("writable");
+    path
+}
+
+#[test]
+fn dots_are_as_many_as_requested_and_as_dense_as_the_picture_is_dark() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = shades(folder.path());
+    let stipple = |more: &[&str]| {
+        printed(
+            &[
+                &["stipple", text(&picture), "-q", "--points", "2000"][..],
+                more,
+            ]
+            .concat(),
+        )
+    };
+    let x = |csv: &str| {
+        let values = csv
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').nth(1).expect("x").to_owned());
+        values
+            .map(|x| x.parse::<f64>().expect("a number"))
+            .collect::<Vec<_>>()
+    };
+    let dark = x(&stipple(&["--format", "csv"]));
+    assert_eq!(dark.len(), 2000);
+    // Linear light: a gray of 128 has 22 % of the light of white.
+    let expected = |from: u32, to: u32, is_light: bool| {
+        let light = |v: f64| {
+            if v <= 0.04045 {
+                v / 12.92
+            } else {
+                ((v + 0.055) / 1.055).powf(2.4)
+            }
+        };
+        let share = |x: u32| light(f64::from(x * 4) / 255.0);
+        let share = |x| if is_light { share(x) } else { 1.0 - share(x) };
+        let all: f64 = (0..64).map(share).sum();
+        (from..to).map(share).sum::<f64>() / all
+    };
+    let part = |values: &[f64], from: u32, to: u32| {
+        let inside = values
+            .iter()
+            .filter(|x| (f64::from(from)..f64::from(to)).contains(*x));
+        inside.count() as f64 / values.len() as f64
+    };
+    let light = x(&stipple(&["--format", "csv", "--invert"]));
+    for (from, to) in [(0, 16), (16, 32), (32, 48), (48, 64)] {
+        assert!((part(&dark, from, to) - expected(from, to, false)).abs() < 0.02);
+        assert!((part(&light, from, to) - expected(from, to, true)).abs() < 0.02);
+    }
+    let hard = x(&stipple(&["--format", "csv", "--gamma", "4"]));
+    assert!(part(&hard, 0, 16) > part(&dark, 0, 16) + 0.03);
+}
+
+#[test]
+fn dots_are_written_as_pictures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = shades(folder.path());
+    let file = |name: &str| folder.path().join(name);
+    for name in ["out.svg", "out.png"] {
+        let output = file(name);
+        let said = run(
+            &[
+                "stipple",
+                text(&picture),
+                "--points",
+                "500",
+                "-o",
+                text(&output),
+            ],
+            "",
+        );
+        assert!(said.status.success(), "{}", errors(&said));
+        assert!(errors(&said).contains("500 points"), "{}", errors(&said));
+    }
+    let svg = fs::read_to_string(file("out.svg")).expect("written");
+    assert_eq!(svg.matches("<circle").count(), 500);
+    assert!(
+        svg.contains("width=\"512\" height=\"256\""),
+        "{}",
+        &svg[..200]
+    );
+    let radius = |svg: &str| {
+        let after = svg.split_once(" r=\"").expect("a circle").1;
+        after
+            .split_once('"')
+            .expect("quoted")
+            .0
+            .parse::<f64>()
+            .expect("a number")
+    };
+    let output = file("small.svg");
+    let arguments = [
+        "stipple",
+        text(&picture),
+        "-q",
+        "-n",
+        "500",
+        "--dot",
+        "0.5",
+        "-o",
+        text(&output),
+    ];
+    printed(&arguments);
+    let small = fs::read_to_string(output).expect("written");
+    assert!((radius(&svg) / radius(&small) - 2.0).abs() < 0.05);
+    // The same command, the same bytes.
+    let again = file("again.svg");
+    printed(&[
+        "stipple",
+        text(&picture),
+        "-q",
+        "-n",
+        "500",
+        "-o",
+        text(&again),
+    ]);
+    assert_eq!(fs::read_to_string(again).expect("written"), svg);
+}
+
+#[test]
+fn what_cannot_be_done_is_told_before_the_work() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = shades(folder.path());
+    let missing = folder.path().join("none/out.svg");
+    let output = run(
+        &["stipple", text(&picture), "-n", "9", "-o", text(&missing)],
+        "",
+    );
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        errors(&output).contains("there is no folder"),
+        "{}",
+        errors(&output)
+    );
+    let white = folder.path().join("white.png");
+    fs::write(&white, png([4, 4], |_, _| 255)).expect("writable");
+    let other = folder.path().join("other.gif");
+    fs::write(&other, "GIF89a").expect("writable");
+    for (picture, more, expected) in [
+        (&white, &["-n", "9"][..], "is all white"),
+        (
+            &other,
+            &["-n", "9"],
+            "no known format; allowed: a PNG, JPEG, WebP",
+        ),
+        (
+            &folder.path().join("nothing.png"),
+            &["-n", "9"],
+            "cannot read the picture",
+        ),
+        (
+            &picture,
+            &["-n", "0"],
+            "--points 0: out of range; allowed: an integer from 1",
+        ),
+        (
+            &picture,
+            &["-n", "9", "--gamma", "0"],
+            "--gamma 0: out of range; allowed: a number from 0.01",
+        ),
+        (
+            &picture,
+            &["-n", "9", "--dot", "99"],
+            "--dot 99: out of range",
+        ),
+        (
+            &picture,
+            &["-n", "9", "--profile", "red"],
+            "no such profile is loaded",
+        ),
+        (&picture, &["-n", "9", "-o", "x.gif"], "ends with .gif"),
+    ] {
+        let error = refused(&[&["stipple", text(picture)], more].concat());
+        assert!(error.contains(expected), "{more:?}: {error}");
+    }
+}
