@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::Limits;
+use super::limits::Limits;
 
 /// Why a raster cannot be read. The file or field is named by whoever reads it.
 #[derive(Debug, thiserror::Error)]

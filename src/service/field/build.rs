@@ -1,14 +1,13 @@
 //! Fields made of their documents: what is checked here is not checked again.
 
-use std::cell::Cell;
-
 use strew_core::field::{FieldSpec, Marks, Noise, Raster, Terrain};
 
 use super::{
     Document,
     document::{Curve, Distance, Pixels},
-    pixels::{self, ReadFile},
+    pixels,
     read::FIELD,
+    sources::{Sources, problem},
 };
 use crate::service::{
     Fault,
@@ -17,22 +16,6 @@ use crate::service::{
 
 /// The most pixels that a query brings along, over all its layers.
 pub const MOST_PIXELS: usize = 1 << 20;
-
-/// Where names and files of documents lead.
-pub struct Sources<'a> {
-    /// The field of a name.
-    pub named: &'a dyn Fn(&str) -> Option<FieldSpec>,
-    /// The names that there are, for faults.
-    pub names: &'a dyn Fn() -> String,
-    /// Reads files; `None` where documents may not name any.
-    pub files: Option<&'a ReadFile<'a>>,
-    /// How many pixels documents may still hold.
-    pub pixels: Cell<usize>,
-    /// A box around all pixels that were read.
-    pub frame: Cell<Option<[f64; 4]>>,
-    /// The memory that all pixels take, in bytes.
-    pub bytes: Cell<usize>,
-}
 
 /// Makes the field of a document. `path` is put before the names of members in faults.
 ///
@@ -179,12 +162,4 @@ fn at(path: &str, name: &str, error: &strew_core::Error) -> Faults {
     };
     let field = format!("{path}.{name}");
     Fault::new(&field, error.value(), problem(error), allowed).into()
-}
-
-/// What the library says is wrong; often the value says it all.
-pub(super) fn problem(error: &strew_core::Error) -> &str {
-    match error.problem() {
-        "" => "not allowed",
-        problem => problem,
-    }
 }

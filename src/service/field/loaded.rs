@@ -5,126 +5,22 @@
 //! field is read and checked once, at the start or when the folder is read again; one whose files are
 //! unchanged is kept as it is.
 
-use std::{
-    cell::Cell,
-    collections::BTreeMap,
-    fmt,
-    io::BufReader,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use schemars::JsonSchema;
 use serde::Serialize;
-use strew_core::field::FieldSpec;
 
 use super::{
-    Document, Sources, build,
-    document::Pixels,
+    Document,
     files::{self, Stamp},
+    named::{FieldError, NamedField, Source},
     read,
+    unbuilt::{Unbuilt, listed, names},
 };
-use crate::{
-    bounded_file,
-    config::Fields as Settings,
-    raster::{Image, Limits, MOST_SIDE, Meaning, RasterError},
-};
-
-/// The longest document.
-const DOCUMENT_BYTES: u64 = 4 << 20;
+use crate::config::Fields as Settings;
 
 /// The field that is built into the program: its name and its document.
 const EMBEDDED: (&str, &str) = ("forest", include_str!("../../../config/fields/forest.toml"));
-
-/// Where a field comes from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// The program.
-    Embedded,
-    /// The configuration.
-    Config(String),
-    /// A file of the folder.
-    File(PathBuf),
-}
-
-impl fmt::Display for Source {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Embedded => f.write_str("built in"),
-            Self::Config(name) => write!(f, "[fields.{name}] of the configuration"),
-            Self::File(path) => path.display().fmt(f),
-        }
-    }
-}
-
-/// A field that is loaded.
-#[derive(Clone, Debug)]
-pub struct NamedField {
-    /// Its name.
-    pub name: String,
-    /// Where it comes from.
-    pub source: Source,
-    /// How it is described.
-    pub document: Document,
-    /// The field.
-    pub spec: FieldSpec,
-    /// The memory that its pixels take, in bytes.
-    pub bytes: usize,
-    /// A box around its pixels, if it has any: min x, min y, max x, max y.
-    pub bbox: Option<[f64; 4]>,
-    /// What its files held when it was read.
-    stamp: Stamp,
-}
-
-impl NamedField {
-    /// A field that a program has made.
-    #[must_use]
-    pub fn of_spec(name: &str, spec: FieldSpec) -> Self {
-        Self {
-            name: name.into(),
-            source: Source::Config(name.into()),
-            document: Document::Name(name.into()),
-            spec,
-            bytes: 0,
-            bbox: None,
-            stamp: Stamp::default(),
-        }
-    }
-
-    /// A field that a client has sent; its name is its digest. Pixels are not held twice.
-    #[must_use]
-    pub fn sent(
-        mut document: Document,
-        spec: FieldSpec,
-        bytes: usize,
-        bbox: Option<[f64; 4]>,
-    ) -> Self {
-        document.each_pixels(&mut |pixels| (pixels.png, pixels.f32) = (None, None));
-        let name = spec.digest().to_string();
-        Self {
-            document,
-            bytes,
-            bbox,
-            ..Self::of_spec(&name, spec)
-        }
-    }
-
-    /// Its digest, in hexadecimal.
-    #[must_use]
-    pub fn digest(&self) -> String {
-        self.spec.digest().to_string()
-    }
-}
-
-/// Why fields cannot be loaded.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the field {source_name} is not valid: {detail}")]
-pub struct FieldError {
-    /// The file, the folder or the section of the configuration.
-    pub source_name: String,
-    /// What is wrong.
-    pub detail: String,
-}
 
 /// The fields that are loaded, by name.
 #[derive(Clone, Debug, Default)]
@@ -201,18 +97,7 @@ impl Fields {
     /// The names, for faults: not all of a long list.
     #[must_use]
     pub fn names(&self) -> String {
-        const SHOWN: usize = 16;
-        let mut names: Vec<&str> = self.entries.keys().map(String::as_str).collect();
-        let more = names.len().saturating_sub(SHOWN);
-        names.truncate(SHOWN);
-        match (names.as_slice(), more) {
-            ([], _) => "nothing: no field is loaded".into(),
-            (names, 0) => names.join(", "),
-            (names, more) => format!(
-                "{}, and {more} more (see the list of fields)",
-                names.join(", ")
-            ),
-        }
+        listed(&self.entries)
     }
 
     /// Reads everything; what is refused keeps the field that it was before.
@@ -286,7 +171,7 @@ impl Fields {
         let document = table.and_then(|table| read::read_toml("field", &table).ok());
         let document = document.ok_or_else(|| "the built-in field does not read".into());
         let field = Unbuilt::new(name.into(), Source::Embedded, document, Path::new(""));
-        if let Ok(field) = field.build(self, 0, Stamp::default()) {
+        if let Ok(field) = field.build(&self.entries, 0, Stamp::default()) {
             self.insert(field);
         }
     }
@@ -320,7 +205,7 @@ impl Fields {
         });
         let built = match unchanged {
             Some(old) if field.document.as_ref() == Ok(&old.document) => Ok(Arc::clone(old)),
-            _ => field.build(after, *room, stamp).map(Arc::new),
+            _ => field.build(&after.entries, *room, stamp).map(Arc::new),
         };
         match built {
             Ok(built) => {
@@ -336,122 +221,6 @@ impl Fields {
         }
         None
     }
-}
-
-/// A field that is read, but not built.
-struct Unbuilt {
-    name: String,
-    source: Source,
-    document: Result<Document, String>,
-    /// Where the files that it names are.
-    base: PathBuf,
-}
-
-impl Unbuilt {
-    fn new(name: String, source: Source, document: Result<Document, String>, base: &Path) -> Self {
-        let is_allowed = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
-        let is_name = (1..=64).contains(&name.len()) && name.chars().all(is_allowed);
-        let document = match is_name {
-            true => document,
-            false => Err(format!(
-                "`{name}` is no name; allowed: 1 to 64 ASCII letters, digits, _, - and ."
-            )),
-        };
-        Self {
-            name,
-            source,
-            document,
-            base: base.into(),
-        }
-    }
-
-    fn of_file(path: PathBuf, base: &Path) -> Self {
-        let part = |part: Option<&std::ffi::OsStr>| {
-            part.unwrap_or_default().to_string_lossy().into_owned()
-        };
-        let (name, file) = (part(path.file_stem()), part(path.file_name()));
-        let text = |path: &Path| {
-            bounded_file::read_text(path, DOCUMENT_BYTES).map_err(|error| error.to_string())
-        };
-        let listed = |faults| super::listed(&faults);
-        let document = match part(path.extension()).as_str() {
-            "json" => text(&path).and_then(|text| read::read_json("field", &text).map_err(listed)),
-            "toml" => text(&path).and_then(|text| {
-                let table = text
-                    .parse()
-                    .map_err(|error: toml::de::Error| error.to_string())?;
-                read::read_toml("field", &table).map_err(listed)
-            }),
-            _ => Ok(Document::Raster(Box::new(Pixels {
-                file: Some(file),
-                ..Pixels::default()
-            }))),
-        };
-        Self::new(name, Source::File(path), document, base)
-    }
-
-    fn error(&self, detail: String) -> FieldError {
-        FieldError {
-            source_name: self.source.to_string(),
-            detail,
-        }
-    }
-
-    /// What its files hold.
-    fn stamp(&self) -> Stamp {
-        let mut stamp = Stamp::default();
-        if let Ok(document) = &self.document {
-            files::of_document(document, &mut |file| stamp.add(&self.base.join(file)));
-        }
-        stamp
-    }
-
-    fn build(&self, fields: &Fields, room: usize, stamp: Stamp) -> Result<NamedField, String> {
-        let document = self.document.clone()?;
-        let field = match &self.source {
-            Source::Config(name) => format!("fields.{name}"),
-            Source::File(_) | Source::Embedded => "field".into(),
-        };
-        let (spec, bytes, bbox) = of_files(&field, &document, &self.base, fields, room)?;
-        Ok(NamedField {
-            name: self.name.clone(),
-            source: self.source.clone(),
-            document,
-            spec,
-            bytes,
-            bbox,
-            stamp,
-        })
-    }
-}
-
-/// The field of a document that may name files and fields, the memory that its pixels take and a box around
-/// them. `room`
-/// bounds it.
-fn of_files(
-    path: &str,
-    document: &Document,
-    base: &Path,
-    fields: &Fields,
-    room: usize,
-) -> Result<Built, String> {
-    let read = |file: &str, size: Option<[usize; 2]>| read_file(&base.join(file), size, room);
-    let sources = Sources {
-        named: &|name| Some(fields.get(name)?.spec.clone()),
-        names: &|| fields.names(),
-        files: Some(&read),
-        pixels: Cell::new(room),
-        frame: Cell::new(None),
-        bytes: Cell::new(0),
-    };
-    let spec = build(path, document, &sources).map_err(|faults| super::listed(&faults))?;
-    let taken = sources.bytes.get();
-    if taken > room {
-        return Err(format!(
-            "its pixels take {taken} bytes and {room} are left; allowed: fields.max_bytes for all fields"
-        ));
-    }
-    Ok((spec, taken, sources.frame.get()))
 }
 
 /// The field of a file that a command names: a document or a raster. A document may name others in its folder.
@@ -482,7 +251,7 @@ pub fn from_file(path: &Path, fields: &Fields) -> Result<NamedField, FieldError>
             all.entries.entry(name).or_insert(other);
         }
     }
-    let built = field.build(&all, usize::MAX, Stamp::default());
+    let built = field.build(&all.entries, usize::MAX, Stamp::default());
     built.map_err(|detail| field.error(detail))
 }
 
@@ -497,42 +266,8 @@ pub fn from_document(
 ) -> Result<NamedField, FieldError> {
     let source = Source::Config(name.into());
     let field = Unbuilt::new(name.into(), source, Ok(document), Path::new(""));
-    let built = field.build(fields, usize::MAX, Stamp::default());
+    let built = field.build(&fields.entries, usize::MAX, Stamp::default());
     built.map_err(|detail| field.error(detail))
-}
-
-fn read_file(path: &Path, size: Option<[usize; 2]>, room: usize) -> Result<Image, RasterError> {
-    let limits = Limits {
-        side: MOST_SIDE,
-        pixels: room.min(Limits::FILES.pixels),
-    };
-    let file = bounded_file::open_regular(path)?;
-    match size {
-        Some(size) if path.extension().is_some_and(|e| e == "f32") => {
-            Image::read_floats(file, size, limits)
-        }
-        _ => Image::read(
-            BufReader::with_capacity(1 << 16, file),
-            Meaning::Data,
-            limits,
-        ),
-    }
-}
-
-/// A field, the memory of its pixels, and a box around them.
-type Built = (FieldSpec, usize, Option<[f64; 4]>);
-
-/// The names of the fields that a document is made of.
-fn names(document: &Document) -> Box<dyn Iterator<Item = &str> + '_> {
-    match document {
-        Document::Name(name) => Box::new(std::iter::once(name.as_str())),
-        Document::Multiply(parts) | Document::Min(parts) | Document::Max(parts) => {
-            Box::new(parts.0.iter().flat_map(names))
-        }
-        Document::Invert(of) => names(of),
-        Document::Curve(curve) => names(&curve.of),
-        _ => Box::new(std::iter::empty()),
-    }
 }
 
 #[cfg(test)]

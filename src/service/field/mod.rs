@@ -9,24 +9,28 @@ mod build;
 pub mod document;
 mod files;
 pub mod loaded;
+mod named;
 mod picture;
 mod pixels;
 mod read;
 mod schema;
 pub mod sent;
+mod sources;
+mod unbuilt;
 
 #[cfg(test)]
 mod tests;
 
 pub(crate) use files::{Stamp, stamp};
 
-pub use build::{MOST_PIXELS, Sources, build};
+pub use build::{MOST_PIXELS, build};
 pub use document::Document;
-pub use loaded::{FieldError, FieldReload, Fields, NamedField, from_document, from_file};
+pub use loaded::{FieldReload, Fields, from_document, from_file};
+pub use named::{FieldError, NamedField};
 pub use picture::SIDE;
-pub use pixels::ReadFile;
 pub use read::{read_json, read_toml};
 pub use sent::Sent;
+pub use sources::{ReadFile, Sources};
 
 use super::query::Faults;
 

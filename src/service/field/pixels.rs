@@ -4,8 +4,8 @@ use base64::{Engine as _, prelude::BASE64_STANDARD};
 use strew_core::{Region, field::Pixels as Grid};
 
 use super::{
-    build::{Sources, problem},
     document::Pixels,
+    sources::{Sources, problem},
 };
 use crate::{
     raster::{Image, Limits, MOST_SIDE, Meaning, RasterError, Samples},
@@ -14,9 +14,6 @@ use crate::{
         query::{Checked, Faults},
     },
 };
-
-/// Reads a file by the name that a document has for it; the size is that of bare floats.
-pub type ReadFile<'a> = dyn Fn(&str, Option<[usize; 2]>) -> Result<Image, RasterError> + 'a;
 
 /// What a document may hold its pixels in.
 const SOURCES: &str = "one of png and f32, or in the daemon's configuration a file";

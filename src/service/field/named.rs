@@ -1,0 +1,97 @@
+//! A field with a name, and why there is none.
+
+use std::{fmt, path::PathBuf};
+
+use strew_core::field::FieldSpec;
+
+use super::{Document, files::Stamp};
+
+/// Where a field comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The program.
+    Embedded,
+    /// The configuration.
+    Config(String),
+    /// A file of the folder.
+    File(PathBuf),
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Embedded => f.write_str("built in"),
+            Self::Config(name) => write!(f, "[fields.{name}] of the configuration"),
+            Self::File(path) => path.display().fmt(f),
+        }
+    }
+}
+
+/// A field that is loaded.
+#[derive(Clone, Debug)]
+pub struct NamedField {
+    /// Its name.
+    pub name: String,
+    /// Where it comes from.
+    pub source: Source,
+    /// How it is described.
+    pub document: Document,
+    /// The field.
+    pub spec: FieldSpec,
+    /// The memory that its pixels take, in bytes.
+    pub bytes: usize,
+    /// A box around its pixels, if it has any: min x, min y, max x, max y.
+    pub bbox: Option<[f64; 4]>,
+    /// What its files held when it was read.
+    pub(super) stamp: Stamp,
+}
+
+impl NamedField {
+    /// A field that a program has made.
+    #[must_use]
+    pub fn of_spec(name: &str, spec: FieldSpec) -> Self {
+        Self {
+            name: name.into(),
+            source: Source::Config(name.into()),
+            document: Document::Name(name.into()),
+            spec,
+            bytes: 0,
+            bbox: None,
+            stamp: Stamp::default(),
+        }
+    }
+
+    /// A field that a client has sent; its name is its digest. Pixels are not held twice.
+    #[must_use]
+    pub fn sent(
+        mut document: Document,
+        spec: FieldSpec,
+        bytes: usize,
+        bbox: Option<[f64; 4]>,
+    ) -> Self {
+        document.each_pixels(&mut |pixels| (pixels.png, pixels.f32) = (None, None));
+        let name = spec.digest().to_string();
+        Self {
+            document,
+            bytes,
+            bbox,
+            ..Self::of_spec(&name, spec)
+        }
+    }
+
+    /// Its digest, in hexadecimal.
+    #[must_use]
+    pub fn digest(&self) -> String {
+        self.spec.digest().to_string()
+    }
+}
+
+/// Why fields cannot be loaded.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("the field {source_name} is not valid: {detail}")]
+pub struct FieldError {
+    /// The file, the folder or the section of the configuration.
+    pub source_name: String,
+    /// What is wrong.
+    pub detail: String,
+}
