@@ -349,3 +349,57 @@ fn a_stopped_count_is_an_error() {
     let error = server::within(&set, region, &stop).expect_err("stopped");
     assert_eq!(error.kind(), strew_core::ErrorKind::Stopped);
 }
+
+#[test]
+fn where_a_field_is_constant_its_bounds_change_nothing() {
+    let spec = || -> Result<FieldSpec, strew_core::Error> {
+        let low = FieldSpec::ramp([700.0, 0.0], [760.0, 0.0], [0.4, 0.0])?;
+        let island = FieldSpec::radial([250.0, 900.0], [180.0, 190.0], [1.0, 0.0])?;
+        FieldSpec::max(vec![low, island])
+    };
+    let field = spec().expect("valid");
+    for (seed, keep) in [(0, 1.0), (9, 1.0), (9, 0.8)] {
+        let set = PointSet::new(tables()[0].clone())
+            .seed(seed)
+            .keep(keep)
+            .expect("a share");
+        let shares = field.clone();
+        let looked_up = set.in_field(move |at: [f64; 2]| shares.share(at));
+        let set = set.in_field(field.clone());
+        let region = Region::new([-30.0, 10.0], [900.0, 1500.0]).expect("ordered");
+        let circle = Circle::new([300.0, 700.0], 420.0).expect("round");
+        for area in [Area::from(region), circle.into()] {
+            let [plan, other] =
+                [&set, &looked_up].map(|set| set.within(area.clone()).expect("near"));
+            let expected = other.to_vec();
+            assert_eq!(plan.count(), expected.len() as u128);
+            assert_eq!(plan.to_vec(), expected);
+            assert_eq!(items::<F32>(&plan, 777), items::<F32>(&other, 4000));
+            for part in [0.0, 0.01, 0.3, 0.31, 0.9] {
+                let offset = (part * expected.len() as f64) as usize;
+                let window = plan.window(offset as u128, Some(5000));
+                assert_eq!(
+                    window.to_vec(),
+                    &expected[offset..expected.len().min(offset + 5000)]
+                );
+                let next = window.next_cursor();
+                assert_eq!(next, other.window(offset as u128, Some(5000)).next_cursor());
+                let (mut blocks, mut block) = (window.blocks_points(), [Point::default(); 1234]);
+                let filled = blocks.fill(&mut block);
+                let cursor = blocks.cursor().expect("more");
+                let resumed = set.resume(area.clone(), cursor).expect("near");
+                assert_eq!(
+                    resumed.window(0, Some(99)).to_vec(),
+                    &expected[offset + filled..][..99]
+                );
+            }
+            let from_tiles = plan.tiles(40_000).flat_map(|tile| {
+                let mut all = vec![Point::default(); 40_000];
+                let filled = plan.tile_blocks::<Points>(&tile).fill(&mut all);
+                all.truncate(filled);
+                all
+            });
+            assert!(from_tiles.eq(expected.iter().copied()));
+        }
+    }
+}

@@ -176,6 +176,20 @@ proptest! {
     }
 
     #[test]
+    fn many_places_have_the_shares_of_each(
+        spec in spec(), number in 0usize..90, scale in prop_oneof![Just(1.0), Just(1e5), Just(1e14)],
+        step in place(),
+    ) {
+        let at = |i: usize| step.map(|v| scale * v * (i as f64 * 0.618).fract());
+        let places: Vec<[f64; 2]> = (0..number).map(at).collect();
+        let mut shares = vec![f64::NAN; number];
+        spec.shares(&places, &mut shares);
+        let bits = |share: f64| share.to_bits();
+        let one_by_one = places.iter().map(|&at| bits(spec.share(at)));
+        prop_assert!(one_by_one.eq(shares.iter().map(|&share| bits(share))));
+    }
+
+    #[test]
     fn the_tree_of_marks_finds_the_nearest(marks in marks(), at in place()) {
         let field = FieldSpec::distance(marks.clone(), [-200.0, 200.0], [0.0, 1.0]).expect("valid");
         let distance = |[a, b]: [[f64; 2]; 2]| {

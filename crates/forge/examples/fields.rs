@@ -1,7 +1,7 @@
 //! Measures how a set follows a field: distances in local units, and counts of boxes.
 //!
-//! `cargo run --release -p strew-forge --example fields -- TABLE [--seed 5] [--still]` looks at windows of
-//! 400 mean spacings. Var is Var(N − ∫λ)/∫λ over quadtree boxes of 8 to 32 points (a random set has 1),
+//! `cargo run --release -p strew-forge --example fields -- TABLE [--seed 5] [--seeds 32] [--warp 0] [--still]` looks at
+//! windows of 400 mean spacings. Var is Var(N − ∫λ)/∫λ over quadtree boxes of 8 to 32 points (a random set has 1),
 //! bias that of the count, both by octave of λ; distances are nearest-neighbor distances times √λ over the
 //! hexagonal distance. A picture is written with `--svg FIELD`.
 
@@ -43,13 +43,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         let at = arguments.iter().position(|a| a == name)?;
         arguments.get(at + 1)
     };
-    let seed = after("--seed").map_or(Ok(5), |v| v.parse())?;
+    let seed: u64 = after("--seed").map_or(Ok(5), |v| v.parse())?;
+    let seeds: u64 = after("--seeds").map_or(Ok(1), |v| v.parse())?;
     let mut table = read_table(Path::new(arguments.first().ok_or("which table?")?))?;
     if arguments.iter().any(|a| a == "--still") {
         let ranks = table.ranks().ok_or("no ranks")?.clone();
         table = table.with_ranks(ranks)?;
     }
-    let set = PointSet::new(table).seed(seed);
+    let mut set = PointSet::new(table).seed(seed);
+    if let Some(warp) = after("--warp") {
+        set = set.warp(warp.parse()?)?;
+    }
     let window = Region::new([0.0, 0.0], [SIDE, SIDE])?;
     for (name, field) in fields() {
         if let Some(wanted) = after("--svg") {
@@ -58,10 +62,17 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
             continue;
         }
-        let share = field.clone();
-        let graded = set.in_field(move |at: [f64; 2]| share(at));
-        let points: Vec<[f64; 2]> = graded.within(window)?.iter().map(|m| m.at()).collect();
-        println!("{name}: {}", figures(&points, &*field));
+        let mut figures = Figures::default();
+        for seed in seed..seed + seeds {
+            let share = field.clone();
+            let graded = set
+                .clone()
+                .seed(seed)
+                .in_field(move |at: [f64; 2]| share(at));
+            let points: Vec<[f64; 2]> = graded.within(window)?.iter().map(|m| m.at()).collect();
+            figures.add(&points, &*field);
+        }
+        println!("{name}: {figures}");
     }
     Ok(())
 }
@@ -82,25 +93,60 @@ fn print_svg(set: &PointSet, field: &Share) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn figures(points: &[[f64; 2]], share: &dyn Fn([f64; 2]) -> f64) -> String {
-    let mut near = distances(points, share);
-    near.sort_by(f64::total_cmp);
-    let mean = near.iter().sum::<f64>() / near.len() as f64;
-    let mut text = format!(
-        "{} points, delta_min {:.3}, 1 % {:.3}, mean {mean:.3}; var, bias % by octave:",
-        points.len(),
-        near[0],
-        near[near.len() / 100]
-    );
-    let mut sums = vec![[0.0; 4]; 8];
-    boxes([0.0, 0.0], SIDE, points.to_vec(), share, &mut sums);
-    for [count, found, expected, squares] in sums {
-        if count > 8.0 {
-            let bias = 100.0 * (found / expected - 1.0);
-            text += &format!(" [{:.3} {bias:+.2}]", squares / count);
+/// The figures of a field in windows of some sets.
+#[derive(Default)]
+struct Figures {
+    points: usize,
+    least: Vec<f64>,
+    near: Vec<f64>,
+    mean: Vec<f64>,
+    /// By octave: Var(N − ∫λ)/∫λ, and the bias of the count in percent, of each set.
+    octaves: Vec<[Vec<f64>; 2]>,
+}
+
+impl Figures {
+    fn add(&mut self, points: &[[f64; 2]], share: &dyn Fn([f64; 2]) -> f64) {
+        let mut near = distances(points, share);
+        near.sort_by(f64::total_cmp);
+        self.points += points.len();
+        self.mean.push(near.iter().sum::<f64>() / near.len() as f64);
+        self.near.push(near[near.len() / 100]);
+        self.least.push(near[0]);
+        let mut sums = vec![[0.0; 4]; 8];
+        boxes([0.0, 0.0], SIDE, points.to_vec(), share, &mut sums);
+        self.octaves.resize(sums.len(), Default::default());
+        for (octave, [count, found, expected, squares]) in self.octaves.iter_mut().zip(sums) {
+            if count > 8.0 {
+                octave[0].push(squares / count);
+                octave[1].push(100.0 * (found / expected - 1.0));
+            }
         }
     }
-    text
+}
+
+impl std::fmt::Display for Figures {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let least = self.least.iter().copied().fold(f64::INFINITY, f64::min);
+        let [near, mean] = [&self.near, &self.mean].map(|all| average(all)[0]);
+        let number = self.points / self.least.len();
+        write!(
+            f,
+            "{number} points, delta_min {least:.3}, 1 % {near:.3}, mean {mean:.3}; var, bias % by octave:"
+        )?;
+        for [var, bias] in self.octaves.iter().filter(|[var, _]| !var.is_empty()) {
+            let ([var, _], [bias, error]) = (average(var), average(bias));
+            write!(f, " [{var:.3} {bias:+.2} ± {error:.2}]")?;
+        }
+        Ok(())
+    }
+}
+
+/// The mean, and its standard error.
+fn average(all: &[f64]) -> [f64; 2] {
+    let number = all.len() as f64;
+    let mean = all.iter().sum::<f64>() / number;
+    let squares: f64 = all.iter().map(|v| (v - mean).powi(2)).sum();
+    [mean, squares.sqrt() / number]
 }
 
 /// Splits boxes until they hold 8 to 32 points, and adds up: boxes, points, expected points, squared errors.

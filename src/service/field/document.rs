@@ -99,7 +99,7 @@ impl Document {
     }
 }
 
-/// shares[0] at one place, shares[1] at another, linear between them.
+/// `shares[0]` at one place, `shares[1]` at another, linear between them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "FieldRamp")]
@@ -113,7 +113,7 @@ pub struct Ramp {
     pub shares: [f64; 2],
 }
 
-/// shares[0] up to radii[0], shares[1] from radii[1] on, linear between.
+/// `shares[0]` up to `radii[0]`, `shares[1]` from `radii[1]` on, linear between.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "FieldRadial")]
@@ -127,7 +127,7 @@ pub struct Radial {
     pub shares: [f64; 2],
 }
 
-/// shares[0] up to distances[0], shares[1] from distances[1] on, linear between. Exactly one of points,
+/// `shares[0]` up to `distances[0]`, `shares[1]` from `distances[1]` on, linear between. Exactly one of points,
 /// lines and polygons.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -216,7 +216,7 @@ pub struct Pixels {
     pub gamma: Option<f64>,
 }
 
-/// shares[0] up to heights[0], shares[1] from heights[1] on, linear between.
+/// `shares[0]` up to `heights[0]`, `shares[1]` from `heights[1]` on, linear between.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "FieldHeight")]
@@ -230,7 +230,7 @@ pub struct Height {
     pub shares: [f64; 2],
 }
 
-/// shares[0] up to slopes[0], shares[1] from slopes[1] on, linear between. A slope is rise over run.
+/// `shares[0]` up to `slopes[0]`, `shares[1]` from `slopes[1]` on, linear between. A slope is rise over run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "FieldSlope")]

@@ -176,6 +176,18 @@ impl Scope {
         })
     }
 
+    /// This scope of a lattice at another share.
+    pub(crate) fn with_lattice(&self, lattice: Lattice) -> Self {
+        let bounds = [self.x.bounds.clone(), self.y.bounds.clone()];
+        let [x, y] = Span::of_box(&lattice, bounds);
+        Self {
+            lattice,
+            x,
+            y,
+            ..self.clone()
+        }
+    }
+
     /// The lattice of the set.
     pub(crate) fn whole_lattice(&self) -> &Lattice {
         self.in_field.as_ref().unwrap_or(&self.lattice)

@@ -223,12 +223,14 @@ impl Ladder {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     #[must_use]
+    #[inline]
     pub fn level(&self, k: usize) -> &[Rung] {
         let level = k.checked_sub(1).and_then(|at| self.levels.get(at));
         level.map_or(&[], |level| &level.rungs)
     }
 
     /// The place of a share between the levels.
+    #[inline]
     pub(crate) fn stage(&self, share: f64) -> Stage {
         // The highest bits of a number below 1 fall as it falls.
         let high = 1.0f64.to_bits() - 1;
@@ -293,11 +295,45 @@ impl Ladder {
             1 => full,
             _ => widened(self.level(below - 1)[position]),
         };
-        let [start, end] = rung.event.map(f64::from);
+        let [start, end] = [f64::from(rung.event[0]), f64::from(rung.event[1])];
         between(from, to, ((way - start) / (end - start)).clamp(0.0, 1.0))
     }
 
+    /// The vectors of the levels above and below a stage at a position, and the event, if both levels have the
+    /// block; the first is arbitrary above level 1. Looking these up for many points before any is used lets
+    /// memory answer many at once.
+    #[inline(always)]
+    pub(crate) fn rungs(&self, stage: Stage, position: usize) -> Option<[Rung; 2]> {
+        let below = stage.below.checked_sub(1)?;
+        let to = *self.levels.get(below)?.rungs.get(position)?;
+        let above = below.saturating_sub(1);
+        Some([*self.levels[above].rungs.get(position)?, to])
+    }
+
+    /// The [displacement](Self::displacement) by the rungs that were looked up.
+    #[inline(always)]
+    pub(crate) fn displacement_by(
+        &self,
+        stage: Stage,
+        rungs: Option<[Rung; 2]>,
+        position: usize,
+        full: Displacement,
+    ) -> Displacement {
+        let Some([above, rung]) = rungs.filter(|_| stage.back <= 0.0) else {
+            return self.displacement(stage, position, full);
+        };
+        let from = if stage.below == 1 {
+            full
+        } else {
+            widened(above)
+        };
+        let [start, end] = [f64::from(rung.event[0]), f64::from(rung.event[1])];
+        let part = ((stage.way - start) / (end - start)).clamp(0.0, 1.0);
+        between(from, widened(rung), part)
+    }
+
     /// The displacement of a block at the last level up to `below` that knows it.
+    #[cold]
     fn last(&self, below: usize, position: usize, full: Displacement) -> Displacement {
         let known = (1..=below).rev().find_map(|k| self.level(k).get(position));
         known.map_or(full, |&rung| widened(rung))
@@ -340,16 +376,17 @@ impl Level {
 }
 
 /// A part of the way from one vector to another.
+#[inline(always)]
 fn between(from: Displacement, to: Displacement, part: f64) -> Displacement {
-    [0, 1].map(|axis| {
-        let by = f64::from(to[axis]) - f64::from(from[axis]);
-        from[axis] + (by * part) as i32
-    })
+    let along = |from: i32, to: i32| from + ((f64::from(to) - f64::from(from)) * part) as i32;
+    [along(from[0], to[0]), along(from[1], to[1])]
 }
 
 /// The vector of a rung, in units of a table's vectors.
+#[inline(always)]
 fn widened(rung: Rung) -> Displacement {
-    rung.vector.map(|v| i32::from(v) << SHIFT)
+    let [x, y] = rung.vector;
+    [i32::from(x) << SHIFT, i32::from(y) << SHIFT]
 }
 
 #[cfg(test)]

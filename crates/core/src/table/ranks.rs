@@ -166,7 +166,7 @@ impl Order {
 
     /// The block at a position.
     #[inline]
-    pub(crate) fn block(&self, position: usize) -> usize {
+    pub(super) fn block(&self, position: usize) -> usize {
         self.blocks[position] as usize
     }
 

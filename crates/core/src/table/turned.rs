@@ -3,7 +3,7 @@
 use alloc::sync::Arc;
 
 use super::{
-    Displacement, Ladder, Order, Table,
+    Displacement, Ladder, Order, Rung, Table,
     ladder::Stage,
     symmetry::{Symmetry, Turned},
 };
@@ -47,15 +47,6 @@ impl TurnedTable {
         &all[block_y * n..][..n]
     }
 
-    /// The vector of a block.
-    #[inline]
-    pub(crate) fn vector(&self, block: usize) -> Displacement {
-        match &self.turned {
-            Some(turned) => turned.vectors[block],
-            None => self.table.displacements()[block],
-        }
-    }
-
     /// The order in which blocks leave.
     #[inline]
     pub(crate) fn order(&self) -> &Order {
@@ -71,6 +62,20 @@ impl TurnedTable {
         let full = self.table.displacements()[self.table.order().block(position)];
         self.symmetry
             .turn(ladder.displacement(stage, position, full))
+    }
+
+    /// The same for a block whose displacement in the full set and whose [rungs](Ladder::rungs) are known.
+    #[inline(always)]
+    pub(crate) fn moved_from(
+        &self,
+        ladder: &Ladder,
+        (stage, rungs): (Stage, Option<[Rung; 2]>),
+        position: usize,
+        full: Displacement,
+    ) -> Displacement {
+        let full = self.symmetry.unturn(full);
+        self.symmetry
+            .turn(ladder.displacement_by(stage, rungs, position, full))
     }
 
     /// The table as it is.

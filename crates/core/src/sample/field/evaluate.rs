@@ -114,6 +114,40 @@ impl Field for FieldSpec {
         }
     }
 
+    fn shares(&self, places: &[[f64; 2]], shares: &mut [f64]) {
+        match &*self.shape {
+            Shape::Constant(share) => shares.fill(*share),
+            Shape::Ramp {
+                from,
+                per,
+                shares: ends,
+            } => {
+                for (share, at) in shares.iter_mut().zip(places) {
+                    *share = along(*from, *per, *ends, *at);
+                }
+            }
+            Shape::Raster(raster) => raster.shares(places, shares),
+            Shape::Noise(noise) => noise.shares(places, shares),
+            Shape::Multiply(parts) => together(parts, 1.0, |a, b| a * b, places, shares),
+            Shape::Min(parts) => together(parts, 1.0, f64::min, places, shares),
+            Shape::Max(parts) => together(parts, 0.0, f64::max, places, shares),
+            Shape::Invert(part) => {
+                part.shares(places, shares);
+                shares.iter_mut().for_each(|share| *share = 1.0 - *share);
+            }
+            Shape::Curve(part, points) => {
+                part.shares(places, shares);
+                let map = |share: &mut f64| *share = on(points, *share);
+                shares.iter_mut().for_each(map);
+            }
+            _ => {
+                for (share, at) in shares.iter_mut().zip(places) {
+                    *share = self.share(*at);
+                }
+            }
+        }
+    }
+
     fn bounds(&self, within: &Region) -> [f64; 2] {
         let over = |parts: &[Self], first: f64, join: fn(f64, f64) -> f64| {
             parts.iter().fold([first; 2], |ends, part| {
@@ -161,6 +195,28 @@ impl Field for FieldSpec {
             }
         };
         ends.map(unit)
+    }
+}
+
+/// The shares of fields at some places, joined.
+fn together(
+    parts: &[FieldSpec],
+    first: f64,
+    join: fn(f64, f64) -> f64,
+    places: &[[f64; 2]],
+    shares: &mut [f64],
+) {
+    const SOME: usize = 256;
+    let mut own = [0.0; SOME];
+    for (places, shares) in places.chunks(SOME).zip(shares.chunks_mut(SOME)) {
+        shares.fill(first);
+        for part in parts {
+            let own = &mut own[..shares.len()];
+            part.shares(places, own);
+            for (share, own) in shares.iter_mut().zip(own) {
+                *share = join(*share, *own);
+            }
+        }
     }
 }
 

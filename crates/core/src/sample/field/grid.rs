@@ -8,7 +8,10 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind},
-    sample::area::Region,
+    sample::{
+        area::Region,
+        kernel::{Backend, PlainLoop, compiled_loop},
+    },
 };
 
 /// What lies beyond the box of pixels.
@@ -55,6 +58,9 @@ pub enum Filter {
     /// The pixel that a place lies in.
     Nearest,
 }
+
+/// The number of places that are looked up at once.
+const SOME: usize = 32;
 
 /// Pixels over a box.
 #[derive(Clone, Debug)]
@@ -124,31 +130,67 @@ impl Grid {
         if self.edges == Edges::Zero && !self.region.contains(at) {
             return 0.0;
         }
-        let place = [self.place(0, at[0]), self.place(1, at[1])];
-        let toned = |v: usize, one: f32| match tones {
-            Some(tones) => tones[v],
-            None => v as f32 / one,
-        };
         match self.pixels.store() {
-            Store::Floats(all) => self.between(place, |at| f64::from(all[at])),
-            Store::Bytes(all) => self.between(place, |at| f64::from(toned(all[at].into(), 255.0))),
+            Store::Floats(all) => self.of(at, |at| all[at]),
+            Store::Bytes(all) => self.of(at, |at| tone(tones, all[at].into(), 255.0)),
+            Store::Words(all) => self.of(at, |at| tone(tones, all[at].into(), 65535.0)),
+        }
+    }
+
+    /// The numbers at some places; see [`at`](Self::at).
+    pub(super) fn all_at(&self, places: &[[f64; 2]], tones: Option<&[f32]>, out: &mut [f64]) {
+        match self.pixels.store() {
+            Store::Floats(all) => self.each(places, out, |at| all[at]),
+            Store::Bytes(all) => match tones.and_then(|tones| tones.first_chunk::<256>()) {
+                Some(tones) => self.each(places, out, |at| tones[all[at] as usize]),
+                None => self.each(places, out, |at| tone(None, all[at].into(), 255.0)),
+            },
             Store::Words(all) => {
-                self.between(place, |at| f64::from(toned(all[at].into(), 65535.0)))
+                self.each(places, out, |at| tone(tones, all[at].into(), 65535.0));
             }
         }
     }
 
     #[inline(always)]
-    fn between(&self, place: [f64; 2], pixel: impl Fn(usize) -> f64) -> f64 {
+    fn each(&self, places: &[[f64; 2]], out: &mut [f64], pixel: impl Fn(usize) -> f32) {
+        let is_plain = self.edges == Edges::Clamp && self.filter == Filter::Linear;
+        if !is_plain {
+            for (out, &at) in out.iter_mut().zip(places) {
+                let is_outside = self.edges == Edges::Zero && !self.region.contains(at);
+                *out = if is_outside { 0.0 } else { self.of(at, &pixel) };
+            }
+            return;
+        }
+        let last = self.size.map(|size| (size - 1) as f64);
+        let whole = self.size.map(|size| size as f64);
+        let mut work = Look {
+            min: self.region.min(),
+            scale: self.scale,
+            whole,
+            last,
+            width: self.size[0],
+            places,
+            out,
+            pixel,
+        };
+        compiled_loop(Backend::best(), &mut work);
+    }
+
+    /// The number at a place inside.
+    #[inline(always)]
+    fn of(&self, at: [f64; 2], pixel: impl Fn(usize) -> f32) -> f64 {
+        let (x, y) = (self.place(0, at[0]), self.place(1, at[1]));
         let [width, height] = self.size;
         if self.filter == Filter::Nearest {
-            let x = (place[0] as usize).min(width - 1);
-            let y = (place[1] as usize).min(height - 1);
-            return pixel(y * width + x);
+            let column = (x as usize).min(width - 1);
+            let row = (y as usize).min(height - 1);
+            return f64::from(pixel(row * width + column));
         }
-        let [(left, right, u), (bottom, top, v)] = [0, 1].map(|axis| self.pair(axis, place[axis]));
+        let (left, right, u) = self.pair(0, x);
+        let (bottom, top, v) = self.pair(1, y);
         let along = |row: usize| {
-            let (a, b) = (pixel(row * width + left), pixel(row * width + right));
+            let a = f64::from(pixel(row * width + left));
+            let b = f64::from(pixel(row * width + right));
             a + (b - a) * u
         };
         let (low, high) = (along(bottom), along(top));
@@ -257,6 +299,95 @@ impl Grid {
                     has_both.then(|| turned(two, !is_reversed)),
                 ]
             }
+        }
+    }
+}
+
+/// The share of an integer pixel.
+#[inline(always)]
+fn tone(tones: Option<&[f32]>, v: usize, one: f32) -> f32 {
+    match tones {
+        Some(tones) => tones[v],
+        None => v as f32 / one,
+    }
+}
+
+/// A number within [0, `most`]. NaN becomes 0.
+#[inline(always)]
+fn within(v: f64, most: f64) -> f64 {
+    let v = if v > 0.0 { v } else { 0.0 };
+    if v < most { v } else { most }
+}
+
+/// Looks up places between the pixels of a clamped grid, some at a time, so that all but the look-ups is done
+/// in vectors.
+struct Look<'a, P> {
+    min: [f64; 2],
+    scale: [f64; 2],
+    /// The size in pixels, and the place of the last pixel.
+    whole: [f64; 2],
+    last: [f64; 2],
+    width: usize,
+    places: &'a [[f64; 2]],
+    out: &'a mut [f64],
+    pixel: P,
+}
+
+/// 2⁵²: a number below that, added to it, is rounded to an integer, in the lowest bits.
+const ROUNDER: f64 = 4_503_599_627_370_496.0;
+
+/// The integer part of a number from 0 to 2³¹, as a number and as an integer.
+#[inline(always)]
+fn whole_part(v: f64) -> (f64, u32) {
+    let rounded = (v + ROUNDER) - ROUNDER;
+    let whole = if rounded > v { rounded - 1.0 } else { rounded };
+    (whole, (whole + ROUNDER).to_bits() as u32)
+}
+
+impl<P: Fn(usize) -> f32> Look<'_, P> {
+    /// The pixel before a place along an axis, the place after it, and whether there is another pixel.
+    #[inline(always)]
+    fn along(&self, axis: usize, v: f64) -> (u32, f64, u32) {
+        let place = within((v - self.min[axis]) * self.scale[axis], self.whole[axis]);
+        let place = within(place - 0.5, self.last[axis]);
+        let (whole, pixel) = whole_part(place);
+        (pixel, place - whole, u32::from(whole < self.last[axis]))
+    }
+}
+
+impl<P: Fn(usize) -> f32> PlainLoop for Look<'_, P> {
+    #[inline(always)]
+    fn run(&mut self) {
+        let mut some = [[0.0; 2]; SOME];
+        let (mut us, mut vs) = ([0.0; SOME], [0.0; SOME]);
+        let (mut columns, mut rows) = ([0u32; SOME], [0u32; SOME]);
+        let (mut rights, mut aboves) = ([0u32; SOME], [0u32; SOME]);
+        let mut corners = [[0f32; SOME]; 4];
+        let mut shares = [0.0; SOME];
+        for start in (0..self.places.len()).step_by(SOME) {
+            let number = SOME.min(self.places.len() - start);
+            some[..number].copy_from_slice(&self.places[start..start + number]);
+            for i in 0..SOME {
+                (columns[i], us[i], rights[i]) = self.along(0, some[i][0]);
+                (rows[i], vs[i], aboves[i]) = self.along(1, some[i][1]);
+            }
+            for i in 0..number {
+                let first = rows[i] as usize * self.width + columns[i] as usize;
+                let right = rights[i] as usize;
+                let above = first + aboves[i] as usize * self.width;
+                corners[0][i] = (self.pixel)(first);
+                corners[1][i] = (self.pixel)(first + right);
+                corners[2][i] = (self.pixel)(above);
+                corners[3][i] = (self.pixel)(above + right);
+            }
+            for i in 0..SOME {
+                let [a, b] = [f64::from(corners[0][i]), f64::from(corners[1][i])];
+                let low = a + (b - a) * us[i];
+                let [a, b] = [f64::from(corners[2][i]), f64::from(corners[3][i])];
+                let high = a + (b - a) * us[i];
+                shares[i] = low + (high - low) * vs[i];
+            }
+            self.out[start..start + number].copy_from_slice(&shares[..number]);
         }
     }
 }

@@ -6,7 +6,11 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind, number},
-    sample::{area::Region, seed::split_mix},
+    sample::{
+        area::Region,
+        kernel::{Backend, PlainLoop, compiled_loop},
+        seed::split_mix,
+    },
 };
 
 /// Smooth patches of a size, of no end and without a pattern: value noise.
@@ -77,6 +81,34 @@ impl Noise {
         self.within_range(sum / weights)
     }
 
+    /// The shares at some places.
+    pub(super) fn shares(&self, places: &[[f64; 2]], shares: &mut [f64]) {
+        let backend = Backend::best();
+        for (places, shares) in places.chunks(SOME).zip(shares.chunks_mut(SOME)) {
+            let mut work = Batch {
+                noise: self,
+                places: [[0.0; SOME]; 2],
+                sums: [0.0; SOME],
+            };
+            for (i, place) in places.iter().enumerate() {
+                for (all, v) in work.places.iter_mut().zip(place) {
+                    all[i] = v / self.wavelength;
+                }
+            }
+            let is_far = |v: &f64| v.is_nan() || v.abs() > FAR;
+            if work.places.as_flattened().iter().any(is_far) {
+                for (share, at) in shares.iter_mut().zip(places) {
+                    *share = self.share(*at);
+                }
+                continue;
+            }
+            compiled_loop(backend, &mut work);
+            for (share, sum) in shares.iter_mut().zip(work.sums) {
+                *share = self.within_range(sum);
+            }
+        }
+    }
+
     pub(super) fn bounds(&self, within: &Region) -> [f64; 2] {
         let (min, max) = (within.min(), within.max());
         let mut center = [0, 1].map(|i| (0.5 * min[i] + 0.5 * max[i]) / self.wavelength);
@@ -108,6 +140,60 @@ impl Noise {
     }
 }
 
+/// The number of places that are looked up at once, in vectors.
+const SOME: usize = 32;
+
+/// Up to here, all octaves of a place are below 2⁵⁰, where whole parts come from rounding.
+const FAR: f64 = 1e12;
+
+/// 1.5 · 2⁵²: a number within ±2⁵¹, added to it, is rounded to an integer, in the lower bits.
+const ROUNDER: f64 = 6_755_399_441_055_744.0;
+
+/// Some places, and their numbers.
+struct Batch<'a> {
+    noise: &'a Noise,
+    places: [[f64; SOME]; 2],
+    sums: [f64; SOME],
+}
+
+/// The largest integer up to a number within ±2⁵⁰, twice.
+#[inline(always)]
+fn floor(v: f64) -> (f64, i64) {
+    let rounded = (v + ROUNDER) - ROUNDER;
+    let whole = if rounded > v { rounded - 1.0 } else { rounded };
+    let bits = (whole + ROUNDER).to_bits().wrapping_sub(ROUNDER.to_bits());
+    (whole, bits as i64)
+}
+
+impl PlainLoop for Batch<'_> {
+    #[inline(always)]
+    fn run(&mut self) {
+        let (mut weight, mut weights) = (1.0, 0.0);
+        let [xs, ys] = &mut self.places;
+        for octave in 0..self.noise.octaves {
+            let key = self.noise.key(octave);
+            for i in 0..SOME {
+                let place = [xs[i], ys[i]];
+                let ((left, x), (bottom, y)) = (floor(place[0]), floor(place[1]));
+                let (u, v) = (eased(place[0] - left), eased(place[1] - bottom));
+                let [low, high] = [row(key, y), row(key, y.wrapping_add(1))];
+                let along = |row: u64| {
+                    let (a, b) = (in_row(row, x), in_row(row, x.wrapping_add(1)));
+                    a + (b - a) * u
+                };
+                let (low, high) = (along(low), along(high));
+                self.sums[i] += weight * (low + (high - low) * v);
+                [xs[i], ys[i]] = next(place);
+            }
+            weights += weight;
+            weight *= 0.5;
+        }
+        for sum in &mut self.sums {
+            *sum /= weights;
+        }
+    }
+}
+
 /// The place of a place in the next octave.
 #[inline(always)]
 fn next([x, y]: [f64; 2]) -> [f64; 2] {
@@ -117,19 +203,33 @@ fn next([x, y]: [f64; 2]) -> [f64; 2] {
 /// The number at a corner, in [0, 1).
 #[inline(always)]
 fn corner(key: u64, x: i64, y: i64) -> f64 {
-    let row = split_mix(key ^ (y as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f));
+    in_row(row(key, y), x)
+}
+
+/// The part of the hash that a row of corners shares.
+#[inline(always)]
+const fn row(key: u64, y: i64) -> u64 {
+    split_mix(key ^ (y as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f))
+}
+
+/// The number at a corner of a row.
+#[inline(always)]
+fn in_row(row: u64, x: i64) -> f64 {
     let hash = split_mix(row ^ (x as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
     (hash >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// 6t⁵ − 15t⁴ + 10t³.
+#[inline(always)]
+fn eased(t: f64) -> f64 {
+    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
 #[inline(always)]
 fn octave_at(key: u64, place: [f64; 2]) -> f64 {
     let cell = place.map(libm::floor);
     let [x, y] = cell.map(|v| v as i64);
-    let [u, v] = [0, 1].map(|i| {
-        let t = place[i] - cell[i];
-        t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
-    });
+    let (u, v) = (eased(place[0] - cell[0]), eased(place[1] - cell[1]));
     let along = |y: i64| {
         let (a, b) = (corner(key, x, y), corner(key, x.wrapping_add(1), y));
         a + (b - a) * u

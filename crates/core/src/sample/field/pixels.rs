@@ -61,6 +61,9 @@ struct Level {
 }
 
 impl Pixels {
+    /// The most columns and rows.
+    pub const MAX_SIDE: usize = 1 << 20;
+
     /// Pixels of 8 bits, `width` a row; 255 is 1.
     ///
     /// # Errors
@@ -122,6 +125,11 @@ impl Pixels {
             return Err(Error::new(ErrorKind::Field, "pixels", value, allowed));
         }
         let size = [width, number / width];
+        if let Some(side) = size.into_iter().find(|&side| side > Self::MAX_SIDE) {
+            let allowed = format!("at most {} columns and rows", Self::MAX_SIDE);
+            let error = Error::new(ErrorKind::Field, "pixels", side, allowed);
+            return Err(error.with_limit(Self::MAX_SIDE as f64));
+        }
         let (levels, digest) = (levels(size, &store), store.digest(width));
         Ok(Self(Arc::new(Stored {
             size,

@@ -76,11 +76,16 @@ impl Raster {
     /// ```
     pub fn of(region: Region, pixels: Pixels) -> Result<Self, Error> {
         check_shares(&pixels)?;
+        let shares = |last: u16| (0..=last).map(move |v| f32::from(v) / f32::from(last));
         Ok(Self {
             source: pixels.digest(),
+            tones: match pixels.store() {
+                Store::Bytes(_) => Some(shares(255).collect()),
+                Store::Words(_) => Some(shares(65535).collect()),
+                Store::Floats(_) => None,
+            },
             grid: Grid::new(region, pixels)?,
             tone: PLAIN,
-            tones: None,
         })
     }
 
@@ -211,6 +216,13 @@ impl Field for Raster {
     fn share(&self, at: [f64; 2]) -> f64 {
         // Interpolation rounds.
         self.grid.at(at, self.tones.as_deref()).min(1.0)
+    }
+
+    fn shares(&self, places: &[[f64; 2]], shares: &mut [f64]) {
+        self.grid.all_at(places, self.tones.as_deref(), shares);
+        for share in shares {
+            *share = share.min(1.0);
+        }
     }
 
     fn bounds(&self, within: &Region) -> [f64; 2] {

@@ -7,11 +7,11 @@ use super::tiles::{self, TILE, Tile};
 use crate::{
     pattern::Axis,
     sample::{
-        kernel::{Backend, compiled, warp_all},
+        kernel::{Backend, warp_all},
         lattice::{Columns, Grade, Lattice, Patch, PointId, Span, around, damping, part_of_way},
         sieve::Scale,
     },
-    table::Displacement,
+    table::{Displacement, FRACTION_BITS, Rung, Stage},
 };
 
 /// Lists end at a multiple of this, a pair of the widest vectors.
@@ -36,10 +36,12 @@ pub(crate) struct FieldRows {
     positions: Vec<u32>,
     at: Vec<[f64; 2]>,
     shares: Vec<f64>,
-    /// The vectors of points that have moved, and which these are.
-    moved: Vec<(u32, Displacement)>,
-    around: Vec<[f64; 2]>,
+    /// The points that have moved, the places that tell how steep the field is there, and the shares at these.
+    stages: Vec<(Stage, Option<[Rung; 2]>)>,
+    moves: Vec<Move>,
+    around: Vec<[[f64; 2]; 4]>,
     steep: Vec<f64>,
+    has_moved: bool,
     /// What was found.
     found: Vec<Found>,
     next: usize,
@@ -127,7 +129,7 @@ impl FieldRows {
             next = self.candidates(source, strip, enough);
         }
         if !self.addresses.is_empty() {
-            compiled(backend, || self.find(source, backend));
+            self.find(source, backend);
         }
         next
     }
@@ -219,7 +221,7 @@ impl FieldRows {
         self.keep(lattice, patch);
         if lattice.table.ladder().is_some() {
             self.displace(lattice, grade);
-            if !self.moved.is_empty() {
+            if self.has_moved {
                 self.place(patch, backend);
             }
         }
@@ -254,27 +256,36 @@ impl FieldRows {
     fn keep(&mut self, lattice: &Lattice, patch: &Patch) {
         let order = lattice.order();
         let [left, bottom] = patch.origin();
+        let number = self.addresses.len();
+        let addresses = &mut self.addresses[..number];
+        let positions = &mut self.positions[..number];
+        let shares = &mut self.shares[..number];
+        let at = &mut self.at[..number];
+        let [xs, ys] = &mut self.displaced;
+        let (xs, ys) = (&mut xs[..number], &mut ys[..number]);
+        let [place_xs, place_ys] = &mut self.places;
+        let (place_xs, place_ys) = (&mut place_xs[..number], &mut place_ys[..number]);
         let mut next = 0;
-        for i in 0..self.addresses.len() {
-            let (address, position) = (self.addresses[i], self.positions[i]);
-            let share = self.shares[i];
+        for i in 0..number {
+            let (address, position, share) = (addresses[i], positions[i], shares[i]);
             // Ranks of a position are at least the number before its start, and less than its end.
             let ranks = order.floors(position as usize);
             let mut is_left = share >= ranks.end;
-            if !is_left && share >= ranks.start {
+            // Rare, where one test after another would be guessed wrong half of the time.
+            if !is_left & (share >= ranks.start) {
                 let id = PointId {
                     x: left + i64::from(address & 0xffff),
                     y: bottom + i64::from(address >> 16),
                 };
                 is_left = lattice.rank(id) < share;
             }
-            self.addresses[next] = address;
-            self.positions[next] = position;
-            self.shares[next] = share;
-            self.at[next] = self.at[i];
-            for list in self.displaced.iter_mut().chain(&mut self.places) {
-                list[next] = list[i];
-            }
+            // Written in any case; the next one goes to the same place if this has left.
+            addresses[next] = address;
+            positions[next] = position;
+            shares[next] = share;
+            at[next] = at[i];
+            (xs[next], ys[next]) = (xs[i], ys[i]);
+            (place_xs[next], place_ys[next]) = (place_xs[i], place_ys[i]);
             next += usize::from(is_left);
         }
         self.addresses.truncate(next);
@@ -292,29 +303,55 @@ impl FieldRows {
             return;
         };
         let spacing = lattice.placement.spacing.get();
-        self.moved.clear();
-        self.around.clear();
-        let (turned, order) = (&lattice.turned, lattice.order());
-        for (i, (&position, &share)) in (0..).zip(self.positions.iter().zip(&self.shares)) {
-            let position = position as usize;
-            let full = turned.vector(order.block(position));
-            let moved = turned.moved(ladder, ladder.stage(share), position);
-            if moved != full {
-                self.moved.push((i, moved));
-                self.around
-                    .extend(around(self.at[i as usize], share, spacing));
-            }
+        let number = self.addresses.len();
+        self.moves.clear();
+        self.moves.resize(number, Move::default());
+        self.around.resize(number, [[0.0; 2]; 4]);
+        let [xs, ys] = &mut self.displaced;
+        let (xs, ys) = (&mut xs[..number], &mut ys[..number]);
+        let points = self.positions.iter().zip(&self.shares).zip(&self.at);
+        let points = points.zip(&self.addresses).enumerate();
+        let stages = self.shares.iter().zip(&self.positions);
+        self.stages.clear();
+        self.stages.extend(stages.map(|(&share, &position)| {
+            let stage = ladder.stage(share);
+            (stage, ladder.rungs(stage, position as usize))
+        }));
+        let mut moved = 0;
+        for (i, (((&position, &share), &at), &address)) in points {
+            // What is left of a displaced position without its address.
+            let full = [
+                xs[i] - (((address & 0xffff) as i32) << FRACTION_BITS),
+                ys[i] - (((address >> 16) as i32) << FRACTION_BITS),
+            ];
+            let stage = self.stages[i];
+            let to = (lattice.turned).moved_from(ladder, stage, position as usize, full);
+            // Written in any case; the next one goes to the same place if this has not moved.
+            self.moves[moved] = Move {
+                which: i as u32,
+                full,
+                to,
+            };
+            self.around[moved] = around(at, share, spacing);
+            moved += usize::from(to != full);
         }
+        let (moves, around) = (&self.moves[..moved], &self.around[..moved]);
         self.steep.clear();
-        self.steep.resize(self.around.len(), 0.0);
-        grade.shares(&self.around, &mut self.steep);
-        for (&(i, moved), steep) in self.moved.iter().zip(self.steep.as_chunks().0) {
-            let i = i as usize;
-            let full = turned.vector(order.block(self.positions[i] as usize));
-            let vector = part_of_way(full, moved, damping(*steep));
-            for axis in 0..2 {
-                self.displaced[axis][i] += vector[axis] - full[axis];
-            }
+        self.steep.resize(4 * moved, 0.0);
+        grade.shares(around.as_flattened(), &mut self.steep);
+        for (&Move { which, full, to }, steep) in moves.iter().zip(self.steep.as_chunks().0) {
+            let vector = part_of_way(full, to, damping(*steep));
+            xs[which as usize] += vector[0] - full[0];
+            ys[which as usize] += vector[1] - full[1];
         }
+        self.has_moved = moved > 0;
     }
+}
+
+/// The displacements of a point at full density and at its share.
+#[derive(Clone, Copy, Debug, Default)]
+struct Move {
+    which: u32,
+    full: Displacement,
+    to: Displacement,
 }

@@ -119,6 +119,32 @@ pub(crate) fn empty_until(
     start
 }
 
+/// The share of the first rows of a piece, and where these end, if it is the same for all of their points;
+/// the rows are cut at multiples of `height`.
+pub(crate) fn constant_until(
+    lattice: &Lattice,
+    grade: &Grade,
+    [columns, rows]: &Piece,
+    height: i64,
+) -> Option<(f64, i64)> {
+    let of = |rows: Range<i64>| constant(lattice, grade, &[columns.clone(), rows]);
+    let next = |from: i64, step: i64| rows.end.min(from.div_euclid(height) * height + step);
+    let mut end = next(rows.start, height);
+    let share = of(rows.start..end).filter(|share| *share > 0.0)?;
+    let mut step = 2 * height;
+    // Ever higher pieces while they have the share, then lower ones.
+    while end < rows.end && step >= height {
+        let further = next(end, step);
+        if of(end..further).is_some_and(|other| other.to_bits() == share.to_bits()) {
+            end = further;
+            step = step.saturating_mul(2).min(1 << 40);
+        } else {
+            step /= 2;
+        }
+    }
+    Some((share, end))
+}
+
 /// The most pieces whose shares an estimate looks up: about a millisecond.
 const MOST_PIECES: usize = 8192;
 

@@ -1,6 +1,9 @@
 //! Running a loop by a backend.
 
-use super::{Backend, arch, lanes::VectorLoop};
+use super::{
+    Backend, arch,
+    lanes::{PlainLoop, VectorLoop},
+};
 
 /// Runs a vector loop by a backend. Returns the number of items written; the caller's plain code writes
 /// the rest.
@@ -40,6 +43,17 @@ pub(crate) fn compiled<T>(backend: Backend, work: impl FnOnce() -> T) -> T {
         #[cfg(target_arch = "x86_64")]
         Backend::Avx512 => unsafe { arch::avx512::compiled(work) },
         _ => work(),
+    }
+}
+
+/// Runs a loop that is compiled for the backend's instructions.
+#[inline]
+pub(crate) fn compiled_loop(backend: Backend, work: &mut impl PlainLoop) {
+    match backend {
+        // SAFETY: `Backend::available` has found the instructions.
+        #[cfg(target_arch = "x86_64")]
+        Backend::Avx512 => unsafe { arch::avx512::compiled_loop(work) },
+        _ => work.run(),
     }
 }
 

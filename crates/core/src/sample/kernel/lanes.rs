@@ -94,3 +94,9 @@ pub(super) trait VectorLoop {
     /// The machine has the instructions of `L`.
     unsafe fn run<L: Lanes>(&mut self) -> usize;
 }
+
+/// A loop of plain code, too long to be inlined by itself. Implementations of `run` are inlined always.
+pub(crate) trait PlainLoop {
+    /// Runs all of it.
+    fn run(&mut self);
+}

@@ -41,10 +41,11 @@ mod singles;
 mod tests;
 
 pub use backend::Backend;
-pub(super) use dispatch::{compiled, write_numbers};
+pub(super) use dispatch::{compiled, compiled_loop, write_numbers};
 pub use doubles::F64;
 pub use format::Format;
 pub(super) use format::{Geometry, Row};
+pub(super) use lanes::PlainLoop;
 pub use offsets::Offsets;
 pub use points::Points;
 pub(super) use rows::{WarpedColumns, fill_row, fill_warped_row, warp_all};

@@ -66,8 +66,17 @@ impl Grade {
 /// The places around a place that tell how steep a field is there, half a local spacing away.
 #[inline(always)]
 pub(crate) fn around([x, y]: [f64; 2], share: f64, spacing: f64) -> [[f64; 2]; 4] {
-    let half = 0.5 * spacing / libm::sqrt(share);
+    let half = 0.5 * spacing / square_root(share);
     [[x - half, y], [x + half, y], [x, y - half], [x, y + half]]
+}
+
+/// The square root, which rounds alike everywhere.
+#[inline(always)]
+fn square_root(v: f64) -> f64 {
+    #[cfg(feature = "std")]
+    return v.sqrt();
+    #[cfg(not(feature = "std"))]
+    libm::sqrt(v)
 }
 
 /// The part of a move that is left, by the shares [`around`] a place: less where the field is steep. Where the
@@ -75,7 +84,7 @@ pub(crate) fn around([x, y]: [f64; 2], share: f64, spacing: f64) -> [[f64; 2]; 4
 /// as the ladder expects.
 #[inline(always)]
 pub(crate) fn damping([left, right, below, above]: [f64; 4]) -> f64 {
-    let along = |a: f64, b: f64| 2.0 * (b - a) / (a + b);
-    let [x, y] = [along(left, right), along(below, above)];
+    let x = 2.0 * (right - left) / (left + right);
+    let y = 2.0 * (above - below) / (below + above);
     1.0 / (1.0 + (x * x + y * y) / (STEEP * STEEP))
 }

@@ -88,10 +88,8 @@ impl Moved {
 /// A part of the way from one displacement to another.
 #[inline(always)]
 pub(crate) fn part_of_way(from: Displacement, to: Displacement, part: f64) -> Displacement {
-    [0, 1].map(|axis| {
-        let by = f64::from(to[axis]) - f64::from(from[axis]);
-        from[axis] + (by * part) as i32
-    })
+    let along = |from: i32, to: i32| from + ((f64::from(to) - f64::from(from)) * part) as i32;
+    [along(from[0], to[0]), along(from[1], to[1])]
 }
 
 /// Kept out of line, or both conversions would become the slow one.

@@ -16,7 +16,7 @@ use super::{
     near::Mask,
     scope::Scope,
     stop::Stop,
-    walk::{Blocks, Mark, Tile, Window, count_graded, tiles},
+    walk::{Blocks, Counted, Tile, Window, count_graded, tiles},
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -49,8 +49,8 @@ use crate::{
 pub struct Plan {
     scope: Arc<Scope>,
     window: Window,
-    /// In a field: places in the order of the points, found while these were counted.
-    marks: Arc<[Mark]>,
+    /// In a field: what was found while the points were counted.
+    counted: Counted,
 }
 
 impl Plan {
@@ -64,10 +64,16 @@ impl Plan {
         known: Option<u128>,
     ) -> Result<Self, Error> {
         let scope = Arc::new(Scope::new(lattice, mask, area, stop)?);
-        let (total, marks) = match known {
-            Some(total) => (total, Vec::new()),
-            None if scope.lattice.grade.is_some() => count_graded(&scope),
-            None => (count(&scope, &scope.x.all, &scope.y.all), Vec::new()),
+        let (total, counted) = match known {
+            Some(total) => (total, Counted::default()),
+            None if scope.lattice.grade.is_some() => {
+                let counted = count_graded(&scope);
+                (counted.count, counted)
+            }
+            None => (
+                count(&scope, &scope.x.all, &scope.y.all),
+                Counted::default(),
+            ),
         };
         if scope.stop.is_raised() {
             let (field, value) = ("the count", "not finished");
@@ -81,7 +87,7 @@ impl Plan {
                 count: total,
                 total,
             },
-            marks: marks.into(),
+            counted,
         })
     }
 
@@ -192,7 +198,10 @@ impl Plan {
     /// ```
     #[must_use]
     pub fn blocks<F: Format>(&self) -> Blocks<F> {
-        Blocks::of_window(self.scope.clone(), self.window)
+        match &self.counted.kept {
+            Some(kept) => Blocks::of_kept(self.scope.clone(), self.window, kept.clone()),
+            None => Blocks::of_window(self.scope.clone(), self.window),
+        }
     }
 
     /// The points as `f32` pairs relative to [`origin`](Self::origin), block by block; see
@@ -406,7 +415,7 @@ impl Plan {
         Self {
             scope: Arc::new(scope),
             window: self.window,
-            marks: self.marks,
+            counted: self.counted,
         }
     }
 }

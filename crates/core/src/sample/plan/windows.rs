@@ -5,7 +5,7 @@ use crate::sample::{
     cursor::Cursor,
     lattice::PointId,
     seek::locate,
-    walk::{Mark, Window, locate_graded},
+    walk::{Known, Mark, Window, locate_graded},
 };
 
 impl Plan {
@@ -119,7 +119,7 @@ impl Plan {
         Self {
             scope: self.scope.clone(),
             window,
-            marks: self.marks.clone(),
+            counted: self.counted.clone(),
         }
     }
 
@@ -137,8 +137,12 @@ impl Plan {
         if k >= total {
             return None;
         }
-        let after = self.marks.partition_point(|mark| mark.before <= k);
-        let mark = after.checked_sub(1).map(|last| self.marks[last]);
+        if let Some(kept) = &self.counted.kept {
+            return kept.get(usize::try_from(k).ok()?).map(Known::id);
+        }
+        let marks = &self.counted.marks;
+        let after = marks.partition_point(|mark| mark.before <= k);
+        let mark = after.checked_sub(1).map(|last| marks[last]);
         // A window may begin nearer.
         let own = start.map(|at| Mark { at, before: offset });
         let own = own.filter(|own| own.before <= k);

@@ -25,6 +25,9 @@ impl Scale {
     /// conversion of the whole integer does.
     #[inline(always)]
     pub(crate) fn world(self, position: [i32; 2]) -> [f64; 2] {
-        [0, 1].map(|i| (self.base[i] + f64::from(position[i])) * self.step)
+        [
+            (self.base[0] + f64::from(position[0])) * self.step,
+            (self.base[1] + f64::from(position[1])) * self.step,
+        ]
     }
 }

@@ -7,6 +7,8 @@ pub(super) mod graded;
 use alloc::{boxed::Box, sync::Arc};
 use core::ops::Range;
 
+use graded::{Constant, Known};
+
 use super::{
     place::Place,
     sifting::Sifting,
@@ -75,6 +77,10 @@ pub struct Blocks<F: Format> {
     flat: (Flat, Inside),
     /// The points of some rows in a field.
     graded: Option<Box<FieldRows>>,
+    /// The points of a small plan in a field, and the number of the next.
+    kept: Option<(Arc<[Known]>, usize)>,
+    /// The last rows of a band in which a field is constant.
+    constant: Option<Box<Constant<F>>>,
 }
 
 impl<F: Format> Blocks<F> {
@@ -145,6 +151,8 @@ impl<F: Format> Blocks<F> {
             backend: Backend::best(),
             flat: Default::default(),
             graded: scope.lattice.grade.as_ref().map(|_| Box::default()),
+            kept: None,
+            constant: None,
             scope,
             window,
         }
@@ -186,17 +194,24 @@ impl<F: Format> Blocks<F> {
     pub fn fill(&mut self, out: &mut [F::Item]) -> usize {
         let most = usize::try_from(self.left).map_or(out.len(), |left| left.min(out.len()));
         let out = &mut out[..most];
-        let mut filled = 0;
+        let mut filled = self.write_kept(out);
         while filled < out.len() {
             if self.has_found() {
                 filled += self.write_found(&mut out[filled..]);
                 continue;
             }
+            if self.has_constant() {
+                filled += self.fill_constant(&mut out[filled..]);
+                continue;
+            }
             if self.at.y == self.rows.end && !self.next_band() {
                 break;
             }
-            if self.at.y >= self.patch.end() {
+            if !self.has_constant() && self.needs_patch() {
                 self.next_patch();
+            }
+            if self.has_constant() {
+                continue;
             }
             let end = self.rows.end.min(self.patch.end());
             let out = &mut out[filled..];
@@ -235,7 +250,17 @@ impl<F: Format> Blocks<F> {
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {
         let window = self.window.filter(|window| window.count > 0)?;
-        let at = if let Some(next) = self.next_found() {
+        let at = if let Some(within) = self.constant_place() {
+            within
+        } else if let Some((kept, next)) = &self.kept {
+            // After the last one, any later place.
+            let after = || {
+                kept.last()
+                    .map(|last| last.id())
+                    .map(|id| PointId { x: id.x + 1, ..id })
+            };
+            kept.get(*next).map(Known::id).or_else(after)?
+        } else if let Some(next) = self.next_found() {
             next
         } else if self.at.y == self.rows.end {
             PointId {
@@ -294,9 +319,11 @@ impl<F: Format> Blocks<F> {
 
     /// Moves to the patch of the current row.
     fn next_patch(&mut self) {
-        self.skip_empty();
-        if self.at.y == self.rows.end {
-            return;
+        if self.graded.is_some() {
+            self.skip_empty();
+            if self.at.y == self.rows.end || self.has_constant() {
+                return;
+            }
         }
         let Scope { lattice, x, y, .. } = &*self.scope;
         self.patch = Patch::new(lattice, self.band, self.at.y, x, y);

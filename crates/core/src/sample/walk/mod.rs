@@ -11,7 +11,9 @@ mod tile;
 mod window;
 
 pub use blocks::Blocks;
-pub(super) use blocks::graded::{Mark, count as count_graded, locate as locate_graded};
+pub(super) use blocks::graded::{
+    Counted, Known, Mark, count as count_graded, locate as locate_graded,
+};
 pub use tile::Tile;
 pub(super) use tile::{bands, tiles};
 pub(super) use window::Window;

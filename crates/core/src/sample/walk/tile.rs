@@ -29,6 +29,11 @@ pub struct Tile {
 }
 
 impl Tile {
+    /// Some rows of a band.
+    pub(super) const fn rows(band: i64, rows: Range<i64>) -> Self {
+        Self { band, rows }
+    }
+
     /// A row of a band.
     pub(crate) const fn row(band: i64, row: i64) -> Self {
         let rows = row..row + 1;

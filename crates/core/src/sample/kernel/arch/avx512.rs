@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::super::lanes::{Lanes, VectorLoop};
+use super::super::lanes::{Lanes, PlainLoop, VectorLoop};
 use crate::sample::{
     lattice::Point,
     warp::{CELL_BITS, PatchShears},
@@ -22,6 +22,12 @@ pub(in super::super) unsafe fn run(work: &mut impl VectorLoop) -> usize {
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
 pub(in super::super) fn compiled<T>(work: impl FnOnce() -> T) -> T {
     work()
+}
+
+/// Runs a long loop, compiled for these instructions.
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+pub(in super::super) fn compiled_loop(work: &mut impl PlainLoop) {
+    work.run();
 }
 
 pub(in super::super) struct Avx512;
