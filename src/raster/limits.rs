@@ -1,4 +1,4 @@
-//! How large a raster may be.
+//! How large rasters may be.
 
 /// The longest side of a raster, in pixels.
 pub const MOST_SIDE: usize = 16_384;

@@ -5,6 +5,7 @@
 //! one number for each pixel: see [`Meaning`] for how colors become one.
 
 mod error;
+mod image;
 mod limits;
 mod npy;
 mod picture;
@@ -16,39 +17,10 @@ mod tone;
 use std::io::{BufRead, Cursor, Read, Seek, SeekFrom};
 
 pub use error::RasterError;
+pub use image::Image;
 pub use limits::{Limits, MOST_SIDE};
 pub use samples::Samples;
 pub use tone::Meaning;
-
-impl Limits {
-    /// The number of pixels of a size.
-    ///
-    /// # Errors
-    /// [`RasterError::Size`] if it is empty or beyond the limits.
-    fn check(self, width: u64, height: u64) -> Result<[usize; 2], RasterError> {
-        let side = self.side as u64;
-        let is_within = (1..=side).contains(&width) && (1..=side).contains(&height);
-        if !is_within || width * height > self.pixels as u64 {
-            return Err(RasterError::Size {
-                width,
-                height,
-                limits: self,
-            });
-        }
-        Ok([width as usize, height as usize])
-    }
-}
-
-/// A raster as it was read.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Image {
-    /// Width and height in pixels.
-    pub size: [usize; 2],
-    /// A number for each pixel, row by row from the top.
-    pub samples: Samples,
-    /// Where it lies, if the file tells: min x, min y, max x, max y.
-    pub frame: Option<[f64; 4]>,
-}
 
 impl Image {
     /// Reads a PNG, a TIFF or a npy file, whichever it is.

@@ -2,7 +2,7 @@
 
 use std::io::{Read, Seek, SeekFrom};
 
-use super::{Image, Limits, RasterError, Samples};
+use super::{error::RasterError, image::Image, limits::Limits, samples::Samples};
 
 /// What is read.
 const ALLOWED: &str = "two dimensions in C order, of the types u1, u2, f4 or f8, little endian";

@@ -9,8 +9,11 @@ use zune_jpeg::{
 };
 
 use super::{
-    Image, Limits, Meaning, RasterError, Samples,
-    tone::{self, Channels},
+    error::RasterError,
+    image::Image,
+    limits::Limits,
+    samples::Samples,
+    tone::{self, Channels, Meaning},
 };
 
 /// A WebP decoder may take this much besides the picture.

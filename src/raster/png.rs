@@ -5,8 +5,11 @@ use std::io::{BufRead, Seek};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Transformations};
 
 use super::{
-    Image, Limits, Meaning, RasterError, Samples,
-    tone::{self, Channels},
+    error::RasterError,
+    image::Image,
+    limits::Limits,
+    samples::Samples,
+    tone::{self, Channels, Meaning},
 };
 
 /// What the decoder may take besides the pixels: a few rows, a palette.

@@ -1,6 +1,6 @@
 //! The numbers of a raster's pixels, as small as the file has them.
 
-use super::RasterError;
+use super::error::RasterError;
 
 /// A number for each pixel.
 #[derive(Clone, Debug, PartialEq)]

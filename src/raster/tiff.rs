@@ -9,8 +9,11 @@ use tiff::{
 };
 
 use super::{
-    Image, Limits, Meaning, RasterError, Samples,
-    tone::{self, Channels},
+    error::RasterError,
+    image::Image,
+    limits::Limits,
+    samples::Samples,
+    tone::{self, Channels, Meaning},
 };
 
 /// A strip or tile may take this much when decoded.

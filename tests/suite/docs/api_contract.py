@@ -39,7 +39,7 @@ def tidy_set(query, is_text, amounts=AMOUNTS):
     query[amount] = 1 + int(number(query[amount], 0, 300)) if amount == "count" else number(
         query[amount], 0.5, 4
     )
-    for name in ["alpha", "map", "table", "cursor", "preset"]:
+    for name in ["alpha", "map", "table", "cursor", "preset", "field"]:
         query.pop(name, None)
     if "profile" in query:
         query["profile"] = "blue" if amount == "min_distance" else choose(query["profile"], PROFILES)
@@ -120,7 +120,7 @@ def tidy_body(name, body):
     if isinstance(layers, list) and layers:
         for member in AMOUNTS + ["profile", "alpha", "map", "table", "seed", "warp", "keep"]:
             body.pop(member, None)
-        for member in ["attributes", "variants", "scale_range", "cursor", "preset"]:
+        for member in ["attributes", "variants", "scale_range", "cursor", "preset", "field"]:
             body.pop(member, None)
         tidy = []
         for i, layer in enumerate(layers[:4]):
