@@ -177,7 +177,7 @@ def before_call(context, case, kwargs):
         case.body = tidy_body(name, case.body)
     if "x-rules" in raw or name in ["getProfile", "getSpectrum", "splitPoints"]:
         case.query = tidy_query(name, raw.get("x-rules", []), case.query or {})
-    if name == "getChunk":
+    if name in ["getChunk", "getFieldChunk"]:
         path = dict(case.path_parameters or {})
         path["size"] = 1 + len(str(path)) % 9
         path["cx"] = int(number(path.get("cx"), 0, 1000))
