@@ -3,53 +3,113 @@
 use strew_core::{Attribute, Attributes, ScaleRange, Variants};
 
 use super::{
-    Checked, Parameter, Together as _, Values,
+    Checked, Parameter, Together as _, Values, all,
     parameters::{ATTRIBUTES, SCALE_RANGE, VARIANTS},
 };
 use crate::service::Fault;
 
 /// Checks the attributes among some values.
 pub(super) fn check(values: &Values) -> Checked<Attributes> {
-    let (names, range, variants) = (
-        values.get::<Vec<String>>(&ATTRIBUTES),
-        values.get::<[f64; 2]>(&SCALE_RANGE),
-        values.get::<Vec<(String, f64)>>(&VARIANTS),
-    )
-        .together()?;
-    let names = names.unwrap_or_default();
-    let without = |parameter: &'static Parameter, attribute: &str| -> Option<Fault> {
-        let is_unused = values.has(parameter) && !names.iter().any(|name| name == attribute);
-        is_unused.then(|| {
-            values.fault(
-                parameter,
-                format!("has no effect without the attribute {attribute}"),
-            )
-        })
-    };
-    if let Some(fault) = without(&SCALE_RANGE, "scale").or_else(|| without(&VARIANTS, "variant")) {
-        return Err(fault.into());
-    }
-    let one = |name: &String| -> Result<Attribute, Fault> {
-        match name.as_str() {
-            "scale" => {
-                let [min, max] = range.unwrap_or([0.0, 1.0]);
-                let scale = ScaleRange::new(min, max).map(Attribute::Scale);
-                scale.map_err(|error| values.fault(&SCALE_RANGE, error.to_string()))
-            }
-            "variant" => {
-                let variants = variants.as_ref().ok_or_else(|| values.missing(&VARIANTS))?;
-                let pairs = variants.iter();
-                let variants = Variants::new(pairs.map(|(name, weight)| (name.as_str(), *weight)));
-                let fault = |error: strew_core::Error| values.fault(&VARIANTS, error.to_string());
-                variants.map(Attribute::Variant).map_err(fault)
-            }
-            name => name.parse().map_err(|error: strew_core::Error| {
-                let field = format!("{}{}", values.path(), ATTRIBUTES.name);
-                Fault::new(&field, name, error.to_string(), ATTRIBUTES.allowed())
-            }),
-        }
-    };
-    let list: Vec<Attribute> = names.iter().map(one).collect::<Result<_, _>>()?;
+    let names = values.get::<Vec<String>>(&ATTRIBUTES);
+    let named = names
+        .iter()
+        .flatten()
+        .flatten()
+        .cloned()
+        .collect::<Vec<_>>();
+    let named = named.as_slice();
+    let (range, variants, others) = (
+        scale_range(values)
+            .and_then(|range| used(values, named, &SCALE_RANGE, "scale").map(|()| range)),
+        variants(values, named).and_then(|v| used(values, named, &VARIANTS, "variant").map(|()| v)),
+        all(named.iter().map(|name| other(values, name))),
+    );
+    let (_, range, variants, others) = (names, range, variants, others).together()?;
+    let pairs = named.iter().zip(others);
+    let list = pairs.filter_map(|(name, other)| match name.as_str() {
+        "scale" => Some(Attribute::Scale(range)),
+        "variant" => variants.clone().map(Attribute::Variant),
+        _ => other,
+    });
     let fault = |error: strew_core::Error| values.fault(&ATTRIBUTES, error.to_string()).into();
-    Attributes::new(list).map_err(fault)
+    Attributes::new(list.collect()).map_err(fault)
+}
+
+/// An attribute that is made of its name alone.
+fn other(values: &Values, name: &str) -> Checked<Option<Attribute>> {
+    if matches!(name, "scale" | "variant") {
+        return Ok(None);
+    }
+    name.parse().map(Some).map_err(|error: strew_core::Error| {
+        let field = format!("{}{}", values.path(), ATTRIBUTES.name);
+        Fault::new(&field, name, error.to_string(), ATTRIBUTES.allowed()).into()
+    })
+}
+
+fn scale_range(values: &Values) -> Checked<ScaleRange> {
+    let [min, max] = values.get(&SCALE_RANGE)?.unwrap_or([0.0, 1.0]);
+    ScaleRange::new(min, max).map_err(|error| values.fault(&SCALE_RANGE, error.to_string()).into())
+}
+
+fn variants(values: &Values, named: &[String]) -> Checked<Option<Variants>> {
+    match values.get::<Vec<(String, f64)>>(&VARIANTS)? {
+        Some(pairs) => {
+            let variants =
+                Variants::new(pairs.iter().map(|(name, weight)| (name.as_str(), *weight)));
+            let fault = |error: strew_core::Error| values.fault(&VARIANTS, error.to_string());
+            Ok(Some(variants.map_err(fault)?))
+        }
+        None if named.iter().any(|name| name == "variant") => Err(values.missing(&VARIANTS).into()),
+        None => Ok(None),
+    }
+}
+
+/// Refuses what an attribute is made of if the attribute is not among those named.
+fn used(
+    values: &Values,
+    named: &[String],
+    parameter: &'static Parameter,
+    attribute: &str,
+) -> Checked<()> {
+    if !values.has(parameter) || named.iter().any(|name| name == attribute) {
+        return Ok(());
+    }
+    let detail = format!("has no effect without the attribute {attribute}");
+    Err(values.fault(parameter, detail).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::{groups, parse_pairs},
+        check,
+    };
+
+    #[test]
+    fn every_fault_is_reported() {
+        for (text, fields) in [
+            (
+                "attributes=size&scale_range=3,1&variants=a:0",
+                &["scale_range", "variants", "attributes"][..],
+            ),
+            (
+                "attributes=scale,variant,size&scale_range=3,1",
+                &["scale_range", "variants", "attributes"],
+            ),
+            ("scale_range=0,1&variants=a:1", &["scale_range", "variants"]),
+            (
+                "attributes=angle,u99&scale_range=0,1",
+                &["scale_range", "attributes"],
+            ),
+            ("attributes=angle,angle", &["attributes"]),
+        ] {
+            let faults = check(&parse_pairs(text, groups::POINTS)).expect_err(text);
+            let found: Vec<&str> = faults
+                .as_slice()
+                .iter()
+                .map(|fault| &*fault.field)
+                .collect();
+            assert_eq!(found, fields, "{text}");
+        }
+    }
 }
