@@ -50,7 +50,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         | ServeError::Spans(_) => Failure::Usage(error.into()),
         _ => Failure::Other(error.into()),
     })?;
-    if app.service().catalog().entries().len() == 0 {
+    if app.service().catalog().entries().next().is_none() {
         tracing::warn!("no table is loaded: every query will be refused");
     }
     let listener = bind(listen)?;
@@ -87,7 +87,7 @@ async fn serve(app: App, listener: TcpListener, scheme: &str) -> anyhow::Result<
     let stop = shutdown::Signals::new().context("cannot listen for signals")?;
     let hangups = shutdown::Hangups::new().context("cannot listen for signals")?;
     announce(scheme, address, app.admin_address()).context("cannot write to standard output")?;
-    tracing::info!(%address, tables = app.service().catalog().entries().len(), "serving");
+    tracing::info!(%address, tables = app.service().catalog().entries().count(), "serving");
     let app = app.with_hangups(hangups);
     let broken = app.run(listener, stop.first_then_exit()).await?;
     if broken > 0 {

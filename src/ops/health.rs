@@ -127,7 +127,7 @@ async fn ready(State((readiness, service)): State<(Readiness, Arc<Service>)>) ->
     };
     let state = Ready {
         ready,
-        tables: service.catalog().entries().len(),
+        tables: service.catalog().entries().count(),
         streams: service.streams().open(),
     };
     typed(status, &state)

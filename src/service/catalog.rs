@@ -49,13 +49,26 @@ pub struct Key {
     pub alpha: Alpha,
     /// The size of its map.
     pub size: Size,
+    /// The mix of kinds, if it has one.
+    pub mix: Option<Arc<MixKey>>,
+}
+
+/// What tells the mixes of one table apart.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MixKey {
+    /// The shares of its kinds.
+    pub shares: Box<[u16]>,
+    /// What its vectors are: those of the plain table, or others.
+    pub vectors: [u8; 32],
 }
 
 impl Ord for Key {
     fn cmp(&self, other: &Self) -> Ordering {
         let rank = |key: &Self| (key.alpha.half(), key.alpha, key.size);
         let by_name = self.profile.cmp(&other.profile);
-        by_name.then_with(|| rank(self).cmp(&rank(other)))
+        by_name
+            .then_with(|| rank(self).cmp(&rank(other)))
+            .then_with(|| self.mix.cmp(&other.mix))
     }
 }
 
@@ -65,13 +78,26 @@ impl PartialOrd for Key {
     }
 }
 
+impl MixKey {
+    /// The shares as text, such as `1:3`.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let parts: Vec<String> = self.shares.iter().map(ToString::to_string).collect();
+        parts.join(":")
+    }
+}
+
 impl fmt::Display for Key {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
             "profile `{}`, alpha {}, map {}",
             self.profile, self.alpha, self.size
-        )
+        )?;
+        match &self.mix {
+            Some(mix) => write!(f, ", kinds {}", mix.text()),
+            None => Ok(()),
+        }
     }
 }
 
@@ -108,6 +134,8 @@ pub struct Entry {
     pub digest: String,
     /// How it was made and what was measured on it.
     pub provenance: Provenance,
+    /// A digest of its vectors alone.
+    vectors: [u8; 32],
     bytes: Bytes,
 }
 
@@ -123,12 +151,24 @@ impl Entry {
             source_name: source.clone(),
             error,
         })?;
+        let vectors = table.displacements().as_flattened();
+        let mut hasher = blake3::Hasher::new();
+        for vector in vectors {
+            hasher.update(&vector.to_le_bytes());
+        }
+        let vectors = *hasher.finalize().as_bytes();
+        let mix = table.mix().map(|mix| MixKey {
+            shares: mix.shares().parts().into(),
+            vectors,
+        });
         Ok(Self {
             key: Key {
                 profile: table.profile().into(),
                 alpha: table.alpha(),
                 size: table.map().size(),
+                mix: mix.map(Arc::new),
             },
+            vectors,
             source,
             radius: table.map().radius(),
             intervals: table.map().intervals(),
@@ -355,14 +395,25 @@ impl Catalog {
         self.entries.get(key).cloned()
     }
 
-    /// All tables, by profile, then α.
-    pub fn entries(&self) -> impl ExactSizeIterator<Item = &Arc<Entry>> {
-        self.entries.values()
+    /// All tables without kinds, by profile, then α.
+    pub fn entries(&self) -> impl Iterator<Item = &Arc<Entry>> {
+        self.entries.values().filter(|entry| entry.key.mix.is_none())
+    }
+
+    /// The mixes of a table: those whose points are its own, or those whose points were moved.
+    pub fn mixes(&self, of: &Entry, are_moved: bool) -> impl Iterator<Item = (&MixKey, &Arc<Entry>)> {
+        self.entries.iter().filter_map(move |(key, entry)| {
+            let mix = key.mix.as_deref()?;
+            let is_same = (&key.profile, key.alpha, key.size)
+                == (&of.key.profile, of.key.alpha, of.key.size);
+            let is_moved = mix.vectors != of.vectors;
+            (is_same && is_moved == are_moved).then_some((mix, entry))
+        })
     }
 
     /// The names of the profiles, without repetition.
     pub fn profiles(&self) -> Vec<&str> {
-        let mut names: Vec<&str> = self.entries.keys().map(|key| &*key.profile).collect();
+        let mut names: Vec<&str> = self.entries().map(|entry| &*entry.key.profile).collect();
         names.dedup();
         names
     }
@@ -381,8 +432,8 @@ impl Catalog {
     }
 
     fn of_profile(&self, profile: &str) -> impl Iterator<Item = &Key> {
-        self.entries
-            .keys()
+        self.entries()
+            .map(|entry| &entry.key)
             .filter(move |key| &*key.profile == profile)
     }
 }

@@ -197,6 +197,7 @@ pub(super) fn schema(shape: Shape) -> Value {
             "additionalProperties": { "type": "number", "minimum": 1e-9, "maximum": 1e9 },
             "minProperties": 1, "maxProperties": 256,
         }),
+        Shape::Choice(words) => json!({ "type": "string", "enum": words }),
         Shape::Format => {
             json!({ "type": "string", "enum": Encoding::ALL.map(Encoding::name) })
         }

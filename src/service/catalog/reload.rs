@@ -40,6 +40,9 @@ pub struct Serving {
     pub alpha: String,
     /// The size of its map.
     pub map: String,
+    /// The shares of its kinds, if it has some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kinds: Option<String>,
     /// Its digest.
     pub digest: String,
     /// Where it comes from.
@@ -66,6 +69,7 @@ impl Serving {
             profile: entry.key.profile.as_ref().into(),
             alpha: entry.key.alpha.to_string(),
             map: entry.key.size.to_string(),
+            kinds: entry.key.mix.as_ref().map(|mix| mix.text()),
             digest: entry.digest.clone(),
             source: entry.source.to_string(),
             replaces: replaces.map(|other| other.digest.clone()),

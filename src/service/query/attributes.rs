@@ -4,7 +4,8 @@ use strew_core::{Attribute, Attributes, ScaleRange, Variants};
 
 use super::{
     Checked, Parameter, Together as _, Values, all,
-    parameters::{ATTRIBUTES, SCALE_RANGE, VARIANTS},
+    kinds::CHANCE,
+    parameters::{ATTRIBUTES, SCALE_RANGE, SPREAD, VARIANTS},
 };
 use crate::service::Fault;
 
@@ -21,7 +22,7 @@ pub(super) fn check(values: &Values) -> Checked<Attributes> {
     let (range, variants, others) = (
         scale_range(values)
             .and_then(|range| used(values, named, &SCALE_RANGE, "scale").map(|()| range)),
-        variants(values, named).and_then(|v| used(values, named, &VARIANTS, "variant").map(|()| v)),
+        chosen(values, named),
         all(named.iter().map(|name| other(values, name))),
     );
     let (_, range, variants, others) = (names, range, variants, others).together()?;
@@ -51,14 +52,22 @@ fn scale_range(values: &Values) -> Checked<ScaleRange> {
     ScaleRange::new(min, max).map_err(|error| values.fault(&SCALE_RANGE, error.to_string()).into())
 }
 
-fn variants(values: &Values, named: &[String]) -> Checked<Option<Variants>> {
-    match values.get::<Vec<(String, f64)>>(&VARIANTS)? {
-        Some(pairs) => {
-            let variants =
-                Variants::new(pairs.iter().map(|(name, weight)| (name.as_str(), *weight)));
-            let fault = |error: strew_core::Error| values.fault(&VARIANTS, error.to_string());
-            Ok(Some(variants.map_err(fault)?))
-        }
+/// What variants there are, if any.
+pub(super) fn variants(values: &Values) -> Checked<Option<Variants>> {
+    let Some(pairs) = values.get::<Vec<(String, f64)>>(&VARIANTS)? else {
+        return Ok(None);
+    };
+    let variants = Variants::new(pairs.iter().map(|(name, weight)| (name.as_str(), *weight)));
+    let fault = |error: strew_core::Error| values.fault(&VARIANTS, error.to_string()).into();
+    variants.map(Some).map_err(fault)
+}
+
+/// The variants of the attribute among those named, or of kinds.
+fn chosen(values: &Values, named: &[String]) -> Checked<Option<Variants>> {
+    let is_spread = values.has(&SPREAD) && values.text(&SPREAD) != CHANCE;
+    match variants(values)? {
+        Some(variants) if is_spread => Ok(Some(variants)),
+        Some(variants) => used(values, named, &VARIANTS, "variant").map(|()| Some(variants)),
         None if named.iter().any(|name| name == "variant") => Err(values.missing(&VARIANTS).into()),
         None => Ok(None),
     }

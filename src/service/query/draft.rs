@@ -6,7 +6,7 @@ use serde_json::{Map, Value as Json};
 use strew_core::{Keep, Placement, Seed, Warp};
 
 use super::{
-    Amount, Checked, Faults, MOST_LAYERS, Query, QueryRegion, RegionDraft, Set, Together as _,
+    Amount, Checked, Faults, Kinds, MOST_LAYERS, Query, QueryRegion, RegionDraft, Set, Together as _,
     Value, Values, Window, attributes,
     cursor::Token,
     faults::all,
@@ -347,11 +347,11 @@ impl Set {
             values.get::<u64>(&SEED),
             warp(values),
             keep(values),
-            attributes::check(values),
+            (attributes::check(values), Kinds::check(values)).together(),
             table::check(values, None, loaded.catalog),
             loaded.field(values),
         );
-        let (amount, seed, warp, keep, attributes, (entry, pin), field) = checked.together()?;
+        let (amount, seed, warp, keep, (attributes, kinds), (entry, pin), field) = checked.together()?;
         let seed = Seed(seed.unwrap_or(0));
         Ok(Self {
             path: values.path().into(),
@@ -363,6 +363,7 @@ impl Set {
             warp: warp.unwrap_or_else(|| Placement::default_warp(seed)),
             keep: keep.unwrap_or(Keep::ALL),
             attributes,
+            kinds,
             field,
             region: None,
             clear_of: vec![],

@@ -13,6 +13,7 @@ mod echo;
 mod faults;
 mod field;
 mod json;
+mod kinds;
 mod nearest;
 mod parameter;
 pub mod parameters;
@@ -39,6 +40,7 @@ pub use draft::{Draft, LayerDraft, entry, options, parts};
 pub use echo::{Resolved, ResolvedSet};
 pub use faults::{Checked, Faults, Together, all};
 pub use field::SetField;
+pub use kinds::{Kinds, Spread};
 pub use json::{RegionSchema, read_body, read_region};
 pub use nearest::Nearest;
 pub(super) use parameter::unknown;
@@ -111,6 +113,8 @@ pub struct Set {
     pub field: Option<SetField>,
     /// The further values of points.
     pub attributes: Attributes,
+    /// The variants that are evenly spread.
+    pub kinds: Option<Kinds>,
     /// Where the layer is; everywhere if `None`.
     pub region: Option<QueryRegion>,
     /// The layers that are kept clear of, by position, with the distance; all before this one.

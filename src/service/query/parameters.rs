@@ -6,7 +6,8 @@
 use strew_core::{Attribute, Keep, ScaleRange, Spacing, UniformNumber, Variants, Warp};
 
 use super::{
-    DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_PARTS, Parameter, Shape, Value, parameter::Group,
+    DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_PARTS, Parameter, Shape, Value, kinds::Spread,
+    parameter::Group,
 };
 use crate::service::encode::{
     CRS as CRS_ALLOWED, MOST_DECIMALS,
@@ -262,7 +263,7 @@ parameters! {
         group: Group::Attributes,
         shape: Shape::Weights,
         allowed: Some("name:weight pairs joined by commas, such as oak:3,birch:1, beside the attribute \
-                       variant: 1 to 256 different names of 1 to 64 letters, digits, _, - and ., \
+                       variant or a spread other than chance: 1 to 256 different names of 1 to 64 letters, digits, _, - and ., \
                        weights from 1e-9 to 1e9"),
         example: "oak:3,birch:1",
         echo: Some(|set| {
@@ -274,6 +275,31 @@ parameters! {
                 _ => None,
             })
         }),
+        ..Parameter::PLAIN
+    };
+    /// How variants are spread.
+    SPREAD = Parameter {
+        name: "spread",
+        about: "How variants are spread. chance: each point has one by chance. even: each variant is evenly \
+                spread, like the points of all of them together, which do not move. joint: more evenly still, on \
+                a table made for these shares.",
+        group: Group::Attributes,
+        shape: Shape::Choice(Spread::NAMES),
+        default: Some("chance"),
+        example: "even",
+        echo: Some(|set| Some(Value::Text(set.kinds.as_ref()?.spread.name().into()))),
+        ..Parameter::PLAIN
+    };
+    /// The one variant wanted.
+    ONLY = Parameter {
+        name: "only",
+        about: "The one variant whose points are wanted, of those that are evenly spread.",
+        group: Group::Attributes,
+        shape: Shape::Pattern("^[A-Za-z0-9_.-]{1,64}$"),
+        allowed: Some("one of the names in variants, with spread even or joint"),
+        default: Some("all variants"),
+        example: "oak",
+        echo: Some(|set| Some(Value::Text(set.kinds.as_ref()?.only_name()?.into()))),
         ..Parameter::PLAIN
     };
     /// How many points to leave out.

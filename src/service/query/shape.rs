@@ -4,7 +4,7 @@ use std::{borrow::Cow, str::FromStr};
 
 use serde_json::value::RawValue;
 
-use super::{Value, json, number, value::OTHER_TYPE};
+use super::{Value, json, number, unknown, value::OTHER_TYPE};
 use crate::service::{Encoding, field::Document};
 
 /// The values that a parameter takes.
@@ -47,6 +47,8 @@ pub enum Shape {
     },
     /// Names with weights.
     Weights,
+    /// One of some words.
+    Choice(&'static [&'static str]),
     /// The name of a format.
     Format,
     /// A number as a decimal, a fraction or a quadratic irrational.
@@ -93,6 +95,7 @@ impl Shape {
             Self::Signed { limit } => format!("an integer within ±{limit}"),
             Self::Names { .. } => "different names, joined by commas".into(),
             Self::Weights => "name:weight pairs, joined by commas".into(),
+            Self::Choice(words) => words.join(", "),
             Self::Format => Encoding::ALL.map(Encoding::name).join(", "),
             Self::Quadratic => {
                 "a decimal, a fraction or a quadratic irrational, such as (5-sqrt(3))/2".into()
@@ -110,7 +113,7 @@ impl Shape {
     pub const fn is_of_names(self) -> bool {
         matches!(
             self,
-            Self::Names { .. } | Self::Weights | Self::Format | Self::Field
+            Self::Names { .. } | Self::Weights | Self::Choice(_) | Self::Format | Self::Field
         )
     }
 
@@ -141,7 +144,7 @@ impl Shape {
             }
             Self::Weights => Value::Weights(weights(text)?),
             Self::Field => Value::Field(Document::Name(text.into()).into()),
-            Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text => {
+            Self::Choice(_) | Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text => {
                 Value::Text(text.into())
             }
         };
@@ -187,9 +190,14 @@ impl Shape {
             (Self::Weights, _) => Value::Weights(json::weights(json)?),
             (Self::Field, _) => return Err("must be a name".into()),
             (Self::Quadratic, _) if is_number => Value::Text(json.get().into()),
-            (Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text, _) => {
-                return Err("must be text".into());
-            }
+            (
+                Self::Choice(_)
+                | Self::Format
+                | Self::Quadratic
+                | Self::Pattern(_)
+                | Self::Text,
+                _,
+            ) => return Err("must be text".into()),
         };
         self.check(value)
     }
@@ -246,6 +254,13 @@ impl Shape {
                         Err(format!("expected pairs of numbers, got {count} numbers").into())
                     }
                     _ => Ok(value),
+                }
+            }
+            (Self::Choice(words), Value::Text(word)) => {
+                if words.contains(&word.as_str()) {
+                    Ok(value)
+                } else {
+                    Err(unknown("word", word, words.iter().copied()).into())
                 }
             }
             // Not every writer of JSON keeps the order of an object's members.

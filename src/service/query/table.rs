@@ -73,6 +73,7 @@ pub(super) fn check(
         profile: profile.as_str().into(),
         alpha,
         size,
+        mix: None,
     };
     let entry = catalog.entry(&key);
     let gone = || {
