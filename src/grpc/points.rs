@@ -106,10 +106,14 @@ impl Points {
         })
     }
 
-    async fn point(&self, request: &GetPointRequest) -> Result<GetPointResponse, Error> {
+    async fn point(
+        &self,
+        caller: &Caller,
+        request: &GetPointRequest,
+    ) -> Result<GetPointResponse, Error> {
         let values = set::values(request.set.as_ref(), groups::SINGLE, "");
         let set = Set::single(&values, &self.service.catalog())?;
-        let placed = self.service.place(set).await?;
+        let placed = self.service.place(caller, set).await?;
         Ok(GetPointResponse {
             point: Some(single::point(placed.point(&request.id)?)),
             set: Some(resolved::placed(&placed)),
@@ -192,7 +196,8 @@ impl PointService for Points {
         &self,
         request: Request<GetPointRequest>,
     ) -> Result<Response<GetPointResponse>, Status> {
-        answered(self.point(request.get_ref()).await)
+        let caller = caller(&request)?;
+        answered(self.point(&caller, request.get_ref()).await)
     }
 
     async fn find_nearest(

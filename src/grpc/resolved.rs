@@ -67,6 +67,9 @@ fn resolved(echo: ResolvedSet, entry: &Entry, region: Option<Region>) -> proto::
         least_distance: echo.least_distance,
         field_digest: echo.field_digest,
         clear_of: echo.clear_of.into_iter().collect(),
+        kinds: (echo.kinds.into_iter())
+            .map(|(name, count)| (name, u64::try_from(count).unwrap_or(u64::MAX)))
+            .collect(),
         delta_min: entry.measured("delta_min"),
         delta_avg: entry.measured("delta_avg"),
     }

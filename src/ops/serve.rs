@@ -101,7 +101,8 @@ impl App {
         let metrics = Metrics::default();
         let presets = Presets::read(&config.presets, &catalog, config.limits.max_vertices)?;
         let service = Service::new(catalog, config.limits.clone(), workers);
-        let service = Arc::new(service.with_presets(presets));
+        let mixes = config.tables.folder().map(|folder| folder.join("mixes"));
+        let service = Arc::new(service.with_presets(presets).with_mixes(mixes));
         let gate = Arc::new(Gate::new(
             config.access.clone(),
             &config.rate,

@@ -26,11 +26,12 @@ const ALGORITHM: HeaderName = HeaderName::from_static("strew-algorithm");
 const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
 
 const COLUMNS: HeaderName = HeaderName::from_static("strew-columns");
+const KINDS: HeaderName = HeaderName::from_static("strew-kinds");
 const WARNING: HeaderName = HeaderName::from_static("strew-warning");
 const NEXT: HeaderName = HeaderName::from_static("strew-next");
 
 /// The headers of an answer with points, and what they say.
-const HEADERS: [(&str, &str); 8] = [
+const HEADERS: [(&str, &str); 9] = [
     ("strew-count", "Exactly how many points follow."),
     ("strew-table", "The digest of the table that answers."),
     (
@@ -50,6 +51,11 @@ const HEADERS: [(&str, &str); 8] = [
         "strew-columns",
         "With npy, f32, f64 and ply: the columns in their order, as a JSON list of objects with name, \
          type and, where values are indices, the names that they stand for.",
+    ),
+    (
+        "strew-kinds",
+        "How many points of the region each variant has, if they are evenly spread: a JSON object by name; \
+         with layers, one for each of those that have such variants.",
     ),
     (
         "strew-warning",
@@ -254,6 +260,11 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         origin.push(b',');
         write_number(y, &mut origin);
         headers.insert(ORIGIN, text(&String::from_utf8_lossy(&origin))?);
+    }
+    if planned.sets.iter().any(|set| !set.kinds.is_empty())
+        && let Some(kinds) = planned.resolved().kinds()
+    {
+        headers.insert(KINDS, text(&kinds.to_string())?);
     }
     if let Some(columns) = answer.legend() {
         headers.insert(COLUMNS, text(columns)?);

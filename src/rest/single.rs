@@ -106,7 +106,7 @@ async fn point(
     let set = Set::single(&values, &service.catalog())?;
     let freshness = freshness(&context, &set);
     let make = async {
-        let placed = service.place(set).await?;
+        let placed = service.place(&context.caller, set).await?;
         document::json(&One {
             point: placed.point(&id)?,
             query: placed.resolved,

@@ -397,15 +397,21 @@ impl Catalog {
 
     /// All tables without kinds, by profile, then α.
     pub fn entries(&self) -> impl Iterator<Item = &Arc<Entry>> {
-        self.entries.values().filter(|entry| entry.key.mix.is_none())
+        self.entries
+            .values()
+            .filter(|entry| entry.key.mix.is_none())
     }
 
     /// The mixes of a table: those whose points are its own, or those whose points were moved.
-    pub fn mixes(&self, of: &Entry, are_moved: bool) -> impl Iterator<Item = (&MixKey, &Arc<Entry>)> {
+    pub fn mixes(
+        &self,
+        of: &Entry,
+        are_moved: bool,
+    ) -> impl Iterator<Item = (&MixKey, &Arc<Entry>)> {
         self.entries.iter().filter_map(move |(key, entry)| {
             let mix = key.mix.as_deref()?;
-            let is_same = (&key.profile, key.alpha, key.size)
-                == (&of.key.profile, of.key.alpha, of.key.size);
+            let is_same =
+                (&key.profile, key.alpha, key.size) == (&of.key.profile, of.key.alpha, of.key.size);
             let is_moved = mix.vectors != of.vectors;
             (is_same && is_moved == are_moved).then_some((mix, entry))
         })

@@ -39,18 +39,23 @@ const MOST_KEPT: usize = 256;
 
 impl std::fmt::Debug for Mixes {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Mixes").field("folder", &self.folder).finish_non_exhaustive()
+        f.debug_struct("Mixes")
+            .field("folder", &self.folder)
+            .finish_non_exhaustive()
     }
 }
 
 impl Mixes {
     /// No mixes yet: at most this many bytes of them, and those of a folder.
     pub(super) fn new(bytes: u64, folder: Option<PathBuf>) -> Self {
-        let weight = |_: &String, table: &Table| {
-            u32::try_from(table.memory_bytes()).unwrap_or(u32::MAX)
-        };
+        let weight =
+            |_: &String, table: &Table| u32::try_from(table.memory_bytes()).unwrap_or(u32::MAX);
         Self {
-            ready: Cache::builder().name("mixes").max_capacity(bytes).weigher(weight).build(),
+            ready: Cache::builder()
+                .name("mixes")
+                .max_capacity(bytes)
+                .weigher(weight)
+                .build(),
             making: Arc::default(),
             folder: folder.map(Into::into),
         }
@@ -59,7 +64,10 @@ impl Mixes {
     /// A table with kinds of these shares, if it is in memory.
     pub(super) async fn known(&self, plain: &Ready, shares: &Shares) -> Option<Ready> {
         let table = self.ready.get(&name(plain, shares)).await?;
-        Some(Ready { entry: plain.entry.clone(), table })
+        Some(Ready {
+            entry: plain.entry.clone(),
+            table,
+        })
     }
 
     /// A table with kinds of these shares.
@@ -73,7 +81,10 @@ impl Mixes {
             Some(ready) => return Ok(ready),
             None => self.begin(plain, shares, workers).await?,
         };
-        Ok(Ready { entry: plain.entry.clone(), table })
+        Ok(Ready {
+            entry: plain.entry.clone(),
+            table,
+        })
     }
 
     /// Begins to make a mix, unless somebody has.
@@ -86,7 +97,10 @@ impl Mixes {
         let (mixes, key, workers) = (self.clone(), name.clone(), workers.clone());
         let (table, shares) = (plain.table.clone(), shares.clone());
         let work = async move {
-            let path = mixes.folder.as_deref().map(|folder| folder.join(format!("{key}.strew")));
+            let path = mixes
+                .folder
+                .as_deref()
+                .map(|folder| folder.join(format!("{key}.strew")));
             let made = workers.take_turn(Lane::Long, move |_| match path {
                 Some(path) => read_or_make(&path, &table, &shares),
                 None => make(&table, &shares),
@@ -95,7 +109,11 @@ impl Mixes {
             if let Ok(table) = &made {
                 mixes.ready.insert(key.clone(), table.clone()).await;
             }
-            mixes.making.lock().unwrap_or_else(PoisonError::into_inner).remove(&key);
+            mixes
+                .making
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .remove(&key);
             made
         };
         // It goes on when nobody waits any more: the next one will ask again.
@@ -109,7 +127,11 @@ impl Mixes {
 
 /// What a mix is known by.
 fn name(plain: &Ready, shares: &Shares) -> String {
-    format!("{}-{}", plain.entry.digest, shares.to_string().replace(':', "-"))
+    format!(
+        "{}-{}",
+        plain.entry.digest,
+        shares.to_string().replace(':', "-")
+    )
 }
 
 /// Labels the blocks of a table. Takes seconds.
@@ -153,7 +175,11 @@ fn keep(path: &Path, table: &Table) -> anyhow::Result<()> {
     let mut kept = vec![];
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
-        if entry.path().extension().is_some_and(|extension| extension == "strew") {
+        if entry
+            .path()
+            .extension()
+            .is_some_and(|extension| extension == "strew")
+        {
             kept.push((entry.metadata()?.modified()?, entry.path()));
         }
     }

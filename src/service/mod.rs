@@ -14,6 +14,7 @@ pub mod encode;
 pub mod error;
 pub mod field;
 mod lane;
+mod mixes;
 mod planned;
 mod planned_set;
 mod planner;
@@ -27,7 +28,10 @@ pub mod stream;
 mod turns;
 pub mod workers;
 
-use std::{path::Path, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use arc_swap::ArcSwap;
 use bytes::Bytes;
@@ -57,6 +61,7 @@ pub use crate::config::Limits;
 use crate::{access::Caller, config};
 use cache::{CacheState, Samplers};
 use field::{Document, NamedField};
+use mixes::Mixes;
 use portrait::Portraits;
 use record::Recorded;
 
@@ -67,6 +72,7 @@ pub struct Service {
     presets: Presets,
     limits: Limits,
     samplers: Samplers,
+    mixes: Mixes,
     portraits: Portraits,
     streams: Arc<Streams>,
     budget: Budget,
@@ -79,6 +85,7 @@ impl Service {
     pub fn new(catalog: Catalog, limits: Limits, workers: Workers) -> Self {
         Self {
             samplers: Samplers::new(limits.cache_bytes),
+            mixes: Mixes::new(limits.cache_bytes, None),
             portraits: Portraits::new(),
             streams: Arc::new(Streams::new(limits.max_streams)),
             budget: Budget::new(limits.max_bytes_in_flight),
@@ -93,6 +100,15 @@ impl Service {
     #[must_use]
     pub fn with_presets(self, presets: Presets) -> Self {
         Self { presets, ..self }
+    }
+
+    /// The service with a folder of mixes, where those are kept that queries have made.
+    #[must_use]
+    pub fn with_mixes(self, folder: Option<PathBuf>) -> Self {
+        Self {
+            mixes: Mixes::new(self.limits.cache_bytes, folder),
+            ..self
+        }
     }
 
     /// The presets.
@@ -244,7 +260,7 @@ impl Service {
         let mut charged = 0;
         let mut tables = vec![];
         for set in &*query.sets {
-            tables.push(self.samplers.get(&set.entry, &self.workers).await?);
+            tables.push(self.ready(caller, set).await?);
         }
         let planned = if query.is_small() {
             // Handing it over would take longer.
@@ -266,6 +282,25 @@ impl Service {
             record.take_lane(effort::block_lane(&planned));
         }
         Ok((planned, charged))
+    }
+
+    /// The table of a set, ready to answer. Making a mix is charged.
+    async fn ready(&self, caller: &Caller, set: &Set) -> Result<Ready, Error> {
+        /// Making a mix takes about as long as so many points a block.
+        const POINTS: u128 = 10_000;
+        let ready = self.samplers.get(&set.entry, &self.workers).await?;
+        let Some(kinds) = set.kinds.as_ref().filter(|_| ready.table.mix().is_none()) else {
+            return Ok(ready);
+        };
+        if let Some(made) = &kinds.made {
+            let Ready { table, .. } = self.samplers.get(made, &self.workers).await?;
+            return Ok(Ready { table, ..ready });
+        }
+        if let Some(known) = self.mixes.known(&ready, &kinds.shares).await {
+            return Ok(known);
+        }
+        caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
+        self.mixes.get(&ready, &kinds.shares, &self.workers).await
     }
 
     /// The right of a caller to start one more stream; a picture of that size is held whole.
@@ -345,8 +380,8 @@ impl Service {
     ///
     /// # Errors
     /// [`Error::Invalid`] for an amount that the table cannot have.
-    pub async fn place(&self, set: Set) -> Result<Placed, Error> {
-        let ready = self.samplers.get(&set.entry, &self.workers).await?;
+    pub async fn place(&self, caller: &Caller, set: Set) -> Result<Placed, Error> {
+        let ready = self.ready(caller, &set).await?;
         Placed::new(set, ready)
     }
 
@@ -363,7 +398,7 @@ impl Service {
         nearest: Nearest,
         answer: impl FnOnce(&Placed, Vec<Found>) -> Result<T, Error> + Send + 'static,
     ) -> Result<T, Error> {
-        let placed = self.place(set).await?;
+        let placed = self.place(caller, set).await?;
         let effort = Neighbors::of(&placed, &nearest);
         let (budget, caller) = (self.own_budget(), caller.clone());
         let search = move |_: &Stop| {

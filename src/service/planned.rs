@@ -12,6 +12,7 @@ use super::{
     attributes::PointAttributes,
     cache::Ready,
     encode::{Attributes, Part},
+    mixes,
     planned_set::PlannedSet,
     planner::Planner,
     query::{Amount, Query, Resolved, ResolvedSet, Set, Token},
@@ -61,7 +62,7 @@ impl Placed {
         };
         let least = resolve::least_distance(&set, &ready, spacing, 0.0);
         Ok(Self {
-            resolved: set.resolved(&[], density, spacing, least),
+            resolved: set.resolved(&[], density, spacing, least, &[]),
             points: set.points(&ready.table, spacing),
             set,
         })
@@ -124,7 +125,19 @@ impl Planned {
     /// # Errors
     /// As [`new`](Self::new), or [`Error::Internal`] if a table cannot be read any more.
     pub fn at_once(query: Query, limits: &Limits) -> Result<Self, Error> {
-        let ready = |set: &Set| Ready::load(&set.entry);
+        let ready = |set: &Set| -> Result<Ready, Error> {
+            let ready = Ready::load(&set.entry)?;
+            match &set.kinds {
+                Some(kinds) if ready.table.mix().is_none() => {
+                    let table = match &kinds.made {
+                        Some(made) => made.table()?,
+                        None => mixes::make(&ready.table, &kinds.shares)?,
+                    };
+                    Ok(Ready { table, ..ready })
+                }
+                _ => Ok(ready),
+            }
+        };
         let tables: Vec<Ready> = query.sets.iter().map(ready).collect::<Result<_, _>>()?;
         Self::new(query, &tables, limits)
     }
@@ -272,9 +285,10 @@ impl Planned {
                 density,
                 spacing,
                 least_distance,
+                ref kinds,
                 ..
             } = *planned;
-            set.resolved(all, density, spacing, least_distance)
+            set.resolved(all, density, spacing, least_distance, kinds)
         };
         let mut sets: Vec<ResolvedSet> = all.iter().zip(&self.sets).map(resolved).collect();
         let set = (!self.query.is_layered).then(|| sets.remove(0));

@@ -21,6 +21,8 @@ pub struct PlannedSet {
     pub plan: Plan,
     /// The points that counting all of them looks at one by one; none without a field.
     pub candidates: u128,
+    /// How many points of the region each of the set's kinds has.
+    pub kinds: Vec<u128>,
     /// How many there are of them, as far as that is known.
     total: u128,
     /// How many points of the query the sets before it have, if it is not before the cursor's.
@@ -43,8 +45,14 @@ impl PlannedSet {
             total: plan.total(),
             plan,
             candidates,
+            kinds: vec![],
             before: 0,
         }
+    }
+
+    /// The set with the numbers of points of its kinds.
+    pub(super) fn with_kinds(self, kinds: Vec<u128>) -> Self {
+        Self { kinds, ..self }
     }
 
     /// How many points are looked at to make one.

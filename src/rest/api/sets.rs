@@ -173,5 +173,12 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
         "clear_of",
         json!({ "type": "object", "additionalProperties": { "type": "number" } }),
     );
+    put(
+        "kinds",
+        json!({
+            "type": "object", "additionalProperties": { "type": "integer", "minimum": 0 },
+            "description": "How many points of the region each variant has, if they are evenly spread.",
+        }),
+    );
     (always, members)
 }

@@ -6,8 +6,8 @@ use serde_json::{Map, Value as Json};
 use strew_core::{Keep, Placement, Seed, Warp};
 
 use super::{
-    Amount, Checked, Faults, Kinds, MOST_LAYERS, Query, QueryRegion, RegionDraft, Set, Together as _,
-    Value, Values, Window, attributes,
+    Amount, Checked, Faults, Kinds, MOST_LAYERS, Query, QueryRegion, RegionDraft, Set,
+    Together as _, Value, Values, Window, attributes,
     cursor::Token,
     faults::all,
     field::Loaded,
@@ -351,7 +351,12 @@ impl Set {
             table::check(values, None, loaded.catalog),
             loaded.field(values),
         );
-        let (amount, seed, warp, keep, (attributes, kinds), (entry, pin), field) = checked.together()?;
+        let (amount, seed, warp, keep, (attributes, mut kinds), (entry, pin), field) =
+            checked.together()?;
+        let entry = match &mut kinds {
+            Some(kinds) => kinds.find(entry, values, loaded.catalog)?,
+            None => entry,
+        };
         let seed = Seed(seed.unwrap_or(0));
         Ok(Self {
             path: values.path().into(),

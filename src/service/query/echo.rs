@@ -1,5 +1,7 @@
 //! What answers say of the query they answer, and what tells queries apart.
 
+use std::collections::BTreeMap;
+
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
 use serde_json::{Map, Value as Json, json};
 use strew_core::{ALGORITHM_VERSION, Spacing};
@@ -31,6 +33,31 @@ pub struct Resolved {
     pub limit: Option<u64>,
 }
 
+impl Resolved {
+    /// How many points each kind has, by name, in an object for each layer if there are layers.
+    #[must_use]
+    pub fn kinds(&self) -> Option<Json> {
+        let named = |set: &ResolvedSet| {
+            let kinds = set
+                .kinds
+                .iter()
+                .map(|(name, count)| (name.clone(), json!(count)));
+            Json::Object(kinds.collect())
+        };
+        let all = self.set.iter().chain(&self.layers);
+        let mut with_kinds = all.filter(|set| !set.kinds.is_empty()).peekable();
+        with_kinds.peek()?;
+        Some(match &self.set {
+            Some(set) => named(set),
+            None => Json::Object(
+                with_kinds
+                    .map(|set| (set.name.clone(), named(set)))
+                    .collect(),
+            ),
+        })
+    }
+}
+
 /// A set of points as answers echo it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResolvedSet {
@@ -50,6 +77,8 @@ pub struct ResolvedSet {
     pub values: Vec<(&'static Parameter, Value)>,
     /// The layers that are kept clear of, with the distances.
     pub clear_of: Vec<(String, f64)>,
+    /// How many points of the region each variant has, if they are evenly spread.
+    pub kinds: Vec<(String, u128)>,
 }
 
 impl Serialize for ResolvedSet {
@@ -72,6 +101,12 @@ impl Serialize for ResolvedSet {
         }
         if !self.clear_of.is_empty() {
             map.serialize_entry("clear_of", &distances(&self.clear_of))?;
+        }
+        if !self.kinds.is_empty() {
+            let kinds: BTreeMap<&str, u128> = (self.kinds.iter())
+                .map(|(name, count)| (name.as_str(), *count))
+                .collect();
+            map.serialize_entry("kinds", &kinds)?;
         }
         map.end()
     }
@@ -96,7 +131,9 @@ impl Set {
         density: f64,
         spacing: Spacing,
         least_distance: f64,
+        kinds: &[u128],
     ) -> ResolvedSet {
+        let names = self.kinds.iter().flat_map(|kinds| kinds.variants.names());
         ResolvedSet {
             name: self.name.clone(),
             region: self.region.as_ref().map(QueryRegion::full_echo),
@@ -106,6 +143,7 @@ impl Set {
             field_digest: self.field.as_ref().map(|field| field.digest.clone()),
             values: self.echoes().collect(),
             clear_of: self.named_clear_of(all),
+            kinds: names.map(Into::into).zip(kinds.iter().copied()).collect(),
         }
     }
 
@@ -132,6 +170,9 @@ impl Set {
         });
         if let Some(field) = &self.field {
             identity["field_digest"] = json!(field.digest);
+        }
+        if let Some(made) = self.kinds.as_ref().and_then(|kinds| kinds.made.as_ref()) {
+            identity["kinds_table"] = json!(made.digest);
         }
         for (parameter, value) in self.echoes().filter(|(parameter, _)| **parameter != FIELD) {
             identity[parameter.name] = json!(value);

@@ -1,12 +1,14 @@
 //! Kinds: variants that are evenly spread.
 
+use std::sync::Arc;
+
 use strew_core::{Variants, table::Shares};
 
 use super::{
     Checked, Together as _, Values,
     parameters::{ONLY, SPREAD, VARIANTS},
 };
-use crate::service::{Fault, query::unknown};
+use crate::service::{Catalog, Entry, Fault, catalog::MixKey, query::unknown};
 
 /// How variants are spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,17 +47,22 @@ pub struct Kinds {
     pub spread: Spread,
     /// The only one that is wanted, by its place among the variants.
     pub only: Option<u32>,
+    /// The loaded table whose labels spread them evenly, if there is one.
+    pub made: Option<Arc<Entry>>,
 }
 
 impl Kinds {
     /// Checks the kinds among some values.
     pub(super) fn check(values: &Values) -> Checked<Option<Self>> {
-        let (name, only) = (values.get::<String>(&SPREAD), values.get::<String>(&ONLY)).together()?;
+        let (name, only) =
+            (values.get::<String>(&SPREAD), values.get::<String>(&ONLY)).together()?;
         let spread = match name.as_deref() {
             Some("even") => Spread::Even,
             Some("joint") => Spread::Joint,
             _ if only.is_some() => {
-                return Err(values.fault(&ONLY, "has no effect with spread chance").into());
+                return Err(values
+                    .fault(&ONLY, "has no effect with spread chance")
+                    .into());
             }
             _ => return Ok(None),
         };
@@ -70,19 +77,58 @@ impl Kinds {
         })?;
         let only = only.map(|only| {
             let place = variants.names().position(|name| name == only);
-            place.and_then(|place| u32::try_from(place).ok()).ok_or_else(|| {
-                let detail = unknown("variant", &only, variants.names());
-                let field = format!("{}{}", values.path(), ONLY.name);
-                let names: Vec<&str> = variants.names().collect();
-                Fault::new(&field, only, detail, names.join(", "))
-            })
+            place
+                .and_then(|place| u32::try_from(place).ok())
+                .ok_or_else(|| {
+                    let detail = unknown("variant", &only, variants.names());
+                    let field = format!("{}{}", values.path(), ONLY.name);
+                    let names: Vec<&str> = variants.names().collect();
+                    Fault::new(&field, only, detail, names.join(", "))
+                })
         });
         Ok(Some(Self {
             only: only.transpose()?,
             variants,
             shares,
             spread,
+            made: None,
         }))
+    }
+
+    /// Finds the table of the kinds among those of a catalog, beside a plain one: that of a joint spread answers
+    /// in its place.
+    pub(super) fn find(
+        &mut self,
+        plain: Arc<Entry>,
+        values: &Values,
+        catalog: &Catalog,
+    ) -> Checked<Arc<Entry>> {
+        let are_moved = self.spread == Spread::Joint;
+        let mixes = || catalog.mixes(&plain, are_moved);
+        let is_wanted = |mix: &MixKey| *mix.shares == *self.shares.parts();
+        let found = mixes()
+            .find(|(mix, _)| is_wanted(mix))
+            .map(|(_, entry)| entry.clone());
+        if !are_moved {
+            self.made = found;
+            return Ok(plain);
+        }
+        found.ok_or_else(|| {
+            let shares = mixes().map(|(mix, _)| mix.text()).collect::<Vec<_>>();
+            let allowed = match shares.as_slice() {
+                [] => "spread even: no table of this profile, alpha and map has joint kinds".into(),
+                shares => format!(
+                    "spread even, or variants with shares of {}",
+                    shares.join(", ")
+                ),
+            };
+            let detail = format!(
+                "no table with joint kinds of the shares {} is loaded",
+                self.shares
+            );
+            let field = format!("{}{}", values.path(), SPREAD.name);
+            Fault::new(&field, self.spread.name(), detail, allowed).into()
+        })
     }
 
     /// The name of the only one that is wanted.
@@ -106,8 +152,16 @@ mod tests {
             ("spread=even", "variants", "missing"),
             ("spread=even&variants=oak:1", "variants", "from 2 to"),
             ("spread=even&variants=oak:1,elm:1000000", "variants", "elm"),
-            ("spread=even&variants=oak:3,birch:1&only=oka", "only", "did you mean `oak`?"),
-            ("spread=evn&variants=oak:3,birch:1", "spread", "did you mean `even`?"),
+            (
+                "spread=even&variants=oak:3,birch:1&only=oka",
+                "only",
+                "did you mean `oak`?",
+            ),
+            (
+                "spread=evn&variants=oak:3,birch:1",
+                "spread",
+                "did you mean `even`?",
+            ),
         ] {
             let faults = Kinds::check(&parse_pairs(text, groups::POINTS)).expect_err(text);
             let fault = &faults.as_slice()[0];
@@ -123,7 +177,10 @@ mod tests {
         let one = kinds("spread=even&variants=oak:3,birch:1&only=oak");
         assert_eq!(one, kinds("spread=even&variants=birch:1,oak:3&only=oak"));
         let one = one.expect("kinds");
-        assert_eq!((one.only_name(), one.shares.to_string()), (Some("oak"), "1:3".into()));
+        assert_eq!(
+            (one.only_name(), one.shares.to_string()),
+            (Some("oak"), "1:3".into())
+        );
         assert_eq!(kinds("spread=chance&variants=birch:1,oak:3"), None);
     }
 }

@@ -40,8 +40,8 @@ pub use draft::{Draft, LayerDraft, entry, options, parts};
 pub use echo::{Resolved, ResolvedSet};
 pub use faults::{Checked, Faults, Together, all};
 pub use field::SetField;
-pub use kinds::{Kinds, Spread};
 pub use json::{RegionSchema, read_body, read_region};
+pub use kinds::{Kinds, Spread};
 pub use nearest::Nearest;
 pub(super) use parameter::unknown;
 pub use parameter::{Group, Parameter, groups, of};
@@ -122,20 +122,28 @@ pub struct Set {
 }
 
 impl Query {
-    /// Whether it holds all that its answer depends on: it names the digests of all of its tables, no preset, and
-    /// no field that may change.
+    /// Whether it holds all that its answer depends on: it names the digests of all of its tables, no preset, no
+    /// field that may change, and no kinds of a loaded table.
     #[must_use]
     pub fn is_pinned(&self) -> bool {
         let is_named = |field: &SetField| field.name.is_some();
         let is_fixed = |set: &Set| set.pin.is_some() && !set.field.as_ref().is_some_and(is_named);
-        self.preset.is_none() && self.sets.iter().all(is_fixed)
+        let is_given = |set: &Set| set.kinds.as_ref().is_some_and(|kinds| kinds.made.is_some());
+        self.preset.is_none() && self.sets.iter().all(|set| is_fixed(set) && !is_given(set))
     }
 
     /// The digests of all that its points are made of besides what it says: tables, then fields.
     pub fn digests(&self) -> impl Iterator<Item = &str> {
         let tables = self.sets.iter().map(|set| set.entry.digest.as_str());
         let fields = self.sets.iter().map(|set| set.field.as_ref());
-        tables.chain(fields.map(|field| field.map_or("", |field| &field.digest)))
+        let mixes = self
+            .sets
+            .iter()
+            .filter_map(|set| set.kinds.as_ref()?.made.as_ref());
+        let fields = fields.map(|field| field.map_or("", |field| &field.digest));
+        tables
+            .chain(fields)
+            .chain(mixes.map(|entry| entry.digest.as_str()))
     }
 
     /// Whether planning it and making its points takes no longer than handing it to another

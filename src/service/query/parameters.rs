@@ -267,13 +267,13 @@ parameters! {
                        weights from 1e-9 to 1e9"),
         example: "oak:3,birch:1",
         echo: Some(|set| {
-            set.attributes.as_slice().iter().find_map(|attribute| match attribute {
-                Attribute::Variant(variants) => {
-                    let pairs = variants.weights();
-                    Some(Value::Weights(pairs.map(|(name, weight)| (name.into(), weight)).collect()))
-                }
+            let own = set.attributes.as_slice().iter().find_map(|attribute| match attribute {
+                Attribute::Variant(variants) => Some(variants),
                 _ => None,
-            })
+            });
+            let variants = own.or(set.kinds.as_ref().map(|kinds| &kinds.variants))?;
+            let pairs = variants.weights();
+            Some(Value::Weights(pairs.map(|(name, weight)| (name.into(), weight)).collect()))
         }),
         ..Parameter::PLAIN
     };

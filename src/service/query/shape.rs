@@ -191,11 +191,7 @@ impl Shape {
             (Self::Field, _) => return Err("must be a name".into()),
             (Self::Quadratic, _) if is_number => Value::Text(json.get().into()),
             (
-                Self::Choice(_)
-                | Self::Format
-                | Self::Quadratic
-                | Self::Pattern(_)
-                | Self::Text,
+                Self::Choice(_) | Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text,
                 _,
             ) => return Err("must be text".into()),
         };
