@@ -31,7 +31,7 @@ pub use marks::Marks;
 pub use noise::Noise;
 pub use pixels::Pixels;
 pub use raster::Raster;
-pub(super) use rows::{FieldRows, Found, Source};
+pub(super) use rows::{FieldRows, Source};
 pub use spec::FieldSpec;
 pub use terrain::Terrain;
 pub(super) use tiles::{candidates, constant, constant_until, empty_until};

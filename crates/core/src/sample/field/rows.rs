@@ -8,7 +8,9 @@ use crate::{
     pattern::Axis,
     sample::{
         kernel::{Backend, warp_all},
-        lattice::{Columns, Grade, Lattice, Patch, PointId, Span, around, damping, part_of_way},
+        lattice::{
+            Columns, Found, Grade, Lattice, Patch, PointId, Span, around, damping, part_of_way,
+        },
         sieve::Scale,
     },
     table::{Displacement, FRACTION_BITS, Rung, Stage},
@@ -45,21 +47,6 @@ pub(crate) struct FieldRows {
     /// What was found.
     found: Vec<Found>,
     next: usize,
-}
-
-/// A point: its place and its address, both relative to the patch.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Found {
-    pub(crate) place: [i32; 2],
-    address: u32,
-}
-
-impl Found {
-    /// The column and the row, relative to the patch.
-    #[inline(always)]
-    pub(crate) const fn address(self) -> [i64; 2] {
-        [(self.address & 0xffff) as i64, (self.address >> 16) as i64]
-    }
 }
 
 /// What rows are listed of: a patch, the spans of the box, and the columns of the band in a range.

@@ -21,6 +21,21 @@ pub(crate) struct Flat {
     addresses: Vec<u32>,
 }
 
+/// A point that was found: its place and its address, both relative to the patch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    pub(crate) place: [i32; 2],
+    pub(crate) address: u32,
+}
+
+impl Found {
+    /// The column and the row, relative to the patch.
+    #[inline(always)]
+    pub(crate) const fn address(self) -> [i64; 2] {
+        [(self.address & 0xffff) as i64, (self.address >> 16) as i64]
+    }
+}
+
 /// The address of a column and row, relative to the patch's origin: 16 bits each, the row in the upper ones.
 const fn address(column: i64, row: i64) -> u32 {
     (row as u32) << 16 | column as u32
@@ -49,6 +64,9 @@ impl Flat {
         xs.clear();
         ys.clear();
         addresses.clear();
+        xs.reserve(enough);
+        ys.reserve(enough);
+        addresses.reserve(enough);
         let [left, bottom] = patch.origin();
         let mut next = rows.end;
         for y in rows {
@@ -163,19 +181,14 @@ impl Inside {
         self.length
     }
 
-    /// The places of the points, and their addresses relative to the patch.
+    /// The points.
     #[inline(always)]
-    pub(crate) fn points(&self) -> impl Iterator<Item = ([i32; 2], [i64; 2])> {
+    pub(crate) fn points(&self) -> impl Iterator<Item = Found> {
         let [xs, ys] = &self.places;
         let (xs, ys) = (&xs[..self.length], &ys[..self.length]);
         let places = xs.iter().zip(ys).map(|(&x, &y)| [x, y]);
         places
             .zip(&self.addresses[..self.length])
-            .map(|(place, &address)| {
-                (
-                    place,
-                    [i64::from(address & 0xffff), i64::from(address >> 16)],
-                )
-            })
+            .map(|(place, &address)| Found { place, address })
     }
 }

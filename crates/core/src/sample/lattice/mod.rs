@@ -26,7 +26,7 @@ mod spacing;
 mod span;
 mod world;
 
-pub(super) use flat::{Flat, Inside};
+pub(super) use flat::{Flat, Found, Inside};
 pub(super) use grade::{Grade, around, damping};
 pub use keep::Keep;
 pub(super) use line::Line;

@@ -16,7 +16,7 @@ use super::{
     near::Mask,
     scope::Scope,
     stop::Stop,
-    walk::{Blocks, Counted, Tile, Window, count_graded, tiles},
+    walk::{Blocks, Counted, Tile, Window, count_graded, find_few, tiles},
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -49,7 +49,7 @@ use crate::{
 pub struct Plan {
     scope: Arc<Scope>,
     window: Window,
-    /// In a field: what was found while the points were counted.
+    /// What was found while the points were counted.
     counted: Counted,
 }
 
@@ -70,10 +70,16 @@ impl Plan {
                 let counted = count_graded(&scope);
                 (counted.count, counted)
             }
-            None => (
-                count(&scope, &scope.x.all, &scope.y.all),
-                Counted::default(),
-            ),
+            None => match find_few(&scope) {
+                Some(few) => {
+                    let counted = Counted::of_few(few);
+                    (counted.count, counted)
+                }
+                None => (
+                    count(&scope, &scope.x.all, &scope.y.all),
+                    Counted::default(),
+                ),
+            },
         };
         if scope.stop.is_raised() {
             let (field, value) = ("the count", "not finished");

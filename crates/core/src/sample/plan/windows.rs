@@ -5,7 +5,7 @@ use crate::sample::{
     cursor::Cursor,
     lattice::PointId,
     seek::locate,
-    walk::{Known, Mark, Window, locate_graded},
+    walk::{Mark, Window, locate_graded},
 };
 
 impl Plan {
@@ -131,14 +131,14 @@ impl Plan {
             total,
             ..
         } = self.window;
-        if self.scope.lattice.grade.is_none() {
-            return locate(&self.scope, total, k);
-        }
         if k >= total {
             return None;
         }
         if let Some(kept) = &self.counted.kept {
-            return kept.get(usize::try_from(k).ok()?).map(Known::id);
+            return kept.id(usize::try_from(k).ok()?);
+        }
+        if self.scope.lattice.grade.is_none() {
+            return locate(&self.scope, total, k);
         }
         let marks = &self.counted.marks;
         let after = marks.partition_point(|mark| mark.before <= k);

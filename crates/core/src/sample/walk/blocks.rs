@@ -1,13 +1,16 @@
 //! The walk over a plan: bands of columns, rows within a band, columns within a row. `flat` has what differs
 //! in small warped boxes, `graded` what differs in a field.
 
+mod few;
 mod flat;
 pub(super) mod graded;
 
 use alloc::{boxed::Box, sync::Arc};
 use core::ops::Range;
 
-use graded::{Constant, Known};
+use few::Few;
+pub(crate) use few::find_few;
+use graded::Constant;
 
 use super::{
     place::Place,
@@ -77,8 +80,8 @@ pub struct Blocks<F: Format> {
     flat: (Flat, Inside),
     /// The points of some rows in a field.
     graded: Option<Box<FieldRows>>,
-    /// The points of a small plan in a field, and the number of the next.
-    kept: Option<(Arc<[Known]>, usize)>,
+    /// The points of a small plan that were kept when they were counted, and the number of the next.
+    kept: Option<(Arc<Few>, usize)>,
     /// The last rows of a band in which a field is constant.
     constant: Option<Box<Constant<F>>>,
 }
@@ -255,11 +258,13 @@ impl<F: Format> Blocks<F> {
         } else if let Some((kept, next)) = &self.kept {
             // After the last one, any later place.
             let after = || {
-                kept.last()
-                    .map(|last| last.id())
-                    .map(|id| PointId { x: id.x + 1, ..id })
+                let last = kept.id(kept.len().checked_sub(1)?)?;
+                Some(PointId {
+                    x: last.x + 1,
+                    ..last
+                })
             };
-            kept.get(*next).map(Known::id).or_else(after)?
+            kept.id(*next).or_else(after)?
         } else if let Some(next) = self.next_found() {
             next
         } else if self.at.y == self.rows.end {

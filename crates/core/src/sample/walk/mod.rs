@@ -11,8 +11,9 @@ mod tile;
 mod window;
 
 pub use blocks::Blocks;
-pub(super) use blocks::graded::{
-    Counted, Known, Mark, count as count_graded, locate as locate_graded,
+pub(super) use blocks::{
+    find_few,
+    graded::{Counted, Mark, count as count_graded, locate as locate_graded},
 };
 pub use tile::Tile;
 pub(super) use tile::{bands, tiles};

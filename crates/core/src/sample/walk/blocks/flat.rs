@@ -7,20 +7,29 @@ use crate::sample::kernel::{Format, compiled};
 const FLAT: usize = 2048;
 
 impl<F: Format> Blocks<F> {
-    /// Writes points of a warped patch in which few rows share a template, up to row `end` or as many as
-    /// there is room for. Rows are warped several at a time.
-    pub(super) fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
-        let (lattice, patch, base) = (&self.scope.lattice, &self.patch, self.base);
+    /// Lists the points of the warped patch's rows up to `end` that lie inside, or `enough` of its points. Returns
+    /// the first row that is not listed.
+    pub(super) fn list_flat(&mut self, end: i64, enough: usize) -> i64 {
+        let (lattice, patch) = (&self.scope.lattice, &self.patch);
         let (flat, inside) = &mut self.flat;
-        // Some two in three points of a small box's patches lie inside.
-        let enough = (2 * out.len()).clamp(64, FLAT);
         let rows = self.at.y..end;
         let columns = (&mut self.columns, &self.listed);
         let next = flat.list(lattice, patch, columns, rows, enough, self.backend);
         flat.sift(patch, self.backend, inside);
+        next
+    }
+
+    /// Writes points of a warped patch in which few rows share a template, up to row `end` or as many as
+    /// there is room for. Rows are warped several at a time.
+    pub(super) fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+        // Some two in three points of a small box's patches lie inside.
+        let enough = (2 * out.len()).clamp(64, FLAT);
+        let next = self.list_flat(end, enough);
+        let (patch, base, (flat, inside)) = (&self.patch, self.base, &self.flat);
         let [left, bottom] = patch.origin();
         compiled(self.backend, || {
-            for (out, (place, address)) in out.iter_mut().zip(inside.points()) {
+            for (out, found) in out.iter_mut().zip(inside.points()) {
+                let (place, address) = (found.place, found.address());
                 let column = self.format.column(base, place[0], left + address[0]);
                 *out = self
                     .format

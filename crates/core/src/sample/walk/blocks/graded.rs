@@ -3,9 +3,12 @@
 use alloc::{boxed::Box, sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
-use super::{Blocks, Place};
+use super::{
+    Blocks, Place,
+    few::{FEW, Few},
+};
 use crate::sample::{
-    field::{Found, Source, constant_until, empty_until},
+    field::{Source, constant_until, empty_until},
     kernel::{Format, Points, compiled},
     lattice::{BAND_WIDTH, PATCH_HEIGHT, Point, PointId, clip_to_band},
     scope::Scope,
@@ -241,65 +244,26 @@ impl<F: Format> Blocks<F> {
     }
 }
 
-/// A point of a field and the patch it was found in.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Known {
-    origin: [i64; 2],
-    found: Found,
-}
-
-impl Known {
-    /// The address.
-    pub(crate) const fn id(&self) -> PointId {
-        let [x, y] = self.found.address();
-        PointId {
-            x: self.origin[0] + x,
-            y: self.origin[1] + y,
-        }
-    }
-}
-
-/// What is known of a field's points once they are counted.
+/// What is known of points once they are counted.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Counted {
     pub(crate) count: u128,
-    /// Places in their order.
+    /// In a field: places in their order.
     pub(crate) marks: Arc<[Mark]>,
     /// All of them, if they are few.
-    pub(crate) kept: Option<Arc<[Known]>>,
+    pub(crate) kept: Option<Arc<Few>>,
 }
 
-impl<F: Format> Blocks<F> {
-    /// The points of a window, which were kept when they were counted.
-    pub(crate) fn of_kept(scope: Arc<Scope>, window: Window, kept: Arc<[Known]>) -> Self {
-        let mut blocks = Self::new(scope, Some(window), 0..0, 0..0);
-        blocks.kept = Some((kept, window.offset as usize));
-        blocks
-    }
-
-    /// Writes the next of the points that were kept, as many as there is room for.
-    pub(super) fn write_kept(&mut self, out: &mut [F::Item]) -> usize {
-        let Some((kept, next)) = &mut self.kept else {
-            return 0;
-        };
-        let kept = kept.get(*next..).unwrap_or_default();
-        let (format, mut base, mut origin) = (&self.format, self.base, None);
-        for (out, Known { origin: own, found }) in out.iter_mut().zip(kept) {
-            if origin != Some(*own) {
-                (origin, base) = (Some(*own), format.base(*own));
-            }
-            let ([left, bottom], [x, y]) = (*own, found.address());
-            let column = format.column(base, found.place[0], left + x);
-            *out = format.item(base, column, found.place[1], bottom + y);
+impl Counted {
+    /// Points that were all kept.
+    pub(crate) fn of_few(few: Few) -> Self {
+        Self {
+            count: few.len() as u128,
+            kept: Some(Arc::new(few)),
+            ..Self::default()
         }
-        let number = kept.len().min(out.len());
-        *next += number;
-        number
     }
 }
-
-/// The most points that are kept when they are counted: 96 KiB.
-const FEW: usize = 2048;
 
 /// The whole scope.
 const fn all(start: Option<PointId>) -> Window {
@@ -346,7 +310,7 @@ impl Marks {
 pub(crate) fn count(scope: &Arc<Scope>) -> Counted {
     let mut blocks = Blocks::<Points>::of_window(scope.clone(), all(None));
     let (mut count, mut marks) = (0, Marks::default());
-    let mut kept = Some(Vec::new());
+    let mut kept = Some(Few::default());
     let mut patch = None;
     while !scope.stop.is_raised() {
         let Some(found) = blocks.find_next() else {
@@ -371,15 +335,14 @@ pub(crate) fn count(scope: &Arc<Scope>) -> Counted {
             kept = None;
         }
         if let (Some(kept), Some(rows)) = (&mut kept, &blocks.graded) {
-            let all = rows.left().iter();
-            kept.extend(all.map(|&found| Known { origin, found }));
+            kept.add(origin, rows.left().iter().copied());
         }
         blocks.pass(found);
     }
     Counted {
         count,
         marks: marks.all.into(),
-        kept: kept.map(Into::into),
+        kept: kept.map(Arc::new),
     }
 }
 
