@@ -44,6 +44,9 @@ const fn address(column: i64, row: i64) -> u32 {
 /// Lists end at a multiple of this, a pair of the widest vectors.
 const WHOLE: usize = 32;
 
+/// Room for most lists.
+const LISTED: usize = 2048;
+
 impl Flat {
     /// Lists the points of a warped patch in some columns, from row `rows.start` on, until there are at least
     /// `enough` or the rows end. Returns the first row that is not listed.
@@ -64,9 +67,10 @@ impl Flat {
         xs.clear();
         ys.clear();
         addresses.clear();
-        xs.reserve(enough);
-        ys.reserve(enough);
-        addresses.reserve(enough);
+        let room = enough.min(LISTED);
+        xs.reserve(room);
+        ys.reserve(room);
+        addresses.reserve(room);
         let [left, bottom] = patch.origin();
         let mut next = rows.end;
         for y in rows {
