@@ -35,6 +35,13 @@ pub(super) const fn counts(set: &Set) -> f64 {
     }
 }
 
+/// How often an area is counted to know how many points of each kind it has.
+pub(super) fn kinds(set: &Set) -> f64 {
+    set.kinds
+        .as_ref()
+        .map_or(0.0, |kinds| kinds.shares.kinds() as f64)
+}
+
 /// A request for points, as far as it decides what counting costs.
 #[derive(Clone, Debug)]
 pub(super) struct Selection {
@@ -82,12 +89,12 @@ fn counted(query: &Query, set: &Set, ready: &Ready) -> (f64, f64) {
     let bounds = query.region.bbox();
     let (spacing, counts) = match resolve(set, ready) {
         Err(_) => return (0.0, 0.0),
-        Ok(Resolved::Known(spacing, _)) => (Some(spacing), 1.0),
+        Ok(Resolved::Known(spacing, _)) => (Some(spacing), 1.0 + kinds(set)),
         Ok(Resolved::Count(count)) => {
             let [min_x, min_y, max_x, max_y] = bounds;
             let area = (max_x - min_x) * (max_y - min_y);
-            let guess = (area * set.keep.get() / count.max(1) as f64).sqrt();
-            (Spacing::new(guess).ok(), counts(set))
+            let guess = (area * set.share() / count.max(1) as f64).sqrt();
+            (Spacing::new(guess).ok(), counts(set) + kinds(set))
         }
     };
     let Some(spacing) = spacing else {
@@ -176,7 +183,7 @@ pub fn considered(planned: &Planned) -> u128 {
             };
         }
         let most = width * height * planned.spacing.density();
-        ((count + 1.0) / set.keep.get() - 1.0).min(most).max(count)
+        ((count + 1.0) / set.share() - 1.0).min(most).max(count)
     };
     let sets = planned.query.sets.iter().zip(&planned.sets);
     let all: f64 = sets.map(considered).sum();

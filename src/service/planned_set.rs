@@ -59,7 +59,7 @@ impl PlannedSet {
     pub(super) fn looks_by_point(&self, set: &Set) -> f64 {
         match set.field {
             Some(_) => (self.candidates as f64 / self.total.max(1) as f64).max(1.0),
-            None => 1.0 / set.keep.get(),
+            None => 1.0 / set.share(),
         }
     }
 }

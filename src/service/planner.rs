@@ -9,7 +9,7 @@ use super::{
     Error, Limits, PlannedSet,
     cache::Ready,
     effort::{self, Selection},
-    query::{Amount, Query, Set, Token, parameters},
+    query::{Amount, Kinds, Query, Set, Token, parameters},
     resolve::{Resolved, check_reach, least_distance, resolve},
 };
 
@@ -69,7 +69,7 @@ impl<'a> Planner<'a> {
                 }
             }
             (Ok(spacing), _) => {
-                self.check_rows(&selection, 1.0)?;
+                self.check_rows(&selection, 1.0 + effort::kinds(set))?;
                 let plan = server::within(&selection.set, selection.area.clone(), self.stop);
                 plan.map_err(|error| region.too_far(spacing, &error))?
             }
@@ -87,6 +87,12 @@ impl<'a> Planner<'a> {
             }),
             None => 0,
         };
+        let kinds = match &set.kinds {
+            // The first answer has told.
+            Some(_) if cursor.is_some() => vec![],
+            Some(kinds) => self.kind_counts(kinds, &selection, &plan)?,
+            None => vec![],
+        };
         let layer = selection.set.placed(plan.placement());
         self.layers.push(match &set.region {
             Some(own) => layer.limited_to(own.area.clone()),
@@ -101,7 +107,31 @@ impl<'a> Planner<'a> {
             least_distance(set, ready, spacing, region.reach()),
             plan,
             candidates,
-        ))
+        )
+        .with_kinds(kinds))
+    }
+
+    /// How many points of a plan each kind has, in the order of their names.
+    fn kind_counts(
+        &self,
+        kinds: &Kinds,
+        selection: &Selection,
+        plan: &Plan,
+    ) -> Result<Vec<u128>, Error> {
+        let set = selection.set.clone().placed(plan.placement());
+        let unfinished = |_| Error::Internal("a plan was stopped that is still wanted");
+        let mut counts =
+            server::kind_counts(&set, selection.area.clone(), self.stop).map_err(unfinished)?;
+        // A number of points can leave out a few that lie inside.
+        let beyond = plan.next_cursor().map(|next| plan.from_cursor(next));
+        for point in beyond.iter().flat_map(Plan::iter) {
+            if let Some(kind) = set.kind_of(point.id()) {
+                counts[usize::from(kind)] -= 1;
+            }
+        }
+        let count = |place: u32| counts.get(usize::from(kinds.number(place))).copied();
+        let all = 0..kinds.variants.count() as u32;
+        Ok(all.map(|place| count(place).unwrap_or(0)).collect())
     }
 
     /// The points of a set that keep clear of the layers it names.
@@ -133,7 +163,7 @@ impl<'a> Planner<'a> {
         // About what it will be, to know what counting takes.
         let [min_x, min_y, max_x, max_y] = self.query.region.bbox();
         let side = (max_x - min_x).sqrt() * (max_y - min_y).sqrt();
-        let guess = side * (set.keep.get() / count as f64).sqrt();
+        let guess = side * (set.share() / count as f64).sqrt();
         if let Ok(spacing) = Spacing::new(guess) {
             let placement = selection.set.placement();
             let trial = Placement {
@@ -141,9 +171,9 @@ impl<'a> Planner<'a> {
                 ..placement
             };
             selection.set = selection.set.clone().placed(trial);
-            self.check_rows(selection, effort::counts(set))?;
+            self.check_rows(selection, effort::counts(set) + effort::kinds(set))?;
         }
-        let most = self.limits.max_rows as f64 / effort::counts(set);
+        let most = self.limits.max_rows as f64 / (effort::counts(set) + effort::kinds(set));
         let least = effort::least_spacing(selection, most);
         let Selection {
             set: points, area, ..

@@ -68,3 +68,11 @@ pub use picture::{PictureError, picture};
 pub use profile::{Aim, Profile};
 pub use report::{Report, Resolution};
 pub use watch::{Meter, Progress, Stage, Watch};
+/// Stub.
+pub fn labels(
+    _: &strew_core::Table,
+    _: &strew_core::table::Shares,
+    _: &dyn Watch,
+) -> Result<strew_core::Table, ForgeError> {
+    todo!()
+}

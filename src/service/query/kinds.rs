@@ -131,6 +131,25 @@ impl Kinds {
         })
     }
 
+    /// The number of the kind that a variant is: the rarest first, of equal ones the first by name.
+    #[must_use]
+    pub fn number(&self, variant: u32) -> u8 {
+        let all: Vec<(&str, f64)> = self.variants.weights().collect();
+        let Some(own) = all.get(variant as usize) else {
+            return u8::MAX;
+        };
+        let is_before =
+            |other: &&(&str, f64)| other.1 < own.1 || (other.1 == own.1 && other.0 < own.0);
+        all.iter().filter(is_before).count() as u8
+    }
+
+    /// The share of the points that are wanted.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.only
+            .map_or(1.0, |only| self.shares.of(self.number(only)))
+    }
+
     /// The name of the only one that is wanted.
     #[must_use]
     pub fn only_name(&self) -> Option<&str> {

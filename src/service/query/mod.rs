@@ -180,11 +180,23 @@ impl Set {
     /// The points of a table at a spacing.
     #[must_use]
     pub(super) fn points(&self, table: &Table, spacing: Spacing) -> PointSet {
-        let points = PointSet::new(table.clone()).placed(self.placement(spacing));
+        let mut points = PointSet::new(table.clone()).placed(self.placement(spacing));
+        if let Some(kinds) = &self.kinds
+            && let Some(only) = kinds.only
+            && let Ok(of_kind) = points.clone().only(kinds.number(only))
+        {
+            points = of_kind;
+        }
         match &self.field {
             Some(field) => points.in_field(field.spec.clone()),
             None => points,
         }
+    }
+
+    /// The share of the table's points that are of the set, without a field.
+    pub(super) fn share(&self) -> f64 {
+        let kind = self.kinds.as_ref().map_or(1.0, Kinds::share);
+        self.keep.get() * kind
     }
 
     /// The part of the query's region in which the layer lies.
