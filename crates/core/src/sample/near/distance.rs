@@ -148,7 +148,7 @@ impl LeastDistance {
     /// ```
     #[must_use]
     pub fn relative(&self) -> f64 {
-        self.with_warp(Warp::OFF) / HEXAGONAL * libm::sqrt(self.share)
+        self.relative_to_all() * libm::sqrt(self.share)
     }
 
     /// The guaranteed distance in mean spacings, for a strength of the warp and every seed. It is that of
@@ -203,7 +203,7 @@ impl LeastDistance {
         (exact - Self::ROUNDING * reach.max(Self::RANGE * exact)).max(0.0)
     }
 
-    /// Whether δ_min is at least [`MIN_RELATIVE`](Self::MIN_RELATIVE).
+    /// Whether δ_min is at least [`MIN_RELATIVE`](Self::MIN_RELATIVE), at the density of all points.
     ///
     /// ```
     /// use strew_core::{Table, table::Provenance};
@@ -219,7 +219,12 @@ impl LeastDistance {
     /// ```
     #[must_use]
     pub fn is_useful(&self) -> bool {
-        self.relative() >= Self::MIN_RELATIVE
+        self.relative_to_all() >= Self::MIN_RELATIVE
+    }
+
+    /// δ_min at the density of all points.
+    fn relative_to_all(&self) -> f64 {
+        self.with_warp(Warp::OFF) / HEXAGONAL
     }
 
     /// The mean spacing at which no two points are nearer than `distance` world units, for a strength of
@@ -261,7 +266,7 @@ impl LeastDistance {
             let problem = alloc::format!(
                 "the profile guarantees no least distance: its nearest points are {:.4} of the hexagonal \
                  distance apart, and at least {} is needed",
-                self.relative(),
+                self.relative_to_all(),
                 Self::MIN_RELATIVE
             );
             let error = Error::new(
