@@ -45,6 +45,7 @@ mod forge;
 mod job;
 pub mod judge;
 mod ladder;
+pub mod mix;
 pub mod measure;
 pub mod numeric;
 pub mod optimize;

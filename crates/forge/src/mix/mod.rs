@@ -1,0 +1,6 @@
+//! Kinds.
+
+mod anneal;
+mod near;
+pub mod order;
+pub mod tune;
