@@ -16,4 +16,10 @@ fn main() {
         let t2 = ranked(&table, &labels, &parts, &rule);
         kept(&t2, &labels, parts.len(), x.parse().unwrap(), y.parse().unwrap(), &[0.9, 0.7, 0.5, 0.35, 0.25, 0.15, 0.1]);
     }
+    if a.iter().any(|x| x == "--joint") {
+        full(&table, &labels, parts.len(), x.parse().unwrap(), y.parse().unwrap());
+        let b = strew_forge::mix::together::Balance { all: f("--wu", "20"), sigma_all: f("--su", "1"), sigma: f("--sc", "0.85"), guard_all: f("--gu", "0.6"), guard: f("--gc", "0.7"), strength: f("--st", "0.3"), strength_all: f("--stu", "0.3") };
+        let t2 = joint(&table, &labels, &parts, &b, f("--steps", "250") as u32, f("--rate", "0.2"));
+        full(&t2, &labels, parts.len(), x.parse().unwrap(), y.parse().unwrap());
+    }
 }

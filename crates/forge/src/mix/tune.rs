@@ -93,3 +93,33 @@ pub fn kept(table: &Table, labels: &[u8], k: usize, t: u64, r: u64, at: &[f64]) 
         println!("{line}");
     }
 }
+
+/// Joint.
+pub fn joint(table: &Table, labels: &[u8], parts: &[u16], b: &super::together::Balance, steps: u32, rate: f64) -> Table {
+    let began = Instant::now();
+    let total: u32 = parts.iter().map(|&p| u32::from(p)).sum();
+    let kinds: Vec<Vec<f64>> = (0..parts.len()).map(|c| labels.iter().map(|&l| f64::from(u8::from(l as usize == c))).collect()).collect();
+    let mut o = super::together::Together::new(table.map(), kinds, b, f64::from(parts[0]) / f64::from(total));
+    let d = crate::optimize::Descent { steps, rate };
+    let mut meter = crate::Meter::new(&(), crate::Stage::Optimizing, steps);
+    let start = crate::ladder::moves_of(table);
+    let s = d.run(&mut o, crate::optimize::DescentState::start(start.clone()), &mut meter, &mut |_| {});
+    let scale = table.alpha().set_side_f64();
+    let v: Vec<[i32; 2]> = s.moves.iter().map(|m| m.map(|x| (x / scale * 1048576.0).round() as i32)).collect();
+    let rms = (s.moves.iter().zip(&start).map(|(a, b)| (a[0]-b[0]).powi(2) + (a[1]-b[1]).powi(2)).sum::<f64>() / start.len() as f64).sqrt();
+    eprintln!("joint {:.2?} energy {:.6} moved rms {rms:.3}", began.elapsed(), s.energy);
+    Table::new(table.map().clone(), "blue", v, strew_core::table::Provenance::default()).expect("ok")
+}
+
+/// All figures of kinds and union.
+pub fn full(table: &Table, labels: &[u8], k: usize, t: u64, r: u64) {
+    let twin = Twin::new(r + 2 * t, t + r).expect("twin");
+    let sites = twin.sites(table.map()).expect("twin of the map");
+    let n = table.map().intervals();
+    for c in 0..=k {
+        let p: Vec<[f64; 2]> = sites.iter().filter_map(|s| { let b = s.block_y as usize * n + s.block_x as usize; (c == k || labels[b] as usize == c).then(|| { let [x, y] = table.displacements()[b].map(to_grid_units); [f64::from(s.x) + x, f64::from(s.y) + y] }) }).collect();
+        let set = Torus::new(twin.period() as f64, p);
+        let s = Spectrum::of_torus(&set, 2.5).summary(0.04); let d = Distances::of_torus(&set);
+        println!("{} low {:.2e} peak {:.2} tallest {:.0} aniso {:.2} dmin {:.3} davg {:.3}", if c == k { "union".into() } else { format!("c{c}   ") }, s.low_power, s.peak_power, s.tallest, s.anisotropy_db, d.delta_min, d.delta_avg);
+    }
+}
