@@ -234,6 +234,10 @@ fn describe(text: &mut String, place: &str, table: &Table) -> std::fmt::Result {
             1.0 / least
         )?;
     }
+    if let Some(mix) = table.mix() {
+        let (kinds, shares) = (mix.shares().kinds(), mix.shares());
+        writeln!(text, "  kinds      {kinds}, in the ratio {shares}")?;
+    }
     writeln!(
         text,
         "  optimizer  {}, seed {}",

@@ -112,6 +112,10 @@ pub enum ErrorKind {
     Attribute,
     /// A list of variants.
     Variants,
+    /// The weights of kinds.
+    Shares,
+    /// A kind of points that the table does not have.
+    Kinds,
     /// Counting was stopped by its [`Stop`](crate::server::Stop).
     Stopped,
 }

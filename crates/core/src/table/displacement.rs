@@ -4,7 +4,7 @@ use alloc::{sync::Arc, vec, vec::Vec};
 use core::{fmt, ops::Range};
 
 use super::{
-    Digest, Displacement, Ladder, Order, Provenance, Ranks, file, parts::Parts,
+    Digest, Displacement, Labels, Ladder, Mix, Order, Provenance, Ranks, file, parts::Parts,
     symmetry::TurnedCopies,
 };
 use crate::{error::Error, map::Map, once::Once, pattern::Alpha};
@@ -32,6 +32,8 @@ struct Content {
     reach: [[i32; 2]; 2],
     /// The order in which blocks leave.
     order: Order,
+    /// The kinds of the points of each block.
+    labels: Option<Labels>,
     /// The least squared distance between two points, once it has been computed.
     least_squared: Once<u64>,
     turned: TurnedCopies,
@@ -70,6 +72,7 @@ impl Table {
             provenance,
             ranks: None,
             ladder: None,
+            mix: None,
         };
         Self::of_parts(parts)
     }
@@ -90,6 +93,8 @@ impl Table {
         if let Some(ladder) = &parts.ladder {
             ladder.check(&order)?;
         }
+        let labels = parts.mix.as_ref();
+        let labels = labels.map(|mix| Labels::new(&parts.map, mix, |block| block));
         let mut reach = [[i32::MAX, i32::MIN]; 2];
         for vector in &parts.displacements {
             for (ends, &v) in reach.iter_mut().zip(vector) {
@@ -101,6 +106,7 @@ impl Table {
             digest,
             reach,
             order,
+            labels,
             least_squared: Once::new(),
             turned: TurnedCopies::new(),
         })))
@@ -148,6 +154,31 @@ impl Table {
     pub fn with_ladder(&self, ladder: Ladder) -> Result<Self, Error> {
         let mut parts = self.0.parts.clone();
         parts.ladder = Some(ladder);
+        Self::of_parts(parts)
+    }
+
+    /// This table with kinds of points, and with ranks made for them: an order in which the kinds keep their
+    /// shares as blocks leave. It has no ladder.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Table`](crate::ErrorKind::Table) for a mix of another map, or unless there is a position for
+    /// each block.
+    ///
+    /// ```
+    /// use strew_core::{Table, table::{Mix, Ranks}};
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let blocks = table.displacements().len() as u32;
+    /// let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
+    /// let mixed = table.with_mix(mix.clone(), Ranks::new((0..blocks).collect())?)?;
+    /// assert_eq!(mixed.mix(), Some(&mix));
+    /// assert_eq!(mixed.displacements(), table.displacements());
+    /// assert_ne!(mixed.digest(), table.digest());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn with_mix(&self, mix: Mix, ranks: Ranks) -> Result<Self, Error> {
+        let mut parts = self.0.parts.clone();
+        (parts.mix, parts.ranks, parts.ladder) = (Some(mix), Some(ranks), None);
         Self::of_parts(parts)
     }
 
@@ -329,6 +360,19 @@ impl Table {
         self.0.parts.ladder.as_ref()
     }
 
+    /// The kinds of the points of each block, or `None` if the table has none.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    ///
+    /// assert!(Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?.mix().is_none());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn mix(&self) -> Option<&Mix> {
+        self.0.parts.mix.as_ref()
+    }
+
     /// The ranks of the points of a block, in [0, 1]: below the start none of them is left, from the end
     /// on all are. Between them points leave in the order of their dX, the greatest first.
     ///
@@ -385,6 +429,11 @@ impl Table {
         &self.0.order
     }
 
+    /// The kinds of the points of each block.
+    pub(crate) fn labels(&self) -> Option<&Labels> {
+        self.0.labels.as_ref()
+    }
+
     /// About the memory that the table may come to hold, in bytes: seeds turn it, and each of the eight
     /// ways has a copy of the vectors and their order once it is used.
     ///
@@ -404,7 +453,8 @@ impl Table {
         let copies = TurnedCopies::MOST;
         let vectors = (1 + copies) * size_of_val(self.displacements());
         let order = self.0.order.memory_bytes(copies);
-        size_of::<Content>() + vectors + order + map + ladder + 4096
+        let mix = self.mix().map_or(0, |mix| mix.memory_bytes(1 + copies));
+        size_of::<Content>() + vectors + order + mix + map + ladder + 4096
     }
 
     /// The least and the greatest displacement along x and y.

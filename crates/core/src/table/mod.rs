@@ -18,16 +18,18 @@
 //!
 //! `displacement` has the [`Table`], made of the `parts` that a `file` holds; `units` the fixed point,
 //! `provenance` the history, `digest` the name, `text` the published text form. `ranks` is the order in which
-//! blocks leave when a set is thinned, `ladder` the displacements of those that are left. `symmetry` has the
-//! ways to turn all of these, `turned` a table that is turned, `shipped` the tables built into this crate.
+//! blocks leave when a set is thinned, `ladder` the displacements of those that are left. `mix` has the kinds of
+//! points, in the ratio of `shares`. `symmetry` has the ways to turn all of these, `turned` a table that is turned, `shipped` the tables built into this crate.
 
 mod digest;
 mod displacement;
 mod file;
 mod ladder;
+mod mix;
 mod parts;
 mod provenance;
 mod ranks;
+mod shares;
 #[cfg(feature = "tables")]
 pub(crate) mod shipped;
 mod symmetry;
@@ -40,9 +42,12 @@ pub use displacement::Table;
 pub use file::{FORMAT_VERSION, MAX_FILE_BYTES};
 pub(crate) use ladder::Stage;
 pub use ladder::{LADDER_BITS, Ladder, Rung};
+pub(crate) use mix::{Labels, Strip};
+pub use mix::{Mix, Split};
 pub use provenance::{Figures, Provenance};
 pub use ranks::Ranks;
 pub(crate) use ranks::{Cut, Order};
+pub use shares::Shares;
 #[cfg(feature = "tables")]
 pub use shipped::BLUE;
 pub(crate) use symmetry::Symmetry;

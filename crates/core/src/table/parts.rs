@@ -3,7 +3,7 @@
 use alloc::{format, string::String, vec::Vec};
 
 use super::{
-    Displacement, FRACTION_BITS, Ladder, MAX_DISPLACEMENT, Provenance, Ranks, to_grid_units,
+    Displacement, FRACTION_BITS, Ladder, MAX_DISPLACEMENT, Mix, Provenance, Ranks, to_grid_units,
 };
 use crate::{
     error::{Error, ErrorKind},
@@ -21,6 +21,8 @@ pub(super) struct Parts {
     /// A position for each block.
     pub(super) ranks: Option<Ranks>,
     pub(super) ladder: Option<Ladder>,
+    /// A mix of this map.
+    pub(super) mix: Option<Mix>,
 }
 
 impl Parts {
@@ -62,6 +64,12 @@ impl Parts {
         if self.ladder.is_some() && self.ranks.is_none() {
             let (value, allowed) = ("without ranks".into(), "with ranks".into());
             return refused("ladder", value, allowed);
+        }
+        if let Some(mix) = &self.mix
+            && Mix::new(&self.map, mix.shares().clone(), mix.labels().to_vec())? != *mix
+        {
+            let (value, allowed) = ("of another map".into(), "a mix of the table's map".into());
+            return refused("mix", value, allowed);
         }
         self.provenance.check()
     }

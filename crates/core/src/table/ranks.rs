@@ -81,14 +81,19 @@ impl Ranks {
 
     /// A hashed order, for tables without ranks.
     pub(super) fn hashed(blocks: usize) -> Self {
-        let mut order: Vec<u32> = (0..blocks as u32).collect();
-        order.sort_unstable_by_key(|&block| scrambled(block.into()));
         let mut positions = vec![0; blocks];
-        for (position, &block) in (0..).zip(&order) {
+        for (position, &block) in (0..).zip(&scattered(blocks)) {
             positions[block as usize] = position;
         }
         Self { positions }
     }
+}
+
+/// The numbers of blocks in a hashed order.
+pub(super) fn scattered(blocks: usize) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..blocks as u32).collect();
+    order.sort_unstable_by_key(|&block| scrambled(block.into()));
+    order
 }
 
 /// A one-to-one hash: the finalizer of `SplitMix64`.

@@ -4,13 +4,13 @@
 //! middle of the set region. Reflecting the plane along an axis therefore reverses the order of the blocks of
 //! that axis, reflecting it about the diagonal swaps the axes of the blocks, and a table turned with them
 //! makes the reflected point set: the pattern is the same one with another origin. The order in which blocks
-//! leave and the vectors of a ladder turn alike. Only the strip of the one block that is partly kept runs along
-//! dX in every turned table.
+//! leave, the vectors of a ladder and the kinds of points turn alike. Only the strips of blocks that are partly
+//! kept, or that have two kinds, run along dX in every turned table.
 
 use alloc::{sync::Arc, vec::Vec};
 
-use super::{Displacement, Order};
-use crate::once::Once;
+use super::{Displacement, Labels, Mix, Order};
+use crate::{map::Map, once::Once};
 
 /// A symmetry of the square: an exchange of the axes, if any, and then reflections along x and y.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,15 +68,32 @@ impl Symmetry {
     }
 }
 
-/// The vectors of a table and the order of its blocks, turned.
+/// What a table has for each block, turned.
 #[derive(Debug)]
 pub(super) struct Turned {
     pub(super) vectors: Vec<Displacement>,
     pub(super) order: Order,
+    pub(super) labels: Option<Labels>,
+}
+
+/// What is turned.
+#[derive(Clone, Copy)]
+pub(super) struct Upright<'a> {
+    pub(super) map: &'a Map,
+    pub(super) vectors: &'a [Displacement],
+    pub(super) order: &'a Order,
+    pub(super) mix: Option<&'a Mix>,
 }
 
 impl Turned {
-    fn new(symmetry: Symmetry, n: usize, vectors: &[Displacement], order: &Order) -> Self {
+    fn new(symmetry: Symmetry, upright: Upright<'_>) -> Self {
+        let Upright {
+            map,
+            vectors,
+            order,
+            mix,
+        } = upright;
+        let n = map.intervals();
         let source = |block: usize| {
             let [x, y] = symmetry.source(n, [block % n, block / n]);
             y * n + x
@@ -85,6 +102,7 @@ impl Turned {
         Self {
             vectors: (0..n * n).map(vector).collect(),
             order: order.turned(source),
+            labels: mix.map(|mix| Labels::new(map, mix, source)),
         }
     }
 }
@@ -101,16 +119,9 @@ impl TurnedCopies {
         Self([const { Once::new() }; ALL])
     }
 
-    /// The copy for a symmetry, of the vectors and the order of a map of `n` intervals; `None` for the table
-    /// as it is.
-    pub(super) fn get(
-        &self,
-        symmetry: Symmetry,
-        n: usize,
-        vectors: &[Displacement],
-        order: &Order,
-    ) -> Option<Arc<Turned>> {
-        let make = || Arc::new(Turned::new(symmetry, n, vectors, order));
+    /// The copy for a symmetry; `None` for the table as it is.
+    pub(super) fn get(&self, symmetry: Symmetry, upright: Upright<'_>) -> Option<Arc<Turned>> {
+        let make = || Arc::new(Turned::new(symmetry, upright));
         (symmetry != Symmetry::default()).then(|| self.0[symmetry.number()].get_or(make))
     }
 }

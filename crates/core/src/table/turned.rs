@@ -3,9 +3,9 @@
 use alloc::sync::Arc;
 
 use super::{
-    Displacement, Ladder, Order, Rung, Table,
+    Displacement, Labels, Ladder, Order, Rung, Table,
     ladder::Stage,
-    symmetry::{Symmetry, Turned},
+    symmetry::{Symmetry, Turned, Upright},
 };
 
 /// The vectors of a table and the order of its blocks under a symmetry.
@@ -21,8 +21,13 @@ pub(crate) struct TurnedTable {
 
 impl TurnedTable {
     pub(crate) fn new(table: &Table, symmetry: Symmetry) -> Self {
-        let (n, vectors) = (table.map().intervals(), table.displacements());
-        let turned = table.turned().get(symmetry, n, vectors, table.order());
+        let upright = Upright {
+            map: table.map(),
+            vectors: table.displacements(),
+            order: table.order(),
+            mix: table.mix(),
+        };
+        let turned = table.turned().get(symmetry, upright);
         let [x, y] = table.reach();
         let ends = [0, 1].map(|end| symmetry.turn([x[end], y[end]]));
         Self {
@@ -53,6 +58,15 @@ impl TurnedTable {
         match &self.turned {
             Some(turned) => &turned.order,
             None => self.table.order(),
+        }
+    }
+
+    /// The kinds of the points of each block.
+    #[inline]
+    pub(crate) fn labels(&self) -> Option<&Labels> {
+        match &self.turned {
+            Some(turned) => turned.labels.as_ref(),
+            None => self.table.labels(),
         }
     }
 

@@ -34,6 +34,8 @@ pub(super) const MAX_SECTIONS: u32 = 64;
 pub(super) const RANKS: [u8; 4] = *b"rank";
 /// The section of the displacements for smaller shares.
 pub(super) const LADDER: [u8; 4] = *b"ladd";
+/// The section of the kinds of points.
+pub(super) const MIX: [u8; 4] = *b"kind";
 /// The bytes of a vector of a ladder with its event.
 pub(super) const RUNG_BYTES: usize = 6;
 

@@ -5,8 +5,8 @@ use alloc::{format, string::String, vec::Vec};
 
 use super::{
     layout::{
-        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, LADDER, MAGIC, MAX_SECTIONS, RANKS, RUNG_BYTES,
-        check_size, position_bytes,
+        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, LADDER, MAGIC, MAX_SECTIONS, MIX, RANKS,
+        RUNG_BYTES, check_size, position_bytes,
     },
     wire::Reader,
 };
@@ -14,7 +14,7 @@ use crate::{
     error::{Error, ErrorKind},
     map::{Map, Twin},
     pattern::Alpha,
-    table::{Digest, Figures, Ladder, Provenance, Ranks, Rung, parts::Parts},
+    table::{Digest, Figures, Ladder, Mix, Provenance, Ranks, Rung, Shares, parts::Parts},
 };
 
 /// The content of a table file, and its digest.
@@ -114,6 +114,7 @@ struct Sections<'a> {
     disp: Option<Payload<'a>>,
     rank: Option<Payload<'a>>,
     ladd: Option<Payload<'a>>,
+    kind: Option<Payload<'a>>,
 }
 
 impl<'a> Sections<'a> {
@@ -136,6 +137,7 @@ impl<'a> Sections<'a> {
             b"DISP" => &mut self.disp,
             _ if tag == RANKS => &mut self.rank,
             _ if tag == LADDER => &mut self.ladd,
+            _ if tag == MIX => &mut self.kind,
             _ if tag[0].is_ascii_lowercase() => return Ok(at + 12 + length),
             _ => return Err(wrong(tag, at, "unknown to this release".into())),
         };
@@ -182,6 +184,11 @@ impl<'a> Sections<'a> {
             let levels = read_ladd(bytes).map_err(|p| wrong(&LADDER, at, p))?;
             Ladder::from_raw(levels)
         });
+        let mix = self.kind.map(|(bytes, at)| {
+            let (shares, labels) = read_kind(bytes).map_err(|p| wrong(&MIX, at, p))?;
+            Mix::new(&map, shares, labels)
+        });
+        let mix = mix.transpose()?;
         let parts = Parts {
             map,
             profile: head.profile,
@@ -189,6 +196,7 @@ impl<'a> Sections<'a> {
             provenance,
             ranks: ranks.transpose()?,
             ladder: ladder.transpose()?,
+            mix,
         };
         parts.check()?;
         Ok(parts)
@@ -301,4 +309,19 @@ fn read_ladd(bytes: &[u8]) -> Result<Vec<(u32, Vec<Rung>)>, String> {
     })?;
     reader.end("levels")?;
     Ok(levels)
+}
+
+/// The shares of kinds, and the kind of each block.
+fn read_kind(bytes: &[u8]) -> Result<(Shares, Vec<u8>), String> {
+    let mut reader = Reader::new(bytes);
+    let parts = reader.list(2, "parts", |r| r.array("a part").map(u16::from_le_bytes))?;
+    let shares = Shares::new(parts.iter().map(|&part| f64::from(part)))
+        .map_err(|error| format!("{error}"))?;
+    if shares.parts() != parts {
+        return Err(format!(
+            "the parts {parts:?} are not ascending and in lowest terms: {shares}"
+        ));
+    }
+    let labels = reader.take(reader.remaining(), "labels")?;
+    Ok((shares, labels.to_vec()))
 }

@@ -4,14 +4,14 @@ use alloc::{vec, vec::Vec};
 
 use super::{
     layout::{
-        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, LADDER, MAGIC, RANKS, check_size,
+        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, LADDER, MAGIC, MIX, RANKS, check_size,
         position_bytes,
     },
     wire::Writer,
 };
 use crate::{
     error::Error,
-    table::{Digest, Ladder, Provenance, Ranks, parts::Parts},
+    table::{Digest, Ladder, Mix, Provenance, Ranks, parts::Parts},
 };
 
 /// A table as a file.
@@ -38,6 +38,7 @@ fn body(table: &Parts) -> Vec<u8> {
     ];
     sections.extend(table.ranks.as_ref().map(|ranks| (RANKS, rank(ranks))));
     sections.extend(table.ladder.as_ref().map(|ladder| (LADDER, ladd(ladder))));
+    sections.extend(table.mix.as_ref().map(|mix| (MIX, kind(mix))));
     let payload: usize = sections.iter().map(|(_, bytes)| 12 + bytes.len()).sum();
     let mut out = Writer::default();
     out.bytes.extend(MAGIC);
@@ -116,5 +117,15 @@ fn ladd(ladder: &Ladder) -> Vec<u8> {
             out.bytes.extend(rung.event);
         }
     }
+    out.bytes
+}
+
+fn kind(mix: &Mix) -> Vec<u8> {
+    let mut out = Writer::default();
+    let parts = mix.shares().parts();
+    out.length(parts.len());
+    out.bytes
+        .extend(parts.iter().flat_map(|part| part.to_le_bytes()));
+    out.bytes.extend(mix.labels());
     out.bytes
 }
