@@ -9,9 +9,6 @@ use crate::{energy::PairEnergy, ladder::Ground};
 const LANES: usize = 8;
 /// Blocks per parallel task. It fixes an order of summation, too.
 const CHUNK: usize = 64;
-/// Lists reach this far beyond the cut-off, in the kind's own spacings, and stay valid until some block has
-/// moved by half of it.
-const SKIN: f64 = 0.3;
 
 /// A block of the kind near another.
 #[derive(Clone, Copy)]
@@ -37,6 +34,10 @@ pub(super) struct Part<E> {
 }
 
 impl<E: PairEnergy> Part<E> {
+    /// Lists reach this far beyond the cut-off, in the kind's own spacings, and stay valid until some block has
+    /// moved by half of it.
+    pub(super) const SKIN: f64 = 0.3;
+
     /// The kind that has these parts of the blocks.
     pub(super) fn new(energy: E, ground: &Ground, weights: Vec<f64>) -> Self {
         let blocks: Vec<(u32, f64)> = (0..)
@@ -86,7 +87,7 @@ impl<E: PairEnergy> Part<E> {
     }
 
     fn is_stale(&self, moves: &[[f64; 2]]) -> bool {
-        let limit = SKIN * SKIN / 4.0 / self.share;
+        let limit = Self::SKIN * Self::SKIN / 4.0 / self.share;
         self.built_for.len() != moves.len()
             || self.blocks.iter().any(|&(block, _)| {
                 let (a, b) = (moves[block as usize], self.built_for[block as usize]);
@@ -96,7 +97,7 @@ impl<E: PairEnergy> Part<E> {
     }
 
     fn build(&mut self, ground: &Ground, moves: &[[f64; 2]]) {
-        let range = (self.energy.cutoff() + SKIN) / self.share.sqrt();
+        let range = (self.energy.cutoff() + Self::SKIN) / self.share.sqrt();
         let squares = moves.iter().map(|m| m[0] * m[0] + m[1] * m[1]);
         let longest = squares.fold(0.0, f64::max).sqrt();
         let scale = ground.scale();
@@ -163,10 +164,5 @@ impl<E: PairEnergy> Part<E> {
         }
         let total = |lanes: [f64; LANES]| lanes.iter().sum::<f64>();
         (total(energy), [total(gx), total(gy)])
-    }
-
-    /// The moves that the lists were made for.
-    pub(super) fn built_for(&self) -> &[[f64; 2]] {
-        &self.built_for
     }
 }

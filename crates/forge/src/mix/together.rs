@@ -1,59 +1,62 @@
 //! The energy of all points together and of each kind, as a function of a table's vectors.
 
-use strew_core::Map;
+use strew_core::Table;
 
-use super::part::Part;
+use super::{part::Part, press::longest};
 use crate::{
-    energy::{Gaussian, Guard},
+    energy::{Gaussian, Guard, PairEnergy},
     ladder::Ground,
     optimize::{Objective, Pairs},
 };
 
 type Law = (Gaussian, Guard);
 
-/// How the energies are weighed.
-#[derive(Clone, Copy, Debug)]
-pub struct Balance {
-    /// The weight of the energy of all points over that of a kind.
-    pub all: f64,
-    /// σ of all points, in mean spacings.
-    pub sigma_all: f64,
-    /// σ of a kind, in its own.
-    pub sigma: f64,
-    /// Guards.
-    pub guard_all: f64,
-    pub guard: f64,
-    pub strength: f64,
-    pub strength_all: f64,
-}
+/// σ of all points, in mean spacings. Below 0.95 kinds of the shares 1:3 crystallize: they are a sublattice of
+/// the hexagonal lattice.
+const SIGMA: f64 = 1.0;
+/// σ of a kind, in its own spacings.
+const SIGMA_OF_KIND: f64 = 0.85;
+/// Where guards end, for all points and for a kind, and how strong they are.
+const GUARD: (f64, f64) = (0.6, 0.6);
+const GUARD_OF_KIND: (f64, f64) = (0.75, 0.5);
+/// The weight of the energy of all points.
+const WEIGHT: f64 = 20.0;
+/// The weight of a kind's energy goes with this power of its share, and the densest has 1.
+const TILT: f64 = 0.15;
+/// How far displacements may grow, in mean spacings.
+const GROWTH: f64 = 4.0;
 
-/// The sum of the energies.
+/// The energy of all points and of each kind.
 pub(super) struct Together {
     ground: Ground,
     all: Pairs<Law>,
-    parts: Vec<Part<Law>>,
-    weight: f64,
+    /// The kinds, each with its weight.
+    kinds: Vec<(f64, Part<Law>)>,
 }
 
 impl Together {
-    /// The energies of kinds, each of which has a part of each block.
-    pub(super) fn new(map: &Map, kinds: Vec<Vec<f64>>, balance: &Balance, rarest: f64) -> Self {
-        let scale = map.alpha().set_side_f64();
-        let law = |sigma, reach, strength| (Gaussian::new(sigma), Guard::new(reach, strength));
-        let all = law(balance.sigma_all, balance.guard_all, balance.strength_all);
-        let kind = law(balance.sigma, balance.guard, balance.strength);
-        let reach = (5.5 * balance.sigma + 0.3) / rarest.sqrt() + 12.0;
-        let ground = Ground::new(map, reach);
-        let parts = kinds
-            .into_iter()
-            .map(|weights| Part::new(kind, &ground, weights))
-            .collect();
+    /// The energies of a table's points, of kinds that have a part of each block; shares ascend.
+    pub(super) fn new(table: &Table, shares: &[f64], kinds: &[Vec<f64>]) -> Self {
+        let law = |sigma, (reach, strength)| (Gaussian::new(sigma), Guard::new(reach, strength));
+        let (all, kind) = (law(SIGMA, GUARD), law(SIGMA_OF_KIND, GUARD_OF_KIND));
+        let map = table.map();
+        let range = (kind.cutoff() + Part::<Law>::SKIN) / shares[0].sqrt();
+        let ground = Ground::new(map, range + 2.0 * (longest(table) + GROWTH));
+        let densest = shares[shares.len() - 1];
+        let parts = shares.iter().zip(kinds).map(|(share, parts)| {
+            let part = Part::new(kind, &ground, parts.clone());
+            (libm::pow(share / densest, TILT), part)
+        });
         Self {
-            all: Pairs::new(all, std::slice::from_ref(map), scale),
-            parts,
+            all: Pairs::new(all, std::slice::from_ref(map), map.alpha().set_side_f64()),
+            kinds: parts.collect(),
             ground,
-            weight: balance.all,
         }
+    }
+
+    /// Which blocks meet, and how often.
+    pub(super) const fn ground(&self) -> &Ground {
+        &self.ground
     }
 }
 
@@ -63,23 +66,16 @@ impl Objective for Together {
     }
 
     fn evaluate(&mut self, moves: &[[f64; 2]], gradient: &mut [[f64; 2]]) -> f64 {
-        let mut energy = self.weight * self.all.evaluate(moves, gradient);
+        // Over the sum of the weights, so that one rate serves all.
+        let whole = WEIGHT + 1.0;
+        let mut energy = self.all.evaluate(moves, gradient) * WEIGHT / whole;
         for slope in gradient.iter_mut().flatten() {
-            *slope *= self.weight;
+            *slope *= WEIGHT / whole;
         }
-        for part in &mut self.parts {
-            energy += part.add(&self.ground, moves, 1.0, gradient);
+        for (weight, part) in &mut self.kinds {
+            let weight = *weight / whole;
+            energy += weight * part.add(&self.ground, moves, weight, gradient);
         }
-        // Per unit of weight, so that one rate serves all.
-        gradient.iter_mut().flatten().for_each(|slope| *slope /= self.weight + 1.0);
-        energy / (self.weight + 1.0)
-    }
-
-    fn prepared_for(&self) -> &[[f64; 2]] {
-        self.all.prepared_for()
-    }
-
-    fn prepare_for(&mut self, moves: &[[f64; 2]]) {
-        self.all.prepare_for(moves);
+        energy
     }
 }

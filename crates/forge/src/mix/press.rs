@@ -1,39 +1,36 @@
-//! Which blocks press each other, and how much: symmetric integers, so that an annealer can add them up
-//! and take them away again in any order.
+//! How much blocks press each other: symmetric integers, so that an annealer adds them up and takes them away
+//! in any order without a trace.
 
 use rayon::prelude::*;
 use strew_core::Table;
 
-use crate::ladder::Ground;
+use crate::{ladder::Ground, numeric::exp};
 
 /// A block that presses another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Press {
     pub(super) to: u32,
-    /// The energy of both blocks having the same kind.
+    /// The energy of both blocks being of the same kind.
     pub(super) by: i32,
 }
 
-/// For each block the others that press it, ascending, and how much it presses itself.
+/// For each block the others that press it, ascending, and how much its points press each other.
 pub(super) struct Presses {
     starts: Vec<u32>,
     all: Vec<Press>,
     own: Vec<i32>,
 }
 
-/// A kernel of the distance and where it ends. Lengths are in mean spacings of the full set.
-pub(super) struct Kernel<F> {
+/// A Gaussian of the distance, and where it ends. Lengths are in mean spacings of the full set.
+#[derive(Clone, Copy)]
+pub(super) struct Kernel {
+    pub(super) sigma: f64,
     pub(super) range: f64,
-    /// The value at a squared distance.
-    pub(super) of: F,
 }
 
 impl Presses {
-    /// Presses by a kernel, times the shares of the torus on which two blocks meet, times `unit`, rounded.
-    pub(super) fn new<F>(table: &Table, ground: &Ground, kernel: &Kernel<F>, unit: f64) -> Self
-    where
-        F: Fn(f64) -> f64 + Sync,
-    {
+    /// Presses by a kernel, times the share of all points for which two blocks meet, times `unit`, rounded.
+    pub(super) fn new(table: &Table, ground: &Ground, kernel: Kernel, unit: f64) -> Self {
         let vectors = table.displacements();
         let longest = longest(table);
         let scale = ground.scale();
@@ -41,19 +38,20 @@ impl Presses {
         let fixed = scale / 1_048_576.0;
         let unit = unit / (scale * scale);
         let limit = (kernel.range / fixed) * (kernel.range / fixed);
+        let rate = -0.5 * (fixed / kernel.sigma) * (fixed / kernel.sigma);
+        let reach = kernel.range + 2.0 * longest;
         let each: Vec<(Vec<Press>, i32)> = (0..ground.blocks())
             .into_par_iter()
             .map(|block| {
                 let (mut found, mut own) = (Vec::with_capacity(256), 0);
                 let at = vectors[block].map(i64::from);
-                ground.meets(block, kernel.range + 2.0 * longest, |_| true, |meet| {
+                ground.meets(block, reach, |_| true, |meet| {
                     let other = vectors[meet.to as usize].map(i64::from);
                     let x = (i64::from(meet.i) << 20) + other[0] - at[0];
                     let y = (i64::from(meet.j) << 20) + other[1] - at[1];
                     let squared = (x * x + y * y) as f64;
                     if squared < limit {
-                        let by = (meet.area * unit * (kernel.of)(squared * fixed * fixed)).round();
-                        let by = by as i32;
+                        let by = (meet.area * unit * exp(rate * squared)).round() as i32;
                         if meet.to as usize == block {
                             own += by;
                         } else if by != 0 {
@@ -104,10 +102,6 @@ impl Presses {
         found.map_or(0, |at| list[at].by)
     }
 
-    /// The number of pairs of blocks, from both ends.
-    pub(super) fn pairs(&self) -> usize {
-        self.all.len()
-    }
 }
 
 /// The length of a table's longest vector, in mean spacings.
