@@ -15,6 +15,8 @@
 //! # Ok::<(), strew_core::Error>(())
 //! ```
 
+use alloc::vec::Vec;
+
 use crate::{
     error::Error,
     sample::{Area, Plan, PointSet, Region, Spacing},
@@ -68,6 +70,24 @@ pub fn exactly(
     stop: &Stop,
 ) -> Result<Plan, Error> {
     set.exactly_until(count, area, least, stop)
+}
+
+/// [`PointSet::kind_counts`], whose counting stops once the flag is raised.
+///
+/// # Errors
+/// As [`PointSet::kind_counts`], and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table, server::{self, Stop}};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let region = Region::chunk(64.0, [0, 0])?;
+/// // This table has no kinds.
+/// assert!(server::kind_counts(&PointSet::new(table), region, &Stop::default())?.is_empty());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub fn kind_counts(set: &PointSet, area: impl Into<Area>, stop: &Stop) -> Result<Vec<u128>, Error> {
+    set.kind_counts_until(&area.into(), stop)
 }
 
 /// About the number of points that [`within`] visits one by one to count those of a set in a

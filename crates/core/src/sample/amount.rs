@@ -41,8 +41,8 @@ pub(super) fn exactly(
         .ok_or_else(|| Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box"))?;
     let [width, height] = [0, 1].map(|i| bounds.max()[i] - bounds.min()[i]);
     let share = match &lattice.grade {
-        Some(grade) => mean_share(grade, &bounds),
-        None => lattice.placement.keep.get(),
+        Some(grade) => mean_share(grade, &bounds) * lattice.kind_share(),
+        None => lattice.share(),
     };
     let wanted = count as f64;
     let mut guess = libm::sqrt(width) * libm::sqrt(height) * libm::sqrt(share / wanted);

@@ -36,6 +36,8 @@ struct Content {
     labels: Option<Labels>,
     /// The least squared distance between two points, once it has been computed.
     least_squared: Once<u64>,
+    /// The same for each pair of kinds, row by row.
+    least_of_kinds: Once<Arc<[u64]>>,
     turned: TurnedCopies,
 }
 
@@ -78,7 +80,7 @@ impl Table {
     }
 
     /// A table of parts to check.
-    fn of_parts(parts: Parts) -> Result<Self, Error> {
+    pub(super) fn of_parts(parts: Parts) -> Result<Self, Error> {
         parts.check()?;
         let digest = file::digest(&parts)?;
         Self::checked(parts, digest)
@@ -108,78 +110,9 @@ impl Table {
             order,
             labels,
             least_squared: Once::new(),
+            least_of_kinds: Once::new(),
             turned: TurnedCopies::new(),
         })))
-    }
-
-    /// This table with an order in which its blocks leave, and without a ladder.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Table`](crate::ErrorKind::Table) unless there is a position for each block.
-    ///
-    /// ```
-    /// use strew_core::{Table, table::Ranks};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let blocks = table.displacements().len() as u32;
-    /// let ranked = table.with_ranks(Ranks::new((0..blocks).rev().collect())?)?;
-    /// assert_eq!(ranked.displacements(), table.displacements());
-    /// assert_ne!(ranked.digest(), table.digest());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn with_ranks(&self, ranks: Ranks) -> Result<Self, Error> {
-        let mut parts = self.0.parts.clone();
-        (parts.ranks, parts.ladder) = (Some(ranks), None);
-        Self::of_parts(parts)
-    }
-
-    /// This table with displacements for smaller shares.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Table`](crate::ErrorKind::Table) for a table without ranks, or unless each level has
-    /// as many vectors as blocks are left above it.
-    ///
-    /// ```
-    /// use strew_core::{Table, table::{Ladder, Ranks, Rung}};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let blocks = table.displacements().len();
-    /// let level = (0.5, vec![Rung { vector: [0, 0], event: [0, 255] }; blocks]);
-    /// let ladder = Ladder::new(vec![level])?;
-    /// assert!(table.with_ladder(ladder.clone()).is_err());
-    /// let ranked = table.with_ranks(Ranks::new((0..blocks as u32).collect())?)?;
-    /// assert_eq!(ranked.with_ladder(ladder.clone())?.ladder(), Some(&ladder));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn with_ladder(&self, ladder: Ladder) -> Result<Self, Error> {
-        let mut parts = self.0.parts.clone();
-        parts.ladder = Some(ladder);
-        Self::of_parts(parts)
-    }
-
-    /// This table with kinds of points, and with ranks made for them: an order in which the kinds keep their
-    /// shares as blocks leave. It has no ladder.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Table`](crate::ErrorKind::Table) for a mix of another map, or unless there is a position for
-    /// each block.
-    ///
-    /// ```
-    /// use strew_core::{Table, table::{Mix, Ranks}};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let blocks = table.displacements().len() as u32;
-    /// let mix = Mix::scattered(table.map(), "1:3".parse()?)?;
-    /// let mixed = table.with_mix(mix.clone(), Ranks::new((0..blocks).collect())?)?;
-    /// assert_eq!(mixed.mix(), Some(&mix));
-    /// assert_eq!(mixed.displacements(), table.displacements());
-    /// assert_ne!(mixed.digest(), table.digest());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn with_mix(&self, mix: Mix, ranks: Ranks) -> Result<Self, Error> {
-        let mut parts = self.0.parts.clone();
-        (parts.mix, parts.ranks, parts.ladder) = (Some(mix), Some(ranks), None);
-        Self::of_parts(parts)
     }
 
     /// A table without displacements: the AA pattern itself.
@@ -462,6 +395,11 @@ impl Table {
         self.0.reach
     }
 
+    /// What the table is made of.
+    pub(super) fn parts(&self) -> &Parts {
+        &self.0.parts
+    }
+
     /// The copies for the symmetries of seeds.
     pub(super) fn turned(&self) -> &TurnedCopies {
         &self.0.turned
@@ -470,6 +408,11 @@ impl Table {
     /// The result of `compute` when it was first called.
     pub(crate) fn least_squared(&self, compute: impl FnOnce() -> u64) -> u64 {
         self.0.least_squared.get_or(compute)
+    }
+
+    /// The same for each pair of kinds.
+    pub(crate) fn least_of_kinds(&self, compute: impl FnOnce() -> Arc<[u64]>) -> Arc<[u64]> {
+        self.0.least_of_kinds.get_or(compute)
     }
 }
 

@@ -16,11 +16,12 @@
 //! # Ok::<(), strew_core::Error>(())
 //! ```
 //!
-//! `displacement` has the [`Table`], made of the `parts` that a `file` holds; `units` the fixed point,
+//! `displacement` has the [`Table`], made of the `parts` that a `file` holds, and `derived` makes one from another; `units` the fixed point,
 //! `provenance` the history, `digest` the name, `text` the published text form. `ranks` is the order in which
 //! blocks leave when a set is thinned, `ladder` the displacements of those that are left. `mix` has the kinds of
 //! points, in the ratio of `shares`. `symmetry` has the ways to turn all of these, `turned` a table that is turned, `shipped` the tables built into this crate.
 
+mod derived;
 mod digest;
 mod displacement;
 mod file;
@@ -42,7 +43,7 @@ pub use displacement::Table;
 pub use file::{FORMAT_VERSION, MAX_FILE_BYTES};
 pub(crate) use ladder::Stage;
 pub use ladder::{LADDER_BITS, Ladder, Rung};
-pub(crate) use mix::{Labels, Strip};
+pub(crate) use mix::Labels;
 pub use mix::{Mix, Split};
 pub use provenance::{Figures, Provenance};
 pub use ranks::Ranks;

@@ -128,6 +128,24 @@ pub fn rank(set: &PointSet, id: PointId) -> Option<f64> {
     Some(rank.min(ranks.end.next_down()))
 }
 
+/// The kind of a point of the pattern, if the table has kinds: written from "Kinds" in ARCHITECTURE.md.
+pub fn kind(set: &PointSet, id: PointId) -> Option<u8> {
+    let (table, seed) = (set.table(), set.placement().seed);
+    let ([index, _], [i, j]) = block(table, seed, id)?;
+    let (map, mix) = (table.map(), table.mix()?);
+    let n = map.intervals();
+    let source = Symmetry::of(seed).source(n, [i, j]);
+    let length = |i: usize| u128::from(map.interval(i).end - map.interval(i).start);
+    let beyond = |from: u64| {
+        let from = u128::from(from) * length(i) / length(source % n);
+        u128::from(index - map.interval(i).start) >= from
+    };
+    let split = mix.splits().iter();
+    let mut split = split.filter(|split| split.block as usize == source && beyond(split.offset));
+    let label = mix.labels()[source];
+    Some(split.next().map_or(label, |split| split.kind))
+}
+
 /// The place of a point of the lattice, if the set has one there.
 pub fn place(set: &PointSet, id: PointId) -> Option<[f64; 2]> {
     let (table, placement) = (set.table(), set.placement());

@@ -30,7 +30,7 @@ pub(super) fn tally(lattice: &Lattice, axis: Axis, range: &Range<i64>) -> Tally 
 
 /// The number of points with addresses in some columns and rows.
 pub(super) fn product(lattice: &Lattice, columns: &Range<i64>, rows: &Range<i64>) -> u128 {
-    if lattice.cut.is_none() {
+    if lattice.has_all() {
         return lattice.pattern.count(columns.clone(), rows.clone());
     }
     let tallies = [
@@ -49,8 +49,8 @@ pub(super) fn product(lattice: &Lattice, columns: &Range<i64>, rows: &Range<i64>
 pub(super) struct ColumnTally<'a> {
     lattice: &'a Lattice,
     counts: &'a [u64],
-    /// The number of those in the strip of the block that is partly kept.
-    strip: u64,
+    /// The number of those in the part that the lattice has of a block, for the blocks of which it has a part.
+    parts: Vec<([usize; 2], u64)>,
 }
 
 impl<'a> ColumnTally<'a> {
@@ -60,31 +60,36 @@ impl<'a> ColumnTally<'a> {
         range: &Range<i64>,
         counts: &'a [u64],
     ) -> Self {
-        let strip = lattice.cut.map_or(0, |cut| {
-            let ([x, _], end) = cut.strip();
-            let strip = lattice.map().interval(x).start..end;
-            let set = lattice.pattern.axis_subset(Axis::X, class, strip);
-            set.count(range.clone())
-        });
+        let count = |(block, part)| {
+            let set = lattice.pattern.axis_subset(Axis::X, class, part);
+            (block, set.count(range.clone()))
+        };
         Self {
             lattice,
             counts,
-            strip,
+            parts: lattice.parts().map(count).collect(),
         }
     }
 
     /// For each block of dX, the number of columns that have points in the rows of a block of dY.
     pub(super) fn in_row(&self, block_y: usize) -> impl Iterator<Item = u64> + '_ {
         let keeps = self.lattice.keeps(block_y);
+        let part = move |block: u32| {
+            let part = self
+                .parts
+                .iter()
+                .find(|&&(at, _)| at == [block as usize, block_y]);
+            part.map_or(0, |&(_, count)| count)
+        };
         (0..).zip(self.counts).map(move |(block, &count)| {
-            let line = |is_in_strip| Line {
+            let line = |strips| Line {
                 at: 0,
                 block,
-                is_in_strip,
+                strips,
             };
-            match (keeps(&line(false)), keeps(&line(true))) {
+            match (keeps(&line(0)), keeps(&line(u32::MAX))) {
                 (true, _) => count,
-                (false, true) => self.strip,
+                (false, true) => part(block),
                 (false, false) => 0,
             }
         })
@@ -93,7 +98,7 @@ impl<'a> ColumnTally<'a> {
     /// The number of points of these columns in some rows, given by block.
     pub(super) fn times(&self, rows: &[u64]) -> u128 {
         let total = |counts: &[u64]| counts.iter().map(|&c| u128::from(c)).sum::<u128>();
-        if self.lattice.cut.is_none() {
+        if self.lattice.has_all() {
             return total(self.counts) * total(rows);
         }
         let rows = rows.iter().enumerate().filter(|&(_, &rows)| rows > 0);

@@ -157,6 +157,7 @@ impl FieldRows {
             let listed = columns.of(class);
             let vectors = lattice.vectors(block_y);
             let positions = lattice.order().positions(block_y * n..(block_y + 1) * n);
+            let kinds = lattice.kinds_in_row(block_y);
             let row = patch.relative(Axis::Y, y);
             let first = ((y - bottom) as u32) << 16;
             for tile in self.tiles.iter().filter(|tile| tile.rows.contains(&y)) {
@@ -183,7 +184,8 @@ impl FieldRows {
                     ys[number] = row + dy;
                     addresses[number] = first | (line.at - left) as u32;
                     all[number] = position;
-                    number += usize::from(position < tile.alive);
+                    let is_kept = kinds.is_none_or(|kinds| kinds.keeps(block, line.strips));
+                    number += usize::from(position < tile.alive && is_kept);
                 }
                 let end = start + number;
                 self.addresses.truncate(end);

@@ -5,6 +5,7 @@
 pub(crate) struct Line {
     pub(crate) at: i64,
     pub(crate) block: u32,
-    /// Of a column: whether its dX lies in the strip of the block that is partly kept.
-    pub(crate) is_in_strip: bool,
+    /// Of a column: which strips of blocks that are partly in the set its dX lies in. Bit 0 is that of the
+    /// [cut](crate::table::Cut), the others are those of the [kind](super::OneKind).
+    pub(crate) strips: u32,
 }

@@ -10,7 +10,7 @@ use crate::pattern::{Axis, Class};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Columns {
     all: [Vec<Line>; 4],
-    /// In a thinned set: those that have points in the rows of a block, by class and block.
+    /// In a set without all points: those that have points in the rows of a block, by class and block.
     kept: Vec<Kept>,
 }
 
@@ -47,7 +47,7 @@ impl Columns {
     /// The columns that have points in the rows of a class and block.
     #[inline]
     pub(crate) fn of_row(&mut self, lattice: &Lattice, class: Class, block_y: usize) -> &[Line] {
-        if lattice.cut.is_none() {
+        if lattice.has_all() {
             return &self.all[class.ordinal()];
         }
         self.keep(lattice, class, block_y)
@@ -76,7 +76,7 @@ impl Columns {
         block_y: usize,
         part: &Listed,
     ) -> &[Line] {
-        if lattice.cut.is_none() {
+        if lattice.has_all() {
             return &self.all[class.ordinal()][part.places[class.ordinal()].clone()];
         }
         let kept = self.keep(lattice, class, block_y);

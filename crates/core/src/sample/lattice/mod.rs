@@ -8,12 +8,13 @@
 //!
 //! Work proceeds in pieces: `lines` lists the columns and rows that hold points (each a `line`), `prefix` counts them,
 //! `patch` has the bands and patches in which positions fit 32 bits, `flat` the points of a patch without
-//! gaps. `point` is what comes out, `rank` its place in the order in which points leave, `grade` the field that says
-//! how many have left.
+//! gaps. `point` is what comes out, `rank` its place in the order in which points leave and its kind, `kinds` the
+//! points of one kind, `grade` the field that says how many have left.
 
 mod flat;
 mod grade;
 mod keep;
+mod kinds;
 mod line;
 mod lines;
 mod multiple;
@@ -29,6 +30,7 @@ mod world;
 pub(super) use flat::{Flat, Inside};
 pub(super) use grade::{Grade, around, damping};
 pub use keep::Keep;
+pub(super) use kinds::OneKind;
 pub(super) use line::Line;
 pub(super) use lines::{Columns, Listed, lines_of_class, places};
 pub(super) use multiple::Multiple;
@@ -36,7 +38,7 @@ pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
 pub use placement::Placement;
 pub use point::{Point, PointId};
 pub(super) use prefix::PrefixCounts;
-pub(super) use rank::rank;
+pub(super) use rank::{kind, rank};
 pub use spacing::Spacing;
 pub(super) use span::Span;
 pub use world::LATTICE_LIMIT;

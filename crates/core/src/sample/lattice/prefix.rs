@@ -35,8 +35,8 @@ impl PrefixCounts {
         }
     }
 
-    /// The places of a range of columns in the list of a row's columns: all of its class, or in a thinned
-    /// set some of them, which are searched.
+    /// The places of a range of columns in the list of a row's columns: all of its class, or in a set
+    /// without all points some of them, which are searched.
     #[inline]
     pub(crate) fn places(
         &self,
@@ -45,9 +45,10 @@ impl PrefixCounts {
         columns: &[Line],
         range: &Range<i64>,
     ) -> Range<usize> {
-        match lattice.cut {
-            Some(_) => places(columns, range),
-            None => self.before(class, range.start)..self.before(class, range.end),
+        if lattice.has_all() {
+            self.before(class, range.start)..self.before(class, range.end)
+        } else {
+            places(columns, range)
         }
     }
 

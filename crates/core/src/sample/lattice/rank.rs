@@ -29,3 +29,13 @@ pub(crate) fn rank(turned: &TurnedTable, pattern: &Pattern, id: PointId) -> f64 
     let (offset, length) = (index_x - interval.start, interval.end - interval.start);
     order.rank(position, offset, length)
 }
+
+/// The kind of a point of a turned table's pattern; `None` for an address without a point, and for a table without
+/// kinds.
+pub(crate) fn kind(turned: &TurnedTable, pattern: &Pattern, id: PointId) -> Option<u8> {
+    let (index_x, index_y) = pattern.index(id.x, id.y);
+    let map = turned.table().map();
+    let block = [map.interval_of(index_x)?, map.interval_of(index_y)?];
+    let labels = turned.labels()?;
+    Some(labels.kind(map.intervals(), block, index_x))
+}

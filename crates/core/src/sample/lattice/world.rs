@@ -1,11 +1,13 @@
 //! The lattice of a point set, laid into the world.
 
 use alloc::{sync::Arc, vec::Vec};
+use core::ops::Range;
 
 use super::{
-    Keep, Line, Placement, Point, PointId,
+    Keep, Line, OneKind, Placement, Point, PointId,
     grade::{Grade, around, damping},
-    rank,
+    kinds::KindRow,
+    rank::{kind, rank},
 };
 use crate::{
     map::Map,
@@ -42,7 +44,9 @@ pub(crate) struct Lattice {
     /// The pattern from the seed's origin.
     pub(crate) pattern: Pattern,
     /// Which of its points are kept, if not all.
-    pub(crate) cut: Option<Cut>,
+    cut: Option<Cut>,
+    /// The kind that points are of, if not any.
+    kinds: Option<Arc<OneKind>>,
     /// The vectors where points have moved as others left, if they do.
     moved: Option<Arc<Moved>>,
     /// The field that decides which points are kept, and how far they have moved.
@@ -122,6 +126,7 @@ impl Lattice {
                 }
                 _ => None,
             },
+            kinds: None,
             grade: None,
             turned,
             stretch: Stretch::of(shears.as_ref()),
@@ -129,6 +134,49 @@ impl Lattice {
             step: scale / f64::from(1u32 << FRACTION_BITS),
             table,
         }
+    }
+
+    /// The points of this lattice that are of a kind; none if the table has no mix.
+    pub(crate) fn of_kind(self, kind: u8) -> Self {
+        let (map, mix) = (self.table.map(), self.table.mix());
+        let kinds = self.turned.labels().zip(mix);
+        let kinds = kinds.map(|(labels, mix)| Arc::new(OneKind::new(map, mix, labels, kind)));
+        Self { kinds, ..self }
+    }
+
+    /// A lattice of the same table at another placement, of the same kind as this one.
+    fn at(&self, placement: Placement) -> Self {
+        let lattice = Self::new(self.table.clone(), placement);
+        match &self.kinds {
+            Some(kinds) if placement.seed.symmetry() != self.placement.seed.symmetry() => {
+                lattice.of_kind(kinds.kind())
+            }
+            kinds => Self {
+                kinds: kinds.clone(),
+                ..lattice
+            },
+        }
+    }
+
+    /// The kind that points are of, if not any.
+    pub(crate) fn kind(&self) -> Option<u8> {
+        self.kinds.as_ref().map(|kinds| kinds.kind())
+    }
+
+    /// The share of all points that are of the lattice's kind, if it has one.
+    pub(crate) fn kind_share(&self) -> f64 {
+        self.kinds.as_ref().map_or(1.0, |kinds| kinds.share())
+    }
+
+    /// About the share of all points that the lattice has, before a field decides.
+    pub(crate) fn share(&self) -> f64 {
+        self.placement.keep.get() * self.kind_share()
+    }
+
+    /// Whether the lattice has all points of the pattern, before a field decides.
+    #[inline]
+    pub(crate) fn has_all(&self) -> bool {
+        self.cut.is_none() && self.kinds.is_none()
     }
 
     /// This lattice in a field, which the share of the placement multiplies.
@@ -142,7 +190,7 @@ impl Lattice {
         Self {
             placement,
             grade: Some(grade.times(placement.keep.get())),
-            ..Self::new(self.table.clone(), placement.with_keep(Keep::ALL))
+            ..self.at(placement.with_keep(Keep::ALL))
         }
     }
 
@@ -151,7 +199,7 @@ impl Lattice {
         let keep = Keep::unchecked(share).moving();
         Self {
             placement: self.placement,
-            ..Self::new(self.table.clone(), self.placement.with_keep(keep))
+            ..self.at(self.placement.with_keep(keep))
         }
     }
 
@@ -170,11 +218,13 @@ impl Lattice {
     #[inline]
     pub(crate) fn line(&self, at: i64, index: u64) -> Line {
         let block = self.map().locate(index);
-        let is_in_strip = self.cut.is_some_and(|cut| cut.is_in_strip(block, index));
+        let of_cut = self.cut.is_some_and(|cut| cut.is_in_strip(block, index));
+        let of_kind = self.kinds.as_ref();
+        let of_kind = of_kind.map_or(0, |kinds| kinds.strips_at(block, index));
         Line {
             at,
             block: block as u32,
-            is_in_strip,
+            strips: u32::from(of_cut) | of_kind,
         }
     }
 
@@ -183,11 +233,40 @@ impl Lattice {
     pub(crate) fn keeps(&self, block_y: usize) -> impl Fn(&Line) -> bool + '_ {
         let n = self.map().intervals();
         let positions = self.order().positions(block_y * n..(block_y + 1) * n);
+        let kinds = self.kinds_in_row(block_y);
         move |line| {
-            let position = positions[line.block as usize];
+            let block = line.block as usize;
             self.cut
-                .is_none_or(|cut| cut.keeps(position, line.is_in_strip))
+                .is_none_or(|cut| cut.keeps(positions[block], line.strips & 1 != 0))
+                && kinds.is_none_or(|kinds| kinds.keeps(block, line.strips))
         }
+    }
+
+    /// What is of the lattice's kind in the blocks of a row, if it has one.
+    #[inline]
+    pub(crate) fn kinds_in_row(&self, block_y: usize) -> Option<KindRow<'_>> {
+        let n = self.map().intervals();
+        self.kinds.as_ref().map(|kinds| kinds.in_row(n, block_y))
+    }
+
+    /// The blocks of dX and dY of which the lattice may have a part, with the interval of dX that it has, if
+    /// any of the block.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = ([usize; 2], Range<u64>)> + '_ {
+        let strip = self.cut.map(|cut| {
+            let ([x, y], end) = cut.strip();
+            ([x, y], self.map().interval(x).start..end)
+        });
+        let of_kind = self.kinds.iter().flat_map(|kinds| kinds.parts());
+        let own = strip.clone();
+        let of_kind = of_kind.map(move |(block, interval)| match &own {
+            Some((partial, strip)) if *partial == block => {
+                let start = interval.start.max(strip.start);
+                (block, start..interval.end.min(strip.end).max(start))
+            }
+            _ => (block, interval.clone()),
+        });
+        // The first of two of a block counts.
+        of_kind.chain(strip)
     }
 
     /// The vectors of all blocks with one interval of dY.
@@ -236,7 +315,7 @@ impl Lattice {
         }
         let is_turned = placement.seed.symmetry() != self.placement.seed.symmetry();
         if placement.keep != self.placement.keep || is_turned {
-            return Self::new(self.table.clone(), placement);
+            return self.at(placement);
         }
         let still = Placement {
             keep: Keep::ALL,
@@ -246,8 +325,13 @@ impl Lattice {
             placement,
             cut: self.cut,
             moved: self.moved.clone(),
-            ..Self::new(self.table.clone(), still)
+            ..self.at(still)
         }
+    }
+
+    /// The kind of a point of the pattern, if the table has kinds; `None` for other addresses.
+    pub(crate) fn kind_of(&self, id: PointId) -> Option<u8> {
+        kind(&self.turned, &self.pattern, id)
     }
 
     /// The blocks of dX and dY of an address, or `None` if it has no point.

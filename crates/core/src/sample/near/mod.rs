@@ -3,11 +3,12 @@
 //! `scan` visits the points around a place. `search` returns the nearest ones and those within a radius,
 //! and `limits` refuses what would take too long. `mask` decides by such neighbors which points of a set
 //! exist: those in its area that keep clear of other sets. `distance` is the least distance between any
-//! two points of a table.
+//! two points of a table, by the `pairs` of its blocks.
 
 mod distance;
 pub(super) mod limits;
 mod mask;
+mod pairs;
 mod scan;
 pub(super) mod search;
 

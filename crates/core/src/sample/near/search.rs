@@ -36,7 +36,7 @@ pub(crate) fn nearest(
     let placement = lattice.placement;
     // A disk that holds k + 2√k + 2 points on average mostly has k.
     let wanted = k as f64 + 2.0 * libm::sqrt(k as f64) + 2.0;
-    let area = wanted / (core::f64::consts::PI * placement.keep.get());
+    let area = wanted / (core::f64::consts::PI * lattice.share());
     let mut radius = placement.spacing.get() * libm::sqrt(area);
     loop {
         let mut found = within(lattice, mask, at, radius, MAX_CANDIDATES)?;
@@ -60,7 +60,7 @@ pub(crate) fn within(
     check_radius(radius)?;
     // Counts come close to their means in disks of many points.
     let generous = limit.saturating_mul(2).max(100);
-    check_number(lattice, radius, lattice.placement.keep.get(), generous)?;
+    check_number(lattice, radius, lattice.share(), generous)?;
     check_work(lattice, radius, 2 * MAX_CANDIDATES)?;
     check_reach(lattice, at, radius)?;
     let squared = radius * radius;

@@ -9,7 +9,7 @@ use crate::{
         attribute::{Attributes, BoundAttributes},
         lattice::{Placement, PointId},
         member::Member,
-        near::{Clearance, limits, search},
+        near::{Clearance, LeastDistance, limits, search},
     },
 };
 
@@ -241,17 +241,25 @@ impl PointSet {
     /// ```
     #[must_use]
     pub fn least_distance_within(&self, reach: f64) -> f64 {
-        let Placement {
-            spacing,
-            warp,
-            keep,
-            ..
-        } = self.placement();
-        let is_moving = keep.moves() && keep.get() < 1.0 || self.lattice.grade.is_some();
-        if is_moving && self.table().ladder().is_some() {
+        if self.moves() {
             return 0.0;
         }
-        self.table().least_distance().reported(spacing, warp, reach)
+        let Placement { spacing, warp, .. } = self.placement();
+        self.table_distance().reported(spacing, warp, reach)
+    }
+
+    /// Whether points move as others leave.
+    pub(super) fn moves(&self) -> bool {
+        let keep = self.placement().keep;
+        let is_moving = keep.moves() && keep.get() < 1.0 || self.lattice.grade.is_some();
+        is_moving && self.table().ladder().is_some()
+    }
+
+    /// The least distance of the table's points that are of the set's kind, if it has one.
+    pub(super) fn table_distance(&self) -> LeastDistance {
+        let of_kind = |kind| self.table().least_distance_of(kind, kind);
+        let of_kind = self.lattice.kind().and_then(of_kind);
+        of_kind.unwrap_or_else(|| self.table().least_distance())
     }
 
     /// The values that the points of this set have for some attributes. They depend on ids and the seed

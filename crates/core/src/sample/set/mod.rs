@@ -1,8 +1,9 @@
 //! The point set.
 //!
 //! This file has what a set is: a table, a placement and a mask, and the methods that change them.
-//! `requests` has the plans of areas, `lookups` single points.
+//! `requests` has the plans of areas, `lookups` single points, `kinds` the points of kinds.
 
+mod kinds;
 mod lookups;
 mod requests;
 
@@ -154,7 +155,7 @@ impl PointSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn min_distance(self, distance: f64) -> Result<Self, Error> {
-        let least = self.table().least_distance();
+        let least = self.table_distance();
         let spacing = least.spacing_for(distance, self.placement().warp)?;
         Ok(self.replaced(|placement| Placement {
             spacing,

@@ -373,9 +373,10 @@ impl<F: Format> Blocks<F> {
             let is_inner = span.inner.contains(&y);
             let columns = self.columns.of_row(lattice, class, block);
             let vectors = lattice.vectors(block);
-            let inner = match lattice.cut {
-                Some(_) => places(columns, &x.inner),
-                None => self.inner[class.ordinal()].clone(),
+            let inner = if lattice.has_all() {
+                self.inner[class.ordinal()].clone()
+            } else {
+                places(columns, &x.inner)
             };
             let out = &mut out[filled..];
             if is_direct && self.at.done == 0 && columns.len() <= out.len() {
@@ -453,9 +454,10 @@ impl<F: Format> Blocks<F> {
                 });
             if let Some(from) = self.at.from.take() {
                 let from = from.clamp(range.start, range.end);
-                self.at.done = match lattice.cut {
-                    Some(_) => columns.partition_point(|line| line.at < from),
-                    None => sifting.prefix.before(class, from),
+                self.at.done = if lattice.has_all() {
+                    sifting.prefix.before(class, from)
+                } else {
+                    columns.partition_point(|line| line.at < from)
                 };
             }
             let row = Row {

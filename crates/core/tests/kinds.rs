@@ -1,0 +1,472 @@
+//! Sets of one kind: every way to their points agrees with the definition, point by point and bit for bit.
+
+mod subject;
+
+use std::sync::OnceLock;
+
+use proptest::prelude::*;
+use strew_core::{
+    Area, Backend, Circle, ErrorKind, F32, F64, Keep, Placement, Point, PointId, PointSet, Points,
+    Polygon, Region, Seed, Spacing, Table, Warp,
+    server::{self, Stop},
+    table::{Ladder, Mix, Ranks, Rung},
+};
+use subject::{all, all_by, definition};
+
+/// A hashed order.
+fn ranks(blocks: u32) -> Ranks {
+    let mut order: Vec<u32> = (0..blocks).collect();
+    order.sort_by_key(|&block| block.wrapping_mul(0x9e37_79b1).swap_bytes());
+    let mut positions = vec![0; blocks as usize];
+    for (position, &block) in (0..).zip(&order) {
+        positions[block as usize] = position;
+    }
+    Ranks::new(positions).expect("an order")
+}
+
+/// A table with kinds in some shares, and with a ladder of arbitrary vectors if wanted.
+fn mixed(table: &Table, shares: &str, has_ladder: bool) -> Table {
+    let mix = Mix::scattered(table.map(), shares.parse().expect("valid")).expect("near");
+    assert!(!mix.splits().is_empty());
+    let blocks = mix.labels().len();
+    let table = table.with_mix(mix, ranks(blocks as u32)).expect("fits");
+    if !has_ladder {
+        return table;
+    }
+    let rung = |i: usize| {
+        let [x, y] = [71, 173].map(|f| (i * f % 1201) as i16 - 600);
+        let event = [i * 7 % 100, 100 + i * 3 % 100].map(|v| v as u8);
+        Rung {
+            vector: [x, y],
+            event,
+        }
+    };
+    let level = (0.4, (0..blocks).map(rung).collect());
+    let ladder = Ladder::new(vec![level]).expect("valid");
+    table.with_ladder(ladder).expect("a vector for each block")
+}
+
+/// Tables with kinds, of three maps.
+fn tables() -> &'static [Table] {
+    static ONCE: OnceLock<Vec<Table>> = OnceLock::new();
+    ONCE.get_or_init(|| {
+        let [a, b, c] = subject::tables();
+        vec![
+            mixed(a, "1:3", false),
+            mixed(b, "1:3:10", false),
+            mixed(c, "1:1:1:1:1", false),
+            mixed(a, "2:3:5:7:11", true),
+            mixed(&subject::table("(5-sqrt(3))/2", 5), "1:1", false),
+        ]
+    })
+}
+
+fn kinds(set: &PointSet) -> u8 {
+    let mix = set.table().mix().expect("a mix");
+    mix.shares().kinds() as u8
+}
+
+fn only(set: &PointSet, kind: u8) -> PointSet {
+    set.clone().only(kind).expect("a kind of the table")
+}
+
+fn any_set() -> impl Strategy<Value = PointSet> {
+    let seed = prop_oneof![Just(0u64), any::<u64>()];
+    let warp = prop_oneof![Just(0.0), Just(1.0), 0.0..2.0f64];
+    let keep = prop_oneof![Just(1.0), 0.02..1.0f64];
+    let parts = (
+        0..tables().len(),
+        seed,
+        warp,
+        0.6..3.0f64,
+        keep,
+        any::<bool>(),
+    );
+    parts.prop_map(|(table, seed, warp, spacing, keep, moves)| {
+        let keep = Keep::new(keep).expect("a share");
+        let placement = Placement::new(Spacing::new(spacing).expect("in range"), Seed(seed))
+            .with_warp(Warp::new(warp).expect("in range"))
+            .with_keep(if moves { keep.moving() } else { keep });
+        PointSet::new(tables()[table].clone()).placed(placement)
+    })
+}
+
+fn any_box() -> impl Strategy<Value = Region> {
+    let corner = prop::array::uniform2(-70.0..40.0f64);
+    (corner, prop::array::uniform2(0.0..45.0f64))
+        .prop_map(|([x, y], [w, h])| Region::new([x, y], [x + w, y + h]).expect("ordered"))
+}
+
+fn any_area() -> impl Strategy<Value = Area> {
+    let center = || prop::array::uniform2(-30.0..30.0f64);
+    let ring = prop::collection::vec(center(), 3..7);
+    let chunk = || (1.0..40.0f64, prop::array::uniform2(-3..3i64));
+    prop_oneof![
+        any_box().prop_map(Area::from),
+        chunk().prop_map(|(size, at)| Region::chunk(size, at).expect("near").into()),
+        (center(), 1.0..25.0f64).prop_map(|(at, r)| Circle::new(at, r).expect("round").into()),
+        ring.prop_filter_map("a polygon", |ring| Polygon::new(&[ring])
+            .ok()
+            .map(Area::from)),
+        (any_box(), center(), 1.0..25.0f64).prop_map(|(region, at, r)| {
+            Area::from(region).without([Circle::new(at, r).expect("round").into()])
+        }),
+    ]
+}
+
+/// Every point of a box that `place` has, in order, with its kind.
+fn defined(
+    set: &PointSet,
+    region: &Region,
+    place: impl Fn(PointId) -> Option<[f64; 2]>,
+) -> Vec<(Point, u8)> {
+    let unit = set.table().alpha().set_side_f64() * set.placement().spacing.get();
+    let lines = |axis: usize| {
+        let ends = [region.min()[axis], region.max()[axis]].map(|v| (v / unit) as i64);
+        ends[0] - 160..ends[1] + 160
+    };
+    let mut all = Vec::new();
+    for y in lines(1) {
+        for x in lines(0) {
+            let id = PointId { x, y };
+            if let Some([x, y]) = place(id)
+                && region.contains([x, y])
+            {
+                let kind = definition::kind(set, id).expect("a table with kinds");
+                all.push((Point { id, x, y }, kind));
+            }
+        }
+    }
+    all.sort_by_key(|(p, _)| (p.id.x.div_euclid(1024), p.id.y, p.id.x));
+    all
+}
+
+/// Those points that are of a kind.
+fn of_kind(all: &[(Point, u8)], kind: u8) -> Vec<Point> {
+    let all = all.iter().filter(|(_, own)| *own == kind);
+    all.map(|(point, _)| *point).collect()
+}
+
+/// Compares the points of each kind in a box with those expected.
+fn agree(set: &PointSet, region: Region, expected: &[(Point, u8)]) {
+    let mut counts = Vec::new();
+    for kind in 0..kinds(set) {
+        let (own, points) = (only(set, kind), of_kind(expected, kind));
+        let plan = own.within(region).expect("near");
+        assert_eq!(plan.to_vec(), points);
+        assert_eq!(plan.count(), points.len() as u128);
+        counts.push(plan.count());
+        assert_eq!(own.kind(), Some(kind));
+        for (point, of) in expected {
+            let found = own.point(point.id).map(|member| member.point());
+            assert_eq!(found, (*of == kind).then_some(*point));
+        }
+    }
+    assert_eq!(set.kind_counts(region).expect("near"), counts);
+    for (point, kind) in expected {
+        assert_eq!(set.kind_of(point.id), Some(*kind));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_box_holds_what_the_definition_has(set in any_set(), region in any_box()) {
+        let expected = defined(&set, &region, |id| definition::place(&set, id));
+        agree(&set, region, &expected);
+    }
+
+    #[test]
+    fn a_field_leaves_what_the_definition_has(set in any_set(), region in any_box()) {
+        let field = |[x, y]: [f64; 2]| 0.5 + 0.6 * (x * 0.11).sin() * (y * 0.07).cos();
+        let expected = defined(&set, &region, |id| definition::place_in(&set, &field, id));
+        agree(&set.in_field(field), region, &expected);
+        // The kind may also be chosen first.
+        let own = only(&set, 0).in_field(field).within(region).expect("near");
+        prop_assert_eq!(own.to_vec(), of_kind(&expected, 0));
+    }
+}
+
+#[test]
+fn every_symmetry_agrees_with_the_definition() {
+    // All eight symmetries occur among these seeds.
+    let region = Region::new([-9.0, 3.0], [8.0, 21.0]).expect("ordered");
+    for seed in 0..24 {
+        for table in tables() {
+            let set = PointSet::new(table.clone()).seed(seed);
+            let expected = defined(&set, &region, |id| definition::place(&set, id));
+            assert!(expected.len() > 200);
+            agree(&set, region, &expected);
+        }
+    }
+}
+
+#[test]
+fn split_blocks_have_points_of_both_kinds() {
+    let set = PointSet::new(tables()[4].clone()).seed(7);
+    let mix = set.table().mix().expect("a mix");
+    let split = mix.splits()[0];
+    let n = set.table().map().intervals();
+    let mut seen = [0; 2];
+    for point in set.chunk(200.0, [0, 0]).expect("near") {
+        let kind = set.kind_of(point.id()).expect("a kind");
+        let [x, y] = set.block(point.id()).expect("a point");
+        let has_both = seen.iter().all(|&number| number > 0);
+        // The block of the whole map that is split is turned with the seed.
+        let turned = [
+            [x, y],
+            [n - 1 - x, y],
+            [x, n - 1 - y],
+            [n - 1 - x, n - 1 - y],
+        ];
+        let mut places = turned.into_iter().flat_map(|[x, y]| [y * n + x, x * n + y]);
+        if places.any(|place| place as u32 == split.block) && !has_both {
+            seen[usize::from(kind)] += 1;
+        }
+    }
+    assert!(seen.iter().all(|&number| number > 0), "{seen:?}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]
+
+    #[test]
+    fn an_area_holds_the_points_of_the_whole_set_that_are_of_the_kind(
+        set in any_set(), area in any_area(), block in 1usize..300, clear: bool, in_field: bool, kind: u8,
+    ) {
+        let kind = kind % kinds(&set);
+        let mut set = set;
+        if in_field {
+            set = set.in_field(|[x, y]: [f64; 2]| 0.7 + 0.5 * (x * 0.2).sin() * (y * 0.1).cos());
+        }
+        if clear {
+            let other = PointSet::new(tables()[1].clone()).spacing(3.0).expect("in range");
+            set = set.clear_of(&only(&other.seed(3), 1), 1.5).expect("near");
+        }
+        let whole = set.within(area.clone()).expect("near").to_vec();
+        let is_own = |point: &&Point| set.kind_of(point.id) == Some(kind);
+        let expected: Vec<Point> = whole.iter().filter(is_own).copied().collect();
+        let own = only(&set, kind);
+        let plan = own.within(area.clone()).expect("near");
+        prop_assert_eq!(plan.count(), expected.len() as u128);
+        let pairs: Vec<[f64; 2]> = expected.iter().map(Point::at).collect();
+        for backend in Backend::available() {
+            prop_assert_eq!(&all_by::<Points>(&plan, block, backend), &expected);
+            prop_assert_eq!(&all_by::<F64>(&plan, block, backend), &pairs);
+            prop_assert_eq!(
+                all_by::<F32>(&plan, block, backend), all_by::<F32>(&plan, 99, Backend::Scalar)
+            );
+        }
+        let from_tiles = plan.tiles(100).flat_map(|tile| {
+            let mut all = vec![Point::default(); expected.len() + 1];
+            let filled = plan.tile_blocks::<Points>(&tile).fill(&mut all);
+            all.truncate(filled);
+            all
+        });
+        prop_assert!(from_tiles.eq(expected.iter().copied()));
+        let counts = server::kind_counts(&set, area, &Stop::default()).expect("near");
+        prop_assert_eq!(counts[usize::from(kind)], plan.count());
+        prop_assert_eq!(counts.iter().sum::<u128>(), whole.len() as u128);
+    }
+
+    #[test]
+    fn windows_and_cursors_are_parts(
+        set in any_set(), area in any_area(), parts in 1u32..7, offset in 0.0..1.2f64, limit in 0u128..200,
+        block in 1usize..300, kind: u8,
+    ) {
+        let own = only(&set, kind % kinds(&set));
+        let plan = own.within(area.clone()).expect("near");
+        let all = plan.to_vec();
+        let split: Vec<Point> = plan.split(parts).flat_map(|part| part.to_vec()).collect();
+        prop_assert_eq!(&split, &all);
+        let offset = (offset * all.len() as f64) as u128;
+        let window = plan.window(offset, Some(limit));
+        let rest = &all[(offset as usize).min(all.len())..];
+        prop_assert_eq!(window.to_vec(), &rest[..rest.len().min(limit as usize)]);
+        let resumed = |cursor| own.resume(area.clone(), cursor).expect("near");
+        if let Some(next) = window.next_cursor() {
+            prop_assert_eq!(resumed(next).to_vec(), &all[next.offset as usize..]);
+        }
+        if let Some(cursor) = window.cursor() {
+            prop_assert_eq!(resumed(cursor).to_vec(), &all[cursor.offset as usize..]);
+        }
+        let (mut blocks, mut some) = (plan.blocks_points(), vec![Point::default(); block]);
+        let filled = blocks.fill(&mut some);
+        if let Some(cursor) = blocks.cursor() {
+            prop_assert_eq!(cursor.offset, filled as u128);
+            prop_assert_eq!(resumed(cursor).to_vec(), &all[filled..]);
+        }
+    }
+
+    #[test]
+    fn searches_find_what_boxes_hold(
+        set in any_set(), at in prop::array::uniform2(-40.0..40.0f64), radius in 0.0..9.0f64, kind: u8,
+        in_field: bool,
+    ) {
+        let mut set = set;
+        if in_field {
+            set = set.in_field(|[x, y]: [f64; 2]| 0.7 + 0.5 * (x * 0.2).sin() * (y * 0.1).cos());
+        }
+        let own = only(&set, kind % kinds(&set));
+        let region = Region::new(at.map(|v| v - 10.0), at.map(|v| v + 10.0)).expect("ordered");
+        let squared = |p: &Point| (p.x - at[0]).powi(2) + (p.y - at[1]).powi(2);
+        let mut expected = own.within(region).expect("near").to_vec();
+        expected.retain(|p| squared(p) <= radius * radius);
+        expected.sort_by(|a, b| squared(a).total_cmp(&squared(b)).then(a.id.cmp(&b.id)));
+        let found = own.around(at, radius, 10_000).expect("few");
+        let found: Vec<Point> = found.iter().map(|near| near.member.point()).collect();
+        prop_assert_eq!(&found, &expected);
+        let nearest = own.nearest(at, found.len().min(20)).expect("enough");
+        prop_assert!(nearest.iter().map(|near| near.member.point()).eq(found.iter().take(20).copied()));
+        let mut clearance = own.clearance(radius.max(0.1)).expect("few");
+        let strictly = found.iter().any(|p| squared(p) < radius.max(0.1).powi(2));
+        prop_assert!(radius < 0.1 || clearance.is_any_near(at, |_| true) == strictly);
+    }
+
+    #[test]
+    fn large_boxes_are_the_sums_of_their_parts(
+        set in any_set(), corner in prop::array::uniform2(-1e12..1e12f64),
+        size in prop::array::uniform2(1.0..1e9f64), cut in 0.0..1.0f64, kind: u8,
+    ) {
+        // Counts of warped boxes take time in proportion to the circumference.
+        let set = set.warp(0.0).expect("in range");
+        let own = only(&set, kind % kinds(&set));
+        let [x, y] = corner;
+        let [right, top] = [x + size[0], y + size[1]];
+        let middle = x + size[0] * cut;
+        let region = |from, to| Region::new([from, y], [to, top]).expect("ordered");
+        let count = |region: Region| own.count(region).expect("near");
+        let whole = count(region(x, right));
+        prop_assert_eq!(whole, count(region(x, middle)) + count(region(middle, right)));
+        let counts = set.kind_counts(region(x, right)).expect("near");
+        prop_assert_eq!(counts.iter().sum::<u128>(), set.count(region(x, right)).expect("near"));
+        prop_assert_eq!(counts[usize::from(own.kind().expect("a kind"))], whole);
+        // The k-th point is found without counting them all.
+        if let Some(before) = whole.checked_sub(3) {
+            let plan = own.within(region(x, right)).expect("near");
+            let last = plan.window(before, None).to_vec();
+            prop_assert_eq!(last.len(), 3);
+            prop_assert!(last.iter().all(|point| own.kind_of(point.id) == own.kind()));
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_number_of_points_is_found(set in any_set(), area in any_area(), count in 1u128..1000, kind: u8) {
+        let own = only(&set, kind % kinds(&set));
+        let Ok(plan) = server::exactly(&own, count, &area, 0.02, &Stop::default()) else {
+            return Ok(());
+        };
+        prop_assert_eq!(plan.to_vec().len() as u128, count);
+        let same = own.placed(plan.placement()).within(area).expect("near");
+        prop_assert_eq!(&same.to_vec()[..count as usize], plan.to_vec());
+    }
+}
+
+#[test]
+fn shares_are_exact() {
+    let region = Region::new([-3e8, 1e7], [5e8, 9e8]).expect("ordered");
+    for table in tables() {
+        for seed in [0, 5, 12] {
+            let set = PointSet::new(table.clone())
+                .seed(seed)
+                .warp(0.0)
+                .expect("in range");
+            let all = set.count(region).expect("near") as f64;
+            let shares = table.mix().expect("a mix").shares();
+            let counts = set.kind_counts(region).expect("near");
+            for (kind, count) in (0..).zip(counts) {
+                // A box has no more than a margin too many or too few.
+                assert!((count as f64 / all - shares.of(kind)).abs() < 1e-8);
+            }
+        }
+    }
+}
+
+#[test]
+fn previews_and_chunks_are_of_the_kind() {
+    let set = PointSet::new(tables()[1].clone()).seed(3);
+    let own = only(&set, 1);
+    let plan = own.chunk(60.0, [-2, 1]).expect("near");
+    let preview = server::preview(&plan, 2.0).expect("in range");
+    let points = all::<Points>(&preview, 64);
+    let other = set.spacing(2.0).expect("in range");
+    assert!(points.len() > 50);
+    assert!(
+        points
+            .iter()
+            .all(|p| other.kind_of(p.id) == Some(1) && other.point(p.id).is_some())
+    );
+    // A chosen kind stays, whatever is changed later.
+    let changed = own
+        .seed(9)
+        .keep(0.5)
+        .expect("a share")
+        .warp(0.0)
+        .expect("in range");
+    assert_eq!(changed.kind(), Some(1));
+    let ids = changed.chunk(60.0, [0, 0]).expect("near").to_vec();
+    assert!(
+        ids.iter()
+            .all(|p| changed.kind_of(p.id) == Some(1) && changed.rank(p.id) < 0.5)
+    );
+}
+
+#[test]
+fn kinds_that_are_not_there_are_refused() {
+    let set = PointSet::new(tables()[0].clone());
+    let error = set.clone().only(2).expect_err("two kinds");
+    assert_eq!(error.kind(), ErrorKind::Kinds);
+    assert_eq!(error.to_string(), "only is 2; it must be from 0 to 1");
+    assert_eq!(set.least_distance_of(0, 2), None);
+    let plain = PointSet::new(subject::tables()[0].clone());
+    let error = plain.clone().only(0).expect_err("no kinds").to_string();
+    assert!(error.contains("the table has no kinds"), "{error}");
+    assert_eq!(plain.kind_of(PointId { x: 0, y: 0 }), None);
+    assert_eq!(plain.least_distance_of(0, 0), None);
+    let area = Circle::new([0.0; 2], 5.0).expect("round");
+    assert_eq!(plain.kind_counts(area).expect("near"), []);
+}
+
+#[test]
+fn kinds_keep_their_distances() {
+    let blue = subject::shipped("blue-5-sqrt3-over-2-s");
+    let region = Region::new([0.0, 0.0], [160.0, 160.0]).expect("ordered");
+    for shares in ["1:1", "1:3:10"] {
+        let table = mixed(&blue, shares, false);
+        for (seed, warp) in [(0, 0.0), (7, 1.0)] {
+            let set = PointSet::new(table.clone())
+                .seed(seed)
+                .warp(warp)
+                .expect("in range");
+            let count = usize::from(kinds(&set));
+            let points: Vec<_> = set.within(region).expect("near").iter().collect();
+            let mut seen = vec![f64::INFINITY; count * count];
+            for a in &points {
+                let own = usize::from(set.kind_of(a.id()).expect("a kind"));
+                for near in set.around(a.at(), 5.0, 1000).expect("few") {
+                    let id = near.member.id();
+                    if id != a.id() {
+                        let other = usize::from(set.kind_of(id).expect("a kind"));
+                        let least = &mut seen[own * count + other];
+                        *least = near.distance.min(*least);
+                    }
+                }
+            }
+            for (i, seen) in seen.iter().enumerate() {
+                let (a, b) = ((i / count) as u8, (i % count) as u8);
+                let least = set.least_distance_of(a, b).expect("kinds");
+                assert!(*seen >= least, "{shares} {a} {b}: {seen} < {least}");
+                // Split blocks and the warp alone make the guarantee smaller.
+                let part = if warp == 0.0 { 0.98 } else { 0.85 };
+                assert!(part * seen <= least, "{shares} {a} {b}: {seen} > {least}");
+            }
+            let own = only(&set, 0).min_distance(2.0).expect("useful");
+            assert!(own.least_distance() >= 2.0);
+        }
+    }
+}
