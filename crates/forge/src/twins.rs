@@ -44,6 +44,15 @@ pub(crate) fn farthest(map: &Map) -> Option<[Twin; 2]> {
     Some([*least, *greatest])
 }
 
+/// Of the twins from [`LARGE_TWIN`] to some number of points the nearest to α.
+pub(crate) fn nearest(map: &Map, most: u64) -> Option<Twin> {
+    let alpha = map.alpha().to_f64();
+    let twins = next_to_alpha(map).take_while(|twin| twin.points() <= most);
+    let large = twins.filter(|twin| twin.points() >= LARGE_TWIN);
+    let far = |twin: &Twin| (fraction(twin) - alpha).abs();
+    large.min_by(|a, b| far(a).total_cmp(&far(b)))
+}
+
 /// The α of a twin, p/q.
 pub(crate) fn fraction(twin: &Twin) -> f64 {
     twin.p() as f64 / twin.q() as f64

@@ -52,6 +52,8 @@ pub enum Figure {
     LargestHole,
     /// Bond-orientational order (see [`Voronoi`]).
     Q6,
+    /// How far the share of a kind is from what it should be, up or down.
+    ShareError,
 }
 
 impl Figure {
@@ -77,6 +79,7 @@ impl Figure {
             Self::AreaDeviation => "area_deviation",
             Self::LargestHole => "largest_hole",
             Self::Q6 => "q6",
+            Self::ShareError => "share_error",
         }
     }
 }
@@ -113,7 +116,7 @@ pub(crate) fn figures_of_spectrum(
 }
 
 /// Rounds to four significant decimal digits.
-pub(super) fn round(value: f64) -> f64 {
+pub(crate) fn round(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(0.0)
 }
 

@@ -31,17 +31,28 @@ struct Meeting {
 
 /// A neighbor of a block: an instance of block `to` at lattice offset (i, j).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Neighbor {
-    pub(super) to: u32,
-    pub(super) i: i16,
-    pub(super) j: i16,
+pub(crate) struct Neighbor {
+    pub(crate) to: u32,
+    pub(crate) i: i16,
+    pub(crate) j: i16,
     /// The mean number of such neighbors of an instance of the block, in the full set.
-    pub(super) weight: f32,
+    pub(crate) weight: f32,
+}
+
+/// Two blocks that meet across the lattice offset (i, j).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Meet {
+    pub(crate) to: u32,
+    pub(crate) i: i16,
+    pub(crate) j: i16,
+    /// The area of index space where they do, as a part of the torus. It has the same bits seen from either
+    /// block.
+    pub(crate) area: f64,
 }
 
 impl Ground {
     /// The frequencies of pairs up to `reach` mean spacings apart in the pattern.
-    pub(super) fn new(map: &Map, reach: f64) -> Self {
+    pub(crate) fn new(map: &Map, reach: f64) -> Self {
         let n = map.intervals();
         let scale = map.alpha().set_side_f64();
         let reach = (reach / scale) as i64 + 1;
@@ -72,32 +83,51 @@ impl Ground {
     }
 
     /// The number of blocks.
-    pub(super) fn blocks(&self) -> usize {
+    pub(crate) fn blocks(&self) -> usize {
         self.shares.len()
     }
 
     /// Mean spacings per grid unit.
-    pub(super) const fn scale(&self) -> f64 {
+    pub(crate) const fn scale(&self) -> f64 {
         self.scale
     }
 
     /// The share of all points that a block has.
-    pub(super) fn share(&self, block: usize) -> f64 {
+    pub(crate) fn share(&self, block: usize) -> f64 {
         self.shares[block]
     }
 
     /// Calls `visit` with every neighbor of a block within `reach` mean spacings along each axis of the
     /// pattern, and its weight. `alive` says which blocks count.
-    pub(super) fn neighbors(
+    pub(crate) fn neighbors(
         &self,
         block: usize,
         reach: f64,
         alive: impl Fn(usize) -> bool,
         mut visit: impl FnMut(Neighbor),
     ) {
+        let area = self.shares[block] * self.scale * self.scale;
+        self.meets(block, reach, alive, |meet| {
+            visit(Neighbor {
+                to: meet.to,
+                i: meet.i,
+                j: meet.j,
+                weight: (meet.area / area) as f32,
+            });
+        });
+    }
+
+    /// Calls `visit` with every meeting of a block within `reach` mean spacings along each axis of the
+    /// pattern. `alive` says which blocks count.
+    pub(crate) fn meets(
+        &self,
+        block: usize,
+        reach: f64,
+        alive: impl Fn(usize) -> bool,
+        mut visit: impl FnMut(Meet),
+    ) {
         let n = self.n;
         let (bx, by) = (block % n, block / n);
-        let area = self.shares[block] * self.scale * self.scale;
         let most = (reach / self.scale) as i16 + 1;
         let within = |list: &'_ [Meeting]| {
             let start = list.partition_point(|m| m.offset < -most);
@@ -111,11 +141,11 @@ impl Ground {
                 for column in columns {
                     let to = row.to as usize * n + column.to as usize;
                     if alive(to) && (column.offset, row.offset) != (0, 0) {
-                        visit(Neighbor {
+                        visit(Meet {
                             to: to as u32,
                             i: column.offset,
                             j: row.offset,
-                            weight: (column.length * row.length / area) as f32,
+                            area: column.length * row.length,
                         });
                     }
                 }
@@ -130,7 +160,7 @@ const fn slot(other: i64, own: i64) -> usize {
 }
 
 /// The vectors of a table, in mean spacings.
-pub(super) fn moves_of(table: &Table) -> Vec<[f64; 2]> {
+pub(crate) fn moves_of(table: &Table) -> Vec<[f64; 2]> {
     let scale = table.alpha().set_side_f64();
     let vectors = table.displacements().iter();
     vectors

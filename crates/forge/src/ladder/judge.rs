@@ -10,7 +10,7 @@ use super::thinned::ThinnedTwin;
 use crate::{
     judge::{Bound, Complaint, Figure},
     measure::{Distances, Spectrum},
-    twins::{LARGE_TWIN, fraction, next_to_alpha},
+    twins::nearest,
     watch::{Meter, Stage, Watch},
 };
 
@@ -38,7 +38,7 @@ pub(super) fn judge(table: &Table, watch: &dyn Watch) -> Option<Vec<Figures>> {
     let octaves = octaves(table);
     let twins: Vec<Twin> = LARGEST
         .iter()
-        .filter_map(|&most| nearest(table, most))
+        .filter_map(|&most| nearest(table.map(), most))
         .collect();
     let mut meter = Meter::new(watch, Stage::Measuring, octaves * twins.len() as u32);
     let mut all = Vec::new();
@@ -79,15 +79,6 @@ pub(super) fn judge(table: &Table, watch: &dyn Watch) -> Option<Vec<Figures>> {
         }
     }
     Some(all)
-}
-
-/// Of the twins from [`LARGE_TWIN`] to some number of points the nearest to α.
-fn nearest(table: &Table, most: u64) -> Option<Twin> {
-    let alpha = table.alpha().to_f64();
-    let twins = next_to_alpha(table.map()).take_while(|twin| twin.points() <= most);
-    let large = twins.filter(|twin| twin.points() >= LARGE_TWIN);
-    let far = |twin: &Twin| (fraction(twin) - alpha).abs();
-    large.min_by(|a, b| far(a).total_cmp(&far(b)))
 }
 
 /// The number of times the share halves along the ladder.

@@ -11,6 +11,7 @@ mod polish;
 mod segment;
 mod thinned;
 
+pub(crate) use ground::{Ground, moves_of};
 pub use make::{LadderJob, LadderOutcome, ladder};
 pub use order::with_ranks;
 pub use thinned::ThinnedTwin;

@@ -18,6 +18,7 @@ struct Candidate {
     at: [f64; 2],
     block: u32,
     rank: f64,
+    kind: u8,
 }
 
 impl<'a> ThinnedTwin<'a> {
@@ -41,10 +42,13 @@ impl<'a> ThinnedTwin<'a> {
             let [first, last] = ends[site.block_x as usize];
             let within = ((index(site) - first) as f64 + 0.5) / (last - first + 1) as f64;
             let ranks = table.block_ranks(block);
+            let interval = table.map().interval(site.block_x as usize);
+            let offset = within * (interval.end - interval.start) as f64;
             Candidate {
                 at: [f64::from(site.x), f64::from(site.y)],
                 block: block as u32,
                 rank: ranks.start + within * (ranks.end - ranks.start),
+                kind: kind(table, block, offset),
             }
         });
         Some(Self {
@@ -58,7 +62,19 @@ impl<'a> ThinnedTwin<'a> {
     /// and `moves` is set, and otherwise stay where they are in the full set.
     #[must_use]
     pub fn at(&self, share: f64, moves: bool) -> Torus {
-        let left = self.points.iter().filter(|point| point.rank < share);
+        self.set(share, moves, |_| true)
+    }
+
+    /// The points of a kind that are left at a share, at unit density. They stay where they are in the full
+    /// set. Tables without a mix have points of kind 0 only.
+    #[must_use]
+    pub fn of_kind(&self, share: f64, kind: u8) -> Torus {
+        self.set(share, false, |point| point.kind == kind)
+    }
+
+    fn set(&self, share: f64, moves: bool, counts: impl Fn(&Candidate) -> bool) -> Torus {
+        let left = self.points.iter();
+        let left = left.filter(|point| point.rank < share && counts(point));
         let points = left.map(|point| {
             let block = point.block as usize;
             let by = if moves {
@@ -70,4 +86,14 @@ impl<'a> ThinnedTwin<'a> {
         });
         Torus::new(self.period, points.collect())
     }
+}
+
+/// The kind of a point of a block, given how far its dX lies beyond the start of the block's interval.
+fn kind(table: &Table, block: usize, offset: f64) -> u8 {
+    table.mix().map_or(0, |mix| {
+        let splits = mix.splits().iter();
+        let mut here = splits.filter(|split| split.block as usize == block);
+        let split = here.find(|split| split.offset as f64 <= offset);
+        split.map_or(mix.labels()[block], |split| split.kind)
+    })
 }

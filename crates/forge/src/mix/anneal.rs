@@ -1,0 +1,244 @@
+//! Annealing: labels of blocks for given shares, by swaps of two blocks of different kinds.
+//!
+//! Everything is an integer: energies, areas, temperatures, random numbers and their logarithms. The energy
+//! that each block would have as each kind is kept up to date, so a swap that is refused, as nearly all are,
+//! costs a few additions, and one that is taken the blocks near it.
+
+use super::press::Presses;
+use crate::{
+    numeric::{SplitMix, exp},
+    watch::Meter,
+};
+
+/// The energy of a mean block, in integer units.
+pub(super) const UNIT: f64 = (1u64 << 20) as f64;
+/// All points, in units of area.
+const WHOLE: f64 = (1u64 << AREA_BITS) as f64;
+const AREA_BITS: u32 = 32;
+/// The temperatures at the start and at the end, in energies of a mean block.
+const HEAT: [f64; 2] = [0.5, 0.01];
+/// Sweeps: proposals for each block that is not of the last kind.
+const SWEEPS: u32 = 2000;
+/// Steps of the meter.
+pub(super) const STEPS: u32 = 100;
+/// The seed of the proposals, chosen arbitrarily.
+const SEED: u64 = 0x6b69_6e64;
+/// What it costs that a kind has the area of a mean block too much or too little, in energies of a mean block.
+const STIFFNESS: f64 = 2.0;
+/// Values of the table of logarithms, a power of two.
+const LOGS: usize = 1 << LOG_BITS;
+const LOG_BITS: u32 = 12;
+/// Logarithms are in units of 2⁻¹⁶.
+const LOG_UNIT: u32 = 16;
+
+/// A kind to place.
+pub(super) struct Kind {
+    /// Its share of the points.
+    pub(super) share: f64,
+    /// Which of the lists of presses its blocks feel.
+    pub(super) presses: usize,
+    /// The energy of the kind if it were spread evenly, over the square of its share, in mean blocks. Energies
+    /// grow with areas, so without this a swap of unequal blocks would pay by what it takes from a kind.
+    pub(super) even: f64,
+}
+
+/// Labels being annealed.
+pub(super) struct Annealer<'a> {
+    kinds: &'a [Kind],
+    presses: &'a [Presses],
+    labels: Vec<u8>,
+    /// The energy of each block as each kind, block by block.
+    fields: Vec<i64>,
+    areas: Vec<i64>,
+    /// What each kind has more than its share.
+    excess: Vec<i64>,
+    /// Energy per squared excess.
+    stiffness: i64,
+    /// The blocks of all kinds but the last, and where each block is among them.
+    minor: Vec<u32>,
+    places: Vec<u32>,
+}
+
+impl<'a> Annealer<'a> {
+    /// Starts with some labels of blocks, given the shares of all points that blocks have. Kinds ascend.
+    pub(super) fn new(
+        kinds: &'a [Kind],
+        presses: &'a [Presses],
+        shares: &[f64],
+        labels: &[u8],
+    ) -> Self {
+        let (blocks, count) = (labels.len(), kinds.len());
+        let areas = shares.iter().map(|share| (share * WHOLE).round() as i64);
+        let areas: Vec<i64> = areas.collect();
+        let target = |kind: &Kind| (kind.share * WHOLE).round() as i64;
+        let mut excess: Vec<i64> = kinds.iter().map(|kind| -target(kind)).collect();
+        let mut fields = vec![0; blocks * count];
+        let mut minor = Vec::new();
+        let mut places = vec![0; blocks];
+        for (block, &label) in labels.iter().enumerate() {
+            let label = usize::from(label);
+            excess[label] += areas[block];
+            if label + 1 < count {
+                places[block] = minor.len() as u32;
+                minor.push(block as u32);
+            }
+            let fields = &mut fields[block * count..][..count];
+            for (field, kind) in fields.iter_mut().zip(kinds) {
+                let own = i64::from(presses[kind.presses].own(block)) / 2;
+                let even = 2.0 * kind.even * kind.share * shares[block] * UNIT;
+                *field = own - even.round() as i64;
+            }
+            for (list, presses) in presses.iter().enumerate() {
+                for press in presses.of(block) {
+                    let other = usize::from(labels[press.to as usize]);
+                    if kinds[other].presses == list {
+                        fields[other] += i64::from(press.by);
+                    }
+                }
+            }
+        }
+        Self {
+            kinds,
+            presses,
+            labels: labels.to_vec(),
+            fields,
+            areas,
+            excess,
+            stiffness: (STIFFNESS * (blocks * blocks) as f64 * UNIT).round() as i64,
+            minor,
+            places,
+        }
+    }
+
+    /// Anneals. Returns the labels, or `None` if the watch stopped the work.
+    pub(super) fn run(mut self, meter: &mut Meter<'_>) -> Option<Vec<u8>> {
+        let logs: Vec<i64> = (0..LOGS)
+            .map(|i| -libm::log((i as f64 + 0.5) / LOGS as f64) * f64::from(1u32 << LOG_UNIT))
+            .map(|log| log.round() as i64)
+            .collect();
+        let cooling = libm::log(HEAT[1] / HEAT[0]) / f64::from(SWEEPS);
+        let mut random = SplitMix::new(SEED);
+        for sweep in 0..SWEEPS {
+            if meter.stop() {
+                return None;
+            }
+            let heat = (HEAT[0] * exp(cooling * f64::from(sweep)) * UNIT).round() as i64;
+            for _ in 0..self.minor.len() {
+                self.propose(heat, &logs, &mut random);
+            }
+            if (sweep + 1) % (SWEEPS / STEPS) == 0 {
+                meter.advance(None);
+            }
+        }
+        self.settle();
+        Some(self.labels)
+    }
+
+    /// Proposes a swap of a block that is not of the last kind with one near it or, as often, with any.
+    #[inline]
+    fn propose(&mut self, heat: i64, logs: &[i64], random: &mut SplitMix) {
+        let bits = random.next_u64();
+        let a = self.minor[below(bits >> 32, 32, self.minor.len())] as usize;
+        let limit = (heat * logs[bits as usize % LOGS]) >> LOG_UNIT;
+        let bits = (bits & 0xffff_ffff) >> LOG_BITS;
+        let b = if bits & 1 == 0 {
+            let near = self.presses[self.kinds[usize::from(self.labels[a])].presses].of(a);
+            if near.is_empty() {
+                return;
+            }
+            near[below(bits >> 1, 19, near.len())].to as usize
+        } else {
+            below(random.next_u64() >> 32, 32, self.labels.len())
+        };
+        self.swap(a, b, limit);
+    }
+
+    /// Swaps two blocks if it costs at most `limit`.
+    #[inline]
+    fn swap(&mut self, a: usize, b: usize, limit: i64) {
+        let [from, to] = [a, b].map(|block| usize::from(self.labels[block]));
+        if from == to {
+            return;
+        }
+        let count = self.kinds.len();
+        let (at_a, at_b) = (&self.fields[a * count..], &self.fields[b * count..]);
+        let by = self.areas[b] - self.areas[a];
+        let cost = at_a[to] - at_a[from] + at_b[from] - at_b[to]
+            + self.strain(from, by)
+            + self.strain(to, -by);
+        // They no longer press each other once they have swapped, which can only lower the cost.
+        if cost > limit && cost - self.between(a, b, from, to) > limit {
+            return;
+        }
+        self.turn(a, from, to);
+        self.turn(b, to, from);
+        self.excess[from] += by;
+        self.excess[to] -= by;
+        if to + 1 == count {
+            self.minor[self.places[a] as usize] = b as u32;
+            self.places[b] = self.places[a];
+        }
+    }
+
+    /// What two blocks press each other as either kind.
+    #[inline]
+    fn between(&self, a: usize, b: usize, from: usize, to: usize) -> i64 {
+        let [p, q] = [from, to].map(|kind| self.kinds[kind].presses);
+        let press = |list: usize| i64::from(self.presses[list].between(a, b));
+        press(p) + if p == q { press(p) } else { press(q) }
+    }
+
+    /// What `by` more area of a kind costs.
+    #[inline]
+    fn strain(&self, kind: usize, by: i64) -> i64 {
+        let squares = i128::from(by) * i128::from(2 * self.excess[kind] + by);
+        ((squares * i128::from(self.stiffness)) >> (2 * AREA_BITS)) as i64
+    }
+
+    /// Gives a block another kind.
+    fn turn(&mut self, block: usize, from: usize, to: usize) {
+        let count = self.kinds.len();
+        let [p, q] = [from, to].map(|kind| self.kinds[kind].presses);
+        for press in self.presses[p].of(block) {
+            self.fields[press.to as usize * count + from] -= i64::from(press.by);
+        }
+        for press in self.presses[q].of(block) {
+            self.fields[press.to as usize * count + to] += i64::from(press.by);
+        }
+        self.labels[block] = to as u8;
+    }
+
+    /// Moves blocks from the kind with the greatest excess to that with the least, while a block is small
+    /// enough for it to help: the splits of a mix make shares exact only within a block.
+    fn settle(&mut self) {
+        let count = self.kinds.len();
+        for _ in 0..self.labels.len() {
+            let most = (0..count).max_by_key(|&kind| self.excess[kind]);
+            let least = (0..count).min_by_key(|&kind| self.excess[kind]);
+            let (Some(from), Some(to)) = (most, least) else {
+                return;
+            };
+            let amount = self.excess[from].min(-self.excess[to]);
+            let field = |block: usize, kind: usize| self.fields[block * count + kind];
+            // A block of which at least a third is needed, at the least cost.
+            let helps = |&block: &usize| {
+                usize::from(self.labels[block]) == from
+                    && self.areas[block] > amount / 2
+                    && 2 * self.areas[block] < 3 * amount
+            };
+            let found = (0..self.labels.len())
+                .filter(helps)
+                .min_by_key(|&block| field(block, to) - field(block, from));
+            let Some(block) = found else { return };
+            self.turn(block, from, to);
+            self.excess[from] -= self.areas[block];
+            self.excess[to] += self.areas[block];
+        }
+    }
+}
+
+/// The number of `bits` random bits scaled to a number below `count`.
+#[inline]
+const fn below(random: u64, bits: u32, count: usize) -> usize {
+    ((random * count as u64) >> bits) as usize
+}

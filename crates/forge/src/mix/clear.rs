@@ -1,0 +1,117 @@
+//! Least distances of a mix, exactly: over every pair of blocks that meet, however seldom, and what lifts
+//! the pairs that come too near.
+
+use rayon::prelude::*;
+
+use crate::ladder::Ground;
+
+/// √(2/√3), the hexagonal distance in mean spacings.
+const HEXAGONAL: f64 = 1.074_569_931_823_542;
+/// Lists reach this much farther than the distance to keep.
+const SKIN: f64 = 1.25;
+
+/// The least δ to keep.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Floor {
+    /// Between any two points, in hexagonal distances of all.
+    pub(super) all: f64,
+    /// Between two points of a kind, in its own.
+    pub(super) kind: f64,
+}
+
+/// Two blocks that may come too near: where one is seen from the other, and the distance to keep.
+struct Near {
+    own: u32,
+    to: u32,
+    by: [f64; 2],
+    least: f64,
+}
+
+/// Pushes apart the pairs that are too near, until none are or for a number of rounds. Moves are in mean
+/// spacings; `kinds` has the part of each block that is of each kind. Returns the number of pairs that are
+/// still too near.
+pub(super) fn clear(
+    ground: &Ground,
+    kinds: &[Vec<f64>],
+    shares: &[f64],
+    moves: &mut [[f64; 2]],
+    floor: Floor,
+    rounds: usize,
+) -> usize {
+    let pairs = pairs(ground, kinds, shares, moves, floor);
+    let mut near = 0;
+    for round in 0..=rounds {
+        near = 0;
+        for pair in &pairs {
+            let (own, to) = (moves[pair.own as usize], moves[pair.to as usize]);
+            let by = [0, 1].map(|axis| pair.by[axis] + to[axis] - own[axis]);
+            let squared = by[0] * by[0] + by[1] * by[1];
+            if squared >= pair.least * pair.least {
+                continue;
+            }
+            near += 1;
+            if round == rounds {
+                continue;
+            }
+            let distance = squared.sqrt();
+            // A little more, or rounding would leave it below.
+            let missing = 0.5 * (pair.least * (1.0 + 1e-4) - distance);
+            for axis in 0..2 {
+                let push = if distance > 0.0 {
+                    by[axis] / distance * missing
+                } else {
+                    missing
+                };
+                moves[pair.own as usize][axis] -= push;
+                moves[pair.to as usize][axis] += push;
+            }
+        }
+        if near == 0 {
+            break;
+        }
+    }
+    near
+}
+
+/// The pairs of different blocks that are near, each once.
+fn pairs(
+    ground: &Ground,
+    kinds: &[Vec<f64>],
+    shares: &[f64],
+    moves: &[[f64; 2]],
+    floor: Floor,
+) -> Vec<Near> {
+    let all = floor.all * HEXAGONAL;
+    let of_kind = |share: f64| (floor.kind * HEXAGONAL / share.sqrt()).max(all);
+    let widest = shares.iter().map(|&share| of_kind(share)).fold(all, f64::max);
+    let squares = moves.iter().map(|m| m[0] * m[0] + m[1] * m[1]);
+    let longest = squares.fold(0.0, f64::max).sqrt();
+    let scale = ground.scale();
+    let lists: Vec<Vec<Near>> = (0..moves.len())
+        .into_par_iter()
+        .map(|own| {
+            let mut list = Vec::new();
+            let at = moves[own];
+            let later = |to: usize| to > own;
+            ground.meets(own, widest * SKIN + 2.0 * longest, later, |meet| {
+                let to = meet.to as usize;
+                let by = [meet.i, meet.j].map(|v| scale * f64::from(v));
+                let x = by[0] + moves[to][0] - at[0];
+                let y = by[1] + moves[to][1] - at[1];
+                let shared = kinds.iter().zip(shares);
+                let shared = shared.filter(|(kind, _)| kind[own] > 0.0 && kind[to] > 0.0);
+                let least = shared.map(|(_, &share)| of_kind(share)).fold(all, f64::max);
+                if x * x + y * y < (least * SKIN) * (least * SKIN) {
+                    list.push(Near {
+                        own: own as u32,
+                        to: meet.to,
+                        by,
+                        least,
+                    });
+                }
+            });
+            list
+        })
+        .collect();
+    lists.into_iter().flatten().collect()
+}

@@ -1,0 +1,168 @@
+//! The energy of one kind as a function of a table's vectors, at its own density.
+
+use rayon::prelude::*;
+
+use crate::{energy::PairEnergy, ladder::Ground};
+
+/// Lists have whole groups of this many pairs, so that the compiler can vectorize sums over them. The
+/// number also fixes the order of summation, so tables depend on it.
+const LANES: usize = 8;
+/// Blocks per parallel task. It fixes an order of summation, too.
+const CHUNK: usize = 64;
+
+/// A block of the kind near another.
+#[derive(Clone, Copy)]
+struct Pair {
+    to: u32,
+    i: i16,
+    j: i16,
+    /// The mean number of such neighbors of an instance, counting points of the kind only.
+    weight: f32,
+}
+
+/// The points of one kind.
+pub(super) struct Part<E> {
+    energy: E,
+    share: f64,
+    /// Its blocks, ascending, and which part of each is of the kind.
+    blocks: Vec<(u32, f64)>,
+    /// By block; 0 for those of other kinds.
+    weights: Vec<f64>,
+    starts: Vec<usize>,
+    pairs: Vec<Pair>,
+    built_for: Vec<[f64; 2]>,
+}
+
+impl<E: PairEnergy> Part<E> {
+    /// Lists reach this far beyond the cut-off, in the kind's own spacings, and stay valid until some block has
+    /// moved by half of it.
+    pub(super) const SKIN: f64 = 0.3;
+
+    /// The kind that has these parts of the blocks.
+    pub(super) fn new(energy: E, ground: &Ground, weights: Vec<f64>) -> Self {
+        let blocks: Vec<(u32, f64)> = (0..)
+            .zip(&weights)
+            .filter_map(|(block, &weight)| (weight > 0.0).then_some((block, weight)))
+            .collect();
+        let share = blocks.iter().map(|&(b, w)| w * ground.share(b as usize));
+        Self {
+            energy,
+            share: share.sum(),
+            blocks,
+            weights,
+            starts: Vec::new(),
+            pairs: Vec::new(),
+            built_for: Vec::new(),
+        }
+    }
+
+    /// Adds `factor` times the gradient of the energy per point of the kind, divided by the masses of
+    /// blocks. Returns the energy per point.
+    pub(super) fn add(
+        &mut self,
+        ground: &Ground,
+        moves: &[[f64; 2]],
+        factor: f64,
+        gradient: &mut [[f64; 2]],
+    ) -> f64 {
+        if self.is_stale(moves) {
+            self.build(ground, moves);
+        }
+        let sums: Vec<(f64, [f64; 2])> = (0..self.blocks.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|at| self.sum(ground, moves, at))
+            .collect();
+        let mut energy = 0.0;
+        for (&(block, weight), (value, slope)) in self.blocks.iter().zip(&sums) {
+            let block = block as usize;
+            energy += ground.share(block) * weight * value;
+            // Slopes are by distances in the kind's own spacings squared.
+            let by = factor * weight;
+            for axis in 0..2 {
+                gradient[block][axis] += by * slope[axis];
+            }
+        }
+        0.5 * energy / self.share
+    }
+
+    fn is_stale(&self, moves: &[[f64; 2]]) -> bool {
+        let limit = Self::SKIN * Self::SKIN / 4.0 / self.share;
+        self.built_for.len() != moves.len()
+            || self.blocks.iter().any(|&(block, _)| {
+                let (a, b) = (moves[block as usize], self.built_for[block as usize]);
+                let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
+                dx * dx + dy * dy > limit
+            })
+    }
+
+    fn build(&mut self, ground: &Ground, moves: &[[f64; 2]]) {
+        let range = (self.energy.cutoff() + Self::SKIN) / self.share.sqrt();
+        let squares = moves.iter().map(|m| m[0] * m[0] + m[1] * m[1]);
+        let longest = squares.fold(0.0, f64::max).sqrt();
+        let scale = ground.scale();
+        let lists: Vec<Vec<Pair>> = self
+            .blocks
+            .par_iter()
+            .map(|&(block, _)| {
+                let own = moves[block as usize];
+                let mut list = Vec::with_capacity(128);
+                let reach = range + 2.0 * longest;
+                let is_of_kind = |to: usize| self.weights[to] > 0.0;
+                ground.neighbors(block as usize, reach, is_of_kind, |near| {
+                    let to = moves[near.to as usize];
+                    let x = scale * f64::from(near.i) + to[0] - own[0];
+                    let y = scale * f64::from(near.j) + to[1] - own[1];
+                    if x * x + y * y < range * range {
+                        list.push(Pair {
+                            to: near.to,
+                            i: near.i,
+                            j: near.j,
+                            weight: near.weight * self.weights[near.to as usize] as f32,
+                        });
+                    }
+                });
+                let filler = Pair {
+                    to: block,
+                    i: 0,
+                    j: 0,
+                    weight: 0.0,
+                };
+                list.resize(list.len().next_multiple_of(LANES), filler);
+                list
+            })
+            .collect();
+        self.starts = vec![0];
+        self.pairs.clear();
+        for list in lists {
+            self.pairs.extend(list);
+            self.starts.push(self.pairs.len());
+        }
+        self.built_for = moves.to_vec();
+    }
+
+    /// The energy of an instance of a block and its slopes.
+    fn sum(&self, ground: &Ground, moves: &[[f64; 2]], at: usize) -> (f64, [f64; 2]) {
+        let scale = ground.scale();
+        let own = moves[self.blocks[at].0 as usize];
+        let (mut energy, mut gx, mut gy) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for group in self.pairs[self.starts[at]..self.starts[at + 1]].chunks_exact(LANES) {
+            let (mut dx, mut dy, mut weight) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            for (lane, pair) in group.iter().enumerate() {
+                let to = moves[pair.to as usize];
+                dx[lane] = own[0] - (scale * f64::from(pair.i) + to[0]);
+                dy[lane] = own[1] - (scale * f64::from(pair.j) + to[1]);
+                weight[lane] = f64::from(pair.weight);
+            }
+            for lane in 0..LANES {
+                let squared = dx[lane] * dx[lane] + dy[lane] * dy[lane];
+                let (value, slope) = self.energy.pair(squared * self.share);
+                energy[lane] += weight[lane] * value;
+                gx[lane] += weight[lane] * slope * dx[lane];
+                gy[lane] += weight[lane] * slope * dy[lane];
+            }
+        }
+        let total = |lanes: [f64; LANES]| lanes.iter().sum::<f64>();
+        (total(energy), [total(gx), total(gy)])
+    }
+}

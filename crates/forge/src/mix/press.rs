@@ -1,0 +1,112 @@
+//! How much blocks press each other: symmetric integers, so that an annealer adds them up and takes them away
+//! in any order without a trace.
+
+use rayon::prelude::*;
+use strew_core::Table;
+
+use crate::{ladder::Ground, numeric::exp};
+
+/// A block that presses another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Press {
+    pub(super) to: u32,
+    /// The energy of both blocks being of the same kind.
+    pub(super) by: i32,
+}
+
+/// For each block the others that press it, ascending, and how much its points press each other.
+pub(super) struct Presses {
+    starts: Vec<u32>,
+    all: Vec<Press>,
+    own: Vec<i32>,
+}
+
+/// A Gaussian of the distance, and where it ends. Lengths are in mean spacings of the full set.
+#[derive(Clone, Copy)]
+pub(super) struct Kernel {
+    pub(super) sigma: f64,
+    pub(super) range: f64,
+}
+
+impl Presses {
+    /// Presses by a kernel, times the share of all points for which two blocks meet, times `unit`, rounded.
+    pub(super) fn new(table: &Table, ground: &Ground, kernel: Kernel, unit: f64) -> Self {
+        let vectors = table.displacements();
+        let longest = longest(table);
+        let scale = ground.scale();
+        // A grid unit has 2²⁰ fixed-point units, and differences of places are exact in them.
+        let fixed = scale / 1_048_576.0;
+        let unit = unit / (scale * scale);
+        let limit = (kernel.range / fixed) * (kernel.range / fixed);
+        let rate = -0.5 * (fixed / kernel.sigma) * (fixed / kernel.sigma);
+        let reach = kernel.range + 2.0 * longest;
+        let each: Vec<(Vec<Press>, i32)> = (0..ground.blocks())
+            .into_par_iter()
+            .map(|block| {
+                let (mut found, mut own) = (Vec::with_capacity(256), 0);
+                let at = vectors[block].map(i64::from);
+                ground.meets(block, reach, |_| true, |meet| {
+                    let other = vectors[meet.to as usize].map(i64::from);
+                    let x = (i64::from(meet.i) << 20) + other[0] - at[0];
+                    let y = (i64::from(meet.j) << 20) + other[1] - at[1];
+                    let squared = (x * x + y * y) as f64;
+                    if squared < limit {
+                        let by = (meet.area * unit * exp(rate * squared)).round() as i32;
+                        if meet.to as usize == block {
+                            own += by;
+                        } else if by != 0 {
+                            found.push(Press { to: meet.to, by });
+                        }
+                    }
+                });
+                found.sort_unstable_by_key(|press| press.to);
+                found.dedup_by(|later, first| {
+                    let same = later.to == first.to;
+                    if same {
+                        first.by += later.by;
+                    }
+                    same
+                });
+                found.shrink_to_fit();
+                (found, own)
+            })
+            .collect();
+        let mut presses = Self {
+            starts: vec![0],
+            all: Vec::with_capacity(each.iter().map(|(list, _)| list.len()).sum()),
+            own: each.iter().map(|&(_, own)| own).collect(),
+        };
+        for (list, _) in each {
+            presses.all.extend(list);
+            presses.starts.push(presses.all.len() as u32);
+        }
+        presses
+    }
+
+    /// The blocks that press a block.
+    #[inline]
+    pub(super) fn of(&self, block: usize) -> &[Press] {
+        &self.all[self.starts[block] as usize..self.starts[block + 1] as usize]
+    }
+
+    /// How much a block presses itself, from both ends.
+    pub(super) fn own(&self, block: usize) -> i32 {
+        self.own[block]
+    }
+
+    /// How much two different blocks press each other.
+    #[inline]
+    pub(super) fn between(&self, a: usize, b: usize) -> i32 {
+        let list = self.of(a);
+        let found = list.binary_search_by_key(&(b as u32), |press| press.to);
+        found.map_or(0, |at| list[at].by)
+    }
+
+}
+
+/// The length of a table's longest vector, in mean spacings.
+pub(super) fn longest(table: &Table) -> f64 {
+    let squares = table.displacements().iter();
+    let squares = squares.map(|v| v.map(i64::from)).map(|[x, y]| x * x + y * y);
+    (squares.max().unwrap_or(0) as f64).sqrt() / 1_048_576.0 * table.alpha().set_side_f64()
+}
