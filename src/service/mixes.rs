@@ -21,7 +21,7 @@ use strew_core::{
     table::{MAX_FILE_BYTES, Shares},
 };
 
-use super::{Error, Lane, Workers, cache::Ready};
+use super::{Error, Fault, Lane, Workers, cache::Ready};
 use crate::bounded_file;
 
 /// The mixes that were made.
@@ -137,15 +137,16 @@ fn name(plain: &Ready, shares: &Shares) -> String {
 /// Labels the blocks of a table. Takes seconds.
 ///
 /// # Errors
-/// [`Error::Internal`] if the table cannot be labelled.
+/// [`Error::Invalid`] if the table has too few blocks for the shares.
 pub(super) fn make(table: &Table, shares: &Shares) -> Result<Table, Error> {
     let began = std::time::Instant::now();
     let made = strew_forge::labels(table, shares, &()).map_err(|error| {
-        tracing::error!(%shares, %error, "a mix could not be made");
-        Error::Internal("a mix could not be made")
+        let allowed =
+            "weights nearer to each other, fewer variants, a larger map, or spread chance";
+        Fault::new("variants", shares, error.to_string(), allowed)
     })?;
     tracing::info!(%shares, seconds = began.elapsed().as_secs_f32(), "made a mix");
-    Ok(made)
+    made.ok_or(Error::Internal("a mix was stopped that is still wanted"))
 }
 
 /// Reads a mix that was made earlier, or makes it and keeps it.

@@ -45,8 +45,8 @@ mod forge;
 mod job;
 pub mod judge;
 mod ladder;
-mod mix;
 pub mod measure;
+mod mix;
 pub mod numeric;
 pub mod optimize;
 mod picture;
@@ -70,11 +70,3 @@ pub use picture::{PictureError, picture};
 pub use profile::{Aim, Profile};
 pub use report::{Report, Resolution};
 pub use watch::{Meter, Progress, Stage, Watch};
-/// Stub.
-pub fn labels(
-    _: &strew_core::Table,
-    _: &strew_core::table::Shares,
-    _: &dyn Watch,
-) -> Result<strew_core::Table, ForgeError> {
-    todo!()
-}

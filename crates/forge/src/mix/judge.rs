@@ -53,7 +53,9 @@ pub(super) fn judge(
     of: Option<&Table>,
     watch: &dyn Watch,
 ) -> Option<(Vec<Figures>, Vec<Complaint>)> {
-    let twins = LARGEST.iter().filter_map(|&most| nearest(table.map(), most));
+    let twins = LARGEST
+        .iter()
+        .filter_map(|&most| nearest(table.map(), most));
     let mut twins: Vec<Twin> = twins.collect();
     twins.dedup();
     let steps = twins.len() * (1 + SHARES.len());
@@ -124,7 +126,11 @@ impl Subject {
             None => "all points".into(),
         };
         let is_whole = share == 1.0;
-        let kept = if is_whole { String::new() } else { format!(", keep {share}") };
+        let kept = if is_whole {
+            String::new()
+        } else {
+            format!(", keep {share}")
+        };
         let summary = summary(&self.set, if is_whole { NU } else { NU_THINNED });
         let mut values = vec![
             (Figure::LowPower, summary.low_power),
@@ -153,7 +159,11 @@ impl Subject {
         if share < 1.0 {
             let blocks = table.displacements().len() as f64 * share * self.wanted;
             if blocks >= BLOCKS {
-                let limit = if self.kind.is_some() { LOW_THINNED } else { LOW_OF_ALL_THINNED };
+                let limit = if self.kind.is_some() {
+                    LOW_THINNED
+                } else {
+                    LOW_OF_ALL_THINNED
+                };
                 bounds.push(low(limit));
             }
             if self.kind.is_some() {
