@@ -83,7 +83,10 @@ fn pairs(
 ) -> Vec<Near> {
     let all = floor.all * HEXAGONAL;
     let of_kind = |share: f64| (floor.kind * HEXAGONAL / share.sqrt()).max(all);
-    let widest = shares.iter().map(|&share| of_kind(share)).fold(all, f64::max);
+    let widest = shares
+        .iter()
+        .map(|&share| of_kind(share))
+        .fold(all, f64::max);
     let squares = moves.iter().map(|m| m[0] * m[0] + m[1] * m[1]);
     let longest = squares.fold(0.0, f64::max).sqrt();
     let scale = ground.scale();

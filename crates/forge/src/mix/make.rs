@@ -120,9 +120,7 @@ pub fn labels(
 /// A table with a mix and ranks for it.
 fn ranked(table: &Table, mix: Mix, meter: &mut Meter<'_>) -> Result<Option<Table>, ForgeError> {
     let ranks = order::order(table, &mix, meter)?;
-    Ok(ranks
-        .map(|ranks| table.with_mix(mix, ranks))
-        .transpose()?)
+    Ok(ranks.map(|ranks| table.with_mix(mix, ranks)).transpose()?)
 }
 
 /// Makes a mix and judges it on twins that it was not made with. Returns `None` if the watch stopped the work.

@@ -19,6 +19,7 @@ pub(super) struct Presses {
     starts: Vec<u32>,
     all: Vec<Press>,
     own: Vec<i32>,
+    most: Vec<i32>,
 }
 
 /// A Gaussian of the distance, and where it ends. Lengths are in mean spacings of the full set.
@@ -45,20 +46,25 @@ impl Presses {
             .map(|block| {
                 let (mut found, mut own) = (Vec::with_capacity(256), 0);
                 let at = vectors[block].map(i64::from);
-                ground.meets(block, reach, |_| true, |meet| {
-                    let other = vectors[meet.to as usize].map(i64::from);
-                    let x = (i64::from(meet.i) << 20) + other[0] - at[0];
-                    let y = (i64::from(meet.j) << 20) + other[1] - at[1];
-                    let squared = (x * x + y * y) as f64;
-                    if squared < limit {
-                        let by = (meet.area * unit * exp(rate * squared)).round() as i32;
-                        if meet.to as usize == block {
-                            own += by;
-                        } else if by != 0 {
-                            found.push(Press { to: meet.to, by });
+                ground.meets(
+                    block,
+                    reach,
+                    |_| true,
+                    |meet| {
+                        let other = vectors[meet.to as usize].map(i64::from);
+                        let x = (i64::from(meet.i) << 20) + other[0] - at[0];
+                        let y = (i64::from(meet.j) << 20) + other[1] - at[1];
+                        let squared = (x * x + y * y) as f64;
+                        if squared < limit {
+                            let by = (meet.area * unit * exp(rate * squared)).round() as i32;
+                            if meet.to as usize == block {
+                                own += by;
+                            } else if by != 0 {
+                                found.push(Press { to: meet.to, by });
+                            }
                         }
-                    }
-                });
+                    },
+                );
                 found.sort_unstable_by_key(|press| press.to);
                 found.dedup_by(|later, first| {
                     let same = later.to == first.to;
@@ -75,6 +81,7 @@ impl Presses {
             starts: vec![0],
             all: Vec::with_capacity(each.iter().map(|(list, _)| list.len()).sum()),
             own: each.iter().map(|&(_, own)| own).collect(),
+            most: each.iter().map(|(list, _)| most(list)).collect(),
         };
         for (list, _) in each {
             presses.all.extend(list);
@@ -94,6 +101,12 @@ impl Presses {
         self.own[block]
     }
 
+    /// How much a block is pressed by the block that does so most.
+    #[inline]
+    pub(super) fn most(&self, block: usize) -> i32 {
+        self.most[block]
+    }
+
     /// How much two different blocks press each other.
     #[inline]
     pub(super) fn between(&self, a: usize, b: usize) -> i32 {
@@ -101,12 +114,17 @@ impl Presses {
         let found = list.binary_search_by_key(&(b as u32), |press| press.to);
         found.map_or(0, |at| list[at].by)
     }
+}
 
+fn most(list: &[Press]) -> i32 {
+    list.iter().map(|press| press.by).max().unwrap_or(0)
 }
 
 /// The length of a table's longest vector, in mean spacings.
 pub(super) fn longest(table: &Table) -> f64 {
     let squares = table.displacements().iter();
-    let squares = squares.map(|v| v.map(i64::from)).map(|[x, y]| x * x + y * y);
+    let squares = squares
+        .map(|v| v.map(i64::from))
+        .map(|[x, y]| x * x + y * y);
     (squares.max().unwrap_or(0) as f64).sqrt() / 1_048_576.0 * table.alpha().set_side_f64()
 }
