@@ -15,12 +15,12 @@ impl PointAttributes {
     /// The columns of `list`, which is what was bound.
     #[must_use]
     pub fn new(list: &Attributes, bound: BoundAttributes) -> Self {
-        let column = |attribute: &Attribute| match attribute {
-            Attribute::Variant(variants) => {
+        let column = |attribute: &Attribute| match attribute.variants() {
+            Some(variants) => {
                 let names: Vec<String> = variants.names().map(Into::into).collect();
                 encode::Column::dictionary(attribute.name(), names)
             }
-            other => encode::Column::number(other.name()),
+            None => encode::Column::number(attribute.name()),
         };
         Self {
             columns: list.as_slice().iter().map(column).collect(),

@@ -252,6 +252,8 @@ impl Planned {
             let has_attributes = !set.attributes.as_slice().is_empty();
             let attributes = has_attributes.then(|| {
                 let bound = plan.attributes(&set.attributes);
+                // Queries have no even variants, which alone depend on the table.
+                let bound = bound.expect("of any table");
                 Arc::new(PointAttributes::new(&set.attributes, bound)) as Arc<dyn Attributes>
             });
             Part {

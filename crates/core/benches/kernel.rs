@@ -21,7 +21,7 @@ const AT_ONCE: usize = 1024;
 fn fill_with_attributes(plan: &Plan, points: &mut [strew_core::Point]) -> u64 {
     let attributes = vec![Attribute::Angle, Attribute::scale(0.5, 2.0).expect("valid")];
     let attributes = Attributes::new(attributes).expect("different");
-    let bound = plan.attributes(&attributes);
+    let bound = plan.attributes(&attributes).expect("not of a mix");
     let mut columns: Vec<Column> = vec![];
     let (mut blocks, mut total) = (plan.blocks_points(), 0);
     loop {

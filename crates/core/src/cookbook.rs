@@ -140,7 +140,7 @@
 //! let plan = trees.chunk(64.0, [0, 0])?;
 //! let attributes = Attributes::new(vec![Attribute::Angle, Attribute::scale(0.8, 1.2)?])?;
 //! let ids: Vec<PointId> = plan.iter().map(|tree| tree.id()).collect();
-//! let columns = plan.attributes(&attributes).columns(ids);
+//! let columns = plan.attributes(&attributes)?.columns(ids);
 //! let angles = columns[0].numbers().expect("angles are numbers");
 //! assert_eq!(angles.len() as u128, plan.count());
 //! # Ok::<(), strew_core::Error>(())

@@ -60,9 +60,9 @@ pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
 pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
-    Cursor, F32, F64, Field, Format, Keep, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
-    Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster, Region,
-    ScaleRange, Seed, Spacing, Tile, UniformNumber, Variants, Warp,
+    Cursor, EvenVariants, F32, F64, Field, Format, Keep, LATTICE_LIMIT, LeastDistance, Member,
+    Members, Neighbor, Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster,
+    Region, ScaleRange, Seed, Spacing, Tile, UniformNumber, Variants, Warp,
 };
 pub use table::Table;
 

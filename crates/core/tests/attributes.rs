@@ -22,7 +22,7 @@ fn list(names: &[&str]) -> Attributes {
 }
 
 fn numbers(attributes: &Attributes, seed: u64, points: &[Point]) -> Vec<Vec<f64>> {
-    let bound = set(seed).attributes(attributes);
+    let bound = set(seed).attributes(attributes).expect("of any table");
     let columns = bound.columns(points.iter().map(|p| p.id));
     columns
         .into_iter()
@@ -92,7 +92,7 @@ fn hashed_numbers_are_uniform_and_independent() {
 #[test]
 fn neighbors_along_both_axes_are_independent() {
     // All ids in a square, whether points or not.
-    let bound = set(0).attributes(&list(&["u3"]));
+    let bound = set(0).attributes(&list(&["u3"])).expect("of any table");
     let value = |x: i64, y: i64| bound.value(0, PointId { x, y }).expect("there");
     let grid = |dx: i64, dy: i64| -> Vec<f64> {
         (0..200 * 200)
@@ -196,8 +196,8 @@ proptest! {
         let attributes = list(&["angle", "u7", "rank"]);
         let id = PointId { x, y };
         let other = set(seed).spacing(spacing).expect("valid").warp(strength).expect("in range");
-        let a = set(seed).attributes(&attributes);
-        let b = other.attributes(&attributes);
+        let a = set(seed).attributes(&attributes).expect("of any table");
+        let b = other.attributes(&attributes).expect("of any table");
         let mut columns = vec![Column::Variants(vec![3]); 5];
         b.write([PointId { x: 1, y: 2 }, id].into_iter(), &mut columns);
         prop_assert_eq!(columns.len(), 3);
@@ -219,7 +219,9 @@ fn members_have_the_values_of_columns() {
         Attribute::Rank,
     ]);
     let set = set(77);
-    let bound = set.attributes(&attributes.expect("different"));
+    let bound = set
+        .attributes(&attributes.expect("different"))
+        .expect("of any table");
     for member in set.chunk(20.0, [-4, 2]).expect("near") {
         let value = |i| bound.value(i, member.id()).expect("there");
         assert_eq!(member.angle(), value(0));
@@ -242,7 +244,7 @@ fn values_are_pinned() {
         Attribute::uniform(16).expect("valid"),
     ])
     .expect("different");
-    let bound = set(42).attributes(&attributes);
+    let bound = set(42).attributes(&attributes).expect("of any table");
     let values = |x, y| -> Vec<f64> {
         (0..6)
             .filter_map(|i| bound.value(i, PointId { x, y }))

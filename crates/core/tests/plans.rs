@@ -236,7 +236,7 @@ proptest! {
     ) {
         let set = set(&table, Placement { seed, ..unit(0).with_warp(warp) });
         let ranks = Attributes::new(vec![Attribute::Rank]).expect("one");
-        let ranks = set.attributes(&ranks);
+        let ranks = set.attributes(&ranks).expect("of any table");
         let mut expected = within(&set, &area).to_vec();
         expected.retain(|p| ranks.value(0, p.id).expect("a member") < share);
         let kept = set.clone().keep(share).expect("in range");

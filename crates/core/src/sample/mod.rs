@@ -36,7 +36,8 @@ mod warp;
 
 pub use area::{Area, Circle, Polygon, Region};
 pub use attribute::{
-    Attribute, Attributes, BoundAttributes, Column, ScaleRange, UniformNumber, Variants,
+    Attribute, Attributes, BoundAttributes, Column, EvenVariants, ScaleRange, UniformNumber,
+    Variants,
 };
 pub use cursor::Cursor;
 pub use field::{Edges, Field, FieldSpec, Filter, Marks, Noise, Pixels, Raster, Terrain};

@@ -3,14 +3,15 @@
 use alloc::vec::Vec;
 
 use super::{
-    Attribute, Attributes,
+    Attribute, Attributes, EvenVariants,
     hash::{angle, hash, in_row, key, of_row, scale, unit},
 };
 use crate::{
+    error::Error,
     pattern::Pattern,
     sample::{
         kernel::{Backend, compiled, write_numbers},
-        lattice::{Lattice, Point, PointId, rank},
+        lattice::{Lattice, Point, PointId, kind, rank},
     },
     table::TurnedTable,
 };
@@ -22,7 +23,7 @@ use crate::{
 ///
 /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
 /// let list = vec![Attribute::Rank, Attribute::Variant("oak:3,birch".parse()?)];
-/// let attributes = PointSet::new(table).attributes(&Attributes::new(list)?);
+/// let attributes = PointSet::new(table).attributes(&Attributes::new(list)?)?;
 /// let columns = attributes.columns([PointId { x: 4, y: 9 }]);
 /// assert!(matches!(columns[..], [Column::Numbers(_), Column::Variants(_)]));
 /// # Ok::<(), strew_core::Error>(())
@@ -80,7 +81,7 @@ impl Column {
 ///
 /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
 /// let set = PointSet::new(table).seed(7);
-/// let attributes = set.attributes(&Attributes::new(vec!["angle".parse()?, "u1".parse()?])?);
+/// let attributes = set.attributes(&Attributes::new(vec!["angle".parse()?, "u1".parse()?])?)?;
 /// let member = set.nearest([10.0, 3.0], 1)?[0].member;
 /// // The values are those that the point itself has.
 /// assert_eq!(attributes.value(0, member.id()), Some(member.angle()));
@@ -127,30 +128,36 @@ impl Rows {
 }
 
 impl BoundAttributes {
-    pub(crate) fn new(attributes: &Attributes, lattice: &Lattice) -> Self {
+    pub(crate) fn new(attributes: &Attributes, lattice: &Lattice) -> Result<Self, Error> {
+        for attribute in attributes.as_slice() {
+            if let Attribute::EvenVariant(even) = attribute {
+                even.check(&lattice.table)?;
+            }
+        }
         let seed = lattice.placement.seed;
         let bind = |attribute: &Attribute| Bound {
             key: key(seed, attribute.code()),
             attribute: attribute.clone(),
         };
-        Self {
+        Ok(Self {
             table: lattice.turned.clone(),
             pattern: lattice.pattern,
             list: attributes.as_slice().iter().map(bind).collect(),
-        }
+        })
     }
 
     /// The value of attribute number `i` at one point, or `None` past the last attribute. A variant is
     /// its index as a number.
     ///
-    /// An id without a point has values as well; its rank is the greatest, 1 − 2⁻⁵³.
+    /// An id without a point has values as well; its rank is the greatest, 1 − 2⁻⁵³, and its even variant that of
+    /// the rarest kind.
     ///
     /// ```
     /// use strew_core::{Attribute, Attributes, PointId, PointSet, Table};
     ///
     /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
     /// let scale = Attributes::new(vec![Attribute::scale(0.8, 1.2)?])?;
-    /// let scale = PointSet::new(table).attributes(&scale);
+    /// let scale = PointSet::new(table).attributes(&scale)?;
     /// let id = PointId { x: 4, y: 9 };
     /// assert!(scale.value(0, id).is_some_and(|factor| (0.8..=1.2).contains(&factor)));
     /// assert_eq!(scale.value(1, id), None);
@@ -159,10 +166,7 @@ impl BoundAttributes {
     #[must_use]
     pub fn value(&self, i: usize, id: PointId) -> Option<f64> {
         let bound = self.list.get(i)?;
-        Some(match &bound.attribute {
-            Attribute::Variant(variants) => variants.pick(hash(bound.key, id)).into(),
-            attribute => self.number(attribute, bound.key, id),
-        })
+        Some(self.number(&bound.attribute, bound.key, id))
     }
 
     /// One column per attribute, one value per id.
@@ -173,7 +177,7 @@ impl BoundAttributes {
     /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
     /// let plan = PointSet::new(table).seed(7).chunk(20.0, [0, 0])?;
     /// let points = plan.to_vec();
-    /// let angle = plan.attributes(&Attributes::new(vec!["angle".parse()?])?);
+    /// let angle = plan.attributes(&Attributes::new(vec!["angle".parse()?])?)?;
     /// let columns = angle.columns(points.iter().map(|point| point.id));
     /// assert_eq!(columns[0].numbers().map(<[f64]>::len), Some(points.len()));
     /// # Ok::<(), strew_core::Error>(())
@@ -197,7 +201,7 @@ impl BoundAttributes {
     ///
     /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
     /// let rank = Attributes::new(vec!["rank".parse()?])?;
-    /// let rank = PointSet::new(table).attributes(&rank);
+    /// let rank = PointSet::new(table).attributes(&rank)?;
     /// let mut columns = Vec::new();
     /// for x in 0..3 {
     ///     rank.write((0..4).map(|y| PointId { x, y }), &mut columns);
@@ -218,15 +222,17 @@ impl BoundAttributes {
         };
         for (bound, column) in self.list.iter().zip(columns) {
             let key = bound.key;
-            if let Attribute::Variant(variants) = &bound.attribute {
-                let picked = ids.ids.iter().map(|&id| variants.pick(hash(key, id)));
-                if let Column::Variants(values) = column {
-                    values.clear();
-                    values.extend(picked);
-                } else {
-                    *column = Column::Variants(picked.collect());
+            match &bound.attribute {
+                Attribute::Variant(variants) => {
+                    let picked = ids.ids.iter().map(|&id| variants.pick(hash(key, id)));
+                    replace(column, picked);
+                    continue;
                 }
-                continue;
+                Attribute::EvenVariant(even) => {
+                    replace(column, ids.ids.iter().map(|&id| self.index(even, id)));
+                    continue;
+                }
+                _ => {}
             }
             let mut values = match core::mem::replace(column, Column::Numbers(Vec::new())) {
                 Column::Numbers(values) => values,
@@ -255,7 +261,7 @@ impl BoundAttributes {
     ///
     /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
     /// let plan = PointSet::new(table).seed(7).chunk(20.0, [0, 0])?;
-    /// let angle = plan.attributes(&Attributes::new(vec!["angle".parse()?])?);
+    /// let angle = plan.attributes(&Attributes::new(vec!["angle".parse()?])?)?;
     /// let (mut block, mut columns) = ([Point::default(); 64], Vec::new());
     /// let filled = plan.blocks_points().fill(&mut block);
     /// angle.write_points(&block[..filled], &mut columns);
@@ -273,6 +279,23 @@ impl BoundAttributes {
             Attribute::Rank => rank(&self.table, &self.pattern, id),
             Attribute::Uniform(_) => unit(hash(key, id)),
             Attribute::Variant(variants) => variants.pick(hash(key, id)).into(),
+            Attribute::EvenVariant(even) => self.index(even, id).into(),
         }
+    }
+
+    /// The index of the variant of a point's kind.
+    fn index(&self, even: &EvenVariants, id: PointId) -> u32 {
+        let kind = kind(&self.table, &self.pattern, id).unwrap_or(0);
+        even.index(kind).unwrap_or(0)
+    }
+}
+
+/// Replaces a column by indices, in its memory if it has such.
+fn replace(column: &mut Column, indices: impl Iterator<Item = u32>) {
+    if let Column::Variants(values) = column {
+        values.clear();
+        values.extend(indices);
+    } else {
+        *column = Column::Variants(indices.collect());
     }
 }

@@ -2,7 +2,7 @@
 
 use core::{fmt, str::FromStr};
 
-use super::Variants;
+use super::{EvenVariants, Variants};
 use crate::error::{Error, ErrorKind, number, shown};
 
 /// A value that every point has.
@@ -25,6 +25,8 @@ pub enum Attribute {
     Scale(ScaleRange),
     /// `variant`: one of several named things, chosen by weight.
     Variant(Variants),
+    /// `variant`: one of several named things, each spread evenly: the kind of the point.
+    EvenVariant(EvenVariants),
     /// `rank`: a number in [0, 1), uniform over the pattern. The points of rank below λ are a share λ of
     /// all, nested as λ grows.
     Rank,
@@ -209,7 +211,7 @@ impl Attribute {
         match self {
             Self::Angle => "angle",
             Self::Scale(_) => "scale",
-            Self::Variant(_) => "variant",
+            Self::Variant(_) | Self::EvenVariant(_) => "variant",
             Self::Rank => "rank",
             Self::Uniform(n) => UNIFORM_NAMES[n.0 as usize - 1],
         }
@@ -224,10 +226,29 @@ impl Attribute {
         0x100 + n as u64
     }
 
-    /// The code of this attribute. The rank, which is not hashed, has 0.
+    /// The variants, if the attribute is a variant, however these are spread.
+    ///
+    /// ```
+    /// use strew_core::{Attribute, Variants};
+    ///
+    /// let trees: Variants = "oak:3,birch".parse()?;
+    /// assert_eq!(Attribute::EvenVariant(trees.evenly()?).variants(), Some(&trees));
+    /// assert_eq!(Attribute::Angle.variants(), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn variants(&self) -> Option<&Variants> {
+        match self {
+            Self::Variant(variants) => Some(variants),
+            Self::EvenVariant(even) => Some(even.variants()),
+            _ => None,
+        }
+    }
+
+    /// The code of this attribute. Those that are not hashed have 0.
     pub(super) const fn code(&self) -> u64 {
         match self {
-            Self::Rank => 0,
+            Self::Rank | Self::EvenVariant(_) => 0,
             Self::Angle => Self::ANGLE,
             Self::Scale(_) => Self::SCALE,
             Self::Variant(_) => Self::VARIANT,

@@ -21,7 +21,7 @@ use crate::error::{Error, ErrorKind};
 ///     "u1".parse()?,
 /// ])?;
 /// let ids = [PointId { x: -31, y: 52 }, PointId { x: 4, y: 9 }];
-/// let columns = set.attributes(&attributes).columns(ids);
+/// let columns = set.attributes(&attributes)?.columns(ids);
 /// assert_eq!(columns.len(), 4);
 /// let scales = columns[1].numbers().expect("scales are numbers");
 /// assert!(scales.iter().all(|scale| (0.8..=1.2).contains(scale)));

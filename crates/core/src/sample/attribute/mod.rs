@@ -2,19 +2,22 @@
 //!
 //! Trees are to be turned, scaled and of some kind, and the same tree must look the same whichever query
 //! finds it. So an attribute is a function of the point's id and the seed alone: not of the spacing, the
-//! warp, the region or the order. All but the rank are hashed (`hash`); the rank follows from the point's
-//! place in index space.
+//! warp, the region or the order. All but the rank and even variants are hashed (`hash`); these follow from
+//! the point's place in index space and from the table.
 //!
-//! `kinds` names the attributes and `variants` their named things; `list` is a list of them, which `bound`
+//! `kinds` names the attributes and `variants` their named things, which `even` matches with the kinds of a table's
+//! points; `list` is a list of them, which `bound`
 //! evaluates for the points of a set.
 
 mod bound;
+mod even;
 pub(super) mod hash;
 mod kinds;
 mod list;
 mod variants;
 
 pub use bound::{BoundAttributes, Column};
+pub use even::EvenVariants;
 pub use kinds::{Attribute, ScaleRange, UniformNumber};
 pub use list::Attributes;
 pub use variants::Variants;

@@ -367,19 +367,21 @@ impl Plan {
 
     /// Attributes of the plan's points; see [`PointSet::attributes`](crate::PointSet::attributes).
     ///
+    /// # Errors
+    /// As [`PointSet::attributes`](crate::PointSet::attributes).
+    ///
     /// ```
     /// use strew_core::{Attribute, Attributes, PointSet, Table};
     ///
     /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
     /// let plan = PointSet::new(table).seed(7).chunk(8.0, [0, 0])?;
-    /// let scale = plan.attributes(&Attributes::new(vec![Attribute::scale(0.8, 1.2)?])?);
+    /// let scale = plan.attributes(&Attributes::new(vec![Attribute::scale(0.8, 1.2)?])?)?;
     /// for tree in &plan {
     ///     assert_eq!(scale.value(0, tree.id()), Some(tree.scale(0.8..=1.2)));
     /// }
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    #[must_use]
-    pub fn attributes(&self, attributes: &Attributes) -> BoundAttributes {
+    pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
         BoundAttributes::new(attributes, &self.scope.lattice)
     }
 

@@ -263,22 +263,26 @@ impl PointSet {
     }
 
     /// The values that the points of this set have for some attributes. They depend on ids and the seed
-    /// alone.
+    /// alone, ranks and [even variants](crate::EvenVariants) also on the table.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Kinds`](crate::ErrorKind::Kinds) for even variants of other shares than those of the table's
+    /// [mix](crate::Table::mix).
     ///
     /// ```
     /// use strew_core::{Attributes, PointId, PointSet, Table};
     ///
     /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
     /// let angle = Attributes::new(vec!["angle".parse()?])?;
-    /// let value = |set: &PointSet| set.attributes(&angle).value(0, PointId { x: 4, y: 9 });
+    /// let id = PointId { x: 4, y: 9 };
+    /// let value = |set: &PointSet| set.attributes(&angle).map(|bound| bound.value(0, id));
     /// let set = PointSet::new(table).seed(7);
     /// // The seed changes the values, spacing and warp do not.
-    /// assert_ne!(value(&set), value(&set.clone().seed(8)));
-    /// assert_eq!(value(&set), value(&set.clone().spacing(3.0)?.warp(0.0)?));
+    /// assert_ne!(value(&set)?, value(&set.clone().seed(8))?);
+    /// assert_eq!(value(&set)?, value(&set.clone().spacing(3.0)?.warp(0.0)?)?);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    #[must_use]
-    pub fn attributes(&self, attributes: &Attributes) -> BoundAttributes {
+    pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
         BoundAttributes::new(attributes, &self.lattice)
     }
 
