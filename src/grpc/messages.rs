@@ -61,7 +61,7 @@ impl Messages {
             relative_to: planned.query.region.corner,
             ..Output::new(format)
         };
-        let parts = planned.parts();
+        let parts = planned.parts()?;
         let coordinates = Coordinates::of(&output, &parts);
         let rows = Rows::new(parts, coordinates);
         let heads: Vec<ColumnHead> = own_columns(&rows).iter().map(head).collect();

@@ -39,7 +39,7 @@ pub(super) const fn counts(set: &Set) -> f64 {
 pub(super) fn kinds(set: &Set) -> f64 {
     set.kinds
         .as_ref()
-        .map_or(0.0, |kinds| kinds.shares.kinds() as f64)
+        .map_or(0.0, |kinds| kinds.shares().kinds() as f64)
 }
 
 /// A request for points, as far as it decides what counting costs.

@@ -296,11 +296,11 @@ impl Service {
             let Ready { table, .. } = self.samplers.get(made, &self.workers).await?;
             return Ok(Ready { table, ..ready });
         }
-        if let Some(known) = self.mixes.known(&ready, &kinds.shares).await {
+        if let Some(known) = self.mixes.known(&ready, kinds.shares()).await {
             return Ok(known);
         }
         caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
-        self.mixes.get(&ready, &kinds.shares, &self.workers).await
+        self.mixes.get(&ready, kinds.shares(), &self.workers).await
     }
 
     /// The right of a caller to start one more stream; a picture of that size is held whole.

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use strew_core::{
-    Cursor, PointSet,
+    BoundAttributes, Cursor, PointSet,
     server::{self, Stop},
 };
 
@@ -42,6 +42,8 @@ pub struct Placed {
     pub set: Set,
     /// Its points.
     pub points: PointSet,
+    /// Their attributes.
+    pub(super) attributes: BoundAttributes,
     /// As answers echo it.
     pub resolved: ResolvedSet,
 }
@@ -61,12 +63,20 @@ impl Placed {
             ));
         };
         let least = resolve::least_distance(&set, &ready, spacing, 0.0);
+        let points = set.points(&ready.table, spacing);
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least, &[]),
-            points: set.points(&ready.table, spacing),
+            attributes: points.attributes(&set.attributes).map_err(other_kinds)?,
+            points,
             set,
         })
     }
+}
+
+/// The error of a table whose kinds are not those that were found for it.
+fn other_kinds(error: strew_core::Error) -> Error {
+    tracing::error!(%error, "a table has other kinds");
+    Error::Internal("a table has other kinds")
 }
 
 impl Planned {
@@ -131,7 +141,7 @@ impl Planned {
                 Some(kinds) if ready.table.mix().is_none() => {
                     let table = match &kinds.made {
                         Some(made) => made.table()?,
-                        None => mixes::make(&ready.table, &kinds.shares)?,
+                        None => mixes::make(&ready.table, kinds.shares())?,
                     };
                     Ok(Ready { table, ..ready })
                 }
@@ -258,22 +268,24 @@ impl Planned {
     }
 
     /// The parts of the answer.
-    #[must_use]
-    pub fn parts(&self) -> Vec<Part> {
-        let part = |(set, planned): (&Set, &PlannedSet)| {
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if a table has not the kinds that were found for it.
+    pub fn parts(&self) -> Result<Vec<Part>, Error> {
+        let part = |(set, planned): (&Set, &PlannedSet)| -> Result<Part, Error> {
             let plan = planned.plan.clone();
-            let has_attributes = !set.attributes.as_slice().is_empty();
-            let attributes = has_attributes.then(|| {
-                let bound = plan.attributes(&set.attributes);
-                // Queries have no even variants, which alone depend on the table.
-                let bound = bound.expect("of any table");
-                Arc::new(PointAttributes::new(&set.attributes, bound)) as Arc<dyn Attributes>
-            });
-            Part {
+            let mut attributes = None;
+            if !set.attributes.as_slice().is_empty() {
+                let bound = plan.attributes(&set.attributes).map_err(other_kinds)?;
+                attributes =
+                    Some(Arc::new(PointAttributes::new(&set.attributes, bound))
+                        as Arc<dyn Attributes>);
+            }
+            Ok(Part {
                 layer: self.query.is_layered.then(|| set.name.clone()),
                 attributes,
                 plan,
-            }
+            })
         };
         self.query.sets.iter().zip(&self.sets).map(part).collect()
     }

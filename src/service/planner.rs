@@ -129,9 +129,10 @@ impl<'a> Planner<'a> {
                 counts[usize::from(kind)] -= 1;
             }
         }
-        let count = |place: u32| counts.get(usize::from(kinds.number(place))).copied();
-        let all = 0..kinds.variants.count() as u32;
-        Ok(all.map(|place| count(place).unwrap_or(0)).collect())
+        let names = kinds.variants.variants().names();
+        let kind = |name: &str| Some(usize::from(kinds.variants.kind(name)?));
+        let count = |name: &str| counts.get(kind(name)?).copied();
+        Ok(names.map(|name| count(name).unwrap_or(0)).collect())
     }
 
     /// The points of a set that keep clear of the layers it names.

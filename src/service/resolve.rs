@@ -68,7 +68,9 @@ pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing, reach: 
     if moves(set, ready) {
         return 0.0;
     }
-    let least = ready.table.least_distance();
+    let only = set.kinds.as_ref().and_then(|kinds| kinds.only.as_ref());
+    let of_kind = only.and_then(|(_, kind)| ready.table.least_distance_of(*kind, *kind));
+    let least = of_kind.unwrap_or_else(|| ready.table.least_distance());
     let least = least.reported(spacing, set.warp, reach);
     match set.amount {
         // The spacing is a little wider than this takes.

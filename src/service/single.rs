@@ -88,11 +88,8 @@ impl Placed {
     fn found(&self, member: &Member, distance: Option<f64>) -> Found {
         let point = member.point();
         let list = self.set.attributes.as_slice();
-        let bound = self.points.attributes(&self.set.attributes);
-        // Queries have no even variants, which alone depend on the table.
-        let bound = bound.expect("of any table");
         let value = |(i, attribute): (usize, &Attribute)| {
-            let number = bound.value(i, point.id).unwrap_or_default();
+            let number = self.attributes.value(i, point.id).unwrap_or_default();
             let value = match attribute.variants() {
                 Some(variants) => variants.name(number as u32).into(),
                 None => number.into(),

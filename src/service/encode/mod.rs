@@ -133,7 +133,7 @@ impl Answer {
         }
         Ok(Self {
             warning: output.warning(),
-            ..Self::of_parts(planned, planned.parts(), output, block_bytes)?
+            ..Self::of_parts(planned, planned.parts()?, output, block_bytes)?
         })
     }
 

@@ -3,14 +3,14 @@
 use strew_core::{Attribute, Attributes, ScaleRange, Variants};
 
 use super::{
-    Checked, Parameter, Together as _, Values, all,
+    Checked, Kinds, Parameter, Together as _, Values, all,
     kinds::CHANCE,
     parameters::{ATTRIBUTES, SCALE_RANGE, SPREAD, VARIANTS},
 };
 use crate::service::Fault;
 
 /// Checks the attributes among some values.
-pub(super) fn check(values: &Values) -> Checked<Attributes> {
+pub(super) fn check(values: &Values, kinds: Option<&Kinds>) -> Checked<Attributes> {
     let names = values.get::<Vec<String>>(&ATTRIBUTES);
     let named = names
         .iter()
@@ -29,7 +29,10 @@ pub(super) fn check(values: &Values) -> Checked<Attributes> {
     let pairs = named.iter().zip(others);
     let list = pairs.filter_map(|(name, other)| match name.as_str() {
         "scale" => Some(Attribute::Scale(range)),
-        "variant" => variants.clone().map(Attribute::Variant),
+        "variant" => match kinds {
+            Some(kinds) => Some(Attribute::EvenVariant(kinds.variants.clone())),
+            None => variants.clone().map(Attribute::Variant),
+        },
         _ => other,
     });
     let fault = |error: strew_core::Error| values.fault(&ATTRIBUTES, error.to_string()).into();
@@ -112,7 +115,7 @@ mod tests {
             ),
             ("attributes=angle,angle", &["attributes"]),
         ] {
-            let faults = check(&parse_pairs(text, groups::POINTS)).expect_err(text);
+            let faults = check(&parse_pairs(text, groups::POINTS), None).expect_err(text);
             let found: Vec<&str> = faults
                 .as_slice()
                 .iter()

@@ -342,12 +342,14 @@ fn written(values: &Values) -> Map<String, Json> {
 impl Set {
     /// Checks the set of some values.
     fn of(values: &Values, loaded: &Loaded<'_>) -> Checked<Self> {
+        let kinds = Kinds::check(values);
+        let known = kinds.as_ref().ok().and_then(Option::as_ref);
         let checked = (
             Amount::of(values),
             values.get::<u64>(&SEED),
             warp(values),
             keep(values),
-            (attributes::check(values), Kinds::check(values)).together(),
+            (attributes::check(values, known), kinds.clone()).together(),
             table::check(values, None, loaded.catalog),
             loaded.field(values),
         );

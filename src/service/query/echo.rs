@@ -133,7 +133,10 @@ impl Set {
         least_distance: f64,
         kinds: &[u128],
     ) -> ResolvedSet {
-        let names = self.kinds.iter().flat_map(|kinds| kinds.variants.names());
+        let names = self
+            .kinds
+            .iter()
+            .flat_map(|kinds| kinds.variants.variants().names());
         ResolvedSet {
             name: self.name.clone(),
             region: self.region.as_ref().map(QueryRegion::full_echo),

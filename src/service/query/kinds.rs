@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use strew_core::{Variants, table::Shares};
+use strew_core::{EvenVariants, table::Shares};
 
 use super::{
     Checked, Together as _, Values,
@@ -39,14 +39,12 @@ impl Spread {
 /// Variants that are evenly spread.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kinds {
-    /// Their names and weights.
-    pub variants: Variants,
-    /// Their shares, in the order of the table's kinds.
-    pub shares: Shares,
+    /// Their names and weights, and the kind that each is.
+    pub variants: EvenVariants,
     /// How they are spread.
     pub spread: Spread,
-    /// The only one that is wanted, by its place among the variants.
-    pub only: Option<u32>,
+    /// The name and the kind of the only one that is wanted.
+    pub only: Option<(String, u8)>,
     /// The loaded table whose labels spread them evenly, if there is one.
     pub made: Option<Arc<Entry>>,
 }
@@ -69,27 +67,24 @@ impl Kinds {
         let Some(variants) = super::attributes::variants(values)? else {
             return Err(values.missing(&VARIANTS).into());
         };
-        let weights = variants.weights().map(|(_, weight)| weight);
-        let shares = Shares::new(weights).map_err(|error| {
+        let variants = variants.evenly().map_err(|error| {
             let allowed = format!("{}, with spread {}", error.allowed(), spread.name());
             let field = format!("{}{}", values.path(), VARIANTS.name);
             Fault::new(&field, values.text(&VARIANTS), error.to_string(), allowed)
         })?;
-        let only = only.map(|only| {
-            let place = variants.names().position(|name| name == only);
-            place
-                .and_then(|place| u32::try_from(place).ok())
-                .ok_or_else(|| {
-                    let detail = unknown("variant", &only, variants.names());
-                    let field = format!("{}{}", values.path(), ONLY.name);
-                    let names: Vec<&str> = variants.names().collect();
-                    Fault::new(&field, only, detail, names.join(", "))
-                })
-        });
+        let kind = |only: String| match variants.kind(&only) {
+            Some(kind) => Ok((only, kind)),
+            None => {
+                let names = || variants.variants().names();
+                let detail = unknown("variant", &only, names());
+                let field = format!("{}{}", values.path(), ONLY.name);
+                let allowed: Vec<&str> = names().collect();
+                Err(Fault::new(&field, only, detail, allowed.join(", ")))
+            }
+        };
         Ok(Some(Self {
-            only: only.transpose()?,
+            only: only.map(kind).transpose()?,
             variants,
-            shares,
             spread,
             made: None,
         }))
@@ -105,7 +100,7 @@ impl Kinds {
     ) -> Checked<Arc<Entry>> {
         let are_moved = self.spread == Spread::Joint;
         let mixes = || catalog.mixes(&plain, are_moved);
-        let is_wanted = |mix: &MixKey| *mix.shares == *self.shares.parts();
+        let is_wanted = |mix: &MixKey| *mix.shares == *self.shares().parts();
         let found = mixes()
             .find(|(mix, _)| is_wanted(mix))
             .map(|(_, entry)| entry.clone());
@@ -124,36 +119,31 @@ impl Kinds {
             };
             let detail = format!(
                 "no table with joint kinds of the shares {} is loaded",
-                self.shares
+                self.shares()
             );
             let field = format!("{}{}", values.path(), SPREAD.name);
             Fault::new(&field, self.spread.name(), detail, allowed).into()
         })
     }
 
-    /// The number of the kind that a variant is: the rarest first, of equal ones the first by name.
+    /// The shares of the kinds.
     #[must_use]
-    pub fn number(&self, variant: u32) -> u8 {
-        let all: Vec<(&str, f64)> = self.variants.weights().collect();
-        let Some(own) = all.get(variant as usize) else {
-            return u8::MAX;
-        };
-        let is_before =
-            |other: &&(&str, f64)| other.1 < own.1 || (other.1 == own.1 && other.0 < own.0);
-        all.iter().filter(is_before).count() as u8
+    pub const fn shares(&self) -> &Shares {
+        self.variants.shares()
     }
 
     /// The share of the points that are wanted.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.only
-            .map_or(1.0, |only| self.shares.of(self.number(only)))
+            .as_ref()
+            .map_or(1.0, |(_, kind)| self.shares().of(*kind))
     }
 
     /// The name of the only one that is wanted.
     #[must_use]
     pub fn only_name(&self) -> Option<&str> {
-        self.variants.name(self.only?)
+        self.only.as_ref().map(|(name, _)| name.as_str())
     }
 }
 
@@ -197,7 +187,7 @@ mod tests {
         assert_eq!(one, kinds("spread=even&variants=birch:1,oak:3&only=oak"));
         let one = one.expect("kinds");
         assert_eq!(
-            (one.only_name(), one.shares.to_string()),
+            (one.only_name(), one.shares().to_string()),
             (Some("oak"), "1:3".into())
         );
         assert_eq!(kinds("spread=chance&variants=birch:1,oak:3"), None);

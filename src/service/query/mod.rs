@@ -182,8 +182,8 @@ impl Set {
     pub(super) fn points(&self, table: &Table, spacing: Spacing) -> PointSet {
         let mut points = PointSet::new(table.clone()).placed(self.placement(spacing));
         if let Some(kinds) = &self.kinds
-            && let Some(only) = kinds.only
-            && let Ok(of_kind) = points.clone().only(kinds.number(only))
+            && let Some((_, kind)) = kinds.only
+            && let Ok(of_kind) = points.clone().only(kind)
         {
             points = of_kind;
         }

@@ -267,11 +267,9 @@ parameters! {
                        weights from 1e-9 to 1e9"),
         example: "oak:3,birch:1",
         echo: Some(|set| {
-            let own = set.attributes.as_slice().iter().find_map(|attribute| match attribute {
-                Attribute::Variant(variants) => Some(variants),
-                _ => None,
-            });
-            let variants = own.or(set.kinds.as_ref().map(|kinds| &kinds.variants))?;
+            let own = set.attributes.as_slice().iter().find_map(Attribute::variants);
+            let kinds = set.kinds.as_ref().map(|kinds| kinds.variants.variants());
+            let variants = own.or(kinds)?;
             let pairs = variants.weights();
             Some(Value::Weights(pairs.map(|(name, weight)| (name.into(), weight)).collect()))
         }),

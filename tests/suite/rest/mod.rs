@@ -15,6 +15,7 @@ mod http;
 mod invalid_bodies;
 mod invalid_parameters;
 mod invalid_queries;
+mod kinds;
 mod layers;
 mod paging;
 mod presets;

@@ -18,7 +18,7 @@ const AREA_BITS: u32 = 32;
 /// The temperatures at the start and at the end, in energies of a mean block.
 const HEAT: [f64; 2] = [0.5, 0.01];
 /// Sweeps: proposals for each block that is not of the last kind.
-const SWEEPS: u32 = 2000;
+const SWEEPS: u32 = 1500;
 /// Steps of the meter.
 pub(super) const STEPS: u32 = 100;
 /// The seed of the proposals, chosen arbitrarily.
@@ -141,21 +141,23 @@ impl<'a> Annealer<'a> {
         let a = self.minor[below(bits >> 32, 32, self.minor.len())] as usize;
         let limit = (heat * logs[bits as usize % LOGS]) >> LOG_UNIT;
         let bits = (bits & 0xffff_ffff) >> LOG_BITS;
-        let b = if bits & 1 == 0 {
+        if bits & 1 == 0 {
             let near = self.presses[self.kinds[usize::from(self.labels[a])].presses].of(a);
             if near.is_empty() {
                 return;
             }
-            near[below(bits >> 1, 19, near.len())].to as usize
+            let press = near[below(bits >> 1, 19, near.len())];
+            self.swap(a, press.to as usize, i64::from(press.by), limit);
         } else {
-            below(random.next_u64() >> 32, 32, self.labels.len())
-        };
-        self.swap(a, b, limit);
+            let b = below(random.next_u64() >> 32, 32, self.labels.len());
+            self.swap(a, b, 0, limit);
+        }
     }
 
-    /// Swaps two blocks if it costs at most `limit`.
+    /// Swaps two blocks if it costs at most `limit`. They press each other by `press` as the kind of the first;
+    /// 0 if that is not known, which is rarely wrong.
     #[inline]
-    fn swap(&mut self, a: usize, b: usize, limit: i64) {
+    fn swap(&mut self, a: usize, b: usize, press: i64, limit: i64) {
         let [from, to] = [a, b].map(|block| usize::from(self.labels[block]));
         if from == to {
             return;
@@ -166,9 +168,21 @@ impl<'a> Annealer<'a> {
         let cost = at_a[to] - at_a[from] + at_b[from] - at_b[to]
             + self.strain(from, by)
             + self.strain(to, -by);
-        // They no longer press each other once they have swapped, which can only lower the cost.
-        if cost > limit && cost - self.between(a, b, from, to) > limit {
-            return;
+        // They no longer press each other once they have swapped, which lowers the cost.
+        if cost > limit {
+            let [p, q] = [from, to].map(|kind| self.kinds[kind].presses);
+            let list = &self.presses[q];
+            if press == 0 || cost - press - i64::from(list.most(a)) > limit {
+                return;
+            }
+            let other = if p == q {
+                press
+            } else {
+                i64::from(list.between(a, b))
+            };
+            if cost - press - other > limit {
+                return;
+            }
         }
         self.turn(a, from, to);
         self.turn(b, to, from);
@@ -178,14 +192,6 @@ impl<'a> Annealer<'a> {
             self.minor[self.places[a] as usize] = b as u32;
             self.places[b] = self.places[a];
         }
-    }
-
-    /// What two blocks press each other as either kind.
-    #[inline]
-    fn between(&self, a: usize, b: usize, from: usize, to: usize) -> i64 {
-        let [p, q] = [from, to].map(|kind| self.kinds[kind].presses);
-        let press = |list: usize| i64::from(self.presses[list].between(a, b));
-        press(p) + if p == q { press(p) } else { press(q) }
     }
 
     /// What `by` more area of a kind costs.

@@ -1,11 +1,12 @@
-//! Judging a mix: all points and each kind, whole and thinned, on twins that it was not made with.
+//! Judging a mix: all points and each kind, whole and thinned, on twins that it was not made with and on windows
+//! as they are served, with a seed and its warp.
 
-use strew_core::{Table, Twin, table::Figures};
+use strew_core::{PointSet, Region, Table, Twin, table::Figures};
 
 use crate::{
     judge::{Bound, Complaint, Figure, round},
     ladder::ThinnedTwin,
-    measure::{Distances, Spectrum, Torus},
+    measure::{Distances, Spectrum, Summary, Torus, Window},
     twins::nearest,
     watch::{Meter, Stage, Watch},
 };
@@ -13,16 +14,21 @@ use crate::{
 /// The most points of the twins judged on. Labels are made by the frequencies of α itself, so that no twin was
 /// seen.
 const LARGEST: [u64; 2] = [100_000, 300_000];
+/// The seeds of windows, and about how many points they have.
+const SEEDS: [u64; 2] = [1, 2];
+const POINTS: f64 = 60_000.0;
 /// The width of the rings that spectra are taken over.
 const RING: f64 = 0.04;
 /// The greatest frequency looked at, of whole and of thinned sets.
 const NU: f64 = 2.5;
 const NU_THINNED: f64 = 0.6;
-/// The shares at which sets are judged, besides 1.
+/// The shares at which twins and windows are judged, besides 1.
 const SHARES: [f64; 7] = [0.9, 0.7, 0.5, 0.35, 0.25, 0.15, 0.1];
-/// The blocks of a kind from which bounds on thinned sets hold. With fewer, low power is in proportion to
-/// 1/blocks.
+const SHARES_OF_WINDOWS: [f64; 2] = [0.6, 0.2];
+/// The blocks of a kind from which bounds on thinned sets hold, and the number with which they double. With few,
+/// low power grows as 1/blocks.
 const BLOCKS: f64 = 100.0;
+const DOUBLING: f64 = 25.0;
 /// The greatest share of a kind whose low power must be below the bounds of all kinds.
 const DENSE: f64 = 0.8;
 
@@ -58,19 +64,26 @@ pub(super) fn judge(
         .filter_map(|&most| nearest(table.map(), most));
     let mut twins: Vec<Twin> = twins.collect();
     twins.dedup();
-    let steps = twins.len() * (1 + SHARES.len());
-    let mut meter = Meter::new(watch, Stage::Measuring, steps as u32);
+    let places: Vec<Place> = twins
+        .into_iter()
+        .map(Place::Twin)
+        .chain(SEEDS.map(Place::Window))
+        .collect();
+    let shares = places.iter().map(|place| 1 + place.shares().len());
+    let mut meter = Meter::new(watch, Stage::Measuring, shares.sum::<usize>() as u32);
     let (mut figures, mut complaints) = (Vec::new(), Vec::new());
-    for twin in twins {
-        let points = ThinnedTwin::new(table, twin)?;
-        let before = of.and_then(|of| ThinnedTwin::new(of, twin));
-        let before = before.map(|before| summary(&before.at(1.0, false), NU).anisotropy_db);
-        for share in [1.0].into_iter().chain(SHARES) {
+    for place in places {
+        let sets = place.sets(table)?;
+        let before = match of {
+            Some(of) => Some(place.sets(of)?.all(1.0)?.summary(NU).anisotropy_db),
+            None => None,
+        };
+        for &share in [1.0].iter().chain(place.shares()) {
             if meter.stop() {
                 return None;
             }
-            for subject in subjects(table, &points, share) {
-                let measured = subject.measure(twin, share);
+            for subject in subjects(table, &sets, share)? {
+                let measured = subject.measure(place, share);
                 let bounds = subject.bounds(table, share, before);
                 complaints.extend(bounds.iter().filter_map(|bound| bound.check(&measured)));
                 figures.push(measured);
@@ -81,27 +94,117 @@ pub(super) fn judge(
     Some((figures, complaints))
 }
 
-/// A set to measure: a kind, or all points.
+/// Where a table is measured.
+#[derive(Clone, Copy)]
+enum Place {
+    Twin(Twin),
+    /// A window, by its seed.
+    Window(u64),
+}
+
+/// The sets of a table at a place.
+enum Sets<'a> {
+    Twin(ThinnedTwin<'a>),
+    Window(PointSet),
+}
+
+/// A set to measure.
+enum Set {
+    Twin(Torus),
+    Window(Window),
+}
+
+impl Place {
+    /// The shares at which the place is judged, besides 1.
+    const fn shares(&self) -> &'static [f64] {
+        match self {
+            Self::Twin(_) => &SHARES,
+            Self::Window(_) => &SHARES_OF_WINDOWS,
+        }
+    }
+
+    fn sets(self, table: &Table) -> Option<Sets<'_>> {
+        Some(match self {
+            Self::Twin(twin) => Sets::Twin(ThinnedTwin::new(table, twin)?),
+            Self::Window(seed) => Sets::Window(PointSet::new(table.clone()).seed(seed)),
+        })
+    }
+}
+
+impl Sets<'_> {
+    /// All points at a share.
+    fn all(&self, share: f64) -> Option<Set> {
+        Some(match self {
+            Self::Twin(twin) => Set::Twin(twin.at(share, false)),
+            Self::Window(set) => Set::Window(window(set, share, 1.0)?),
+        })
+    }
+
+    /// The points of a kind at a share. The kind has a part of all points.
+    fn of_kind(&self, share: f64, kind: u8, part: f64) -> Option<Set> {
+        Some(match self {
+            Self::Twin(twin) => Set::Twin(twin.of_kind(share, kind)),
+            Self::Window(set) => Set::Window(window(&set.clone().only(kind).ok()?, share, part)?),
+        })
+    }
+}
+
+/// A window of a set of which a part of all points is at a share, away from the origin.
+fn window(set: &PointSet, share: f64, part: f64) -> Option<Window> {
+    let side = (POINTS / share).sqrt();
+    let corner = [12_345.0, -6_789.0];
+    let region = Region::new(corner, corner.map(|v| v + side)).ok()?;
+    let points = set.clone().keep(share).ok()?.within(region).ok()?.to_vec();
+    let points = points.iter().map(|p| [p.x - corner[0], p.y - corner[1]]);
+    Some(Window::new(side, share * part, points.collect()))
+}
+
+impl Set {
+    fn len(&self) -> usize {
+        match self {
+            Self::Twin(set) => set.points().len(),
+            Self::Window(set) => set.points().len(),
+        }
+    }
+
+    fn summary(&self, nu: f64) -> Summary {
+        match self {
+            Self::Twin(set) => Spectrum::of_torus(set, nu),
+            Self::Window(set) => Spectrum::of_window(set, nu),
+        }
+        .summary(RING)
+    }
+
+    fn distances(&self) -> Distances {
+        match self {
+            Self::Twin(set) => Distances::of_torus(set),
+            Self::Window(set) => Distances::of_window(set),
+        }
+    }
+}
+
+/// A set to judge: a kind, or all points.
 struct Subject {
     kind: Option<u8>,
-    set: Torus,
+    set: Set,
     /// The share of the kind that was found, and what it should be.
     found: f64,
     wanted: f64,
 }
 
-/// The kinds of a twin at a share, and all points.
-fn subjects(table: &Table, points: &ThinnedTwin<'_>, share: f64) -> Vec<Subject> {
-    let all = points.at(share, false);
-    let count = all.points().len() as f64;
+/// The kinds at a share, and all points.
+fn subjects(table: &Table, sets: &Sets<'_>, share: f64) -> Option<Vec<Subject>> {
+    let all = sets.all(share)?;
+    let count = all.len() as f64;
     let mut subjects = Vec::new();
     if let Some(mix) = table.mix() {
         for kind in 0..mix.shares().kinds() as u8 {
-            let set = points.of_kind(share, kind);
+            let wanted = mix.shares().of(kind);
+            let set = sets.of_kind(share, kind, wanted)?;
             subjects.push(Subject {
                 kind: Some(kind),
-                found: set.points().len() as f64 / count,
-                wanted: mix.shares().of(kind),
+                found: set.len() as f64 / count,
+                wanted,
                 set,
             });
         }
@@ -112,15 +215,15 @@ fn subjects(table: &Table, points: &ThinnedTwin<'_>, share: f64) -> Vec<Subject>
         found: 1.0,
         wanted: 1.0,
     });
-    subjects
-}
-
-fn summary(set: &Torus, nu: f64) -> crate::measure::Summary {
-    Spectrum::of_torus(set, nu).summary(RING)
+    Some(subjects)
 }
 
 impl Subject {
-    fn measure(&self, twin: Twin, share: f64) -> Figures {
+    fn measure(&self, place: Place, share: f64) -> Figures {
+        let place = match place {
+            Place::Twin(twin) => format!("twin {twin}"),
+            Place::Window(seed) => format!("window seed {seed}"),
+        };
         let what = match self.kind {
             Some(kind) => format!("kind {kind}"),
             None => "all points".into(),
@@ -131,10 +234,10 @@ impl Subject {
         } else {
             format!(", keep {share}")
         };
-        let summary = summary(&self.set, if is_whole { NU } else { NU_THINNED });
+        let summary = self.set.summary(if is_whole { NU } else { NU_THINNED });
         let mut values = vec![
             (Figure::LowPower, summary.low_power),
-            (Figure::DeltaMin, Distances::of_torus(&self.set).delta_min),
+            (Figure::DeltaMin, self.set.distances().delta_min),
         ];
         if is_whole {
             values.push((Figure::PeakPower, summary.peak_power));
@@ -145,9 +248,9 @@ impl Subject {
         }
         let values = values.into_iter();
         Figures {
-            subject: format!("twin {twin}, {what}{kept}"),
+            subject: format!("{place}, {what}{kept}"),
             seen: false,
-            points: self.set.points().len() as u64,
+            points: self.set.len() as u64,
             values: values.map(|(f, v)| (f.name().into(), round(v))).collect(),
         }
     }
@@ -164,7 +267,7 @@ impl Subject {
                 } else {
                     LOW_OF_ALL_THINNED
                 };
-                bounds.push(low(limit));
+                bounds.push(low(limit * (1.0 + DOUBLING / blocks)));
             }
             if self.kind.is_some() {
                 bounds.push(Bound::at_most(Figure::ShareError, SHARE_ERROR));

@@ -1,10 +1,9 @@
 //! The order in which the blocks of a mix leave: void and cluster over blocks (Ulichney 1993), for all
 //! kinds together and for each of them.
 //!
-//! Again and again the block leaves that has the highest potential: half of it a Gaussian sum over all
-//! that is left, half of it one over what is left of its own kind, each in units of its own spacing. Kinds
-//! take turns, so that their shares stay what they are: a kind that has fewer points left than its share
-//! waits. Points do not move.
+//! Again and again the block leaves that has the highest potential: a Gaussian sum over all that is left, and
+//! one over what is left of its own kind, each in units of its own spacing. A kind that has fallen behind its
+//! share of what is left waits, so that shares stay what they are. Points do not move.
 
 use rayon::prelude::*;
 use strew_core::{
@@ -22,6 +21,8 @@ use crate::{
 
 /// σ in spacings of what is left, of all and of a kind.
 const SIGMA: f64 = 0.65;
+/// The weight of a kind's own Gaussian; that of all is 1.
+const OWN: f64 = 1.15;
 /// Where the Gaussian ends, in σ.
 const CUTOFF: f64 = 3.6;
 /// The part of the points left after which potentials are made again for the wider spacing.
@@ -197,7 +198,7 @@ impl Leaving {
         let kind = self.labels[block];
         let mut sum = exp(law.all * squared);
         if self.labels[pair.to as usize] == kind {
-            sum += exp(law.kinds[usize::from(kind)] * squared);
+            sum += OWN * exp(law.kinds[usize::from(kind)] * squared);
         }
         f64::from(pair.area) * sum
     }

@@ -19,6 +19,7 @@ pub(super) struct Presses {
     starts: Vec<u32>,
     all: Vec<Press>,
     own: Vec<i32>,
+    most: Vec<i32>,
 }
 
 /// A Gaussian of the distance, and where it ends. Lengths are in mean spacings of the full set.
@@ -80,6 +81,7 @@ impl Presses {
             starts: vec![0],
             all: Vec::with_capacity(each.iter().map(|(list, _)| list.len()).sum()),
             own: each.iter().map(|&(_, own)| own).collect(),
+            most: each.iter().map(|(list, _)| most(list)).collect(),
         };
         for (list, _) in each {
             presses.all.extend(list);
@@ -99,6 +101,12 @@ impl Presses {
         self.own[block]
     }
 
+    /// How much a block is pressed by the block that does so most.
+    #[inline]
+    pub(super) fn most(&self, block: usize) -> i32 {
+        self.most[block]
+    }
+
     /// How much two different blocks press each other.
     #[inline]
     pub(super) fn between(&self, a: usize, b: usize) -> i32 {
@@ -106,6 +114,10 @@ impl Presses {
         let found = list.binary_search_by_key(&(b as u32), |press| press.to);
         found.map_or(0, |at| list[at].by)
     }
+}
+
+fn most(list: &[Press]) -> i32 {
+    list.iter().map(|press| press.by).max().unwrap_or(0)
 }
 
 /// The length of a table's longest vector, in mean spacings.

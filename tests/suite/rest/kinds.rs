@@ -1,0 +1,292 @@
+//! Kinds: variants that are evenly spread.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+use strew::grpc::proto::{
+    CountPointsRequest, StreamPointsRequest, point_service_client::PointServiceClient,
+    point_set::Amount,
+};
+use strew_core::{Point, Table};
+
+use crate::support::{
+    command,
+    csv::Csv,
+    daemon::{Daemon, no_tables},
+    grpc,
+};
+
+/// A seeded set on the smallest map, whose mixes are made soonest.
+const SET: &str = "map=s&spacing=1&seed=9&attributes=variant&variants=oak:3,birch:1";
+
+/// The points of each variant.
+fn by_name(csv: &Csv) -> BTreeMap<String, Vec<Point>> {
+    let mut all: BTreeMap<String, Vec<Point>> = BTreeMap::new();
+    for (point, name) in csv.points.iter().zip(&csv.columns["variant"]) {
+        all.entry(name.clone()).or_default().push(*point);
+    }
+    all
+}
+
+/// What the header says of them.
+fn counts(csv: &Csv) -> Value {
+    serde_json::from_str(csv.answer.header("strew-kinds")).expect("JSON")
+}
+
+#[test]
+fn points_do_not_move_and_kinds_are_counted_before_they_come() {
+    let daemon = Daemon::built_in();
+    let region = "bbox=-40,20,90,150";
+    let even = Csv::get(&daemon, &format!("{region}&{SET}&spread=even"));
+    let chance = Csv::get(&daemon, &format!("{region}&{SET}"));
+    assert_eq!(even.points, chance.points);
+    assert_ne!(even.columns["variant"], chance.columns["variant"]);
+    let kinds = by_name(&even);
+    let [oaks, birches] = ["oak", "birch"].map(|name| &kinds[name]);
+    assert_eq!(
+        counts(&even),
+        json!({ "oak": oaks.len(), "birch": birches.len() })
+    );
+    // A quarter to within the blocks at the edge, where chance is off by 1.3 % of all.
+    let share = birches.len() as f64 / even.points.len() as f64;
+    assert!((share - 0.25).abs() < 0.003, "{share}");
+    // One kind alone, and the order of names does not matter.
+    for name in ["oak", "birch"] {
+        let turned = SET.replace("oak:3,birch:1", "birch:2,oak:6");
+        let only = Csv::get(
+            &daemon,
+            &format!("{region}&{turned}&spread=even&only={name}"),
+        );
+        assert_eq!(only.points, kinds[name]);
+    }
+    // By chunks, by id and near a place.
+    let chunk = Csv::chunk(&daemon, &format!("32/1/2?{SET}&spread=even"));
+    assert!(!chunk.points.is_empty());
+    for (point, name) in chunk.points.iter().zip(&chunk.columns["variant"]) {
+        assert!(kinds[name].iter().any(|other| other.id == point.id));
+    }
+    let first = &chunk.points[0];
+    let one = daemon
+        .get(&format!("/v1/points/{}?{SET}&spread=even", first.id))
+        .json();
+    assert_eq!(
+        one["point"]["variant"],
+        chunk.columns["variant"][0].as_str()
+    );
+    let near = format!(
+        "/v1/nearest?at={},{}&{SET}&spread=even&only=birch",
+        first.x + 32.0,
+        first.y + 64.0
+    );
+    let near = daemon.get(&near).json();
+    let id = near["neighbors"][0]["id"]
+        .as_str()
+        .expect("an id")
+        .to_owned();
+    assert!(birches.iter().any(|birch| birch.id.to_string() == id));
+}
+
+#[test]
+fn kinds_thin_out_together_and_fill_exact_numbers() {
+    let daemon = Daemon::built_in();
+    let region = "bbox=0,0,120,120";
+    for more in [
+        "keep=0.3",
+        "count=3000",
+        "keep=0.5&count=1111",
+        "field=forest",
+    ] {
+        let set = match more.contains("count") {
+            true => SET.replace("spacing=1&", ""),
+            false => SET.to_owned(),
+        };
+        let csv = Csv::get(&daemon, &format!("{region}&{set}&spread=even&{more}"));
+        let kinds = by_name(&csv);
+        let numbers: BTreeMap<&String, usize> = kinds
+            .iter()
+            .map(|(name, points)| (name, points.len()))
+            .collect();
+        assert_eq!(counts(&csv), json!(numbers), "{more}");
+        let share = kinds["birch"].len() as f64 / csv.points.len() as f64;
+        assert!((share - 0.25).abs() < 0.02, "{more}: {share}");
+        let count = daemon
+            .get(&format!("/v1/count?{region}&{set}&spread=even&{more}"))
+            .json();
+        assert_eq!(count["query"]["kinds"], json!(numbers), "{more}");
+    }
+    // Each half of the region has its share of a kind: a random choice varies three times as much.
+    let set = format!("{SET}&spread=even&only=birch");
+    let mut squares = 0.0;
+    for i in 0..64 {
+        let [x, y] = [i % 8 * 10, i / 8 * 10];
+        let count = daemon.get(&format!(
+            "/v1/count?bbox={x},{y},{},{}&{set}",
+            x + 10,
+            y + 10
+        ));
+        let count = count.json()["count"].as_f64().expect("a number");
+        squares += (count - 25.0).powi(2);
+    }
+    assert!(squares / 64.0 < 0.35 * 25.0 * 0.75, "{}", squares / 64.0);
+}
+
+#[test]
+fn layers_pages_and_parts_have_their_kinds() {
+    let daemon = Daemon::built_in();
+    let layers = json!([
+        { "name": "trees", "spacing": 2, "seed": 1, "map": "s", "attributes": ["variant"],
+          "variants": { "oak": 3, "birch": 1 }, "spread": "even" },
+        { "name": "rocks", "spacing": 1, "seed": 2, "map": "s", "clear_of": { "trees": 1 },
+          "attributes": ["variant"], "variants": { "big": 1, "small": 1 }, "spread": "even", "only": "big" },
+    ]);
+    let body = json!({ "region": { "bbox": [0, 0, 60, 60] }, "layers": layers });
+    let whole = Csv::post(&daemon, &body);
+    let of = |layer: &str, name: &str| {
+        let rows = whole.columns["layer"].iter().zip(&whole.columns["variant"]);
+        rows.filter(|(other, kind)| *other == layer && *kind == name)
+            .count()
+    };
+    let expected = json!({
+        "trees": { "oak": of("trees", "oak"), "birch": of("trees", "birch") },
+        "rocks": { "big": of("rocks", "big"), "small": 0 },
+    });
+    assert_eq!(counts(&whole), expected);
+    assert!(of("rocks", "big") > 100 && of("rocks", "small") == 0);
+    let split = daemon.post("/v1/points:split?parts=3", &body).json();
+    let parts = split["parts"].as_array().expect("a list").clone();
+    let points = parts
+        .iter()
+        .flat_map(|part| Csv::post(&daemon, &part["query"]).points);
+    assert_eq!(points.collect::<Vec<_>>(), whole.points);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn calls_and_commands_agree() {
+    let daemon = Daemon::built_in();
+    let region = [0.0, 0.0, 50.0, 40.0];
+    let csv = Csv::get(&daemon, &format!("bbox=0,0,50,40&{SET}&spread=even"));
+    let mut set = grpc::set(Amount::Spacing(1.0)).expect("a set");
+    set.profile = None;
+    set.alpha = None;
+    set.map = Some("s".into());
+    set.seed = Some(9);
+    set.variants = [("oak".into(), 3.0), ("birch".into(), 1.0)].into();
+    set.spread = Some("even".into());
+    let query = StreamPointsRequest {
+        region: grpc::boxed(region),
+        set: Some(set),
+        ..StreamPointsRequest::default()
+    };
+    let mut client = PointServiceClient::new(daemon.channel().await);
+    let request = CountPointsRequest { query: Some(query) };
+    let counted = client
+        .count_points(request)
+        .await
+        .expect("counted")
+        .into_inner();
+    let sets = counted.query.expect("an echo").sets;
+    let kinds: BTreeMap<String, u64> = sets[0].kinds.clone().into_iter().collect();
+    assert_eq!(counts(&csv), json!(kinds));
+    let arguments = "sample --bbox 0,0,50,40 --map s --spacing 1 --seed 9 --attributes variant \
+                     --variants oak:3,birch:1 --spread even --format csv -o -";
+    let output = command::run(&arguments.split_whitespace().collect::<Vec<_>>(), "");
+    assert!(output.status.success(), "{}", command::errors(&output));
+    assert_eq!(String::from_utf8_lossy(&output.stdout), csv.answer.text());
+}
+
+#[test]
+fn a_restart_finds_what_was_made() {
+    let address = format!("/v1/points?bbox=0,0,30,30&{SET}&spread=even&format=csv");
+    let folder = no_tables();
+    let kept = folder.path().join("mixes");
+    let daemon = Daemon::with_tables(folder, &[]);
+    let answer = daemon.get(&address).text().to_owned();
+    let files = || -> Vec<_> {
+        let files = std::fs::read_dir(&kept).expect("a folder");
+        files.map(|file| file.expect("a file").path()).collect()
+    };
+    let [file] = &files()[..] else {
+        panic!("{:?}", files())
+    };
+    let bytes = std::fs::read(file).expect("readable");
+    let table = Table::from_bytes(&bytes).expect("a table");
+    assert_eq!(table.mix().expect("kinds").shares().to_string(), "1:3");
+    // In a folder of tables it serves as well, and a damaged one is made again.
+    let tables = no_tables();
+    std::fs::write(tables.path().join("mix.strew"), &bytes).expect("writable");
+    std::fs::create_dir(tables.path().join("mixes")).expect("writable");
+    let other = tables
+        .path()
+        .join("mixes")
+        .join(file.file_name().expect("a name"));
+    std::fs::write(&other, &bytes[..bytes.len() / 2]).expect("writable");
+    let again = Daemon::with_tables(tables, &[]);
+    assert_eq!(again.get(&address).text(), answer);
+    std::fs::remove_file(again.folder().join("mix.strew")).expect("there");
+    let reloaded = again.post("/v1/tables:reload", &json!({}));
+    if reloaded.status == 200 {
+        assert_eq!(again.get(&address).text(), answer);
+        assert_eq!(std::fs::read(&other).expect("readable"), bytes);
+    }
+}
+
+#[test]
+fn wrong_kinds_are_refused_with_what_is_allowed() {
+    let daemon = Daemon::built_in();
+    let fifty: Vec<String> = (0..50).map(|i| format!("v{i}:1")).collect();
+    for (more, field, part) in [
+        (
+            "variants=oak:0,birch:1&spread=even".to_owned(),
+            "variants",
+            "1e-9",
+        ),
+        (
+            "variants=oak:-1,birch:1&spread=even".into(),
+            "variants",
+            "1e-9",
+        ),
+        (
+            "variants=oak:1,birch:1000000&spread=even".into(),
+            "variants",
+            "1/1024",
+        ),
+        (
+            format!("variants={}&spread=even", fifty.join(",")),
+            "variants",
+            "2 to 32",
+        ),
+        ("variants=oak:1&spread=even".into(), "variants", "2 to 32"),
+        (
+            "variants=oak:1,oak:2&spread=even".into(),
+            "variants",
+            "listed",
+        ),
+        (
+            "variants=oak:1,birch:2&spread=smooth".into(),
+            "spread",
+            "chance, even, joint",
+        ),
+        (
+            "variants=oak:1,birch:2&spread=even&only=elm".into(),
+            "only",
+            "birch, oak",
+        ),
+        (
+            "variants=oak:1,birch:2&attributes=variant&only=oak".into(),
+            "only",
+            "even or joint",
+        ),
+        (
+            "variants=oak:7,birch:9&spread=joint".into(),
+            "spread",
+            "spread even",
+        ),
+        ("spread=even".into(), "variants", "name:weight"),
+    ] {
+        let answer = daemon.get(&format!("/v1/points?bbox=0,0,9,9&map=s&spacing=1&{more}"));
+        assert_eq!(answer.status, 400, "{more}: {}", answer.text());
+        let fault = &answer.json()["errors"][0];
+        assert_eq!(fault["field"], field, "{more}: {fault}");
+        assert!(fault.to_string().contains(part), "{more}: {fault}");
+    }
+}
