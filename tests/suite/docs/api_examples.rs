@@ -222,9 +222,24 @@ fn the_page_on_fields_shows_what_its_examples_print_and_draw() {
     let setting = format!("fields.folder={}", copied.display());
     let daemon = Daemon::with_tables(no_tables(), &[&setting]);
     check_in("docs/fields.md", folder.path(), &daemon);
-    for name in ["valley.png", "woods.png", "clearing.png", "hills.png"] {
-        let drawn = std::fs::read(folder.path().join(name));
-        let kept = root.join("docs/pictures/fields").join(name);
+    let names = ["valley.png", "woods.png", "clearing.png", "hills.png"];
+    compare(folder.path(), "fields", &names);
+}
+
+#[test]
+fn the_page_on_kinds_shows_what_its_examples_print_and_draw() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let daemon = Daemon::built_in();
+    check_in("docs/kinds.md", folder.path(), &daemon);
+    compare(folder.path(), "kinds", &["chance.png", "even.png"]);
+}
+
+/// Compares pictures that examples drew with those of the page.
+fn compare(folder: &Path, page: &str, names: &[&str]) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for name in names {
+        let drawn = std::fs::read(folder.join(name));
+        let kept = root.join("docs/pictures").join(page).join(name);
         match drawn {
             Ok(drawn) if std::env::var_os("UPDATE_GOLDEN").is_some() => {
                 std::fs::write(kept, drawn).expect("writable");
