@@ -110,6 +110,16 @@ impl Samplers {
             .map_err(|error| (*error).clone())
     }
 
+    /// What is kept under a name, if it is.
+    pub(super) async fn known(&self, name: &str) -> Option<Ready> {
+        self.ready.get(name).await
+    }
+
+    /// Keeps something under a name that is no digest.
+    pub(super) async fn keep(&self, name: String, ready: Ready) {
+        self.ready.insert(name, ready).await;
+    }
+
     /// Makes room: the table of this digest is not loaded any more. Answers under way keep what they
     /// have.
     pub(super) async fn forget(&self, digest: &str) {

@@ -15,27 +15,33 @@ use futures_util::{
     FutureExt as _,
     future::{BoxFuture, Shared},
 };
-use moka::future::Cache;
 use strew_core::{
     Table,
     table::{MAX_FILE_BYTES, Shares},
 };
 
-use super::{Error, Fault, Lane, Workers, cache::Ready};
+use super::{
+    Budget, Error, Fault, Lane, Workers,
+    cache::{Ready, Samplers},
+};
 use crate::bounded_file;
 
 /// The mixes that were made.
 #[derive(Clone)]
 pub(super) struct Mixes {
-    ready: Cache<String, Table>,
+    samplers: Samplers,
+    budget: Budget,
     making: Arc<Mutex<HashMap<String, Making>>>,
     folder: Option<Arc<Path>>,
 }
 
-type Making = Shared<BoxFuture<'static, Result<Table, Error>>>;
+type Making = Shared<BoxFuture<'static, Result<Ready, Error>>>;
 
 /// The most mixes that are kept in a folder.
 const MOST_KEPT: usize = 256;
+/// What making one takes, in bytes: the neighbors of blocks most of all.
+const ROOM: usize = 8 << 20;
+const ROOM_BY_BLOCK: usize = 6 << 10;
 
 impl std::fmt::Debug for Mixes {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -46,16 +52,11 @@ impl std::fmt::Debug for Mixes {
 }
 
 impl Mixes {
-    /// No mixes yet: at most this many bytes of them, and those of a folder.
-    pub(super) fn new(bytes: u64, folder: Option<PathBuf>) -> Self {
-        let weight =
-            |_: &String, table: &Table| u32::try_from(table.memory_bytes()).unwrap_or(u32::MAX);
+    /// Mixes that are kept beside the tables they are of, and in a folder.
+    pub(super) fn new(samplers: Samplers, budget: Budget, folder: Option<PathBuf>) -> Self {
         Self {
-            ready: Cache::builder()
-                .name("mixes")
-                .max_capacity(bytes)
-                .weigher(weight)
-                .build(),
+            samplers,
+            budget,
             making: Arc::default(),
             folder: folder.map(Into::into),
         }
@@ -63,65 +64,83 @@ impl Mixes {
 
     /// A table with kinds of these shares, if it is in memory.
     pub(super) async fn known(&self, plain: &Ready, shares: &Shares) -> Option<Ready> {
-        let table = self.ready.get(&name(plain, shares)).await?;
-        Some(Ready {
-            entry: plain.entry.clone(),
-            table,
-        })
+        self.samplers.known(&name(plain, shares)).await
     }
 
-    /// A table with kinds of these shares.
+    /// A table with kinds of these shares, which is made unless somebody has begun to.
     pub(super) async fn get(
         &self,
         plain: &Ready,
         shares: &Shares,
         workers: &Workers,
     ) -> Result<Ready, Error> {
-        let table = match self.known(plain, shares).await {
-            Some(ready) => return Ok(ready),
-            None => self.begin(plain, shares, workers).await?,
-        };
-        Ok(Ready {
-            entry: plain.entry.clone(),
-            table,
-        })
+        self.begin(plain, shares, workers).await
     }
 
-    /// Begins to make a mix, unless somebody has.
     fn begin(&self, plain: &Ready, shares: &Shares, workers: &Workers) -> Making {
         let name = name(plain, shares);
         let mut making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(begun) = making.get(&name) {
             return begun.clone();
         }
-        let (mixes, key, workers) = (self.clone(), name.clone(), workers.clone());
-        let (table, shares) = (plain.table.clone(), shares.clone());
-        let work = async move {
-            let path = mixes
-                .folder
-                .as_deref()
-                .map(|folder| folder.join(format!("{key}.strew")));
-            let made = workers.take_turn(Lane::Long, move |_| match path {
-                Some(path) => read_or_make(&path, &table, &shares),
-                None => make(&table, &shares),
-            });
-            let made = made.await.and_then(|made| made);
-            if let Ok(table) = &made {
-                mixes.ready.insert(key.clone(), table.clone()).await;
-            }
-            mixes
-                .making
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .remove(&key);
-            made
-        };
+        let work = tokio::spawn(self.clone().work(
+            name.clone(),
+            plain.clone(),
+            shares.clone(),
+            workers.clone(),
+        ));
         // It goes on when nobody waits any more: the next one will ask again.
-        let work = tokio::spawn(work);
         let work = work.map(|ended| ended.unwrap_or(Err(Error::Internal("a computation failed"))));
         let begun = work.boxed().shared();
         making.insert(name, begun.clone());
         begun
+    }
+
+    /// Reads or makes a mix.
+    async fn work(
+        self,
+        name: String,
+        plain: Ready,
+        shares: Shares,
+        workers: Workers,
+    ) -> Result<Ready, Error> {
+        let made = self.make(&name, &plain, shares, &workers).await;
+        if let Ok(ready) = &made {
+            self.samplers.keep(name.clone(), ready.clone()).await;
+        }
+        let mut making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
+        making.remove(&name);
+        made
+    }
+
+    async fn make(
+        &self,
+        name: &str,
+        plain: &Ready,
+        shares: Shares,
+        workers: &Workers,
+    ) -> Result<Ready, Error> {
+        // It may have been made since it was looked for.
+        if let Some(known) = self.samplers.known(name).await {
+            return Ok(known);
+        }
+        let held = self
+            .budget
+            .hold(ROOM + ROOM_BY_BLOCK * plain.entry.blocks())?;
+        let path = self.folder.as_deref();
+        let path = path.map(|folder| folder.join(format!("{name}.strew")));
+        let table = plain.table.clone();
+        let made = workers.take_turn(Lane::Long, move |_| {
+            let _held = held;
+            match path {
+                Some(path) => read_or_make(&path, &table, &shares),
+                None => make(&table, &shares),
+            }
+        });
+        Ok(Ready {
+            entry: plain.entry.clone(),
+            table: made.await??,
+        })
     }
 }
 

@@ -83,12 +83,14 @@ impl Service {
     /// A service over a catalog.
     #[must_use]
     pub fn new(catalog: Catalog, limits: Limits, workers: Workers) -> Self {
+        let samplers = Samplers::new(limits.cache_bytes);
+        let budget = Budget::new(limits.max_bytes_in_flight);
         Self {
-            samplers: Samplers::new(limits.cache_bytes),
-            mixes: Mixes::new(limits.cache_bytes, None),
+            mixes: Mixes::new(samplers.clone(), budget.clone(), None),
+            samplers,
             portraits: Portraits::new(),
             streams: Arc::new(Streams::new(limits.max_streams)),
-            budget: Budget::new(limits.max_bytes_in_flight),
+            budget,
             catalog: ArcSwap::from_pointee(catalog),
             presets: Presets::default(),
             limits,
@@ -106,7 +108,7 @@ impl Service {
     #[must_use]
     pub fn with_mixes(self, folder: Option<PathBuf>) -> Self {
         Self {
-            mixes: Mixes::new(self.limits.cache_bytes, folder),
+            mixes: Mixes::new(self.samplers.clone(), self.budget.clone(), folder),
             ..self
         }
     }
