@@ -1,6 +1,7 @@
-//! `strew forge`: makes a table, judges it, writes it.
+//! `strew forge`: makes a table, judges it, writes it; a ladder or kinds for a table.
 
 mod ladder;
+mod mix;
 
 use std::{
     fs,
@@ -30,7 +31,10 @@ const MAX_TARGET_BYTES: u64 = 1 << 20;
 /// with `.checkpoint` behind it. The same command goes on from there, to the same table as without
 /// the interruption; it is removed when the table is written.
 #[derive(Debug, clap::Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub(super) struct Args {
+    #[command(subcommand)]
+    task: Option<Task>,
     /// The noise profile.
     #[arg(long, default_value = DEFAULT_PROFILE)]
     profile: String,
@@ -90,6 +94,13 @@ pub(super) struct Args {
     quiet: bool,
 }
 
+/// Other work of the forge.
+#[derive(Debug, clap::Subcommand)]
+enum Task {
+    /// Make kinds for a table: each of its points is of one kind, and each kind is evenly spread.
+    Mix(mix::Args),
+}
+
 impl Args {
     fn job(&self) -> Result<Job, Failure> {
         let alpha: Alpha = self
@@ -141,8 +152,11 @@ fn checkpoint_path(table: &Path) -> PathBuf {
     name.into()
 }
 
-/// Makes the table, or a ladder.
+/// Makes the table, a ladder or kinds.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    if let Some(Task::Mix(args)) = &args.task {
+        return mix::run(args);
+    }
     if let Some(table) = &args.ladder_of {
         return ladder::run(args, table);
     }

@@ -65,7 +65,7 @@ pub use forge::{Outcome, forge, resume};
 pub use job::{DEFAULT_SEED, Job, MAX_RADIUS, MAX_STEPS};
 pub use judge::{Complaint, Figure};
 pub use ladder::{LadderJob, LadderOutcome, ThinnedTwin, ladder, with_ranks};
-pub use mix::{MixJob, MixOutcome, labels, mix};
+pub use mix::{MixJob, MixOutcome, labels, mix, mix_file_name};
 pub use picture::{PictureError, picture};
 pub use profile::{Aim, Profile};
 pub use report::{Report, Resolution};

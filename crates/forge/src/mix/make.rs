@@ -7,7 +7,7 @@ use strew_core::{
 
 use super::{anneal, joint::moved, judge::judge, labels::annealed, order};
 use crate::{
-    ForgeError,
+    EXTENSION, ForgeError, file_name,
     judge::Complaint,
     watch::{Meter, Stage, Watch},
 };
@@ -70,6 +70,27 @@ impl MixJob {
         }
         Ok(())
     }
+}
+
+/// Returns the usual name of the file of a mix: that of the table's file with `mix` for a joint table or `labels`,
+/// and the shares, such as `blue-5-sqrt3-over-2-m-mix-1-3.strew`.
+///
+/// ```
+/// use strew_core::Table;
+/// use strew_forge::{MixJob, mix_file_name};
+///
+/// let table = Table::undisplaced("sqrt(3)".parse()?, 49, "pattern")?;
+/// let name = mix_file_name(&table, &MixJob::labels("1:3".parse()?));
+/// assert_eq!(name, "pattern-sqrt3-s-labels-1-3.strew");
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[must_use]
+pub fn mix_file_name(table: &Table, job: &MixJob) -> String {
+    let name = file_name(table.profile(), table.alpha(), table.map().radius());
+    let stem = name.trim_end_matches(EXTENSION).trim_end_matches('.');
+    let what = if job.is_joint { "mix" } else { "labels" };
+    let shares = job.shares.to_string().replace(':', "-");
+    format!("{stem}-{what}-{shares}.{EXTENSION}")
 }
 
 /// The result of making a mix.

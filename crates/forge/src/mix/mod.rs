@@ -18,4 +18,4 @@ mod part;
 mod press;
 mod together;
 
-pub use make::{MixJob, MixOutcome, labels, mix};
+pub use make::{MixJob, MixOutcome, labels, mix, mix_file_name};

@@ -1,0 +1,170 @@
+//! Mixes: kinds are even on sets that nobody looked at, and equal on every machine.
+
+mod shipped;
+
+use std::{
+    path::Path,
+    sync::atomic::{AtomicU32, Ordering},
+};
+
+use strew_core::{Map, PointSet, Table, Twin, table::Provenance};
+use strew_forge::{
+    MixJob, Progress, ThinnedTwin, Watch, labels,
+    measure::{Distances, Spectrum, Torus},
+    mix, read_table,
+};
+
+/// A twin that no judge looks at.
+fn twin() -> Twin {
+    Twin::new(1348, 825).expect("reduced")
+}
+
+fn low(set: &Torus) -> f64 {
+    Spectrum::of_torus(set, 0.6).summary(0.04).low_power
+}
+
+/// A small table whose points move a little.
+fn small() -> Table {
+    let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 20).expect("small");
+    let blocks = map.intervals() * map.intervals();
+    let vector = |block: usize| [0, 1].map(|axis| ((block * 7919 + axis * 31) % 4096) as i32 * 300);
+    let vectors = (0..blocks).map(vector).collect();
+    Table::new(map, "blue", vectors, Provenance::default()).expect("valid")
+}
+
+/// FNV-1a.
+fn hash(bytes: impl Iterator<Item = u8>) -> u64 {
+    let step = |h: u64, byte: u8| (h ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+    bytes.fold(0xcbf2_9ce4_8422_2325, step)
+}
+
+fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build().expect("threads").install(work)
+}
+
+#[test]
+fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
+    let table = shipped::table("blue", "(5-sqrt(3))/2", 100);
+    for (shares, limit) in [("1:1", 0.055), ("1:3", 0.09), ("1:1:2", 0.07), ("1:3:10", 0.1)] {
+        let mixed = labels(&table, &shares.parse().expect("valid"), &());
+        let mixed = mixed.expect("valid").expect("not stopped");
+        assert_eq!(mixed.displacements(), table.displacements());
+        let points = ThinnedTwin::new(&mixed, twin()).expect("a twin");
+        let mix = mixed.mix().expect("one").shares().clone();
+        for keep in [1.0, 0.8, 0.43, 0.11] {
+            let all = points.at(keep, false);
+            assert!(keep == 1.0 || low(&all) < 0.16, "{shares} {keep}: {}", low(&all));
+            for kind in 0..mix.kinds() as u8 {
+                let set = points.of_kind(keep, kind);
+                let share = set.points().len() as f64 / all.points().len() as f64;
+                assert!((share - mix.of(kind)).abs() < 0.005, "{shares} {keep}: {share}");
+                let limit = if keep == 1.0 { limit } else { 0.14 };
+                assert!(low(&set) < limit, "{shares} {keep}, kind {kind}: {}", low(&set));
+            }
+        }
+    }
+}
+
+#[test]
+fn shipped_joint_tables_keep_their_promises_on_another_twin() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tables/mix");
+    let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
+    let anisotropy = |set: &Torus| Spectrum::of_torus(set, 1.5).summary(0.04);
+    let before = ThinnedTwin::new(&plain, twin()).expect("a twin").at(1.0, false);
+    let before = anisotropy(&before).anisotropy_db;
+    for shares in ["1-1", "1-3", "1-1-2", "1-3-10"] {
+        let name = format!("blue-5-sqrt3-over-2-m-mix-{shares}.strew");
+        let table = read_table(&folder.join(name)).expect("shipped");
+        let points = ThinnedTwin::new(&table, twin()).expect("a twin");
+        let all = points.at(1.0, false);
+        let kinds = table.mix().expect("one").shares().kinds() as u8;
+        let sets = (0..kinds).map(|kind| (points.of_kind(1.0, kind), 0.015, 0.57));
+        for (set, low, delta) in sets.chain([(all, 5e-4, 0.54)]) {
+            let summary = anisotropy(&set);
+            assert!(summary.low_power < low, "{shares}: {}", summary.low_power);
+            assert!(summary.peak_power < 4.5, "{shares}: {}", summary.peak_power);
+            assert!(summary.anisotropy_db < before + 0.5, "{shares}: {}", summary.anisotropy_db);
+            let found = Distances::of_torus(&set).delta_min;
+            assert!(found > delta, "{shares}: {found}");
+        }
+    }
+}
+
+#[test]
+fn labels_and_ranks_are_the_same_with_any_number_of_threads_and_pinned() {
+    let make = || labels(&small(), &"10:1:3".parse().expect("valid"), &());
+    let made = with_threads(1, make).expect("valid").expect("not stopped");
+    assert_eq!(made, with_threads(3, make).expect("valid").expect("not stopped"));
+    let mix = made.mix().expect("one");
+    assert_eq!(hash(mix.labels().iter().copied()), 0);
+    let ranks = made.ranks().expect("made").positions();
+    assert_eq!(hash(ranks.iter().flat_map(|rank| rank.to_le_bytes())), 0);
+    // A mix is part of the digest; ids and places are those of the table.
+    assert_ne!(made.digest(), small().digest());
+    let [plain, mixed] = [small(), made].map(PointSet::new);
+    let points = |set: &PointSet| set.chunk(12.0, [3, -4]).expect("near").to_vec();
+    assert_eq!(points(&plain), points(&mixed));
+}
+
+#[test]
+fn joint_tables_are_the_same_with_any_number_of_threads_and_pinned() {
+    let mut job = MixJob::joint("1:3".parse().expect("valid"));
+    job.steps = 12;
+    let make = || mix(&small(), &job, &());
+    let made = with_threads(1, make).expect("valid").expect("not stopped");
+    assert_eq!(made, with_threads(3, make).expect("valid").expect("not stopped"));
+    let vectors = made.table.displacements().iter().flatten();
+    assert_eq!(hash(vectors.flat_map(|v| v.to_le_bytes())), 0);
+    let history = made.table.provenance();
+    assert_eq!(history.optimizer, "joint-mix");
+    let of = ("of".to_owned(), small().digest().to_string());
+    assert!(history.parameters.contains(&of));
+}
+
+/// Stops after some steps.
+struct Stopper {
+    after: u32,
+    step: AtomicU32,
+}
+
+impl Watch for Stopper {
+    fn progress(&self, _: &Progress) {
+        self.step.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn stop(&self) -> bool {
+        self.step.load(Ordering::Relaxed) > self.after
+    }
+}
+
+#[test]
+fn work_can_be_stopped_at_any_step() {
+    let mut job = MixJob::joint("1:3".parse().expect("valid"));
+    job.steps = 12;
+    // In the annealing, in the descent, in the order of leaving, while measuring.
+    for after in [3, 105, 118, 135] {
+        let step = AtomicU32::new(0);
+        let stopper = Stopper { after, step };
+        let made = mix(&small(), &job, &stopper).expect("valid");
+        assert!(made.is_none(), "{after}");
+        assert!(stopper.step.into_inner() <= after + 2, "{after}");
+    }
+}
+
+#[test]
+fn impossible_jobs_are_refused() {
+    let mut job = MixJob::joint("1:3".parse().expect("valid"));
+    job.steps = 0;
+    let error = mix(&small(), &job, &()).expect_err("no steps");
+    assert_eq!(error.to_string(), "steps is 0; allowed: from 1 to 10000");
+    // Three blocks an axis: kinds have less than a block, or none at all.
+    let tiny = Table::undisplaced("(5-sqrt(3))/2".parse().expect("valid"), 1, "pattern");
+    let tiny = tiny.expect("small");
+    for shares in ["1:1023", "1:1", "1:2:3:4:5:6:7:8:9", "31:32:33:34"] {
+        match labels(&tiny, &shares.parse().expect("valid"), &()) {
+            Ok(made) => assert!(made.expect("not stopped").mix().is_some()),
+            Err(error) => assert!(error.to_string().contains("mix"), "{error}"),
+        }
+    }
+}
