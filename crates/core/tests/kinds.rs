@@ -5,7 +5,7 @@ mod subject;
 use proptest::prelude::*;
 use strew_core::{
     Area, Attribute, Attributes, Backend, Circle, ErrorKind, F32, F64, Keep, Placement, Point,
-    PointId, PointSet, Points, Polygon, Region, Seed, Spacing, Variants, Warp,
+    PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed, Spacing, Variants, Warp,
     server::{self, Stop},
 };
 use subject::{
@@ -443,6 +443,18 @@ fn even_variants_are_the_kinds() {
             let name = even.variants().name(index).expect("a name");
             assert_eq!(even.kind(name), Some(kind));
             assert_eq!(name, ["birch", "elm", "oak"][usize::from(kind)]);
+        }
+        // Scales that depend on the kind.
+        let ranges =
+            (0..3).map(|i| ScaleRange::new(f64::from(i), f64::from(i) + 0.5).expect("ordered"));
+        let scales = even.scales(ranges.collect()).expect("one for each");
+        let list = Attributes::new(vec![Attribute::VariantScale(scales)]).expect("different");
+        let scales = set
+            .attributes(&list)
+            .expect("the table's shares")
+            .columns(ids());
+        for (scale, &index) in scales[0].numbers().expect("numbers").iter().zip(indices) {
+            assert_eq!(scale.floor(), f64::from(index));
         }
         // Other shares are another table's.
         let list = vec![Attribute::EvenVariant(
