@@ -58,6 +58,11 @@ fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<
             Type::Uint64 => ("Integer", "*v", "v"),
             Type::String if is_list => ("Names", "v.clone()", "v"),
             Type::String => ("Text", "v.clone()", "v"),
+            Type::Message if name == "scale_ranges" => (
+                "Ranges",
+                "v.iter().map(|(name, range)| (name.clone(), [range.min, range.max])).collect()",
+                "v.into_iter().map(|(name, [min, max])| (name, ScaleRange { min, max })).collect()",
+            ),
             Type::Message if is_map => (
                 "Weights",
                 "v.iter().map(|(name, weight)| (name.clone(), *weight)).collect()",

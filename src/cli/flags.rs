@@ -219,6 +219,7 @@ fn value_name(parameter: &Parameter) -> String {
         Shape::Number { .. } | Shape::Integer { .. } | Shape::Signed { .. } | Shape::Quadratic => {
             "NUMBER".into()
         }
+        Shape::Ranges => "NAME:MIN:MAX,…".into(),
         Shape::Choice(words) => words.join("|"),
         Shape::Format => "NAME".into(),
         Shape::Field => "NAME|FILE".into(),

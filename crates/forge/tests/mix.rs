@@ -46,7 +46,12 @@ fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 #[test]
 fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
     let table = shipped::table("blue", "(5-sqrt(3))/2", 100);
-    for (shares, limit) in [("1:1", 0.055), ("1:3", 0.09), ("1:1:2", 0.07), ("1:3:10", 0.1)] {
+    for (shares, limit) in [
+        ("1:1", 0.055),
+        ("1:3", 0.09),
+        ("1:1:2", 0.07),
+        ("1:3:10", 0.1),
+    ] {
         let mixed = labels(&table, &shares.parse().expect("valid"), &());
         let mixed = mixed.expect("valid").expect("not stopped");
         assert_eq!(mixed.displacements(), table.displacements());
@@ -54,13 +59,24 @@ fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
         let mix = mixed.mix().expect("one").shares().clone();
         for keep in [1.0, 0.8, 0.43, 0.11] {
             let all = points.at(keep, false);
-            assert!(keep == 1.0 || low(&all) < 0.16, "{shares} {keep}: {}", low(&all));
+            assert!(
+                keep == 1.0 || low(&all) < 0.16,
+                "{shares} {keep}: {}",
+                low(&all)
+            );
             for kind in 0..mix.kinds() as u8 {
                 let set = points.of_kind(keep, kind);
                 let share = set.points().len() as f64 / all.points().len() as f64;
-                assert!((share - mix.of(kind)).abs() < 0.005, "{shares} {keep}: {share}");
+                assert!(
+                    (share - mix.of(kind)).abs() < 0.005,
+                    "{shares} {keep}: {share}"
+                );
                 let limit = if keep == 1.0 { limit } else { 0.14 };
-                assert!(low(&set) < limit, "{shares} {keep}, kind {kind}: {}", low(&set));
+                assert!(
+                    low(&set) < limit,
+                    "{shares} {keep}, kind {kind}: {}",
+                    low(&set)
+                );
             }
         }
     }
@@ -71,7 +87,9 @@ fn shipped_joint_tables_keep_their_promises_on_another_twin() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tables/mix");
     let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
     let anisotropy = |set: &Torus| Spectrum::of_torus(set, 1.5).summary(0.04);
-    let before = ThinnedTwin::new(&plain, twin()).expect("a twin").at(1.0, false);
+    let before = ThinnedTwin::new(&plain, twin())
+        .expect("a twin")
+        .at(1.0, false);
     let before = anisotropy(&before).anisotropy_db;
     for shares in ["1-1", "1-3", "1-1-2", "1-3-10"] {
         let name = format!("blue-5-sqrt3-over-2-m-mix-{shares}.strew");
@@ -84,7 +102,11 @@ fn shipped_joint_tables_keep_their_promises_on_another_twin() {
             let summary = anisotropy(&set);
             assert!(summary.low_power < low, "{shares}: {}", summary.low_power);
             assert!(summary.peak_power < 4.5, "{shares}: {}", summary.peak_power);
-            assert!(summary.anisotropy_db < before + 0.5, "{shares}: {}", summary.anisotropy_db);
+            assert!(
+                summary.anisotropy_db < before + 0.5,
+                "{shares}: {}",
+                summary.anisotropy_db
+            );
             let found = Distances::of_torus(&set).delta_min;
             assert!(found > delta, "{shares}: {found}");
         }
@@ -95,7 +117,10 @@ fn shipped_joint_tables_keep_their_promises_on_another_twin() {
 fn labels_and_ranks_are_the_same_with_any_number_of_threads_and_pinned() {
     let make = || labels(&small(), &"10:1:3".parse().expect("valid"), &());
     let made = with_threads(1, make).expect("valid").expect("not stopped");
-    assert_eq!(made, with_threads(3, make).expect("valid").expect("not stopped"));
+    assert_eq!(
+        made,
+        with_threads(3, make).expect("valid").expect("not stopped")
+    );
     let mix = made.mix().expect("one");
     assert_eq!(hash(mix.labels().iter().copied()), 0);
     let ranks = made.ranks().expect("made").positions();
@@ -113,7 +138,10 @@ fn joint_tables_are_the_same_with_any_number_of_threads_and_pinned() {
     job.steps = 12;
     let make = || mix(&small(), &job, &());
     let made = with_threads(1, make).expect("valid").expect("not stopped");
-    assert_eq!(made, with_threads(3, make).expect("valid").expect("not stopped"));
+    assert_eq!(
+        made,
+        with_threads(3, make).expect("valid").expect("not stopped")
+    );
     let vectors = made.table.displacements().iter().flatten();
     assert_eq!(hash(vectors.flat_map(|v| v.to_le_bytes())), 0);
     let history = made.table.provenance();

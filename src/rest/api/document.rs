@@ -158,6 +158,10 @@ fn as_text(shape: Shape) -> Value {
             let pair = format!("{}(:{NUMBER})?", sets::NAME);
             json!({ "type": "string", "pattern": format!("^{pair}(,{pair})*$") })
         }
+        Shape::Ranges => {
+            let range = format!("{}:{NUMBER}:{NUMBER}", sets::NAME);
+            json!({ "type": "string", "pattern": format!("^{range}(,{range})*$") })
+        }
         Shape::Switch => json!({ "type": "string", "enum": ["on", "off"] }),
         Shape::Field => json!({ "type": "string", "pattern": format!("^{}$", sets::NAME) }),
         other => schema(other),
@@ -195,6 +199,15 @@ pub(super) fn schema(shape: Shape) -> Value {
             "type": "object",
             "propertyNames": { "pattern": format!("^{}$", sets::NAME) },
             "additionalProperties": { "type": "number", "minimum": 1e-9, "maximum": 1e9 },
+            "minProperties": 1, "maxProperties": 256,
+        }),
+        Shape::Ranges => json!({
+            "type": "object",
+            "propertyNames": { "pattern": format!("^{}$", sets::NAME) },
+            "additionalProperties": {
+                "type": "array", "items": { "type": "number", "minimum": 0, "maximum": 1e9 },
+                "minItems": 2, "maxItems": 2,
+            },
             "minProperties": 1, "maxProperties": 256,
         }),
         Shape::Choice(words) => json!({ "type": "string", "enum": words }),

@@ -1,11 +1,12 @@
 //! Attributes: the values that points have besides their place.
 
-use strew_core::{Attribute, Attributes, ScaleRange, Variants};
+use strew_core::{Attribute, Attributes, ScaleRange, VariantScales, Variants};
 
 use super::{
-    Checked, Kinds, Parameter, Together as _, Values, all,
+    Checked, Faults, Kinds, Parameter, Together as _, Values, all,
     kinds::CHANCE,
-    parameters::{ATTRIBUTES, SCALE_RANGE, SPREAD, VARIANTS},
+    parameters::{ATTRIBUTES, SCALE_RANGE, SCALE_RANGES, SPREAD, VARIANTS},
+    unknown,
 };
 use crate::service::Fault;
 
@@ -26,9 +27,13 @@ pub(super) fn check(values: &Values, kinds: Option<&Kinds>) -> Checked<Attribute
         all(named.iter().map(|name| other(values, name))),
     );
     let (_, range, variants, others) = (names, range, variants, others).together()?;
+    let scales = scales(values, named, variants.as_ref(), kinds)?;
     let pairs = named.iter().zip(others);
     let list = pairs.filter_map(|(name, other)| match name.as_str() {
-        "scale" => Some(Attribute::Scale(range)),
+        "scale" => Some(match &scales {
+            Some(scales) => Attribute::VariantScale(scales.clone()),
+            None => Attribute::Scale(range),
+        }),
         "variant" => match kinds {
             Some(kinds) => Some(Attribute::EvenVariant(kinds.variants.clone())),
             None => variants.clone().map(Attribute::Variant),
@@ -55,6 +60,44 @@ fn scale_range(values: &Values) -> Checked<ScaleRange> {
     ScaleRange::new(min, max).map_err(|error| values.fault(&SCALE_RANGE, error.to_string()).into())
 }
 
+/// The range of scales of each variant, if they are given.
+fn scales(
+    values: &Values,
+    named: &[String],
+    variants: Option<&Variants>,
+    kinds: Option<&Kinds>,
+) -> Checked<Option<VariantScales>> {
+    let Some(ranges) = values.get::<Vec<(String, [f64; 2])>>(&SCALE_RANGES)? else {
+        return Ok(None);
+    };
+    used(values, named, &SCALE_RANGES, "scale")?;
+    let fault = |detail: String| Faults::from(values.fault(&SCALE_RANGES, detail));
+    if values.has(&SCALE_RANGE) {
+        return Err(fault("not beside scale_range".into()));
+    }
+    let variants = variants.ok_or_else(|| values.missing(&VARIANTS))?;
+    let is_known = |name: &str| variants.names().any(|known| known == name);
+    if let Some((name, _)) = ranges.iter().find(|(name, _)| !is_known(name)) {
+        return Err(fault(unknown("variant", name, variants.names())));
+    }
+    let range = |name: &str| {
+        let mut own = ranges.iter().filter(|(known, _)| known == name);
+        match (own.next(), own.next()) {
+            (Some(&(_, [min, max])), None) => {
+                ScaleRange::new(min, max).map_err(|error| fault(error.to_string()))
+            }
+            (None, _) => Err(fault(format!("the range of `{name}` is missing"))),
+            _ => Err(fault(format!("`{name}` is given twice"))),
+        }
+    };
+    let ranges = all(variants.names().map(range))?;
+    let scales = match kinds {
+        Some(kinds) => kinds.variants.scales(ranges),
+        None => variants.scales(ranges),
+    };
+    scales.map(Some).map_err(|error| fault(error.to_string()))
+}
+
 /// What variants there are, if any.
 pub(super) fn variants(values: &Values) -> Checked<Option<Variants>> {
     let Some(pairs) = values.get::<Vec<(String, f64)>>(&VARIANTS)? else {
@@ -68,6 +111,7 @@ pub(super) fn variants(values: &Values) -> Checked<Option<Variants>> {
 /// The variants of the attribute among those named, or of kinds.
 fn chosen(values: &Values, named: &[String]) -> Checked<Option<Variants>> {
     let is_spread = values.has(&SPREAD) && values.text(&SPREAD) != CHANCE;
+    let is_spread = is_spread || values.has(&SCALE_RANGES);
     match variants(values)? {
         Some(variants) if is_spread => Ok(Some(variants)),
         Some(variants) => used(values, named, &VARIANTS, "variant").map(|()| Some(variants)),
@@ -114,6 +158,28 @@ mod tests {
                 &["scale_range", "attributes"],
             ),
             ("attributes=angle,angle", &["attributes"]),
+            ("attributes=scale&scale_ranges=a:0:1", &["variants"]),
+            ("scale_ranges=a:0:1&variants=a", &["scale_ranges"]),
+            (
+                "attributes=scale&scale_ranges=a:0:1&variants=a,b",
+                &["scale_ranges"],
+            ),
+            (
+                "attributes=scale&scale_ranges=a:0:1,c:0:1&variants=a",
+                &["scale_ranges"],
+            ),
+            (
+                "attributes=scale&scale_ranges=a:1:0&variants=a",
+                &["scale_ranges"],
+            ),
+            (
+                "attributes=scale&scale_ranges=a:0:1,a:0:1&variants=a",
+                &["scale_ranges"],
+            ),
+            (
+                "attributes=scale&scale_ranges=a:0:1&scale_range=0,1&variants=a",
+                &["scale_ranges"],
+            ),
         ] {
             let faults = check(&parse_pairs(text, groups::POINTS), None).expect_err(text);
             let found: Vec<&str> = faults

@@ -255,6 +255,28 @@ parameters! {
         }),
         ..Parameter::PLAIN
     };
+    /// The ranges of the attribute `scale` by variant.
+    SCALE_RANGES = Parameter {
+        name: "scale_ranges",
+        about: "The least and the greatest value of the attribute scale for each variant.",
+        group: Group::Attributes,
+        shape: Shape::Ranges,
+        allowed: Some("name:min:max for each of the variants, joined by commas, such as oak:0.8:1.2,birch:0.5:0.7, \
+                       beside the attribute scale and variants; with 0 <= min <= max <= 1e9"),
+        default: Some("scale_range for all"),
+        example: "oak:0.8:1.2,birch:0.5:0.7",
+        echo: Some(|set| {
+            set.attributes.as_slice().iter().find_map(|attribute| match attribute {
+                Attribute::VariantScale(scales) => {
+                    let ranges = scales.ranges().iter().map(|range| [range.min(), range.max()]);
+                    let names = scales.variants().names().map(Into::into);
+                    Some(Value::Ranges(names.zip(ranges).collect()))
+                }
+                _ => None,
+            })
+        }),
+        ..Parameter::PLAIN
+    };
     /// What the attribute `variant` chooses from.
     VARIANTS = Parameter {
         name: "variants",

@@ -47,6 +47,8 @@ pub enum Shape {
     },
     /// Names with weights.
     Weights,
+    /// Names with two numbers each.
+    Ranges,
     /// One of some words.
     Choice(&'static [&'static str]),
     /// The name of a format.
@@ -95,6 +97,7 @@ impl Shape {
             Self::Signed { limit } => format!("an integer within ±{limit}"),
             Self::Names { .. } => "different names, joined by commas".into(),
             Self::Weights => "name:weight pairs, joined by commas".into(),
+            Self::Ranges => "name:min:max triples, joined by commas".into(),
             Self::Choice(words) => words.join(", "),
             Self::Format => Encoding::ALL.map(Encoding::name).join(", "),
             Self::Quadratic => {
@@ -113,7 +116,12 @@ impl Shape {
     pub const fn is_of_names(self) -> bool {
         matches!(
             self,
-            Self::Names { .. } | Self::Weights | Self::Choice(_) | Self::Format | Self::Field
+            Self::Names { .. }
+                | Self::Weights
+                | Self::Ranges
+                | Self::Choice(_)
+                | Self::Format
+                | Self::Field
         )
     }
 
@@ -143,6 +151,7 @@ impl Shape {
                 Value::Names(text.split(',').map(|name| name.trim().into()).collect())
             }
             Self::Weights => Value::Weights(weights(text)?),
+            Self::Ranges => Value::Ranges(ranges(text)?),
             Self::Field => Value::Field(Document::Name(text.into()).into()),
             Self::Choice(_) | Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text => {
                 Value::Text(text.into())
@@ -188,6 +197,7 @@ impl Shape {
                 Value::Names(names.map_err(|_| "must be an array of names")?)
             }
             (Self::Weights, _) => Value::Weights(json::weights(json)?),
+            (Self::Ranges, _) => Value::Ranges(json::ranges(json)?),
             (Self::Field, _) => return Err("must be a name".into()),
             (Self::Quadratic, _) if is_number => Value::Text(json.get().into()),
             (
@@ -265,6 +275,11 @@ impl Shape {
                 sorted.sort_by(|a, b| a.0.cmp(&b.0));
                 Ok(Value::Weights(sorted))
             }
+            (Self::Ranges, Value::Ranges(ranges)) => {
+                let mut sorted = ranges.clone();
+                sorted.sort_by(|a, b| a.0.cmp(&b.0));
+                Ok(Value::Ranges(sorted))
+            }
             (Self::Switch, Value::Switch(_))
             | (Self::Names { .. }, Value::Names(_))
             | (Self::Field, Value::Field(_))
@@ -323,6 +338,23 @@ fn weights(text: &str) -> Result<Vec<(String, f64)>, Detail> {
         Ok((name.trim().to_owned(), read))
     };
     text.split(',').map(pair).collect()
+}
+
+/// Names with two numbers each, such as `oak:0.8:1.2`.
+fn ranges(text: &str) -> Result<Vec<(String, [f64; 2])>, Detail> {
+    let range = |part: &str| {
+        let mut parts = part.split(':').map(str::trim);
+        let (Some(name), Some(min), Some(max), None) =
+            (parts.next(), parts.next(), parts.next(), parts.next())
+        else {
+            return Err(format!("`{part}` must be name:min:max").into());
+        };
+        let read = |number: &str| {
+            finite(number).map_err(|detail| format!("`{number}` of `{name}` {detail}"))
+        };
+        Ok((name.to_owned(), [read(min)?, read(max)?]))
+    };
+    text.split(',').map(range).collect()
 }
 
 #[cfg(test)]

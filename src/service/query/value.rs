@@ -24,6 +24,8 @@ pub enum Value {
     Names(Vec<String>),
     /// Names with weights, sorted by name.
     Weights(Vec<(String, f64)>),
+    /// Names with two numbers each, sorted by name.
+    Ranges(Vec<(String, [f64; 2])>),
     /// Text.
     Text(String),
     /// A field.
@@ -48,6 +50,12 @@ impl Value {
             Self::Weights(pairs) => {
                 let pair = |(name, weight): &(String, f64)| format!("{name}:{}", number(*weight));
                 listed(pairs.iter().map(pair).collect())
+            }
+            Self::Ranges(ranges) => {
+                let range = |(name, [min, max]): &(String, [f64; 2])| {
+                    format!("{name}:{}:{}", number(*min), number(*max))
+                };
+                listed(ranges.iter().map(range).collect())
             }
             Self::Text(text) => text.clone(),
             Self::Field(field) => match &**field {
@@ -82,6 +90,7 @@ read_as! {
     Numbers as Vec<f64>;
     Names as Vec<String>;
     Weights as Vec<(String, f64)>;
+    Ranges as Vec<(String, [f64; 2])>;
     Text as String;
     Field as Arc<Document>;
 }
@@ -108,6 +117,13 @@ impl Serialize for Value {
                 let mut map = serializer.serialize_map(Some(pairs.len()))?;
                 for (name, weight) in pairs {
                     map.serialize_entry(name, weight)?;
+                }
+                map.end()
+            }
+            Self::Ranges(ranges) => {
+                let mut map = serializer.serialize_map(Some(ranges.len()))?;
+                for (name, range) in ranges {
+                    map.serialize_entry(name, range)?;
                 }
                 map.end()
             }

@@ -134,6 +134,21 @@ pub(in crate::service::query) fn weights(json: &RawValue) -> Result<Vec<(String,
     numbers(json)
 }
 
+/// Ranges: an object of pairs of numbers by name.
+///
+/// # Errors
+/// What is wrong with it.
+pub(in crate::service::query) fn ranges(
+    json: &RawValue,
+) -> Result<Vec<(String, [f64; 2])>, String> {
+    let read = |(name, json): (&str, &RawValue)| {
+        let range: [f64; 2] = serde_json::from_str(json.get())
+            .map_err(|_| format!("the value of `{name}` must be an array of two numbers"))?;
+        Ok((name.to_owned(), range))
+    };
+    Object::read(json)?.members().map(read).collect()
+}
+
 /// Two coordinates; further numbers, an elevation, do not matter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Position(pub(super) [f64; 2]);

@@ -112,7 +112,25 @@ impl VariantScales {
         &self.ranges
     }
 
-    /// The variants that have these scales.
+    /// The variants, in their order.
+    ///
+    /// ```
+    /// use strew_core::{ScaleRange, Variants};
+    ///
+    /// let trees: Variants = "oak:3,birch".parse()?;
+    /// let scales = trees.scales(vec![ScaleRange::new(0.8, 1.2)?; 2])?;
+    /// assert_eq!(scales.variants(), &trees);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn variants(&self) -> &Variants {
+        match &self.of {
+            Spread::Chance(variants) => variants,
+            Spread::Even(even) => even.variants(),
+        }
+    }
+
+    /// How they are spread.
     pub(super) const fn of(&self) -> &Spread {
         &self.of
     }
