@@ -6,12 +6,16 @@ use serde::Serialize;
 use crate::service::{
     Encoding,
     query::{
-        Group, Parameter, of as parameters_of,
+        Group, Parameter, Spread, of as parameters_of,
         parameters::{
-            ATTRIBUTES, CRS, DECIMALS, FORMAT, PARAMETERS, SCALE_RANGE, SIZE, SUMMARY, VARIANTS,
+            ATTRIBUTES, CRS, DECIMALS, FORMAT, ONLY, PARAMETERS, SCALE_RANGE, SCALE_RANGES, SIZE,
+            SPREAD, SUMMARY, VARIANTS,
         },
     },
 };
+
+/// The spreads of kinds.
+pub(super) const EVEN: &[&str] = &[Spread::Even.name(), Spread::Joint.name()];
 
 /// A rule between parameters.
 #[derive(Clone, Debug, Serialize)]
@@ -34,6 +38,14 @@ pub(super) enum Rule {
         /// Its values.
         values: Vec<&'static str>,
     },
+    /// A parameter may only be given if one of some others is, with one of some values (of a list: among its
+    /// items; of an empty list: any).
+    OnlyWithOneOf {
+        /// The parameter.
+        parameter: &'static str,
+        /// The others.
+        others: Vec<Other>,
+    },
     /// A value of a list needs another parameter.
     Needs {
         /// The list.
@@ -43,6 +55,13 @@ pub(super) enum Rule {
         /// The other parameter.
         needs: &'static str,
     },
+}
+
+/// A parameter with some values.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Other {
+    parameter: &'static str,
+    values: Vec<&'static str>,
 }
 
 /// Whether a parameter is the first of those that exclude each other, or excludes none.
@@ -80,7 +99,25 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
         };
     if groups.contains(&Group::Attributes) {
         rules.push(only_with(&SCALE_RANGE, &ATTRIBUTES, vec!["scale"]));
-        rules.push(only_with(&VARIANTS, &ATTRIBUTES, vec!["variant"]));
+        rules.push(only_with(&SCALE_RANGES, &ATTRIBUTES, vec!["scale"]));
+        let other = |parameter: &Parameter, values: &[&'static str]| Other {
+            parameter: parameter.name,
+            values: values.into(),
+        };
+        rules.push(Rule::OnlyWithOneOf {
+            parameter: VARIANTS.name,
+            others: vec![
+                other(&ATTRIBUTES, &["variant"]),
+                other(&SPREAD, EVEN),
+                other(&SCALE_RANGES, &[]),
+            ],
+        });
+        rules.push(only_with(&ONLY, &SPREAD, EVEN.into()));
+        rules.extend(EVEN.iter().map(|value| Rule::Needs {
+            parameter: SPREAD.name,
+            value,
+            needs: VARIANTS.name,
+        }));
         rules.push(Rule::Needs {
             parameter: ATTRIBUTES.name,
             value: "variant",
@@ -115,6 +152,14 @@ pub(super) fn in_words(rules: &[Rule]) -> String {
             other,
             values,
         } => format!("{parameter} is for {other} {} only.", values.join(", ")),
+        Rule::OnlyWithOneOf { parameter, others } => {
+            let others = others.iter().map(|other| {
+                let words = [&[other.parameter], &other.values[..]].concat();
+                words.join(" ").replace("even joint", "even or joint")
+            });
+            let others: Vec<String> = others.collect();
+            format!("{parameter} is for {} only.", others.join(", "))
+        }
         Rule::Needs {
             parameter,
             value,

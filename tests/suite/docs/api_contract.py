@@ -49,20 +49,34 @@ def tidy_set(query, is_text, amounts=AMOUNTS):
         query["warp"] = choose(query["warp"], ["on", "off"] if is_text else ["on", 0.5, 2])
     if "seed" in query:
         query["seed"] = int(number(query["seed"], 0, 2**53))
+    spread = "even" if "spread" in query and query.get("profile", "blue") == "blue" else "chance"
+    names = []
     if "attributes" in query:
-        count = 1 + len(str(query["attributes"])) % len(NAMES)
-        names = NAMES[:count]
+        names = NAMES[: 1 + len(str(query["attributes"])) % len(NAMES)]
         query["attributes"] = ",".join(names) if is_text else names
-        query["variants"] = "oak:3,birch" if is_text else {"oak": 3, "birch": 1}
-        if "variant" not in names:
-            query.pop("variants")
-        if "scale_range" in query:
-            query["scale_range"] = "0.5,2" if is_text else [0.5, 2]
-        if "scale" not in names:
-            query.pop("scale_range", None)
+    is_mixed = "variant" in names or spread == "even"
+    has_ranges = "scale" in names and "scale_ranges" in query and is_mixed
+    if has_ranges:
+        ranges = {"oak": [0.5, 2], "birch": [0, 1]}
+        query["scale_ranges"] = "oak:0.5:2,birch:0:1" if is_text else ranges
     else:
-        query.pop("variants", None)
+        query.pop("scale_ranges", None)
+    if "scale_range" in query:
+        query["scale_range"] = "0.5,2" if is_text else [0.5, 2]
+    if "scale" not in names or has_ranges:
         query.pop("scale_range", None)
+    query.pop("variants", None)
+    if is_mixed:
+        query["variants"] = "oak:3,birch" if is_text else {"oak": 3, "birch": 1}
+    if "spread" in query:
+        query["spread"] = spread
+    if spread == "even":
+        # Its kinds are made soonest.
+        query["map"] = "s"
+    if "only" in query:
+        query["only"] = choose(query["only"], ["oak", "birch"])
+        if spread != "even":
+            query.pop("only")
 
 
 def tidy_output(query):
@@ -120,7 +134,9 @@ def tidy_body(name, body):
     if isinstance(layers, list) and layers:
         for member in AMOUNTS + ["profile", "alpha", "map", "table", "seed", "warp", "keep"]:
             body.pop(member, None)
-        for member in ["attributes", "variants", "scale_range", "cursor", "preset", "field"]:
+        for member in ["attributes", "variants", "scale_range", "scale_ranges", "spread", "only"]:
+            body.pop(member, None)
+        for member in ["cursor", "preset", "field"]:
             body.pop(member, None)
         tidy = []
         for i, layer in enumerate(layers[:4]):
