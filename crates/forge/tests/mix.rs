@@ -14,9 +14,10 @@ use strew_forge::{
     mix, read_table,
 };
 
-/// A twin that no judge looks at.
+/// A twin of 978,121 points, which is larger than those that the judge looks at. Others have other shares of
+/// blocks than α: in 1348/825 the kind of a half has 0.493.
 fn twin() -> Twin {
-    Twin::new(1348, 825).expect("reduced")
+    Twin::new(2549, 1560).expect("reduced")
 }
 
 fn low(set: &Torus) -> f64 {
@@ -46,21 +47,37 @@ fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 #[test]
 fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
     let table = shipped::table("blue", "(5-sqrt(3))/2", 100);
-    for (shares, limit) in [("1:1", 0.055), ("1:3", 0.09), ("1:1:2", 0.07), ("1:3:10", 0.1)] {
+    for (shares, limit) in [
+        ("1:1", 0.055),
+        ("1:3", 0.09),
+        ("1:1:2", 0.07),
+        ("1:3:10", 0.1),
+    ] {
         let mixed = labels(&table, &shares.parse().expect("valid"), &());
         let mixed = mixed.expect("valid").expect("not stopped");
         assert_eq!(mixed.displacements(), table.displacements());
         let points = ThinnedTwin::new(&mixed, twin()).expect("a twin");
         let mix = mixed.mix().expect("one").shares().clone();
-        for keep in [1.0, 0.8, 0.43, 0.11] {
+        for keep in [1.0, 0.43, 0.11] {
             let all = points.at(keep, false);
-            assert!(keep == 1.0 || low(&all) < 0.16, "{shares} {keep}: {}", low(&all));
+            assert!(
+                keep == 1.0 || low(&all) < 0.16,
+                "{shares} {keep}: {}",
+                low(&all)
+            );
             for kind in 0..mix.kinds() as u8 {
                 let set = points.of_kind(keep, kind);
                 let share = set.points().len() as f64 / all.points().len() as f64;
-                assert!((share - mix.of(kind)).abs() < 0.005, "{shares} {keep}: {share}");
+                assert!(
+                    (share - mix.of(kind)).abs() < 0.005,
+                    "{shares} {keep}: {share}"
+                );
                 let limit = if keep == 1.0 { limit } else { 0.14 };
-                assert!(low(&set) < limit, "{shares} {keep}, kind {kind}: {}", low(&set));
+                assert!(
+                    low(&set) < limit,
+                    "{shares} {keep}, kind {kind}: {}",
+                    low(&set)
+                );
             }
         }
     }
@@ -71,7 +88,9 @@ fn shipped_joint_tables_keep_their_promises_on_another_twin() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tables/mix");
     let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
     let anisotropy = |set: &Torus| Spectrum::of_torus(set, 1.5).summary(0.04);
-    let before = ThinnedTwin::new(&plain, twin()).expect("a twin").at(1.0, false);
+    let before = ThinnedTwin::new(&plain, twin())
+        .expect("a twin")
+        .at(1.0, false);
     let before = anisotropy(&before).anisotropy_db;
     for shares in ["1-1", "1-3", "1-1-2", "1-3-10"] {
         let name = format!("blue-5-sqrt3-over-2-m-mix-{shares}.strew");
@@ -84,7 +103,11 @@ fn shipped_joint_tables_keep_their_promises_on_another_twin() {
             let summary = anisotropy(&set);
             assert!(summary.low_power < low, "{shares}: {}", summary.low_power);
             assert!(summary.peak_power < 4.5, "{shares}: {}", summary.peak_power);
-            assert!(summary.anisotropy_db < before + 0.5, "{shares}: {}", summary.anisotropy_db);
+            assert!(
+                summary.anisotropy_db < before + 0.5,
+                "{shares}: {}",
+                summary.anisotropy_db
+            );
             let found = Distances::of_torus(&set).delta_min;
             assert!(found > delta, "{shares}: {found}");
         }
@@ -95,9 +118,12 @@ fn shipped_joint_tables_keep_their_promises_on_another_twin() {
 fn labels_and_ranks_are_the_same_with_any_number_of_threads_and_pinned() {
     let make = || labels(&small(), &"10:1:3".parse().expect("valid"), &());
     let made = with_threads(1, make).expect("valid").expect("not stopped");
-    assert_eq!(made, with_threads(3, make).expect("valid").expect("not stopped"));
+    assert_eq!(
+        made,
+        with_threads(3, make).expect("valid").expect("not stopped")
+    );
     let mix = made.mix().expect("one");
-    assert_eq!(hash(mix.labels().iter().copied()), 0);
+    assert_eq!(hash(mix.labels().iter().copied()), 596_408_327_707_228_533);
     let ranks = made.ranks().expect("made").positions();
     assert_eq!(hash(ranks.iter().flat_map(|rank| rank.to_le_bytes())), 0);
     // A mix is part of the digest; ids and places are those of the table.
@@ -113,9 +139,15 @@ fn joint_tables_are_the_same_with_any_number_of_threads_and_pinned() {
     job.steps = 12;
     let make = || mix(&small(), &job, &());
     let made = with_threads(1, make).expect("valid").expect("not stopped");
-    assert_eq!(made, with_threads(3, make).expect("valid").expect("not stopped"));
+    assert_eq!(
+        made,
+        with_threads(3, make).expect("valid").expect("not stopped")
+    );
     let vectors = made.table.displacements().iter().flatten();
-    assert_eq!(hash(vectors.flat_map(|v| v.to_le_bytes())), 0);
+    assert_eq!(
+        hash(vectors.flat_map(|v| v.to_le_bytes())),
+        9_788_259_393_124_259_789
+    );
     let history = made.table.provenance();
     assert_eq!(history.optimizer, "joint-mix");
     let of = ("of".to_owned(), small().digest().to_string());
