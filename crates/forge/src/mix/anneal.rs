@@ -248,3 +248,65 @@ impl<'a> Annealer<'a> {
 const fn below(random: u64, bits: u32, count: usize) -> usize {
     ((random * count as u64) >> bits) as usize
 }
+
+#[cfg(test)]
+mod tests {
+    use strew_core::{Map, Table, table::Mix};
+
+    use super::*;
+    use crate::{ladder::Ground, mix::press::Kernel, watch::Stage};
+
+    #[test]
+    fn fields_and_areas_stay_what_they_are_from_scratch() {
+        let alpha = "(5-sqrt(3))/2".parse().expect("valid");
+        let table = Table::undisplaced(alpha, 15, "pattern").expect("small");
+        let ground = Ground::new(table.map(), 6.0);
+        let kernel = |sigma: f64| Kernel {
+            sigma,
+            range: 3.0 * sigma,
+        };
+        let presses = [1.2, 0.8].map(|s| Presses::new(&table, &ground, kernel(s), 4e8));
+        let kinds = [(1, 0), (1, 0), (2, 1)].map(|(part, presses)| Kind {
+            share: f64::from(part) / 4.0,
+            presses,
+            even: 100.0,
+        });
+        let areas: Vec<f64> = (0..ground.blocks()).map(|b| ground.share(b)).collect();
+        let start = Mix::scattered(table.map(), "1:1:2".parse().expect("valid")).expect("near");
+        let mut annealer = Annealer::new(&kinds, &presses, &areas, start.labels());
+        let logs: Vec<i64> = (0..LOGS as i64).map(|i| i << 6).collect();
+        let mut random = SplitMix::new(3);
+        for _ in 0..20_000 {
+            annealer.propose(3000, &logs, &mut random);
+        }
+        assert_ne!(annealer.labels, start.labels());
+        let fresh = Annealer::new(&kinds, &presses, &areas, &annealer.labels);
+        assert_eq!(annealer.fields, fresh.fields);
+        assert_eq!(annealer.excess, fresh.excess);
+        let sorted = |mut blocks: Vec<u32>| {
+            blocks.sort_unstable();
+            blocks
+        };
+        assert_eq!(sorted(annealer.minor.clone()), fresh.minor);
+        for (at, &block) in (0..).zip(&annealer.minor) {
+            assert_eq!(annealer.places[block as usize], at);
+        }
+    }
+
+    #[test]
+    fn areas_end_within_a_block_of_the_shares() {
+        for (shares, radius) in [
+            ("1:1", 15),
+            ("1:3:10", 20),
+            ("1:2:3:4:5", 20),
+            ("1:100", 20),
+        ] {
+            let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), radius).expect("small");
+            let table = Table::undisplaced(map.alpha(), radius, "pattern").expect("small");
+            let mut meter = Meter::new(&(), Stage::Optimizing, STEPS);
+            let shares = shares.parse().expect("valid");
+            let mix = crate::mix::labels::annealed(&table, &shares, &mut meter);
+            assert!(mix.expect("near").is_some(), "{shares}");
+        }
+    }
+}

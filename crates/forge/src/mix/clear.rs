@@ -118,3 +118,45 @@ fn pairs(
         .collect();
     lists.into_iter().flatten().collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use strew_core::{
+        Map, Table, Twin,
+        table::{Mix, Provenance, Ranks, from_grid_units},
+    };
+
+    use super::*;
+    use crate::{
+        ladder::{ThinnedTwin, moves_of},
+        measure::Distances,
+        mix::joint::parts,
+    };
+
+    #[test]
+    fn cleared_pairs_are_clear_on_a_twin() {
+        let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 20).expect("small");
+        let table = Table::undisplaced(map.alpha(), 20, "pattern").expect("small");
+        let mix = Mix::scattered(&map, "1:3".parse().expect("valid")).expect("near");
+        let (kinds, ground) = (parts(&table, &mix), Ground::new(&map, 8.0));
+        let mut moves = moves_of(&table);
+        let floor = Floor {
+            all: 0.4,
+            kind: 0.45,
+        };
+        let shares = [0.25, 0.75];
+        assert_eq!(clear(&ground, &kinds, &shares, &mut moves, floor, 400), 0);
+        let grid = |v: f64| from_grid_units(v / ground.scale()).expect("short");
+        let vectors: Vec<_> = moves.iter().map(|m| m.map(grid)).collect();
+        let ranks = Ranks::new((0..vectors.len() as u32).collect()).expect("each once");
+        let table = Table::new(map, "cleared", vectors, Provenance::default()).expect("valid");
+        let table = table.with_mix(mix, ranks).expect("valid");
+        let twin = Twin::new(683, 418).expect("reduced");
+        let points = ThinnedTwin::new(&table, twin).expect("a twin");
+        assert!(Distances::of_torus(&points.at(1.0, false)).delta_min > 0.399);
+        for kind in 0..2 {
+            let set = points.of_kind(1.0, kind);
+            assert!(Distances::of_torus(&set).delta_min > 0.449, "{kind}");
+        }
+    }
+}

@@ -53,7 +53,7 @@ pub(super) fn moved(
 }
 
 /// Which part of each block is of each kind, kind by kind.
-fn parts(table: &Table, mix: &Mix) -> Vec<Vec<f64>> {
+pub(super) fn parts(table: &Table, mix: &Mix) -> Vec<Vec<f64>> {
     let map = table.map();
     let mut parts = vec![vec![0.0; mix.labels().len()]; mix.shares().kinds()];
     for (block, &kind) in mix.labels().iter().enumerate() {

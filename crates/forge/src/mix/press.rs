@@ -128,3 +128,48 @@ pub(super) fn longest(table: &Table) -> f64 {
         .map(|[x, y]| x * x + y * y);
     (squares.max().unwrap_or(0) as f64).sqrt() / 1_048_576.0 * table.alpha().set_side_f64()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ladder::moves_of;
+
+    #[test]
+    fn presses_are_symmetric_sums_over_all_places_where_blocks_meet() {
+        let alpha = "(5-sqrt(3))/2".parse().expect("valid");
+        let table = Table::undisplaced(alpha, 15, "pattern").expect("small");
+        let ground = Ground::new(table.map(), 5.0);
+        let (sigma, range, unit) = (0.9, 2.5, 1e9);
+        let presses = Presses::new(&table, &ground, Kernel { sigma, range }, unit);
+        let moves = moves_of(&table);
+        for block in 0..ground.blocks() {
+            let mut expected = vec![0.0; ground.blocks()];
+            ground.neighbors(
+                block,
+                range,
+                |_| true,
+                |near| {
+                    let by = [near.i, near.j].map(|v| ground.scale() * f64::from(v));
+                    let to = near.to as usize;
+                    let [x, y] = [0, 1].map(|axis| by[axis] + moves[to][axis] - moves[block][axis]);
+                    let squared = x * x + y * y;
+                    if squared < range * range {
+                        let value = (-squared / (2.0 * sigma * sigma)).exp();
+                        expected[to] += f64::from(near.weight) * ground.share(block) * value * unit;
+                    }
+                },
+            );
+            for (to, expected) in expected.into_iter().enumerate() {
+                let found = match to == block {
+                    true => presses.own(block),
+                    false => presses.between(block, to),
+                };
+                assert!((f64::from(found) - expected).abs() < 1e-6 * expected + 4.0);
+                if to != block {
+                    assert_eq!(found, presses.between(to, block));
+                    assert!(found <= presses.most(block));
+                }
+            }
+        }
+    }
+}

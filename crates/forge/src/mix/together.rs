@@ -79,3 +79,43 @@ impl Objective for Together {
         energy
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use strew_core::table::Mix;
+
+    use super::*;
+    use crate::{ladder::moves_of, mix::joint::parts, optimize::jitter};
+
+    #[test]
+    fn slopes_are_those_of_the_energy() {
+        let alpha = "(5-sqrt(3))/2".parse().expect("valid");
+        let table = Table::undisplaced(alpha, 9, "pattern").expect("small");
+        let mix = Mix::scattered(table.map(), "1:2".parse().expect("valid")).expect("near");
+        let kinds = parts(&table, &mix);
+        let mut energy = Together::new(&table, &[1.0 / 3.0, 2.0 / 3.0], &kinds);
+        let blocks = mix.labels().len();
+        let mut moves = moves_of(&table);
+        for (to, by) in moves.iter_mut().zip(jitter(blocks, 0.4, 5)) {
+            *to = [to[0] + by[0], to[1] + by[1]];
+        }
+        let mut slopes = vec![[0.0; 2]; blocks];
+        let mut unused = slopes.clone();
+        energy.evaluate(&moves, &mut slopes);
+        let masses = energy.masses().to_vec();
+        let split = mix.splits()[0].block as usize;
+        for block in [0, 3, blocks / 2, split] {
+            for axis in 0..2 {
+                let step = 1e-4;
+                let mut at = |by: f64| {
+                    let mut moves = moves.clone();
+                    moves[block][axis] += by;
+                    energy.evaluate(&moves, &mut unused)
+                };
+                let numeric = (at(step) - at(-step)) / (2.0 * step);
+                let found = slopes[block][axis] * masses[block];
+                assert!((found - numeric).abs() < 1e-6, "{block}: {found} {numeric}");
+            }
+        }
+    }
+}
