@@ -15,7 +15,7 @@ use crate::service::{
 };
 
 /// The spreads of kinds.
-pub(super) const EVEN: &[&str] = &[Spread::Even.name(), Spread::Joint.name()];
+const EVEN: &[&str] = &[Spread::Even.name(), Spread::Joint.name()];
 
 /// A rule between parameters.
 #[derive(Clone, Debug, Serialize)]

@@ -45,25 +45,14 @@ fn rules_of_set(instead: Option<Value>) -> Vec<Value> {
     };
     let only_with =
         |member: &str, name: &str| json!({ "if": { "required": [member] }, "then": with(name) });
-    let even = json!({
-        "required": ["spread"], "properties": { "spread": { "enum": rules::EVEN } },
-    });
     vec![
         amount,
         only_with("scale_range", "scale"),
-        only_with("scale_ranges", "scale"),
         json!({ "if": with("variant"), "then": { "required": ["variants"] } }),
-        json!({ "if": { "required": ["variants"] }, "then": { "anyOf": [
-            with("variant"), even, { "required": ["scale_ranges"] },
-        ] } }),
-        json!({ "if": even, "then": { "required": ["variants"] } }),
-        json!({ "if": { "required": ["only"] }, "then": even }),
-        json!({ "if": { "required": ["scale_ranges"] },
-                "then": { "required": ["variants"], "properties": { "scale_range": nothing() } } }),
     ]
 }
 
-/// What decimals, size, summary and crs are for stands in `x-rules` only: programs that make queries from
+/// What spread, only, scale_ranges, decimals, size, summary and crs are for stands in `x-rules` only: programs that make queries from
 /// the schema give up on so many conditions.
 fn query(groups: &'static [Group], about: &str) -> Value {
     let mut properties = members(groups);
