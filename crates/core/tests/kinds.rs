@@ -2,64 +2,16 @@
 
 mod subject;
 
-use std::sync::OnceLock;
-
 use proptest::prelude::*;
 use strew_core::{
     Area, Attribute, Attributes, Backend, Circle, ErrorKind, F32, F64, Keep, Placement, Point,
-    PointId, PointSet, Points, Polygon, Region, Seed, Spacing, Table, Variants, Warp,
+    PointId, PointSet, Points, Polygon, Region, ScaleRange, Seed, Spacing, Variants, Warp,
     server::{self, Stop},
-    table::{Ladder, Mix, Ranks, Rung},
 };
-use subject::{all, all_by, definition};
-
-/// A hashed order.
-fn ranks(blocks: u32) -> Ranks {
-    let mut order: Vec<u32> = (0..blocks).collect();
-    order.sort_by_key(|&block| block.wrapping_mul(0x9e37_79b1).swap_bytes());
-    let mut positions = vec![0; blocks as usize];
-    for (position, &block) in (0..).zip(&order) {
-        positions[block as usize] = position;
-    }
-    Ranks::new(positions).expect("an order")
-}
-
-/// A table with kinds in some shares, and with a ladder of arbitrary vectors if wanted.
-fn mixed(table: &Table, shares: &str, has_ladder: bool) -> Table {
-    let mix = Mix::scattered(table.map(), shares.parse().expect("valid")).expect("near");
-    assert!(!mix.splits().is_empty());
-    let blocks = mix.labels().len();
-    let table = table.with_mix(mix, ranks(blocks as u32)).expect("fits");
-    if !has_ladder {
-        return table;
-    }
-    let rung = |i: usize| {
-        let [x, y] = [71, 173].map(|f| (i * f % 1201) as i16 - 600);
-        let event = [i * 7 % 100, 100 + i * 3 % 100].map(|v| v as u8);
-        Rung {
-            vector: [x, y],
-            event,
-        }
-    };
-    let level = (0.4, (0..blocks).map(rung).collect());
-    let ladder = Ladder::new(vec![level]).expect("valid");
-    table.with_ladder(ladder).expect("a vector for each block")
-}
-
-/// Tables with kinds, of three maps.
-fn tables() -> &'static [Table] {
-    static ONCE: OnceLock<Vec<Table>> = OnceLock::new();
-    ONCE.get_or_init(|| {
-        let [a, b, c] = subject::tables();
-        vec![
-            mixed(a, "1:3", false),
-            mixed(b, "1:3:10", false),
-            mixed(c, "1:1:1:1:1", false),
-            mixed(a, "2:3:5:7:11", true),
-            mixed(&subject::table("(5-sqrt(3))/2", 5), "1:1", false),
-        ]
-    })
-}
+use subject::{
+    all, all_by, definition,
+    mixed::{mixed, tables},
+};
 
 fn kinds(set: &PointSet) -> u8 {
     let mix = set.table().mix().expect("a mix");
@@ -491,6 +443,18 @@ fn even_variants_are_the_kinds() {
             let name = even.variants().name(index).expect("a name");
             assert_eq!(even.kind(name), Some(kind));
             assert_eq!(name, ["birch", "elm", "oak"][usize::from(kind)]);
+        }
+        // Scales that depend on the kind.
+        let ranges =
+            (0..3).map(|i| ScaleRange::new(f64::from(i), f64::from(i) + 0.5).expect("ordered"));
+        let scales = even.scales(ranges.collect()).expect("one for each");
+        let list = Attributes::new(vec![Attribute::VariantScale(scales)]).expect("different");
+        let scales = set
+            .attributes(&list)
+            .expect("the table's shares")
+            .columns(ids());
+        for (scale, &index) in scales[0].numbers().expect("numbers").iter().zip(indices) {
+            assert_eq!(scale.floor(), f64::from(index));
         }
         // Other shares are another table's.
         let list = vec![Attribute::EvenVariant(

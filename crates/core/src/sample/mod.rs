@@ -37,7 +37,7 @@ mod warp;
 pub use area::{Area, Circle, Polygon, Region};
 pub use attribute::{
     Attribute, Attributes, BoundAttributes, Column, EvenVariants, ScaleRange, UniformNumber,
-    Variants,
+    VariantScales, Variants,
 };
 pub use cursor::Cursor;
 pub use field::{Edges, Field, FieldSpec, Filter, Marks, Noise, Pixels, Raster, Terrain};

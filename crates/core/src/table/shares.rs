@@ -57,9 +57,9 @@ impl Shares {
         let mut weights: Vec<f64> = more.by_ref().take(Self::MAX_KINDS).collect();
         let count = weights.len() + more.count();
         if !(2..=Self::MAX_KINDS).contains(&count) {
-            let value = alloc::format!("{count} weights");
-            let allowed = alloc::format!("2 to {} weights", Self::MAX_KINDS);
-            return Err(Error::new(ErrorKind::Shares, "shares", value, allowed));
+            let field = "the number of weights of the shares";
+            let allowed = alloc::format!("from 2 to {}", Self::MAX_KINDS);
+            return Err(Error::new(ErrorKind::Shares, field, count, allowed));
         }
         let is_bad = |weight: &&f64| !(weight.is_finite() && **weight > 0.0);
         if let Some(&bad) = weights.iter().find(is_bad) {
@@ -198,7 +198,7 @@ impl FromStr for Shares {
                 Error::new(ErrorKind::Shares, "shares", shown(text).to_owned(), allowed)
             })
         };
-        // One more than allowed, so that too many are refused by their number.
+        // A longer list is refused too, by this number.
         let parts = text.split(':').take(8 * Self::MAX_KINDS);
         Self::new(parts.map(weight).collect::<Result<Vec<_>, _>>()?)
     }
@@ -249,7 +249,10 @@ mod tests {
     #[test]
     fn bad_weights_are_refused_by_name() {
         for (text, says) in [
-            ("1", "1 weights"),
+            (
+                "1",
+                "the number of weights of the shares is 1; it must be from 2 to 32",
+            ),
             ("", "numbers joined by colons"),
             ("1:x", "numbers joined by colons"),
             ("1:0", "is 0; it must be a finite number greater than 0"),

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test uses what it needs")]
 
 pub mod definition;
+pub mod mixed;
 
 use std::path::Path;
 

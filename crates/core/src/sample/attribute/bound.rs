@@ -3,8 +3,9 @@
 use alloc::vec::Vec;
 
 use super::{
-    Attribute, Attributes, EvenVariants,
+    Attribute, Attributes, EvenVariants, ScaleRange,
     hash::{angle, hash, in_row, key, of_row, scale, unit},
+    scales::{Spread, VariantScales},
 };
 use crate::{
     error::Error,
@@ -92,6 +93,8 @@ impl Column {
 pub struct BoundAttributes {
     table: TurnedTable,
     pattern: Pattern,
+    /// The key of variants, on which scales may depend.
+    variant_key: u64,
     list: Vec<Bound>,
 }
 
@@ -130,9 +133,15 @@ impl Rows {
 impl BoundAttributes {
     pub(crate) fn new(attributes: &Attributes, lattice: &Lattice) -> Result<Self, Error> {
         for attribute in attributes.as_slice() {
-            if let Attribute::EvenVariant(even) = attribute {
-                even.check(&lattice.table)?;
-            }
+            let even = match attribute {
+                Attribute::EvenVariant(even) => Some(even),
+                Attribute::VariantScale(scales) => match scales.of() {
+                    Spread::Even(even) => Some(even),
+                    Spread::Chance(_) => None,
+                },
+                _ => None,
+            };
+            even.map_or(Ok(()), |even| even.check(&lattice.table))?;
         }
         let seed = lattice.placement.seed;
         let bind = |attribute: &Attribute| Bound {
@@ -142,6 +151,7 @@ impl BoundAttributes {
         Ok(Self {
             table: lattice.turned.clone(),
             pattern: lattice.pattern,
+            variant_key: key(seed, Attribute::VARIANT),
             list: attributes.as_slice().iter().map(bind).collect(),
         })
     }
@@ -276,11 +286,20 @@ impl BoundAttributes {
         match attribute {
             Attribute::Angle => angle(hash(key, id)),
             Attribute::Scale(range) => scale(*range, hash(key, id)),
+            Attribute::VariantScale(scales) => scale(self.range(scales, id), hash(key, id)),
             Attribute::Rank => rank(&self.table, &self.pattern, id),
             Attribute::Uniform(_) => unit(hash(key, id)),
             Attribute::Variant(variants) => variants.pick(hash(key, id)).into(),
             Attribute::EvenVariant(even) => self.index(even, id).into(),
         }
+    }
+
+    /// The range of the scale of a point's variant.
+    fn range(&self, scales: &VariantScales, id: PointId) -> ScaleRange {
+        scales.range(match scales.of() {
+            Spread::Chance(variants) => variants.pick(hash(self.variant_key, id)),
+            Spread::Even(even) => self.index(even, id),
+        })
     }
 
     /// The index of the variant of a point's kind.

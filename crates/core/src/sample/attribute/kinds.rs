@@ -2,7 +2,7 @@
 
 use core::{fmt, str::FromStr};
 
-use super::{EvenVariants, Variants};
+use super::{EvenVariants, VariantScales, Variants};
 use crate::error::{Error, ErrorKind, number, shown};
 
 /// A value that every point has.
@@ -23,6 +23,8 @@ pub enum Attribute {
     Angle,
     /// `scale`: a factor, uniform in a range.
     Scale(ScaleRange),
+    /// `scale`: a factor, uniform in a range that depends on the variant.
+    VariantScale(VariantScales),
     /// `variant`: one of several named things, chosen by weight.
     Variant(Variants),
     /// `variant`: one of several named things, each spread evenly: the kind of the point.
@@ -210,7 +212,7 @@ impl Attribute {
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Angle => "angle",
-            Self::Scale(_) => "scale",
+            Self::Scale(_) | Self::VariantScale(_) => "scale",
             Self::Variant(_) | Self::EvenVariant(_) => "variant",
             Self::Rank => "rank",
             Self::Uniform(n) => UNIFORM_NAMES[n.0 as usize - 1],
@@ -250,7 +252,7 @@ impl Attribute {
         match self {
             Self::Rank | Self::EvenVariant(_) => 0,
             Self::Angle => Self::ANGLE,
-            Self::Scale(_) => Self::SCALE,
+            Self::Scale(_) | Self::VariantScale(_) => Self::SCALE,
             Self::Variant(_) => Self::VARIANT,
             Self::Uniform(n) => Self::uniform_code(n.0),
         }

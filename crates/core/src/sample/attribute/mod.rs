@@ -6,7 +6,7 @@
 //! the point's place in index space and from the table.
 //!
 //! `kinds` names the attributes and `variants` their named things, which `even` matches with the kinds of a table's
-//! points; `list` is a list of them, which `bound`
+//! points, and to which `scales` has ranges; `list` is a list of them, which `bound`
 //! evaluates for the points of a set.
 
 mod bound;
@@ -14,10 +14,12 @@ mod even;
 pub(super) mod hash;
 mod kinds;
 mod list;
+mod scales;
 mod variants;
 
 pub use bound::{BoundAttributes, Column};
 pub use even::EvenVariants;
 pub use kinds::{Attribute, ScaleRange, UniformNumber};
 pub use list::Attributes;
+pub use scales::VariantScales;
 pub use variants::Variants;
