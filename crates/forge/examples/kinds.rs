@@ -26,10 +26,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let made = mix(&table, &job, &())?.ok_or("stopped")?;
         println!(
-            "{}: accepted {}, {:.2?}",
+            "{}: accepted {}, {:.2?}, {}",
             job.shares,
             made.accepted,
-            began.elapsed()
+            began.elapsed(),
+            made.table.digest()
         );
         for figures in &made.figures {
             let values = figures.values.iter();

@@ -31,7 +31,8 @@
 //! [measured](measure) and the figures are compared with the bounds of the profile ([`judge`]).
 //!
 //! Meanwhile a [`Watch`] follows the [`Progress`], keeps [`Checkpoint`]s and may stop the work;
-//! [`resume`] goes on from a checkpoint. Apart from jobs, a [`Report`] measures any point set, and
+//! [`resume`] goes on from a checkpoint. For a table there is, [`ladder()`] makes displacements of thinned sets,
+//! and [`labels`] and [`mix()`] make kinds of points. Apart from jobs, a [`Report`] measures any point set, and
 //! [`picture()`] draws it.
 
 mod checkpoint;

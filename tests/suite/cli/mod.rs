@@ -7,6 +7,7 @@ mod fields;
 mod forge;
 mod full_disk;
 mod invalid_flags;
+mod mix;
 mod outputs;
 mod probe;
 mod queries;

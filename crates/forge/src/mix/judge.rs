@@ -105,7 +105,7 @@ enum Place {
 /// The sets of a table at a place.
 enum Sets<'a> {
     Twin(ThinnedTwin<'a>),
-    Window(PointSet),
+    Window(Box<PointSet>),
 }
 
 /// A set to measure.
@@ -126,7 +126,7 @@ impl Place {
     fn sets(self, table: &Table) -> Option<Sets<'_>> {
         Some(match self {
             Self::Twin(twin) => Sets::Twin(ThinnedTwin::new(table, twin)?),
-            Self::Window(seed) => Sets::Window(PointSet::new(table.clone()).seed(seed)),
+            Self::Window(seed) => Sets::Window(PointSet::new(table.clone()).seed(seed).into()),
         })
     }
 }
@@ -144,7 +144,9 @@ impl Sets<'_> {
     fn of_kind(&self, share: f64, kind: u8, part: f64) -> Option<Set> {
         Some(match self {
             Self::Twin(twin) => Set::Twin(twin.of_kind(share, kind)),
-            Self::Window(set) => Set::Window(window(&set.clone().only(kind).ok()?, share, part)?),
+            Self::Window(set) => {
+                Set::Window(window(&PointSet::clone(set).only(kind).ok()?, share, part)?)
+            }
         })
     }
 }

@@ -1,0 +1,121 @@
+//! `strew forge mix`: kinds for a table of one's own, refused flags, an interrupt.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+
+use strew_core::Table;
+use strew_forge::{labels, read_table, write_table};
+use strew_testkit::wait::until;
+
+use crate::support::{command::errors, daemon::strew};
+
+/// A folder with a small table, whose mixes are never accepted.
+fn folder() -> (tempfile::TempDir, Table) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let alpha = "(5-sqrt(3))/2".parse().expect("valid");
+    let table = Table::undisplaced(alpha, 12, "mine").expect("small");
+    write_table(&folder.path().join("mine.strew"), &table).expect("writable");
+    (folder, table)
+}
+
+fn mix(folder: &Path, flags: &[&str]) -> Command {
+    let mut command = strew();
+    command.current_dir(folder);
+    command.args(["forge", "mix"]).args(flags);
+    command
+}
+
+fn run(folder: &Path, flags: &[&str]) -> Output {
+    mix(folder, flags).output().expect("the program runs")
+}
+
+#[test]
+fn labels_are_those_of_the_library_whatever_the_order_of_shares() {
+    let (folder, table) = folder();
+    let folder = folder.path();
+    let flags = ["--table", "mine.strew", "--shares", "3:1"];
+    let rejected = run(folder, &flags);
+    assert_eq!(rejected.status.code(), Some(1));
+    let text = errors(&rejected);
+    assert!(
+        text.contains("low_power") && text.contains("--keep-rejected"),
+        "{text}"
+    );
+    let kept = run(folder, &[&flags[..], &["--keep-rejected"]].concat());
+    assert!(kept.status.success(), "{}", errors(&kept));
+    let name = "mine-5-sqrt3-over-2-r12-labels-1-3.strew";
+    let made = read_table(&folder.join(name)).expect("written");
+    let shares = "1:3".parse().expect("valid");
+    let expected = labels(&table, &shares, &()).expect("valid");
+    assert_eq!(Some(&made), expected.as_ref());
+    let printed = String::from_utf8(kept.stdout).expect("text");
+    assert_eq!(printed, format!("{}  {name}\n", made.digest()));
+    // A file that is there is left alone.
+    let again = run(folder, &flags);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(errors(&again).contains("--force"), "{}", errors(&again));
+}
+
+#[test]
+fn joint_tables_move_points() {
+    let (folder, table) = folder();
+    let folder = folder.path();
+    let flags = ["--table", "mine.strew", "--shares", "1:1", "--joint"];
+    let more = ["--steps", "9", "--keep-rejected", "-o", "joint.strew", "-q"];
+    let made = run(folder, &[&flags[..], &more].concat());
+    assert!(made.status.success(), "{}", errors(&made));
+    let made = read_table(&folder.join("joint.strew")).expect("written");
+    assert_ne!(made.displacements(), table.displacements());
+    assert_eq!(
+        made.mix().map(|mix| mix.shares().to_string()),
+        Some("1:1".into())
+    );
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    let (folder, _) = folder();
+    for (flags, says) in [
+        (&["--shares", "1:0"][..], "greater than 0"),
+        (&["--shares", "1:1000000"], "1000000"),
+        (&["--shares", "1:3", "--table", "blau"], "no built-in table"),
+        (&["--shares", "1:3", "--table", "no.strew"], "no.strew"),
+        (&["--shares", "1:3", "--joint", "--steps", "0"], "steps is 0"),
+        (&["--shares", "1:3", "--radius", "20"], "--radius"),
+        (&[], "--shares"),
+    ] {
+        let refused = run(folder.path(), flags);
+        assert_eq!(refused.status.code(), Some(2), "{flags:?}");
+        assert!(errors(&refused).contains(says), "{}", errors(&refused));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupt_leaves_nothing() {
+    let (folder, _) = folder();
+    let folder = folder.path();
+    let flags = ["--table", "mine.strew", "--shares", "1:1", "--joint"];
+    let long = [&flags[..], &["--steps", "10000", "-o", "joint.strew"]].concat();
+    let child = mix(folder, &long).stderr(Stdio::piped()).spawn();
+    let child = child.expect("the program runs");
+    // A process that catches the signal shows it in its status.
+    until("the signal is caught", || {
+        let status = fs::read_to_string(format!("/proc/{}/status", child.id())).ok()?;
+        let caught = status.lines().find_map(|l| l.strip_prefix("SigCgt:"))?;
+        let caught = u64::from_str_radix(caught.trim(), 16).ok()?;
+        (caught & 0b10 != 0).then_some(())
+    });
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(sent.expect("kill runs").success());
+    let output = child.wait_with_output().expect("a child");
+    assert_eq!(output.status.code(), Some(130));
+    let text = errors(&output);
+    assert!(text.contains("interrupted"), "{text}");
+    assert!(!folder.join("joint.strew").exists());
+}
