@@ -21,7 +21,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let out = PathBuf::from(env::var("OUT_DIR")?);
     let descriptors = compile_contract(&out)?;
     convert_sets(&descriptors, &out.join("point_set.rs"))?;
-    list_tables(&root.join("tables"), &out.join("tables.rs"))?;
+    let tables = root.join("tables");
+    list_tables([tables.clone(), tables.join("mix")], &out.join("tables.rs"))?;
     Ok(())
 }
 
@@ -131,14 +132,17 @@ fn camel_case(name: &str) -> String {
 }
 
 /// A list of (file name, content) of every table in the folder, in the order of their names.
-fn list_tables(folder: &Path, list: &Path) -> Result<(), Box<dyn Error>> {
+fn list_tables(folders: [PathBuf; 2], list: &Path) -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=tables");
-    let mut files: Vec<PathBuf> = match fs::read_dir(folder) {
-        Ok(entries) => entries
-            .map(|entry| entry.map(|entry| entry.path()))
-            .collect::<Result<_, _>>()?,
-        Err(_) => vec![],
-    };
+    let mut files: Vec<PathBuf> = vec![];
+    for entries in folders
+        .iter()
+        .filter_map(|folder| fs::read_dir(folder).ok())
+    {
+        for entry in entries {
+            files.push(entry?.path());
+        }
+    }
     files.retain(|file| file.extension().is_some_and(|e| e == "strew"));
     files.sort();
     let mut code = String::from("&[\n");

@@ -215,7 +215,9 @@ impl PointService for Points {
         let catalog = self.service.catalog();
         let entries = catalog.entries();
         Ok(Response::new(ListProfilesResponse {
-            profiles: entries.map(|entry| profile::profile(entry)).collect(),
+            profiles: entries
+                .map(|entry| profile::profile(entry, &catalog))
+                .collect(),
             algorithm: ALGORITHM_VERSION,
         }))
     }

@@ -1,10 +1,10 @@
 //! Loaded tables as messages.
 
 use super::proto::{Figure, Figures, Parameter, Profile, Provenance};
-use crate::service::Entry;
+use crate::service::{Catalog, Entry};
 
 /// A loaded table.
-pub(super) fn profile(entry: &Entry) -> Profile {
+pub(super) fn profile(entry: &Entry, catalog: &Catalog) -> Profile {
     let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     let of = &entry.provenance;
     Profile {
@@ -15,6 +15,7 @@ pub(super) fn profile(entry: &Entry) -> Profile {
         intervals: number(entry.intervals),
         blocks: number(entry.blocks()),
         bytes: entry.bytes().len() as u64,
+        joint_kinds: catalog.joint_kinds(entry),
         digest: entry.digest.clone(),
         provenance: Some(Provenance {
             optimizer: of.optimizer.clone(),

@@ -112,7 +112,7 @@ async fn get(
         let portrait = service.portrait(&entry).await?;
         let aim = entry.aim();
         document::json(&Document {
-            table: Profile::new(&entry),
+            table: Profile::new(&entry, &service.catalog()),
             target: aim.as_ref().map(Target::new),
             measured: Measured {
                 points: portrait.points,

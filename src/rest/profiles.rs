@@ -14,7 +14,7 @@ use super::{
     document,
     freshness::Freshness,
 };
-use crate::service::{Entry, Error, Kind, Service, query::groups};
+use crate::service::{Catalog, Entry, Error, Kind, Service, query::groups};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -45,14 +45,14 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
-    let made_of: Vec<&str> = (catalog.entries())
-        .map(|entry| entry.digest.as_str())
-        .collect();
+    let made_of: Vec<&str> = catalog.digests().collect();
     let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &made_of);
     let make = async {
         document::json(&Profiles {
             algorithm: ALGORITHM_VERSION,
-            profiles: catalog.entries().map(|entry| Profile::new(entry)).collect(),
+            profiles: (catalog.entries())
+                .map(|entry| Profile::new(entry, &catalog))
+                .collect(),
         })
     };
     freshness.answer(&context.headers, make).await
@@ -84,6 +84,8 @@ pub(super) struct Profile<'a> {
     intervals: usize,
     /// The blocks, n².
     blocks: usize,
+    /// The shares for which there is a table with joint kinds (`spread=joint`).
+    joint_kinds: Vec<String>,
     /// The size of the file in bytes.
     bytes: usize,
     /// The BLAKE3 digest of the file.
@@ -127,7 +129,7 @@ struct Figures<'a> {
 }
 
 impl<'a> Profile<'a> {
-    pub(super) fn new(entry: &'a Entry) -> Self {
+    pub(super) fn new(entry: &'a Entry, catalog: &Catalog) -> Self {
         Self {
             profile: &entry.key.profile,
             alpha: entry.key.alpha.to_string(),
@@ -135,6 +137,7 @@ impl<'a> Profile<'a> {
             radius: entry.radius,
             intervals: entry.intervals,
             blocks: entry.blocks(),
+            joint_kinds: catalog.joint_kinds(entry),
             bytes: entry.bytes().len(),
             digest: &entry.digest,
             provenance: Provenance::new(&entry.provenance),

@@ -417,6 +417,17 @@ impl Catalog {
         })
     }
 
+    /// The shares for which a table has joint kinds.
+    #[must_use]
+    pub fn joint_kinds(&self, of: &Entry) -> Vec<String> {
+        self.mixes(of, true).map(|(mix, _)| mix.text()).collect()
+    }
+
+    /// The digests of all tables.
+    pub fn digests(&self) -> impl Iterator<Item = &str> {
+        self.entries.values().map(|entry| entry.digest.as_str())
+    }
+
     /// The names of the profiles, without repetition.
     pub fn profiles(&self) -> Vec<&str> {
         let mut names: Vec<&str> = self.entries().map(|entry| &*entry.key.profile).collect();

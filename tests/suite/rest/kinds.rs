@@ -160,6 +160,46 @@ fn layers_pages_and_parts_have_their_kinds() {
     assert_eq!(points.collect::<Vec<_>>(), whole.points);
 }
 
+#[test]
+fn joint_kinds_have_points_of_their_own() {
+    let daemon = Daemon::built_in();
+    let set = SET.replace("map=s", "map=m");
+    let region = "bbox=0,0,60,60";
+    let plain = Csv::get(&daemon, &format!("{region}&{set}"));
+    let joint = Csv::get(&daemon, &format!("{region}&{set}&spread=joint"));
+    assert_ne!(joint.points, plain.points);
+    assert_ne!(
+        joint.answer.header("strew-table"),
+        plain.answer.header("strew-table")
+    );
+    let kinds = by_name(&joint);
+    let numbers = json!({ "oak": kinds["oak"].len(), "birch": kinds["birch"].len() });
+    assert_eq!(counts(&joint), numbers);
+    // Birches keep apart as a set of a quarter of the density does.
+    assert!(crate::support::csv::least_distance(&kinds["birch"]) > 1.1);
+    // Pinned by its own digest; without kinds the plain table answers.
+    let digest = joint.answer.header("strew-table");
+    let pinned = Csv::get(
+        &daemon,
+        &format!("{region}&{set}&spread=joint&table={digest}"),
+    );
+    assert_eq!(pinned.points, joint.points);
+    assert!(pinned.answer.header("cache-control").contains("immutable"));
+    let other = daemon.get(&format!("/v1/points?{region}&{set}&table={digest}"));
+    assert_eq!(other.status, 409, "{}", other.text());
+    let profiles = daemon.get("/v1/profiles").json();
+    let all = profiles["profiles"].as_array().expect("a list");
+    let of = |map: &str| {
+        let is_it = |entry: &&Value| entry["profile"] == "blue" && entry["map"] == map;
+        all.iter().find(is_it).expect("built in").clone()
+    };
+    let mut joint: Vec<String> =
+        serde_json::from_value(of("m")["joint_kinds"].clone()).expect("a list");
+    joint.sort();
+    assert_eq!(joint, ["1:1", "1:1:2", "1:3", "1:3:10"]);
+    assert_eq!(of("s")["joint_kinds"], json!([]));
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn calls_and_commands_agree() {
     let daemon = Daemon::built_in();
