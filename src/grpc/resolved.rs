@@ -67,6 +67,16 @@ fn resolved(echo: ResolvedSet, entry: &Entry, region: Option<Region>) -> proto::
         least_distance: echo.least_distance,
         field_digest: echo.field_digest,
         clear_of: echo.clear_of.into_iter().collect(),
+        kind_distances: (echo.kind_distances.into_iter())
+            .map(|pair| {
+                let [one, other] = pair.kinds;
+                proto::KindDistance {
+                    one,
+                    other,
+                    least_distance: pair.least_distance,
+                }
+            })
+            .collect(),
         kinds: (echo.kinds.into_iter())
             .map(|(name, count)| (name, u64::try_from(count).unwrap_or(u64::MAX)))
             .collect(),

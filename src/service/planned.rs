@@ -63,9 +63,10 @@ impl Placed {
             ));
         };
         let least = resolve::least_distance(&set, &ready, spacing, 0.0);
+        let distances = resolve::kind_distances(&set, &ready, spacing, 0.0);
         let points = set.points(&ready.table, spacing);
         Ok(Self {
-            resolved: set.resolved(&[], density, spacing, least, &[]),
+            resolved: set.resolved(&[], density, spacing, least, (&[], &distances)),
             attributes: points.attributes(&set.attributes).map_err(other_kinds)?,
             points,
             set,
@@ -300,9 +301,16 @@ impl Planned {
                 spacing,
                 least_distance,
                 ref kinds,
+                ref kind_distances,
                 ..
             } = *planned;
-            set.resolved(all, density, spacing, least_distance, kinds)
+            set.resolved(
+                all,
+                density,
+                spacing,
+                least_distance,
+                (kinds, kind_distances),
+            )
         };
         let mut sets: Vec<ResolvedSet> = all.iter().zip(&self.sets).map(resolved).collect();
         let set = (!self.query.is_layered).then(|| sets.remove(0));

@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use strew_core::{Plan, Spacing};
 
-use super::{Entry, query::Set};
+use super::{
+    Entry,
+    query::{KindDistance, Set},
+};
 
 /// A planned set of points.
 #[derive(Clone, Debug)]
@@ -23,6 +26,8 @@ pub struct PlannedSet {
     pub candidates: u128,
     /// How many points of the region each of the set's kinds has.
     pub kinds: Vec<u128>,
+    /// The distances that their points keep.
+    pub kind_distances: Vec<KindDistance>,
     /// How many there are of them, as far as that is known.
     total: u128,
     /// How many points of the query the sets before it have, if it is not before the cursor's.
@@ -46,13 +51,18 @@ impl PlannedSet {
             plan,
             candidates,
             kinds: vec![],
+            kind_distances: vec![],
             before: 0,
         }
     }
 
-    /// The set with the numbers of points of its kinds.
-    pub(super) fn with_kinds(self, kinds: Vec<u128>) -> Self {
-        Self { kinds, ..self }
+    /// The set with the numbers of points of its kinds and the distances that these keep.
+    pub(super) fn with_kinds(self, kinds: Vec<u128>, kind_distances: Vec<KindDistance>) -> Self {
+        Self {
+            kinds,
+            kind_distances,
+            ..self
+        }
     }
 
     /// How many points are looked at to make one.

@@ -10,7 +10,7 @@ use super::{
     cache::Ready,
     effort::{self, Selection},
     query::{Amount, Kinds, Query, Set, Token, parameters},
-    resolve::{Resolved, check_reach, least_distance, resolve},
+    resolve::{Resolved, check_reach, kind_distances, least_distance, resolve},
 };
 
 /// Plans sets one after another.
@@ -108,7 +108,7 @@ impl<'a> Planner<'a> {
             plan,
             candidates,
         )
-        .with_kinds(kinds))
+        .with_kinds(kinds, kind_distances(set, ready, spacing, region.reach())))
     }
 
     /// How many points of a plan each kind has, in the order of their names.

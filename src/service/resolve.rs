@@ -5,7 +5,7 @@ use strew_core::{ErrorKind, LeastDistance, Spacing};
 use super::{
     Error,
     cache::Ready,
-    query::{Amount, Parameter, Set, number, parameters},
+    query::{Amount, KindDistance, Parameter, Set, number, parameters},
 };
 
 /// What an amount is on its table.
@@ -77,6 +77,35 @@ pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing, reach: 
         Amount::MinDistance(distance) => least.min(distance),
         _ => least,
     }
+}
+
+/// The distances that the points of each two kinds keep from each other, of a kind and itself, too: the names in their
+/// order, and the distance of coordinates within ±`reach`.
+pub(super) fn kind_distances(
+    set: &Set,
+    ready: &Ready,
+    spacing: Spacing,
+    reach: f64,
+) -> Vec<KindDistance> {
+    let Some(kinds) = set.kinds.as_ref().filter(|_| !moves(set, ready)) else {
+        return vec![];
+    };
+    let wanted = |name: &&str| kinds.only_name().is_none_or(|only| only == *name);
+    let names: Vec<&str> = kinds.variants.variants().names().filter(wanted).collect();
+    let mut all = vec![];
+    for (i, one) in names.iter().enumerate() {
+        for other in &names[i..] {
+            let (a, b) = (kinds.variants.kind(one), kinds.variants.kind(other));
+            let least = a
+                .zip(b)
+                .and_then(|(a, b)| ready.table.least_distance_of(a, b));
+            all.extend(least.map(|least| KindDistance {
+                kinds: [(*one).into(), (*other).into()],
+                least_distance: least.reported(spacing, set.warp, reach),
+            }));
+        }
+    }
+    all
 }
 
 /// Refuses a least distance that coordinates within ±`reach` do not keep.

@@ -179,5 +179,20 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
             "description": "How many points of the region each variant has, if they are evenly spread.",
         }),
     );
+    put(
+        "kind_distances",
+        json!({
+            "type": "array",
+            "items": {
+                "type": "object",
+                "properties": {
+                    "kinds": { "type": "array", "items": { "type": "string" }, "minItems": 2, "maxItems": 2 },
+                    "least_distance": { "type": "number" },
+                },
+                "required": ["kinds", "least_distance"],
+            },
+            "description": "The distances that the points of two evenly spread variants, or of one, keep.",
+        }),
+    );
     (always, members)
 }

@@ -79,6 +79,17 @@ pub struct ResolvedSet {
     pub clear_of: Vec<(String, f64)>,
     /// How many points of the region each variant has, if they are evenly spread.
     pub kinds: Vec<(String, u128)>,
+    /// The distances that points of these variants keep.
+    pub kind_distances: Vec<KindDistance>,
+}
+
+/// The distance that the points of two evenly spread variants, or of one, keep from each other.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KindDistance {
+    /// The names of the variants.
+    pub kinds: [String; 2],
+    /// No point of one is nearer to a point of the other.
+    pub least_distance: f64,
 }
 
 impl Serialize for ResolvedSet {
@@ -108,6 +119,9 @@ impl Serialize for ResolvedSet {
                 .collect();
             map.serialize_entry("kinds", &kinds)?;
         }
+        if !self.kind_distances.is_empty() {
+            map.serialize_entry("kind_distances", &self.kind_distances)?;
+        }
         map.end()
     }
 }
@@ -131,7 +145,7 @@ impl Set {
         density: f64,
         spacing: Spacing,
         least_distance: f64,
-        kinds: &[u128],
+        (kinds, kind_distances): (&[u128], &[KindDistance]),
     ) -> ResolvedSet {
         let names = self
             .kinds
@@ -147,6 +161,7 @@ impl Set {
             values: self.echoes().collect(),
             clear_of: self.named_clear_of(all),
             kinds: names.map(Into::into).zip(kinds.iter().copied()).collect(),
+            kind_distances: kind_distances.into(),
         }
     }
 

@@ -37,7 +37,7 @@ use super::{Entry, Error, Fault};
 pub use amount::Amount;
 pub use cursor::Token;
 pub use draft::{Draft, LayerDraft, entry, options, parts};
-pub use echo::{Resolved, ResolvedSet};
+pub use echo::{KindDistance, Resolved, ResolvedSet};
 pub use faults::{Checked, Faults, Together, all};
 pub use field::SetField;
 pub use json::{RegionSchema, read_body, read_region};

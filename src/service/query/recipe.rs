@@ -31,6 +31,6 @@ fn answers_echo_it() {
     let catalog = Catalog::load(true, None).expect("built in");
     let draft = Draft::of(parse_pairs("bbox=0,0,1,1&spacing=1", groups::POINTS));
     let (query, _) = draft.check(&catalog, 100).expect("a query");
-    let set = query.sets[0].resolved(&[], 1.0, strew_core::Spacing::ONE, 0.5, &[]);
+    let set = query.sets[0].resolved(&[], 1.0, strew_core::Spacing::ONE, 0.5, (&[], &[]));
     assert_eq!(json!(set)["added"], json!(3));
 }

@@ -50,6 +50,27 @@ fn points_do_not_move_and_kinds_are_counted_before_they_come() {
     // A quarter to within the blocks at the edge, where chance is off by 1.3 % of all.
     let share = birches.len() as f64 / even.points.len() as f64;
     assert!((share - 0.25).abs() < 0.003, "{share}");
+    // The distances that they keep.
+    let echo = daemon
+        .get(&format!("/v1/count?{region}&{SET}&spread=even"))
+        .json()["query"]
+        .clone();
+    let pairs = echo["kind_distances"].as_array().expect("a list");
+    assert_eq!(pairs.len(), 3, "{pairs:?}");
+    for pair in pairs {
+        let [a, b] = [0, 1].map(|i| pair["kinds"][i].as_str().expect("a name"));
+        let promised = pair["least_distance"].as_f64().expect("a number");
+        let all = kinds[a]
+            .iter()
+            .flat_map(|one| kinds[b].iter().map(move |other| (one, other)));
+        let distances = all.filter(|(one, other)| one.id != other.id);
+        let least = distances.map(|(one, other)| (one.x - other.x).hypot(one.y - other.y));
+        let least = least.fold(f64::INFINITY, f64::min);
+        assert!(
+            promised <= least && promised > 0.6 * least,
+            "{pair}: {least}"
+        );
+    }
     // One kind alone, and the order of names does not matter.
     for name in ["oak", "birch"] {
         let turned = SET.replace("oak:3,birch:1", "birch:2,oak:6");
