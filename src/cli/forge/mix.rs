@@ -88,8 +88,11 @@ impl Args {
             size: self.map,
         };
         let Some(entry) = catalog.entry(&key) else {
-            let built_in = catalog.entries().filter(|entry| entry.key.alpha == key.alpha);
-            let built_in = built_in.map(|entry| format!("{} {}", entry.key.profile, entry.key.size));
+            let built_in = catalog
+                .entries()
+                .filter(|entry| entry.key.alpha == key.alpha);
+            let built_in =
+                built_in.map(|entry| format!("{} {}", entry.key.profile, entry.key.size));
             let built_in = built_in.collect::<Vec<_>>().join(", ");
             let problem = anyhow!(
                 "--table {} --map {}: no built-in table and no file; there are {built_in}",
@@ -136,11 +139,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     write_table(&path, &outcome.table).map_err(|error| Failure::Other(error.into()))?;
-    output::print(&format!(
-        "{}  {}\n",
-        outcome.table.digest(),
-        path.display()
-    ))?;
+    output::print(&format!("{}  {}\n", outcome.table.digest(), path.display()))?;
     if !args.quiet {
         outcome.figures.iter().for_each(show);
     }

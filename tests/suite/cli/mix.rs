@@ -83,7 +83,10 @@ fn what_is_wrong_is_named() {
         (&["--shares", "1:1000000"], "1000000"),
         (&["--shares", "1:3", "--table", "blau"], "no built-in table"),
         (&["--shares", "1:3", "--table", "no.strew"], "no.strew"),
-        (&["--shares", "1:3", "--joint", "--steps", "0"], "steps is 0"),
+        (
+            &["--shares", "1:3", "--joint", "--steps", "0"],
+            "steps is 0",
+        ),
         (&["--shares", "1:3", "--radius", "20"], "--radius"),
         (&[], "--shares"),
     ] {
