@@ -2,7 +2,7 @@
 
 use core::{fmt, str::FromStr};
 
-use super::{EvenVariants, VariantScales, Variants};
+use super::{EvenVariants, ScaleRange, VariantScales, Variants};
 use crate::error::{Error, ErrorKind, number, shown};
 
 /// A value that every point has.
@@ -36,21 +36,6 @@ pub enum Attribute {
     Uniform(UniformNumber),
 }
 
-/// The range of a scale: 0 ≤ min ≤ max.
-///
-/// ```
-/// use strew_core::{Attribute, ScaleRange};
-///
-/// let range = ScaleRange::new(0.8, 1.2)?;
-/// assert_eq!(Attribute::Scale(range), Attribute::scale(0.8, 1.2)?);
-/// # Ok::<(), strew_core::Error>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScaleRange {
-    min: f64,
-    max: f64,
-}
-
 /// The number of a uniform attribute, from 1 to 16.
 ///
 /// ```
@@ -61,65 +46,6 @@ pub struct ScaleRange {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UniformNumber(u8);
-
-impl ScaleRange {
-    /// The greatest scale.
-    pub const LIMIT: f64 = 1e9;
-
-    /// The range from `min` to `max`, both included.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Attribute`] unless 0 ≤ min ≤ max ≤ [`LIMIT`](Self::LIMIT).
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, ScaleRange};
-    ///
-    /// let range = ScaleRange::new(0.8, 1.2)?;
-    /// assert_eq!((range.min(), range.max()), (0.8, 1.2));
-    /// assert_eq!(ScaleRange::new(1.2, 0.8).unwrap_err().kind(), ErrorKind::Attribute);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn new(min: f64, max: f64) -> Result<Self, Error> {
-        if 0.0 <= min && min <= max && max <= Self::LIMIT {
-            Ok(Self { min, max })
-        } else {
-            let value = alloc::format!("{} to {}", number(min), number(max));
-            let allowed = "two numbers with 0 <= min <= max <= 1e9";
-            Err(Error::new(
-                ErrorKind::Attribute,
-                "scale_range",
-                value,
-                allowed,
-            ))
-        }
-    }
-
-    /// The least scale, included.
-    ///
-    /// ```
-    /// use strew_core::ScaleRange;
-    ///
-    /// assert_eq!(ScaleRange::new(0.8, 1.2)?.min(), 0.8);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub const fn min(self) -> f64 {
-        self.min
-    }
-
-    /// The greatest scale, included.
-    ///
-    /// ```
-    /// use strew_core::ScaleRange;
-    ///
-    /// assert_eq!(ScaleRange::new(0.8, 1.2)?.max(), 1.2);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub const fn max(self) -> f64 {
-        self.max
-    }
-}
 
 impl UniformNumber {
     /// The largest number.

@@ -19,7 +19,7 @@ mod variants;
 
 pub use bound::{BoundAttributes, Column};
 pub use even::EvenVariants;
-pub use kinds::{Attribute, ScaleRange, UniformNumber};
+pub use kinds::{Attribute, UniformNumber};
 pub use list::Attributes;
-pub use scales::VariantScales;
+pub use scales::{ScaleRange, VariantScales};
 pub use variants::Variants;

@@ -255,16 +255,8 @@ impl<F: Format> Blocks<F> {
         let window = self.window.filter(|window| window.count > 0)?;
         let at = if let Some(within) = self.constant_place() {
             within
-        } else if let Some((kept, next)) = &self.kept {
-            // After the last one, any later place.
-            let after = || {
-                let last = kept.id(kept.len().checked_sub(1)?)?;
-                Some(PointId {
-                    x: last.x + 1,
-                    ..last
-                })
-            };
-            kept.id(*next).or_else(after)?
+        } else if self.kept.is_some() {
+            self.kept_place()?
         } else if let Some(next) = self.next_found() {
             next
         } else if self.at.y == self.rows.end {

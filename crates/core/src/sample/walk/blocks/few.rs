@@ -62,6 +62,19 @@ impl<F: Format> Blocks<F> {
         blocks
     }
 
+    /// The place of the next point that was kept: after the last one, any later place.
+    pub(super) fn kept_place(&self) -> Option<PointId> {
+        let (kept, next) = self.kept.as_ref()?;
+        let after = || {
+            let last = kept.id(kept.len().checked_sub(1)?)?;
+            Some(PointId {
+                x: last.x + 1,
+                ..last
+            })
+        };
+        kept.id(*next).or_else(after)
+    }
+
     /// Writes the next of the points that were kept, as many as there is room for.
     pub(super) fn write_kept(&mut self, out: &mut [F::Item]) -> usize {
         let Some((kept, next)) = &mut self.kept else {
