@@ -3,7 +3,7 @@
 use core::{fmt, str::FromStr};
 
 use super::{EvenVariants, ScaleRange, VariantScales, Variants};
-use crate::error::{Error, ErrorKind, number, shown};
+use crate::error::{Error, ErrorKind, shown};
 
 /// A value that every point has.
 ///
