@@ -21,14 +21,16 @@
 //!
 //! `neighborhood` has the intervals and their lookup, `size` the names of common half-widths. The
 //! order of the thresholds holds for an interval of α (`cell`); the fractions in it are the map's
-//! periodic twins (`twin`), whose points and blocks `site` lists.
+//! periodic twins (`twin`), whose points and blocks `site` lists. `clusters` finds the connected groups of points.
 
 mod cell;
+mod clusters;
 mod neighborhood;
 mod site;
 mod size;
 mod twin;
 
+pub use clusters::{Clusters, Shape};
 pub use neighborhood::Map;
 pub use site::Site;
 pub use size::{MAX_RADIUS, Size};
