@@ -58,6 +58,8 @@ pub enum ErrorKind {
     Clusters,
     /// The half-width or the size of a neighborhood map.
     MapSize,
+    /// The period of a periodic set: its number of points or its side.
+    Period,
     /// A table or its file: which part is damaged or not allowed is the [`field`](Error::field).
     Table,
     /// A table file larger than [`MAX_FILE_BYTES`](crate::table::MAX_FILE_BYTES).

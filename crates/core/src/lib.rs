@@ -61,8 +61,8 @@ pub use pattern::{Alpha, Pattern};
 pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
     Cursor, F32, F64, Field, Format, Keep, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
-    Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster, Region,
-    ScaleRange, Seed, Spacing, Tile, UniformNumber, Variants, Warp,
+    Offsets, PeriodicSet, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster,
+    Region, ScaleRange, Seed, Spacing, Tile, UniformNumber, Variants, Warp,
 };
 pub use table::Table;
 

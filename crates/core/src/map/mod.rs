@@ -26,12 +26,14 @@
 mod cell;
 mod clusters;
 mod neighborhood;
+mod shape;
 mod site;
 mod size;
 mod twin;
 
-pub use clusters::{Clusters, Shape};
+pub use clusters::Clusters;
 pub use neighborhood::Map;
+pub use shape::Shape;
 pub use site::Site;
 pub use size::{MAX_RADIUS, Size};
 pub use twin::Twin;
