@@ -86,7 +86,7 @@ impl PeriodicSet {
     ///
     /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
     /// assert_eq!(PeriodicSet::new(table.clone(), 1)?.len(), 5041);
-    /// assert_eq!(PeriodicSet::new(table.clone(), 5042)?.len(), 7396);
+    /// assert_eq!(PeriodicSet::new(table.clone(), 5042)?.len(), 9409);
     /// let error = PeriodicSet::new(table, 1 << 40).unwrap_err();
     /// assert_eq!(error.kind(), ErrorKind::Period);
     /// # Ok::<(), strew_core::Error>(())
@@ -133,7 +133,7 @@ impl PeriodicSet {
     ///
     /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
     /// let sizes: Vec<u64> = PeriodicSet::periods(&map).map(|twin| twin.points()).take(4).collect();
-    /// assert_eq!(sizes, [5041, 7396, 9409, 10609]);
+    /// assert_eq!(sizes, [5041, 9409, 15129, 22201]);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn periods(map: &Map) -> impl Iterator<Item = Twin> + use<> {

@@ -30,7 +30,7 @@ impl WrappedShears {
     pub(crate) fn new(warp: Warp, seed: Seed, period: u64) -> Option<Self> {
         let mut knots = GROUP as u64;
         // At √½ to √2 times the plain distance, by a comparison of squares.
-        while period * period > 2 * (knots * knots << (2 * KNOT_BITS)) {
+        while period * period > 2 * ((knots * knots) << (2 * KNOT_BITS)) {
             knots *= 2;
         }
         let period = (period as i64) << FRACTION_BITS;
