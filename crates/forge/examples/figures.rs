@@ -16,9 +16,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("index", figure::index(alpha, 64)?),
         (
             "arrangement",
-            figure::arrangement(alpha, &[(1, 2), (3, 1)], 48)?,
+            figure::arrangement(alpha, &[(2, 1), (3, 3)], 48)?,
         ),
-        ("clusters", figure::clusters(alpha, 5f64.sqrt(), 32, 96)?),
+        ("clusters", figure::clusters(alpha, 2.24, 64, 96)?),
         ("map", figure::map(alpha, 20, [6, 14])?),
     ] {
         fs::write(folder.join(name).with_extension("svg"), drawing.to_svg())?;

@@ -7,10 +7,10 @@ use super::{
     drawing::{COLORS, GRAY},
     error::check_window,
     panel::{
-        THREAD, dot, note, places, points, set_region, sheet, tint, turns, window as grid_window,
+        Panel, THREAD, dot, note, places, points, set_region, sheet, tint, turns,
+        window as grid_window,
     },
 };
-use crate::figure::panel::Panel;
 
 /// Draws a window of `window` × `window` grid places of AA(α), 8 to 200, with the occurrences of an
 /// arrangement; the image of its offsets in index space; and its margin in the set region.
@@ -34,11 +34,7 @@ pub fn arrangement(
 ) -> Result<Drawing, FigureError> {
     check_window(window)?;
     let pattern = Pattern::new(alpha);
-    let found = Arrangement::new(pattern, offsets).map_err(|error| FigureError {
-        field: "offsets",
-        value: error.value().into(),
-        allowed: error.allowed().into(),
-    })?;
+    let found = Arrangement::new(pattern, offsets)?;
     let t = alpha.set_side_f64();
     let mut drawing = sheet(3, 2);
     let caption = format!("Occurrences in AA(α), α = {alpha}");

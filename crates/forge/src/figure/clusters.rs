@@ -36,15 +36,7 @@ pub fn clusters(
     window: u32,
 ) -> Result<Drawing, FigureError> {
     check_window(window)?;
-    let found = Clusters::new(alpha, distance, most).map_err(|error| FigureError {
-        field: if error.field() == "distance" {
-            "distance"
-        } else {
-            "most"
-        },
-        value: error.value().into(),
-        allowed: error.allowed().into(),
-    })?;
+    let found = Clusters::new(alpha, distance, most)?;
     let (map, t) = (found.map(), alpha.set_side_f64());
     let color = |shape: Option<usize>| {
         shape.map_or(LARGER, |shape| {

@@ -87,7 +87,7 @@ impl Drawing {
         let color = hex(color);
         self.add(format_args!(
             "<rect x=\"{x:.2}\" y=\"{y:.2}\" width=\"{w:.2}\" height=\"{h:.2}\" fill=\"{color}\" \
-             fill-opacity=\"{opacity}\"/>"
+             fill-opacity=\"{opacity}\" shape-rendering=\"crispEdges\"/>"
         ));
     }
 

@@ -13,11 +13,21 @@
 #[error("{field} is {value}; it must be {allowed}")]
 pub struct FigureError {
     /// The name of the setting.
-    pub field: &'static str,
+    pub field: String,
     /// Its value.
     pub value: String,
     /// What is allowed.
     pub allowed: String,
+}
+
+impl From<strew_core::Error> for FigureError {
+    fn from(error: strew_core::Error) -> Self {
+        Self {
+            field: error.field().into(),
+            value: error.value().into(),
+            allowed: error.allowed().into(),
+        }
+    }
 }
 
 /// The sides of windows that show single points, in grid units.
@@ -29,7 +39,7 @@ pub(super) fn check_window(window: u32) -> Result<(), FigureError> {
         return Ok(());
     }
     Err(FigureError {
-        field: "window",
+        field: "window".into(),
         value: window.to_string(),
         allowed: format!(
             "an integer from {} to {} grid units",

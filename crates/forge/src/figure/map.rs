@@ -27,20 +27,18 @@ const DARK: Color = [203, 214, 226];
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, FigureError> {
-    let refused = || FigureError {
-        field: "radius",
-        value: radius.to_string(),
-        allowed: "an integer from 1 to 200 grid units".into(),
-    };
     if !(1..=200).contains(&radius) {
-        return Err(refused());
+        return Err(FigureError {
+            field: "radius".into(),
+            value: radius.to_string(),
+            allowed: "an integer from 1 to 200 grid units".into(),
+        });
     }
-    let fine = Map::new(alpha, radius).map_err(|_| refused())?;
-    let coarse = Map::new(alpha, radius / 2).map_err(|_| refused())?;
+    let (fine, coarse) = (Map::new(alpha, radius)?, Map::new(alpha, radius / 2)?);
     let n = fine.intervals();
     if block.iter().any(|&i| i >= n) {
         return Err(FigureError {
-            field: "block",
+            field: "block".into(),
             value: format!("{block:?}"),
             allowed: format!("two integers from 0 to {}", n - 1),
         });

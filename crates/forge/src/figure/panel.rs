@@ -95,7 +95,8 @@ impl Panel {
         });
         let lines: Vec<_> = lines.collect();
         drawing.lines(lines, (PALE, 0.5));
-        let (low, high) = (format!("{}", start.ceil()), format!("{}", end.floor()));
+        let low = format!("{}", start.ceil()).replace('-', "−");
+        let high = format!("{}", end.floor());
         self.frame(drawing, [&low, &high], ["x", "y"]);
     }
 }
