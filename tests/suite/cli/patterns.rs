@@ -2,7 +2,25 @@
 
 use serde_json::Value;
 
-use crate::support::command::{errors, run};
+use crate::support::command;
+
+/// What a command that succeeds prints.
+fn run(arguments: &[&str]) -> String {
+    let output = command::run(arguments, "");
+    assert!(
+        output.status.success(),
+        "{arguments:?}: {}",
+        command::errors(&output)
+    );
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// What a command that is refused for its flags prints.
+fn errors(arguments: &[&str]) -> String {
+    let output = command::run(arguments, "");
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    command::errors(&output)
+}
 
 #[test]
 fn figures_are_files_and_standard_output() {
