@@ -58,11 +58,12 @@ pub mod table;
 pub use error::{Error, ErrorKind};
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
+pub use sample::PeriodicSet;
 pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
     Cursor, F32, F64, Field, Format, Keep, LATTICE_LIMIT, LeastDistance, Member, Members, Neighbor,
-    Offsets, PeriodicSet, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster,
-    Region, ScaleRange, Seed, Spacing, Tile, UniformNumber, Variants, Warp,
+    Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster, Region,
+    ScaleRange, Seed, Spacing, Tile, UniformNumber, Variants, Warp,
 };
 pub use table::Table;
 
