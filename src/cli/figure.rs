@@ -20,15 +20,17 @@ pub(super) enum Command {
     Index {
         #[command(flatten)]
         common: Common,
-        #[command(flatten)]
-        window: Window<64>,
+        /// The side of the window of the plane, 8 to 200 grid units.
+        #[arg(long, value_name = "NUMBER", default_value_t = 64)]
+        window: u32,
     },
     /// Where an arrangement of points occurs, its image in index space, and the margin that is left.
     Arrangement {
         #[command(flatten)]
         common: Common,
-        #[command(flatten)]
-        window: Window<48>,
+        /// The side of the window of the plane, 8 to 200 grid units.
+        #[arg(long, value_name = "NUMBER", default_value_t = 48)]
+        window: u32,
         /// The offsets of the other points from the first: pairs of integers.
         #[arg(
             long,
@@ -42,8 +44,9 @@ pub(super) enum Command {
     Clusters {
         #[command(flatten)]
         common: Common,
-        #[command(flatten)]
-        window: Window<96>,
+        /// The side of the window of the plane, 8 to 200 grid units.
+        #[arg(long, value_name = "NUMBER", default_value_t = 96)]
+        window: u32,
         /// The largest distance of neighbors, 1 to 16 grid units.
         #[arg(long, value_name = "NUMBER", default_value_t = 2.24)]
         distance: f64,
@@ -75,24 +78,16 @@ pub(super) struct Common {
     output: Option<PathBuf>,
 }
 
-/// The side of the window that a figure shows.
-#[derive(Debug, clap::Args)]
-pub(super) struct Window<const USUAL: u32> {
-    /// The side of the window of the plane, 8 to 200 grid units.
-    #[arg(long, value_name = "NUMBER", default_value_t = USUAL)]
-    window: u32,
-}
-
 /// Draws a figure.
 pub(super) fn run(command: &Command) -> Result<(), Failure> {
     let (common, drawing) = match command {
-        Command::Index { common, window } => (common, figure::index(common.alpha, window.window)),
+        Command::Index { common, window } => (common, figure::index(common.alpha, *window)),
         Command::Arrangement {
             common,
             window,
             offsets,
         } => {
-            let drawing = figure::arrangement(common.alpha, offsets.as_slice(), window.window);
+            let drawing = figure::arrangement(common.alpha, offsets.as_slice(), *window);
             (common, drawing)
         }
         Command::Clusters {
@@ -101,7 +96,7 @@ pub(super) fn run(command: &Command) -> Result<(), Failure> {
             distance,
             most,
         } => {
-            let drawing = figure::clusters(common.alpha, *distance, *most, window.window);
+            let drawing = figure::clusters(common.alpha, *distance, *most, *window);
             (common, drawing)
         }
         Command::Map {

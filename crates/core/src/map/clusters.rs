@@ -23,6 +23,9 @@ use crate::{
 /// The connected clusters of a pattern under a neighbor distance, exact for clusters up to a stated number
 /// of points.
 ///
+/// They are those of α as it is [held](Alpha). At a fraction whose denominator is no power of two, rounding adds
+/// shapes of no weight, with less than one point in 10¹², where a neighbor is on the very edge of the set region.
+///
 /// ```
 /// use strew_core::map::Clusters;
 ///

@@ -2,7 +2,11 @@
 
 use alloc::{collections::BTreeSet, vec::Vec};
 
-use super::{Map, cell::labels, size::check_radius};
+use super::{
+    Map,
+    cell::{Label, labels},
+    size::check_radius,
+};
 use crate::{
     error::Error,
     pattern::{Alpha, Axis, Class, IndexOrigin, Pattern},
@@ -51,6 +55,9 @@ impl Map {
     /// The number of intervals per axis of the maps of half-width 0, 1, … `radius`, without making them. It
     /// grows in proportion to R, by 2(α − 1) intervals a grid unit; at a fraction α = p/q it ends at p − q.
     ///
+    /// The thresholds of a fraction are compared exactly. A map of a fraction whose denominator is no power of
+    /// two has more intervals, a few units of 2⁻⁶⁴ wide, where the rounding of α parts thresholds that coincide.
+    ///
     /// # Errors
     /// As [`Map::new`].
     ///
@@ -59,19 +66,30 @@ impl Map {
     ///
     /// let counts = Map::interval_counts("(5-sqrt(3))/2".parse()?, 200)?;
     /// assert_eq!([counts[20], counts[49], counts[100], counts[200]], [27, 63, 129, 255]);
-    /// assert_eq!(Map::interval_counts("7/4".parse()?, 200)?[200], 3);
+    /// assert_eq!(Map::interval_counts("19/10".parse()?, 200)?[200], 9);
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn interval_counts(alpha: Alpha, radius: u32) -> Result<Vec<usize>, Error> {
         check_radius(radius)?;
+        // In units of 1/(2q) at a fraction p/q, and in units of 2⁻⁶⁴ otherwise.
+        let fraction = alpha.fraction();
+        let side = fraction.map_or(alpha.set_side().into(), |(p, q)| u128::from(p - q));
+        let threshold = |label: Label| match fraction {
+            Some((p, q)) => {
+                let shift =
+                    i128::from(p) * i128::from(label.k) + i128::from(q) * i128::from(label.b);
+                (-shift).rem_euclid(2 * i128::from(q)) as u128
+            }
+            None => label.index(alpha).into(),
+        };
         let mut thresholds = BTreeSet::new();
         let mut counts = Vec::with_capacity(radius as usize + 1);
         for radius in 0..=radius {
             let r = i64::from(radius);
             // The shifts that the half-width before does not have.
             let new = labels(radius).filter(|label| label.k == r || label.k == -r - 1);
-            let inside = new.map(|label| label.index(alpha));
-            thresholds.extend(inside.filter(|&index| 0 < index && index < alpha.set_side()));
+            let inside = new.map(threshold);
+            thresholds.extend(inside.filter(|&index| 0 < index && index < side));
             counts.push(thresholds.len() + 1);
         }
         Ok(counts)
@@ -138,7 +156,9 @@ mod tests {
             let counts = Map::interval_counts(alpha, MAX_RADIUS).expect("in range");
             for radius in (0..=64).chain([500, MAX_RADIUS]) {
                 let map = Map::new(alpha, radius).expect("in range");
-                assert_eq!(counts[radius as usize], map.intervals(), "{text} {radius}");
+                let wide = (0..map.intervals()).map(|i| map.interval(i));
+                let wide = wide.filter(|interval| interval.end - interval.start > 1 << 20);
+                assert_eq!(counts[radius as usize], wide.count(), "{text} {radius}");
             }
         }
         for text in &ALPHAS[..3] {

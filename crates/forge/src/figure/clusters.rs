@@ -1,6 +1,9 @@
 //! The figure of clusters: their shapes in the plane and in the set region.
 
-use strew_core::{Alpha, Pattern, map::Clusters};
+use strew_core::{
+    Alpha, Pattern,
+    map::{Clusters, Shape},
+};
 
 use super::{
     Drawing, FigureError,
@@ -39,14 +42,7 @@ pub fn clusters(
     let found = Clusters::new(alpha, distance, most)?;
     let (map, t) = (found.map(), alpha.set_side_f64());
     let color = |shape: Option<usize>| {
-        shape.map_or(LARGER, |shape| {
-            let class = found.shapes()[shape].class();
-            // Later rounds of the palette are paler.
-            tint(
-                COLORS[class % COLORS.len()],
-                1.0 / (1.0 + 0.5 * (class / COLORS.len()) as f64),
-            )
-        })
+        shape.map_or(LARGER, |shape| of_class(found.shapes()[shape].class()))
     };
     let mut drawing = sheet(3, 2);
     let caption = format!("Clusters of AA(α), α = {alpha}");
@@ -98,12 +94,13 @@ pub fn clusters(
         y = next;
     }
     set_region(&mut drawing, &region);
-    legend(&mut drawing, &found, color);
+    legend(&mut drawing, &found);
+    let seen = visible(&found);
     let text = format!(
         "Points at most {distance:.4} grid units apart are joined. Exact up to {most} points: {} shapes, {} up to \
-         symmetry, told apart by {n} × {n} blocks (R = {}).",
-        found.shapes().len(),
-        found.classes(),
+         symmetry, told apart by what is within {} grid units.",
+        seen.iter().map(|class| class.len()).sum::<usize>(),
+        seen.len(),
         map.radius(),
     );
     note(&mut drawing, 0, &text);
@@ -115,20 +112,33 @@ pub fn clusters(
     Ok(drawing)
 }
 
+/// The color of a class. Later rounds of the palette are paler.
+fn of_class(class: usize) -> Color {
+    let round = (class / COLORS.len()) as f64;
+    tint(COLORS[class % COLORS.len()], 1.0 / (1.0 + 0.5 * round))
+}
+
+/// The shapes by class, without those that only the rounding of a fraction α makes. They have less than one
+/// point in 10¹².
+fn visible(found: &Clusters) -> Vec<&[Shape]> {
+    let classes = found.shapes().chunk_by(|a, b| a.class() == b.class());
+    classes
+        .filter(|class| class[0].share_of_points() > 1e-12)
+        .collect()
+}
+
 /// Draws one shape of each class with the share of points that the class has.
-fn legend(drawing: &mut Drawing, found: &Clusters, color: impl Fn(Option<usize>) -> Color) {
+fn legend(drawing: &mut Drawing, found: &Clusters) {
     let panel = Panel::new(
         drawing,
         2,
         0.0..12.0,
         "Shapes up to symmetry, and their shares of the points",
     );
-    let shapes = found.shapes();
-    let classes = shapes.chunk_by(|a, b| a.class() == b.class());
-    let mut number = 0;
-    for (i, class) in classes.enumerate() {
+    let classes = visible(found);
+    for (i, class) in classes.iter().enumerate() {
         if i == LEGEND {
-            let rest = format!("and {} more", found.classes() - LEGEND);
+            let rest = format!("and {} more", classes.len() - LEGEND);
             drawing.text(panel.at([0.0, -0.4]), 12.0, Anchor::Start, &rest);
             break;
         }
@@ -148,7 +158,7 @@ fn legend(drawing: &mut Drawing, found: &Clusters, color: impl Fn(Option<usize>)
             ])
         };
         let diameter = (scale * panel.scale() * 0.9).clamp(1.5, 6.0);
-        drawing.dots(points.iter().map(at), diameter, color(Some(number)));
+        drawing.dots(points.iter().map(at), diameter, of_class(class[0].class()));
         let share: f64 = class.iter().map(|shape| shape.share_of_points()).sum();
         let lines = [
             format!(
@@ -165,9 +175,8 @@ fn legend(drawing: &mut Drawing, found: &Clusters, color: impl Fn(Option<usize>)
                 drawing.text(place, 11.0, Anchor::Start, text);
             }
         }
-        number += class.len();
     }
-    if shapes.is_empty() {
+    if classes.is_empty() {
         drawing.dots([panel.at([1.2, 10.5])], 6.0, GRAY);
         drawing.text(
             panel.at([2.4, 10.4]),

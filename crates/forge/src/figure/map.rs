@@ -35,7 +35,15 @@ pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, Figu
         });
     }
     let (fine, coarse) = (Map::new(alpha, radius)?, Map::new(alpha, radius / 2)?);
-    let n = fine.intervals();
+    // Intervals that only the rounding of a fraction α makes are too narrow to see or to hold points.
+    let visible = |map: &Map| -> Vec<usize> {
+        let length = |i: &usize| map.interval(*i).end - map.interval(*i).start;
+        (0..map.intervals())
+            .filter(|i| length(i) > 1 << 24)
+            .collect()
+    };
+    let (intervals, parents) = (visible(&fine), visible(&coarse));
+    let n = intervals.len();
     if block.iter().any(|&i| i >= n) {
         return Err(FigureError {
             field: "block".into(),
@@ -47,7 +55,7 @@ pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, Figu
     let mut drawing = sheet(3, 2);
     let caption = format!("{n} × {n} blocks of R = {radius}, α = {alpha}");
     let region = Panel::new(&mut drawing, 0, 0.0..t, &caption);
-    let stripes = (0..n).filter(|i| i % 2 == 1).flat_map(|i| {
+    let stripes = intervals.iter().skip(1).step_by(2).flat_map(|&i| {
         let interval = fine.interval(i);
         let (start, length) = (turns(interval.start), turns(interval.end - interval.start));
         [
@@ -57,14 +65,15 @@ pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, Figu
     });
     let stripes: Vec<_> = stripes.collect();
     drawing.checkers(stripes, DARK);
-    let bounds = coarse.thresholds().iter().flat_map(|&threshold| {
-        let v = turns(threshold);
+    let bounds = parents.iter().skip(1).flat_map(|&i| {
+        let v = turns(coarse.interval(i).start);
         let down = [region.at([v, 0.0]), region.at([v, t])];
         [down, [region.at([0.0, v]), region.at([t, v])]]
     });
     let bounds: Vec<_> = bounds.collect();
     drawing.lines(bounds, (COLORS[0], 1.0));
-    let sides = block.map(|i| fine.interval(i));
+    let own = block.map(|i| intervals[i]);
+    let sides = own.map(|i| fine.interval(i));
     let low = [0, 1].map(|i: usize| turns(sides[i].start));
     let size = [0, 1].map(|i: usize| turns(sides[i].end - sides[i].start));
     let [corner, size] = region.rectangle(low, size);
@@ -87,7 +96,7 @@ pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, Figu
     }
     let inner = i64::from(radius / 2);
     let (near, far): (Vec<_>, Vec<_>) = fine
-        .neighbors(block)
+        .neighbors(own)
         .into_iter()
         .partition(|(x, y)| x.abs().max(y.abs()) <= inner);
     let diameter = (around.scale() * 0.9).clamp(1.5, 9.0);
@@ -103,8 +112,8 @@ pub fn map(alpha: Alpha, radius: u32, block: [usize; 2]) -> Result<Drawing, Figu
     let text = format!(
         "Points whose index lies in one block have the same neighbors up to {radius} grid units along both axes. \
          Blue lines: the {} × {} blocks of R = {}, which the others refine.",
-        coarse.intervals(),
-        coarse.intervals(),
+        parents.len(),
+        parents.len(),
         radius / 2,
     );
     note(&mut drawing, 0, &text);
