@@ -66,7 +66,8 @@ fn arrangements_have_facts_counts_and_places() {
         y.parse().expect("an integer"),
     );
     for (i, j) in [(0, 0), (2, 1), (3, 3)] {
-        run(&["point", &format!("{}:{}", x + i, y + j), "--seed", "7"]);
+        let id = format!("{}:{}", x + i, y + j);
+        run(&["point", &id, "--seed", "7", "--spacing", "1"]);
     }
     let lone: Value = serde_json::from_str(&run(&["arrangement", "1,0"])).expect("JSON");
     assert_eq!(
