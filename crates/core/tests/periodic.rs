@@ -219,3 +219,15 @@ fn periods_that_do_not_exist_are_refused_with_the_reason() {
         assert_eq!(tile.side(side).expect_err("refused").field(), "side");
     }
 }
+
+#[test]
+fn points_have_these_bits() {
+    let tile = PeriodicSet::new(table("(5-sqrt(3))/2"), 1000).expect("a period");
+    let sum = |tile: &PeriodicSet| {
+        let mix = |sum: u64, v: f64| sum.rotate_left(5) ^ v.to_bits();
+        tile.iter().flat_map(|p| p.at()).fold(0, mix)
+    };
+    let seeded = tile.clone().seed(7).side(3.0).expect("in range");
+    let expected = [12_348_697_484_901_543_038, 13_325_372_944_589_229_241];
+    assert_eq!([sum(&tile), sum(&seeded)], expected);
+}
