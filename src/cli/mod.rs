@@ -1,12 +1,15 @@
 //! The command line.
 
+mod arrangement;
 mod config;
 mod count;
 mod fields;
+mod figure;
 mod flags;
 mod forge;
 mod key;
 mod measure;
+mod offsets;
 mod output;
 mod point;
 mod probe;
@@ -49,6 +52,11 @@ enum Command {
     Nearest(point::NearestArgs),
     /// Split a query into parts for parallel readers.
     Split(split::Args),
+    /// Say whether an arrangement of points occurs in a pattern, how often, and where.
+    Arrangement(arrangement::Args),
+    /// Draw a figure of an AA pattern: its index space, an arrangement, clusters, a neighborhood map.
+    #[command(subcommand)]
+    Figure(figure::Command),
     /// Make a table and judge it.
     Forge(forge::Args),
     /// Measure a table, the points of a region, or a file of points.
@@ -96,6 +104,8 @@ pub fn main() -> ExitCode {
         Command::Point(args) => point::point(&args),
         Command::Nearest(args) => point::nearest(&args),
         Command::Split(args) => split::run(&args),
+        Command::Arrangement(args) => arrangement::run(&args),
+        Command::Figure(command) => figure::run(&command),
         Command::Forge(args) => forge::run(&args),
         Command::Measure(args) => measure::run(&args),
         Command::Table(command) => table::run(&command),

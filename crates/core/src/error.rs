@@ -52,8 +52,14 @@ struct Parts {
 pub enum ErrorKind {
     /// A text is not an α, or its value is not between 1 and 2.
     Alpha,
+    /// The offsets of an arrangement; [`limit`](Error::limit) is the one that was exceeded.
+    Arrangement,
+    /// The neighbor distance of clusters, or the number of their points.
+    Clusters,
     /// The half-width or the size of a neighborhood map.
     MapSize,
+    /// The period of a periodic set: its number of points or its side.
+    Period,
     /// A table or its file: which part is damaged or not allowed is the [`field`](Error::field).
     Table,
     /// A table file larger than [`MAX_FILE_BYTES`](crate::table::MAX_FILE_BYTES).

@@ -58,6 +58,7 @@ pub mod table;
 pub use error::{Error, ErrorKind};
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
+pub use sample::PeriodicSet;
 pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
     Cursor, EvenVariants, F32, F64, Field, Format, Keep, LATTICE_LIMIT, LeastDistance, Member,

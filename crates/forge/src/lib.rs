@@ -41,6 +41,7 @@ mod domain;
 pub mod energy;
 mod error;
 mod estimate;
+pub mod figure;
 mod file;
 mod forge;
 mod job;

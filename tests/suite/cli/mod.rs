@@ -1,5 +1,5 @@
 //! The commands: `sample`, `count`, `point`, `nearest` and `split` against the answers of REST,
-//! `forge` with interruptions, `config` and its layers, `probe` as health checks run it, what wrong
+//! `figure` and `arrangement`, `forge` with interruptions, `config` and its layers, `probe` as health checks run it, what wrong
 //! flags and full disks lead to.
 
 mod config;
@@ -9,5 +9,6 @@ mod full_disk;
 mod invalid_flags;
 mod mix;
 mod outputs;
+mod patterns;
 mod probe;
 mod queries;

@@ -1,4 +1,4 @@
-//! The examples of docs/api.md, docs/fields.md and README.md run against a daemon and must print what the documents show.
+//! The examples of docs/api.md, docs/fields.md, docs/pattern.md and README.md run against a daemon and must print what the documents show.
 //!
 //! An example is a fenced `sh` block that begins with `curl`, `grpcurl` or `strew`, and the block right
 //! after it shows its output; or a `console` block of `$ `, such a command and its output. In an output a
@@ -250,6 +250,24 @@ fn compare(folder: &Path, page: &str, names: &[&str]) {
             ),
             // Its example takes a program that is not installed.
             Err(_) => {}
+        }
+    }
+}
+
+#[test]
+fn the_page_on_patterns_shows_what_its_examples_print_and_draw() {
+    let folder = tempfile::tempdir().expect("a folder");
+    check_in("docs/pattern.md", folder.path(), &Daemon::built_in());
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/pictures/pattern");
+    for name in ["index.svg", "arrangement.svg", "clusters.svg", "map.svg"] {
+        let drawn = std::fs::read(folder.path().join(name)).expect("drawn");
+        if std::env::var_os("UPDATE_GOLDEN").is_some() {
+            std::fs::write(kept.join(name), drawn).expect("writable");
+        } else {
+            assert!(
+                std::fs::read(kept.join(name)).is_ok_and(|kept| kept == drawn),
+                "{name}"
+            );
         }
     }
 }

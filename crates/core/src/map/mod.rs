@@ -21,15 +21,21 @@
 //!
 //! `neighborhood` has the intervals and their lookup, `size` the names of common half-widths. The
 //! order of the thresholds holds for an interval of α (`cell`); the fractions in it are the map's
-//! periodic twins (`twin`), whose points and blocks `site` lists.
+//! periodic twins (`twin`), whose points and blocks `site` lists. `surroundings` lists the neighbors that a
+//! block's points have; `clusters` finds the connected groups of points.
 
 mod cell;
+mod clusters;
 mod neighborhood;
+mod shape;
 mod site;
 mod size;
+mod surroundings;
 mod twin;
 
+pub use clusters::Clusters;
 pub use neighborhood::Map;
+pub use shape::Shape;
 pub use site::Site;
 pub use size::{MAX_RADIUS, Size};
 pub use twin::Twin;

@@ -32,7 +32,7 @@ pub struct Site {
 impl Twin {
     /// The index of a coordinate along an axis, in units of 1/(2q), given the parity of the other
     /// coordinate.
-    const fn index(self, v: u64, other_parity: u64) -> u64 {
+    pub(crate) const fn index(self, v: u64, other_parity: u64) -> u64 {
         (self.p() * v + self.q() * other_parity) % (2 * self.q())
     }
 
@@ -86,8 +86,8 @@ impl Twin {
         Some(sites)
     }
 
-    /// The block of each index in [0, t).
-    fn blocks(self, map: &Map) -> Vec<u32> {
+    /// The block of each index in [0, t), ascending.
+    pub(crate) fn blocks(self, map: &Map) -> Vec<u32> {
         let r = i64::from(map.radius());
         let mut starts: Vec<u64> = (-r - 1..=r)
             .flat_map(|k| {

@@ -88,6 +88,20 @@ impl Alpha {
         self.set_side() as f64 * (0.5 / (1u64 << 63) as f64)
     }
 
+    /// p and q if α is the fraction p/q, reduced; `None` if it is irrational.
+    ///
+    /// ```
+    /// use strew_core::Alpha;
+    ///
+    /// assert_eq!("1.9".parse::<Alpha>()?.fraction(), Some((19, 10)));
+    /// assert_eq!("sqrt(3)".parse::<Alpha>()?.fraction(), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn fraction(self) -> Option<(u64, u64)> {
+        self.exact.fraction()
+    }
+
     /// The fraction p/q.
     ///
     /// # Errors

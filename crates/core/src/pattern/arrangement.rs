@@ -1,38 +1,363 @@
-//! Arrangements: which finite sets of offsets occur in a pattern, and how often.
+//! Arrangements: which finite sets of offsets occur in a pattern, where, and how often.
+//!
+//! An offset o moves the index of every point by the same shift. So p + o is a point for all offsets o iff
+//! the index of p lies in a rectangle: the set region less the extent of the shifts. Everything about an
+//! arrangement follows from that rectangle, its *margin*. It is a product of intervals like the set region
+//! itself, and occurrences are counted and listed the way points are.
 
-use super::{Alpha, Pattern};
+use alloc::vec::Vec;
+use core::ops::{Range, RangeInclusive};
 
-/// The frequency of an arrangement: the share of pattern points p for which p + o belongs to the
-/// pattern for every offset o. It is 0 iff the arrangement never occurs.
+use super::{Axis, AxisSet, Class, Pattern};
+use crate::error::{Error, ErrorKind};
+
+/// A finite set of grid offsets, seen in one pattern. It *occurs* at a point p if p + o is a point for
+/// every offset o. The offset (0, 0), p itself, is implied.
 ///
-/// An arrangement occurs iff the image of its offsets in index space fits the set region. Its frequency
-/// is the area of the margin that is left, over the area t² of the set region. The offset (0, 0) is
-/// implied.
+/// It occurs somewhere iff the image of its offsets in index space fits the set region (Ahmed, Huang,
+/// Deussen 2015), and the area of the margin that is left is the density of its occurrences. Both hold
+/// exactly for the α of the pattern, as [rounded](crate::Alpha) to a multiple of 2⁻⁶³.
 ///
 /// ```
-/// use strew_core::pattern::arrangement_frequency;
+/// use strew_core::{Pattern, pattern::Arrangement};
 ///
-/// let alpha = "sqrt(3)".parse()?;
-/// assert_eq!(arrangement_frequency(alpha, &[]), 1.0);
-/// assert_eq!(arrangement_frequency(alpha, &[(1, 0)]), 0.0);
+/// let pattern = Pattern::new("sqrt(3)".parse()?);
+/// let three = Arrangement::new(pattern, &[(2, 0), (1, 2)])?;
+/// assert!(three.exists());
+/// // 13 billion occurrences in a square with a side of a million, counted without listing them.
+/// let side = 0..1_000_000;
+/// let counted = three.count(side.clone(), side.clone()) as f64;
+/// assert!((counted / 1e12 - three.density()).abs() < 1e-7);
+/// for (x, y) in three.occurrences(side.clone(), side).take(100) {
+///     assert!([(x, y), (x + 2, y), (x + 1, y + 2)].iter().all(|&(x, y)| pattern.contains(x, y)));
+/// }
+/// // No point has a neighbor beside it.
+/// assert!(!Arrangement::new(pattern, &[(1, 0)])?.exists());
 /// # Ok::<(), strew_core::Error>(())
 /// ```
-#[must_use]
-pub fn arrangement_frequency(alpha: Alpha, offsets: &[(i64, i64)]) -> f64 {
-    let pattern = Pattern::new(alpha);
-    let side = alpha.set_side_f64();
-    let mut low = (0.0f64, 0.0f64);
-    let mut high = (0.0f64, 0.0f64);
-    for &(i, j) in offsets {
-        let (dx, dy) = pattern.index(i, j);
-        // Taken with a sign: a shift beyond ±t never fits.
-        let unit = 1.0 / 18_446_744_073_709_551_616.0;
-        let (dx, dy) = (dx as i64 as f64 * unit, dy as i64 as f64 * unit);
-        low = (low.0.min(dx), low.1.min(dy));
-        high = (high.0.max(dx), high.1.max(dy));
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Arrangement {
+    pattern: Pattern,
+    offsets: Vec<(i64, i64)>,
+    /// The least and the greatest shift along each axis; they include 0.
+    image: [RangeInclusive<i64>; 2],
+}
+
+/// The columns of a band. Occurrences are listed band by band, as the sampler lists points.
+const BAND: i64 = 1024;
+
+impl Arrangement {
+    /// The greatest number of offsets.
+    pub const MAX_OFFSETS: usize = 65_536;
+    /// The greatest distance of an offset along either axis, in grid units.
+    pub const MAX_OFFSET: i64 = 1 << 52;
+
+    /// The arrangement of `offsets`, in grid units, in a pattern. Offsets may repeat.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Arrangement`] for more than [`MAX_OFFSETS`](Self::MAX_OFFSETS) offsets, and for one
+    /// beyond ±[`MAX_OFFSET`](Self::MAX_OFFSET), whose position is in the [field](Error::field).
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, Pattern, pattern::Arrangement};
+    ///
+    /// let pattern = Pattern::new("1.6".parse()?);
+    /// let error = Arrangement::new(pattern, &[(2, 0), (0, i64::MAX)]).unwrap_err();
+    /// assert_eq!((error.kind(), error.field()), (ErrorKind::Arrangement, "offsets[1]"));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn new(pattern: Pattern, offsets: &[(i64, i64)]) -> Result<Self, Error> {
+        if offsets.len() > Self::MAX_OFFSETS {
+            let value = alloc::format!("a list of {}", offsets.len());
+            let allowed = alloc::format!("a list of at most {} offsets", Self::MAX_OFFSETS);
+            let error = Error::new(ErrorKind::Arrangement, "offsets", value, allowed);
+            return Err(error.with_limit(Self::MAX_OFFSETS as f64));
+        }
+        for (i, &(x, y)) in offsets.iter().enumerate() {
+            if x.unsigned_abs().max(y.unsigned_abs()) > Self::MAX_OFFSET as u64 {
+                let allowed = alloc::format!("two integers within ±{}", Self::MAX_OFFSET);
+                let (field, value) = (alloc::format!("offsets[{i}]"), alloc::format!("[{x}, {y}]"));
+                let error = Error::new(ErrorKind::Arrangement, field, value, allowed);
+                return Err(error.with_limit(Self::MAX_OFFSET as f64));
+            }
+        }
+        Ok(Self::small(pattern, offsets.to_vec()))
     }
-    let margin = |low: f64, high: f64| (side - (high - low)).max(0.0) / side;
-    margin(low.0, high.0) * margin(low.1, high.1)
+
+    /// The arrangement of offsets that are known to be within the limits.
+    pub(crate) fn small(pattern: Pattern, offsets: Vec<(i64, i64)>) -> Self {
+        let mut image = [0..=0, 0..=0];
+        for &offset in &offsets {
+            for (image, shift) in image.iter_mut().zip(shift(pattern, offset)) {
+                *image = shift.min(*image.start())..=shift.max(*image.end());
+            }
+        }
+        Self {
+            pattern,
+            offsets,
+            image,
+        }
+    }
+
+    /// The pattern in which the arrangement is seen.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// let pattern = Pattern::new("1.6".parse()?);
+    /// assert_eq!(Arrangement::new(pattern, &[])?.pattern(), pattern);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn pattern(&self) -> Pattern {
+        self.pattern
+    }
+
+    /// The offsets, as they were listed.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// let pair = Arrangement::new(Pattern::new("1.6".parse()?), &[(2, 0)])?;
+    /// assert_eq!(pair.offsets(), [(2, 0)]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn offsets(&self) -> &[(i64, i64)] {
+        &self.offsets
+    }
+
+    /// The shift of each offset in index space: how far its point lies from p there, in units of 2⁻⁶⁴, from
+    /// −½ to ½.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// // At α = 1.5 a step of 2 along x moves dX by −½ and leaves dY.
+    /// let pair = Arrangement::new(Pattern::new("1.5".parse()?), &[(2, 0)])?;
+    /// assert_eq!(pair.shifts().collect::<Vec<_>>(), [[i64::MIN, 0]]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn shifts(&self) -> impl Iterator<Item = [i64; 2]> {
+        self.offsets.iter().map(|&o| shift(self.pattern, o))
+    }
+
+    /// The image of the arrangement in index space: the least rectangle around its shifts and 0, as the
+    /// ranges of dX and dY, in units of 2⁻⁶⁴.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
+    /// // (αx + y)/2 = 1.75, a quarter less than 2.
+    /// assert_eq!(pair.image(), [-(1 << 62)..=0, 0..=0]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn image(&self) -> [RangeInclusive<i64>; 2] {
+        self.image.clone()
+    }
+
+    /// The margin: where the index of a point lies at which the arrangement occurs, as the ranges of dX and
+    /// dY, in units of 2⁻⁶⁴. `None` if the image does not fit the set region.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
+    /// // The set region is [0, 3/8)². The shift of dX by −¼ leaves [¼, 3/8).
+    /// assert_eq!(pair.margin(), Some([1 << 62..3 << 61, 0..3 << 61]));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn margin(&self) -> Option<[Range<u64>; 2]> {
+        let side = self.pattern.alpha().set_side();
+        let [x, y] = self.image().map(|image| {
+            let (low, high) = (image.start().unsigned_abs(), image.end().unsigned_abs());
+            // Shifts reach from −2⁶³ to 2⁶³, and the side is below 2⁶³.
+            low..side.saturating_sub(high)
+        });
+        (!x.is_empty() && !y.is_empty()).then_some([x, y])
+    }
+
+    /// Whether the arrangement occurs anywhere, which it does iff its image fits the set region.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// let pattern = Pattern::new("1.75".parse()?);
+    /// assert!(Arrangement::new(pattern, &[(2, 0)])?.exists());
+    /// assert!(!Arrangement::new(pattern, &[(2, 0), (-2, 0)])?.exists());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn exists(&self) -> bool {
+        self.margin().is_some()
+    }
+
+    /// The number of occurrences for each grid point of the plane, times 2¹²⁸: the area of the margin,
+    /// exactly.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
+    /// // 1/8 · 3/8
+    /// assert_eq!(pair.area(), 3 << 122);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn area(&self) -> u128 {
+        self.margin().map_or(0, |[x, y]| {
+            u128::from(x.end - x.start) * u128::from(y.end - y.start)
+        })
+    }
+
+    /// The number of occurrences for each grid point of the plane: [`area`](Self::area) as the nearest `f64`.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
+    /// assert_eq!(pair.density(), 3.0 / 64.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn density(&self) -> f64 {
+        const UNIT: f64 = 1.0 / 18_446_744_073_709_551_616.0;
+        self.area() as f64 * UNIT * UNIT
+    }
+
+    /// The share of points at which the arrangement occurs, from 0 to 1.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// let pattern = Pattern::new("1.75".parse()?);
+    /// assert_eq!(Arrangement::new(pattern, &[])?.frequency(), 1.0);
+    /// assert_eq!(Arrangement::new(pattern, &[(2, 0)])?.frequency(), 1.0 / 3.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn frequency(&self) -> f64 {
+        let side = self.pattern.alpha().set_side();
+        self.area() as f64 / (u128::from(side) * u128::from(side)) as f64
+    }
+
+    /// Whether the arrangement occurs at a place of the grid.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// let pattern = Pattern::new("1.75".parse()?);
+    /// let pair = Arrangement::new(pattern, &[(2, 0)])?;
+    /// let both = |x, y| pattern.contains(x, y) && pattern.contains(x + 2, y);
+    /// assert!((-9..9).all(|x| pair.occurs_at(x, 5) == both(x, 5)));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn occurs_at(&self, x: i64, y: i64) -> bool {
+        let (dx, dy) = self.pattern.index(x, y);
+        self.margin()
+            .is_some_and(|margin| margin[0].contains(&dx) && margin[1].contains(&dy))
+    }
+
+    /// The columns and rows of a class whose products are the occurrences.
+    fn axis_sets(&self, class: Class) -> [AxisSet; 2] {
+        let [x, y] = self.margin().unwrap_or_default();
+        [
+            self.pattern.axis_subset(Axis::X, class, x),
+            self.pattern.axis_subset(Axis::Y, class, y),
+        ]
+    }
+
+    /// The number of occurrences at the places of a box of the grid, exactly: eight floor sums, whatever the
+    /// size of the box. An inverted range is empty.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
+    /// assert_eq!(pair.count(0..1 << 40, 0..1 << 40), 3 << 74);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn count(&self, x: Range<i64>, y: Range<i64>) -> u128 {
+        let of_class = |class| {
+            let [columns, rows] = self.axis_sets(class);
+            u128::from(columns.count(x.clone())) * u128::from(rows.count(y.clone()))
+        };
+        Class::ALL.into_iter().map(of_class).sum()
+    }
+
+    /// The places of a box of the grid at which the arrangement occurs, in the order in which the sampler
+    /// lists points: bands of 1024 columns that begin at multiples of 1024, ascending; in a band, rows; in
+    /// a row, columns. Bands without occurrences are skipped.
+    ///
+    /// ```
+    /// use strew_core::{Pattern, pattern::Arrangement};
+    ///
+    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
+    /// let listed = pair.occurrences(-70..50, 0..90).count();
+    /// assert_eq!(listed as u128, pair.count(-70..50, 0..90));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn occurrences(
+        &self,
+        x: Range<i64>,
+        y: Range<i64>,
+    ) -> impl Iterator<Item = (i64, i64)> + use<> {
+        let mut classes: Vec<[AxisSet; 2]> = Class::ALL.map(|class| self.axis_sets(class)).into();
+        classes.retain(|[_, rows]| rows.first(y.start).is_some_and(|row| row < y.end));
+        let mut next = x.start;
+        let bands = core::iter::from_fn(move || {
+            let columns = classes
+                .iter()
+                .filter_map(|[columns, _]| columns.first(next));
+            let first = columns.min().filter(|&first| first < x.end)?;
+            let end = (first.div_euclid(BAND))
+                .saturating_add(1)
+                .saturating_mul(BAND)
+                .min(x.end);
+            let band = next.max(first)..end;
+            next = end;
+            let mut here = classes.clone();
+            here.retain(|[columns, _]| columns.first(band.start).is_some_and(|v| v < band.end));
+            Some((here, band))
+        });
+        bands.flat_map(move |(classes, band)| {
+            rows(&classes, y.clone())
+                .flat_map(move |(columns, y)| columns.iter(band.clone()).map(move |x| (x, y)))
+        })
+    }
+}
+
+/// The rows of some classes in a range, ascending, each with the columns of its class.
+fn rows(
+    classes: &[[AxisSet; 2]],
+    range: Range<i64>,
+) -> impl Iterator<Item = (AxisSet, i64)> + use<> {
+    let mut classes: Vec<_> = classes
+        .iter()
+        .map(|&[columns, rows]| (columns, rows.iter(range.clone()).peekable()))
+        .collect();
+    core::iter::from_fn(move || {
+        // A row has points of one class only.
+        let next = |rows: &mut core::iter::Peekable<_>| rows.peek().copied();
+        let (columns, rows) = classes
+            .iter_mut()
+            .filter_map(|(columns, rows)| next(rows).map(|row| (row, columns, rows)))
+            .min_by_key(|&(row, ..)| row)
+            .map(|(_, columns, rows)| (*columns, rows))?;
+        Some((columns, rows.next()?))
+    })
+}
+
+/// The shift of an offset in index space, in units of 2⁻⁶⁴, taken with a sign: a shift beyond ±t, which is
+/// less than ½, never fits.
+fn shift(pattern: Pattern, (x, y): (i64, i64)) -> [i64; 2] {
+    let (dx, dy) = Pattern::new(pattern.alpha()).index(x, y);
+    [dx as i64, dy as i64]
 }
 
 #[cfg(test)]
@@ -40,26 +365,119 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::{Alpha, pattern::IndexOrigin};
+
+    const TEXTS: &[&str] = &[
+        "(5-sqrt(3))/2",
+        "sqrt(3)",
+        "(1+sqrt(5))/2",
+        "1.3",
+        "1.97",
+        "5/3",
+        "3/2",
+    ];
+
+    fn alphas() -> impl Strategy<Value = Alpha> {
+        proptest::sample::select(TEXTS).prop_map(|text| text.parse().expect("valid"))
+    }
+
+    fn offsets(most: usize) -> impl Strategy<Value = Vec<(i64, i64)>> {
+        proptest::collection::vec((-7i64..=7, -7i64..=7), 0..most)
+    }
+
+    /// The places of a box at which all offsets are points, in order, from membership alone.
+    fn by_search(
+        pattern: Pattern,
+        offsets: &[(i64, i64)],
+        x: Range<i64>,
+        y: Range<i64>,
+    ) -> Vec<(i64, i64)> {
+        let mut found: Vec<_> = y
+            .flat_map(|y| x.clone().map(move |x| (x, y)))
+            .filter(|&(x, y)| {
+                let all = offsets.iter().chain([&(0, 0)]);
+                all.copied().all(|(i, j)| pattern.contains(x + i, y + j))
+            })
+            .collect();
+        found.sort_by_key(|&(x, y)| (x.div_euclid(BAND), y, x));
+        found
+    }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(40))]
+        #![proptest_config(ProptestConfig::with_cases(300))]
+
         #[test]
-        fn frequency_is_the_share_of_points_that_show_it(
-            offsets in proptest::collection::vec((-8i64..=8, -8i64..=8), 1..3),
+        fn occurrences_are_those_of_a_search(
+            alpha in alphas(), offsets in offsets(4), ox: u64, oy: u64,
+            x0 in -5000i64..5000, y0: i32, w in 0i64..1400, h in 0i64..40,
         ) {
-            let alpha: Alpha = "(5-sqrt(3))/2".parse().expect("valid");
-            let pattern = Pattern::new(alpha);
-            let (mut points, mut shown) = (0u32, 0u32);
-            for y in -200..200i64 {
-                for x in -200..200i64 {
-                    if pattern.contains(x, y) {
-                        points += 1;
-                        shown += u32::from(offsets.iter().all(|&(i, j)| pattern.contains(x + i, y + j)));
-                    }
+            let pattern = Pattern::with_origin(alpha, IndexOrigin { x: ox, y: oy });
+            let arrangement = Arrangement::new(pattern, &offsets).expect("small");
+            let (x, y) = (x0..x0 + w, i64::from(y0)..i64::from(y0) + h);
+            let expected = by_search(pattern, &offsets, x.clone(), y.clone());
+            prop_assert_eq!(arrangement.count(x.clone(), y.clone()), expected.len() as u128);
+            prop_assert!(expected.iter().all(|&(x, y)| arrangement.occurs_at(x, y)));
+            prop_assert_eq!(arrangement.occurrences(x, y).collect::<Vec<_>>(), expected);
+        }
+
+        #[test]
+        fn it_occurs_somewhere_iff_its_image_fits(alpha in alphas(), offsets in offsets(5), ox: u64, oy: u64) {
+            let pattern = Pattern::with_origin(alpha, IndexOrigin { x: ox, y: oy });
+            let arrangement = Arrangement::new(pattern, &offsets).expect("small");
+            let side = i128::from(alpha.set_side());
+            let fits = arrangement
+                .image()
+                .iter()
+                .all(|range| i128::from(*range.end()) - i128::from(*range.start()) < side);
+            prop_assert_eq!(arrangement.exists(), fits);
+            let everywhere = -i64::MAX / 2..i64::MAX / 2;
+            match arrangement.occurrences(0..i64::MAX, everywhere.clone()).next() {
+                Some((x, y)) => {
+                    prop_assert!(fits);
+                    prop_assert!(offsets.iter().all(|(i, j)| pattern.contains(x + i, y + j)));
+                }
+                // Coordinates of 63 bits cannot visit every place of a torus of 2⁶⁴ units.
+                None => {
+                    let narrowest = arrangement.margin().map(|margin| margin.map(|r| r.end - r.start));
+                    prop_assert!(narrowest.is_none_or(|sides| sides[0].min(sides[1]) < 1 << 24));
                 }
             }
-            let found = f64::from(shown) / f64::from(points);
-            prop_assert!((found - arrangement_frequency(alpha, &offsets)).abs() < 0.02);
         }
+
+        #[test]
+        fn the_count_in_a_large_box_is_its_area_times_the_density(alpha in alphas(), offsets in offsets(4)) {
+            let arrangement = Arrangement::new(Pattern::new(alpha), &offsets).expect("small");
+            let side = 1i64 << 44;
+            let counted = arrangement.count(-side..side, -side..side) as f64;
+            let density = counted / (2.0 * side as f64).powi(2);
+            prop_assert!((density - arrangement.density()).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn an_arrangement_without_offsets_is_the_pattern() {
+        let pattern = Pattern::new("(5-sqrt(3))/2".parse().expect("valid"));
+        let own = Arrangement::new(pattern, &[]).expect("small");
+        let range = -40..2000;
+        assert_eq!(
+            own.count(range.clone(), range.clone()),
+            pattern.count(range.clone(), range)
+        );
+        assert_eq!(own.frequency(), 1.0);
+    }
+
+    #[test]
+    fn arrangements_beyond_the_limits_are_refused() {
+        let pattern = Pattern::new("sqrt(3)".parse().expect("valid"));
+        let many = vec![(2, 2); Arrangement::MAX_OFFSETS + 1];
+        let error = Arrangement::new(pattern, &many).expect_err("too many");
+        assert_eq!(error.kind(), ErrorKind::Arrangement);
+        assert_eq!(
+            error.to_string(),
+            "offsets is a list of 65537; it must be a list of at most 65536 offsets"
+        );
+        assert!(Arrangement::new(pattern, &many[1..]).is_ok());
+        let error = Arrangement::new(pattern, &[(0, i64::MIN)]).expect_err("too far");
+        assert_eq!(error.field(), "offsets[0]");
     }
 }

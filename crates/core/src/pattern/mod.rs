@@ -31,7 +31,7 @@ mod quadratic;
 mod turns;
 
 pub use alpha::Alpha;
-pub use arrangement::arrangement_frequency;
+pub use arrangement::Arrangement;
 pub use axis::{Axis, AxisSet, Class};
 pub use forward::{forward_map, is_vacant};
 pub use index::{IndexOrigin, Pattern};

@@ -129,6 +129,12 @@ impl Quadratic {
         }
     }
 
+    /// a and c of a positive fraction a/c; `None` for a number with a root.
+    pub(super) fn fraction(self) -> Option<(u64, u64)> {
+        let part = |v: i64| u64::try_from(v).ok();
+        (self.b == 0).then_some((part(self.a)?, part(self.c)?))
+    }
+
     pub(super) fn strictly_between_one_and_two(self) -> bool {
         self.compare_with(1, 0).is_gt() && self.compare_with(2, 0).is_lt()
     }

@@ -11,7 +11,8 @@
 //! 7. `attribute` and `member`: the values that points have; `seek`, `cursor`: places in their order;
 //! 8. `plan` (with `iter`): a request made ready; `amount`: one with an exact number of points;
 //! 9. `field`: sets whose density varies;
-//! 10. `set`: the [`PointSet`](crate::PointSet), whose methods are all of this.
+//! 10. `set`: the [`PointSet`](crate::PointSet), whose methods are all of this;
+//! 11. `periodic`: one exact period of a set that tiles the plane.
 
 mod amount;
 mod area;
@@ -24,6 +25,7 @@ mod kernel;
 mod lattice;
 mod member;
 mod near;
+mod periodic;
 mod plan;
 mod scope;
 mod seed;
@@ -46,6 +48,7 @@ pub use kernel::{Backend, F32, F64, Format, Offsets, Points};
 pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing};
 pub use member::Member;
 pub use near::{Clearance, LeastDistance};
+pub use periodic::PeriodicSet;
 pub use plan::Plan;
 pub use seed::Seed;
 pub use set::{Neighbor, PointSet};

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use super::PointSet;
 use crate::{
     error::Error,
+    pattern::Arrangement,
     sample::{
         attribute::{Attributes, BoundAttributes},
         lattice::{Placement, PointId},
@@ -260,6 +261,30 @@ impl PointSet {
         let of_kind = |kind| self.table().least_distance_of(kind, kind);
         let of_kind = self.lattice.kind().and_then(of_kind);
         of_kind.unwrap_or_else(|| self.table().least_distance())
+    }
+
+    /// The arrangement of `offsets`, in lattice units, in the pattern whose points this set displaces. It
+    /// knows how often it occurs; [`occurs_at`](Arrangement::occurs_at) tells for a point of the set, by its
+    /// id, whether it occurs there.
+    ///
+    /// # Errors
+    /// As [`Arrangement::new`].
+    ///
+    /// ```
+    /// use strew_core::{PointId, PointSet, Region, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 20, "pattern")?;
+    /// let set = PointSet::new(table).seed(7);
+    /// let pair = set.arrangement(&[(1, 2)])?;
+    /// let points = set.within(Region::new([0.0, 0.0], [50.0, 50.0])?)?;
+    /// for point in points.iter().filter(|point| pair.occurs_at(point.id().x, point.id().y)) {
+    ///     let other = set.point(PointId { x: point.id().x + 1, y: point.id().y + 2 });
+    ///     assert!(other.is_some());
+    /// }
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn arrangement(&self, offsets: &[(i64, i64)]) -> Result<Arrangement, Error> {
+        Arrangement::new(self.lattice.pattern, offsets)
     }
 
     /// The values that the points of this set have for some attributes. They depend on ids and the seed

@@ -12,7 +12,7 @@
 //!
 //! `strength` is the setting, `walk` and `shears` the definition. Two faster forms have the same bits: `near` for
 //! points around a place, `patch` for the points of a patch, on which the kernel builds. `stretch`
-//! bounds what the warp does to distances.
+//! bounds what the warp does to distances. `wrapped` is the warp of periodic sets.
 
 mod drift;
 mod near;
@@ -21,9 +21,11 @@ mod shears;
 mod strength;
 mod stretch;
 mod walk;
+mod wrapped;
 
 pub(super) use near::NearShears;
 pub(super) use patch::PatchShears;
 pub(super) use shears::{CELL_BITS, Shears};
 pub use strength::Warp;
 pub(super) use stretch::Stretch;
+pub(super) use wrapped::WrappedShears;

@@ -59,18 +59,8 @@ pub(super) fn across<T: Copy + Add<Output = T> + Sub<Output = T>>([x, y]: [T; 2]
 impl Shears {
     /// The shears of a seed, or `None` if the warp is off.
     pub(crate) fn new(warp: Warp, seed: Seed) -> Option<Self> {
-        if warp.is_off() {
-            return None;
-        }
-        let step = SLOPE * warp.strength() * f64::from(1 << CELL_BITS);
-        let steps = [step, step, step / 2.0, step / 2.0].map(|step| libm::round(step) as i32);
-        let first = split_mix(seed.0 ^ 0x5745_4156_4552_5321);
-        Some(Self {
-            walks: core::array::from_fn(|i| {
-                let key = split_mix(first.wrapping_add((i as u64 + 1) << 56));
-                Walk::new(key, steps[i])
-            }),
-        })
+        let walks = directed(warp, seed, f64::from(1 << CELL_BITS))?;
+        Some(Self { walks })
     }
 
     /// The largest movement along x or y, in fixed-point units.
@@ -124,6 +114,21 @@ impl Shears {
             .rev()
             .fold(position, |p, i| shear(i, p, |s| -self.noise(i, s)))
     }
+}
+
+/// The walks of a seed's four directions for knots at a distance in fixed-point units, or `None` if the warp
+/// is off.
+pub(super) fn directed(warp: Warp, seed: Seed, knot: f64) -> Option<[Walk; 4]> {
+    if warp.is_off() {
+        return None;
+    }
+    let step = SLOPE * warp.strength() * knot;
+    let steps = [step, step, step / 2.0, step / 2.0].map(|step| libm::round(step) as i32);
+    let first = split_mix(seed.0 ^ 0x5745_4156_4552_5321);
+    Some(core::array::from_fn(|i| {
+        let key = split_mix(first.wrapping_add((i as u64 + 1) << 56));
+        Walk::new(key, steps[i])
+    }))
 }
 
 /// Shear number `i`, with `g` as a function of the coordinate across.
