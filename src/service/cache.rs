@@ -38,7 +38,7 @@ pub struct CacheState {
 pub struct Ready {
     /// What is known of the table.
     pub entry: Arc<Entry>,
-    /// The table; its least distance has been computed.
+    /// The table; its least distances have been computed.
     pub table: Table,
 }
 
@@ -48,12 +48,13 @@ impl Ready {
     /// # Errors
     /// [`Error::Internal`] if it cannot be read any more.
     pub fn load(entry: &Arc<Entry>) -> Result<Self, Error> {
-        let table = entry.table()?;
-        let _ = table.least_distance();
-        Ok(Self {
-            entry: entry.clone(),
-            table,
-        })
+        Ok(Self::new(entry.clone(), entry.table()?))
+    }
+
+    /// A table, once its least distances are computed.
+    pub(super) fn new(entry: Arc<Entry>, table: Table) -> Self {
+        let _ = (table.least_distance(), table.least_distance_of(0, 0));
+        Self { entry, table }
     }
 }
 

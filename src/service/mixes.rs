@@ -17,6 +17,7 @@ use futures_util::{
 };
 use strew_core::{
     Table,
+    server::Stop,
     table::{MAX_FILE_BYTES, Shares},
 };
 
@@ -129,18 +130,16 @@ impl Mixes {
             .hold(ROOM + ROOM_BY_BLOCK * plain.entry.blocks())?;
         let path = self.folder.as_deref();
         let path = path.map(|folder| folder.join(format!("{name}.strew")));
-        let table = plain.table.clone();
-        let made = workers.take_turn(Lane::Long, move |_| {
+        let Ready { entry, table } = plain.clone();
+        let work = move |_: &Stop| {
             let _held = held;
-            match path {
+            let made = match path {
                 Some(path) => read_or_make(&path, &table, &shares),
                 None => make(&table, &shares),
-            }
-        });
-        Ok(Ready {
-            entry: plain.entry.clone(),
-            table: made.await??,
-        })
+            };
+            Ok(Ready::new(entry, made?))
+        };
+        workers.take_turn(Lane::Long, work).await?
     }
 }
 
