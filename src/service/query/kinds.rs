@@ -67,10 +67,21 @@ impl Kinds {
         let Some(variants) = super::attributes::variants(values)? else {
             return Err(values.missing(&VARIANTS).into());
         };
+        let rarest = || {
+            let least = |a: &(&str, f64), b: &(&str, f64)| a.1.total_cmp(&b.1);
+            variants
+                .weights()
+                .min_by(least)
+                .map_or("", |(name, _)| name)
+        };
         let variants = variants.evenly().map_err(|error| {
+            let detail = match variants.count() {
+                2..=Shares::MAX_KINDS => format!("`{}` is too rare: {error}", rarest()),
+                _ => error.to_string(),
+            };
             let allowed = format!("{}, with spread {}", error.allowed(), spread.name());
             let field = format!("{}{}", values.path(), VARIANTS.name);
-            Fault::new(&field, values.text(&VARIANTS), error.to_string(), allowed)
+            Fault::new(&field, values.text(&VARIANTS), detail, allowed)
         })?;
         let kind = |only: String| match variants.kind(&only) {
             Some(kind) => Ok((only, kind)),
@@ -160,14 +171,18 @@ mod tests {
             ("only=oak", "only", "no effect with spread chance"),
             ("spread=even", "variants", "missing"),
             ("spread=even&variants=oak:1", "variants", "from 2 to"),
-            ("spread=even&variants=oak:1,elm:1000000", "variants", "elm"),
             (
-                "spread=even&variants=oak:3,birch:1&only=oka",
+                "spread=even&variants=oak:1,elm:1000000",
+                "variants",
+                "`oak` is too rare",
+            ),
+            (
+                "spread=even&variants=oak:3,birch:1&only=oaks",
                 "only",
                 "did you mean `oak`?",
             ),
             (
-                "spread=evn&variants=oak:3,birch:1",
+                "spread=evens&variants=oak:3,birch:1",
                 "spread",
                 "did you mean `even`?",
             ),
