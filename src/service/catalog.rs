@@ -152,11 +152,8 @@ impl Entry {
             error,
         })?;
         let vectors = table.displacements().as_flattened();
-        let mut hasher = blake3::Hasher::new();
-        for vector in vectors {
-            hasher.update(&vector.to_le_bytes());
-        }
-        let vectors = *hasher.finalize().as_bytes();
+        let vectors: Vec<u8> = vectors.iter().flat_map(|v| v.to_le_bytes()).collect();
+        let vectors = *blake3::hash(&vectors).as_bytes();
         let mix = table.mix().map(|mix| MixKey {
             shares: mix.shares().parts().into(),
             vectors,

@@ -1,4 +1,4 @@
-//! Mixes: tables whose variants are evenly spread, made when they are first asked for.
+//! Mixes: tables whose variants are evenly spread, made for the first query that needs them.
 //!
 //! Making one takes seconds, so it is done once, at low priority, whoever asks, and to the end even if nobody
 //! waits any more. Those that were used last stay in memory; all are kept in a folder beside the tables, if
@@ -36,7 +36,8 @@ pub(super) struct Mixes {
     folder: Option<Arc<Path>>,
 }
 
-type Making = Shared<BoxFuture<'static, Result<Ready, Error>>>;
+/// A table that is being read or made.
+pub(super) type Making = Shared<BoxFuture<'static, Result<Ready, Error>>>;
 
 /// The most mixes that are kept in a folder.
 const MOST_KEPT: usize = 256;
@@ -68,17 +69,8 @@ impl Mixes {
         self.samplers.known(&name(plain, shares)).await
     }
 
-    /// A table with kinds of these shares, which is made unless somebody has begun to.
-    pub(super) async fn get(
-        &self,
-        plain: &Ready,
-        shares: &Shares,
-        workers: &Workers,
-    ) -> Result<Ready, Error> {
-        self.begin(plain, shares, workers).await
-    }
-
-    fn begin(&self, plain: &Ready, shares: &Shares, workers: &Workers) -> Making {
+    /// A table with kinds of these shares, which is made unless that has begun.
+    pub(super) fn get(&self, plain: &Ready, shares: &Shares, workers: &Workers) -> Making {
         let name = name(plain, shares);
         let mut making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(begun) = making.get(&name) {

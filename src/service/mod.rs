@@ -288,7 +288,7 @@ impl Service {
 
     /// The table of a set, ready to answer. Making a mix is charged.
     async fn ready(&self, caller: &Caller, set: &Set) -> Result<Ready, Error> {
-        /// Making a mix takes about as long as so many points a block.
+        /// Making a mix takes about as long as making this many points for each block.
         const POINTS: u128 = 10_000;
         let ready = self.samplers.get(&set.entry, &self.workers).await?;
         let Some(kinds) = set.kinds.as_ref().filter(|_| ready.table.mix().is_none()) else {

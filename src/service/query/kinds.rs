@@ -43,7 +43,7 @@ pub struct Kinds {
     pub variants: EvenVariants,
     /// How they are spread.
     pub spread: Spread,
-    /// The name and the kind of the only one that is wanted.
+    /// The name and the kind of the one to which points are limited.
     pub only: Option<(String, u8)>,
     /// The loaded table whose labels spread them evenly, if there is one.
     pub made: Option<Arc<Entry>>,
@@ -143,7 +143,7 @@ impl Kinds {
         self.variants.shares()
     }
 
-    /// The share of the points that are wanted.
+    /// The share of all points that are left when they are limited to one.
     #[must_use]
     pub fn share(&self) -> f64 {
         self.only
@@ -151,7 +151,7 @@ impl Kinds {
             .map_or(1.0, |(_, kind)| self.shares().of(*kind))
     }
 
-    /// The name of the only one that is wanted.
+    /// The name of the one to which points are limited.
     #[must_use]
     pub fn only_name(&self) -> Option<&str> {
         self.only.as_ref().map(|(name, _)| name.as_str())

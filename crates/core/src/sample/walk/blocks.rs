@@ -174,9 +174,15 @@ impl<F: Format> Blocks<F> {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     #[must_use]
-    pub const fn with_backend(mut self, backend: Backend) -> Self {
-        self.backend = backend;
-        self
+    pub fn with_backend(self, backend: Backend) -> Self {
+        match self.window {
+            // Points that were kept were found by the best one.
+            Some(window) if self.kept.is_some() && self.left == window.count => Self {
+                backend,
+                ..Self::of_window(self.scope, window)
+            },
+            _ => Self { backend, ..self },
+        }
     }
 
     /// Writes the next points into `out`. Returns the number written; fewer than `out` holds, down to 0,
