@@ -4,9 +4,9 @@
 //! Counting a box without warp must take about as long whatever the box holds: 10¹⁸ points at most
 //! twice as long as 10⁶. `-- --quick` only checks that everything still runs.
 
-use std::{hint::black_box, time::Instant};
+use std::hint::black_box;
 
-use rounds::{boxed, is_quick, sets};
+use rounds::{boxed, is_quick, now, sets};
 use strew_core::{Circle, Plan, PointId, PointSet};
 
 mod rounds;
@@ -125,12 +125,12 @@ fn main() {
     for _ in 0..rounds {
         for ((_, batch, job), times) in JOBS.iter().zip(&mut times) {
             let batch = if is_quick() { 1 } else { *batch };
-            let (start, mut runs) = (Instant::now(), 0u32);
-            while runs == 0 || start.elapsed().as_secs_f64() < seconds {
+            let (start, mut runs) = (now(), 0u32);
+            while runs == 0 || (now() - start) < seconds {
                 (0..batch).for_each(|_| job(&mut subject));
                 runs += batch;
             }
-            times.push(start.elapsed().as_secs_f64() / f64::from(runs));
+            times.push((now() - start) / f64::from(runs));
         }
     }
     let medians = times.map(|mut times| {

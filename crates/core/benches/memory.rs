@@ -6,7 +6,7 @@
 use std::hint::black_box;
 
 use rayon::prelude::*;
-use rounds::{BLOCK, boxed, is_quick, medians, sets};
+use rounds::{BLOCK, boxed, is_quick, medians, medians_by, sets, time_of_day};
 use strew_core::{F32, Plan};
 
 mod rounds;
@@ -77,7 +77,8 @@ fn main() {
             .expect("threads")
     };
     let (one, two) = (threads(1), threads(2));
-    let result = medians(
+    let result = medians_by(
+        time_of_day,
         if quick { 1 } else { 15 },
         &mut [&mut || on_threads(&plan, &one), &mut || {
             on_threads(&plan, &two)

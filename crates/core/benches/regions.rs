@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use rounds::{BLOCK, boxed, fill_all, is_quick, medians, sets};
+use rounds::{BLOCK, boxed, fill_all, is_quick, medians, now, sets};
 use strew_core::{Area, Circle, F32, Polygon};
 
 mod rounds;
@@ -65,12 +65,12 @@ fn main() {
             &mut || area(star(radius, 1.0).into(), three),
             &mut || area(star(radius / 0.9, 0.8).into(), four),
             &mut || {
-                let start = std::time::Instant::now();
+                let start = now();
                 let made = small(0, &mut block);
-                cold.push(start.elapsed().as_secs_f64() / made as f64);
-                let start = std::time::Instant::now();
+                cold.push((now() - start) / made as f64);
+                let start = now();
                 let made = small(1, &mut block);
-                warped.push(start.elapsed().as_secs_f64() / made as f64);
+                warped.push((now() - start) / made as f64);
                 made
             },
         ],

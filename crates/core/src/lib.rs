@@ -53,18 +53,19 @@ mod once;
 pub mod pattern;
 mod sample;
 pub mod server;
+mod stop;
 pub mod table;
 
 pub use error::{Error, ErrorKind};
 pub use map::{Map, Twin};
 pub use pattern::{Alpha, Pattern};
-pub use sample::PeriodicSet;
 pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
     Cursor, EvenVariants, F32, F64, Field, Format, Keep, LATTICE_LIMIT, LeastDistance, Member,
     Members, Neighbor, Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster,
     Region, ScaleRange, Seed, Spacing, Tile, UniformNumber, VariantScales, Variants, Warp,
 };
+pub use sample::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use table::Table;
 
 /// The version of the algorithm that turns a table, a density, a seed and a lattice address into a point,

@@ -19,10 +19,32 @@ use alloc::vec::Vec;
 
 use crate::{
     error::Error,
-    sample::{Area, Plan, PointSet, Region, Spacing},
+    map::Clusters,
+    pattern::Alpha,
+    sample::{Area, PeriodicPlan, PeriodicSet, Plan, PointSet, Region, Spacing},
 };
 
 pub use crate::sample::Stop;
+
+/// [`Clusters::new`], whose search stops once the flag is raised. It looks at the flag for each block.
+///
+/// # Errors
+/// As [`Clusters::new`], and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+///
+/// ```
+/// use strew_core::{ErrorKind, server::{self, Stop}};
+///
+/// let stop = Stop::new();
+/// let alpha = "sqrt(3)".parse()?;
+/// assert_eq!(server::clusters(alpha, 2.0, 16, &stop)?.shapes().len(), 4);
+/// stop.raise();
+/// let error = server::clusters(alpha, 2.0, 16, &stop).unwrap_err();
+/// assert_eq!(error.kind(), ErrorKind::Stopped);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub fn clusters(alpha: Alpha, distance: f64, most: usize, stop: &Stop) -> Result<Clusters, Error> {
+    Clusters::until(alpha, distance, most, stop)
+}
 
 /// [`PointSet::within`], whose counting stops once the flag is raised.
 ///
@@ -88,6 +110,40 @@ pub fn exactly(
 /// ```
 pub fn kind_counts(set: &PointSet, area: impl Into<Area>, stop: &Stop) -> Result<Vec<u128>, Error> {
     set.kind_counts_until(&area.into(), stop)
+}
+
+/// [`PeriodicSet::plan`], whose counting stops once the flag is raised.
+///
+/// # Errors
+/// [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+///
+/// ```
+/// use strew_core::{PeriodicSet, Table, server::{self, Stop}};
+///
+/// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+/// let tile = PeriodicSet::new(table, 5000)?;
+/// assert_eq!(server::period(&tile, &Stop::default())?.count(), 5041);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub fn period(set: &PeriodicSet, stop: &Stop) -> Result<PeriodicPlan, Error> {
+    set.plan_until(stop)
+}
+
+/// The number of points of each kind in a period, the rarest kind first; empty for a table without kinds.
+///
+/// # Errors
+/// [`ErrorKind::Stopped`](crate::ErrorKind::Stopped) once the flag is raised.
+///
+/// ```
+/// use strew_core::{PeriodicSet, Table, server::{self, Stop}};
+///
+/// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+/// let tile = PeriodicSet::new(table, 5000)?;
+/// assert!(server::kinds_of_period(&tile, &Stop::default())?.is_empty());
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub fn kinds_of_period(set: &PeriodicSet, stop: &Stop) -> Result<Vec<u64>, Error> {
+    set.kind_counts_until(stop)
 }
 
 /// About the number of points that [`within`] visits one by one to count those of a set in a

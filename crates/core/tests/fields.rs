@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use strew_core::{
     Area, Circle, Field, Map, Placement, PointId, PointSet, Raster, Region, Seed, Spacing, Table,
     Warp,
+    field::{Edges, FieldSpec, Filter},
     table::{Ladder, Provenance, Ranks, Rung},
 };
 use subject::definition;
@@ -80,6 +81,16 @@ fn raster() -> Raster {
     Raster::new(region, 128, (0..128 * 128).map(pixel).collect()).expect("shares")
 }
 
+/// Pixels of four spacings, about as steep as a field may be that counts as constant: less so in some places.
+fn dunes() -> Raster {
+    let region = Region::new([-64.0, -64.0], [64.0, 64.0]).expect("ordered");
+    let pixel = |i: usize| {
+        let [x, y] = [i % 32, i / 32].map(|v| v as f64);
+        (0.7 + 0.05 * (x * 0.2).sin() + 0.03 * (y * 0.3).cos()) as f32
+    };
+    Raster::new(region, 32, (0..32 * 32).map(pixel).collect()).expect("shares")
+}
+
 /// Every id near a box, by the definition.
 fn brute(
     find: impl Fn(PointId) -> Option<[f64; 2]>,
@@ -127,6 +138,36 @@ proptest! {
         let set = set(ladder, seed, warp, spacing).keep(keep).expect("a share");
         agrees(&set, hills, region)?;
         agrees(&set, raster(), region)?;
+        agrees(&set, dunes(), region)?;
+        let ramp = FieldSpec::ramp([0.0; 2], [500.0, 90.0], [0.9, 1.0]).expect("valid");
+        let both = FieldSpec::multiply(vec![FieldSpec::raster(dunes()).expect("valid"), ramp]);
+        agrees(&set, both.expect("valid"), region)?;
+    }
+
+    #[test]
+    fn shares_change_by_no_more_than_slopes(
+        region in any_region(), edge in 0usize..4, nearest: bool, scale in 1.0..9.0f64,
+        from in prop::array::uniform2(0.0..1.0f64), to in prop::array::uniform2(0.0..1.0f64),
+    ) {
+        let edges = [Edges::Clamp, Edges::Zero, Edges::Repeat, Edges::Mirror][edge];
+        let filter = if nearest { Filter::Nearest } else { Filter::Linear };
+        let raster = dunes().edges(edges).filter(filter).tone(0.1, 0.9, 2.0).expect("once");
+        let ramp = FieldSpec::ramp([0.0; 2], [scale, 3.0], [0.0, 1.0]).expect("valid");
+        let all = vec![FieldSpec::raster(raster).expect("valid"), ramp.invert().expect("valid")];
+        let (min, max) = (region.min().map(|v| v * scale * 0.2), region.max().map(|v| v * scale * 0.2));
+        let region = Region::new(min, max).expect("ordered");
+        let place = |part: [f64; 2]| [0, 1].map(|i| min[i] + part[i] * (max[i] - min[i]));
+        let (from, to) = (place(from), place(to));
+        let joined = [FieldSpec::multiply(all.clone()), FieldSpec::min(all.clone()), FieldSpec::max(all.clone())];
+        for field in all.into_iter().chain(joined.map(|spec| spec.expect("valid"))) {
+            let slopes = field.slopes(&region);
+            let most: f64 = [0, 1].map(|i| match (to[i] - from[i]).abs() {
+                0.0 => 0.0,
+                way => way * slopes[i],
+            }).iter().sum();
+            let change = (field.share(to) - field.share(from)).abs();
+            prop_assert!(change <= most + 1e-12, "{change} {most}");
+        }
     }
 
     #[test]

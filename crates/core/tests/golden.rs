@@ -200,3 +200,18 @@ fn thinned_sets_have_these_bits() {
         .expect("near");
     assert_eq!((plan.count(), &*digest(&plan)), (727, "fbe5fe6d6fe7d358"));
 }
+
+#[cfg(feature = "tables")]
+#[test]
+fn sets_in_fields_have_these_bits() {
+    let region = Region::new([0.0, 0.0], [60.0, 40.0]).expect("ordered");
+    let of = |width: f64| {
+        let ramp = move |[x, _]: [f64; 2]| 1.0 - x / width;
+        let plan = PointSet::blue().seed(7).in_field(ramp).within(region);
+        let plan = plan.expect("near");
+        format!("{} {}", plan.count(), digest(&plan))
+    };
+    // Where a field is steep points move less; where it is gentle they do not.
+    let expected = ["1376 2c0004f2970e6269", "2396 cba0f0adaace5cd6"];
+    assert_eq!([of(70.0), of(9000.0)], expected);
+}

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each bench takes what it needs")]
 
-use std::{hint::black_box, time::Instant};
+use std::{hint::black_box, sync::LazyLock, time::Instant};
 
 use strew_core::{Alpha, Format, Map, Plan, PointSet, Region, Table, table::Provenance};
 
@@ -17,7 +17,12 @@ pub fn is_quick() -> bool {
 
 /// A table of the default size with random displacements.
 pub fn table() -> Table {
-    let map = Map::new("(5-sqrt(3))/2".parse::<Alpha>().expect("valid"), 49).expect("small");
+    table_of(49)
+}
+
+/// A table of a neighborhood with random displacements: 49 for the map s, 100 for m and 200 for l.
+pub fn table_of(radius: u32) -> Table {
+    let map = Map::new("(5-sqrt(3))/2".parse::<Alpha>().expect("valid"), radius).expect("small");
     let blocks = map.intervals() * map.intervals();
     let mut state = 1u64;
     let mut next = || {
@@ -57,15 +62,42 @@ pub fn fill_all<F: Format>(plan: &Plan, buffer: &mut [F::Item]) -> u64 {
     }
 }
 
-/// Seconds per unit of work of each job, as the median over interleaved rounds. A job returns its
-/// amount of work.
+/// The time that this thread has run, in seconds; elsewhere than on Unix the time of day. Others on the machine
+/// take little of it.
+pub fn now() -> f64 {
+    #[cfg(unix)]
+    {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+        time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+    }
+    #[cfg(not(unix))]
+    time_of_day()
+}
+
+/// The time since the first call, in seconds: for work of several threads.
+pub fn time_of_day() -> f64 {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    START.elapsed().as_secs_f64()
+}
+
+/// Seconds of this thread per unit of work of each job, as the median over interleaved rounds. A job returns
+/// its amount of work.
 pub fn medians<const N: usize>(rounds: usize, jobs: &mut [&mut dyn FnMut() -> u64; N]) -> [f64; N] {
+    medians_by(now, rounds, jobs)
+}
+
+/// [`medians`] by another clock.
+pub fn medians_by<const N: usize>(
+    clock: fn() -> f64,
+    rounds: usize,
+    jobs: &mut [&mut dyn FnMut() -> u64; N],
+) -> [f64; N] {
     let mut times: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
     for _ in 0..rounds {
         for (job, times) in jobs.iter_mut().zip(&mut times) {
-            let start = Instant::now();
+            let start = clock();
             let amount = job();
-            times.push(start.elapsed().as_secs_f64() / amount as f64);
+            times.push((clock() - start) / amount as f64);
         }
     }
     times.map(|mut times| {

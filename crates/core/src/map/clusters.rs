@@ -18,6 +18,7 @@ use super::{
 use crate::{
     error::{Error, ErrorKind, number},
     pattern::{Alpha, IndexOrigin, Pattern},
+    stop::Stop,
 };
 
 /// The connected clusters of a pattern under a neighbor distance, exact for clusters up to a stated number
@@ -74,6 +75,16 @@ impl Clusters {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn new(alpha: Alpha, distance: f64, most: usize) -> Result<Self, Error> {
+        Self::until(alpha, distance, most, &Stop::default())
+    }
+
+    /// The clusters, unless the flag is raised before they are found.
+    pub(crate) fn until(
+        alpha: Alpha,
+        distance: f64,
+        most: usize,
+        stop: &Stop,
+    ) -> Result<Self, Error> {
         if !(1.0..=Self::MAX_DISTANCE).contains(&distance) {
             let allowed = alloc::format!("a number from 1 to {} grid units", Self::MAX_DISTANCE);
             let value = number(distance);
@@ -89,11 +100,21 @@ impl Clusters {
             let map = Map::new(alpha, radius)?;
             let n = map.intervals();
             let mut reach = 0;
-            let found: Vec<Option<Vec<(i64, i64)>>> = (0..n * n)
-                .map(|block| cluster(&map, [block % n, block / n], &offsets, most, &mut reach))
-                .collect();
+            // Blocks share their shapes: a list for each block would not fit into memory.
+            let mut known: BTreeMap<Vec<(i64, i64)>, u32> = BTreeMap::new();
+            let mut found = vec![];
+            for block in 0..n * n {
+                if stop.is_raised() {
+                    let error = Error::new(ErrorKind::Stopped, "the search", "not finished", "");
+                    return Err(error.because("stopped"));
+                }
+                let block = [block % n, block / n];
+                let points = cluster(&map, block, &offsets, most, &mut reach);
+                let next = known.len() as u32;
+                found.push(points.map_or(LARGER, |points| *known.entry(points).or_insert(next)));
+            }
             if reach <= i64::from(radius) {
-                return Ok(Self::of_found(map, most, found));
+                return Ok(Self::of_found(map, most, known, &found));
             }
             radius = u32::try_from(reach).unwrap_or(u32::MAX);
             if radius > MAX_RADIUS {
@@ -106,29 +127,31 @@ impl Clusters {
     }
 
     /// The clusters by block, put in order.
-    fn of_found(map: Map, most: usize, found: Vec<Option<Vec<(i64, i64)>>>) -> Self {
+    fn of_found(
+        map: Map,
+        most: usize,
+        known: BTreeMap<Vec<(i64, i64)>, u32>,
+        found: &[u32],
+    ) -> Self {
         let n = map.intervals();
         let length = |i: usize| {
             let interval = map.interval(i);
             u128::from(interval.end - interval.start)
         };
         // The areas of the blocks of all points of the clusters.
-        let mut areas: BTreeMap<&[(i64, i64)], u128> = BTreeMap::new();
-        for (block, points) in found.iter().enumerate() {
-            if let Some(points) = points {
-                *areas.entry(points).or_default() += length(block % n) * length(block / n);
+        let mut areas = vec![0u128; known.len()];
+        for (block, &shape) in found.iter().enumerate() {
+            if let Some(area) = areas.get_mut(shape as usize) {
+                *area += length(block % n) * length(block / n);
             }
         }
-        let mut shapes: Vec<Shape> = areas
-            .into_iter()
-            .map(|(points, area)| Shape {
-                points: points.to_vec(),
-                // Each point of a cluster sees all of it, so its blocks have the area of those of the first.
-                area: area / points.len() as u128,
-                class: 0,
-                alpha: map.alpha(),
-            })
-            .collect();
+        let mut shapes: Vec<Shape> = vec![Shape::none(map.alpha()); known.len()];
+        for (points, number) in known {
+            let (i, count) = (number as usize, points.len() as u128);
+            // Each point of a cluster sees all of it, so its blocks have the area of those of the first.
+            shapes[i].area = areas[i] / count;
+            shapes[i].points = points;
+        }
         let leads: Vec<_> = shapes.iter().map(|shape| upright(&shape.points)).collect();
         let mut order: Vec<usize> = (0..shapes.len()).collect();
         order.sort_by(|&a, &b| {
@@ -145,16 +168,14 @@ impl Clusters {
             }
             shapes[at].class = classes;
         }
+        let mut numbers = vec![LARGER; shapes.len()];
+        for (number, &at) in (0..).zip(&order) {
+            numbers[at] = number;
+        }
         let shapes: Vec<Shape> = order.into_iter().map(|at| shapes[at].clone()).collect();
-        let numbers: BTreeMap<&[(i64, i64)], u32> =
-            shapes.iter().map(Shape::points).zip(0..).collect();
         let of_block = found
             .iter()
-            .map(|points| {
-                points
-                    .as_ref()
-                    .map_or(LARGER, |points| numbers[points.as_slice()])
-            })
+            .map(|&shape| numbers.get(shape as usize).copied().unwrap_or(LARGER))
             .collect();
         Self {
             most,

@@ -240,8 +240,13 @@ impl Map {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn twins(&self) -> impl Iterator<Item = Twin> + use<> {
+        self.twins_within(1..MAX_Q)
+    }
+
+    /// The twins with p − q in a range.
+    pub(crate) fn twins_within(&self, t: Range<u64>) -> impl Iterator<Item = Twin> + use<> {
         let cell = Cell::new(self.alpha, self.radius);
-        (1..MAX_Q).flat_map(move |t| {
+        (t.start.max(1)..t.end.min(MAX_Q)).flat_map(move |t| {
             cell.denominators(t)
                 .filter_map(move |q| Twin::new(t + q, q))
         })

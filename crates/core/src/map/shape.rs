@@ -26,6 +26,16 @@ pub struct Shape {
 }
 
 impl Shape {
+    /// A shape to be filled in.
+    pub(super) const fn none(alpha: Alpha) -> Self {
+        Self {
+            points: Vec::new(),
+            area: 0,
+            class: 0,
+            alpha,
+        }
+    }
+
     /// The points of a cluster, row by row, from its first.
     ///
     /// ```

@@ -43,9 +43,6 @@ pub struct Arrangement {
     image: [RangeInclusive<i64>; 2],
 }
 
-/// The columns of a band. Occurrences are listed band by band, as the sampler lists points.
-const BAND: i64 = 1024;
-
 impl Arrangement {
     /// The greatest number of offsets.
     pub const MAX_OFFSETS: usize = 65_536;
@@ -263,7 +260,7 @@ impl Arrangement {
     }
 
     /// The columns and rows of a class whose products are the occurrences.
-    fn axis_sets(&self, class: Class) -> [AxisSet; 2] {
+    pub(super) fn axis_sets(&self, class: Class) -> [AxisSet; 2] {
         let [x, y] = self.margin().unwrap_or_default();
         [
             self.pattern.axis_subset(Axis::X, class, x),
@@ -289,68 +286,6 @@ impl Arrangement {
         };
         Class::ALL.into_iter().map(of_class).sum()
     }
-
-    /// The places of a box of the grid at which the arrangement occurs, in the order in which the sampler
-    /// lists points: bands of 1024 columns that begin at multiples of 1024, ascending; in a band, rows; in
-    /// a row, columns. Bands without occurrences are skipped.
-    ///
-    /// ```
-    /// use strew_core::{Pattern, pattern::Arrangement};
-    ///
-    /// let pair = Arrangement::new(Pattern::new("1.75".parse()?), &[(2, 0)])?;
-    /// let listed = pair.occurrences(-70..50, 0..90).count();
-    /// assert_eq!(listed as u128, pair.count(-70..50, 0..90));
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn occurrences(
-        &self,
-        x: Range<i64>,
-        y: Range<i64>,
-    ) -> impl Iterator<Item = (i64, i64)> + use<> {
-        let mut classes: Vec<[AxisSet; 2]> = Class::ALL.map(|class| self.axis_sets(class)).into();
-        classes.retain(|[_, rows]| rows.first(y.start).is_some_and(|row| row < y.end));
-        let mut next = x.start;
-        let bands = core::iter::from_fn(move || {
-            let columns = classes
-                .iter()
-                .filter_map(|[columns, _]| columns.first(next));
-            let first = columns.min().filter(|&first| first < x.end)?;
-            let end = (first.div_euclid(BAND))
-                .saturating_add(1)
-                .saturating_mul(BAND)
-                .min(x.end);
-            let band = next.max(first)..end;
-            next = end;
-            let mut here = classes.clone();
-            here.retain(|[columns, _]| columns.first(band.start).is_some_and(|v| v < band.end));
-            Some((here, band))
-        });
-        bands.flat_map(move |(classes, band)| {
-            rows(&classes, y.clone())
-                .flat_map(move |(columns, y)| columns.iter(band.clone()).map(move |x| (x, y)))
-        })
-    }
-}
-
-/// The rows of some classes in a range, ascending, each with the columns of its class.
-fn rows(
-    classes: &[[AxisSet; 2]],
-    range: Range<i64>,
-) -> impl Iterator<Item = (AxisSet, i64)> + use<> {
-    let mut classes: Vec<_> = classes
-        .iter()
-        .map(|&[columns, rows]| (columns, rows.iter(range.clone()).peekable()))
-        .collect();
-    core::iter::from_fn(move || {
-        // A row has points of one class only.
-        let next = |rows: &mut core::iter::Peekable<_>| rows.peek().copied();
-        let (columns, rows) = classes
-            .iter_mut()
-            .filter_map(|(columns, rows)| next(rows).map(|row| (row, columns, rows)))
-            .min_by_key(|&(row, ..)| row)
-            .map(|(_, columns, rows)| (*columns, rows))?;
-        Some((columns, rows.next()?))
-    })
 }
 
 /// The shift of an offset in index space, in units of 2⁻⁶⁴, taken with a sign: a shift beyond ±t, which is
@@ -365,7 +300,10 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::{Alpha, pattern::IndexOrigin};
+    use crate::{
+        Alpha,
+        pattern::{IndexOrigin, occurrences::BAND},
+    };
 
     const TEXTS: &[&str] = &[
         "(5-sqrt(3))/2",

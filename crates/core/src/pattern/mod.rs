@@ -17,8 +17,8 @@
 //!
 //! `alpha` is the number α (`quadratic` reads it exactly), `index` membership, `axis` the sets of
 //! columns and rows whose products make up the pattern. `floor_sum` and `first_hit` count and find
-//! members of such a set in O(log); `turns` counts for all intervals of a map at once. `arrangement`
-//! and `forward` hold two other results of the paper.
+//! members of such a set in O(log); `turns` counts for all intervals of a map at once. `arrangement` (with
+//! `occurrences`, its places in order) and `forward` hold two other results of the paper.
 
 mod alpha;
 mod arrangement;
@@ -27,6 +27,7 @@ mod first_hit;
 mod floor_sum;
 mod forward;
 mod index;
+mod occurrences;
 mod quadratic;
 mod turns;
 

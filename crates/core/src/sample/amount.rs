@@ -5,9 +5,11 @@ use super::{
     lattice::{Grade, Lattice, Placement, Spacing},
     near::Mask,
     plan::Plan,
+};
+use crate::{
+    error::{Error, ErrorKind, number},
     stop::Stop,
 };
-use crate::error::{Error, ErrorKind, number};
 
 /// More steps than a bisection of any bracket takes.
 const MOST_STEPS: usize = 400;

@@ -32,10 +32,10 @@ mod seed;
 mod seek;
 mod set;
 mod sieve;
-mod stop;
 mod walk;
 mod warp;
 
+pub use crate::stop::Stop;
 pub use area::{Area, Circle, Polygon, Region};
 pub use attribute::{
     Attribute, Attributes, BoundAttributes, Column, EvenVariants, ScaleRange, UniformNumber,
@@ -48,10 +48,9 @@ pub use kernel::{Backend, F32, F64, Format, Offsets, Points};
 pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing};
 pub use member::Member;
 pub use near::{Clearance, LeastDistance};
-pub use periodic::PeriodicSet;
+pub use periodic::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use plan::Plan;
 pub use seed::Seed;
 pub use set::{Neighbor, PointSet};
-pub use stop::Stop;
 pub use walk::{Blocks, Tile};
 pub use warp::Warp;

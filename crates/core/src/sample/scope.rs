@@ -8,9 +8,11 @@ use super::{
     lattice::{LATTICE_LIMIT, Lattice, Multiple, Span},
     near::Mask,
     sieve::Sieve,
+};
+use crate::{
+    error::{Error, ErrorKind, number},
     stop::Stop,
 };
-use crate::error::{Error, ErrorKind, number};
 
 /// The columns and rows around an area, and what their points must satisfy.
 #[derive(Clone, Debug)]

@@ -89,6 +89,38 @@ pub(crate) struct Stage {
     way: f64,
     /// Below the last level, the part of the way back to the table's own vectors.
     back: f64,
+    /// The units of `way` that a share of 1 takes.
+    per_share: f64,
+    /// By how much events begin earlier and end later, in units of `way`, within the segment.
+    spread: f64,
+}
+
+impl Stage {
+    /// Where the table itself holds.
+    pub(crate) const FULL: Self = Self {
+        below: 0,
+        way: 0.0,
+        back: 0.0,
+        per_share: 0.0,
+        spread: 0.0,
+    };
+
+    /// The stage with events that last longer by twice a difference of shares.
+    #[inline(always)]
+    pub(crate) const fn spread_by(self, share: f64) -> Self {
+        Self {
+            spread: self.per_share * share,
+            ..self
+        }
+    }
+
+    /// The part of a block's move that is done.
+    #[inline(always)]
+    fn part(self, event: [u8; 2]) -> f64 {
+        let start = (f64::from(event[0]) - self.spread).max(0.0);
+        let end = (f64::from(event[1]) + self.spread).min(EVENT_UNITS);
+        ((self.way - start) / (end - start)).clamp(0.0, 1.0)
+    }
 }
 
 impl Ladder {
@@ -249,19 +281,21 @@ impl Ladder {
                 below: self.levels.len(),
                 way: EVENT_UNITS,
                 back: ((least - share) / (0.5 * least)).min(1.0),
+                ..Stage::FULL
             };
         };
         let above = below
             .checked_sub(1)
             .map_or(1.0, |at| self.levels[at].share());
         if share >= above {
-            let (way, back) = (0.0, 0.0);
-            return Stage { below, way, back };
+            return Stage::FULL;
         }
+        let per_share = EVENT_UNITS / (above - level.share());
         Stage {
             below: below + 1,
-            way: (above - share) / (above - level.share()) * EVENT_UNITS,
-            back: 0.0,
+            way: (above - share) * per_share,
+            per_share,
+            ..Stage::FULL
         }
     }
 
@@ -282,7 +316,7 @@ impl Ladder {
         position: usize,
         full: Displacement,
     ) -> Displacement {
-        let Stage { below, way, back } = stage;
+        let Stage { below, back, .. } = stage;
         if back > 0.0 {
             let last = self.last(below, position, full);
             return between(last, full, back);
@@ -295,8 +329,7 @@ impl Ladder {
             1 => full,
             _ => widened(self.level(below - 1)[position]),
         };
-        let [start, end] = [f64::from(rung.event[0]), f64::from(rung.event[1])];
-        between(from, to, ((way - start) / (end - start)).clamp(0.0, 1.0))
+        between(from, to, stage.part(rung.event))
     }
 
     /// The vectors of the levels above and below a stage at a position, and the event, if both levels have the
@@ -327,9 +360,7 @@ impl Ladder {
         } else {
             widened(above)
         };
-        let [start, end] = [f64::from(rung.event[0]), f64::from(rung.event[1])];
-        let part = ((stage.way - start) / (end - start)).clamp(0.0, 1.0);
-        between(from, widened(rung), part)
+        between(from, widened(rung), stage.part(rung.event))
     }
 
     /// The displacement of a block at the last level up to `below` that knows it.
@@ -409,7 +440,7 @@ mod tests {
             });
             let ladder = Ladder::new(levels.collect()).expect("valid");
             let shares: Vec<f64> = [1.0].into_iter().chain(ladder.shares()).collect();
-            let Stage { below, way, back } = ladder.stage(share);
+            let Stage { below, way, back, .. } = ladder.stage(share);
             if below == 0 {
                 prop_assert!(share >= 1.0);
             } else if share < ladder.least_share() {

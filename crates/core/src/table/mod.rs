@@ -40,7 +40,7 @@ mod units;
 
 pub use digest::Digest;
 pub use displacement::Table;
-pub use file::{FORMAT_VERSION, MAX_FILE_BYTES};
+pub use file::{FORMAT_VERSION, Head, MAX_FILE_BYTES};
 pub(crate) use ladder::Stage;
 pub use ladder::{LADDER_BITS, Ladder, Rung};
 pub(crate) use mix::Labels;

@@ -204,15 +204,50 @@ pub fn place_in(set: &PointSet, field: &dyn Field, id: PointId) -> Option<[f64; 
     if rank(set, id)? >= here {
         return None;
     }
-    let moved = table.displacement_at(source, here);
-    let half = 0.5 * placement.spacing.get() / here.sqrt();
-    let change = |a: f64, b: f64| 2.0 * (b - a) / (a + b);
-    let across = change(share([x - half, y]), share([x + half, y]));
-    let up = change(share([x, y - half]), share([x, y + half]));
-    let part = 1.0 / (1.0 + (across * across + up * up) / (0.03 * 0.03));
+    let far = placement.spacing.get() / here.sqrt();
+    let change = |at: [f64; 2]| (share(at) - here).abs();
+    let across = change([x - far, y]).max(change([x + far, y]));
+    let up = change([x, y - far]).max(change([x, y + far]));
+    let squared = (across * across + up * up) / (here * here) - 1.0 / 65536.0;
+    let squared = squared.max(0.0);
+    let moved = spread(table, source, here, here * squared.sqrt());
+    let part = 1.0 / (1.0 + 4096.0 * squared);
     let turn = |v: [i32; 2]| Symmetry::of(placement.seed).turn(v.map(i128::from));
     let ([a, b], [c, d]) = (turn(full), turn(moved));
     let way = |from: i128, to: i128| from + ((to - from) as f64 * part) as i128;
     let [dx, dy] = [way(a, c), way(b, d)];
     Some(placed(set, id, [dx, dy]))
+}
+
+/// The displacement of a block at a share where events begin earlier and end later by a change of share.
+fn spread(table: &Table, block: usize, share: f64, change: f64) -> [i32; 2] {
+    let Some(ladder) = table.ladder() else {
+        return table.displacements()[block];
+    };
+    let shares: Vec<f64> = [1.0].into_iter().chain(ladder.shares()).collect();
+    let Some(below) = shares
+        .iter()
+        .position(|level| *level <= share)
+        .filter(|k| *k > 0)
+    else {
+        // At full density, or below the last level, where there are no events.
+        return table.displacement_at(block, share);
+    };
+    let order = table.ranks().expect("a table with a ladder has ranks");
+    let position = order.positions()[block] as usize;
+    let Some(rung) = ladder.level(below).get(position) else {
+        return table.displacement_at(block, share);
+    };
+    let wide = |v: i16| i32::from(v) << 12;
+    let to = rung.vector.map(wide);
+    let from = match below {
+        1 => table.displacements()[block],
+        _ => ladder.level(below - 1)[position].vector.map(wide),
+    };
+    let unit = 255.0 / (shares[below - 1] - shares[below]);
+    let start = (f64::from(rung.event[0]) - unit * change).max(0.0);
+    let end = (f64::from(rung.event[1]) + unit * change).min(255.0);
+    let part = (((shares[below - 1] - share) * unit - start) / (end - start)).clamp(0.0, 1.0);
+    let way = |a: i32, b: i32| a + (f64::from(b - a) * part) as i32;
+    [way(from[0], to[0]), way(from[1], to[1])]
 }

@@ -1,6 +1,7 @@
 //! The attributes of one point set, as columns.
 
-use alloc::vec::Vec;
+use alloc::{sync::Arc, vec::Vec};
+use core::fmt;
 
 use super::{
     Attribute, Attributes, EvenVariants, ScaleRange,
@@ -11,10 +12,11 @@ use crate::{
     error::Error,
     pattern::Pattern,
     sample::{
-        kernel::{Backend, compiled, write_numbers},
+        kernel::{Backend, PlainLoop, compiled_loop, write_numbers},
         lattice::{Lattice, Point, PointId, kind, rank},
+        seed::Seed,
     },
-    table::TurnedTable,
+    table::{Table, TurnedTable},
 };
 
 /// The values of one attribute for some points.
@@ -91,11 +93,41 @@ impl Column {
 /// ```
 #[derive(Clone, Debug)]
 pub struct BoundAttributes {
-    table: TurnedTable,
-    pattern: Pattern,
+    indexed: Indexed,
     /// The key of variants, on which scales may depend.
     variant_key: u64,
     list: Vec<Bound>,
+}
+
+/// What knows where in index space a point lies.
+#[derive(Clone, Debug)]
+enum Indexed {
+    Plane(TurnedTable, Pattern),
+    Other(Arc<dyn Indices>),
+}
+
+/// The ranks and kinds of the points of a set that is not one of the plane.
+pub(crate) trait Indices: fmt::Debug + Send + Sync {
+    /// The rank of a point, in [0, 1); the greatest for an id without a point.
+    fn rank(&self, id: PointId) -> f64;
+    /// The kind of a point, `None` for an id without a point and a table without kinds.
+    fn kind(&self, id: PointId) -> Option<u8>;
+}
+
+impl Indexed {
+    fn rank(&self, id: PointId) -> f64 {
+        match self {
+            Self::Plane(table, pattern) => rank(table, pattern, id),
+            Self::Other(indices) => indices.rank(id),
+        }
+    }
+
+    fn kind(&self, id: PointId) -> Option<u8> {
+        match self {
+            Self::Plane(table, pattern) => kind(table, pattern, id),
+            Self::Other(indices) => indices.kind(id),
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -113,25 +145,65 @@ struct Rows {
 
 impl Rows {
     /// Writes the numbers that `number` makes of hashes.
-    #[inline]
     fn write(&self, key: u64, number: impl Fn(u64) -> f64, out: &mut [f64]) {
-        compiled(Backend::best(), || {
-            let (mut ids, mut out) = (&self.ids[..], out);
-            for &length in &self.lengths {
-                let (row, more) = ids.split_at(length);
-                let (numbers, rest) = out.split_at_mut(length);
-                let hash = row.first().map_or(0, |id| of_row(key, id.y));
-                for (out, id) in numbers.iter_mut().zip(row) {
-                    *out = number(in_row(hash, id.x));
-                }
-                (ids, out) = (more, rest);
+        let mut hashed = Hashed {
+            rows: self,
+            key,
+            number,
+            out,
+        };
+        compiled_loop(Backend::best(), &mut hashed);
+    }
+}
+
+/// The numbers of ids by rows, which share a round of their hashes.
+struct Hashed<'a, N> {
+    rows: &'a Rows,
+    key: u64,
+    number: N,
+    out: &'a mut [f64],
+}
+
+impl<N: Fn(u64) -> f64> PlainLoop for Hashed<'_, N> {
+    #[inline(always)]
+    fn run(&mut self) {
+        let (mut ids, mut out) = (&self.rows.ids[..], &mut *self.out);
+        for &length in &self.rows.lengths {
+            let (row, more) = ids.split_at(length);
+            let (numbers, rest) = out.split_at_mut(length);
+            let hash = row.first().map_or(0, |id| of_row(self.key, id.y));
+            for (out, id) in numbers.iter_mut().zip(row) {
+                *out = (self.number)(in_row(hash, id.x));
             }
-        });
+            (ids, out) = (more, rest);
+        }
     }
 }
 
 impl BoundAttributes {
     pub(crate) fn new(attributes: &Attributes, lattice: &Lattice) -> Result<Self, Error> {
+        let indexed = Indexed::Plane(lattice.turned.clone(), lattice.pattern);
+        Self::indexed(
+            attributes,
+            (&lattice.table, lattice.placement.seed),
+            indexed,
+        )
+    }
+
+    /// The attributes of a set that is not one of the plane.
+    pub(crate) fn of(
+        attributes: &Attributes,
+        of: (&Table, Seed),
+        indices: Arc<dyn Indices>,
+    ) -> Result<Self, Error> {
+        Self::indexed(attributes, of, Indexed::Other(indices))
+    }
+
+    fn indexed(
+        attributes: &Attributes,
+        (table, seed): (&Table, Seed),
+        indexed: Indexed,
+    ) -> Result<Self, Error> {
         for attribute in attributes.as_slice() {
             let even = match attribute {
                 Attribute::EvenVariant(even) => Some(even),
@@ -141,16 +213,14 @@ impl BoundAttributes {
                 },
                 _ => None,
             };
-            even.map_or(Ok(()), |even| even.check(&lattice.table))?;
+            even.map_or(Ok(()), |even| even.check(table))?;
         }
-        let seed = lattice.placement.seed;
         let bind = |attribute: &Attribute| Bound {
             key: key(seed, attribute.code()),
             attribute: attribute.clone(),
         };
         Ok(Self {
-            table: lattice.turned.clone(),
-            pattern: lattice.pattern,
+            indexed,
             variant_key: key(seed, Attribute::VARIANT),
             list: attributes.as_slice().iter().map(bind).collect(),
         })
@@ -287,7 +357,7 @@ impl BoundAttributes {
             Attribute::Angle => angle(hash(key, id)),
             Attribute::Scale(range) => scale(*range, hash(key, id)),
             Attribute::VariantScale(scales) => scale(self.range(scales, id), hash(key, id)),
-            Attribute::Rank => rank(&self.table, &self.pattern, id),
+            Attribute::Rank => self.indexed.rank(id),
             Attribute::Uniform(_) => unit(hash(key, id)),
             Attribute::Variant(variants) => variants.pick(hash(key, id)).into(),
             Attribute::EvenVariant(even) => self.index(even, id).into(),
@@ -304,7 +374,7 @@ impl BoundAttributes {
 
     /// The index of the variant of a point's kind.
     fn index(&self, even: &EvenVariants, id: PointId) -> u32 {
-        let kind = kind(&self.table, &self.pattern, id).unwrap_or(0);
+        let kind = self.indexed.kind(id).unwrap_or(0);
         even.index(kind).unwrap_or(0)
     }
 }

@@ -17,6 +17,7 @@ mod list;
 mod scales;
 mod variants;
 
+pub(super) use bound::Indices;
 pub use bound::{BoundAttributes, Column};
 pub use even::EvenVariants;
 pub use kinds::{Attribute, UniformNumber};

@@ -6,9 +6,11 @@
 use core::ops::Range;
 
 use super::tally::product;
-use crate::sample::{
-    kernel::Backend,
-    lattice::{BAND_WIDTH, Columns, Flat, Lattice, PATCH_HEIGHT, Patch, Span},
+use crate::{
+    sample::{
+        kernel::Backend,
+        lattice::{BAND_WIDTH, Columns, Flat, Lattice, PATCH_HEIGHT, Patch, Span},
+    },
     stop::Stop,
 };
 

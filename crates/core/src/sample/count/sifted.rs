@@ -11,8 +11,8 @@ use crate::{
         area::Area,
         lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale, Sieve},
-        stop::Stop,
     },
+    stop::Stop,
 };
 
 /// The number of points that pass; meaningless once `stop` is raised.

@@ -72,6 +72,27 @@ pub trait Field: Send + Sync {
         let _ = within;
         [0.0, 1.0]
     }
+
+    /// Bounds of how much the share changes along x and along y for each world unit, within a box: where it is
+    /// known to change little, sets do not look at the field around each place. Infinity is always right.
+    ///
+    /// ```
+    /// use strew_core::{Field, Raster, Region};
+    ///
+    /// let region = Region::new([0.0, 0.0], [8.0, 4.0])?;
+    /// let raster = Raster::new(region, 2, vec![0.0, 0.5])?;
+    /// // From the center of one pixel to the center of the other are four units: 1/8 for each, and a little
+    /// // more for what rounding may add.
+    /// let [x, y] = raster.slopes(&region);
+    /// assert!((0.125..0.12501).contains(&x) && y == 0.0);
+    /// let closure = |[x, _]: [f64; 2]| x;
+    /// assert_eq!(closure.slopes(&region), [f64::INFINITY; 2]);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    fn slopes(&self, within: &Region) -> [f64; 2] {
+        let _ = within;
+        [f64::INFINITY; 2]
+    }
 }
 
 impl<F: Fn([f64; 2]) -> f64 + Send + Sync> Field for F {

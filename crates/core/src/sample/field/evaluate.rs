@@ -196,6 +196,28 @@ impl Field for FieldSpec {
         };
         ends.map(unit)
     }
+
+    fn slopes(&self, within: &Region) -> [f64; 2] {
+        let over = |parts: &[Self], join: fn(f64, f64) -> f64| {
+            parts.iter().fold([0.0; 2], |all, part| {
+                let slopes = part.slopes(within);
+                [0, 1].map(|i| join(all[i], slopes[i]))
+            })
+        };
+        match &*self.shape {
+            Shape::Constant(_) => [0.0; 2],
+            Shape::Ramp { per, shares, .. } => {
+                let change = (shares[1] - shares[0]).abs() * (1.0 + 1e-9);
+                per.map(|per| per.abs() * change)
+            }
+            Shape::Raster(raster) => raster.slopes(within),
+            // Shares are at most 1.
+            Shape::Multiply(parts) => over(parts, |a, b| a + b),
+            Shape::Min(parts) | Shape::Max(parts) => over(parts, f64::max),
+            Shape::Invert(part) => part.slopes(within),
+            _ => [f64::INFINITY; 2],
+        }
+    }
 }
 
 /// The shares of fields at some places, joined.

@@ -62,6 +62,9 @@ pub enum Filter {
 /// The number of places that are looked up at once.
 const SOME: usize = 32;
 
+/// The most pixels of a box whose slopes are looked up: about as long as a hundred places.
+const MOST_SLOPES: usize = 512;
+
 /// Pixels over a box.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
@@ -247,6 +250,66 @@ impl Grid {
             }
         }
         (ends, is_outside)
+    }
+
+    /// Bounds of the change along x and y for each world unit, within a box of few pixels.
+    pub(super) fn slopes(&self, within: &Region, tones: Option<&[f32]>) -> [f64; 2] {
+        let unknown = [f64::INFINITY; 2];
+        let ends = [0, 1].map(|axis| [within.min()[axis], within.max()[axis]]);
+        // Away from the edges by a pixel they do not matter.
+        let is_inside = (0..2).all(|axis| {
+            let [first, last] =
+                ends[axis].map(|v| (v - self.region.min()[axis]) * self.scale[axis]);
+            first >= 1.0 && last <= self.size[axis] as f64 - 1.0
+        });
+        if self.filter == Filter::Nearest || !(self.edges == Edges::Clamp || is_inside) {
+            return unknown;
+        }
+        let [columns, rows] = [0, 1].map(|axis| {
+            let [first, last] = ends[axis].map(|v| self.pair(axis, self.place(axis, v)));
+            first.0..last.1 + 1
+        });
+        if columns.len() * rows.len() > MOST_SLOPES {
+            return unknown;
+        }
+        let width = self.size[0];
+        let pixels = |y: usize| y * width + columns.start..y * width + columns.end;
+        let mut most = [0f32; 2];
+        let mut add = |pixel: &dyn Fn(usize, &mut [f32])| {
+            let mut lines = [[0f32; MOST_SLOPES]; 2];
+            let length = columns.len();
+            for (number, y) in rows.clone().enumerate() {
+                let [line, last] = &mut lines;
+                core::mem::swap(line, last);
+                pixel(pixels(y).start, &mut line[..length]);
+                let (line, last) = (&line[..length], &last[..length]);
+                for pair in line.windows(2) {
+                    most[0] = most[0].max((pair[1] - pair[0]).abs());
+                }
+                if number > 0 {
+                    for (a, b) in line.iter().zip(last) {
+                        most[1] = most[1].max((a - b).abs());
+                    }
+                }
+            }
+        };
+        match self.pixels.store() {
+            Store::Floats(all) => {
+                add(&|start, line| line.copy_from_slice(&all[start..][..line.len()]))
+            }
+            Store::Bytes(all) => add(&|start, line| {
+                for (v, &pixel) in line.iter_mut().zip(&all[start..]) {
+                    *v = tone(tones, pixel.into(), 255.0);
+                }
+            }),
+            Store::Words(all) => add(&|start, line| {
+                for (v, &pixel) in line.iter_mut().zip(&all[start..]) {
+                    *v = tone(tones, pixel.into(), 65535.0);
+                }
+            }),
+        }
+        // With room for what rounds.
+        [0, 1].map(|axis| f64::from(most[axis]) * self.scale[axis] * (1.0 + 1e-6))
     }
 
     /// The pixels along an axis that matter between two coordinates.

@@ -242,4 +242,8 @@ impl Field for Raster {
         let [low, high] = widened(ends.map(f64::from));
         [if is_outside { 0.0 } else { low }, high]
     }
+
+    fn slopes(&self, within: &Region) -> [f64; 2] {
+        self.grid.slopes(within, self.tones.as_deref())
+    }
 }

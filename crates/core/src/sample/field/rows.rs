@@ -10,14 +10,18 @@ use crate::{
         kernel::{Backend, warp_all},
         lattice::{
             Columns, Found, Grade, Lattice, Patch, PointId, Span, around, damping, part_of_way,
+            spread, steepness,
         },
         sieve::Scale,
     },
-    table::{Displacement, FRACTION_BITS, Rung, Stage},
+    table::{FRACTION_BITS, Rung, Stage},
 };
 
 /// Lists end at a multiple of this, a pair of the widest vectors.
 const WHOLE: usize = 32;
+
+/// Marks a position whose point must look at the field around its place. There are fewer blocks than this.
+const STEEP: u32 = 1 << 31;
 
 /// The points of some rows of a patch, and the memory to find them.
 ///
@@ -34,16 +38,15 @@ pub(crate) struct FieldRows {
     places: [Vec<i32>; 2],
     /// Columns in the lower 16 bits and rows in the upper ones, relative to the patch.
     addresses: Vec<u32>,
-    /// By position in the order of blocks.
+    /// By position in the order of blocks, with [`STEEP`].
     positions: Vec<u32>,
     at: Vec<[f64; 2]>,
     shares: Vec<f64>,
-    /// The points that have moved, the places that tell how steep the field is there, and the shares at these.
     stages: Vec<(Stage, Option<[Rung; 2]>)>,
-    moves: Vec<Move>,
+    /// The points where the field is steep, the places that tell how steep, and the shares at these.
+    steep: Vec<u32>,
     around: Vec<[[f64; 2]; 4]>,
-    steep: Vec<f64>,
-    has_moved: bool,
+    shares_around: Vec<f64>,
     /// What was found.
     found: Vec<Found>,
     next: usize,
@@ -147,40 +150,38 @@ impl FieldRows {
             let kinds = lattice.kinds_in_row(block_y);
             let row = patch.relative(Axis::Y, y);
             let first = ((y - bottom) as u32) << 16;
-            for tile in self.tiles.iter().filter(|tile| tile.rows.contains(&y)) {
-                let lines = &listed[tile.columns[class.ordinal()].clone()];
-                let start = self.addresses.len();
-                let end = start + lines.len();
-                self.addresses.resize(end, 0);
-                self.positions.resize(end, 0);
-                self.displaced
-                    .iter_mut()
-                    .for_each(|list| list.resize(end, 0));
-                let [xs, ys] = &mut self.displaced;
-                let (xs, ys) = (&mut xs[start..end], &mut ys[start..end]);
-                let (addresses, all) = (
-                    &mut self.addresses[start..end],
-                    &mut self.positions[start..end],
-                );
-                let mut number = 0;
-                for line in lines {
+            let ordinal = class.ordinal();
+            let tiles = self.tiles.iter().filter(|tile| tile.rows.contains(&y));
+            let mut number = self.addresses.len();
+            let most = number + listed.len();
+            self.addresses.resize(most, 0);
+            self.positions.resize(most, 0);
+            self.displaced
+                .iter_mut()
+                .for_each(|list| list.resize(most, 0));
+            let [xs, ys] = &mut self.displaced;
+            let (xs, ys) = (&mut xs[..most], &mut ys[..most]);
+            let addresses = &mut self.addresses[..most];
+            let all = &mut self.positions[..most];
+            for tile in tiles {
+                let flag = if tile.is_gentle { 0 } else { STEEP };
+                for line in &listed[tile.columns[ordinal].clone()] {
                     let block = line.block as usize;
                     let (position, [dx, dy]) = (positions[block], vectors[block]);
                     // Written in any case; the next one goes to the same place if this has left.
                     xs[number] = patch.relative(Axis::X, line.at) + dx;
                     ys[number] = row + dy;
                     addresses[number] = first | (line.at - left) as u32;
-                    all[number] = position;
+                    all[number] = position | flag;
                     let is_kept = kinds.is_none_or(|kinds| kinds.keeps(block, line.strips));
-                    number += usize::from(position < tile.alive && is_kept);
+                    number += usize::from((position < tile.alive) & is_kept);
                 }
-                let end = start + number;
-                self.addresses.truncate(end);
-                self.positions.truncate(end);
-                self.displaced
-                    .iter_mut()
-                    .for_each(|list| list.truncate(end));
             }
+            self.addresses.truncate(number);
+            self.positions.truncate(number);
+            self.displaced
+                .iter_mut()
+                .for_each(|list| list.truncate(number));
         }
         strip.end
     }
@@ -210,9 +211,7 @@ impl FieldRows {
         self.keep(lattice, patch);
         if lattice.table.ladder().is_some() {
             self.displace(lattice, grade);
-            if self.has_moved {
-                self.place(patch, backend);
-            }
+            self.place(patch, backend);
         }
         let [xs, ys] = &self.places;
         let places = xs.iter().zip(ys).map(|(&x, &y)| [x, y]);
@@ -258,7 +257,7 @@ impl FieldRows {
         for i in 0..number {
             let (address, position, share) = (addresses[i], positions[i], shares[i]);
             // Ranks of a position are at least the number before its start, and less than its end.
-            let ranks = order.floors(position as usize);
+            let ranks = order.floors((position & !STEEP) as usize);
             let mut is_left = share >= ranks.end;
             // Rare, where one test after another would be guessed wrong half of the time.
             if !is_left & (share >= ranks.start) {
@@ -291,56 +290,64 @@ impl FieldRows {
         let Some(ladder) = lattice.table.ladder() else {
             return;
         };
-        let spacing = lattice.placement.spacing.get();
         let number = self.addresses.len();
-        self.moves.clear();
-        self.moves.resize(number, Move::default());
-        self.around.resize(number, [[0.0; 2]; 4]);
+        let points = self.shares.iter().zip(&self.positions);
+        self.stages.clear();
+        self.stages.extend(points.map(|(&share, &position)| {
+            let stage = ladder.stage(share);
+            (stage, ladder.rungs(stage, (position & !STEEP) as usize))
+        }));
+        self.look_around(lattice, grade);
         let [xs, ys] = &mut self.displaced;
         let (xs, ys) = (&mut xs[..number], &mut ys[..number]);
-        let points = self.positions.iter().zip(&self.shares).zip(&self.at);
-        let points = points.zip(&self.addresses).enumerate();
-        let stages = self.shares.iter().zip(&self.positions);
-        self.stages.clear();
-        self.stages.extend(stages.map(|(&share, &position)| {
-            let stage = ladder.stage(share);
-            (stage, ladder.rungs(stage, position as usize))
-        }));
-        let mut moved = 0;
-        for (i, (((&position, &share), &at), &address)) in points {
-            // What is left of a displaced position without its address.
-            let full = [
-                xs[i] - (((address & 0xffff) as i32) << FRACTION_BITS),
-                ys[i] - (((address >> 16) as i32) << FRACTION_BITS),
-            ];
-            let stage = self.stages[i];
-            let to = (lattice.turned).moved_from(ladder, stage, position as usize, full);
-            // Written in any case; the next one goes to the same place if this has not moved.
-            self.moves[moved] = Move {
-                which: i as u32,
-                full,
-                to,
-            };
-            self.around[moved] = around(at, share, spacing);
-            moved += usize::from(to != full);
+        let (stages, positions) = (&self.stages[..number], &self.positions[..number]);
+        let addresses = &self.addresses[..number];
+        // What is left of a displaced position without its address.
+        let full = |i: usize, x: i32, y: i32| {
+            let address = addresses[i];
+            [
+                x - (((address & 0xffff) as i32) << FRACTION_BITS),
+                y - (((address >> 16) as i32) << FRACTION_BITS),
+            ]
+        };
+        for i in 0..number {
+            let position = positions[i];
+            if position & STEEP == 0 {
+                let full = full(i, xs[i], ys[i]);
+                let to = (lattice.turned).moved_from(ladder, stages[i], position as usize, full);
+                xs[i] += to[0] - full[0];
+                ys[i] += to[1] - full[1];
+            }
         }
-        let (moves, around) = (&self.moves[..moved], &self.around[..moved]);
-        self.steep.clear();
-        self.steep.resize(4 * moved, 0.0);
-        grade.shares(around.as_flattened(), &mut self.steep);
-        for (&Move { which, full, to }, steep) in moves.iter().zip(self.steep.as_chunks().0) {
-            let vector = part_of_way(full, to, damping(*steep));
-            xs[which as usize] += vector[0] - full[0];
-            ys[which as usize] += vector[1] - full[1];
+        let steep = self.steep.iter().zip(self.shares_around.as_chunks().0);
+        for (&i, around) in steep {
+            let i = i as usize;
+            let (share, position) = (self.shares[i], positions[i] & !STEEP);
+            let full = full(i, xs[i], ys[i]);
+            let steepness = steepness(share, *around);
+            let (stage, rungs) = stages[i];
+            let from = (spread(stage, share, steepness), rungs);
+            let to = (lattice.turned).moved_from(ladder, from, position as usize, full);
+            let vector = part_of_way(full, to, damping(steepness));
+            xs[i] += vector[0] - full[0];
+            ys[i] += vector[1] - full[1];
         }
-        self.has_moved = moved > 0;
     }
-}
 
-/// The displacements of a point at full density and at its share.
-#[derive(Clone, Copy, Debug, Default)]
-struct Move {
-    which: u32,
-    full: Displacement,
-    to: Displacement,
+    /// Looks at the field around the places where it may be steep.
+    fn look_around(&mut self, lattice: &Lattice, grade: &Grade) {
+        let spacing = lattice.placement.spacing.get();
+        self.steep.clear();
+        self.around.clear();
+        let points = self.positions.iter().zip(&self.stages).enumerate();
+        for (i, (position, (stage, _))) in points {
+            if position & STEEP != 0 && *stage != Stage::FULL {
+                self.steep.push(i as u32);
+                (self.around).push(around(self.at[i], self.shares[i], spacing));
+            }
+        }
+        self.shares_around.clear();
+        self.shares_around.resize(4 * self.steep.len(), 0.0);
+        grade.shares(self.around.as_flattened(), &mut self.shares_around);
+    }
 }

@@ -12,7 +12,7 @@ use crate::{
     pattern::Class,
     sample::{
         area::Region,
-        lattice::{Columns, Grade, Lattice, Span, places},
+        lattice::{Columns, Grade, Lattice, Span, is_gentle, places},
     },
     table::{FRACTION_BITS, fixed},
 };
@@ -28,6 +28,8 @@ pub(super) struct Tile {
     pub(super) rows: Range<i64>,
     /// The number of positions of which any point may be left.
     pub(super) alive: u32,
+    /// Whether the field changes so little that it counts as constant for all moves.
+    pub(super) is_gentle: bool,
 }
 
 /// Some columns and rows of the lattice.
@@ -83,14 +85,27 @@ pub(crate) fn constant(lattice: &Lattice, grade: &Grade, piece: &Piece) -> Optio
     if share == 0.0 || lattice.table.ladder().is_none() {
         return Some(share);
     }
-    // A little more than the half spacing, which is rounded.
-    let room = 0.5 * lattice.placement.spacing.get() / libm::sqrt(share) * (1.0 + 1e-9);
-    let room = |v: f64| room + 1e-15 * v.abs();
-    let (min, max) = (near.min(), near.max());
-    let min = min.map(|v| v - room(v));
-    let max = max.map(|v| v + room(v));
-    let wide = grade.bounds(&Region::between(min, max));
+    let wide = grade.bounds(&looked_at(lattice, &near, share));
     (is_one(wide) && wide[0].to_bits() == share.to_bits()).then_some(share)
+}
+
+/// The box that is looked at around places of a box to tell how steep a field is, at shares from `least` on.
+fn looked_at(lattice: &Lattice, near: &Region, least: f64) -> Region {
+    // A little more than the spacing, which is rounded.
+    let room = lattice.placement.spacing.get() / libm::sqrt(least) * (1.0 + 1e-9);
+    let room = |v: f64| room + 1e-15 * v.abs();
+    let min = near.min().map(|v| v - room(v));
+    let max = near.max().map(|v| v + room(v));
+    Region::between(min, max)
+}
+
+/// Whether a field counts as constant for the moves of points in a box, whose shares are from `least` on.
+fn is_gentle_near(lattice: &Lattice, grade: &Grade, near: &Region, least: f64) -> bool {
+    if least <= 0.0 || lattice.table.ladder().is_none() {
+        return false;
+    }
+    let slopes = grade.slopes(&looked_at(lattice, near, least));
+    is_gentle(least, slopes, lattice.placement.spacing.get())
 }
 
 /// The end of the first rows of a piece that have no points because the field has none there; its rows
@@ -195,7 +210,8 @@ pub(super) fn list(
         let end = range.end.min((start & !(TILE - 1)) + TILE);
         let piece = [start..end, rows.clone()];
         start = end;
-        let [low, high] = shares(lattice, grade, &piece);
+        let near = around(lattice, &piece, lattice.turned.reach());
+        let [low, high] = grade.bounds(&near);
         if high <= 0.0 {
             continue;
         }
@@ -208,6 +224,7 @@ pub(super) fn list(
             rows: up,
             // One more: a rank may lie just below the start of its position.
             alive: lattice.order().alive(high.next_up()) as u32,
+            is_gentle: is_gentle_near(lattice, grade, &near, low),
         });
     }
 }

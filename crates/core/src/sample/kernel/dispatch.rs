@@ -35,13 +35,16 @@ pub(super) fn run_vectors(backend: Backend, work: &mut impl VectorLoop) -> usize
 }
 
 /// Runs plain code that is compiled for the backend's instructions. Hashed numbers profit most: their
-/// 64-bit products are single AVX-512 instructions, and a dozen instructions elsewhere.
+/// 64-bit products are single AVX-512 instructions, and a dozen for half as many numbers without AVX2.
 #[inline]
 pub(crate) fn compiled<T>(backend: Backend, work: impl FnOnce() -> T) -> T {
     match backend {
         // SAFETY: `Backend::available` has found the instructions.
         #[cfg(target_arch = "x86_64")]
         Backend::Avx512 => unsafe { arch::avx512::compiled(work) },
+        // SAFETY: as above.
+        #[cfg(target_arch = "x86_64")]
+        Backend::Avx2 => unsafe { arch::avx2::compiled(work) },
         _ => work(),
     }
 }
@@ -53,6 +56,9 @@ pub(crate) fn compiled_loop(backend: Backend, work: &mut impl PlainLoop) {
         // SAFETY: `Backend::available` has found the instructions.
         #[cfg(target_arch = "x86_64")]
         Backend::Avx512 => unsafe { arch::avx512::compiled_loop(work) },
+        // SAFETY: as above.
+        #[cfg(target_arch = "x86_64")]
+        Backend::Avx2 => unsafe { arch::avx2::compiled_loop(work) },
         _ => work.run(),
     }
 }

@@ -97,16 +97,14 @@ impl Emit for F64 {
     unsafe fn vector_items<L: Lanes>(
         &self,
         row: Row,
-        [x, y]: [L::Ints; 2],
+        position: [L::Ints; 2],
         _: &[i64],
         out: &mut [[f64; 2]],
     ) {
         debug_assert_eq!(out.len(), L::WIDTH);
         // SAFETY: the machine has the instructions, and `out` has WIDTH items.
         unsafe {
-            let x = self.places::<L>(row.base[0], L::doubles_of(x));
-            let y = self.places::<L>(row.base[1], L::doubles_of(y));
-            L::store_double_pairs(out.as_mut_ptr(), x, y);
+            L::store_double_places(out.as_mut_ptr(), position, (row.base, self.step));
         }
     }
 }

@@ -12,8 +12,8 @@ use crate::sample::{lattice::Point, warp::PatchShears};
 pub trait Lanes {
     /// The number of lanes.
     const WIDTH: usize;
-    /// Whether two chains of operations side by side are faster than one, as where latencies are long.
-    const IS_PAIRED: bool;
+    /// The number of successive cells that a [`Table`](Self::Table) has, a power of two.
+    const WINDOW: usize;
 
     /// `i32` lanes.
     type Ints: Copy;
@@ -21,6 +21,8 @@ pub trait Lanes {
     type Singles: Copy;
     /// `f64` lanes.
     type Doubles: Copy;
+    /// The coefficients of [`WINDOW`](Self::WINDOW) successive cells.
+    type Table: Copy;
 
     unsafe fn load_ints(from: *const i32) -> Self::Ints;
     unsafe fn store_ints(to: *mut i32, v: Self::Ints);
@@ -41,8 +43,12 @@ pub trait Lanes {
     unsafe fn singles_of(v: Self::Ints) -> Self::Singles;
     /// Rounds toward zero.
     unsafe fn truncate(v: Self::Singles) -> Self::Ints;
-    /// The entries of a table, by the lowest four bits of each index.
-    unsafe fn pick(table: &[f32; PatchShears::CELLS], index: Self::Ints) -> Self::Singles;
+    /// The coefficients of the cells from `first` on, out of those by the lowest four bits of the cell.
+    unsafe fn table(all: &[f32; PatchShears::CELLS], first: i32) -> Self::Table;
+    /// The coefficients of cells that a table has.
+    unsafe fn pick(table: Self::Table, cells: Self::Ints) -> Self::Singles;
+    /// The coefficients of any cells, by the lowest four bits of each.
+    unsafe fn pick_any(all: &[f32; PatchShears::CELLS], cells: Self::Ints) -> Self::Singles;
 
     unsafe fn load_doubles(from: *const f64) -> Self::Doubles;
     unsafe fn splat_double(v: f64) -> Self::Doubles;
@@ -58,6 +64,48 @@ pub trait Lanes {
     unsafe fn store_single_pairs(to: *mut [f32; 2], x: Self::Singles, y: Self::Singles);
     /// Stores x and y of each lane side by side.
     unsafe fn store_double_pairs(to: *mut [f64; 2], x: Self::Doubles, y: Self::Doubles);
+
+    /// Stores the `f32` places of a pair of offsets in each lane: (base + offset)·step, rounded to `f32`, at most
+    /// `last`.
+    #[inline(always)]
+    unsafe fn store_single_places(
+        to: *mut [f32; 2],
+        offsets: [Self::Ints; 2],
+        (base, step, last): ([f64; 2], f64, [f32; 2]),
+    ) {
+        // SAFETY: as the caller ensures.
+        unsafe {
+            let step = Self::splat_double(step);
+            let mut places = [Self::splat_single(last[0]), Self::splat_single(last[1])];
+            for axis in 0..2 {
+                let offset = Self::doubles_of(offsets[axis]);
+                let place = Self::add_doubles(Self::splat_double(base[axis]), offset);
+                let place = Self::narrow(Self::mul_doubles(place, step));
+                places[axis] = Self::min_singles(place, places[axis]);
+            }
+            Self::store_single_pairs(to, places[0], places[1]);
+        }
+    }
+
+    /// Stores the `f64` places of a pair of offsets in each lane: (base + offset)·step.
+    #[inline(always)]
+    unsafe fn store_double_places(
+        to: *mut [f64; 2],
+        offsets: [Self::Ints; 2],
+        (base, step): ([f64; 2], f64),
+    ) {
+        // SAFETY: as the caller ensures.
+        unsafe {
+            let step = Self::splat_double(step);
+            let mut places = [step; 2];
+            for axis in 0..2 {
+                let offset = Self::doubles_of(offsets[axis]);
+                let place = Self::add_doubles(Self::splat_double(base[axis]), offset);
+                places[axis] = Self::mul_doubles(place, step);
+            }
+            Self::store_double_pairs(to, places[0], places[1]);
+        }
+    }
 
     /// Whether [`store_points`](Self::store_points) is faster than plain code.
     const HAS_POINTS: bool = false;

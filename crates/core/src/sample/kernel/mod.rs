@@ -6,7 +6,7 @@
 //! while lattice coordinates stay below 2⁵³, so it rounds once, as the conversion of the whole integer
 //! would.
 //!
-//! `rows` writes rows, plain and warped. Its vector loops are written once over the trait of `lanes`, and
+//! `rows` writes plain rows, `warped` warped ones. Their vector loops are written once over the trait of `lanes`, and
 //! each instruction set is a thin file of `arch`. `backend` finds out once which sets the machine has, and
 //! `dispatch` runs a loop by one of them. `tests` compares every backend with plain code.
 
@@ -39,6 +39,7 @@ mod rows;
 mod singles;
 #[cfg(test)]
 mod tests;
+mod warped;
 
 pub use backend::Backend;
 pub(super) use dispatch::{compiled, compiled_loop, write_numbers};
@@ -48,5 +49,6 @@ pub(super) use format::{Geometry, Row};
 pub(super) use lanes::PlainLoop;
 pub use offsets::Offsets;
 pub use points::Points;
-pub(super) use rows::{WarpedColumns, fill_row, fill_warped_row, warp_all};
+pub(super) use rows::fill_row;
 pub use singles::F32;
+pub(super) use warped::{WarpedColumns, add_first_shear, fill_warped_row, warp_all};

@@ -50,22 +50,6 @@ impl F32 {
     }
 }
 
-impl F32 {
-    /// The places of a vector of offsets along an axis.
-    ///
-    /// # Safety
-    /// The machine has the instructions of `L`.
-    #[inline(always)]
-    unsafe fn places<L: Lanes>(&self, axis: usize, base: f64, offsets: L::Doubles) -> L::Singles {
-        // SAFETY: as the caller ensures.
-        unsafe {
-            let place = L::add_doubles(L::splat_double(base), offsets);
-            let place = L::narrow(L::mul_doubles(place, L::splat_double(self.step)));
-            L::min_singles(place, L::splat_single(self.last[axis]))
-        }
-    }
-}
-
 impl Format for F32 {}
 
 impl Emit for F32 {
@@ -132,9 +116,8 @@ impl Emit for F32 {
         debug_assert_eq!(out.len(), L::WIDTH);
         // SAFETY: the machine has the instructions, and `out` has WIDTH items.
         unsafe {
-            let x = self.places::<L>(0, row.base[0], L::doubles_of(position[0]));
-            let y = self.places::<L>(1, row.base[1], L::doubles_of(position[1]));
-            L::store_single_pairs(out.as_mut_ptr(), x, y);
+            let how = (row.base, self.step, self.last);
+            L::store_single_places(out.as_mut_ptr(), position, how);
         }
     }
 }

@@ -130,6 +130,13 @@ fn all_rows<F: Format, B: PartialEq + core::fmt::Debug>(
                     displacements: dys,
                     range: [dys.iter().min(), dys.iter().max()].map(|v| v.copied().unwrap_or(0)),
                     lattice: &lattice[from..],
+                    middle: length / 2,
+                    extents: [
+                        &displaced[from..][..length / 2],
+                        &displaced[from + length / 2..],
+                    ]
+                    .map(|half| [half.iter().min(), half.iter().max()])
+                    .map(|ends| ends.map(|v| v.copied().unwrap_or(0))),
                 };
                 for backend in Backend::available() {
                     let note = alloc::format!("{format:?} {backend:?} {length} from {from}");

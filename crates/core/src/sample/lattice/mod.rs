@@ -9,7 +9,7 @@
 //! Work proceeds in pieces: `lines` lists the columns and rows that hold points (each a `line`), `prefix` counts them,
 //! `patch` has the bands and patches in which positions fit 32 bits, `flat` the points of a patch without
 //! gaps. `point` is what comes out, `rank` its place in the order in which points leave and its kind, `kinds` the
-//! points of one kind, `grade` the field that says how many have left.
+//! points of one kind, `grade` the field that says how many have left, `moves` how far the others move there.
 
 mod flat;
 mod grade;
@@ -17,6 +17,7 @@ mod keep;
 mod kinds;
 mod line;
 mod lines;
+mod moves;
 mod multiple;
 mod patch;
 mod placement;
@@ -28,11 +29,12 @@ mod span;
 mod world;
 
 pub(super) use flat::{Flat, Found, Inside};
-pub(super) use grade::{Grade, around, damping};
+pub(super) use grade::Grade;
 pub use keep::Keep;
 pub(super) use kinds::OneKind;
 pub(super) use line::Line;
 pub(super) use lines::{Columns, Listed, lines_of_class, places};
+pub(super) use moves::{around, damping, is_gentle, moved, part_of_way, spread, steepness};
 pub(super) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
 pub use placement::Placement;
@@ -42,4 +44,4 @@ pub(super) use rank::{kind, rank};
 pub use spacing::Spacing;
 pub(super) use span::Span;
 pub use world::LATTICE_LIMIT;
-pub(super) use world::{Lattice, part_of_way};
+pub(super) use world::Lattice;

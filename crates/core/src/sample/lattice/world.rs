@@ -5,8 +5,9 @@ use core::ops::Range;
 
 use super::{
     Keep, Line, OneKind, Placement, Point, PointId,
-    grade::{Grade, around, damping},
+    grade::Grade,
     kinds::KindRow,
+    moves,
     rank::{kind, rank},
 };
 use crate::{
@@ -87,13 +88,6 @@ impl Moved {
         let vectors = order.all_positions().iter().map(vector).collect();
         Self { vectors, reach }
     }
-}
-
-/// A part of the way from one displacement to another.
-#[inline(always)]
-pub(crate) fn part_of_way(from: Displacement, to: Displacement, part: f64) -> Displacement {
-    let along = |from: i32, to: i32| from + ((f64::from(to) - f64::from(from)) * part) as i32;
-    [along(from[0], to[0]), along(from[1], to[1])]
 }
 
 /// Kept out of line, or both conversions would become the slow one.
@@ -395,13 +389,10 @@ impl Lattice {
         let position = self
             .order()
             .position(block_y * self.map().intervals() + block_x);
-        let moved = self.turned.moved(ladder, ladder.stage(share), position);
-        if moved == full {
-            return Some(full);
-        }
-        let around = around(at, share, self.placement.spacing.get());
-        let part = damping(around.map(|at| grade.share(at)));
-        Some(part_of_way(full, moved, part))
+        let spacing = self.placement.spacing.get();
+        let around = || moves::around(at, share, spacing).map(|at| grade.share(at));
+        let tables = (&self.turned, ladder);
+        Some(moves::moved(tables, position, full, share, around))
     }
 
     /// The fixed-point place of an address that has a point, with a displacement.

@@ -41,7 +41,7 @@ pub(super) fn scan(
     radius: f64,
     mut visit: impl FnMut(f64, Point) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    let there = at.map(|v| (v / lattice.step) as i128);
+    let there = at.map(|v| whole(v / lattice.step));
     // Positions relative to `origin` are small.
     let (mut shears, origin, center) = match &lattice.shears {
         Some(shears) => {
@@ -109,6 +109,15 @@ pub(super) fn scan(
     ControlFlow::Continue(())
 }
 
+/// The integer part of a number. Conversions to 64 bits are faster.
+fn whole(v: f64) -> i128 {
+    if v.abs() < 1e18 {
+        i128::from(v as i64)
+    } else {
+        v as i128
+    }
+}
+
 /// The largest distance from the unwarped place, in fixed-point units, of a point whose reported
 /// coordinates lie within `radius`.
 fn unwarped_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> f64 {
@@ -150,8 +159,14 @@ fn list_columns(
     center: (i128, [i32; 2]),
     reach: f64,
 ) {
-    columns.iter_mut().for_each(Vec::clear);
-    for x in candidates(center, reach) {
+    let range = candidates(center, reach);
+    // Columns of a class have one parity, so few lists grow.
+    let number = range.end().saturating_sub(*range.start()).clamp(0, 62) as usize;
+    for list in &mut *columns {
+        list.clear();
+        list.reserve(number / 2 + 1);
+    }
+    for x in range {
         if let Some((class, index)) = lattice.pattern.visit(Axis::X, x) {
             columns[class.ordinal()].push(NearColumn {
                 offset: (fixed(x) - center.0) as i64,

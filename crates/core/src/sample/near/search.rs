@@ -34,8 +34,8 @@ pub(crate) fn nearest(
         return Err(Error::new(ErrorKind::Neighbors, "k", k, allowed));
     }
     let placement = lattice.placement;
-    // A disk that holds k + 2√k + 2 points on average mostly has k.
-    let wanted = k as f64 + 2.0 * libm::sqrt(k as f64) + 2.0;
+    // A disk that holds k + √k + 1 points on average mostly has k.
+    let wanted = k as f64 + libm::sqrt(k as f64) + 1.0;
     let area = wanted / (core::f64::consts::PI * lattice.share());
     let mut radius = placement.spacing.get() * libm::sqrt(area);
     loop {
@@ -65,7 +65,7 @@ pub(crate) fn within(
     check_reach(lattice, at, radius)?;
     let squared = radius * radius;
     let guards = mask.guards();
-    let (mut found, mut inside) = (Vec::new(), 0usize);
+    let (mut found, mut inside) = (Vec::with_capacity(limit.min(12)), 0usize);
     let _ = scan(lattice, &mut Scratch::default(), at, radius, |d, point| {
         if d <= squared && guards.permit(point.at()) {
             inside += 1;

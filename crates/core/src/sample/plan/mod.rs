@@ -15,13 +15,9 @@ use super::{
     lattice::{Keep, Lattice, Placement, Point, Spacing},
     near::Mask,
     scope::Scope,
-    stop::Stop,
     walk::{Blocks, Counted, Tile, Window, count_graded, find_few, tiles},
 };
-use crate::{
-    error::{Error, ErrorKind},
-    table::Table,
-};
+use crate::{error::Error, stop::Stop, table::Table};
 
 /// The points of a set in an area: their exact number is known, the points come on demand, in a fixed
 /// order.
@@ -82,8 +78,7 @@ impl Plan {
             },
         };
         if scope.stop.is_raised() {
-            let (field, value) = ("the count", "not finished");
-            return Err(Error::new(ErrorKind::Stopped, field, value, "").because("stopped"));
+            return Err(Stop::error());
         }
         Ok(Self {
             scope,

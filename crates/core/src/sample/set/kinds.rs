@@ -9,8 +9,8 @@ use crate::{
         area::Area,
         lattice::{Placement, PointId},
         plan::Plan,
-        stop::Stop,
     },
+    stop::Stop,
 };
 
 impl PointSet {

@@ -323,9 +323,9 @@ impl PointSet {
     ///
     /// A point belongs to the set if its rank is below the field's share at the place where it is at full
     /// density. Sets of one seed share their points: in a larger share a point stays, and with a
-    /// [ladder](crate::table::Ladder) it moves a little. Where the field is steep it moves less: by
-    /// 1/(1 + (g/0.03)²) of the ladder's move, where g is the relative change of the share across a local
-    /// spacing, from four more looks at the field around the place.
+    /// [ladder](crate::table::Ladder) it moves a little. Where the share changes by more than 1/256 across a local
+    /// spacing it moves less, about half as far where it changes by 1/64, and over a longer range of shares: four
+    /// more looks at the field, a local spacing around the place, tell.
     ///
     /// Points are counted by visiting them, in time proportional to the points at full density where bounds of
     /// the field leave any; where the field is the same in all of an area, as in a set without a field.

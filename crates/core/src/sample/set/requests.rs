@@ -10,8 +10,8 @@ use crate::{
         field::candidates,
         plan::Plan,
         scope::Scope,
-        stop::Stop,
     },
+    stop::Stop,
 };
 
 impl PointSet {

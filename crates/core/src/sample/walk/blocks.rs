@@ -352,7 +352,7 @@ impl<F: Format> Blocks<F> {
     fn fill_rows(&mut self, end: i64, out: &mut [F::Item]) -> usize {
         let lattice = &self.scope.lattice;
         let [x, span] = &self.piece;
-        let (format, patch, base) = (&self.format, &self.patch, self.base);
+        let (format, patch, base, by) = (&self.format, &self.patch, self.base, self.backend);
         let is_split = patch.is_warped() && !patch.columns_are_inner;
         let is_direct = self.templates.are_plain() && !patch.is_warped();
         let is_flat = self.templates.are_short() && patch.is_warped();
@@ -399,7 +399,7 @@ impl<F: Format> Blocks<F> {
             let template = self
                 .templates
                 .get(class, block, self.at.done > 0, |template, kept| {
-                    template.make(format, base, patch, (columns, inner), vectors, kept);
+                    template.make((format, base), patch, (columns, inner), vectors, kept, by);
                 });
             if let Some(from) = self.at.from.take() {
                 self.at.done = template.columns_before(from);
@@ -433,7 +433,7 @@ impl<F: Format> Blocks<F> {
         let Some(sifting) = &mut self.sieve else {
             return 0;
         };
-        let (format, patch, base) = (&self.format, &self.patch, self.base);
+        let (format, patch, base, by) = (&self.format, &self.patch, self.base, self.backend);
         let range = clip_to_band(self.band, &x.all);
         let scale = Scale::new(lattice, patch);
         let mut filled = 0;
@@ -453,7 +453,7 @@ impl<F: Format> Blocks<F> {
                 .templates
                 .get(class, block, self.at.done > 0, |template, kept| {
                     let all = 0..columns.len();
-                    template.make(format, base, patch, (columns, all), vectors, kept);
+                    template.make((format, base), patch, (columns, all), vectors, kept, by);
                 });
             if let Some(from) = self.at.from.take() {
                 let from = from.clamp(range.start, range.end);

@@ -10,7 +10,7 @@ use core::{mem::take, ops::Range};
 use crate::{
     pattern::{Axis, Class},
     sample::{
-        kernel::{Backend, Format, Row, WarpedColumns, fill_row, fill_warped_row},
+        kernel::{Backend, Format, Row, WarpedColumns, add_first_shear, fill_row, fill_warped_row},
         lattice::{Lattice, Line, Patch, Span},
     },
 };
@@ -29,6 +29,10 @@ pub(super) struct Template<F: Format> {
     displacements: Vec<i32>,
     /// Bounds of these; with warp only.
     range: [i32; 2],
+    /// The first column of the right half; with warp only.
+    middle: usize,
+    /// Bounds of the displaced x of both halves; with warp only.
+    extents: [[i32; 2]; 2],
     is_made: bool,
 }
 
@@ -92,6 +96,8 @@ impl<F: Format> Template<F> {
             displaced: Vec::new(),
             displacements: Vec::new(),
             range: [0; 2],
+            middle: 0,
+            extents: [[0; 2]; 2],
             is_made: false,
         }
     }
@@ -111,12 +117,12 @@ impl<F: Format> Template<F> {
     /// inside the region along x.
     pub(super) fn make(
         &mut self,
-        format: &F,
-        base: [f64; 2],
+        (format, base): (&F, [f64; 2]),
         patch: &Patch,
         (columns, inner): (&[Line], Range<usize>),
         vectors: &[[i32; 2]],
         kept: Kept,
+        backend: Backend,
     ) {
         self.columns.clear();
         self.lattice.clear();
@@ -126,11 +132,15 @@ impl<F: Format> Template<F> {
         if patch.is_warped() {
             let of_all = || displaced(patch, columns, vectors);
             self.displaced.extend(of_all().map(|column| column.x));
-            let first = |x| patch.shears().map_or(0, |shears| shears.first(x));
-            self.displacements
-                .extend(of_all().map(|column| column.dy + first(column.x)));
-            let dys = self.displacements.iter().copied();
-            self.range = [dys.clone().min(), dys.max()].map(Option::unwrap_or_default);
+            self.displacements.extend(of_all().map(|column| column.dy));
+            if let Some(shears) = patch.shears() {
+                let dys = &mut self.displacements;
+                add_first_shear(backend, shears, &self.displaced, dys);
+            }
+            self.range = bounds(&self.displacements);
+            self.middle = (columns.len() / 2).next_multiple_of(16).min(columns.len());
+            let (left, right) = self.displaced.split_at(self.middle);
+            self.extents = [left, right].map(bounds);
             self.lattice.extend(columns.iter().map(|column| column.at));
         } else {
             let inner = if all { 0..columns.len() } else { inner };
@@ -231,6 +241,8 @@ impl<F: Format> Template<F> {
 
     fn warped(&self, columns: Range<usize>) -> WarpedColumns<'_> {
         WarpedColumns {
+            middle: self.middle.saturating_sub(columns.start),
+            extents: self.extents,
             displaced: &self.displaced[columns.clone()],
             displacements: &self.displacements[columns.clone()],
             range: self.range,
@@ -262,6 +274,12 @@ impl<F: Format> Template<F> {
         }
         Progress { written, done }
     }
+}
+
+/// The least and the greatest of some numbers.
+fn bounds(all: &[i32]) -> [i32; 2] {
+    let all = all.iter().copied();
+    [all.clone().min(), all.max()].map(Option::unwrap_or_default)
 }
 
 /// Writes a row of a box without warp and without a template, for rows that share theirs with few

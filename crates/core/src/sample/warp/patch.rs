@@ -8,6 +8,10 @@ use super::shears::{CELL_BITS, KNOT_BITS, Quadratic, Shears, across, evaluate, q
 pub struct PatchShears {
     /// By direction, by power, by the lowest four bits of the cell's number.
     pub(crate) quadratics: [[[f32; Self::CELLS]; 3]; 4],
+    /// By direction, bounds of g.
+    pub(crate) bounds: [[i32; 2]; 4],
+    /// By direction, the first and the last cell that the points touch.
+    pub(crate) cells: [[i32; 2]; 4],
 }
 
 impl PatchShears {
@@ -25,6 +29,8 @@ impl PatchShears {
     pub(crate) fn new(shears: &Shears, origin: [i64; 2], [x, y]: [[i32; 2]; 2]) -> Self {
         let mut patch = Self {
             quadratics: [[[0.0; Self::CELLS]; 3]; 4],
+            bounds: [[0; 2]; 4],
+            cells: [[0; 2]; 4],
         };
         if x[0] > x[1] || y[0] > y[1] {
             return patch;
@@ -49,8 +55,9 @@ impl PatchShears {
         first: i64,
         [from, to]: [i32; 2],
     ) -> [i32; 2] {
-        let start = i64::from(from >> CELL_BITS);
-        let cells = ((to >> CELL_BITS) - (from >> CELL_BITS)) as usize + 1;
+        let touched = [from, to].map(|s| s >> CELL_BITS);
+        let start = i64::from(touched[0]);
+        let cells = (touched[1] - touched[0]) as usize + 1;
         debug_assert!(cells <= Self::CELLS, "{cells} cells");
         let mut controls = [0; Self::CELLS + 2];
         let controls = &mut controls[..cells.min(Self::CELLS) + 2];
@@ -64,13 +71,18 @@ impl PatchShears {
         }
         // A B-spline stays within its control values. The rest is room for rounding.
         let least = controls.iter().min().map_or(0, |v| v - 64);
-        [least, controls.iter().max().map_or(0, |v| v + 64)]
+        let bounds = [least, controls.iter().max().map_or(0, |v| v + 64)];
+        self.cells[direction] = touched;
+        self.bounds[direction] = bounds;
+        bounds
     }
 
     #[inline(always)]
     fn noise(&self, direction: usize, s: i32) -> i32 {
         let cell = (s >> CELL_BITS) as usize % Self::CELLS;
-        let quadratic: Quadratic = self.quadratics[direction].map(|of_power| of_power[cell]);
+        // By reference: `map` would copy the tables.
+        let [constant, linear, square] = &self.quadratics[direction];
+        let quadratic: Quadratic = [constant[cell], linear[cell], square[cell]];
         evaluate(&quadratic, s & Self::CELL_MASK)
     }
 

@@ -97,25 +97,38 @@ impl Walk {
 
     /// The control values of a group.
     pub(super) fn group(&self, number: i64) -> Group {
+        let mut group = [0; GROUP];
+        self.part(number, 0, &mut group);
+        group
+    }
+
+    /// The control values of some knots of a group, from a place on. They are found from the end: the steps after a
+    /// place are the opposite of those up to it, and the shuffle decides on the last places first.
+    fn part(&self, number: i64, place: usize, out: &mut [i32]) {
         let hash = split_mix(self.key ^ (number as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
+        // The highest byte is left; its lowest four bits turn the angles by up to an eighth of a turn.
+        let phase = (hash >> 56 & 15) as usize;
         // A shuffle (Fisher and Yates) of the bytes of `order`, by one byte of the hash at a time from the
         // lowest on.
         let mut order = 0x0706_0504_0302_0100u64;
-        for (i, last) in (1..GROUP as u64).rev().enumerate() {
-            let other = ((hash >> (8 * i) & 255) * (last + 1)) >> 8;
+        let mut bytes = hash;
+        let mut control = 0;
+        for last in (place..GROUP).rev() {
+            if let Some(out) = out.get_mut(last - place) {
+                *out = control;
+            }
+            if last == place {
+                break;
+            }
+            let other = ((bytes & 255) * (last as u64 + 1)) >> 8;
+            bytes >>= 8;
             let different = (order >> (8 * last) ^ order >> (8 * other)) & 255;
             order ^= different << (8 * last);
             order ^= different << (8 * other);
-        }
-        // The highest byte is left; its lowest four bits turn the angles by up to an eighth of a turn.
-        let phase = (hash >> 56 & 15) as usize;
-        let mut sum = 0;
-        core::array::from_fn(|i| {
-            let angle = 16 * (order >> (8 * i) & 7) as usize + phase;
+            let angle = 16 * (order >> (8 * last) & 7) as usize + phase;
             // Toward zero, so that opposite sines make opposite steps.
-            sum += (i64::from(SINE[angle]) * i64::from(self.step) / (1 << 30)) as i32;
-            sum
-        })
+            control -= (i64::from(SINE[angle]) * i64::from(self.step) / (1 << 30)) as i32;
+        }
     }
 
     /// The control values of successive knots, from `first` on.
@@ -123,9 +136,8 @@ impl Walk {
         let (mut number, mut place) = self.place(first);
         let mut next = 0;
         while next < out.len() {
-            let group = self.group(number);
             let count = (GROUP - place).min(out.len() - next);
-            out[next..next + count].copy_from_slice(&group[place..place + count]);
+            self.part(number, place, &mut out[next..next + count]);
             next += count;
             number = number.wrapping_add(1);
             place = 0;
@@ -135,6 +147,8 @@ impl Walk {
 
 #[cfg(test)]
 mod tests {
+    use alloc::{vec, vec::Vec};
+
     use proptest::prelude::*;
 
     use super::*;
@@ -148,7 +162,30 @@ mod tests {
         }
     }
 
+    /// The control values of a group by the text of its definition, from the first place on.
+    fn defined(walk: &Walk, number: i64) -> Group {
+        let hash = split_mix(walk.key ^ (number as u64).wrapping_mul(0xd6e8_feb8_6659_fd93));
+        let mut order: Vec<usize> = (0..GROUP).collect();
+        for (i, last) in (1..GROUP).rev().enumerate() {
+            let byte = (hash >> (8 * i) & 255) as usize;
+            order.swap(last, (byte * (last + 1)) >> 8);
+        }
+        let phase = (hash >> 56) as usize % 16;
+        let mut sum = 0;
+        core::array::from_fn(|i| {
+            let sine = i64::from(SINE[16 * order[i] + phase]);
+            sum += (sine * i64::from(walk.step) / (1 << 30)) as i32;
+            sum
+        })
+    }
+
     proptest! {
+        #[test]
+        fn groups_are_those_of_the_definition(key: u64, number: i64, step in 0i32..1 << 25) {
+            let walk = Walk::new(key, step);
+            prop_assert_eq!(walk.group(number), defined(&walk, number));
+        }
+
         #[test]
         fn groups_end_at_zero_and_stay_within_bounds(key: u64, number: i64, step in 0i32..1 << 25) {
             let walk = Walk::new(key, step);

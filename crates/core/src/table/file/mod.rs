@@ -21,6 +21,7 @@
 //!
 //! `write` and `read` are each other's inverse over the encodings of `wire`.
 
+mod head;
 mod layout;
 mod read;
 #[cfg(test)]
@@ -28,6 +29,7 @@ mod tests;
 mod wire;
 mod write;
 
+pub use head::Head;
 pub use layout::{FORMAT_VERSION, MAX_FILE_BYTES};
 pub(super) use read::read;
 pub(super) use write::{digest, write};

@@ -153,7 +153,7 @@ impl<'a> Sections<'a> {
         let (prov, prov_at) = self.prov.ok_or_else(|| missing(b"PROV"))?;
         let (disp, disp_at) = self.disp.ok_or_else(|| missing(b"DISP"))?;
 
-        let head = Head::read(head).map_err(|p| wrong(b"HEAD", head_at, p))?;
+        let head = HeadSection::read(head).map_err(|p| wrong(b"HEAD", head_at, p))?;
         let alpha: Alpha = head.alpha.parse()?;
         if format!("{alpha}") != head.alpha {
             let problem = format!(
@@ -204,21 +204,22 @@ impl<'a> Sections<'a> {
 }
 
 /// What is wrong with a section at a byte of the file.
-fn wrong(tag: &[u8], at: usize, problem: String) -> Error {
+pub(super) fn wrong(tag: &[u8], at: usize, problem: String) -> Error {
     let section = format!("section {} of the table file", String::from_utf8_lossy(tag));
     let value = format!("not valid at byte {at}");
     Error::new(ErrorKind::Table, section, value, "").because(problem)
 }
 
-struct Head {
-    alpha: String,
-    radius: u32,
-    intervals: u32,
-    profile: String,
+/// The section `HEAD`.
+pub(super) struct HeadSection {
+    pub(super) alpha: String,
+    pub(super) radius: u32,
+    pub(super) intervals: u32,
+    pub(super) profile: String,
 }
 
-impl Head {
-    fn read(bytes: &[u8]) -> Result<Self, String> {
+impl HeadSection {
+    pub(super) fn read(bytes: &[u8]) -> Result<Self, String> {
         let mut reader = Reader::new(bytes);
         let head = Self {
             alpha: reader.text("alpha")?,
@@ -231,7 +232,7 @@ impl Head {
     }
 }
 
-fn read_prov(bytes: &[u8]) -> Result<Provenance, String> {
+pub(super) fn read_prov(bytes: &[u8]) -> Result<Provenance, String> {
     let mut reader = Reader::new(bytes);
     let provenance = Provenance {
         optimizer: reader.text("optimizer")?,

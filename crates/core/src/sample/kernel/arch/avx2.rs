@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::super::lanes::{Lanes, VectorLoop};
+use super::super::lanes::{Lanes, PlainLoop, VectorLoop};
 use crate::sample::warp::{CELL_BITS, PatchShears};
 
 /// Runs a loop.
@@ -15,15 +15,44 @@ pub(in super::super) unsafe fn run(work: &mut impl VectorLoop) -> usize {
     unsafe { work.run::<Avx2>() }
 }
 
+/// Runs plain code, compiled for these instructions.
+#[target_feature(enable = "avx2")]
+pub(in super::super) fn compiled<T>(work: impl FnOnce() -> T) -> T {
+    work()
+}
+
+/// Runs a long loop, compiled for these instructions.
+#[target_feature(enable = "avx2")]
+pub(in super::super) fn compiled_loop(work: &mut impl PlainLoop) {
+    work.run();
+}
+
 pub(in super::super) struct Avx2;
+
+/// The lanes of `low` or of `high`, as the fourth bit of each cell selects.
+///
+/// # Safety
+/// The machine has AVX2.
+#[inline(always)]
+unsafe fn half_of(low: __m256, high: __m256, cells: __m256i) -> __m256 {
+    // The bit as the sign.
+    unsafe {
+        _mm256_blendv_ps(
+            low,
+            high,
+            _mm256_castsi256_ps(_mm256_slli_epi32::<28>(cells)),
+        )
+    }
+}
 
 impl Lanes for Avx2 {
     const WIDTH: usize = 8;
-    const IS_PAIRED: bool = false;
+    const WINDOW: usize = 8;
 
     type Ints = __m256i;
     type Singles = __m256;
     type Doubles = [__m256d; 2];
+    type Table = __m256;
 
     #[inline(always)]
     unsafe fn load_ints(from: *const i32) -> __m256i {
@@ -96,15 +125,29 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    unsafe fn pick(table: &[f32; PatchShears::CELLS], index: __m256i) -> __m256 {
+    unsafe fn table(all: &[f32; PatchShears::CELLS], first: i32) -> __m256 {
         unsafe {
-            let low = _mm256_loadu_ps(table.as_ptr());
-            let high = _mm256_loadu_ps(table.as_ptr().add(8));
-            // The fourth bit of the index, as the sign, selects the half.
-            let half = _mm256_castsi256_ps(_mm256_slli_epi32::<28>(index));
-            let low = _mm256_permutevar8x32_ps(low, index);
-            let high = _mm256_permutevar8x32_ps(high, index);
-            _mm256_blendv_ps(low, high, half)
+            // The cells by their lowest three bits.
+            let first = _mm256_set1_epi32(first);
+            let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+            let after = _mm256_and_si256(_mm256_sub_epi32(lanes, first), _mm256_set1_epi32(7));
+            let low = _mm256_loadu_ps(all.as_ptr());
+            let high = _mm256_loadu_ps(all.as_ptr().add(8));
+            half_of(low, high, _mm256_add_epi32(first, after))
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn pick(table: __m256, cells: __m256i) -> __m256 {
+        unsafe { _mm256_permutevar8x32_ps(table, cells) }
+    }
+
+    #[inline(always)]
+    unsafe fn pick_any(all: &[f32; PatchShears::CELLS], cells: __m256i) -> __m256 {
+        unsafe {
+            let low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(all.as_ptr()), cells);
+            let high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(all.as_ptr().add(8)), cells);
+            half_of(low, high, cells)
         }
     }
 
@@ -172,5 +215,60 @@ impl Lanes for Avx2 {
                 _mm256_storeu_pd(to.add(4), _mm256_permute2f128_pd::<0x31>(even, odd));
             }
         }
+    }
+
+    #[inline(always)]
+    unsafe fn store_single_places(
+        to: *mut [f32; 2],
+        offsets: [__m256i; 2],
+        (base, step, [last_x, last_y]): ([f64; 2], f64, [f32; 2]),
+    ) {
+        unsafe {
+            let last = _mm_setr_ps(last_x, last_y, last_x, last_y);
+            let (places, to) = (places(offsets, base, step), to.cast::<f32>());
+            for (pair, place) in places.into_iter().enumerate() {
+                _mm_storeu_ps(to.add(4 * pair), _mm_min_ps(_mm256_cvtpd_ps(place), last));
+            }
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn store_double_places(
+        to: *mut [f64; 2],
+        offsets: [__m256i; 2],
+        (base, step): ([f64; 2], f64),
+    ) {
+        unsafe {
+            let (places, to) = (places(offsets, base, step), to.cast::<f64>());
+            for (pair, place) in places.into_iter().enumerate() {
+                _mm256_storeu_pd(to.add(4 * pair), place);
+            }
+        }
+    }
+}
+
+/// (base + offset)·step, x and y side by side, two points a vector. Offsets are paired before they are
+/// converted, which takes fewer operations than afterwards.
+///
+/// # Safety
+/// The machine has AVX2.
+#[inline(always)]
+unsafe fn places([x, y]: [__m256i; 2], base: [f64; 2], step: f64) -> [__m256d; 4] {
+    unsafe {
+        // Pairs 0 1 4 5 and 2 3 6 7.
+        let (even, odd) = (_mm256_unpacklo_epi32(x, y), _mm256_unpackhi_epi32(x, y));
+        let base = _mm256_setr_pd(base[0], base[1], base[0], base[1]);
+        let step = _mm256_set1_pd(step);
+        let mut places = [step; 4];
+        for (place, pairs) in places.iter_mut().zip([
+            _mm256_castsi256_si128(even),
+            _mm256_castsi256_si128(odd),
+            _mm256_extracti128_si256::<1>(even),
+            _mm256_extracti128_si256::<1>(odd),
+        ]) {
+            let offset = _mm256_cvtepi32_pd(pairs);
+            *place = _mm256_mul_pd(_mm256_add_pd(base, offset), step);
+        }
+        places
     }
 }

@@ -34,11 +34,12 @@ pub(in super::super) struct Avx512;
 
 impl Lanes for Avx512 {
     const WIDTH: usize = 16;
-    const IS_PAIRED: bool = true;
+    const WINDOW: usize = PatchShears::CELLS;
 
     type Ints = __m512i;
     type Singles = __m512;
     type Doubles = [__m512d; 2];
+    type Table = __m512;
 
     #[inline(always)]
     unsafe fn load_ints(from: *const i32) -> __m512i {
@@ -111,8 +112,18 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
-    unsafe fn pick(table: &[f32; PatchShears::CELLS], index: __m512i) -> __m512 {
-        unsafe { _mm512_permutexvar_ps(index, _mm512_loadu_ps(table.as_ptr())) }
+    unsafe fn table(all: &[f32; PatchShears::CELLS], _: i32) -> __m512 {
+        unsafe { _mm512_loadu_ps(all.as_ptr()) }
+    }
+
+    #[inline(always)]
+    unsafe fn pick(table: __m512, cells: __m512i) -> __m512 {
+        unsafe { _mm512_permutexvar_ps(cells, table) }
+    }
+
+    #[inline(always)]
+    unsafe fn pick_any(all: &[f32; PatchShears::CELLS], cells: __m512i) -> __m512 {
+        unsafe { Self::pick(Self::table(all, 0), cells) }
     }
 
     #[inline(always)]

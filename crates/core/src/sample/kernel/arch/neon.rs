@@ -19,11 +19,12 @@ pub(in super::super) struct Neon;
 
 impl Lanes for Neon {
     const WIDTH: usize = 4;
-    const IS_PAIRED: bool = true;
+    const WINDOW: usize = PatchShears::CELLS;
 
     type Ints = int32x4_t;
     type Singles = float32x4_t;
     type Doubles = [float64x2_t; 2];
+    type Table = uint8x16x4_t;
 
     #[inline(always)]
     unsafe fn load_ints(from: *const i32) -> int32x4_t {
@@ -97,15 +98,24 @@ impl Lanes for Neon {
     }
 
     #[inline(always)]
-    unsafe fn pick(table: &[f32; PatchShears::CELLS], index: int32x4_t) -> float32x4_t {
+    unsafe fn table(all: &[f32; PatchShears::CELLS], _: i32) -> uint8x16x4_t {
+        // The table is 64 bytes; entry i is bytes 4i to 4i + 3.
+        unsafe { vld1q_u8_x4(all.as_ptr().cast()) }
+    }
+
+    #[inline(always)]
+    unsafe fn pick(table: uint8x16x4_t, cells: int32x4_t) -> float32x4_t {
         unsafe {
-            // The table is 64 bytes; entry i is bytes 4i to 4i + 3.
-            let table = vld1q_u8_x4(table.as_ptr().cast());
-            let index = vreinterpretq_u32_s32(vandq_s32(index, vdupq_n_s32(15)));
+            let cells = vreinterpretq_u32_s32(vandq_s32(cells, vdupq_n_s32(15)));
             let first = vdupq_n_u32(0x0302_0100);
-            let bytes = vmlaq_u32(first, index, vdupq_n_u32(0x0404_0404));
+            let bytes = vmlaq_u32(first, cells, vdupq_n_u32(0x0404_0404));
             vreinterpretq_f32_u8(vqtbl4q_u8(table, vreinterpretq_u8_u32(bytes)))
         }
+    }
+
+    #[inline(always)]
+    unsafe fn pick_any(all: &[f32; PatchShears::CELLS], cells: int32x4_t) -> float32x4_t {
+        unsafe { Self::pick(Self::table(all, 0), cells) }
     }
 
     #[inline(always)]

@@ -19,11 +19,12 @@ pub(in super::super) struct Simd128;
 
 impl Lanes for Simd128 {
     const WIDTH: usize = 4;
-    const IS_PAIRED: bool = false;
+    const WINDOW: usize = PatchShears::CELLS;
 
     type Ints = v128;
     type Singles = v128;
     type Doubles = [v128; 2];
+    type Table = [v128; 4];
 
     #[inline(always)]
     unsafe fn load_ints(from: *const i32) -> v128 {
@@ -97,23 +98,31 @@ impl Lanes for Simd128 {
     }
 
     #[inline(always)]
-    unsafe fn pick(table: &[f32; PatchShears::CELLS], index: v128) -> v128 {
+    unsafe fn table(all: &[f32; PatchShears::CELLS], _: i32) -> [v128; 4] {
+        // SAFETY: the table has four quarters of four entries.
+        [0, 4, 8, 12].map(|k| unsafe { v128_load(all.as_ptr().add(k).cast()) })
+    }
+
+    #[inline(always)]
+    unsafe fn pick(table: [v128; 4], cells: v128) -> v128 {
         // Entry i is bytes 4i to 4i + 3. A swizzle returns 0 for bytes outside its 16, so the quarters of
         // the table can be combined.
-        let index = v128_and(index, i32x4_splat(15));
+        let cells = v128_and(cells, i32x4_splat(15));
         let bytes = i32x4_add(
-            i32x4_mul(index, i32x4_splat(0x0404_0404)),
+            i32x4_mul(cells, i32x4_splat(0x0404_0404)),
             i32x4_splat(0x0302_0100),
         );
-        let quarter = |k: usize| {
-            // SAFETY: the table has four quarters of four entries.
-            let entries = unsafe { v128_load(table.as_ptr().add(4 * k).cast()) };
-            u8x16_swizzle(entries, u8x16_sub(bytes, u8x16_splat(16 * k as u8)))
-        };
+        let quarter =
+            |k: usize| u8x16_swizzle(table[k], u8x16_sub(bytes, u8x16_splat(16 * k as u8)));
         v128_or(
             v128_or(quarter(0), quarter(1)),
             v128_or(quarter(2), quarter(3)),
         )
+    }
+
+    #[inline(always)]
+    unsafe fn pick_any(all: &[f32; PatchShears::CELLS], cells: v128) -> v128 {
+        unsafe { Self::pick(Self::table(all, 0), cells) }
     }
 
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! A flag that ends counting early.
 
+use crate::error::{Error, ErrorKind};
 use alloc::sync::Arc;
 use core::sync::atomic::{AtomicBool, Ordering};
 
@@ -50,6 +51,12 @@ impl Stop {
         if let Some(flag) = &self.flag {
             flag.store(true, Ordering::Relaxed);
         }
+    }
+
+    /// The error of a count that was stopped.
+    pub(crate) fn error() -> Error {
+        let (field, value) = ("the count", "not finished");
+        Error::new(ErrorKind::Stopped, field, value, "").because("stopped")
     }
 
     /// Whether the flag is raised.

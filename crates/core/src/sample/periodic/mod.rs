@@ -4,20 +4,26 @@
 //! So a table makes the same point set of it, on a torus: every point has the neighbors it has in the plane,
 //! also across the seam. Indices are integers in units of 1/(2q), and positions wrap in fixed point.
 
-use alloc::{sync::Arc, vec::Vec};
+mod made;
+mod parts;
+mod plan;
+
+use alloc::sync::Arc;
 use core::ops::Range;
 
 use super::{
-    lattice::{Placement, Point, PointId},
+    lattice::{Placement, PointId},
     member::Member,
     seed::Seed,
-    warp::{Warp, WrappedShears},
+    warp::Warp,
 };
 use crate::{
     error::{Error, ErrorKind, number},
     map::{Map, Twin},
-    table::{FRACTION_BITS, Table, TurnedTable},
+    table::Table,
 };
+use made::{Made, Parts};
+pub use plan::{PeriodicBlocks, PeriodicPlan};
 
 /// A point set with a period: the points of [0, L)² whose copies, moved by multiples of the side L, continue
 /// one another without a seam. It has the table's noise profile; for tileable textures, masks and stipples.
@@ -56,18 +62,9 @@ pub struct PeriodicSet {
     seed: Seed,
     /// The warp that was chosen, if any.
     own_warp: Option<Warp>,
+    /// Which of the points it has.
+    parts: Parts,
     made: Arc<Made>,
-}
-
-/// What follows from the seed and the warp.
-#[derive(Debug)]
-struct Made {
-    turned: TurnedTable,
-    shears: Option<WrappedShears>,
-    /// The index of column and row 0.
-    origin: [u64; 2],
-    /// The columns inside the set region with their indices, by the parities of row and column.
-    columns: [[Vec<(u64, u64)>; 2]; 2],
 }
 
 impl PeriodicSet {
@@ -97,7 +94,7 @@ impl PeriodicSet {
             let allowed = alloc::format!("at most {} points", Self::MAX_POINTS);
             return Err(refused(allowed).with_limit(Self::MAX_POINTS as f64));
         }
-        let twin = Self::periods(table.map()).find(|twin| twin.points() >= points);
+        let twin = Self::periods_from(table.map(), points).next();
         let Some(twin) = twin else {
             let allowed =
                 "left out, or the table one of an α at which no thresholds of its map coincide";
@@ -119,6 +116,7 @@ impl PeriodicSet {
             side: twin.t() as f64,
             seed: Seed(0),
             own_warp: None,
+            parts: Parts::default(),
             table,
             twin,
             blocks,
@@ -137,9 +135,23 @@ impl PeriodicSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn periods(map: &Map) -> impl Iterator<Item = Twin> + use<> {
-        map.twins()
-            .take_while(|twin| twin.points() <= Self::MAX_POINTS)
-            .filter(|twin| twin.is_uniform())
+        Self::periods_from(map, 0)
+    }
+
+    /// The [periods](Self::periods) of a map with at least `points` points.
+    ///
+    /// ```
+    /// use strew_core::{Map, PeriodicSet};
+    ///
+    /// let map = Map::new("(5-sqrt(3))/2".parse()?, 49)?;
+    /// let twin = PeriodicSet::periods_from(&map, 1_000_000).next().expect("a period");
+    /// assert_eq!((twin.points(), twin.to_string().as_str()), (1_002_001, "2580/1579"));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn periods_from(map: &Map, points: u64) -> impl Iterator<Item = Twin> + use<> {
+        let least = points.saturating_sub(1).isqrt();
+        map.twins_within(least..Self::MAX_POINTS.isqrt() + 1)
+            .filter(move |twin| twin.points() >= points && twin.is_uniform())
     }
 
     /// The same set on a torus with another side L, in world units.
@@ -228,7 +240,7 @@ impl PeriodicSet {
         self.twin
     }
 
-    /// The number of points in a period.
+    /// The number of points in a period, before any [are left out](Self::count).
     ///
     /// ```
     /// use strew_core::{PeriodicSet, Table};
@@ -304,19 +316,28 @@ impl PeriodicSet {
     pub fn rows(&self, rows: Range<u64>) -> impl Iterator<Item = Member> + use<> {
         let set = self.clone();
         (rows.start..rows.end.min(self.twin.period())).flat_map(move |y| {
-            // A row has points in the columns of one parity.
-            let index_y = |parity: u64| set.made.index_y(set.twin, parity, y);
-            let found = (0..2).find_map(|parity| Some((parity, index_y(parity)?)));
             let set = set.clone();
+            let found = set.row(y);
             found.into_iter().flat_map(move |(parity, index_y)| {
-                let (set, place) = (set.clone(), [y, parity].map(|v| (v % 2) as usize));
-                let count = set.made.columns[place[0]][place[1]].len();
-                (0..count).map(move |i| {
-                    let (x, index_x) = set.made.columns[place[0]][place[1]][i];
+                let set = set.clone();
+                (0..set.columns(y, parity).len()).filter_map(move |i| {
+                    let (x, index_x) = set.columns(y, parity)[i];
                     set.member([x, y], [index_x, index_y])
                 })
             })
         })
+    }
+
+    /// The parity of the columns that have points in a row, with dY there; `None` for a row without points.
+    fn row(&self, y: u64) -> Option<(u64, u64)> {
+        let index_y = |parity: u64| self.made.index_y(self.twin, parity, y);
+        (0..2).find_map(|parity| Some((parity, index_y(parity)?)))
+    }
+
+    /// The columns of a row, with their dX.
+    fn columns(&self, y: u64, parity: u64) -> &[(u64, u64)] {
+        let [row, column] = [y, parity].map(|v| (v % 2) as usize);
+        &self.made.columns[row][column]
     }
 
     /// The point with an id, or `None` if there is none in the period.
@@ -333,7 +354,7 @@ impl PeriodicSet {
     #[must_use]
     pub fn point(&self, id: PointId) -> Option<Member> {
         let (at, index) = self.indices(id)?;
-        Some(self.member(at, index))
+        self.member(at, index)
     }
 
     /// The block of a point, as its intervals of dX and dY, or `None` if no point has the id.
@@ -353,95 +374,11 @@ impl PeriodicSet {
         Some(index.map(|index| self.blocks[index as usize] as usize))
     }
 
-    /// The rank of a point, from 0 to 1: its place in the order in which points leave when the set is thinned.
-    /// The points of rank below a share are even at every share. `None` if no point has the id.
-    ///
-    /// ```
-    /// use strew_core::{PeriodicSet, Table};
-    ///
-    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
-    /// let tile = PeriodicSet::new(table, 5000)?;
-    /// let below = |share| tile.iter().filter(|p| tile.rank(p.id()) < Some(share)).count();
-    /// assert!((below(0.25) as f64 / 5041.0 - 0.25).abs() < 0.01);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn rank(&self, id: PointId) -> Option<f64> {
-        let (_, [x, y]) = self.indices(id)?;
-        let order = self.made.turned.order();
-        let (block_x, block_y) = (self.blocks[x as usize], self.blocks[y as usize]);
-        let start = self.blocks.partition_point(|&block| block < block_x);
-        let end = self.blocks.partition_point(|&block| block <= block_x);
-        let n = self.table.map().intervals();
-        let position = order.position(block_y as usize * n + block_x as usize);
-        Some(order.rank(position, x - start as u64, (end - start) as u64))
-    }
-
     /// The address of an id and its indices, if it is a point of the period.
     fn indices(&self, id: PointId) -> Option<([u64; 2], [u64; 2])> {
         let coordinate = |v: i64| u64::try_from(v).ok().filter(|&v| v < self.twin.period());
         let (x, y) = (coordinate(id.x)?, coordinate(id.y)?);
         let index_x = self.made.index_x(self.twin, x, y)?;
         Some(([x, y], [index_x, self.made.index_y(self.twin, x, y)?]))
-    }
-
-    fn member(&self, [x, y]: [u64; 2], index: [u64; 2]) -> Member {
-        let [block_x, block_y] = index.map(|index| self.blocks[index as usize] as usize);
-        let vector = self.made.turned.row(block_y)[block_x];
-        let placed = [x, y].map(|v| (v as i64) << FRACTION_BITS);
-        let placed = [0, 1].map(|i| placed[i] + i64::from(vector[i]));
-        let moved = match &self.made.shears {
-            Some(shears) => shears.apply(placed),
-            None => placed,
-        };
-        let period = (self.twin.period() as i64) << FRACTION_BITS;
-        // A period has less than 2⁴⁶ fixed-point units, so rounding never carries a coordinate to L.
-        let step = self.side / period as f64;
-        let [at_x, at_y] = moved.map(|v| v.rem_euclid(period) as f64 * step);
-        let id = PointId {
-            x: x as i64,
-            y: y as i64,
-        };
-        Member::new(
-            Point {
-                id,
-                x: at_x,
-                y: at_y,
-            },
-            self.seed,
-        )
-    }
-}
-
-impl Made {
-    fn new(table: &Table, twin: Twin, seed: Seed, warp: Warp) -> Self {
-        let origin = seed.origin();
-        let scaled = |v: u64| ((u128::from(v) * u128::from(twin.period())) >> 64) as u64;
-        let mut made = Self {
-            turned: TurnedTable::new(table, seed.symmetry()),
-            shears: WrappedShears::new(warp, seed, twin.period()),
-            origin: [scaled(origin.x), scaled(origin.y)],
-            columns: Default::default(),
-        };
-        let listed = |y: u64, parity: u64| {
-            let columns = (parity..twin.period()).step_by(2);
-            columns
-                .filter_map(|x| Some((x, made.index_x(twin, x, y)?)))
-                .collect()
-        };
-        made.columns = [0, 1].map(|y| [0, 1].map(|parity| listed(y, parity)));
-        made
-    }
-
-    /// dX of an address, in units of 1/(2q), if it is inside the set region.
-    fn index_x(&self, twin: Twin, x: u64, y: u64) -> Option<u64> {
-        let index = (twin.index(x, y % 2) + self.origin[0]) % twin.period();
-        (index < twin.t()).then_some(index)
-    }
-
-    /// dY of an address, likewise.
-    fn index_y(&self, twin: Twin, x: u64, y: u64) -> Option<u64> {
-        let index = (twin.index(y, x % 2) + self.origin[1]) % twin.period();
-        (index < twin.t()).then_some(index)
     }
 }

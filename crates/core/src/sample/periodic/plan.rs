@@ -1,0 +1,469 @@
+//! Plans of periods: an exact count, windows and cursors, and blocks of points.
+//!
+//! What a [`Plan`](crate::Plan) is for an area of the plane, made for the walk of a period: rows, then columns.
+
+use alloc::{sync::Arc, vec::Vec};
+
+use super::PeriodicSet;
+use crate::{
+    error::Error,
+    sample::{
+        area::Region,
+        attribute::{Attributes, BoundAttributes},
+        cursor::Cursor,
+        lattice::{Point, PointId},
+    },
+    stop::Stop,
+};
+
+/// A period made ready: the exact number of its points, of which a window can be cut.
+///
+/// ```
+/// use strew_core::{PeriodicSet, Point, Table};
+///
+/// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+/// let tile = PeriodicSet::new(table, 5000)?.seed(7);
+/// let plan = tile.plan();
+/// assert_eq!(plan.count(), 5041);
+/// let page = plan.window(1000, Some(500));
+/// let mut points = [Point::default(); 600];
+/// assert_eq!(page.blocks().fill(&mut points), 500);
+/// assert_eq!(Some(points[0].id), tile.iter().nth(1000).map(|p| p.id()));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PeriodicPlan {
+    set: PeriodicSet,
+    /// The number of points before each row and after the last, if they are counted.
+    before: Option<Arc<[u64]>>,
+    total: u64,
+    /// The number of points before the window.
+    offset: u64,
+    count: u64,
+    /// Where the window begins: an address with no point of the window before it.
+    start: PointId,
+}
+
+const ORIGIN: PointId = PointId { x: 0, y: 0 };
+
+impl PeriodicSet {
+    /// The period, counted. A set that has [parts](Self::keep) of the period only is counted point by point.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let half = PeriodicSet::new(table, 5000)?.keep(0.5)?;
+    /// assert_eq!(half.plan().count(), half.count().into());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn plan(&self) -> PeriodicPlan {
+        let before = self.before(&Stop::default()).unwrap_or_default();
+        PeriodicPlan::new(self, before)
+    }
+
+    /// [`plan`](Self::plan), whose counting a flag stops.
+    pub(crate) fn plan_until(&self, stop: &Stop) -> Result<PeriodicPlan, Error> {
+        Ok(PeriodicPlan::new(self, self.before(stop)?))
+    }
+
+    /// The number of points before each row and after the last.
+    fn before(&self, stop: &Stop) -> Result<Arc<[u64]>, Error> {
+        let mut before = Vec::with_capacity(self.twin.period() as usize + 1);
+        let mut sum = 0;
+        before.push(0);
+        for y in 0..self.twin.period() {
+            if stop.is_raised() {
+                return Err(Stop::error());
+            }
+            sum += self.count_row(y);
+            before.push(sum);
+        }
+        Ok(before.into())
+    }
+
+    /// The points of a period from a [cursor](Cursor) on, without counting.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let tile = PeriodicSet::new(table, 5000)?.seed(7).keep(0.3)?;
+    /// let cursor = tile.plan().window(0, Some(100)).next_cursor().expect("there are more");
+    /// let rest = tile.resume(cursor);
+    /// assert_eq!(rest.count() + 100, tile.count().into());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn resume(&self, cursor: Cursor) -> PeriodicPlan {
+        let small = |v: u128| u64::try_from(v).unwrap_or(u64::MAX).min(self.len());
+        let total = small(cursor.total);
+        let offset = small(cursor.offset).min(total);
+        PeriodicPlan {
+            set: self.clone(),
+            before: None,
+            total,
+            offset,
+            count: total - offset,
+            start: cursor.at,
+        }
+    }
+}
+
+impl PeriodicPlan {
+    fn new(set: &PeriodicSet, before: Arc<[u64]>) -> Self {
+        let total = before.last().copied().unwrap_or_default();
+        Self {
+            set: set.clone(),
+            before: Some(before),
+            total,
+            offset: 0,
+            count: total,
+            start: ORIGIN,
+        }
+    }
+
+    /// The set whose period it is.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// assert_eq!(PeriodicSet::new(table, 5000)?.plan().set().length(), 71.0);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn set(&self) -> &PeriodicSet {
+        &self.set
+    }
+
+    /// The exact number of points of the window.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// assert_eq!(PeriodicSet::new(table, 5000)?.plan().window(5000, Some(100)).count(), 41);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn count(&self) -> u128 {
+        self.count as u128
+    }
+
+    /// The number of points of the whole period.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// assert_eq!(PeriodicSet::new(table, 5000)?.plan().window(0, Some(9)).total(), 5041);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn total(&self) -> u128 {
+        self.total as u128
+    }
+
+    /// The number of points before the window.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// assert_eq!(PeriodicSet::new(table, 5000)?.plan().window(7, None).offset(), 7);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn offset(&self) -> u128 {
+        self.offset as u128
+    }
+
+    /// Whether it is less than the whole period.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let plan = PeriodicSet::new(table, 5000)?.plan();
+    /// assert!(!plan.is_window() && plan.window(0, Some(5)).is_window());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn is_window(&self) -> bool {
+        self.count < self.total
+    }
+
+    /// The box [0, L)².
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let plan = PeriodicSet::new(table, 5000)?.plan();
+    /// assert_eq!((plan.region().min(), plan.region().max()), ([0.0; 2], [71.0; 2]));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn region(&self) -> Region {
+        Region::between([0.0; 2], [self.set.length(); 2])
+    }
+
+    /// The points after the first `offset`, at most `limit`.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let plan = PeriodicSet::new(table, 5000)?.plan();
+    /// let part = plan.window(100, Some(50)).window(10, None);
+    /// assert_eq!((part.offset(), part.count()), (110, 40));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn window(&self, offset: u128, limit: Option<u128>) -> Self {
+        let small = |v: u128| u64::try_from(v).unwrap_or(u64::MAX);
+        let skipped = small(offset).min(self.count);
+        let left = self.count - skipped;
+        Self {
+            offset: self.offset + skipped,
+            count: limit.map_or(left, |limit| small(limit).min(left)),
+            start: self.place(skipped),
+            ..self.clone()
+        }
+    }
+
+    /// The place of the first point, if any is left.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let plan = PeriodicSet::new(table, 5000)?.plan();
+    /// assert_eq!(plan.window(7, None).cursor().map(|cursor| cursor.offset), Some(7));
+    /// assert_eq!(plan.window(5041, None).cursor(), None);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn cursor(&self) -> Option<Cursor> {
+        self.cursor_after(0)
+    }
+
+    /// The place of the first point after the window, if there is one.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let tile = PeriodicSet::new(table, 5000)?;
+    /// let next = tile.plan().window(0, Some(41)).next_cursor().expect("there are more");
+    /// assert_eq!(tile.resume(next).count(), 5000);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn next_cursor(&self) -> Option<Cursor> {
+        self.cursor_after(self.count)
+    }
+
+    fn cursor_after(&self, number: u64) -> Option<Cursor> {
+        let offset = self.offset + number;
+        (offset < self.total).then(|| Cursor {
+            offset: offset.into(),
+            total: self.total.into(),
+            at: self.place(number),
+        })
+    }
+
+    /// The place of a point, by its number in the window.
+    fn place(&self, number: u64) -> PointId {
+        let mut walk = Walk::from(&self.set, self.start);
+        let mut left = number;
+        if let Some(before) = &self.before
+            && number > 0
+        {
+            let wanted = self.offset + number;
+            let y = before.partition_point(|&sum| sum <= wanted).max(1) - 1;
+            left = wanted - before[y];
+            walk = Walk { y: y as u64, i: 0 };
+        }
+        while left > 0 && walk.next(&self.set).is_some() {
+            left -= 1;
+        }
+        walk.id(&self.set)
+    }
+
+    /// The points in blocks, in the order of the period: rows, then columns.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Point, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let tile = PeriodicSet::new(table, 5000)?.seed(7);
+    /// let (mut blocks, mut block, mut all) = (tile.plan().blocks(), [Point::default(); 100], vec![]);
+    /// loop {
+    ///     let filled = blocks.fill(&mut block);
+    ///     all.extend_from_slice(&block[..filled]);
+    ///     if filled == 0 {
+    ///         break;
+    ///     }
+    /// }
+    /// assert!(all.into_iter().eq(tile.iter().map(|p| p.point())));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn blocks(&self) -> PeriodicBlocks {
+        PeriodicBlocks {
+            walk: Walk::from(&self.set, self.start),
+            set: self.set.clone(),
+            total: self.total,
+            offset: self.offset,
+            left: self.count,
+        }
+    }
+
+    /// As [`PeriodicSet::attributes`].
+    ///
+    /// # Errors
+    /// As [`PeriodicSet::attributes`].
+    ///
+    /// ```
+    /// use strew_core::{Attributes, PeriodicSet, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let plan = PeriodicSet::new(table, 5000)?.plan();
+    /// assert!(plan.attributes(&Attributes::new(vec!["angle".parse()?])?).is_ok());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn attributes(&self, attributes: &Attributes) -> Result<BoundAttributes, Error> {
+        self.set.attributes(attributes)
+    }
+}
+
+/// The points of a [plan](PeriodicPlan) in blocks.
+///
+/// ```
+/// use strew_core::{PeriodicSet, Point, Table};
+///
+/// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+/// let mut blocks = PeriodicSet::new(table, 5000)?.plan().blocks();
+/// let mut block = [Point::default(); 5000];
+/// assert_eq!([blocks.fill(&mut block), blocks.fill(&mut block), blocks.fill(&mut block)], [5000, 41, 0]);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PeriodicBlocks {
+    set: PeriodicSet,
+    walk: Walk,
+    total: u64,
+    offset: u64,
+    left: u64,
+}
+
+impl PeriodicBlocks {
+    /// Fills a block with the next points and returns their number: less than there is room for only at the end.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Point, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let plan = PeriodicSet::new(table, 5000)?.plan().window(0, Some(3));
+    /// assert_eq!(plan.blocks().fill(&mut [Point::default(); 8]), 3);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn fill(&mut self, out: &mut [Point]) -> usize {
+        let mut filled = 0;
+        while filled < out.len() && self.left > 0 {
+            let Some(point) = self.walk.next(&self.set) else {
+                self.left = 0;
+                break;
+            };
+            out[filled] = point;
+            filled += 1;
+            self.left -= 1;
+            self.offset += 1;
+        }
+        filled
+    }
+
+    /// The place after the points so far, if there are more in the period.
+    ///
+    /// ```
+    /// use strew_core::{PeriodicSet, Point, Table};
+    ///
+    /// # let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// let tile = PeriodicSet::new(table, 5000)?;
+    /// let mut blocks = tile.plan().blocks();
+    /// blocks.fill(&mut [Point::default(); 41]);
+    /// assert_eq!(tile.resume(blocks.cursor().expect("there are more")).count(), 5000);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn cursor(&self) -> Option<Cursor> {
+        (self.offset < self.total).then(|| Cursor {
+            offset: self.offset.into(),
+            total: self.total.into(),
+            at: self.walk.id(&self.set),
+        })
+    }
+}
+
+/// A place in the walk: a row, and the number of a column among those that may have points.
+#[derive(Clone, Copy, Debug)]
+struct Walk {
+    y: u64,
+    i: usize,
+}
+
+impl Walk {
+    /// The walk from an address on.
+    fn from(set: &PeriodicSet, at: PointId) -> Self {
+        let Ok(y) = u64::try_from(at.y) else {
+            return Self { y: 0, i: 0 };
+        };
+        let x = u64::try_from(at.x).unwrap_or_default();
+        let row = (y < set.twin.period()).then(|| set.row(y)).flatten();
+        let columns = row.map_or(&[][..], |(parity, _)| set.columns(y, parity));
+        let i = columns.partition_point(|&(column, _)| column < x);
+        Self { y, i }
+    }
+
+    /// The address of the next column that may have a point.
+    fn id(self, set: &PeriodicSet) -> PointId {
+        let row = (self.y < set.twin.period()).then(|| set.row(self.y));
+        let column = row.flatten().and_then(|(parity, _)| {
+            let columns = set.columns(self.y, parity);
+            Some(columns.get(self.i)?.0)
+        });
+        match column {
+            Some(x) => PointId {
+                x: x as i64,
+                y: self.y as i64,
+            },
+            None => PointId {
+                x: 0,
+                y: self.y as i64 + 1,
+            },
+        }
+    }
+
+    /// The next point.
+    fn next(&mut self, set: &PeriodicSet) -> Option<Point> {
+        while self.y < set.twin.period() {
+            if let Some((parity, index_y)) = set.row(self.y) {
+                let columns = set.columns(self.y, parity);
+                while let Some(&(x, index_x)) = columns.get(self.i) {
+                    self.i += 1;
+                    if let Some(point) = set.point_at([x, self.y], [index_x, index_y]) {
+                        return Some(point);
+                    }
+                }
+            }
+            *self = Self {
+                y: self.y + 1,
+                i: 0,
+            };
+        }
+        None
+    }
+}
