@@ -31,6 +31,14 @@ fn fields() -> Vec<(&'static str, Share)> {
         ),
         ("gauss", Arc::new(gauss)),
         (
+            "ramp 1 to 1/2",
+            Arc::new(|[x, _]| (-(x / SIDE).clamp(0.0, 1.0)).exp2()),
+        ),
+        (
+            "ramp 1/8 to 1/12",
+            Arc::new(|[x, _]| 0.125 * (-0.6 * (x / SIDE).clamp(0.0, 1.0)).exp2()),
+        ),
+        (
             "edge 1 | 1/16",
             Arc::new(move |[x, _]| if x < middle { 1.0 } else { 1.0 / 16.0 }),
         ),

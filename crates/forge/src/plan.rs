@@ -16,7 +16,7 @@ use crate::{
 
 /// The least side t of the set region, that of α = 1.1. Below it a map of any half-width covers too
 /// few neighbors, with too many grid points between them to list.
-const MIN_SIDE: f64 = 0.05;
+pub(crate) const MIN_SIDE: f64 = 0.05;
 
 /// The largest half-width for a radial power curve: its neighbor lists take 1 to 2 GB there.
 const MAX_RADIAL_RADIUS: u32 = 200;
@@ -66,9 +66,9 @@ impl Plan {
         if domain.twins.is_empty() || domain.scale() < MIN_SIDE {
             return Err(ForgeError::Field {
                 field: "alpha",
-                value: job.alpha.to_string(),
-                allowed: "at least 1.1, and not a fraction of small integers: its map has ties \
-                          that no periodic twin has"
+                value: format!("{} ({})", job.alpha, job.prospect()),
+                allowed: "at least 1.1, and neither a fraction of small integers nor next to one: there the \
+                          map has ties, or an order of thresholds that no periodic twin of moderate size has"
                     .into(),
             });
         }

@@ -39,8 +39,32 @@ pub fn clusters(
     window: u32,
 ) -> Result<Drawing, FigureError> {
     check_window(window)?;
-    let found = Clusters::new(alpha, distance, most)?;
-    let (map, t) = (found.map(), alpha.set_side_f64());
+    found_clusters(&Clusters::new(alpha, distance, most)?, distance, window)
+}
+
+/// [`clusters`] that were searched already, with the same `distance`.
+///
+/// # Errors
+/// [`FigureError`] if the window is out of range.
+///
+/// ```
+/// use strew_core::map::Clusters;
+/// use strew_forge::figure;
+///
+/// let alpha = "sqrt(3)".parse()?;
+/// let drawn = figure::found_clusters(&Clusters::new(alpha, 2.0, 16)?, 2.0, 48)?;
+/// assert_eq!(drawn.to_svg(), figure::clusters(alpha, 2.0, 16, 48)?.to_svg());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn found_clusters(
+    found: &Clusters,
+    distance: f64,
+    window: u32,
+) -> Result<Drawing, FigureError> {
+    check_window(window)?;
+    let (map, most) = (found.map(), found.most());
+    let alpha = map.alpha();
+    let t = alpha.set_side_f64();
     let color = |shape: Option<usize>| {
         shape.map_or(LARGER, |shape| of_class(found.shapes()[shape].class()))
     };
@@ -94,8 +118,8 @@ pub fn clusters(
         y = next;
     }
     set_region(&mut drawing, &region);
-    legend(&mut drawing, &found);
-    let seen = visible(&found);
+    legend(&mut drawing, found);
+    let seen = visible(found);
     let text = format!(
         "Points at most {distance:.4} grid units apart are joined. Exact up to {most} points: {} shapes, {} up to \
          symmetry, told apart by what is within {} grid units.",

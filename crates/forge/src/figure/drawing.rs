@@ -1,6 +1,6 @@
-//! A drawing: marks in pixels, written as SVG.
+//! A drawing: a list of marks in pixels, written as SVG or painted as PNG.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 
 /// A finished figure.
 ///
@@ -13,9 +13,9 @@ use std::fmt::Write as _;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    width: f64,
-    height: f64,
-    body: String,
+    pub(super) width: f64,
+    pub(super) height: f64,
+    pub(super) marks: Vec<Mark>,
 }
 
 /// A color, as red, green and blue.
@@ -27,6 +27,30 @@ pub(super) enum Anchor {
     Start,
     Middle,
     End,
+}
+
+/// A color with the width of its line.
+pub(super) type Pen = (Color, f64);
+
+/// What stands on a drawing, one over another. Places are in pixels from the upper left corner.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Mark {
+    /// A filled rectangle: its upper left corner, its size, its color and opacity.
+    Fill([f64; 2], [f64; 2], Color, f64),
+    /// The outline of a rectangle, dashed if the last number is above 0.
+    Outline([f64; 2], [f64; 2], Pen, f64),
+    /// Lines with round ends.
+    Lines(Vec<[[f64; 2]; 2]>, Pen),
+    /// A line through places.
+    Curve(Vec<[f64; 2]>, Pen),
+    /// Disks of a color and a diameter.
+    Dots(Vec<[f64; 2]>, Pen),
+    /// A circle without filling: its center and radius.
+    Ring([f64; 2], f64, Pen),
+    /// What an odd number of rectangles covers, each by its upper left corner and its size.
+    Checkers(Vec<[[f64; 2]; 2]>, Color),
+    /// A text on the line of writing at a place, with its size.
+    Text([f64; 2], f64, Anchor, String),
 }
 
 pub(super) const INK: Color = [34, 34, 34];
@@ -61,75 +85,45 @@ impl Drawing {
     #[must_use]
     pub fn to_svg(&self) -> String {
         let (width, height) = (self.width, self.height);
-        format!(
+        let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
              viewBox=\"0 0 {width} {height}\" font-family=\"Helvetica, Arial, sans-serif\">\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
-            self.body
-        )
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
+        );
+        for mark in &self.marks {
+            // Writing to a string cannot fail.
+            let _ = writeln!(svg, "{mark}");
+        }
+        svg + "</svg>\n"
     }
 
     pub(super) const fn new(width: f64, height: f64) -> Self {
         Self {
             width,
             height,
-            body: String::new(),
+            marks: vec![],
         }
-    }
-
-    fn add(&mut self, mark: std::fmt::Arguments<'_>) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(self.body, "{mark}");
     }
 
     /// A filled rectangle from its upper left corner.
-    pub(super) fn fill(&mut self, [x, y]: [f64; 2], [w, h]: [f64; 2], color: Color, opacity: f64) {
-        let color = hex(color);
-        self.add(format_args!(
-            "<rect x=\"{x:.2}\" y=\"{y:.2}\" width=\"{w:.2}\" height=\"{h:.2}\" fill=\"{color}\" \
-             fill-opacity=\"{opacity}\" shape-rendering=\"crispEdges\"/>"
-        ));
+    pub(super) fn fill(&mut self, at: [f64; 2], size: [f64; 2], color: Color, opacity: f64) {
+        self.marks.push(Mark::Fill(at, size, color, opacity));
     }
 
     /// The outline of a rectangle from its upper left corner, dashed if `dash` is above 0.
-    pub(super) fn outline(
-        &mut self,
-        [x, y]: [f64; 2],
-        [w, h]: [f64; 2],
-        (color, width): (Color, f64),
-        dash: f64,
-    ) {
-        let color = hex(color);
-        let dash = match dash > 0.0 {
-            true => format!(" stroke-dasharray=\"{dash}\""),
-            false => String::new(),
-        };
-        self.add(format_args!(
-            "<rect x=\"{x:.2}\" y=\"{y:.2}\" width=\"{w:.2}\" height=\"{h:.2}\" fill=\"none\" \
-             stroke=\"{color}\" stroke-width=\"{width}\"{dash}/>"
-        ));
+    pub(super) fn outline(&mut self, at: [f64; 2], size: [f64; 2], pen: Pen, dash: f64) {
+        self.marks.push(Mark::Outline(at, size, pen, dash));
     }
 
     /// Lines between pairs of places, as one path.
-    pub(super) fn lines(
-        &mut self,
-        lines: impl IntoIterator<Item = [[f64; 2]; 2]>,
-        (color, width): (Color, f64),
-    ) {
-        let mut path = String::new();
-        for [[a, b], [c, d]] in lines {
-            let _ = write!(path, "M{a:.2} {b:.2}L{c:.2} {d:.2}");
-        }
-        self.stroke(&path, color, width);
+    pub(super) fn lines(&mut self, lines: impl IntoIterator<Item = [[f64; 2]; 2]>, pen: Pen) {
+        let lines: Vec<_> = lines.into_iter().collect();
+        self.unless_empty(lines.is_empty(), Mark::Lines(lines, pen));
     }
 
     /// One line through many places.
-    pub(super) fn curve(&mut self, places: &[[f64; 2]], (color, width): (Color, f64)) {
-        let mut path = String::new();
-        for (i, [x, y]) in places.iter().enumerate() {
-            let _ = write!(path, "{}{x:.2} {y:.2}", if i == 0 { 'M' } else { 'L' });
-        }
-        self.stroke(&path, color, width);
+    pub(super) fn curve(&mut self, places: &[[f64; 2]], pen: Pen) {
+        self.unless_empty(places.is_empty(), Mark::Curve(places.into(), pen));
     }
 
     /// Dots of one diameter and color, as one path.
@@ -139,30 +133,19 @@ impl Drawing {
         diameter: f64,
         color: Color,
     ) {
-        let mut path = String::new();
-        for [x, y] in places {
-            let _ = write!(path, "M{x:.2} {y:.2}h0");
-        }
-        self.stroke(&path, color, diameter);
+        let places: Vec<_> = places.into_iter().collect();
+        self.unless_empty(places.is_empty(), Mark::Dots(places, (color, diameter)));
     }
 
-    fn stroke(&mut self, path: &str, color: Color, width: f64) {
-        if !path.is_empty() {
-            let color = hex(color);
-            self.add(format_args!(
-                "<path d=\"{path}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\" \
-                 stroke-linecap=\"round\" stroke-linejoin=\"round\"/>"
-            ));
+    fn unless_empty(&mut self, is_empty: bool, mark: Mark) {
+        if !is_empty {
+            self.marks.push(mark);
         }
     }
 
     /// A circle without filling.
-    pub(super) fn ring(&mut self, [x, y]: [f64; 2], radius: f64, (color, width): (Color, f64)) {
-        let color = hex(color);
-        self.add(format_args!(
-            "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\" fill=\"none\" stroke=\"{color}\" \
-             stroke-width=\"{width}\"/>"
-        ));
+    pub(super) fn ring(&mut self, at: [f64; 2], radius: f64, pen: Pen) {
+        self.marks.push(Mark::Ring(at, radius, pen));
     }
 
     /// Fills what an odd number of rectangles covers, each from its upper left corner: stripes in both
@@ -172,35 +155,101 @@ impl Drawing {
         rectangles: impl IntoIterator<Item = [[f64; 2]; 2]>,
         color: Color,
     ) {
-        let mut path = String::new();
-        for [[x, y], [w, h]] in rectangles {
-            let _ = write!(path, "M{x:.2} {y:.2}h{w:.2}v{h:.2}h{:.2}z", -w);
-        }
-        let color = hex(color);
-        self.add(format_args!(
-            "<path d=\"{path}\" fill=\"{color}\" fill-rule=\"evenodd\"/>"
-        ));
+        self.marks
+            .push(Mark::Checkers(rectangles.into_iter().collect(), color));
     }
 
-    /// A text on the line of writing at a place. Characters of XML are escaped.
-    pub(super) fn text(&mut self, [x, y]: [f64; 2], size: f64, anchor: Anchor, text: &str) {
-        let text = text
-            .replace('&', "&amp;")
-            .replace('<', "&lt;")
-            .replace('>', "&gt;");
-        let (color, anchor) = (
-            hex(INK),
-            match anchor {
-                Anchor::Start => "start",
-                Anchor::Middle => "middle",
-                Anchor::End => "end",
-            },
-        );
-        self.add(format_args!(
-            "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{size}\" fill=\"{color}\" \
-             text-anchor=\"{anchor}\">{text}</text>"
-        ));
+    /// A text on the line of writing at a place.
+    pub(super) fn text(&mut self, at: [f64; 2], size: f64, anchor: Anchor, text: &str) {
+        self.marks.push(Mark::Text(at, size, anchor, text.into()));
     }
+}
+
+impl fmt::Display for Mark {
+    /// As an element of SVG.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fill([x, y], [w, h], color, opacity) => write!(
+                f,
+                "<rect x=\"{x:.2}\" y=\"{y:.2}\" width=\"{w:.2}\" height=\"{h:.2}\" fill=\"{}\" \
+                 fill-opacity=\"{opacity}\" shape-rendering=\"crispEdges\"/>",
+                hex(*color)
+            ),
+            Self::Outline([x, y], [w, h], (color, width), dash) => {
+                write!(
+                    f,
+                    "<rect x=\"{x:.2}\" y=\"{y:.2}\" width=\"{w:.2}\" height=\"{h:.2}\" fill=\"none\" \
+                     stroke=\"{}\" stroke-width=\"{width}\"",
+                    hex(*color)
+                )?;
+                if *dash > 0.0 {
+                    write!(f, " stroke-dasharray=\"{dash}\"")?;
+                }
+                f.write_str("/>")
+            }
+            Self::Lines(lines, pen) => {
+                f.write_str("<path d=\"")?;
+                for [[a, b], [c, d]] in lines {
+                    write!(f, "M{a:.2} {b:.2}L{c:.2} {d:.2}")?;
+                }
+                stroke(f, *pen)
+            }
+            Self::Curve(places, pen) => {
+                f.write_str("<path d=\"")?;
+                for (i, [x, y]) in places.iter().enumerate() {
+                    write!(f, "{}{x:.2} {y:.2}", if i == 0 { 'M' } else { 'L' })?;
+                }
+                stroke(f, *pen)
+            }
+            Self::Dots(places, pen) => {
+                f.write_str("<path d=\"")?;
+                for [x, y] in places {
+                    write!(f, "M{x:.2} {y:.2}h0")?;
+                }
+                stroke(f, *pen)
+            }
+            Self::Ring([x, y], radius, (color, width)) => write!(
+                f,
+                "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\" fill=\"none\" stroke=\"{}\" \
+                 stroke-width=\"{width}\"/>",
+                hex(*color)
+            ),
+            Self::Checkers(rectangles, color) => {
+                f.write_str("<path d=\"")?;
+                for [[x, y], [w, h]] in rectangles {
+                    write!(f, "M{x:.2} {y:.2}h{w:.2}v{h:.2}h{:.2}z", -w)?;
+                }
+                write!(f, "\" fill=\"{}\" fill-rule=\"evenodd\"/>", hex(*color))
+            }
+            Self::Text([x, y], size, anchor, text) => {
+                let anchor = match anchor {
+                    Anchor::Start => "start",
+                    Anchor::Middle => "middle",
+                    Anchor::End => "end",
+                };
+                let text = text
+                    .replace('&', "&amp;")
+                    .replace('<', "&lt;")
+                    .replace('>', "&gt;");
+                write!(
+                    f,
+                    "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{size}\" fill=\"{}\" \
+                     text-anchor=\"{anchor}\">{text}</text>",
+                    hex(INK)
+                )
+            }
+        }
+    }
+}
+
+/// The end of a path that is drawn as a line.
+fn stroke(f: &mut fmt::Formatter<'_>, (color, width): Pen) -> fmt::Result {
+    write!(
+        f,
+        "\" fill=\"none\" stroke=\"{}\" stroke-width=\"{width}\" stroke-linecap=\"round\" \
+         stroke-linejoin=\"round\"/>",
+        hex(color)
+    )
 }
 
 #[cfg(test)]

@@ -1,23 +1,28 @@
-//! Figures of AA patterns, as SVG: how points, index space and maps belong together.
+//! Figures of AA patterns, as SVG or PNG: how points, index space and maps belong together.
 //!
 //! They draw the facts of [`strew_core::pattern`] and [`strew_core::map`] for any α, in the manner of the
 //! figures of the paper: [`index`] the index torus and the set region, [`arrangement`] an arrangement with its
 //! image and margin, [`clusters`] the shapes of clusters, [`map`] blocks and their refinement. Equal
 //! calls draw the same text.
 //!
-//! `drawing` is a list of marks that becomes SVG, `panel` a square plot with its own coordinates.
+//! `drawing` is a list of marks that becomes SVG, or that `paint` makes a picture of, with the `letters` of a line
+//! font; `panel` a square plot with its own coordinates.
 
 mod arrangement;
 mod clusters;
 mod drawing;
 mod error;
 mod index;
+mod letters;
 mod map;
+mod mask;
+mod paint;
 mod panel;
 
 pub use arrangement::arrangement;
-pub use clusters::clusters;
+pub use clusters::{clusters, found_clusters};
 pub use drawing::Drawing;
 pub use error::FigureError;
 pub use index::index;
 pub use map::map;
+pub use mask::mask_spectrum;

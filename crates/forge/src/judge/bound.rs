@@ -118,6 +118,30 @@ pub fn complaints(bounds: &[Bound], figures: &[Figures]) -> Vec<Complaint> {
         .collect()
 }
 
+/// Of the complaints about each figure the gravest, in words.
+#[must_use]
+pub fn gravest(complaints: &[Complaint]) -> Vec<String> {
+    let excess = |c: &Complaint| (c.value - c.bound.limit).abs();
+    let mut said: Vec<(&Complaint, usize)> = Vec::new();
+    for complaint in complaints {
+        let same = |(known, _): &&mut (&Complaint, usize)| known.bound == complaint.bound;
+        match said.iter_mut().find(same) {
+            None => said.push((complaint, 1)),
+            Some((known, count)) => {
+                *count += 1;
+                if excess(complaint) > excess(known) || complaint.value.is_nan() {
+                    *known = complaint;
+                }
+            }
+        }
+    }
+    let words = |(complaint, count): (&Complaint, usize)| match count {
+        1 => complaint.to_string(),
+        _ => format!("{complaint} (missed on {count} point sets)"),
+    };
+    said.into_iter().map(words).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

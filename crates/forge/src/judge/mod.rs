@@ -15,7 +15,7 @@ mod figure;
 mod nearness;
 mod panel;
 
-pub use bound::{Bound, Complaint, Side, complaints};
+pub use bound::{Bound, Complaint, Side, complaints, gravest};
 pub use curve::{TARGET_RING, curve_figures};
 pub use figure::{Figure, RING_WIDTH, figures_of_torus, figures_of_window};
 pub(crate) use figure::{figures_of_spectrum, round};

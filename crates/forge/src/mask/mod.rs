@@ -1,0 +1,239 @@
+//! Threshold masks: tileable squares of pixels in an order, for dithering and halftoning.
+//!
+//! Every pixel has a rank, and the pixels of rank below a share are spread evenly at every share, across the seam,
+//! too. The points of a period, scaled to the grid, are the pixels of the first eighth: those of lowest rank. From
+//! there on it is void and cluster (Ulichney 1993): the pixel in the tightest cluster leaves first, and the
+//! largest void is filled next. All energies are integers, so a mask is the same on every machine.
+
+mod spectrum;
+mod voids;
+
+use strew_core::{PeriodicSet, Table};
+
+pub use spectrum::LevelSpectrum;
+use voids::{Choice, Voids};
+
+/// A setting of a mask that is out of range, or a table that has no periods.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{field} is {value}; it must be {allowed}")]
+pub struct MaskError {
+    /// The name of the setting.
+    pub field: String,
+    /// Its value.
+    pub value: String,
+    /// What is allowed.
+    pub allowed: String,
+}
+
+impl From<strew_core::Error> for MaskError {
+    fn from(error: strew_core::Error) -> Self {
+        Self {
+            field: error.field().into(),
+            value: error.value().into(),
+            allowed: error.allowed().into(),
+        }
+    }
+}
+
+/// A square of pixels that tiles, with the order in which they turn on.
+///
+/// ```
+/// use strew_core::Table;
+/// use strew_forge::mask::Mask;
+///
+/// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+/// let mask = Mask::new(&table, 32, 7)?;
+/// let mut ranks = mask.ranks().to_vec();
+/// ranks.sort_unstable();
+/// assert!(ranks.into_iter().eq(0..32 * 32));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mask {
+    size: u32,
+    /// The rank of each pixel, row by row.
+    ranks: Vec<u32>,
+}
+
+impl Mask {
+    /// The smallest side.
+    pub const LEAST_SIZE: u32 = 16;
+    /// The largest side: making it takes some seconds.
+    pub const MOST_SIZE: u32 = 1024;
+
+    /// The mask of a table and a seed, `size` pixels wide and high.
+    ///
+    /// # Errors
+    /// [`MaskError`] if the size is out of range or the table has no periods.
+    ///
+    /// ```
+    /// use strew_core::Table;
+    /// use strew_forge::mask::Mask;
+    ///
+    /// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// assert_eq!(Mask::new(&table, 24, 7)?, Mask::new(&table, 24, 7)?);
+    /// assert_ne!(Mask::new(&table, 24, 7)?, Mask::new(&table, 24, 8)?);
+    /// assert!(Mask::new(&table, 8, 7).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn new(table: &Table, size: u32, seed: u64) -> Result<Self, MaskError> {
+        if !(Self::LEAST_SIZE..=Self::MOST_SIZE).contains(&size) {
+            return Err(MaskError {
+                field: "size".into(),
+                value: size.to_string(),
+                allowed: format!(
+                    "an integer from {} to {} pixels",
+                    Self::LEAST_SIZE,
+                    Self::MOST_SIZE
+                ),
+            });
+        }
+        let pixels = (size * size) as usize;
+        let first = first(table, size, seed)?;
+        let mut ranks = vec![0; pixels];
+        let mut voids = Voids::new(size as usize, &first);
+        voids.choose(Choice::Clusters);
+        for rank in (0..first.len()).rev() {
+            ranks[voids.flip()] = rank as u32;
+        }
+        let mut voids = Voids::new(size as usize, &first);
+        voids.choose(Choice::Voids);
+        for rank in first.len()..pixels {
+            ranks[voids.flip()] = rank as u32;
+        }
+        Ok(Self { size, ranks })
+    }
+
+    /// A mask of ranks, one for each pixel, row by row: to compare other masks with.
+    ///
+    /// # Errors
+    /// [`MaskError`] unless they are each number below size² once.
+    ///
+    /// ```
+    /// use strew_forge::mask::Mask;
+    ///
+    /// assert!(Mask::from_ranks(2, vec![0, 2, 3, 1]).is_ok());
+    /// assert!(Mask::from_ranks(2, vec![0, 2, 3, 3]).is_err());
+    /// ```
+    pub fn from_ranks(size: u32, ranks: Vec<u32>) -> Result<Self, MaskError> {
+        let pixels = (size as usize).pow(2);
+        let mut seen = vec![false; pixels];
+        let is_new = |&rank: &u32| match seen.get_mut(rank as usize) {
+            Some(seen) => !std::mem::replace(seen, true),
+            None => false,
+        };
+        if ranks.len() != pixels || !ranks.iter().all(is_new) {
+            return Err(MaskError {
+                field: "ranks".into(),
+                value: format!("{} numbers", ranks.len()),
+                allowed: format!("each number below {pixels} once"),
+            });
+        }
+        Ok(Self { size, ranks })
+    }
+
+    /// The side in pixels.
+    ///
+    /// ```
+    /// use strew_forge::mask::Mask;
+    ///
+    /// assert_eq!(Mask::from_ranks(2, vec![0, 2, 3, 1])?.size(), 2);
+    /// # Ok::<(), strew_forge::mask::MaskError>(())
+    /// ```
+    #[must_use]
+    pub const fn size(&self) -> u32 {
+        self.size
+    }
+
+    /// The rank of each pixel, row by row: each number below size² once.
+    ///
+    /// ```
+    /// use strew_forge::mask::Mask;
+    ///
+    /// assert_eq!(Mask::from_ranks(2, vec![0, 2, 3, 1])?.ranks(), [0, 2, 3, 1]);
+    /// # Ok::<(), strew_forge::mask::MaskError>(())
+    /// ```
+    #[must_use]
+    pub fn ranks(&self) -> &[u32] {
+        &self.ranks
+    }
+
+    /// The thresholds of pixels, from 0 up to 2^`bits`: rank · 2^`bits` / size², rounded down. A pixel is on
+    /// where the gray, from 0 to 2^`bits`, is above its threshold.
+    ///
+    /// ```
+    /// use strew_forge::mask::Mask;
+    ///
+    /// let mask = Mask::from_ranks(2, vec![0, 2, 3, 1])?;
+    /// assert!(mask.thresholds(8).eq([0, 128, 192, 64]));
+    /// # Ok::<(), strew_forge::mask::MaskError>(())
+    /// ```
+    pub fn thresholds(&self, bits: u8) -> impl Iterator<Item = u16> + '_ {
+        let pixels = self.ranks.len() as u64;
+        let levels = 1u64 << bits.min(16);
+        let ranks = self.ranks.iter();
+        ranks.map(move |&rank| (u64::from(rank) * levels / pixels) as u16)
+    }
+
+    /// The mask as a gray PNG file of 8 or 16 bits.
+    ///
+    /// # Errors
+    /// [`MaskError`] for another number of bits.
+    ///
+    /// ```
+    /// use strew_forge::mask::Mask;
+    ///
+    /// let mask = Mask::from_ranks(2, vec![0, 2, 3, 1])?;
+    /// assert!(mask.to_png(16)?.starts_with(b"\x89PNG"));
+    /// assert!(mask.to_png(4).is_err());
+    /// # Ok::<(), strew_forge::mask::MaskError>(())
+    /// ```
+    pub fn to_png(&self, bits: u8) -> Result<Vec<u8>, MaskError> {
+        let wrong = |allowed: String| MaskError {
+            field: "bits".into(),
+            value: bits.to_string(),
+            allowed,
+        };
+        let thresholds = self.thresholds(bits);
+        let (depth, bytes): (_, Vec<u8>) = match bits {
+            8 => (png::BitDepth::Eight, thresholds.map(|v| v as u8).collect()),
+            16 => (
+                png::BitDepth::Sixteen,
+                thresholds.flat_map(u16::to_be_bytes).collect(),
+            ),
+            _ => return Err(wrong("8 or 16".into())),
+        };
+        let write = || {
+            let mut file = vec![];
+            let mut encoder = png::Encoder::new(&mut file, self.size, self.size);
+            encoder.set_color(png::ColorType::Grayscale);
+            encoder.set_depth(depth);
+            let mut writer = encoder.write_header()?;
+            writer.write_image_data(&bytes)?;
+            writer.finish()?;
+            Ok::<_, png::EncodingError>(file)
+        };
+        write().map_err(|error| wrong(error.to_string()))
+    }
+}
+
+/// The pixels of the first eighth: those of the points of lowest rank in a period on the grid, each once.
+fn first(table: &Table, size: u32, seed: u64) -> Result<Vec<usize>, MaskError> {
+    let wanted = u64::from(size) * u64::from(size) / 8;
+    let set = PeriodicSet::new(table.clone(), wanted)?;
+    let set = set.side(f64::from(size))?.seed(seed);
+    let mut points: Vec<(f64, usize)> = set
+        .iter()
+        .map(|point| {
+            let [x, y] = point.at().map(|v| v as usize);
+            let rank = set.rank(point.id()).unwrap_or(1.0);
+            (rank, y * size as usize + x)
+        })
+        .collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut is_taken = vec![false; (size * size) as usize];
+    let mut pixels: Vec<usize> = points.into_iter().map(|(_, pixel)| pixel).collect();
+    pixels.retain(|&pixel| !std::mem::replace(&mut is_taken[pixel], true));
+    pixels.truncate(wanted as usize);
+    Ok(pixels)
+}
