@@ -1,0 +1,40 @@
+//! Errors of the library as `strew.StrewError`.
+
+use pyo3::{prelude::*, types::PyDict};
+use strew::service::Error;
+
+/// The Python exception of an error.
+pub fn raised(py: Python<'_>, error: &Error) -> PyErr {
+    exception(py, error).unwrap_or_else(|failed| failed)
+}
+
+fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
+    let faults = error.faults().iter().map(|fault| {
+        let told = PyDict::new(py);
+        told.set_item("field", &fault.field)?;
+        told.set_item("value", &fault.value)?;
+        told.set_item("detail", &fault.detail)?;
+        told.set_item("allowed", &fault.allowed)?;
+        Ok(told)
+    });
+    let faults = faults.collect::<PyResult<Vec<_>>>()?;
+    let class = py.import("strew._errors")?.getattr("StrewError")?;
+    let made = class.call1((error.to_string(), slug(error), faults))?;
+    Ok(PyErr::from_value(made))
+}
+
+/// The name of a kind of error, as in the problem documents of REST.
+fn slug(error: &Error) -> String {
+    let name = format!("{:?}", error.kind());
+    let mut slug = String::new();
+    for (i, letter) in name.char_indices() {
+        if i > 0 && letter.is_ascii_uppercase() {
+            slug.push('-');
+        }
+        slug.push(letter.to_ascii_lowercase());
+    }
+    match slug.as_str() {
+        "invalid" => "invalid-query".into(),
+        _ => slug,
+    }
+}

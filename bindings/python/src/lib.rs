@@ -1,0 +1,109 @@
+//! The native part of the Python package: the library's answers as Python objects, and nothing else.
+//!
+//! Queries come in as the text that REST takes, and what is wrong leaves as a `StrewError`. Work is done without
+//! the interpreter's lock.
+
+mod array;
+mod arrow;
+mod columns;
+mod failure;
+mod measured;
+mod plan;
+
+use std::sync::OnceLock;
+
+use pyo3::{
+    exceptions::{PyRuntimeError, PyValueError},
+    prelude::*,
+    types::PyBytes,
+};
+use strew::{
+    raster::{Image, Limits},
+    service::Library,
+};
+
+use columns::Columns;
+use failure::raised;
+use measured::Report;
+use plan::Plan;
+
+/// The library, which is made when it is first used.
+fn library() -> PyResult<&'static Library> {
+    static LIBRARY: OnceLock<Result<Library, String>> = OnceLock::new();
+    let library = LIBRARY.get_or_init(|| Library::new().map_err(|error| error.to_string()));
+    let failed = |error: &String| PyRuntimeError::new_err(error.clone());
+    library.as_ref().map_err(failed)
+}
+
+/// Plans the query of a body of `POST /v1/points:query`.
+#[pyfunction]
+#[pyo3(name = "plan")]
+fn planned(py: Python<'_>, body: &str) -> PyResult<Plan> {
+    let library = library()?;
+    let made = py.detach(|| library.plan(body.as_bytes()));
+    let (planned, _) = made.map_err(|error| raised(py, &error))?;
+    Ok(Plan::new(planned))
+}
+
+/// The document of `GET /v1/points/{id}` without its query.
+#[pyfunction]
+fn point(py: Python<'_>, id: &str, address: &str) -> PyResult<String> {
+    let library = library()?;
+    let found = py.detach(|| library.point(id, address));
+    json(&found.map_err(|error| raised(py, &error))?)
+}
+
+/// The list of `GET /v1/nearest`.
+#[pyfunction]
+fn nearest(py: Python<'_>, address: &str) -> PyResult<String> {
+    let library = library()?;
+    let found = py.detach(|| library.nearest(address));
+    json(&found.map_err(|error| raised(py, &error))?)
+}
+
+/// Holds a field, a body of `POST /v1/fields`; its digest.
+#[pyfunction]
+fn hold_field(py: Python<'_>, body: &str) -> PyResult<String> {
+    let library = library()?;
+    let held = py.detach(|| library.hold_field(body));
+    held.map_err(|error| raised(py, &error))
+}
+
+/// A picture's width, height and darkness in linear light, as 16-bit words, row by row from the top.
+#[pyfunction]
+fn darkness<'py>(
+    py: Python<'py>,
+    picture: &[u8],
+    invert: bool,
+) -> PyResult<(usize, usize, Bound<'py, PyBytes>)> {
+    let read = py.detach(|| {
+        let image = Image::read_picture(std::io::Cursor::new(picture), Limits::FILES)?;
+        let words = image.darkness(invert);
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_ne_bytes()).collect();
+        Ok((image.size, bytes))
+    });
+    let read: Result<_, strew::raster::RasterError> = read;
+    let ([width, height], bytes) = read
+        .map_err(|error| PyValueError::new_err(format!("the picture cannot be read: {error}")))?;
+    Ok((width, height, PyBytes::new(py, &bytes)))
+}
+
+/// Something as JSON.
+fn json(value: &impl serde::Serialize) -> PyResult<String> {
+    serde_json::to_string(value).map_err(|error| PyRuntimeError::new_err(error.to_string()))
+}
+
+#[pymodule]
+fn _strew(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<Plan>()?;
+    module.add_class::<Columns>()?;
+    module.add_class::<array::Array>()?;
+    module.add_class::<Report>()?;
+    module.add_function(wrap_pyfunction!(planned, module)?)?;
+    module.add_function(wrap_pyfunction!(point, module)?)?;
+    module.add_function(wrap_pyfunction!(nearest, module)?)?;
+    module.add_function(wrap_pyfunction!(hold_field, module)?)?;
+    module.add_function(wrap_pyfunction!(darkness, module)?)?;
+    module.add_function(wrap_pyfunction!(measured::measure, module)?)
+}

@@ -1,0 +1,306 @@
+"""Sets of points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._query import OF_ANSWERS, SHAPES, Body, address, body
+
+if TYPE_CHECKING:
+    from ._source import Plan, Source
+    from ._strew import Columns
+
+Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of a set."""
+
+    #: Its stable id.
+    id: str
+    x: float
+    y: float
+    #: How far it is from the place whose neighbors were wanted.
+    distance: float | None = None
+    #: Its attributes by name.
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def _of(cls, found: dict[str, Any]) -> Point:
+        own = {name: found.pop(name) for name in ("id", "x", "y", "distance") if name in found}
+        found.pop("block", None)
+        return cls(**own, attributes=found)
+
+
+class PointSet:
+    """The points of a query, made when they are first needed.
+
+    A query without a region is the whole plane: it has :meth:`chunk`, :meth:`within`, :meth:`nearest` and
+    :meth:`point`. With a region it has a length and columns, too. A set is pickled as its query.
+
+    >>> import strew
+    >>> forest = strew.points(spacing=2, seed=5)
+    >>> chunk = forest.chunk(64, -3, 2)
+    >>> chunk.origin
+    (-192.0, 128.0)
+    >>> nearest = forest.nearest((100, -3), k=2)
+    >>> forest.point(nearest[0].id).x == nearest[0].x
+    True
+    """
+
+    def __init__(self, source: Source, query: Body) -> None:
+        self._source = source
+        self._body = query
+        self._plan: Plan | None = None
+        self._made: Columns | None = None
+        self._xy: Floats | None = None
+
+    @property
+    def source(self) -> Source:
+        """Where the points come from: this process or a daemon."""
+        return self._source
+
+    @property
+    def body(self) -> Body:
+        """The query in JSON: the body of ``POST /v1/points:query``."""
+        return dict(self._body)
+
+    def plan(self) -> Plan:
+        """The plan: what the points are made from. Raises :class:`StrewError` for a query that is not valid."""
+        if self._plan is None:
+            self._plan = self._source.plan(self._body)
+        return self._plan
+
+    @property
+    def query(self) -> dict[str, Any]:
+        """The query with everything filled in, as answers of REST repeat it."""
+        return self.plan().query()
+
+    @property
+    def tables(self) -> list[str]:
+        """The digests of the tables that answer: ``table=`` pins one."""
+        return self.plan().tables()
+
+    @property
+    def next(self) -> str | None:
+        """With a limit: the cursor of the points after these, if there are any."""
+        return self.plan().next()
+
+    def count(self) -> int:
+        """The exact number of points, of any size, without making them.
+
+        >>> import strew
+        >>> strew.points(bbox=(-5e8, -5e8, 5e8, 5e8), spacing=1).count()
+        1000000000097677487
+        """
+        return self.plan().count()
+
+    def __len__(self) -> int:
+        return self.count()
+
+    # -- other regions and parts of the same points ------------------------------------------------------------
+
+    def _with(self, **members: Any) -> PointSet:
+        kept = {name: value for name, value in self._body.items() if name not in members}
+        return self._source.query({**kept, **{name: value for name, value in members.items() if value is not None}})
+
+    def within(self, region: Any = None, **shape: Any) -> PointSet:
+        """The same set of points in another region: ``bbox``, ``circle``, ``polygon``, ``chunk`` or ``region``."""
+        if region is not None:
+            shape["region"] = region
+        unknown = set(shape) - set(SHAPES) - {"region"}
+        if unknown or not shape:
+            raise TypeError(f"within takes one of region, {', '.join(SHAPES)}")
+        return self._with(region=body(shape)["region"], offset=None, limit=None, cursor=None)
+
+    def chunk(self, size: float, x: int, y: int) -> PointSet:
+        """The points of a square of the world grid. Coordinates are relative to its corner, :attr:`origin`."""
+        return self.within(chunk=(size, x, y))
+
+    def split(self, parts: int) -> list[PointSet]:
+        """The points in up to so many parts of the same size, give or take one, in their order.
+
+        Each part is a set by itself, which another process or machine can make from its pickle.
+
+        >>> import pickle, strew
+        >>> whole = strew.points(bbox=(0, 0, 50, 50), spacing=1, seed=2)
+        >>> parts = [pickle.loads(pickle.dumps(part)) for part in whole.split(3)]
+        >>> [len(part) for part in parts], len(whole)
+        ([833, 833, 832], 2498)
+        """
+        places = self.plan().split(parts)
+        return [self._with(cursor=cursor, limit=count, offset=None) for cursor, count in places]
+
+    # -- single points -----------------------------------------------------------------------------------------
+
+    def _set(self, **more: Any) -> str:
+        """The address of the set alone."""
+        values = {**more, **{name: value for name, value in self._body.items() if name not in OF_ANSWERS}}
+        if "count" in values and "region" in self._body:
+            del values["count"]
+            values["spacing"] = self.query["spacing"]
+        if isinstance(values.get("field"), Mapping):
+            values["field"] = self._source.hold_field(values["field"])
+        return address({name: value for name, value in values.items() if value is not None})
+
+    def nearest(self, at: Any, k: int | None = None, radius: float | None = None) -> list[Point]:
+        """The points nearest to a place, nearest first: one, or ``k``, or all within ``radius``."""
+        found = self._source.nearest(self._set(at=list(at), k=k, radius=radius))
+        return [Point._of(point) for point in found]
+
+    def point(self, id: str) -> Point:
+        """The point of an id."""
+        return Point._of(self._source.point(id, self._set()))
+
+    # -- columns -----------------------------------------------------------------------------------------------
+
+    def columns(self) -> Columns:
+        """All columns, as memory that numpy and Arrow look at."""
+        if self._made is None:
+            self._made = self.plan().columns()
+        return self._made
+
+    @property
+    def xy(self) -> Floats:
+        """The coordinates: an array of pairs, read only."""
+        if self._xy is None:
+            self._xy = self.plan().coordinates() if self._made is None else np.asarray(self._made.at())
+        return self._xy
+
+    @property
+    def x(self) -> Floats:
+        """The first coordinates."""
+        return self.xy[:, 0]
+
+    @property
+    def y(self) -> Floats:
+        """The second coordinates."""
+        return self.xy[:, 1]
+
+    @property
+    def origin(self) -> tuple[float, float] | None:
+        """What coordinates are relative to, if not to the world's origin: the corner of a chunk."""
+        origin = self.columns().origin
+        return None if origin is None else (origin[0], origin[1])
+
+    @property
+    def ids(self) -> np.ndarray[Any, np.dtype[np.int64]]:
+        """The ids: an array of pairs of integers. As text an id is ``x:y``."""
+        return np.asarray(self.columns().ids())
+
+    @property
+    def names(self) -> list[str]:
+        """The names of the columns beside ids and coordinates: ``layer``, if there are layers, and attributes."""
+        return self.columns().names()
+
+    def _further(self, name: str) -> tuple[np.ndarray[Any, Any], list[str] | None]:
+        columns = self.columns()
+        try:
+            place = columns.names().index(name)
+        except ValueError:
+            known = ", ".join(["x", "y", *columns.names()])
+            raise KeyError(f"no column {name!r}; there are {known}") from None
+        values, names = columns.further(place)
+        return np.asarray(values), names
+
+    def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
+        """A column: numbers, or names. Where a layer lacks it there is NaN, or the empty name.
+
+        >>> import strew
+        >>> trees = strew.points(bbox=(0, 0, 9, 9), spacing=3, attributes=["variant"], variants={"oak": 3, "birch": 1})
+        >>> sorted(set(trees["variant"].tolist()))
+        ['birch', 'oak']
+        >>> trees.codes("variant")[0].dtype
+        dtype('int32')
+        """
+        if name in ("x", "y"):
+            return self.xy[:, "xy".index(name)]
+        values, names = self._further(name)
+        # −1, the code of what is missing, is the last one.
+        return values if names is None else np.array([*names, ""])[values]
+
+    def codes(self, name: str) -> tuple[np.ndarray[Any, np.dtype[np.int32]], list[str]]:
+        """A column of names as indices, without a copy, and the names. −1 stands where a layer lacks it."""
+        values, names = self._further(name)
+        if names is None:
+            raise KeyError(f"{name!r} is a column of numbers")
+        return values, names
+
+    def __iter__(self) -> Iterator[Point]:
+        columns = {name: self[name] for name in self.names}
+        for i, (id, at) in enumerate(zip(self.ids.tolist(), self.xy.tolist())):
+            attributes = {name: values[i].item() for name, values in columns.items()}
+            yield Point(f"{id[0]}:{id[1]}", at[0], at[1], attributes=attributes)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray[Any, Any]:
+        if copy is None:
+            return self.xy if dtype is None else self.xy.astype(dtype, copy=False)
+        return np.array(self.xy, dtype=dtype, copy=copy)
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """All columns as an Arrow stream: what ``pyarrow.table``, polars and duckdb take."""
+        import json
+
+        metadata = {
+            "strew.query": json.dumps(self.query, separators=(",", ":")),
+            "strew.table": json.dumps(self.tables),
+            "strew.count": str(len(self.columns())),
+        }
+        return self.columns().arrow_stream(metadata)
+
+    # -- documents ---------------------------------------------------------------------------------------------
+
+    def document(self, format: str, **options: Any) -> bytes:
+        """The points in a format of REST: ``json``, ``csv``, ``geojson``, ``ply``, ``npy``, ``svg``, ``png``, …
+
+        ``options`` are ``decimals``, ``size``, ``summary`` and ``crs``.
+
+        >>> import strew
+        >>> print(strew.points(bbox=(0, 0, 2, 1), spacing=1, seed=1).document("csv", decimals=2).decode())
+        id,x,y
+        5:1,1.97,0.09
+        2:4,0.23,0.77
+        3:6,1.46,0.70
+        <BLANKLINE>
+        """
+        given = {"format": format, **options}
+        texts = [(name, "on" if value is True else "off" if value is False else str(value)) for name, value in given.items()]
+        return self.plan().document(texts)
+
+    def write(self, path: str | Path, format: str | None = None, **options: Any) -> None:
+        """Writes a document; the ending of the path is the format."""
+        ending = Path(path).suffix.lstrip(".").lower()
+        content = self.document(format or ending, **options)
+        Path(path).write_bytes(content)
+
+    def _repr_svg_(self) -> str | None:
+        """A picture, for notebooks."""
+        if "region" not in self._body or self.count() > 20_000:
+            return None
+        return self.document("svg").decode()
+
+    # -- identity ----------------------------------------------------------------------------------------------
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, PointSet):
+            return NotImplemented
+        from ._query import text
+
+        return repr(self._source) == repr(other._source) and text(self._body) == text(other._body)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        from ._query import text
+
+        shown = text(self._body)
+        return f"<points of {self._source!r}: {shown if len(shown) < 300 else shown[:300] + '…'}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return PointSet, (self._source, self._body)

@@ -1,0 +1,143 @@
+"""Queries: keywords as the body, and as the address, that REST takes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypedDict, Union
+from urllib.parse import quote
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeAlias
+
+#: A query as the body of ``POST /v1/points:query``.
+Body: TypeAlias = "dict[str, Any]"
+Numbers: TypeAlias = "Union[Sequence[float], np.ndarray[Any, Any]]"
+
+SHAPES = ("bbox", "circle", "polygon", "chunk")
+#: Members of a query that are not about its set of points.
+OF_ANSWERS = ("region", "offset", "limit", "cursor", "format", "decimals", "size", "summary", "crs")
+
+
+class Query(TypedDict, total=False):
+    """The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves."""
+
+    #: min x, min y, max x, max y; points with min ≤ p < max.
+    bbox: Numbers
+    #: x, y, radius.
+    circle: Numbers | Mapping[str, Any]
+    #: Vertices, GeoJSON, or an object with ``__geo_interface__``.
+    polygon: Any
+    #: size, column, row of a square of the world grid; coordinates are relative to its corner.
+    chunk: Numbers | Mapping[str, Any]
+    #: Any region as JSON has it, with ``include`` and ``exclude``.
+    region: Mapping[str, Any]
+    #: The mean spacing; or one of the next three.
+    spacing: float
+    #: Points per unit of area.
+    density: float
+    #: No two points are nearer than this.
+    min_distance: float
+    #: The number of points in the region, exactly.
+    count: int
+    #: Which set of points; 0 is the plain pattern.
+    seed: int
+    #: The noise profile: ``blue`` by default.
+    profile: str
+    alpha: str
+    map: str
+    #: The digest of the table that must answer.
+    table: str
+    #: ``"off"``, ``"on"`` or a strength.
+    warp: str | float | bool
+    #: The share of points to keep, those of the lowest rank.
+    keep: float
+    #: What thins the points out: a name, or a field as JSON has it. See :func:`strew.raster`.
+    field: str | Mapping[str, Any]
+    #: Further columns: angle, scale, variant, rank, u1 to u16.
+    attributes: str | Sequence[str]
+    scale_range: Numbers
+    scale_ranges: Mapping[str, Any]
+    variants: Mapping[str, float]
+    spread: str
+    only: str
+    preset: str
+    #: Several sets at once: a list of dicts with a ``name`` each.
+    layers: Sequence[Mapping[str, Any]]
+    offset: int
+    limit: int
+    cursor: str
+
+
+def _region(shape: str, value: Any) -> dict[str, Any]:
+    if hasattr(value, "__geo_interface__"):
+        value = value.__geo_interface__
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    # What is not of this form is passed on, to be refused in the words of REST.
+    if isinstance(value, (list, tuple)):
+        if shape == "circle" and len(value) == 3:
+            value = {"center": [value[0], value[1]], "radius": value[2]}
+        elif shape == "chunk" and len(value) == 3:
+            value = {"size": value[0], "x": value[1], "y": value[2]}
+        elif shape == "polygon":
+            ring = [list(vertex) for vertex in value]
+            if ring and ring[0] != ring[-1]:
+                ring.append(ring[0])
+            value = {"type": "Polygon", "coordinates": [ring]}
+    return {shape: value}
+
+
+def body(keywords: Mapping[str, Any]) -> Body:
+    """Keywords as a body. Those that are ``None`` are left out."""
+    made: Body = {}
+    for name, value in keywords.items():
+        if value is None:
+            continue
+        if name in SHAPES:
+            # Several shapes are refused together, with all their names.
+            made.setdefault("region", {})
+            made["region"] = {**made["region"], **_region(name, value)}
+        elif name == "attributes" and isinstance(value, str):
+            made[name] = [word.strip() for word in value.split(",")]
+        else:
+            made[name] = value
+    return made
+
+
+def text(body: Mapping[str, Any]) -> str:
+    """A body as JSON."""
+    return json.dumps(body, default=_plain, separators=(",", ":"))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, Mapping):
+        return dict(value)
+    if hasattr(value, "__geo_interface__"):
+        return value.__geo_interface__
+    raise TypeError(f"a query cannot hold a {type(value).__name__}")
+
+
+def address(values: Mapping[str, Any]) -> str:
+    """Values as the parameters of an address."""
+    pairs = (f"{quote(name, safe='')}={quote(_text(value), safe=',:')}" for name, value in values.items())
+    return "&".join(pairs)
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    if isinstance(value, Mapping):
+        pairs = ((name, part if isinstance(part, (list, tuple)) else [part]) for name, part in value.items())
+        return ",".join(":".join([str(name), *map(_text, part)]) for name, part in pairs)
+    if isinstance(value, (list, tuple)):
+        return ",".join(map(_text, value))
+    return repr(value) if isinstance(value, float) else str(value)

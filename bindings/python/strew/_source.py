@@ -1,0 +1,98 @@
+"""Where points come from: this process, or a daemon. Both have the same functions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from ._fields import darkness, raster
+from ._points import PointSet
+from ._query import Body, Query, body
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._strew import Columns
+
+
+class Plan(Protocol):
+    """A query that is understood, and counted when that is wanted."""
+
+    def count(self) -> int: ...
+    def query(self) -> dict[str, Any]: ...
+    def tables(self) -> list[str]: ...
+    def next(self) -> str | None: ...
+    def columns(self) -> Columns: ...
+    def coordinates(self) -> np.ndarray[Any, np.dtype[np.float64]]: ...
+    def split(self, parts: int) -> list[tuple[str, int]]: ...
+    def document(self, options: Sequence[tuple[str, str]]) -> bytes: ...
+
+
+class Source:
+    """Where points come from."""
+
+    def plan(self, query: Body) -> Plan:
+        raise NotImplementedError
+
+    def point(self, id: str, address: str) -> dict[str, Any]:
+        raise NotImplementedError
+
+    def nearest(self, address: str) -> list[dict[str, Any]]:
+        raise NotImplementedError
+
+    def hold_field(self, field: Any) -> str:
+        raise NotImplementedError
+
+    #: Whether a query is checked when it is made, and not when its answer is first needed.
+    checks_at_once = False
+
+    def points(self, **query: Unpack[Query]) -> PointSet:
+        """The points of a query.
+
+        >>> import strew
+        >>> trees = strew.points(circle=(0, 0, 50), spacing=4, seed=3, attributes=["angle"])
+        >>> trees["angle"].shape == (len(trees),)
+        True
+        """
+        return self.query(body(query))
+
+    def query(self, query: Body) -> PointSet:
+        """The points of a query in JSON, the body of ``POST /v1/points:query``, as a dict.
+
+        >>> import strew
+        >>> strew.query({"region": {"bbox": [0, 0, 10, 10]}, "spacing": 1, "seed": 7}).count()
+        102
+        """
+        made = PointSet(self, dict(query))
+        if self.checks_at_once and "region" in query:
+            made.plan()
+        return made
+
+    def stipple(
+        self,
+        image: Any,
+        points: int,
+        *,
+        invert: bool = False,
+        gamma: float = 1.0,
+        seed: int = 1,
+        profile: str = "blue",
+    ) -> PointSet:
+        """A picture as exactly ``points`` dots, in pixels of the picture, x to the right and y upward.
+
+        ``image`` is a path, the bytes of a PNG, JPEG, WebP, TIFF or npy file, or an array: rows of light from 0 to
+        1 if it is of floats, else of sRGB with up to four channels. With ``invert`` dots are where it is light.
+
+        >>> import numpy as np, strew
+        >>> ramp = np.tile(np.linspace(0, 1, 64), (64, 1))
+        >>> dots = strew.stipple(ramp, 500)
+        >>> len(dots), bool(dots.x.mean() < 32)
+        (500, True)
+        """
+        dark = darkness(image, invert)
+        height, width = dark.shape
+        field = raster(dark, bbox=(0, 0, width, height), edges="clamp", gamma=gamma)
+        query = {"bbox": (0, 0, width, height), "count": points, "seed": seed, "profile": profile, "field": field}
+        return self.query(body(query))

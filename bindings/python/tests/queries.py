@@ -1,0 +1,77 @@
+"""Random queries, the same in every run."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+NAMES = ["oak", "birch", "fir"]
+
+
+def random_query(seed: int) -> dict[str, Any]:
+    """A valid query of up to a few hundred points."""
+    chance = random.Random(seed)
+    query: dict[str, Any] = _set(chance)
+    region = _region(chance)
+    if chance.random() < 0.15:
+        layers = [dict(_set(chance), name=f"layer{i}") for i in range(chance.randint(2, 3))]
+        for layer in layers:
+            if layer.pop("count", None):
+                layer["spacing"] = 2
+        if chance.random() < 0.5:
+            layers[-1]["clear_of"] = {"layer0": chance.uniform(0.1, 1)}
+        query = {"layers": layers}
+    query["region"] = region
+    if chance.random() < 0.1:
+        query["offset"] = chance.randint(0, 20)
+    if chance.random() < 0.1:
+        query["limit"] = chance.randint(1, 50)
+    return query
+
+
+def _region(chance: random.Random) -> dict[str, Any]:
+    x, y = (chance.uniform(-1, 1) * 10 ** chance.randint(0, 6) for _ in "xy")
+    size = chance.uniform(2, 30)
+    kind = chance.randrange(5)
+    if kind == 0:
+        return {"circle": {"center": [x, y], "radius": size / 2}}
+    if kind == 1:
+        return {"chunk": {"size": chance.choice([8, 16, 10.5]), "x": chance.randint(-9, 9), "y": chance.randint(-9, 9)}}
+    if kind == 2:
+        ring = [[x, y], [x + size, y + 1], [x + 2, y + size], [x, y]]
+        return {"polygon": {"type": "Polygon", "coordinates": [ring]}}
+    return {"bbox": [x, y, x + size, y + chance.uniform(2, 30)]}
+
+
+def _set(chance: random.Random) -> dict[str, Any]:
+    query: dict[str, Any] = {}
+    kind = chance.randrange(8)
+    if kind == 0:
+        query["density"] = chance.uniform(0.1, 2)
+    elif kind == 1:
+        query["count"] = chance.randint(1, 200)
+    elif kind == 2:
+        query["min_distance"] = chance.uniform(0.5, 2)
+    else:
+        query["spacing"] = chance.uniform(0.7, 4)
+    if chance.random() < 0.8:
+        query["seed"] = chance.choice([chance.randrange(1 << 64), chance.randrange(100)])
+    if chance.random() < 0.2 and kind != 2:
+        query["profile"] = chance.choice(["spaced", "step", "green", "pattern"])
+    if chance.random() < 0.2:
+        query["warp"] = chance.choice(["off", "on", 0.5])
+    if chance.random() < 0.2:
+        query["keep"] = chance.uniform(0.1, 1)
+    if chance.random() < 0.4:
+        query["attributes"] = chance.sample(["angle", "scale", "rank", "u1", "u16", "variant"], chance.randint(1, 4))
+        if "variant" in query["attributes"]:
+            query["variants"] = {name: chance.uniform(0.5, 3) for name in chance.sample(NAMES, chance.randint(1, 3))}
+    if chance.random() < 0.15 and kind != 2:
+        query["field"] = chance.choice(
+            [
+                {"noise": {"wavelength": chance.uniform(5, 20), "seed": chance.randrange(9)}},
+                {"radial": {"center": [0, 0], "radii": [5, 50]}},
+                {"invert": {"ramp": {"from": [0, 0], "to": [9, 9]}}},
+            ]
+        )
+    return query

@@ -1,0 +1,223 @@
+"""The same points, the same documents and the same words as the real daemon."""
+
+from __future__ import annotations
+
+import json
+import threading
+import urllib.error
+import urllib.request
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
+
+import numpy as np
+import pytest
+from queries import random_query
+
+import strew
+
+QUERIES = 1000
+
+
+def asked(url: str, path: str, body: Any = None) -> bytes:
+    data = None if body is None else json.dumps(body).encode()
+    with urllib.request.urlopen(urllib.request.Request(url + path, data)) as response:
+        content: bytes = response.read()
+        return content
+
+
+def same(a: strew.PointSet, b: strew.PointSet) -> None:
+    assert a.ids.tobytes() == b.ids.tobytes()
+    assert a.xy.tobytes() == b.xy.tobytes()
+    assert (a.origin, a.names) == (b.origin, b.names)
+    for name in a.names:
+        one, other = a[name], b[name]
+        assert one.dtype == other.dtype and one.tobytes() == other.tobytes(), name
+        if one.dtype.kind == "U":
+            assert a.codes(name)[1] == b.codes(name)[1]
+
+
+def test_random_queries_have_the_points_of_the_daemon(remote: strew.Daemon, url: str) -> None:
+    counts, refused = [], 0
+    for seed in range(QUERIES):
+        query = random_query(seed)
+        there = remote.query(query)
+        try:
+            here = strew.query(query)
+        except strew.StrewError as error:
+            # A number of points where the field leaves no place for them.
+            assert (str(error), error.kind, error.faults) == refusal(there.columns)
+            refused += 1
+            continue
+        same(here, there)
+        counts.append(len(here))
+        if seed % 10 == 0:
+            # Over plain HTTP: every byte of the documents.
+            for name in ("csv", "json"):
+                body = {**query, "format": name}
+                assert here.document(name) == asked(url, "/v1/points:query", body)
+            assert there.count() == len(here)
+            assert there.query == here.query
+            assert there.next == here.next and there.tables == here.tables
+    assert refused < QUERIES / 50 and max(counts) > 100
+
+
+WRONG: list[dict[str, Any]] = [
+    {},
+    {"bbox": (0, 0, 1, 1)},
+    {"spacing": 1, "region": {}},
+    {"bbox": (0, 0, 0, 1), "spacing": 1},
+    {"bbox": (0, 0, 1), "spacing": 1},
+    {"bbox": "0,0,1,1", "spacing": 1},
+    {"bbox": (0, 0, 1, 1), "circle": (0, 0, 1), "spacing": 1},
+    {"circle": (0, 0, -1), "spacing": 1},
+    {"circle": (0, 0), "spacing": 1},
+    {"chunk": (64, 0.5, 0), "spacing": 1},
+    {"polygon": [(0, 0), (1, 1)], "spacing": 1},
+    {"polygon": {"type": "Point"}, "spacing": 1},
+    {"bbox": (0, 0, 1e300, 1), "spacing": 1},
+    {"bbox": (0, 0, 1, 1), "spacing": -1},
+    {"bbox": (0, 0, 1, 1), "spacing": "wide"},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "density": 1},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "seed": -1},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "seed": 1.5},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "sed": 1},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "profile": "blu"},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "alpha": "7"},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "map": "xl"},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "table": "00"},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "table": "0" * 64},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "warp": 3},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "keep": 0},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "attributes": ["size"]},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "attributes": ["variant"]},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "scale_range": (2, 1), "attributes": "scale"},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "field": "nowhere"},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "field": {"noise": {"wavelength": -1, "octaves": 99}}},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "cursor": "00"},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "limit": 0},
+    {"bbox": (0, 0, 1, 1), "layers": [{"name": "a", "spacing": 1}, {"name": "a", "spacing": 0}]},
+    {"bbox": (0, 0, 1, 1), "layers": []},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "preset": "none"},
+    {"circle": (0, 0, 1e7), "spacing": 1e-3},
+]
+
+
+def refusal(points: Any) -> tuple[str, str, list[dict[str, Any]]]:
+    with pytest.raises(strew.StrewError) as raised:
+        points()
+    return str(raised.value), raised.value.kind, raised.value.faults
+
+
+@pytest.mark.parametrize("keywords", WRONG, ids=lambda keywords: ",".join(keywords) or "nothing")
+def test_wrong_queries_are_refused_with_the_same_words(
+    remote: strew.Daemon, url: str, keywords: dict[str, Any]
+) -> None:
+    here = refusal(lambda: strew.points(**keywords).columns())
+    assert here == refusal(lambda: remote.points(**keywords).columns())
+    body = strew._query.text(strew._query.body(keywords))
+    with pytest.raises(urllib.error.HTTPError) as raised:
+        urllib.request.urlopen(f"{url}/v1/points:query", body.encode())
+    problem = json.loads(raised.value.read())
+    assert here == (problem["detail"], problem["type"].rsplit(":")[-1], problem.get("errors", []))
+
+
+def test_too_many_points_are_refused(remote: strew.Daemon) -> None:
+    query = {"bbox": (0, 0, 1e6, 1e6), "spacing": 1, "seed": 0}
+    here, there = strew.points(**query), remote.points(**query)
+    assert here.count() == there.count() > 10**11
+    for points in (here, there):
+        message, kind, _ = refusal(points.columns)
+        assert kind == "too-many-points" and str(here.count()) in message
+
+
+def test_single_points_are_those_of_the_daemon(remote: strew.Daemon) -> None:
+    noise = {"noise": {"wavelength": 9}}
+    for more in ({}, {"attributes": ["angle", "variant"], "variants": {"oak": 3, "fir": 1.5}}, {"field": noise}):
+        for seed in range(5):
+            here, there = (source.points(spacing=1.5, seed=seed, **more) for source in (strew, remote))
+            for at in ((0, 0), (1e6, -3.25)):
+                found = here.nearest(at, k=3, radius=20)
+                assert found == there.nearest(at, k=3, radius=20)
+                assert found and here.point(found[0].id) == there.point(found[0].id)
+    counted = remote.points(bbox=(0, 0, 9, 9), count=7, seed=1)
+    assert counted.nearest((4, 4)) == strew.points(bbox=(0, 0, 9, 9), count=7, seed=1).nearest((4, 4))
+    for source in (strew, remote):
+        assert refusal(lambda: source.points(spacing=1).point("1:x"))[2][0]["field"] == "id"
+        assert refusal(lambda: source.points(spacing=1).point("1:1"))[1] == "no-such-point"
+        assert refusal(lambda: source.points(spacing=1).nearest((0, 0), k=0))[2][0]["field"] == "k"
+
+
+def test_parts_and_chunks(remote: strew.Daemon) -> None:
+    here, there = (source.points(bbox=(-9, -9, 20, 21), spacing=1, seed=3) for source in (strew, remote))
+    same(here, there)
+    for a, b in zip(here.split(4), there.split(4)):
+        same(a, b)
+        assert len(a) == len(b)
+    same(here.chunk(16, -1, 0), there.chunk(16, -1, 0))
+    for limit in (1, 500):
+        same(*(source.points(bbox=(-9, -9, 20, 21), spacing=1, limit=limit, offset=9) for source in (strew, remote)))
+    assert refusal(lambda: here.split(0)) == refusal(lambda: there.split(0))
+
+
+def test_pictures_and_fields_of_arrays(remote: strew.Daemon) -> None:
+    row = np.linspace(0, 1, 40)
+    picture = np.outer(row, row)
+    same(*(source.stipple(picture, 300, gamma=1.5) for source in (strew, remote)))
+    for array in (picture, (picture * 255).astype(np.uint8), (picture * 65535).astype(np.uint16), picture > 0.3):
+        field = strew.raster(array, bbox=(0, 0, 40, 40), edges="mirror")
+        same(*(source.points(bbox=(0, 0, 60, 60), spacing=1, field=field) for source in (strew, remote)))
+
+
+def test_empty_answers_have_columns_and_names(remote: strew.Daemon) -> None:
+    query: Any = {"bbox": (0.1, 0.1, 0.2, 0.2), "spacing": 50, "attributes": ["angle", "variant"], "variants": {"oak": 1}}
+    here, there = strew.points(**query), remote.points(**query)
+    same(here, there)
+    assert len(here) == 0 and here.names == ["angle", "variant"] and there.codes("variant")[1] == ["oak"]
+
+
+class Breaking(BaseHTTPRequestHandler):
+    """A proxy that breaks every second answer off in its middle."""
+
+    protocol_version = "HTTP/1.1"
+    upstream = ""
+    requests: list[dict[str, Any]] = []
+
+    def log_message(self, *_: object) -> None:
+        pass
+
+    def do_POST(self) -> None:
+        body = self.rfile.read(int(self.headers["content-length"]))
+        self.requests.append(json.loads(body))
+        with urllib.request.urlopen(urllib.request.Request(self.upstream + self.path, body)) as response:
+            content = response.read()
+            self.send_response(200)
+            for name in ("strew-count", "strew-next", "strew-table"):
+                if response.headers[name]:
+                    self.send_header(name, response.headers[name])
+        self.send_header("content-length", str(len(content)))
+        self.end_headers()
+        is_broken = len(self.requests) % 2 == 1
+        self.wfile.write(content[: len(content) * 2 // 3] if is_broken else content)
+        self.close_connection = True
+
+
+def test_an_answer_that_breaks_off_is_taken_up(url: str) -> None:
+    Breaking.upstream, Breaking.requests = url, []
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Breaking)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    query: Any = {"bbox": (0, 0, 300, 300), "spacing": 1, "seed": 4, "attributes": ["angle"]}
+    broken = strew.connect(f"http://127.0.0.1:{server.server_port}").points(**query)
+    whole = strew.points(**query)
+    same(whole, broken)
+    server.shutdown()
+    server.server_close()
+    offsets = [request["offset"] for request in Breaking.requests if "offset" in request]
+    assert len(offsets) == 1 and 0 < offsets[0] < len(whole)
+
+
+def test_a_daemon_that_is_not_there_is_said_so() -> None:
+    nobody = strew.connect("http://127.0.0.1:9", retries=1)
+    with pytest.raises(strew.Disconnected, match="127.0.0.1:9"):
+        nobody.points(bbox=(0, 0, 1, 1), spacing=1).count()
+    with pytest.raises(ValueError, match="no address"):
+        strew.connect("ftp://localhost")
