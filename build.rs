@@ -1,4 +1,4 @@
-//! Compiles the gRPC contract and lists the tables to embed.
+//! Lists the tables to embed and, for the daemon, compiles the gRPC contract.
 
 use std::{
     env,
@@ -8,25 +8,30 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use prost::Message as _;
-use prost_types::{
-    FileDescriptorSet,
-    field_descriptor_proto::{Label, Type},
+#[cfg(feature = "daemon")]
+use {
+    prost::Message as _,
+    prost_types::{
+        FileDescriptorSet,
+        field_descriptor_proto::{Label, Type},
+    },
 };
 
+#[cfg(feature = "daemon")]
 const CONTRACT: &str = "strew/v1/points.proto";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(env::var("OUT_DIR")?);
-    let descriptors = compile_contract(&out)?;
-    convert_sets(&descriptors, &out.join("point_set.rs"))?;
+    #[cfg(feature = "daemon")]
+    convert_sets(&compile_contract(&out)?, &out.join("point_set.rs"))?;
     let tables = root.join("tables");
     list_tables([tables.clone(), tables.join("mix")], &out.join("tables.rs"))?;
     Ok(())
 }
 
 /// Messages, server and client from the contract, in pure Rust; its descriptor set for reflection.
+#[cfg(feature = "daemon")]
 fn compile_contract(out: &Path) -> Result<FileDescriptorSet, Box<dyn Error>> {
     println!("cargo::rerun-if-changed=proto");
     let descriptors = protox::compile([CONTRACT], ["proto"])?;
@@ -44,6 +49,7 @@ fn compile_contract(out: &Path) -> Result<FileDescriptorSet, Box<dyn Error>> {
 
 /// The conversions between the message of a set and values by name: a field that the contract has
 /// needs no code of its own.
+#[cfg(feature = "daemon")]
 fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<dyn Error>> {
     let mut messages = descriptors.file.iter().flat_map(|file| &file.message_type);
     let set = messages.find(|message| message.name() == "PointSet");
@@ -123,6 +129,7 @@ fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<
 }
 
 /// `min_distance` as `MinDistance`.
+#[cfg(feature = "daemon")]
 fn camel_case(name: &str) -> String {
     let upper = |word: &str| {
         let (first, rest) = word.split_at(word.len().min(1));

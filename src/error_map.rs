@@ -42,13 +42,16 @@ kinds! {
     TooManyRows: "too-many-rows", "Counting the points would take too long", PAYLOAD_TOO_LARGE, ResourceExhausted;
     BodyTooLarge: "body-too-large", "The query is too long", PAYLOAD_TOO_LARGE, ResourceExhausted;
     OtherTable: "other-table", "Another table would answer", CONFLICT, FailedPrecondition;
+    TableUnreadable: "table-unreadable", "The table cannot be read", SERVICE_UNAVAILABLE, Unavailable;
     NotAcceptable: "not-acceptable", "No acceptable format", NOT_ACCEPTABLE, InvalidArgument;
     NoSuchPoint: "no-such-point", "There is no such point", NOT_FOUND, NotFound;
+    NoSuchJob: "no-such-job", "There is no such job", NOT_FOUND, NotFound;
     NoSuchPath: "no-such-path", "Nothing is here", NOT_FOUND, Unimplemented;
     NoSuchMethod: "no-such-method", "The path does not take this method", METHOD_NOT_ALLOWED, Unimplemented;
     Unauthenticated: "unauthenticated", "A key is needed", UNAUTHORIZED, Unauthenticated;
     NotAllowed: "not-allowed", "The caller may not do this", FORBIDDEN, PermissionDenied;
     TooManyStreams: "too-many-streams", "Too many current streams", TOO_MANY_REQUESTS, ResourceExhausted;
+    TooManyJobs: "too-many-jobs", "Too many tables are being made for the client", TOO_MANY_REQUESTS, ResourceExhausted;
     TooManyForAddress: "too-many-for-address", "The client's address uses as much as one address may", TOO_MANY_REQUESTS, ResourceExhausted;
     TooFast: "too-fast", "Points are taken too fast", TOO_MANY_REQUESTS, ResourceExhausted;
     Busy: "busy", "The server is busy", SERVICE_UNAVAILABLE, ResourceExhausted;

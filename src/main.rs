@@ -2,7 +2,7 @@
 
 /// glibc keeps the pages of a burst for later; this allocator returns them to the system within
 /// some seconds, from a thread of its own.
-#[cfg(target_os = "linux")]
+#[cfg(all(target_os = "linux", feature = "jemalloc"))]
 #[global_allocator]
 static ALLOCATOR: tikv_jemallocator::Jemalloc = tikv_jemallocator::Jemalloc;
 

@@ -1,6 +1,7 @@
 //! Who asks, as far as it decides what is answered.
 
 use std::{
+    net::IpAddr,
     sync::{
         Arc,
         atomic::{AtomicUsize, Ordering},
@@ -22,6 +23,9 @@ pub struct Caller {
     pub(super) name: Option<Arc<str>>,
     pub(super) is_admin: bool,
     pub(super) max_points: Option<u64>,
+    pub(super) max_jobs: Option<usize>,
+    /// Where it comes from, if it has no key.
+    pub(super) address: Option<IpAddr>,
     pub(super) places: Option<Arc<Places>>,
     pub(super) bucket: Option<Arc<Bucket>>,
     /// What its address uses.
@@ -91,6 +95,26 @@ impl Caller {
     #[must_use]
     pub fn max_points(&self, limit: u64) -> u64 {
         self.max_points.map_or(limit, |own| own.min(limit))
+    }
+
+    /// The most tables that are made for the caller at once, where the server allows `limit`.
+    #[must_use]
+    pub fn max_jobs(&self, limit: usize) -> usize {
+        self.max_jobs.unwrap_or(limit)
+    }
+
+    /// Who it is, to know it again: a key, or an address (with IPv6 its /64).
+    #[must_use]
+    pub fn client(&self) -> String {
+        match (&self.name, self.address) {
+            (Some(name), _) => format!("key {name}"),
+            (None, Some(IpAddr::V6(address))) => {
+                let [a, b, c, d, ..] = address.segments();
+                format!("address {a:x}:{b:x}:{c:x}:{d:x}::/64")
+            }
+            (None, Some(address)) => format!("address {address}"),
+            (None, None) => "the address of administrators".into(),
+        }
     }
 
     /// A place for one more stream.

@@ -31,6 +31,14 @@ pub enum Denied {
         /// The limit.
         limit: usize,
     },
+    /// The caller has as many tables made as it may.
+    #[error(
+        "{limit} tables are being made for this client, the limit: try again when one is finished"
+    )]
+    TooManyJobs {
+        /// The limit.
+        limit: usize,
+    },
     /// The client's address uses as much as one address may.
     #[error("{limit} {what} of this address are in use, the limit: try again later")]
     Address {
@@ -61,7 +69,9 @@ impl Denied {
     #[must_use]
     pub const fn wait(&self) -> Option<Duration> {
         match self {
-            Self::TooManyStreams { .. } | Self::Address { .. } => Some(Duration::from_secs(1)),
+            Self::TooManyStreams { .. } | Self::TooManyJobs { .. } | Self::Address { .. } => {
+                Some(Duration::from_secs(1))
+            }
             Self::TooFast { short, .. } => Some(short.wait),
             _ => None,
         }

@@ -132,6 +132,7 @@ impl Gate {
             },
         };
         caller.usage = Some(usage);
+        caller.address = Some(address);
         caller.charge_request()?;
         Ok(caller)
     }

@@ -73,9 +73,12 @@ pub(super) struct Common {
     /// α: a decimal, a fraction or a quadratic irrational, between 1 and 2.
     #[arg(long, value_name = "ALPHA", default_value = "(5-sqrt(3))/2")]
     alpha: Alpha,
-    /// The SVG file to write; - is standard output.
+    /// The file to write, SVG or PNG by its ending; - is standard output, with SVG.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// The longer side of a PNG in pixels, 64 to 4096.
+    #[arg(long, value_name = "PIXELS", default_value_t = 1600)]
+    size: u32,
 }
 
 /// Draws a figure.
@@ -106,7 +109,7 @@ pub(super) fn run(command: &Command) -> Result<(), Failure> {
         } => (common, figure::map(common.alpha, *radius, block.0)),
     };
     let drawing = drawing.map_err(refused)?;
-    write(&drawing, common.output.as_deref())
+    write(&drawing, common)
 }
 
 fn refused(error: FigureError) -> Failure {
@@ -118,15 +121,20 @@ fn refused(error: FigureError) -> Failure {
     Failure::Usage(anyhow!("--{field} {value}: allowed: {allowed}"))
 }
 
-fn write(drawing: &Drawing, path: Option<&Path>) -> Result<(), Failure> {
-    let ending = path.and_then(Path::extension);
-    if let Some(other) = ending.filter(|ending| !ending.eq_ignore_ascii_case("svg")) {
+fn write(drawing: &Drawing, common: &Common) -> Result<(), Failure> {
+    let path = common.output.as_deref();
+    let ending = path.and_then(Path::extension).unwrap_or("svg".as_ref());
+    let bytes = if ending.eq_ignore_ascii_case("svg") {
+        drawing.to_svg().into_bytes()
+    } else if ending.eq_ignore_ascii_case("png") {
+        drawing.to_png(common.size).map_err(refused)?
+    } else {
         return Err(Failure::Usage(anyhow!(
-            "--output: figures are not drawn as {}; allowed: a file whose name ends in .svg, or -",
-            other.display()
+            "--output: figures are not drawn as {}; allowed: a file whose name ends in .svg or .png, or -",
+            ending.display()
         )));
-    }
+    };
     let mut output = Output::open(path)?;
-    output.write(drawing.to_svg().as_bytes())?;
+    output.write(&bytes)?;
     Ok(output.finish()?)
 }

@@ -36,6 +36,12 @@ pub(super) struct Parted;
 /// A set without a region, as for `GET /v1/points/{id}`.
 #[derive(Debug)]
 pub(super) struct Single;
+/// A table whose periods are listed, as for `GET /v1/periods`.
+#[derive(Debug)]
+pub(super) struct Listed;
+/// A table.
+#[derive(Debug)]
+pub(super) struct Tabled;
 /// A set and a place, as for `GET /v1/nearest`.
 #[derive(Debug)]
 pub(super) struct Near;
@@ -55,6 +61,7 @@ impl Takes for Parted {
     const GROUPS: &'static [Group] = &[
         Group::Split,
         Group::Region,
+        Group::Period,
         Group::Amount,
         Group::Count,
         Group::Preset,
@@ -71,12 +78,20 @@ impl Takes for Single {
     const GROUPS: &'static [Group] = groups::SINGLE;
 }
 
+impl Takes for Listed {
+    const GROUPS: &'static [Group] = groups::PERIODS;
+}
+
+impl Takes for Tabled {
+    const GROUPS: &'static [Group] = groups::TABLES;
+}
+
 impl Takes for Near {
     const GROUPS: &'static [Group] = groups::NEAREST;
 }
 
 impl Takes for Measured {
-    const GROUPS: &'static [Group] = groups::COUNT;
+    const GROUPS: &'static [Group] = groups::MEASURED;
 
     fn takes(parameter: &Parameter) -> bool {
         let is_other = *parameter == parameters::TABLE
@@ -141,8 +156,8 @@ pub(super) fn flag(name: &str) -> String {
 /// Under which title `--help` lists the parameters of a group.
 const fn heading(group: Group) -> &'static str {
     match group {
-        Group::Region | Group::Nearest | Group::Path => WHERE,
-        Group::Window | Group::Split => "Which of the points",
+        Group::Region | Group::Period | Group::Nearest | Group::Path => WHERE,
+        Group::Window | Group::Split | Group::Listed => "Which of the points",
         Group::Output => "Output",
         _ => "Set of points",
     }
@@ -212,6 +227,8 @@ fn value_name(parameter: &Parameter) -> String {
     match parameter.shape {
         Shape::Numbers(names) => names.join(",").to_uppercase().replace('_', ""),
         Shape::Vertices => "X1,Y1,X2,Y2,…".into(),
+        Shape::Integers { names, .. } => names.join(",").to_uppercase().replace('_', ""),
+        Shape::Offsets { .. } => "X,Y …".into(),
         Shape::Names { .. } => "NAME,…".into(),
         Shape::Weights => "NAME:WEIGHT,…".into(),
         Shape::Switch => "on|off".into(),
@@ -276,6 +293,7 @@ mod tests {
                 Answered::takes(parameter),
                 Parted::takes(parameter),
                 Near::takes(parameter),
+                Listed::takes(parameter),
             ];
             assert!(taken.contains(&true), "{}", parameter.name);
         }

@@ -13,8 +13,8 @@ use std::{
 use anyhow::{Context as _, anyhow};
 use strew_core::Alpha;
 use strew_forge::{
-    Checkpoint, Complaint, DEFAULT_SEED, Estimate, ForgeError, Job, Outcome, Target, file_name,
-    forge, resume, write_table,
+    Checkpoint, DEFAULT_SEED, Estimate, ForgeError, Job, Outcome, Target, file_name, forge,
+    gravest, resume, write_table,
 };
 
 use super::{Failure, output, watcher::Watcher};
@@ -310,27 +310,4 @@ fn conclude(args: &Args, path: &Path, outcome: &Outcome) -> Result<(), Failure> 
 /// Prints the digest and the path of the table that was written.
 fn report(path: &Path, outcome: &Outcome) -> Result<(), Failure> {
     output::print(&format!("{}  {}\n", outcome.table.digest(), path.display()))
-}
-
-/// Of the complaints about each figure the gravest, in words.
-fn gravest(complaints: &[Complaint]) -> Vec<String> {
-    let excess = |c: &Complaint| (c.value - c.bound.limit).abs();
-    let mut said: Vec<(&Complaint, usize)> = Vec::new();
-    for complaint in complaints {
-        let same = |(known, _): &&mut (&Complaint, usize)| known.bound == complaint.bound;
-        match said.iter_mut().find(same) {
-            None => said.push((complaint, 1)),
-            Some((known, count)) => {
-                *count += 1;
-                if excess(complaint) > excess(known) || complaint.value.is_nan() {
-                    *known = complaint;
-                }
-            }
-        }
-    }
-    let words = |(complaint, count): (&Complaint, usize)| match count {
-        1 => complaint.to_string(),
-        _ => format!("{complaint} (missed on {count} point sets)"),
-    };
-    said.into_iter().map(words).collect()
 }

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow, bail};
 use rayon::prelude::*;
-use serde_json::{Map as JsonMap, Value, json};
+use serde_json::{Value, json};
 use strew_core::{F64, Placement, Plan, PointSet, Seed, Table, Twin};
 use strew_forge::{
     Aim, Report, Resolution, Target,
-    measure::{BANDS, Shared, Torus, Window, recurrence, twin_set, window_set},
+    measure::{Shared, Torus, Window, recurrence, twin_set, window_set},
     picture,
 };
 
@@ -19,7 +19,7 @@ use super::{
     query::described,
     refusal::Source,
 };
-use crate::service::{Draft, Error, Planned, query::parameters::BBOX};
+use crate::service::{Draft, Error, Planned, library::measured::document, query::parameters::BBOX};
 
 /// Flags of `strew measure`. What is measured: a table file (`--table`), a file of points
 /// (`--points`), or, without either, the points of a query as for `strew sample`.
@@ -114,40 +114,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         drawing.write(svg.as_bytes())?;
         drawing.finish()?;
     }
-    let mut text = json!({ "subjects": reports.iter().map(to_json).collect::<Vec<_>>() });
+    let mut text = json!({ "subjects": reports.iter().map(document).collect::<Vec<_>>() });
     if let Some(seeds) = seeds {
         text["seeds"] = seeds;
     }
     output.write(format!("{text:#}\n").as_bytes())?;
     Ok(output.finish()?)
-}
-
-fn to_json(report: &Report) -> Value {
-    let figures: JsonMap<String, Value> = report
-        .figures
-        .values
-        .iter()
-        .map(|(name, value)| (name.clone(), json!(value)))
-        .collect();
-    let rings: Vec<Value> = report
-        .rings
-        .iter()
-        .map(|r| json!([r.nu, r.power, r.anisotropy_db]))
-        .collect();
-    let bands: Vec<Value> = BANDS
-        .iter()
-        .zip(&report.anisotropy_by_band)
-        .map(|([from, to], db)| json!([from, to, db]))
-        .collect();
-    json!({
-        "subject": report.figures.subject,
-        "made_on_it": report.figures.seen,
-        "points": report.figures.points,
-        "figures": figures,
-        "radial": { "columns": ["nu", "power", "anisotropy_db"], "rings": rings },
-        "anisotropy": { "columns": ["from", "to", "db"], "bands": bands },
-        "rdf": { "columns": ["distance", "g"], "bins": report.rdf.bins },
-    })
 }
 
 /// A set to be measured.
@@ -300,12 +272,17 @@ fn of_query(args: &Args) -> Result<Compared, Failure> {
     }
     let mut points = vec![[0.0; 2]; planned.count() as usize];
     let set = &planned.sets[0];
-    set.plan.blocks_f64().fill(&mut points);
+    let Some(plan) = set.plan.plane() else {
+        return Err(Failure::Usage(anyhow!(
+            "only points of the plane are measured here"
+        )));
+    };
+    plan.blocks_f64().fill(&mut points);
     let name = described(&planned);
     let report = window(corner, side, set.density, points, name).measured(args.resolution());
     let seeds = match args.seeds {
         0 => None,
-        seeds => Some(compared(&set.plan, side, set.density, seeds)?),
+        seeds => Some(compared(plan, side, set.density, seeds)?),
     };
     Ok((report, set.entry.aim().and_then(|aim| aim.curve), seeds))
 }

@@ -8,9 +8,11 @@ mod figure;
 mod flags;
 mod forge;
 mod key;
+mod mask;
 mod measure;
 mod offsets;
 mod output;
+mod periods;
 mod point;
 mod probe;
 mod progress;
@@ -48,6 +50,8 @@ enum Command {
     Count(count::Args),
     /// Find a point by its id.
     Point(point::PointArgs),
+    /// List the sizes of periodic sets.
+    Periods(periods::Args),
     /// Find the points nearest to a place.
     Nearest(point::NearestArgs),
     /// Split a query into parts for parallel readers.
@@ -57,6 +61,8 @@ enum Command {
     /// Draw a figure of an AA pattern: its index space, an arrangement, clusters, a neighborhood map.
     #[command(subcommand)]
     Figure(figure::Command),
+    /// Make a tileable threshold mask for dithering.
+    Mask(mask::Args),
     /// Make a table and judge it.
     Forge(forge::Args),
     /// Measure a table, the points of a region, or a file of points.
@@ -102,10 +108,12 @@ pub fn main() -> ExitCode {
         Command::Stipple(args) => stipple::run(&args),
         Command::Count(args) => count::run(&args),
         Command::Point(args) => point::point(&args),
+        Command::Periods(args) => periods::run(&args),
         Command::Nearest(args) => point::nearest(&args),
         Command::Split(args) => split::run(&args),
         Command::Arrangement(args) => arrangement::run(&args),
         Command::Figure(command) => figure::run(&command),
+        Command::Mask(args) => mask::run(&args),
         Command::Forge(args) => forge::run(&args),
         Command::Measure(args) => measure::run(&args),
         Command::Table(command) => table::run(&command),

@@ -228,7 +228,11 @@ pub(super) fn described(planned: &Planned) -> String {
 impl Config {
     /// The tables that the settings ask for.
     pub(super) fn catalog(&self) -> Result<Catalog, CatalogError> {
-        Catalog::load(self.tables.embedded, self.tables.folder())
+        Catalog::preloading(
+            self.tables.preload_bytes,
+            self.tables.embedded,
+            self.tables.folder(),
+        )
     }
 
     /// The tables and the fields; settings that lead to none are wrong usage.

@@ -4,7 +4,10 @@
 use anyhow::anyhow;
 
 use super::{Failure, flags::flag};
-use crate::service::{Encoding, Error, Fault, query::Parameter};
+use crate::service::{
+    Encoding, Error, Fault,
+    query::{Parameter, patterns::PATTERN_PARAMETERS},
+};
 
 /// Where a query came from, which decides what its fields are called.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -64,7 +67,10 @@ impl Source {
         if *self != Self::Flags {
             return fault.to_string();
         }
-        let is_flag = Parameter::named(field).is_some() || ["chunk", "region"].contains(&&**field);
+        let is_pattern = |known: &&&Parameter| known.name == *field && !known.is_required;
+        let is_flag = Parameter::named(field).is_some()
+            || PATTERN_PARAMETERS.iter().any(|known| is_pattern(&known))
+            || ["chunk", "region"].contains(&&**field);
         let name = if is_flag { flag(field) } else { field.clone() };
         match (value, &**field) {
             (None, "bbox" | "region") => {

@@ -19,7 +19,7 @@ use super::{
     sample::{encoding_of, write},
 };
 use crate::{
-    raster::{Image, Limits, Samples},
+    raster::{Image, Limits},
     service::{
         Draft, Planned,
         encode::preview::MOST_SIZE,
@@ -93,7 +93,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let image = read(&args.image)?;
     let [width, height] = image.size;
     let mut fields = config.loaded_fields()?;
-    fields.insert(NamedField::of_spec(PICTURE, darkness(image, args)?));
+    fields.insert(NamedField::of_spec(PICTURE, darkness(&image, args)?));
     let catalog = config.tables()?.with_fields(fields);
     let mut values = Values::new(groups::POINTS, "");
     let bbox = vec![0.0, 0.0, width as f64, height as f64];
@@ -153,21 +153,11 @@ fn read(path: &Path) -> Result<Image, Failure> {
 }
 
 /// The share of dots at each place: darkness, or light if it is inverted.
-fn darkness(image: Image, args: &Args) -> Result<FieldSpec, Failure> {
+fn darkness(image: &Image, args: &Args) -> Result<FieldSpec, Failure> {
     let [width, height] = image.size;
-    let full = image.samples.full();
-    let light = |i: usize| (image.samples.get(i) / full).clamp(0.0, 1.0);
     // Rows of fields begin at the bottom.
-    let places = (0..height)
-        .rev()
-        .flat_map(|y| (0..width).map(move |x| y * width + x));
-    let word = |light: f64| (light * 65535.0 + 0.5) as u16;
-    let shares: Vec<u16> = match (&image.samples, args.invert) {
-        (Samples::U16(values), true) => places.map(|i| values[i]).collect(),
-        (Samples::U16(values), false) => places.map(|i| u16::MAX - values[i]).collect(),
-        (_, true) => places.map(|i| word(light(i))).collect(),
-        (_, false) => places.map(|i| word(1.0 - light(i))).collect(),
-    };
+    let words = image.darkness(args.invert);
+    let shares: Vec<u16> = words.chunks_exact(width).rev().flatten().copied().collect();
     if shares.iter().all(|share| *share == 0) {
         let (is, other) = match args.invert {
             true => ("black", "without --invert"),

@@ -69,6 +69,8 @@ pub struct Tables {
     pub embedded: bool,
     /// A folder with more; empty for none.
     pub folder: PathBuf,
+    /// The bytes of the folder's files that are read and held at the start. Bounds memory.
+    pub preload_bytes: u64,
 }
 
 impl Tables {

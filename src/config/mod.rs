@@ -7,6 +7,7 @@
 
 mod access;
 mod error;
+mod forge;
 mod layers;
 mod limits;
 mod listen;
@@ -21,6 +22,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 pub use access::{Access, AddressLimits, Rate};
+pub use forge::{Allow, Forge};
 pub use limits::{Fields, Limits, Reload, Tables, Workers};
 pub use networks::{NETWORKS, Networks};
 pub use reports::{Http, Log, LogFormat, Metrics, Telemetry};
@@ -50,6 +52,8 @@ pub struct Config {
     pub http: Http,
     /// Which tables to load.
     pub tables: Tables,
+    /// Which tables to make on demand.
+    pub forge: Forge,
     /// Which fields to load.
     pub fields: Fields,
     /// The limits of queries and of memory.

@@ -64,7 +64,7 @@ pub struct Log {
 impl Log {
     pub(super) fn faults(&self) -> Vec<String> {
         let filter = &self.filter;
-        let error = filter.parse::<tracing_subscriber::EnvFilter>().err();
+        let error = wrong_filter(filter);
         let fault = error.map(|error| {
             format!(
                 "log.filter = {filter:?}; allowed: a level (error, warn, info, debug, trace) or levels \
@@ -128,13 +128,7 @@ impl Telemetry {
         if endpoint.is_empty() {
             return None;
         }
-        let read = endpoint.parse::<http::Uri>().ok();
-        let is_whole = read.is_some_and(|uri| {
-            matches!(uri.scheme_str(), Some("http" | "https"))
-                && uri.authority().is_some()
-                && uri.path_and_query().is_none_or(|path| path == "/")
-        });
-        if !is_whole {
+        if !is_endpoint(endpoint) {
             return Some(format!(
                 "telemetry.otlp_endpoint = {endpoint:?}; allowed: http://host:port, https://host:port, or \
                  nothing"
@@ -154,4 +148,32 @@ impl Telemetry {
     pub(crate) fn is_https(&self) -> bool {
         self.otlp_endpoint.starts_with("https:")
     }
+}
+
+/// Why a text is no filter of the log.
+#[cfg(feature = "daemon")]
+fn wrong_filter(text: &str) -> Option<String> {
+    let read = text.parse::<tracing_subscriber::EnvFilter>();
+    read.err().map(|error| error.to_string())
+}
+
+/// Whether a text is the address of a collector.
+#[cfg(feature = "daemon")]
+fn is_endpoint(text: &str) -> bool {
+    text.parse::<http::Uri>().is_ok_and(|uri| {
+        matches!(uri.scheme_str(), Some("http" | "https"))
+            && uri.authority().is_some()
+            && uri.path_and_query().is_none_or(|path| path == "/")
+    })
+}
+
+/// A library has no log and sends no spans.
+#[cfg(not(feature = "daemon"))]
+const fn wrong_filter(_: &str) -> Option<String> {
+    None
+}
+
+#[cfg(not(feature = "daemon"))]
+const fn is_endpoint(_: &str) -> bool {
+    true
 }

@@ -19,7 +19,8 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         metrics: _,
         telemetry,
         reload,
-        tables: _,
+        tables,
+        forge,
         fields: _,
         // Checked with the tables at hand.
         presets: _,
@@ -38,6 +39,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         log.faults(),
         telemetry.faults(),
         reload.faults(),
+        forge.faults(tables),
     ]
     .concat();
     if faults.is_empty() {

@@ -3,8 +3,11 @@
 mod compression;
 mod deadline;
 mod field;
+mod forging;
 mod frames;
 mod messages;
+mod pattern;
+mod periods;
 mod points;
 mod profile;
 pub mod proto;
@@ -34,7 +37,7 @@ use proto::point_service_server::PointServiceServer;
 const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
 
 /// The methods of the contract, by their paths.
-pub const METHODS: [&str; 7] = [
+pub const METHODS: [&str; 12] = [
     "/strew.v1.PointService/StreamPoints",
     "/strew.v1.PointService/CountPoints",
     "/strew.v1.PointService/SplitPoints",
@@ -42,6 +45,11 @@ pub const METHODS: [&str; 7] = [
     "/strew.v1.PointService/FindNearest",
     "/strew.v1.PointService/ListProfiles",
     "/strew.v1.PointService/ListFields",
+    "/strew.v1.PointService/ForgeTable",
+    "/strew.v1.PointService/GetArrangement",
+    "/strew.v1.PointService/ListOccurrences",
+    "/strew.v1.PointService/GetClusters",
+    "/strew.v1.PointService/GetMap",
 ];
 
 /// The name of a code, as the protocol writes it.

@@ -2,25 +2,29 @@
 
 use std::{pin::Pin, sync::Arc};
 
-use futures_util::{Stream, TryStreamExt as _, stream};
+use futures_util::{Stream, StreamExt as _, TryStreamExt as _, stream};
 use prost::Message as _;
 use strew_core::ALGORITHM_VERSION;
 use tonic::{Request, Response, Status};
 
 use super::{
-    compression, field,
+    compression, field, forging,
     frames::Frames,
     messages::{Framed, Messages},
-    profile,
+    pattern::{self, OccurrenceStream},
+    periods, profile,
     proto::{
-        CountPointsRequest, CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse,
-        GetPointRequest, GetPointResponse, ListFieldsRequest, ListFieldsResponse,
-        ListProfilesRequest, ListProfilesResponse, SplitPointsRequest, SplitPointsResponse,
+        Arrangement, ArrangementRequest, ClustersRequest, ClustersResponse, CountPointsRequest,
+        CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse, ForgeTableRequest,
+        ForgeTableResponse, GetPointRequest, GetPointResponse, ListFieldsRequest,
+        ListFieldsResponse, ListPeriodsRequest, ListPeriodsResponse, ListProfilesRequest,
+        ListProfilesResponse, MapRequest, MapResponse, SplitPointsRequest, SplitPointsResponse,
         StreamPointsRequest, StreamPointsResponse, point_service_server::PointService,
     },
     query, resolved, set, single, split, status,
 };
 use crate::access::Caller;
+use crate::service::forging::Submitted;
 use crate::service::{Error, Fault, Found, Placed, Query, Record, Service, Set, query::groups};
 
 /// Answers over gRPC.
@@ -120,6 +124,16 @@ impl Points {
         })
     }
 
+    async fn forge(&self, caller: &Caller, request: ForgeTableRequest) -> Result<JobStream, Error> {
+        self.service.forging().admit(caller)?;
+        let spec = forging::request(request).spec()?;
+        let states = match self.service.forge(caller, spec).await? {
+            Submitted::Loaded(state) => stream::once(async { *state }).boxed(),
+            Submitted::Job(job) => self.service.follow_job(caller, &job)?.boxed(),
+        };
+        Ok(states.map(|state| Ok(forging::response(state))).boxed())
+    }
+
     async fn nearest(
         &self,
         caller: &Caller,
@@ -154,11 +168,30 @@ fn answered<T>(answer: Result<T, Error>) -> Result<Response<T>, Status> {
     answer.map_err(|error| status::status(&query::by_field(error)))
 }
 
+type JobStream = Pin<Box<dyn Stream<Item = Result<ForgeTableResponse, Status>> + Send>>;
+/// The answer to a request that has no set: its faults already name its fields.
+fn plainly<T>(answer: Result<T, Error>) -> Result<Response<T>, Status> {
+    let answer = answer.map(Response::new);
+    answer.map_err(|error| status::status(&error))
+}
+
 type MessageStream = Pin<Box<dyn Stream<Item = Result<StreamPointsResponse, Status>> + Send>>;
 
 #[tonic::async_trait]
 impl PointService for Points {
     type StreamPointsStream = MessageStream;
+    type ForgeTableStream = JobStream;
+
+    async fn forge_table(
+        &self,
+        request: Request<ForgeTableRequest>,
+    ) -> Result<Response<JobStream>, Status> {
+        let caller = caller(&request)?;
+        let states = self.forge(&caller, request.into_inner()).await;
+        states
+            .map(Response::new)
+            .map_err(|error| status::status(&error))
+    }
 
     async fn stream_points(
         &self,
@@ -220,6 +253,46 @@ impl PointService for Points {
                 .collect(),
             algorithm: ALGORITHM_VERSION,
         }))
+    }
+
+    async fn list_periods(
+        &self,
+        request: Request<ListPeriodsRequest>,
+    ) -> Result<Response<ListPeriodsResponse>, Status> {
+        let listed = periods::list(request.into_inner(), &self.service);
+        listed
+            .map(Response::new)
+            .map_err(|error| status::status(&error))
+    }
+
+    async fn get_arrangement(
+        &self,
+        request: Request<ArrangementRequest>,
+    ) -> Result<Response<Arrangement>, Status> {
+        answered(pattern::arrangement(&self.service, request.get_ref()))
+    }
+
+    type ListOccurrencesStream = OccurrenceStream;
+
+    async fn list_occurrences(
+        &self,
+        request: Request<ArrangementRequest>,
+    ) -> Result<Response<OccurrenceStream>, Status> {
+        let caller = caller(&request)?;
+        answered(pattern::occurrences(&self.service, &caller, request.get_ref()).await)
+    }
+
+    async fn get_clusters(
+        &self,
+        request: Request<ClustersRequest>,
+    ) -> Result<Response<ClustersResponse>, Status> {
+        let caller = caller(&request)?;
+        plainly(pattern::clusters(&self.service, &caller, request.get_ref()).await)
+    }
+
+    async fn get_map(&self, request: Request<MapRequest>) -> Result<Response<MapResponse>, Status> {
+        let caller = caller(&request)?;
+        plainly(pattern::map(&self.service, &caller, request.get_ref()).await)
     }
 
     async fn list_fields(

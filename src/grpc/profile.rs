@@ -14,7 +14,7 @@ pub(super) fn profile(entry: &Entry, catalog: &Catalog) -> Profile {
         radius: entry.radius,
         intervals: number(entry.intervals),
         blocks: number(entry.blocks()),
-        bytes: entry.bytes().len() as u64,
+        bytes: entry.bytes,
         joint_kinds: catalog.joint_kinds(entry),
         digest: entry.digest.clone(),
         provenance: Some(Provenance {

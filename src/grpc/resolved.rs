@@ -1,6 +1,7 @@
 //! Queries as answers echo them.
 
 use super::{
+    periods,
     proto::{self, BoundingBox, Encoding, Region, ResolvedQuery, StreamPointsRequest},
     set,
 };
@@ -80,6 +81,7 @@ fn resolved(echo: ResolvedSet, entry: &Entry, region: Option<Region>) -> proto::
         kinds: (echo.kinds.into_iter())
             .map(|(name, count)| (name, u64::try_from(count).unwrap_or(u64::MAX)))
             .collect(),
+        period: echo.period.map(periods::period),
         delta_min: entry.measured("delta_min"),
         delta_avg: entry.measured("delta_avg"),
     }

@@ -44,7 +44,9 @@ pub(super) fn in_messages(faults: Faults) -> Faults {
         // A part of a value has the value's name before it.
         let name = rest.split(['.', '[']).next().unwrap_or_default();
         let parameter = Parameter::named(name);
-        match parameter.filter(|parameter| groups::SET.contains(&parameter.group)) {
+        match parameter.filter(|parameter| {
+            parameter.group == Group::Period || groups::SET.contains(&parameter.group)
+        }) {
             Some(_) => format!("{layer}set.{rest}"),
             None => field.into(),
         }

@@ -118,7 +118,12 @@ fn facts(error: &Error) -> HashMap<String, String> {
         Error::Busy { limit }
         | Error::TooManyRequests { limit }
         | Error::TooManyBytes { limit }
-        | Error::Denied(Denied::TooManyStreams { limit } | Denied::Address { limit, .. }) => {
+        | Error::TooManyJobs { limit }
+        | Error::Denied(
+            Denied::TooManyStreams { limit }
+            | Denied::TooManyJobs { limit }
+            | Denied::Address { limit, .. },
+        ) => {
             vec![("limit", limit.to_string())]
         }
         Error::Denied(Denied::TooFast { points, short }) => vec![

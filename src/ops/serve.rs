@@ -66,6 +66,9 @@ pub enum ServeError {
 /// What is still sent after streams have been told to end: time to tell their readers.
 const GRACE: Duration = Duration::from_secs(1);
 
+/// How long the forge may take to keep its checkpoints at a stop.
+const FORGE_GRACE: Duration = Duration::from_secs(5);
+
 /// A daemon that is ready to serve.
 #[derive(Debug)]
 pub struct App {
@@ -95,14 +98,21 @@ impl App {
         let collector = Collector::new(&config.telemetry)?;
         let folder = config.tables.folder();
         let fields = Fields::load(&config.fields)?;
-        let catalog = Catalog::load(config.tables.embedded, folder)?.with_fields(fields);
+        let config::Tables {
+            preload_bytes,
+            embedded,
+            ..
+        } = config.tables;
+        let catalog = Catalog::preloading(preload_bytes, embedded, folder)?.with_fields(fields);
         let catalog = catalog.with_room(config.fields.max_sent_bytes);
         let workers = Workers::new(config.workers.threads)?;
         let metrics = Metrics::default();
         let presets = Presets::read(&config.presets, &catalog, config.limits.max_vertices)?;
         let service = Service::new(catalog, config.limits.clone(), workers);
         let mixes = config.tables.folder().map(|folder| folder.join("mixes"));
-        let service = Arc::new(service.with_presets(presets).with_mixes(mixes));
+        let service = service.with_presets(presets).with_mixes(mixes);
+        let service = service.with_forge(config.forge.clone(), folder.map(Into::into));
+        let service = Arc::new(service);
         let gate = Arc::new(Gate::new(
             config.access.clone(),
             &config.rate,
@@ -189,6 +199,9 @@ impl App {
         shutdown: impl Future<Output = ()>,
     ) -> Result<usize, ServeError> {
         let _watch = self.watch();
+        let forging = self.service.forging().clone();
+        let begin = forging.clone();
+        let _ = tokio::task::spawn_blocking(move || begin.resume()).await;
         let readiness = Readiness::default();
         let (router, grpc_health) = self.router(readiness.clone()).await?;
         let listener = asynchronous(listener)?;
@@ -212,6 +225,8 @@ impl App {
         });
         shutdown.await;
         readiness.close();
+        // Jobs keep a checkpoint while connections drain.
+        let stopped = tokio::task::spawn_blocking(move || forging.stop(FORGE_GRACE));
         grpc_health.close().await;
         tokio::time::sleep(config::seconds(self.config.shutdown.notice_seconds)).await;
         connections.close();
@@ -225,6 +240,7 @@ impl App {
             .await
             .is_ok()
         {
+            let _ = stopped.await;
             return Ok(0);
         }
         let broken = self.service.streams().open();
@@ -236,6 +252,7 @@ impl App {
             connections.end();
             connections.closed().await;
         }
+        let _ = stopped.await;
         Ok(broken)
     }
 
@@ -284,6 +301,7 @@ impl App {
     fn admin_router(&self, readiness: Readiness) -> Router {
         let mut endpoints = health::endpoints(readiness, self.service.clone());
         endpoints.push(admin::endpoint(self.reloader.clone()));
+        endpoints.extend(rest::forge_endpoints(&self.service));
         if self.config.metrics.enabled {
             endpoints.push(self.metrics_endpoint());
         }

@@ -69,6 +69,21 @@ impl Image {
         }
     }
 
+    /// How dark each pixel of a picture is, or how light if it is inverted: 65535 for black.
+    #[must_use]
+    pub fn darkness(&self, is_inverted: bool) -> Vec<u16> {
+        let samples = &self.samples;
+        let full = samples.full();
+        let light = |i: usize| (samples.get(i) / full).clamp(0.0, 1.0);
+        let word = |light: f64| (light * 65535.0 + 0.5) as u16;
+        match (samples, is_inverted) {
+            (Samples::U16(values), true) => values.clone(),
+            (Samples::U16(values), false) => values.iter().map(|v| u16::MAX - v).collect(),
+            (_, true) => (0..samples.len()).map(|i| word(light(i))).collect(),
+            (_, false) => (0..samples.len()).map(|i| word(1.0 - light(i))).collect(),
+        }
+    }
+
     /// Reads what is in memory.
     ///
     /// # Errors

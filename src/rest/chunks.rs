@@ -31,7 +31,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
                 distance. Neighbors share no point and lose none.",
         tag: Tag::Points,
         path_parameters: &[&SIZE, &COLUMN, &ROW],
-        parameters: groups::QUERY,
+        parameters: groups::CHUNK,
         body: None,
         answers: vec![answer::described(), api::Answer::unchanged()],
         problems: answer::problems(),
@@ -87,7 +87,7 @@ async fn get(
         path: "chunk".into(),
         shape: ShapeDraft::Chunk(size, [x, y]),
     });
-    let draft = Draft::new(context.values(groups::QUERY)).within(region);
+    let draft = Draft::new(context.values(groups::CHUNK)).within(region);
     let (query, options) = service.check(&draft)?;
     answer::stream(&service, &context, query, options).await
 }

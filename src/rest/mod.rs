@@ -15,9 +15,12 @@ mod finish;
 mod fixed;
 mod freshness;
 mod harden;
+mod jobs;
 mod negotiate;
 mod openapi;
 mod page;
+mod pattern;
+mod periods;
 mod points;
 mod portrait;
 mod presets;
@@ -27,6 +30,7 @@ mod quality;
 mod query;
 mod single;
 mod split;
+mod tables;
 mod vary;
 
 use std::sync::Arc;
@@ -42,7 +46,7 @@ use problem::Problem;
 
 /// The endpoints of REST, without their description.
 pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
-    vec![
+    let mut all = vec![
         points::endpoint(service.clone()),
         query::endpoint(service.clone()),
         chunks::endpoint(service.clone()),
@@ -51,12 +55,25 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         single::by_id(service.clone()),
         single::nearest(service.clone()),
         profiles::endpoint(service.clone()),
+        periods::endpoint(service.clone()),
         presets::endpoint(service.clone()),
         portrait::endpoint(service.clone()),
         portrait::picture(service.clone()),
         fields::list(service.clone()),
         fields::endpoint(service.clone()),
         fields::picture(service.clone()),
+    ];
+    all.extend(pattern::endpoints(service));
+    all.extend(forge_endpoints(service));
+    all
+}
+
+/// The endpoints of the forge, which the address of administrators has, too.
+pub fn forge_endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
+    vec![
+        tables::endpoint(service.clone()),
+        jobs::list(service.clone()),
+        jobs::endpoint(service.clone()),
     ]
 }
 

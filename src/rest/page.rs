@@ -76,6 +76,12 @@ const PARTS: &[(&str, &str)] = parts![
     "theme.css",
     "theme.js",
     "understand.js",
+    "works.css",
+    "works.js",
+    "works_draw.js",
+    "works_modes.js",
+    "works_pattern.js",
+    "works_settings.js",
 ];
 
 const HTML: &str = "text/html; charset=utf-8";

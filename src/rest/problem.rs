@@ -93,9 +93,12 @@ impl<'a> Problem<'a> {
             | Error::TooManyConnections { limit }
             | Error::TooManyRequests { limit }
             | Error::TooManyBytes { limit }
-            | Error::Denied(Denied::TooManyStreams { limit } | Denied::Address { limit, .. }) => {
-                (None, u64::try_from(*limit).ok())
-            }
+            | Error::TooManyJobs { limit }
+            | Error::Denied(
+                Denied::TooManyStreams { limit }
+                | Denied::TooManyJobs { limit }
+                | Denied::Address { limit, .. },
+            ) => (None, u64::try_from(*limit).ok()),
             _ => (None, None),
         };
         let digests = match error {

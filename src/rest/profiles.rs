@@ -87,7 +87,7 @@ pub(super) struct Profile<'a> {
     /// The shares for which there is a table with joint kinds (`spread=joint`).
     joint_kinds: Vec<String>,
     /// The size of the file in bytes.
-    bytes: usize,
+    bytes: u64,
     /// The BLAKE3 digest of the file.
     digest: &'a str,
     /// How it was made.
@@ -138,7 +138,7 @@ impl<'a> Profile<'a> {
             intervals: entry.intervals,
             blocks: entry.blocks(),
             joint_kinds: catalog.joint_kinds(entry),
-            bytes: entry.bytes().len(),
+            bytes: entry.bytes,
             digest: &entry.digest,
             provenance: Provenance::new(&entry.provenance),
         }

@@ -9,10 +9,9 @@ use std::sync::{
     atomic::{AtomicU64, Ordering},
 };
 
-use moka::future::Cache;
-use strew_core::Table;
+use moka::{future::Cache, policy::EvictionPolicy};
 
-use super::{Entry, Error, Workers};
+use super::{Entry, Error, Ready, Workers};
 
 /// The cache.
 #[derive(Clone)]
@@ -20,6 +19,7 @@ pub(super) struct Samplers {
     ready: Cache<String, Ready>,
     asked: Arc<AtomicU64>,
     made: Arc<AtomicU64>,
+    loaded: Arc<AtomicU64>,
 }
 
 /// How a cache stands.
@@ -29,33 +29,10 @@ pub struct CacheState {
     pub hits: u64,
     /// How often it had to be made.
     pub misses: u64,
+    /// How often a file was read for it.
+    pub loads: u64,
     /// What is held, in bytes.
     pub bytes: u64,
-}
-
-/// A table ready to answer.
-#[derive(Clone, Debug)]
-pub struct Ready {
-    /// What is known of the table.
-    pub entry: Arc<Entry>,
-    /// The table; its least distances have been computed.
-    pub table: Table,
-}
-
-impl Ready {
-    /// Reads a table: microseconds to milliseconds, by its size.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if it cannot be read any more.
-    pub fn load(entry: &Arc<Entry>) -> Result<Self, Error> {
-        Ok(Self::new(entry.clone(), entry.table()?))
-    }
-
-    /// A table, once its least distances are computed.
-    pub(super) fn new(entry: Arc<Entry>, table: Table) -> Self {
-        let _ = (table.least_distance(), table.least_distance_of(0, 0));
-        Self { entry, table }
-    }
 }
 
 impl std::fmt::Debug for Samplers {
@@ -75,12 +52,15 @@ impl Samplers {
         let ready = Cache::builder()
             .name("samplers")
             .max_capacity(bytes)
+            // The default policy admits a new table only if it is requested more often than an old one.
+            .eviction_policy(EvictionPolicy::lru())
             .weigher(weight)
             .build();
         Self {
             ready,
             asked: Arc::default(),
             made: Arc::default(),
+            loaded: Arc::default(),
         }
     }
 
@@ -93,6 +73,7 @@ impl Samplers {
         CacheState {
             hits: self.asked.load(Ordering::Relaxed).saturating_sub(misses),
             misses,
+            loads: self.loaded.load(Ordering::Relaxed),
             bytes: self.ready.weighted_size(),
         }
     }
@@ -103,6 +84,14 @@ impl Samplers {
         let build = async {
             self.made.fetch_add(1, Ordering::Relaxed);
             let entry = entry.clone();
+            if entry.is_on_disk() {
+                self.loaded.fetch_add(1, Ordering::Relaxed);
+                // Waits for the disk, so not on the few threads that make points.
+                let load = tokio::task::spawn_blocking(move || Ready::load(&entry));
+                return load
+                    .await
+                    .unwrap_or(Err(Error::Internal("a computation failed")));
+            }
             workers.run(move || Ready::load(&entry)).await?
         };
         self.ready

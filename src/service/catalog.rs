@@ -1,37 +1,38 @@
 //! The tables that are loaded: the built-in ones and those of a folder.
 //!
-//! Every table is read and checked once, at the start or when the folder is read again (`reload`), so
-//! that a damaged file is an error then and not during a query. What stays is the file's bytes, a few
-//! kilobytes each, and what is to be said about it; a ready sampler is made from the bytes when a
-//! query needs one.
+//! Tables are found by profile, α, map and kinds. The built-in ones and the first `tables.preload_bytes` of the folder
+//! are read and checked whole, at the start or when the folder is read again (`reload`), so that a damaged file is an
+//! error then and not during a query. Of further files only the heads are read, a few hundred bytes each; such a table
+//! is read by the first query that needs it. Ready samplers are made of either by the cache.
 
+mod entry;
+mod error;
+mod key;
+mod offer;
+mod patterns;
 mod reload;
 
 use std::{
     cell::Cell,
-    cmp::Ordering,
     collections::BTreeMap,
-    fmt, fs, io,
+    fs,
     path::{Path, PathBuf},
     sync::Arc,
 };
 
 use bytes::Bytes;
-use strew_core::{
-    Alpha, Table,
-    field::FieldSpec,
-    map::Size,
-    table::{BLUE, MAX_FILE_BYTES, Provenance},
-};
-
-use strew_forge::Aim;
+use strew_core::{Alpha, field::FieldSpec, map::Size, table::BLUE};
 
 use super::{
-    Error,
     field::{self, Document, Fields, NamedField, Sent},
     query::Checked,
 };
-use crate::bounded_file;
+pub use entry::Entry;
+pub use error::CatalogError;
+pub use key::{Key, MixKey, Source};
+pub use offer::Offer;
+use patterns::Patterns;
+pub use patterns::{MAX_PATTERN_RADIUS, PATTERN};
 pub use reload::{Refusal, Reload};
 
 /// The tables that are built into the program beside the library's: (file name, content).
@@ -39,231 +40,6 @@ static EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/tables.r
 
 /// The table that is built into the library.
 const DEFAULT: (&str, &[u8]) = ("blue-5-sqrt3-over-2-m.strew", BLUE);
-
-/// What a table is found by. Keys are in the order of their names, then of their numbers.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Key {
-    /// The name of the noise profile.
-    pub profile: Arc<str>,
-    /// The number α.
-    pub alpha: Alpha,
-    /// The size of its map.
-    pub size: Size,
-    /// The mix of kinds, if it has one.
-    pub mix: Option<Arc<MixKey>>,
-}
-
-/// What tells the mixes of one table apart.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct MixKey {
-    /// The shares of its kinds.
-    pub shares: Box<[u16]>,
-    /// What its vectors are: those of the plain table, or others.
-    pub vectors: [u8; 32],
-}
-
-impl Ord for Key {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let rank = |key: &Self| (key.alpha.half(), key.alpha, key.size);
-        let by_name = self.profile.cmp(&other.profile);
-        by_name
-            .then_with(|| rank(self).cmp(&rank(other)))
-            .then_with(|| self.mix.cmp(&other.mix))
-    }
-}
-
-impl PartialOrd for Key {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl MixKey {
-    /// The shares as text, such as `1:3`.
-    #[must_use]
-    pub fn text(&self) -> String {
-        let parts: Vec<String> = self.shares.iter().map(ToString::to_string).collect();
-        parts.join(":")
-    }
-}
-
-impl fmt::Display for Key {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "profile `{}`, alpha {}, map {}",
-            self.profile, self.alpha, self.size
-        )?;
-        match &self.mix {
-            Some(mix) => write!(f, ", kinds {}", mix.text()),
-            None => Ok(()),
-        }
-    }
-}
-
-/// Where a table comes from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// Built into the program, under this file name.
-    Embedded(&'static str),
-    /// A file.
-    File(PathBuf),
-}
-
-impl fmt::Display for Source {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Embedded(name) => write!(f, "built-in {name}"),
-            Self::File(path) => path.display().fmt(f),
-        }
-    }
-}
-
-/// A loaded table.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
-    /// What it is found by.
-    pub key: Key,
-    /// Where it comes from.
-    pub source: Source,
-    /// The half-width R of its map.
-    pub radius: u32,
-    /// The intervals of its map per axis.
-    pub intervals: usize,
-    /// Its digest, in hexadecimal.
-    pub digest: String,
-    /// How it was made and what was measured on it.
-    pub provenance: Provenance,
-    /// A digest of its vectors alone.
-    vectors: [u8; 32],
-    bytes: Bytes,
-}
-
-impl Entry {
-    /// What it was made to be, if its history tells.
-    #[must_use]
-    pub fn aim(&self) -> Option<Aim> {
-        Aim::of(&self.key.profile, &self.provenance)
-    }
-
-    fn read(bytes: Bytes, source: Source) -> Result<Self, CatalogError> {
-        let table = Table::from_bytes(&bytes).map_err(|error| CatalogError::Table {
-            source_name: source.clone(),
-            error,
-        })?;
-        let vectors = table.displacements().as_flattened();
-        let vectors: Vec<u8> = vectors.iter().flat_map(|v| v.to_le_bytes()).collect();
-        let vectors = *blake3::hash(&vectors).as_bytes();
-        let mix = table.mix().map(|mix| MixKey {
-            shares: mix.shares().parts().into(),
-            vectors,
-        });
-        Ok(Self {
-            key: Key {
-                profile: table.profile().into(),
-                alpha: table.alpha(),
-                size: table.map().size(),
-                mix: mix.map(Arc::new),
-            },
-            vectors,
-            source,
-            radius: table.map().radius(),
-            intervals: table.map().intervals(),
-            digest: table.digest().to_string(),
-            provenance: table.provenance().clone(),
-            bytes,
-        })
-    }
-
-    /// Reads a table file, which must be a regular file of the size that tables may have.
-    ///
-    /// # Errors
-    /// [`CatalogError::File`] or [`CatalogError::Table`], naming the file.
-    pub fn from_file(path: PathBuf) -> Result<Self, CatalogError> {
-        let source = Source::File(path.clone());
-        match bounded_file::read(&path, MAX_FILE_BYTES) {
-            Ok(bytes) => Self::read(bytes.into(), source),
-            Err(error) => Err(CatalogError::File { path, error }),
-        }
-    }
-
-    /// How many blocks the table has, one vector each.
-    #[must_use]
-    pub const fn blocks(&self) -> usize {
-        self.intervals * self.intervals
-    }
-
-    /// The table file.
-    #[must_use]
-    pub const fn bytes(&self) -> &Bytes {
-        &self.bytes
-    }
-
-    /// The table.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] only if memory has been damaged since the table was checked.
-    pub fn table(&self) -> Result<Table, Error> {
-        Table::from_bytes(&self.bytes).map_err(|error| {
-            tracing::error!(source = %self.source, %error, "a checked table is not valid any more");
-            Error::Internal("a table is not valid any more")
-        })
-    }
-
-    /// A figure that was measured on the first set that the table was not made on, if it was.
-    #[must_use]
-    pub fn measured(&self, name: &str) -> Option<f64> {
-        let unseen = self
-            .provenance
-            .figures
-            .iter()
-            .find(|figures| !figures.seen)?;
-        let mut values = unseen.values.iter();
-        values
-            .find(|(known, _)| known == name)
-            .map(|(_, value)| *value)
-    }
-}
-
-/// Why the tables cannot be loaded.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum CatalogError {
-    /// The folder cannot be listed.
-    #[error("cannot list the tables folder {}: {error}", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
-    /// A file cannot be read.
-    #[error("cannot read the table {}: {error}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
-    /// A file is not a valid table.
-    #[error("the table {source_name} is not valid: {error}")]
-    Table {
-        /// Where it is.
-        source_name: Source,
-        /// What is wrong where.
-        error: strew_core::Error,
-    },
-    /// Two tables of one place answer the same queries.
-    #[error("the tables {first} and {second} are both for {key}: keep one")]
-    Twice {
-        /// What both are found by.
-        key: Key,
-        /// One.
-        first: Source,
-        /// The other.
-        second: Source,
-    },
-}
 
 /// The tables that are loaded, by key.
 #[derive(Clone, Debug, Default)]
@@ -275,6 +51,14 @@ pub struct Catalog {
     fields: Arc<Fields>,
     /// The fields that clients have sent.
     sent: Arc<Sent>,
+    /// Plain patterns that queries have named.
+    patterns: Arc<Patterns>,
+    /// How many bytes of files are held.
+    preload_bytes: u64,
+    /// How others can be had.
+    offer: Offer,
+    /// The most pixels that a query may bring along, if not as many as by default.
+    most_pixels: Option<usize>,
 }
 
 /// What building a field has left and taken.
@@ -295,7 +79,23 @@ impl Catalog {
     /// # Errors
     /// [`CatalogError`], naming the file.
     pub fn load(embedded: bool, folder: Option<&Path>) -> Result<Self, CatalogError> {
-        let mut catalog = Self::default();
+        Self::preloading(u64::MAX, embedded, folder)
+    }
+
+    /// The same, but of files beyond `preload_bytes` only the heads are read. Damage of those shows when they are
+    /// used.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn preloading(
+        preload_bytes: u64,
+        embedded: bool,
+        folder: Option<&Path>,
+    ) -> Result<Self, CatalogError> {
+        let mut catalog = Self {
+            preload_bytes,
+            ..Self::default()
+        };
         if embedded {
             catalog.add([DEFAULT].iter().chain(EMBEDDED).map(|&(name, bytes)| {
                 Entry::read(Bytes::from_static(bytes), Source::Embedded(name))
@@ -304,7 +104,8 @@ impl Catalog {
         }
         if let Some(folder) = folder {
             let files = table_files(folder)?;
-            catalog.add(files.into_iter().map(Entry::from_file))?;
+            let mut preload = Preload(preload_bytes);
+            catalog.add(files.into_iter().map(|file| preload.read(file)))?;
         }
         Ok(catalog)
     }
@@ -314,6 +115,19 @@ impl Catalog {
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.fields = Arc::new(fields);
         self
+    }
+
+    /// The same, forging others on demand.
+    #[must_use]
+    pub const fn offering(mut self, offer: Offer) -> Self {
+        self.offer = offer;
+        self
+    }
+
+    /// How tables can be had that are not loaded.
+    #[must_use]
+    pub const fn offer(&self) -> Offer {
+        self.offer
     }
 
     /// The fields that queries may name.
@@ -327,6 +141,19 @@ impl Catalog {
     pub fn with_room(mut self, bytes: usize) -> Self {
         self.sent = Arc::new(Sent::new(bytes));
         self
+    }
+
+    /// The same for queries that bring along up to this many pixels, instead of [`field::MOST_PIXELS`].
+    #[must_use]
+    pub const fn with_pixels(mut self, most: usize) -> Self {
+        self.most_pixels = Some(most);
+        self
+    }
+
+    /// The most pixels that a query may bring along.
+    #[must_use]
+    pub fn most_pixels(&self) -> usize {
+        self.most_pixels.unwrap_or(field::MOST_PIXELS)
     }
 
     /// The fields that clients have sent.
@@ -392,6 +219,32 @@ impl Catalog {
         self.entries.get(key).cloned()
     }
 
+    /// The plain pattern of an α, derived; `None` for a larger map than patterns have.
+    #[must_use]
+    pub fn pattern(&self, alpha: Alpha, size: Size) -> Option<Arc<Entry>> {
+        self.patterns.get(alpha, size)
+    }
+
+    /// The same with one table more, in the place of another with its key.
+    #[must_use]
+    pub(in crate::service) fn with(&self, entry: Arc<Entry>) -> Self {
+        let mut more = self.clone();
+        more.entries.insert(entry.key.clone(), entry);
+        more
+    }
+
+    /// The same with the tables that `now` has and `base` had not: those that came while this one was read.
+    #[must_use]
+    pub(in crate::service) fn with_later(mut self, base: &Self, now: &Self) -> Self {
+        for (key, entry) in &now.entries {
+            if !base.entries.contains_key(key) {
+                let slot = self.entries.entry(key.clone());
+                slot.or_insert_with(|| entry.clone());
+            }
+        }
+        self
+    }
+
     /// All tables without kinds, by profile, then α.
     pub fn entries(&self) -> impl Iterator<Item = &Arc<Entry>> {
         self.entries
@@ -409,8 +262,9 @@ impl Catalog {
             let mix = key.mix.as_deref()?;
             let is_same =
                 (&key.profile, key.alpha, key.size) == (&of.key.profile, of.key.alpha, of.key.size);
-            let is_moved = mix.vectors != of.vectors;
-            (is_same && is_moved == are_moved).then_some((mix, entry))
+            // Only then the vectors matter, which may be on disk.
+            let is_moved = || Some(mix.vectors) != of.vectors();
+            (is_same && is_moved() == are_moved).then_some((mix, entry))
         })
     }
 
@@ -445,10 +299,32 @@ impl Catalog {
         keys.map(|key| key.size).collect()
     }
 
+    /// Whether any table of a profile is loaded.
+    #[must_use]
+    pub fn has_profile(&self, profile: &str) -> bool {
+        self.of_profile(profile).next().is_some()
+    }
+
     fn of_profile(&self, profile: &str) -> impl Iterator<Item = &Key> {
         self.entries()
             .map(|entry| &entry.key)
             .filter(move |key| &*key.profile == profile)
+    }
+}
+
+/// How many bytes of files may still be held.
+#[derive(Debug)]
+struct Preload(u64);
+
+impl Preload {
+    /// Reads a file whole if there is room for it, else its head.
+    fn read(&mut self, path: PathBuf) -> Result<Entry, CatalogError> {
+        let bytes = fs::metadata(&path).map_or(0, |file| file.len());
+        if bytes > self.0 {
+            return Entry::from_head(path);
+        }
+        self.0 -= bytes;
+        Entry::from_file(path)
     }
 }
 

@@ -5,8 +5,7 @@
 use strew_core::{Area, PointSet, Region, Spacing, Warp, server};
 
 use super::{
-    Lane, Placed, Planned, PlannedSet,
-    cache::Ready,
+    Lane, Placed, Planned, PlannedSet, Ready,
     query::{Nearest, Query, Set},
     resolve::{Resolved, resolve},
     single::MOST_WITHIN,
@@ -75,6 +74,15 @@ pub(super) fn planning(query: &Query, tables: &[Ready], most: u64) -> f64 {
         .sum()
 }
 
+/// What counting a period takes, in rows: nothing if it has all points.
+pub(super) fn rows_of_period(set: &Set) -> f64 {
+    /// Looking at a point of a period takes this much of a row; at its kind, too.
+    const LOOK: f64 = 0.1;
+    let points = set.period.map_or(0.0, |period| period.twin.points() as f64);
+    let looks = f64::from(u8::from(set.is_part())) + f64::from(u8::from(set.kinds.is_some()));
+    points * LOOK * looks
+}
+
 /// The lane in which something is planned that takes this many rows.
 pub(super) fn lane(rows: f64) -> Lane {
     if rows > SHORT_ROWS {
@@ -86,6 +94,9 @@ pub(super) fn lane(rows: f64) -> Lane {
 
 /// The rows that are counted to plan a set, and how much of a row of a warped set each takes.
 fn counted(query: &Query, set: &Set, ready: &Ready) -> (f64, f64) {
+    if set.period.is_some() {
+        return (rows_of_period(set), 1.0);
+    }
     let bounds = query.region.bbox();
     let (spacing, counts) = match resolve(set, ready) {
         Err(_) => return (0.0, 0.0),

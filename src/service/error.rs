@@ -1,6 +1,6 @@
 //! What can be wrong with a request, in words for the client.
 //!
-//! One type for both protocols; [`error_map`](crate::error_map) has the status of each. Text here is for clients; what only operators should see goes
+//! One type for both protocols; `error_map` has the status of each. Text here is for clients; what only operators should see goes
 //! to the log where it happens.
 
 use std::fmt;
@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::query::Faults;
+#[cfg(feature = "daemon")]
 use crate::access::Denied;
 
 /// One thing that is wrong with a query.
@@ -125,6 +126,12 @@ pub enum Error {
         /// The digest of the table that is loaded.
         loaded: String,
     },
+    /// The table is loaded, but its file cannot be read.
+    #[error("the table of {table} cannot be read now: its file is gone, has changed or is damaged")]
+    TableUnreadable {
+        /// What it is found by.
+        table: String,
+    },
     /// None of the formats the client accepts is made here.
     #[error("`Accept: {accept}` names no available format; available: {available}")]
     NotAcceptable {
@@ -157,7 +164,25 @@ pub enum Error {
         /// What the path takes.
         allowed: String,
     },
+    /// There is no such job.
+    #[error("there is no job `{id}`: it was never begun here, or has been forgotten")]
+    NoSuchJob {
+        /// The id.
+        id: String,
+    },
+    /// No tables are made on demand.
+    #[error(
+        "this server makes no tables on demand: its operator can set forge.allow, or make them with strew forge"
+    )]
+    ForgeOff,
+    /// As many tables wait to be made as may.
+    #[error("{limit} tables wait to be made, the limit of this server: try again later")]
+    TooManyJobs {
+        /// The limit.
+        limit: usize,
+    },
     /// The caller is refused, for good or for now.
+    #[cfg(feature = "daemon")]
     #[error(transparent)]
     Denied(#[from] Denied),
     /// As many answers are being streamed as the server allows at once.
@@ -224,26 +249,32 @@ pub enum Kind {
     BodyTooLarge,
     /// [`Error::OtherTable`].
     OtherTable,
+    /// [`Error::TableUnreadable`].
+    TableUnreadable,
     /// [`Error::NotAcceptable`].
     NotAcceptable,
     /// [`Error::NoSuchPoint`].
     NoSuchPoint,
+    /// [`Error::NoSuchJob`].
+    NoSuchJob,
     /// [`Error::NoSuchPath`].
     NoSuchPath,
     /// [`Error::NoSuchMethod`].
     NoSuchMethod,
-    /// [`Denied::NoKey`], [`Denied::WrongKey`].
+    /// A key is needed, or is not known.
     Unauthenticated,
-    /// [`Denied::NotAdmin`].
+    /// Only administrators may do that.
     NotAllowed,
-    /// [`Denied::TooManyStreams`].
+    /// The caller has as many streams as it may have.
     TooManyStreams,
-    /// [`Denied::Address`].
+    /// The caller has as many tables made as it may have.
+    TooManyJobs,
+    /// The client's address uses as much as one address may.
     TooManyForAddress,
-    /// [`Denied::TooFast`].
+    /// The caller takes points too fast.
     TooFast,
     /// [`Error::Busy`], [`Error::TooManyConnections`], [`Error::TooManyRequests`],
-    /// [`Error::TooManyBytes`].
+    /// [`Error::TooManyBytes`], [`Error::TooManyJobs`].
     Busy,
     /// [`Error::BodyTooSlow`].
     BodyTooSlow,
@@ -257,19 +288,22 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 22] = [
         Self::Invalid,
         Self::TooManyPoints,
         Self::TooManyRows,
         Self::BodyTooLarge,
         Self::OtherTable,
+        Self::TableUnreadable,
         Self::NotAcceptable,
         Self::NoSuchPoint,
+        Self::NoSuchJob,
         Self::NoSuchPath,
         Self::NoSuchMethod,
         Self::Unauthenticated,
         Self::NotAllowed,
         Self::TooManyStreams,
+        Self::TooManyJobs,
         Self::TooManyForAddress,
         Self::TooFast,
         Self::Busy,
@@ -290,18 +324,26 @@ impl Error {
             Self::TooManyRows { .. } => Kind::TooManyRows,
             Self::BodyTooLarge { .. } => Kind::BodyTooLarge,
             Self::OtherTable { .. } => Kind::OtherTable,
+            Self::TableUnreadable { .. } => Kind::TableUnreadable,
             Self::NotAcceptable { .. } => Kind::NotAcceptable,
             Self::NoSuchPoint { .. } => Kind::NoSuchPoint,
+            Self::NoSuchJob { .. } => Kind::NoSuchJob,
             Self::NoSuchPath { .. } => Kind::NoSuchPath,
             Self::NoSuchMethod { .. } => Kind::NoSuchMethod,
-            Self::Denied(Denied::NoKey | Denied::WrongKey) => Kind::Unauthenticated,
-            Self::Denied(Denied::NotAdmin { .. }) => Kind::NotAllowed,
-            Self::Denied(Denied::TooManyStreams { .. }) => Kind::TooManyStreams,
-            Self::Denied(Denied::Address { .. }) => Kind::TooManyForAddress,
-            Self::Denied(Denied::TooFast { .. }) => Kind::TooFast,
+            Self::ForgeOff => Kind::NotAllowed,
+            #[cfg(feature = "daemon")]
+            Self::Denied(denied) => match denied {
+                Denied::NoKey | Denied::WrongKey => Kind::Unauthenticated,
+                Denied::NotAdmin { .. } => Kind::NotAllowed,
+                Denied::TooManyStreams { .. } => Kind::TooManyStreams,
+                Denied::TooManyJobs { .. } => Kind::TooManyJobs,
+                Denied::Address { .. } => Kind::TooManyForAddress,
+                Denied::TooFast { .. } => Kind::TooFast,
+            },
             Self::Busy { .. }
             | Self::TooManyConnections { .. }
             | Self::TooManyRequests { .. }
+            | Self::TooManyJobs { .. }
             | Self::TooManyBytes { .. } => Kind::Busy,
             Self::BodyTooSlow { .. } => Kind::BodyTooSlow,
             Self::TimeOver { .. } => Kind::TimeOver,
@@ -316,7 +358,8 @@ impl Error {
         match self {
             Self::ShuttingDown => Some(1),
             // It was slow because others ask, too: soon it may be fast.
-            Self::TimeOver { .. } => Some(5),
+            Self::TimeOver { .. } | Self::TableUnreadable { .. } => Some(5),
+            #[cfg(feature = "daemon")]
             Self::Denied(denied) => denied.wait_seconds(),
             _ => (self.kind() == Kind::Busy).then_some(1),
         }

@@ -21,10 +21,7 @@ use strew_core::{
     table::{MAX_FILE_BYTES, Shares},
 };
 
-use super::{
-    Budget, Error, Fault, Lane, Workers,
-    cache::{Ready, Samplers},
-};
+use super::{Budget, Error, Lane, Ready, Workers, cache::Samplers, mix::make};
 use crate::bounded_file;
 
 /// The mixes that were made.
@@ -142,21 +139,6 @@ fn name(plain: &Ready, shares: &Shares) -> String {
         plain.entry.digest,
         shares.to_string().replace(':', "-")
     )
-}
-
-/// Labels the blocks of a table. Takes seconds.
-///
-/// # Errors
-/// [`Error::Invalid`] if the table has too few blocks for the shares.
-pub(super) fn make(table: &Table, shares: &Shares) -> Result<Table, Error> {
-    let began = std::time::Instant::now();
-    let made = strew_forge::labels(table, shares, &()).map_err(|error| {
-        let allowed =
-            "weights nearer to each other, fewer variants, a larger map, or spread chance";
-        Fault::new("variants", shares, error.to_string(), allowed)
-    })?;
-    tracing::info!(%shares, seconds = began.elapsed().as_secs_f32(), "made a mix");
-    made.ok_or(Error::Internal("a mix was stopped that is still wanted"))
 }
 
 /// Reads a mix that was made earlier, or makes it and keeps it.

@@ -1,471 +1,77 @@
-//! What the daemon does, without a wire: checked queries, tables, samplers, streams of blocks.
+//! What Strew does, without a wire: checked queries, tables, samplers, points in blocks or columns.
 //!
-//! A query comes in as raw parameters or typed fields and leaves [`query`] checked. [`Service`]
-//! finds its table in the [`catalog`], takes a sampler from the [`cache`], plans the region on the
-//! [`workers`] and hands out a [`stream`] of blocks that an encoder makes one at a time, on demand.
-//! Encoders ([`encode`]) are plain iterators: a command line can run them without any of the rest.
+//! A query comes in as raw parameters or typed fields and leaves [`query`] checked. A [`Library`] finds its
+//! table in the [`catalog`], plans the region and fills [`Columns`]: it is what the bindings are made on. A
+//! daemon has a `Service`, which answers many clients at once: it takes tables from a cache, plans on its
+//! workers and hands out a stream of blocks that an encoder makes one at a time, on demand. Encoders
+//! ([`encode`]) are plain iterators: a command line can run them without any of the rest.
+//!
+//! What only a daemon needs is there with the feature `daemon`.
 
 mod attributes;
+#[cfg(feature = "daemon")]
 pub mod budget;
+#[cfg(feature = "daemon")]
 pub mod cache;
 pub mod catalog;
+#[cfg(feature = "daemon")]
+mod daemon;
 mod effort;
 pub mod encode;
 pub mod error;
 pub mod field;
+#[cfg(feature = "daemon")]
+pub mod forging;
 mod lane;
+pub mod library;
+mod mix;
+#[cfg(feature = "daemon")]
 mod mixes;
+#[cfg(feature = "daemon")]
+pub mod pattern;
 mod planned;
+mod planned_points;
 mod planned_set;
 mod planner;
+#[cfg(feature = "daemon")]
 mod portrait;
 mod presets;
 pub mod query;
+mod ready;
+#[cfg(feature = "daemon")]
 pub mod record;
 mod resolve;
 mod single;
+#[cfg(feature = "daemon")]
 pub mod stream;
+#[cfg(feature = "daemon")]
+mod tables;
+#[cfg(feature = "daemon")]
 mod turns;
+#[cfg(feature = "daemon")]
 pub mod workers;
 
-use std::{
-    path::{Path, PathBuf},
-    sync::Arc,
-};
-
-use arc_swap::ArcSwap;
-use bytes::Bytes;
-use futures_util::{Stream, StreamExt as _};
-
-use strew_core::server::Stop;
-
-pub use budget::{Budget, Held};
-pub use cache::Ready;
 pub use catalog::{Catalog, Entry, Key, Reload};
 pub use effort::{Neighbors, considered};
 pub use encode::{Answer, Encoding, Options, Output};
 pub use error::{Error, Fault, Kind};
 pub use lane::Lane;
-pub use planned::{Placed, Planned};
+pub use library::{Columns, Library};
+pub use planned::{Placed, PlacedPoints, Planned};
+pub use planned_points::{PlannedPoints, Walk};
 pub use planned_set::PlannedSet;
-pub use portrait::Portrait;
 pub use presets::{PresetError, Presets};
 pub use query::{Draft, Nearest, Query, Set, Token};
-pub use record::Record;
+pub use ready::Ready;
 pub use single::Found;
-pub use stream::{BlockStream, Interrupted, Permit, Streams};
-pub use workers::Workers;
+#[cfg(feature = "daemon")]
+pub use {
+    budget::{Budget, Held},
+    daemon::Service,
+    portrait::Portrait,
+    record::Record,
+    stream::{BlockStream, Interrupted, Permit, Streams},
+    workers::Workers,
+};
 
 pub use crate::config::Limits;
-
-use crate::{access::Caller, config};
-use cache::{CacheState, Samplers};
-use field::{Document, NamedField};
-use mixes::Mixes;
-use portrait::Portraits;
-use record::Recorded;
-
-/// Everything a front end needs. Cheap to share behind an [`Arc`].
-#[derive(Debug)]
-pub struct Service {
-    catalog: ArcSwap<Catalog>,
-    presets: Presets,
-    limits: Limits,
-    samplers: Samplers,
-    mixes: Mixes,
-    portraits: Portraits,
-    streams: Arc<Streams>,
-    budget: Budget,
-    workers: Workers,
-}
-
-impl Service {
-    /// A service over a catalog.
-    #[must_use]
-    pub fn new(catalog: Catalog, limits: Limits, workers: Workers) -> Self {
-        let samplers = Samplers::new(limits.cache_bytes);
-        let budget = Budget::new(limits.max_bytes_in_flight);
-        Self {
-            mixes: Mixes::new(samplers.clone(), budget.clone(), None),
-            samplers,
-            portraits: Portraits::new(),
-            streams: Arc::new(Streams::new(limits.max_streams)),
-            budget,
-            catalog: ArcSwap::from_pointee(catalog),
-            presets: Presets::default(),
-            limits,
-            workers,
-        }
-    }
-
-    /// The service with presets.
-    #[must_use]
-    pub fn with_presets(self, presets: Presets) -> Self {
-        Self { presets, ..self }
-    }
-
-    /// The service with a folder of mixes, where those are kept that queries have made.
-    #[must_use]
-    pub fn with_mixes(self, folder: Option<PathBuf>) -> Self {
-        Self {
-            mixes: Mixes::new(self.samplers.clone(), self.budget.clone(), folder),
-            ..self
-        }
-    }
-
-    /// The presets.
-    #[must_use]
-    pub const fn presets(&self) -> &Presets {
-        &self.presets
-    }
-
-    /// The tables that are loaded now. A query holds on to those that it was checked against.
-    #[must_use]
-    pub fn catalog(&self) -> Arc<Catalog> {
-        self.catalog.load_full()
-    }
-
-    /// Reads the folders of tables and of fields again. A file that is not valid is refused, and what it
-    /// held so far stays.
-    #[must_use]
-    pub fn read_tables(&self, folder: Option<&Path>, fields: &config::Fields) -> (Catalog, Reload) {
-        self.catalog.load().reload(folder, fields)
-    }
-
-    /// Serves the tables that were read, all at once. Reloads come one after another.
-    pub async fn serve_tables(&self, (after, reload): (Catalog, Reload)) -> Reload {
-        self.catalog.store(Arc::new(after));
-        for digest in reload.gone() {
-            self.samplers.forget(digest).await;
-        }
-        reload
-    }
-
-    /// Holds a field that a client sends, under its digest.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for a field that is not valid or too large to be held.
-    pub fn hold_field(&self, document: Document) -> Result<Arc<NamedField>, Error> {
-        let catalog = self.catalog();
-        let (spec, built) = catalog.build_field("field", &document, field::MOST_PIXELS);
-        let field = NamedField::sent(document, spec?, built.bytes, built.frame);
-        let name = field.name.clone();
-        let held = catalog
-            .sent()
-            .hold(field)
-            .then(|| catalog.sent().get(&name));
-        held.flatten().ok_or_else(|| {
-            let detail = format!("takes {} bytes, which there is no room for", built.bytes);
-            Fault::new(
-                "field",
-                "",
-                detail,
-                "a smaller field, or fields.max_sent_bytes raised",
-            )
-            .into()
-        })
-    }
-
-    /// The limits.
-    #[must_use]
-    pub const fn limits(&self) -> &Limits {
-        &self.limits
-    }
-
-    /// The threads that make points.
-    #[must_use]
-    pub const fn workers(&self) -> &Workers {
-        &self.workers
-    }
-
-    /// How the cache of samplers stands.
-    pub async fn cache(&self) -> CacheState {
-        self.samplers.state().await
-    }
-
-    /// The streams under way.
-    #[must_use]
-    pub const fn streams(&self) -> &Arc<Streams> {
-        &self.streams
-    }
-
-    /// The byte budget of all requests and answers.
-    #[must_use]
-    pub const fn budget(&self) -> &Budget {
-        &self.budget
-    }
-
-    /// Checks a query against the tables that are loaded and the limits.
-    ///
-    /// # Errors
-    /// As [`Draft::check`], and [`Error::Invalid`] for a format that is for files only.
-    pub fn check(&self, draft: &Draft) -> Result<(Query, Options), Error> {
-        let (draft, preset) = self.presets.fill(draft)?;
-        let (mut query, options) = draft.check(&self.catalog(), self.limits.max_vertices)?;
-        query.preset = preset;
-        match options.encoding {
-            Some(encoding) if !encoding.is_streamed() => {
-                let format = &query::parameters::FORMAT;
-                let detail = "written by `strew sample` only";
-                Err(draft.values.fault(format, detail).into())
-            }
-            _ => Ok((query, options)),
-        }
-    }
-
-    /// Admits a caller and plans a query whose points are to be made, charging the points considered.
-    ///
-    /// # Errors
-    /// As admitting and [`plan`](Self::plan), and [`Error::Denied`] if the caller takes
-    /// points too fast.
-    pub async fn open(
-        &self,
-        caller: &Caller,
-        query: Query,
-        picture: Option<u32>,
-    ) -> Result<(Permit, Planned), Error> {
-        let permit = self.admit(caller, picture)?;
-        let (planned, charged) = self.charged(caller, query).await?;
-        self.check_points(caller, &planned)?;
-        caller.charge(considered(&planned), charged)?;
-        Ok((permit, planned))
-    }
-
-    /// The byte budget of the request that is being answered.
-    #[must_use]
-    pub fn own_budget(&self) -> Budget {
-        let record = Record::current();
-        record.map_or_else(|| self.budget.clone(), |record| record.budget().clone())
-    }
-
-    /// Takes bytes of the budget for the request that is being answered.
-    ///
-    /// # Errors
-    /// As [`Budget::hold`].
-    pub fn hold(&self, bytes: usize) -> Result<Held, Error> {
-        self.own_budget().hold(bytes)
-    }
-
-    /// Plans a query on the workers, whatever it counts. Charges the rows that are counted one by one.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for a region out of reach or an amount that cannot be had,
-    /// [`Error::TooManyRows`] if counting would take too long, and [`Error::Denied`] if the caller's
-    /// rate does not allow it.
-    pub async fn count(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
-        let (planned, _) = self.charged(caller, query).await?;
-        Ok(planned)
-    }
-
-    /// Plans a query. Returns the plan and what was charged for it.
-    async fn charged(&self, caller: &Caller, query: Query) -> Result<(Planned, u128), Error> {
-        let mut charged = 0;
-        let mut tables = vec![];
-        for set in &*query.sets {
-            tables.push(self.ready(caller, set).await?);
-        }
-        let planned = if query.is_small() {
-            // Handing it over would take longer.
-            Planned::new(query, &tables, &self.limits)?
-        } else {
-            let limits = self.limits.clone();
-            let rows = effort::planning(&query, &tables, limits.max_rows);
-            charged = rows as u128;
-            // Before the work, which is done even if the answer is refused.
-            if charged > 0 {
-                caller.charge(charged, 0)?;
-            }
-            let lane = effort::lane(rows);
-            let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
-            self.workers.take_turn(lane, plan).await??
-        };
-        tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
-        if let Some(record) = Record::current() {
-            record.take_lane(effort::block_lane(&planned));
-        }
-        Ok((planned, charged))
-    }
-
-    /// The table of a set, ready to answer. Making a mix is charged.
-    async fn ready(&self, caller: &Caller, set: &Set) -> Result<Ready, Error> {
-        /// Making a mix takes about as long as making this many points for each block.
-        const POINTS: u128 = 10_000;
-        let ready = self.samplers.get(&set.entry, &self.workers).await?;
-        let Some(kinds) = set.kinds.as_ref().filter(|_| ready.table.mix().is_none()) else {
-            return Ok(ready);
-        };
-        if let Some(made) = &kinds.made {
-            let Ready { table, .. } = self.samplers.get(made, &self.workers).await?;
-            return Ok(Ready { table, ..ready });
-        }
-        if let Some(known) = self.mixes.known(&ready, kinds.shares()).await {
-            return Ok(known);
-        }
-        caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
-        self.mixes.get(&ready, kinds.shares(), &self.workers).await
-    }
-
-    /// The right of a caller to start one more stream; a picture of that size is held whole.
-    ///
-    /// # Errors
-    /// As [`Streams::admit`], [`Error::Denied`] if the caller has as many as it may have, and
-    /// [`Error::TooManyBytes`] if there is no room.
-    fn admit(&self, caller: &Caller, picture: Option<u32>) -> Result<Permit, Error> {
-        /// Rows and text are made in so much, besides blocks.
-        const ROWS: usize = 2 << 20;
-        let side = picture.map_or(0, |side| usize::try_from(side).unwrap_or(usize::MAX));
-        let blocks = self.limits.block_bytes.saturating_mul(4);
-        let held = blocks
-            .saturating_add(ROWS)
-            .saturating_add(side.saturating_mul(side));
-        let place = caller.place()?;
-        let permit = self.streams.admit()?;
-        Ok(permit.with(place, self.hold(held)?))
-    }
-
-    /// Plans a query that is to be answered with its points.
-    ///
-    /// # Errors
-    /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
-    pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
-        let planned = self.count(caller, query).await?;
-        self.check_points(caller, &planned)?;
-        Ok(planned)
-    }
-
-    /// Refuses more points than a caller may have.
-    fn check_points(&self, caller: &Caller, planned: &Planned) -> Result<(), Error> {
-        let limit = caller.max_points(self.limits.max_points);
-        let count = planned.count();
-        if count > u128::from(limit) {
-            return Err(Error::TooManyPoints { count, limit });
-        }
-        Ok(())
-    }
-
-    /// The query in parts; see [`Planned::split`].
-    ///
-    /// # Errors
-    /// As [`Planned::split`].
-    pub async fn split(&self, planned: Planned, parts: u32) -> Result<Vec<(Token, u64)>, Error> {
-        let split = move |stop: &Stop| planned.stopped_by(stop).split(parts);
-        self.workers.take_turn(Lane::Long, split).await?
-    }
-
-    /// Reads or writes this many bytes of a request or an answer: at once if they are few, else on the
-    /// workers.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if the job panicked.
-    pub async fn process<T: Send + 'static>(
-        self: &Arc<Self>,
-        bytes: usize,
-        job: impl FnOnce(&Self) -> T + Send + 'static,
-    ) -> Result<T, Error> {
-        /// This much takes as long as handing it over.
-        const FEW: usize = 4 << 10;
-        /// More than this takes milliseconds.
-        const MANY: usize = 64 << 10;
-        if bytes <= FEW {
-            return Ok(job(self));
-        }
-        let lane = if bytes <= MANY {
-            Lane::Short
-        } else {
-            Lane::Long
-        };
-        let service = self.clone();
-        self.workers.take_turn(lane, move |_| job(&service)).await
-    }
-
-    /// Lays a set into the world, to look up single points.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] for an amount that the table cannot have.
-    pub async fn place(&self, caller: &Caller, set: Set) -> Result<Placed, Error> {
-        let ready = self.ready(caller, &set).await?;
-        Placed::new(set, ready)
-    }
-
-    /// What is made of the points of a set nearest to a place, where they are found: there may be
-    /// thousands. Charges them.
-    ///
-    /// # Errors
-    /// As [`place`](Self::place) and [`Placed::nearest`], [`Error::Denied`] if the caller takes points
-    /// too fast, and [`Error::TooManyBytes`] if there is no room.
-    pub async fn nearest<T: Send + 'static>(
-        &self,
-        caller: &Caller,
-        set: Set,
-        nearest: Nearest,
-        answer: impl FnOnce(&Placed, Vec<Found>) -> Result<T, Error> + Send + 'static,
-    ) -> Result<T, Error> {
-        let placed = self.place(caller, set).await?;
-        let effort = Neighbors::of(&placed, &nearest);
-        let (budget, caller) = (self.own_budget(), caller.clone());
-        let search = move |_: &Stop| {
-            let _held = budget.hold(effort.bytes)?;
-            let found = placed.nearest(nearest)?;
-            // Those that are thinned out take as long to find.
-            let considered = found.len() as f64 / placed.set.keep.get();
-            caller.charge(considered.round() as u128, 0)?;
-            answer(&placed, found)
-        };
-        self.workers.take_turn(effort.lane, search).await?
-    }
-
-    /// What the points of a table look like.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if it cannot be measured or drawn.
-    pub async fn portrait(&self, entry: &Arc<Entry>) -> Result<Arc<Portrait>, Error> {
-        self.portraits.get(entry, &self.workers).await
-    }
-
-    /// All of the answer to a [small](Query::is_small) query: handing it to the workers block by
-    /// block would take longer than making it.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if it cannot be made.
-    pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
-        let mut whole = Bytes::new();
-        for block in Recorded::new(answer) {
-            let block = block?;
-            whole = match (whole.is_empty(), block.is_empty()) {
-                (true, _) => block,
-                (false, true) => whole,
-                (false, false) => [whole, block].concat().into(),
-            };
-        }
-        Ok(whole)
-    }
-
-    /// Streams the blocks of an answer. One that cannot be made to its end breaks off.
-    pub fn blocks(
-        &self,
-        permit: Permit,
-        answer: Answer,
-    ) -> impl Stream<Item = Result<Bytes, Interrupted>> + use<> {
-        let blocks = self.stream(permit, Recorded::new(answer)).map(|made| {
-            made?.map_err(|error| {
-                tracing::error!(%error, "an answer broke off");
-                Interrupted::Failed
-            })
-        });
-        // An empty block only says that there is more to do.
-        blocks.filter(|block| {
-            let said = !matches!(block, Ok(bytes) if bytes.is_empty());
-            std::future::ready(said)
-        })
-    }
-
-    /// Streams what an iterator makes, each item made on the workers when it is asked for.
-    pub fn stream<I>(&self, permit: Permit, items: I) -> BlockStream<I>
-    where
-        I: Iterator + Send + 'static,
-        I::Item: Send,
-    {
-        let lane = Record::current().map_or(Lane::Short, |record| record.lane());
-        BlockStream::new(items, permit, self.workers.clone(), lane)
-    }
-}

@@ -2,17 +2,13 @@
 
 use std::sync::{Arc, OnceLock};
 
-use strew_core::{
-    BoundAttributes, Cursor, PointSet,
-    server::{self, Stop},
-};
+use strew_core::{BoundAttributes, Cursor, Member, PeriodicSet, PointId, PointSet, server::Stop};
 
 use super::{
-    Entry, Error, Limits,
+    Entry, Error, Limits, Ready,
     attributes::PointAttributes,
-    cache::Ready,
     encode::{Attributes, Part},
-    mixes,
+    mix,
     planned_set::PlannedSet,
     planner::Planner,
     query::{Amount, Query, Resolved, ResolvedSet, Set, Token},
@@ -41,7 +37,7 @@ pub struct Placed {
     /// The set.
     pub set: Set,
     /// Its points.
-    pub points: PointSet,
+    pub points: PlacedPoints,
     /// Their attributes.
     pub(super) attributes: BoundAttributes,
     /// As answers echo it.
@@ -62,15 +58,61 @@ impl Placed {
                 "density, spacing or min_distance",
             ));
         };
-        let least = resolve::least_distance(&set, &ready, spacing, 0.0);
-        let distances = resolve::kind_distances(&set, &ready, spacing, 0.0);
-        let points = set.points(&ready.table, spacing);
+        let unit = resolve::unit(&set, &ready, spacing);
+        let least = resolve::least_distance(&set, &ready, unit, 0.0);
+        let distances = resolve::kind_distances(&set, &ready, unit, 0.0);
+        let points = match set.period {
+            Some(period) => PlacedPoints::Period(
+                set.periodic(&ready.table, period)
+                    .map_err(resolve::no_period)?,
+            ),
+            None => PlacedPoints::Plane(Box::new(set.points(&ready.table, spacing))),
+        };
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least, (&[], &distances)),
             attributes: points.attributes(&set.attributes).map_err(other_kinds)?,
             points,
             set,
         })
+    }
+}
+
+/// The points of a set that was laid into the world.
+#[derive(Clone, Debug)]
+pub enum PlacedPoints {
+    /// Those of the plane.
+    Plane(Box<PointSet>),
+    /// Those of a period.
+    Period(PeriodicSet),
+}
+
+impl PlacedPoints {
+    /// The point of an id.
+    #[must_use]
+    pub fn point(&self, id: PointId) -> Option<Member> {
+        match self {
+            Self::Plane(points) => points.point(id),
+            Self::Period(points) => points.point(id),
+        }
+    }
+
+    /// Its block of the neighborhood map.
+    #[must_use]
+    pub fn block(&self, id: PointId) -> Option<[usize; 2]> {
+        match self {
+            Self::Plane(points) => points.block(id),
+            Self::Period(points) => points.block(id),
+        }
+    }
+
+    fn attributes(
+        &self,
+        attributes: &strew_core::Attributes,
+    ) -> Result<BoundAttributes, strew_core::Error> {
+        match self {
+            Self::Plane(points) => points.attributes(attributes),
+            Self::Period(points) => points.attributes(attributes),
+        }
     }
 }
 
@@ -142,7 +184,7 @@ impl Planned {
                 Some(kinds) if ready.table.mix().is_none() => {
                     let table = match &kinds.made {
                         Some(made) => made.table()?,
-                        None => mixes::make(&ready.table, kinds.shares())?,
+                        None => mix::make(&ready.table, kinds.shares())?,
                     };
                     Ok(Ready { table, ..ready })
                 }
@@ -250,7 +292,7 @@ impl Planned {
     #[must_use]
     pub fn stopped_by(mut self, stop: &Stop) -> Self {
         for set in &mut self.sets {
-            set.plan = server::stopped_by(set.plan.clone(), stop.clone());
+            set.plan = set.plan.clone().stopped_by(stop);
         }
         self
     }

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use strew_core::{Plan, Spacing};
+use strew_core::Spacing;
 
 use super::{
-    Entry,
+    Entry, PlannedPoints,
     query::{KindDistance, Set},
 };
 
@@ -21,7 +21,7 @@ pub struct PlannedSet {
     /// No two points are nearer than this.
     pub least_distance: f64,
     /// The points.
-    pub plan: Plan,
+    pub plan: PlannedPoints,
     /// The points that counting all of them looks at one by one; none without a field.
     pub candidates: u128,
     /// How many points of the region each of the set's kinds has.
@@ -37,15 +37,15 @@ pub struct PlannedSet {
 impl PlannedSet {
     pub(super) fn new(
         entry: Arc<Entry>,
-        density: f64,
+        (density, spacing): (f64, Spacing),
         least_distance: f64,
-        plan: Plan,
+        plan: PlannedPoints,
         candidates: u128,
     ) -> Self {
         Self {
             entry,
             density,
-            spacing: plan.placement().spacing,
+            spacing,
             least_distance,
             total: plan.total(),
             plan,

@@ -6,11 +6,10 @@ use strew_core::{
 };
 
 use super::{
-    Error, Limits, PlannedSet,
-    cache::Ready,
+    Error, Limits, PlannedPoints, PlannedSet, Ready,
     effort::{self, Selection},
-    query::{Amount, Kinds, Query, Set, Token, parameters},
-    resolve::{Resolved, check_reach, kind_distances, least_distance, resolve},
+    query::{Amount, Kinds, Period, Query, Set, Token, parameters},
+    resolve::{Resolved, check_reach, kind_distances, least_distance, no_period, resolve, unit},
 };
 
 /// Plans sets one after another.
@@ -37,6 +36,9 @@ impl<'a> Planner<'a> {
     /// With a cursor, sets before the cursor's have given all they had, and the cursor's is found
     /// again without counting.
     pub(super) fn plan(&mut self, i: usize, set: &Set, ready: &Ready) -> Result<PlannedSet, Error> {
+        if let Some(period) = set.period {
+            return self.period(i, set, period, ready);
+        }
         let region = &self.query.region;
         let resolved = resolve(set, ready)?;
         check_reach(set, region.reach())?;
@@ -101,14 +103,69 @@ impl<'a> Planner<'a> {
         Ok(PlannedSet::new(
             ready.entry.clone(),
             match resolved {
-                Resolved::Known(_, density) => density,
-                Resolved::Count(_) => spacing.density(),
+                Resolved::Known(_, density) => (density, spacing),
+                Resolved::Count(_) => (spacing.density(), spacing),
             },
             least_distance(set, ready, spacing, region.reach()),
-            plan,
+            plan.into(),
             candidates,
         )
         .with_kinds(kinds, kind_distances(set, ready, spacing, region.reach())))
+    }
+
+    /// Plans a period.
+    fn period(
+        &self,
+        i: usize,
+        set: &Set,
+        period: Period,
+        ready: &Ready,
+    ) -> Result<PlannedSet, Error> {
+        let Resolved::Known(spacing, density) = resolve(set, ready)? else {
+            return Err(Error::Internal("a period with a count was not refused"));
+        };
+        let points = set.periodic(&ready.table, period).map_err(no_period)?;
+        let cursor = self.query.window.cursor;
+        let here = cursor.filter(|token| i == usize::from(token.set));
+        let unfinished = |_| Error::Internal("a plan was stopped that is still wanted");
+        let plan = match here {
+            Some(token) => points.resume(token.cursor),
+            None => {
+                let rows = effort::rows_of_period(set);
+                let limit = self.limits.max_rows;
+                if rows > limit as f64 {
+                    let rows = rows as u128;
+                    return Err(Error::TooManyRows { rows, limit });
+                }
+                server::period(&points, self.stop).map_err(unfinished)?
+            }
+        };
+        let kinds = match &set.kinds {
+            Some(kinds) if cursor.is_none() => {
+                let counts = server::kinds_of_period(&points, self.stop).map_err(unfinished)?;
+                let count =
+                    |name: &str| counts.get(usize::from(kinds.variants.kind(name)?)).copied();
+                let names = kinds.variants.variants().names();
+                names.map(|name| count(name).unwrap_or(0).into()).collect()
+            }
+            _ => vec![],
+        };
+        let candidates = match set.field {
+            Some(_) => points.len().into(),
+            None => 0,
+        };
+        let unit = unit(set, ready, spacing);
+        let least = least_distance(set, ready, unit, period.side);
+        let distances = kind_distances(set, ready, unit, period.side);
+        let plan = PlannedPoints::Period(plan);
+        let planned = PlannedSet::new(
+            ready.entry.clone(),
+            (density, spacing),
+            least,
+            plan,
+            candidates,
+        );
+        Ok(planned.with_kinds(kinds, distances))
     }
 
     /// How many points of a plan each kind has, in the order of their names.

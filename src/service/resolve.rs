@@ -3,8 +3,7 @@
 use strew_core::{ErrorKind, LeastDistance, Spacing};
 
 use super::{
-    Error,
-    cache::Ready,
+    Error, Ready,
     query::{Amount, KindDistance, Parameter, Set, number, parameters},
 };
 
@@ -61,6 +60,22 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
 /// ladder.
 fn moves(set: &Set, ready: &Ready) -> bool {
     set.field.is_some() && ready.table.ladder().is_some()
+}
+
+/// The spacing in the plane of whose grid units a set's points are apart: of a period, whose twin has slightly other
+/// ones, not quite its spacing.
+pub(super) fn unit(set: &Set, ready: &Ready, spacing: Spacing) -> Spacing {
+    let Some(period) = set.period else {
+        return spacing;
+    };
+    let unit = period.side / period.twin.period() as f64;
+    Spacing::new(unit / ready.table.alpha().set_side_f64()).unwrap_or(spacing)
+}
+
+/// The error of a period that was found when the query was checked.
+pub(super) fn no_period(error: strew_core::Error) -> Error {
+    tracing::error!(%error, "a table has no such period");
+    Error::Internal("a table has no such period")
 }
 
 /// The distance that coordinates within ±`reach` keep.

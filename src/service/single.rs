@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 use strew_core::{Attribute, ErrorKind, Member, Neighbor, PointId};
 
 use super::{
-    Error, Fault, Placed,
+    Error, Fault, Placed, PlacedPoints,
     query::{Nearest, number, parameters},
     resolve,
 };
@@ -61,7 +61,9 @@ impl Placed {
     /// [`Error::Invalid`] for a place too far out or too many points.
     pub fn nearest(&self, nearest: Nearest) -> Result<Vec<Found>, Error> {
         let Nearest { at, k, radius } = nearest;
-        let points = &self.points;
+        let PlacedPoints::Plane(points) = &self.points else {
+            return Err(Error::Internal("neighbors of a period were not refused"));
+        };
         let found = match (k, radius) {
             (k, None) => points.nearest(at, k.unwrap_or(1)),
             (None, Some(radius)) => points.around(at, radius, MOST_WITHIN),

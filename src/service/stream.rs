@@ -111,6 +111,13 @@ impl Permit {
     }
 }
 
+impl Permit {
+    /// Waits until all streams are told to end.
+    pub(super) async fn stopped(&self) {
+        self.streams.stop.cancelled().await;
+    }
+}
+
 impl Drop for Permit {
     fn drop(&mut self) {
         self.streams.open.fetch_sub(1, Ordering::AcqRel);

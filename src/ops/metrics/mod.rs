@@ -115,6 +115,7 @@ impl OfProtocol {
 }
 
 /// What becomes of spans.
+#[cfg(feature = "otlp")]
 #[derive(Debug)]
 pub(super) struct OfSpans {
     /// Sent to the collector.
@@ -278,6 +279,7 @@ impl Metrics {
     }
 
     /// What becomes of spans, by outcome.
+    #[cfg(feature = "otlp")]
     pub(super) fn spans(&self) -> OfSpans {
         let outcome = |name: &'static str| self.counter(SPANS, labels([("outcome", name.into())]));
         OfSpans {
@@ -368,6 +370,9 @@ const FAILED_HANDSHAKES: &str = "strew_tls_handshakes_failed_total";
 const SPANS: &str = "strew_spans_total";
 const CACHE_HITS: &str = "strew_sampler_cache_hits_total";
 const CACHE_MISSES: &str = "strew_sampler_cache_misses_total";
+const TABLE_LOADS: &str = "strew_table_loads_total";
+const FORGE_ENDED: &str = "strew_forge_jobs_ended_total";
+const FORGE_JOBS: &str = "strew_forge_jobs";
 const IN_FLIGHT: &str = "strew_requests_in_flight";
 const STREAMS: &str = "strew_streams_in_flight";
 const MOST_STREAMS: &str = "strew_streams_limit";
@@ -379,7 +384,7 @@ const THREADS: &str = "process_threads";
 const FIRST_BYTE: &str = "strew_time_to_first_byte_seconds";
 const WHOLE: &str = "strew_request_duration_seconds";
 
-const COUNTERS: [(&str, &str); 12] = [
+const COUNTERS: [(&str, &str); 14] = [
     (
         REQUESTS,
         "Requests that were answered, by route and how they ended: a class of HTTP or a gRPC code",
@@ -402,10 +407,16 @@ const COUNTERS: [(&str, &str); 12] = [
         SPANS,
         "Spans for the collector: sent, or lost because it did not take them",
     ),
+    (FORGE_ENDED, "Jobs of the forge that ended, by outcome"),
     (CACHE_HITS, "Requested tables that were ready"),
     (CACHE_MISSES, "Requested tables that had to be loaded"),
+    (
+        TABLE_LOADS,
+        "Requested tables whose files were read for the request: those beyond tables.preload_bytes",
+    ),
 ];
-const GAUGES: [(&str, &str); 8] = [
+const GAUGES: [(&str, &str); 9] = [
+    (FORGE_JOBS, "Jobs of the forge that wait or run"),
     (IN_FLIGHT, "Requests that are being answered"),
     (STREAMS, "Current answers with points"),
     (MOST_STREAMS, "The most answers with points at once"),

@@ -6,12 +6,12 @@ use axum::{body::Body, extract::State, response::Response, routing};
 use http::{HeaderValue, Method, header};
 
 use super::{
-    CACHE_BYTES, CACHE_HITS, CACHE_MISSES, MEMORY, MOST_STREAMS, Metrics, OPEN_FILES, STARTED,
-    STREAMS, THREADS, process::Process,
+    CACHE_BYTES, CACHE_HITS, CACHE_MISSES, FORGE_ENDED, FORGE_JOBS, MEMORY, MOST_STREAMS, Metrics,
+    OPEN_FILES, STARTED, STREAMS, TABLE_LOADS, THREADS, labels, process::Process,
 };
 use crate::{
     rest::api::{Answer, Endpoint, Operation, Tag, schemas},
-    service::Service,
+    service::{Service, forging},
 };
 
 /// The format of Prometheus.
@@ -63,7 +63,17 @@ impl Metrics {
         let cache = service.cache().await;
         self.counter(CACHE_HITS, vec![]).absolute(cache.hits);
         self.counter(CACHE_MISSES, vec![]).absolute(cache.misses);
+        self.counter(TABLE_LOADS, vec![]).absolute(cache.loads);
         gauge(CACHE_BYTES, Some(cache.bytes as f64));
+        let forge = service.forge_state();
+        for (state, jobs) in [("queued", forge.queued), ("running", forge.running)] {
+            let labels = labels([("state", state.into())]);
+            self.gauge(FORGE_JOBS, labels).set(jobs as f64);
+        }
+        for (state, ended) in forging::State::ENDED.into_iter().zip(forge.ended) {
+            let labels = labels([("outcome", state.name().into())]);
+            self.counter(FORGE_ENDED, labels).absolute(ended);
+        }
         gauge(STREAMS, Some(service.streams().open() as f64));
         gauge(MOST_STREAMS, Some(service.limits().max_streams as f64));
         let process = Process::now();

@@ -2,7 +2,9 @@
 
 use std::{
     fs,
+    io::{self, Read as _, Seek as _, SeekFrom},
     path::{Path, PathBuf},
+    time::UNIX_EPOCH,
 };
 
 use strew_core::table::MAX_FILE_BYTES;
@@ -58,21 +60,25 @@ impl Watched {
             let is_table = path.extension().is_some_and(|e| e == "strew");
             is_table.then_some(path)
         });
-        let mut files: Vec<PathBuf> = tables.chain(self.files.iter().cloned()).collect();
-        files.sort();
-        Fingerprint::of(&files, &field::stamp(&self.fields))
+        let mut tables: Vec<PathBuf> = tables.collect();
+        tables.sort();
+        Fingerprint::of(&tables, &self.files, &field::stamp(&self.fields))
     }
 }
 
-/// A hash of the names and contents of files. Errors of reading count as content.
+/// A hash of the names and contents of files. Errors of reading count as content. Of a table, which there may be
+/// thousands of, only what stands for its content: its ends, the last of which is its digest, its size, its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fingerprint(blake3::Hash);
 
 impl Fingerprint {
-    fn of(files: &[PathBuf], fields: &Stamp) -> Self {
+    fn of(tables: &[PathBuf], files: &[PathBuf], fields: &Stamp) -> Self {
         let mut hasher = blake3::Hasher::new();
-        for path in files {
-            let content = bounded_file::read(path, MAX_FILE_BYTES);
+        let tables = tables.iter().map(|path| (path, ends(path)));
+        let files = files
+            .iter()
+            .map(|path| (path, bounded_file::read(path, MAX_FILE_BYTES)));
+        for (path, content) in tables.chain(files) {
             let content = content.unwrap_or_else(|error| error.to_string().into_bytes());
             for part in [path.as_os_str().as_encoded_bytes(), &content] {
                 hasher.update(&(part.len() as u64).to_le_bytes());
@@ -82,6 +88,24 @@ impl Fingerprint {
         fields.hash(&mut hasher);
         Self(hasher.finalize())
     }
+}
+
+/// The first and the last bytes of a file, its size, its time of change and, where there is one, its number.
+fn ends(path: &Path) -> io::Result<Vec<u8>> {
+    const END: u64 = 64;
+    let mut file = bounded_file::open_regular(path)?;
+    let about = file.metadata()?;
+    let mut content = vec![];
+    (&mut file).take(END).read_to_end(&mut content)?;
+    file.seek(SeekFrom::Start(about.len().saturating_sub(END)))?;
+    file.take(END).read_to_end(&mut content)?;
+    content.extend(about.len().to_le_bytes());
+    if let Ok(since) = about.modified()?.duration_since(UNIX_EPOCH) {
+        content.extend(since.as_nanos().to_le_bytes());
+    }
+    #[cfg(unix)]
+    content.extend(std::os::unix::fs::MetadataExt::ino(&about).to_le_bytes());
+    Ok(content)
 }
 
 #[cfg(test)]

@@ -147,6 +147,14 @@ fn as_text(shape: Shape) -> Value {
             let more = names.len().saturating_sub(1);
             json!({ "type": "string", "pattern": format!("^{NUMBER}(,{NUMBER}){{{more}}}$") })
         }
+        Shape::Integers { names, .. } => {
+            let pattern = vec![INTEGER; names.len()].join(",");
+            json!({ "type": "string", "pattern": format!("^{pattern}$") })
+        }
+        Shape::Offsets { .. } => {
+            let pair = format!("{INTEGER},{INTEGER}");
+            json!({ "type": "string", "pattern": format!("^{pair}([ +]{pair})*$") })
+        }
         Shape::Vertices => {
             json!({ "type": "string", "pattern": format!("^{NUMBER},{NUMBER}(,{NUMBER},{NUMBER}){{2,}}$") })
         }
@@ -167,6 +175,9 @@ fn as_text(shape: Shape) -> Value {
         other => schema(other),
     }
 }
+
+/// An integer of up to 15 digits, which is within all bounds.
+const INTEGER: &str = r"-?\d{1,15}";
 
 /// A decimal number.
 const NUMBER: &str = r"-?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?";
@@ -189,6 +200,17 @@ pub(super) fn schema(shape: Shape) -> Value {
         Shape::Numbers(names) => json!({
             "type": "array", "items": { "type": "number" },
             "minItems": names.len(), "maxItems": names.len(),
+        }),
+        Shape::Integers { names, limit } => json!({
+            "type": "array", "items": { "type": "integer", "minimum": -limit, "maximum": limit },
+            "minItems": names.len(), "maxItems": names.len(),
+        }),
+        Shape::Offsets { limit } => json!({
+            "type": "array", "minItems": 1,
+            "items": {
+                "type": "array", "items": { "type": "integer", "minimum": -limit, "maximum": limit },
+                "minItems": 2, "maxItems": 2,
+            },
         }),
         Shape::Vertices => json!({ "type": "array", "items": { "type": "number" }, "minItems": 6 }),
         Shape::Names { pattern } => json!({

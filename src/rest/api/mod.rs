@@ -69,6 +69,10 @@ pub enum Tag {
     Profiles,
     /// Fields.
     Fields,
+    /// Tables made on demand.
+    Tables,
+    /// Patterns without displacements.
+    Patterns,
     /// Pages and documents about the daemon.
     About,
     /// What operators use.
@@ -77,10 +81,12 @@ pub enum Tag {
 
 impl Tag {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 7] = [
         Self::Points,
         Self::Profiles,
         Self::Fields,
+        Self::Tables,
+        Self::Patterns,
         Self::About,
         Self::Operations,
     ];
@@ -92,6 +98,8 @@ impl Tag {
             Self::Points => "points",
             Self::Profiles => "profiles",
             Self::Fields => "fields",
+            Self::Tables => "tables",
+            Self::Patterns => "patterns",
             Self::About => "about",
             Self::Operations => "operations",
         }
@@ -104,6 +112,8 @@ impl Tag {
             Self::Points => "Points of regions, counts, and single points.",
             Self::Profiles => "The noise profiles that are loaded.",
             Self::Fields => "The fields that are loaded.",
+            Self::Tables => "Tables made on demand, and the jobs that make them.",
+            Self::Patterns => "The AA pattern of any α: arrangements, clusters, maps, figures.",
             Self::About => "Pages for people and this document.",
             Self::Operations => "Health, metrics and administration.",
         }

@@ -8,8 +8,12 @@ use crate::service::{
     query::{
         Group, Parameter, Spread, of as parameters_of,
         parameters::{
-            ATTRIBUTES, CRS, DECIMALS, FORMAT, ONLY, PARAMETERS, SCALE_RANGE, SCALE_RANGES, SIZE,
-            SPREAD, SUMMARY, VARIANTS,
+            ATTRIBUTES, COUNT, CRS, DECIMALS, FORMAT, MIN_DISTANCE, ONLY, PARAMETERS, PERIODIC,
+            PROFILE, SCALE_RANGE, SCALE_RANGES, SIZE, SPREAD, SUMMARY, VARIANTS,
+        },
+        patterns::{
+            CURSOR as PATTERN_CURSOR, GRID, LIMIT as PATTERN_LIMIT, LIST, MAP as PATTERN_MAP,
+            WARP as PATTERN_WARP,
         },
     },
 };
@@ -29,6 +33,11 @@ pub(super) enum Rule {
         #[serde(skip_serializing_if = "Option::is_none")]
         unless: Option<&'static str>,
     },
+    /// At most one of some parameters may be given.
+    AtMostOneOf {
+        /// Their names.
+        parameters: Vec<&'static str>,
+    },
     /// A parameter may only be given if another has one of some values (of a list: among its items).
     OnlyWith {
         /// The parameter.
@@ -45,6 +54,13 @@ pub(super) enum Rule {
         parameter: &'static str,
         /// The others.
         others: Vec<Other>,
+    },
+    /// A parameter may not be given beside some others.
+    NotWith {
+        /// The parameter.
+        parameter: &'static str,
+        /// The others.
+        others: Vec<&'static str>,
     },
     /// A value of a list needs another parameter.
     Needs {
@@ -67,10 +83,11 @@ pub(super) struct Other {
 /// Whether a parameter is the first of those that exclude each other, or excludes none.
 pub(super) fn is_first_of_its_kind(parameter: &Parameter) -> bool {
     let is_alternative =
-        |group: Group| [Group::Region, Group::Amount, Group::Count].contains(&group);
+        |group: Group| [Group::Region, Group::Period, Group::Amount, Group::Count].contains(&group);
     let mut same = PARAMETERS.iter().filter(|other| {
         let both_amounts = other.group == Group::Amount && parameter.group == Group::Count;
-        other.group == parameter.group || both_amounts
+        let both_places = other.group == Group::Region && parameter.group == Group::Period;
+        other.group == parameter.group || both_amounts || both_places
     });
     !is_alternative(parameter.group) || same.next().is_some_and(|first| *first == parameter)
 }
@@ -82,9 +99,26 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
         taken.map(|parameter| parameter.name).collect()
     };
     let preset = names(&[Group::Preset]).first().copied();
+    let mut places = names(&[Group::Region, Group::Period]);
+    let is_body = preset.is_some() && names(&[Group::Region]).is_empty();
+    match groups.contains(&Group::Period) {
+        // The region is a member of its own.
+        true if is_body => places.insert(0, "region"),
+        // Without a region a period is a choice.
+        true if names(&[Group::Region]).is_empty() => places.clear(),
+        _ => {}
+    }
+    let is_optional = groups.contains(&Group::Occurrences);
     let alternatives = [
-        (names(&[Group::Region]), None),
-        (names(&[Group::Amount, Group::Count]), preset),
+        (places, None),
+        (
+            if is_optional {
+                vec![]
+            } else {
+                names(&[Group::Amount, Group::Count])
+            },
+            preset,
+        ),
     ];
     let mut rules: Vec<Rule> = alternatives
         .into_iter()
@@ -97,6 +131,36 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
             other: other.name,
             values,
         };
+    if groups.contains(&Group::Period) && groups.contains(&Group::Amount) {
+        let amounts = [&MIN_DISTANCE, &COUNT].map(|parameter| parameter.name);
+        let taken = names(&[Group::Amount, Group::Count]);
+        rules.push(Rule::NotWith {
+            parameter: PERIODIC.name,
+            others: amounts
+                .into_iter()
+                .filter(|name| taken.contains(name))
+                .collect(),
+        });
+    }
+    if is_optional {
+        let amounts = names(&[Group::Amount]);
+        let beside = |parameter: &Parameter, others: &[&'static str]| Rule::OnlyWithOneOf {
+            parameter: parameter.name,
+            others: others
+                .iter()
+                .map(|&parameter| Other {
+                    parameter,
+                    values: vec![],
+                })
+                .collect(),
+        };
+        rules.push(beside(&LIST, &[GRID.name]));
+        rules.extend([&PATTERN_LIMIT, &PATTERN_CURSOR].map(|given| beside(given, &[LIST.name])));
+        rules.extend([&PROFILE, &PATTERN_MAP, &PATTERN_WARP].map(|given| beside(given, &amounts)));
+        rules.push(Rule::AtMostOneOf {
+            parameters: amounts,
+        });
+    }
     if groups.contains(&Group::Attributes) {
         rules.push(only_with(&SCALE_RANGE, &ATTRIBUTES, vec!["scale"]));
         rules.push(only_with(&SCALE_RANGES, &ATTRIBUTES, vec!["scale"]));
@@ -147,11 +211,17 @@ pub(super) fn in_words(rules: &[Rule]) -> String {
                 parameters.join(", ")
             )
         }
+        Rule::AtMostOneOf { parameters } => {
+            format!("At most one of {} may be given.", parameters.join(", "))
+        }
         Rule::OnlyWith {
             parameter,
             other,
             values,
         } => format!("{parameter} is for {other} {} only.", values.join(", ")),
+        Rule::NotWith { parameter, others } => {
+            format!("{parameter} is not for {}.", others.join(", "))
+        }
         Rule::OnlyWithOneOf { parameter, others } => {
             let others = others.iter().map(|other| {
                 let words = [&[other.parameter], &other.values[..]].concat();

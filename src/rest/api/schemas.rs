@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::sets;
 use crate::service::{
     field::Document,
-    query::{RegionSchema, Resolved, ResolvedSet},
+    query::{RegionSchema, Resolved, ResolvedSet, groups},
 };
 
 /// Makes the schema of a content, with what it refers to among the generator's definitions.
@@ -56,6 +56,10 @@ pub(in crate::rest) struct PointsQuery;
 #[derive(Debug)]
 pub(in crate::rest) struct CountQuery;
 
+/// The body of `POST /v1/pattern/arrangements`.
+#[derive(Debug)]
+pub(in crate::rest) struct ArrangementQuery;
+
 /// A layer of either.
 struct Layer;
 
@@ -83,6 +87,9 @@ from_table! {
     CountQuery = "CountQuery", |generator| {
         refer(generator);
         sets::count_query()
+    };
+    ArrangementQuery = "ArrangementQuery", |_| {
+        sets::body(groups::ARRANGEMENT, "An arrangement, and where its occurrences are wanted.")
     };
     Layer = "Layer", |_| sets::layer();
     ResolvedSet = "Set", |generator| {

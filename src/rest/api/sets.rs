@@ -6,11 +6,25 @@ use serde_json::{Map, Value, json};
 use super::{document::schema, rules, schemas::reference};
 use crate::service::query::{
     Group, MOST_LAYERS, Parameter, groups, of,
-    parameters::{COUNT, PARAMETERS, PRESET},
+    parameters::{COUNT, PARAMETERS, PERIODIC, PRESET},
 };
 
 /// The names of layers and variants.
 pub(super) const NAME: &str = "[A-Za-z0-9_.-]{1,64}";
+
+/// A body whose members are all parameters.
+pub(super) fn body(groups: &'static [Group], about: &str) -> Value {
+    let required = of(groups).filter(|parameter| parameter.is_required);
+    let required: Vec<&str> = required.map(|parameter| parameter.name).collect();
+    json!({
+        "type": "object",
+        "description": about,
+        "required": required,
+        "properties": members(groups),
+        "additionalProperties": false,
+        "x-rules": rules::of(groups),
+    })
+}
 
 fn members(groups: &'static [Group]) -> Map<String, Value> {
     let member = |parameter: &Parameter| {
@@ -52,7 +66,7 @@ fn rules_of_set(instead: Option<Value>) -> Vec<Value> {
     ]
 }
 
-/// What spread, only, scale_ranges, decimals, size, summary and crs are for stands in `x-rules` only: programs that make queries from
+/// What region, periodic, spread, only, scale_ranges, decimals, size, summary and crs are for stands in `x-rules` only: programs that make queries from
 /// the schema give up on so many conditions.
 fn query(groups: &'static [Group], about: &str) -> Value {
     let mut properties = members(groups);
@@ -63,7 +77,8 @@ fn query(groups: &'static [Group], about: &str) -> Value {
     });
     properties.insert("layers".into(), layers);
     let of_set = of(groups::SET).map(|parameter| (parameter.name.to_owned(), nothing()));
-    let of_set: Map<String, Value> = of_set.collect();
+    let mut of_set: Map<String, Value> = of_set.collect();
+    of_set.insert(PERIODIC.name.into(), nothing());
     let preset = json!({ "required": [PRESET.name] });
     let rules_of_all = vec![json!({ "oneOf": [
         { "required": ["layers"], "properties": of_set },
@@ -73,7 +88,6 @@ fn query(groups: &'static [Group], about: &str) -> Value {
     json!({
         "type": "object",
         "description": about,
-        "required": ["region"],
         "properties": properties,
         "additionalProperties": false,
         "allOf": rules_of_all,
@@ -192,6 +206,21 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
                 "required": ["kinds", "least_distance"],
             },
             "description": "The distances that the points of two evenly spread variants, or of one, keep.",
+        }),
+    );
+    put(
+        "period",
+        json!({
+            "type": "object",
+            "properties": {
+                "p": { "type": "integer" },
+                "q": { "type": "integer" },
+                "points": { "type": "integer" },
+                "side": { "type": "number" },
+            },
+            "required": ["p", "q", "points", "side"],
+            "description": "The period that the points are of: the fraction p/q near alpha, the number of points \
+                            before any are left out, and the side L.",
         }),
     );
     (always, members)

@@ -16,6 +16,7 @@ import { LAYER, initial } from "./state.js";
 import { Take } from "./take.js";
 import { palette, watchTheme } from "./theme.js";
 import { Understand } from "./understand.js";
+import { Works } from "./works.js";
 
 const root = document.documentElement;
 const session = new Session();
@@ -150,7 +151,7 @@ function fold(isFolded) {
   byId("fold").setAttribute("aria-expanded", String(!isFolded));
 }
 
-const TABS = ["choose", "understand", "take", "gallery"];
+const TABS = ["choose", "understand", "take", "gallery", "works"];
 
 function tabs() {
   const buttons = TABS.map((name) => byId(`tab-${name}`));
@@ -178,6 +179,7 @@ function showTab() {
     byId(name).hidden = !isOpen;
   }
   byId("gallery-help").hidden = tab !== "gallery";
+  byId("works-help").hidden = tab !== "works";
   for (const part of parts) part.opened?.(tab);
 }
 
@@ -185,7 +187,8 @@ let controls = null;
 
 const [understand, take] = [new Understand(session, plane), new Take(session, plane)];
 const shade = new Shade(plane);
-parts.push(new Card(session, plane), understand, take, shade);
+const works = new Works(session);
+parts.push(new Card(session, plane), understand, take, shade, works);
 tools();
 takeDrops(byId("stage"), stipple);
 tabs();
@@ -251,5 +254,5 @@ async function begin() {
 }
 
 // For the curious, and for tests.
-globalThis.strew = { plane, shade, stipple, session, status, understand, take };
+globalThis.strew = { plane, shade, stipple, session, status, understand, take, works };
 begin();

@@ -5,7 +5,7 @@ import { joined, setOf } from "./query.js";
 import { fromHash, toHash } from "./state.js";
 import { settled } from "./dom.js";
 
-/** One choice at a time; `listeners` hear what has changed: `layers`, `view`, `tab`. */
+/** One choice at a time; `listeners` hear what has changed: `layers`, `view`, `tab`, `works`. */
 export class Session {
   constructor() {
     this.state = fromHash(location.hash);
@@ -19,7 +19,7 @@ export class Session {
       this.state = fromHash(location.hash);
       // A canvas that has one kind of context never gets another.
       if (this.state.renderer !== renderer) return location.reload();
-      this.tell("layers", "view", "tab");
+      this.tell("layers", "view", "tab", "works");
     });
   }
 

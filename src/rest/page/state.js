@@ -30,6 +30,18 @@ export const LAYER = Object.freeze({
   clear: "",
 });
 
+/** What the tab How it works shows before anything is chosen. */
+export const WORKS = Object.freeze({
+  mode: "index",
+  alpha: "(5-sqrt(3))/2",
+  point: "4:5",
+  offsets: "2,1 3,3",
+  distance: "2.24",
+  radius: "7",
+  moved: "0",
+  profile: "blue",
+});
+
 /** The short names of a layer's members in the address. */
 const KEYS = {
   profile: "profile",
@@ -62,6 +74,7 @@ export function initial() {
     span: 30,
     layers: [{ ...LAYER }],
     tab: "choose",
+    works: { ...WORKS },
     renderer: "",
   };
 }
@@ -74,11 +87,33 @@ export function fromHash(hash) {
   if (x && y) Object.assign(state, { x, y });
   const span = Number(given.get("span"));
   if (Number.isFinite(span) && span > 0) state.span = span;
-  if (["choose", "understand", "take", "gallery"].includes(given.get("tab"))) state.tab = given.get("tab");
+  if (["choose", "understand", "take", "gallery", "works"].includes(given.get("tab"))) state.tab = given.get("tab");
   if (["2d", "webgl2"].includes(given.get("renderer"))) state.renderer = given.get("renderer");
+  state.works = worksFrom(given);
   const layers = Math.min(MOST_LAYERS, Math.max(1, Number(given.get("layers")) || 1));
   state.layers = Array.from({ length: layers }, (_, i) => layerFrom(given, i));
   return state;
+}
+
+/** What can stand in the address of the tab How it works. */
+const WORKS_VALUES = {
+  mode: /^(index|arrangement|clusters|map|displacement)$/,
+  alpha: /^.{1,40}$/,
+  point: /^-?\d{1,4}:-?\d{1,4}$/,
+  offsets: /^(-?\d{1,4},-?\d{1,4}( (?=.)|$))*$/,
+  distance: /^\d(\.\d{1,2})?$/,
+  radius: /^[1-9]\d?$/,
+  moved: /^(0|1|0?\.\d{1,2})$/,
+  profile: /^[\w.-]{1,64}$/,
+};
+
+function worksFrom(given) {
+  const works = { ...WORKS };
+  for (const [member, pattern] of Object.entries(WORKS_VALUES)) {
+    const text = given.get(`how.${member}`);
+    if (text !== null && pattern.test(text)) works[member] = text;
+  }
+  return works;
 }
 
 function layerFrom(given, i) {
@@ -120,6 +155,9 @@ export function toHash(state) {
     }
   });
   if (state.tab !== "choose") said.push(["tab", state.tab]);
+  for (const [member, standard] of Object.entries(WORKS)) {
+    if (state.works[member] !== standard) said.push([`how.${member}`, state.works[member]]);
+  }
   if (state.renderer) said.push(["renderer", state.renderer]);
   return `#${said.map(([key, value]) => `${key}=${encoded(value)}`).join("&")}`;
 }

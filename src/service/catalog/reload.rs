@@ -13,7 +13,7 @@ use std::{
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Catalog, CatalogError, Entry, Key, Source, table_files};
+use super::{Catalog, CatalogError, Entry, Key, Preload, Source, table_files};
 use crate::{config, service::field::FieldReload};
 
 /// What reading the folder again gave.
@@ -148,14 +148,15 @@ impl Catalog {
             .values()
             .filter_map(|entry| match &entry.source {
                 Source::File(path) => Some((path.as_path(), entry)),
-                Source::Embedded(_) => None,
+                Source::Embedded(_) | Source::Pattern => None,
             })
             .collect();
         files.sort_by_key(|file| !served.contains_key(file.as_path()));
+        let mut preload = Preload(self.preload_bytes);
         let mut taken: BTreeMap<Key, Arc<Entry>> = BTreeMap::new();
         let mut bad: Vec<(PathBuf, CatalogError)> = vec![];
         for file in files {
-            match Entry::from_file(file.clone()) {
+            match preload.read(file.clone()) {
                 Ok(entry) => match taken.get(&entry.key) {
                     Some(first) => {
                         let twice = CatalogError::Twice {

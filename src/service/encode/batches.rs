@@ -8,7 +8,7 @@
 use std::{fmt::Write as _, sync::Arc};
 
 use arrow_array::{
-    ArrayRef, BinaryArray, DictionaryArray, Float64Array, Int32Array, RecordBatch, StringArray,
+    ArrayRef, DictionaryArray, Float64Array, Int32Array, RecordBatch, StringArray,
     builder::StringBuilder, new_null_array, types::Int32Type,
 };
 use arrow_schema::{DataType, Field, Metadata};
@@ -27,27 +27,15 @@ pub(super) struct Batches {
     schema: Arc<arrow_schema::Schema>,
     /// The names of each column, if it has any.
     names: Vec<Option<ArrayRef>>,
-    has_geometry: bool,
-}
-
-/// The column of points as WKB.
-pub(super) const GEOMETRY: &str = "geometry";
-
-/// A point as WKB: byte order, type 1, x, y.
-fn wkb(point: &Point) -> [u8; 21] {
-    let mut wkb = [0; 21];
-    wkb[..5].copy_from_slice(&[1, 1, 0, 0, 0]);
-    wkb[5..13].copy_from_slice(&point.x.to_le_bytes());
-    wkb[13..].copy_from_slice(&point.y.to_le_bytes());
-    wkb
 }
 
 /// An id takes about so many bytes.
 const ID_BYTES: usize = 16;
 
 impl Batches {
-    /// For rows of a schema; the head becomes metadata. `has_geometry` adds a column of geometries.
-    pub(super) fn new(schema: &Schema, head: &Head, has_geometry: bool) -> Self {
+    /// For rows of a schema; the head becomes metadata. A `geometry` is the name of a last column of
+    /// binary values, which the schema then describes and [`Batches::make`] does not fill.
+    pub(super) fn new(schema: &Schema, head: &Head, geometry: Option<&str>) -> Self {
         let mut fields = vec![
             Field::new("id", DataType::Utf8, false),
             Field::new("x", DataType::Float64, false),
@@ -66,11 +54,8 @@ impl Batches {
             fields.push(Field::new(&column.name, data_type, column.optional));
             arrays.push(array);
         }
-        if has_geometry {
-            fields.push(Field::new(GEOMETRY, DataType::Binary, false));
-        }
+        fields.extend(geometry.map(|name| Field::new(name, DataType::Binary, false)));
         Self {
-            has_geometry,
             schema: Arc::new(arrow_schema::Schema::new_with_metadata(
                 fields,
                 metadata(head),
@@ -86,6 +71,15 @@ impl Batches {
     /// The bytes of a row, roughly.
     pub(super) fn row_bytes(&self) -> usize {
         ID_BYTES + 4 + 8 * (2 + self.names.len())
+    }
+
+    /// A record batch without rows.
+    pub(super) fn none(&self) -> Result<RecordBatch, EncodeError> {
+        self.make(Batch {
+            points: &[],
+            near: &[],
+            columns: &vec![Values::Missing; self.names.len()],
+        })
     }
 
     /// Some rows as a record batch.
@@ -109,7 +103,6 @@ impl Batches {
             numbers(|point| point.y),
         ];
         let fields = self.schema.fields().iter().skip(columns.len());
-        // The geometry, which comes last, has no names, and the zip ends before it.
         for ((field, names), values) in fields.zip(&self.names).zip(batch.columns) {
             columns.push(match (values, names) {
                 (Values::Numbers(values), None) => Arc::new(Float64Array::from(values.clone())),
@@ -128,11 +121,6 @@ impl Batches {
                     Arc::new(array)
                 }
             });
-        }
-        if self.has_geometry {
-            columns.push(Arc::new(BinaryArray::from_iter_values(
-                points.iter().map(wkb),
-            )));
         }
         RecordBatch::try_new(self.schema.clone(), columns).map_err(EncodeError::of)
     }

@@ -1,5 +1,5 @@
-//! Formats of columns: the Arrow IPC stream and file, and Parquet. Batches of rows go to a writer of the
-//! format, which fills memory that blocks take.
+//! Formats of columns: the Arrow IPC stream and file. Batches of rows go to a writer of the format, which
+//! fills memory that blocks take.
 
 use arrow_array::RecordBatch;
 use arrow_ipc::writer::{FileWriter, StreamWriter};
@@ -10,9 +10,6 @@ use super::{Blocks, EncodeError, batches::Batches, rows::Rows};
 
 /// A writer of a format.
 pub(super) trait Writer: Send {
-    /// Rows of a batch; `None` for as many as fill a block.
-    const BATCH_ROWS: Option<usize> = None;
-
     fn write(&mut self, batch: &RecordBatch) -> Result<(), EncodeError>;
     /// Writes the end.
     fn finish(&mut self) -> Result<(), EncodeError>;
@@ -84,20 +81,20 @@ impl<W: Writer> Columnar<W> {
         }
     }
 
-    /// Writes rows until there is a block, or the end. Returns whether there is more.
+    /// Writes a block of rows, or the end. Returns whether there is more.
     fn write(&mut self, writer: &mut W) -> Result<bool, EncodeError> {
         let fill = self.block_bytes / self.batches.row_bytes();
-        loop {
-            let Some(batch) = self.rows.next(W::BATCH_ROWS.unwrap_or(fill)) else {
-                writer.finish()?;
-                return Ok(false);
-            };
-            self.points += batch.points.len() as u64;
-            writer.write(&self.batches.make(batch)?)?;
-            if W::BATCH_ROWS.is_none() || writer.written().len() >= self.block_bytes {
-                return Ok(true);
+        let Some(batch) = self.rows.next(fill) else {
+            if self.points == 0 {
+                // With it come the names of dictionaries, which readers know without points, too.
+                writer.write(&self.batches.none()?)?;
             }
-        }
+            writer.finish()?;
+            return Ok(false);
+        };
+        self.points += batch.points.len() as u64;
+        writer.write(&self.batches.make(batch)?)?;
+        Ok(true)
     }
 }
 

@@ -1,5 +1,6 @@
 //! What an answer says about itself: the query as understood, the table, the count.
 
+#[cfg(feature = "daemon")]
 use schemars::JsonSchema;
 use serde::Serialize;
 use strew_core::ALGORITHM_VERSION;
@@ -8,7 +9,8 @@ use super::{Output, crs::Crs, members::write_json};
 use crate::service::{Entry, Planned, query::Resolved};
 
 /// The head of a document, or its summary.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[cfg_attr(feature = "daemon", derive(JsonSchema))]
+#[derive(Clone, Debug, Serialize)]
 pub(super) struct Head {
     pub(super) query: QueryEcho,
     #[serde(flatten)]
@@ -20,14 +22,16 @@ pub(super) struct Head {
 }
 
 /// The table, or that of each layer.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[cfg_attr(feature = "daemon", derive(JsonSchema))]
+#[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Tables {
     Table(TableEcho),
     Tables(Vec<TableEcho>),
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[cfg_attr(feature = "daemon", derive(JsonSchema))]
+#[derive(Clone, Debug, Serialize)]
 /// A query as answers echo it, with what the answer looks like.
 pub struct QueryEcho {
     #[serde(flatten)]
@@ -43,7 +47,8 @@ pub struct QueryEcho {
     crs: Option<Crs>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[cfg_attr(feature = "daemon", derive(JsonSchema))]
+#[derive(Clone, Debug, Serialize)]
 /// A table that answers.
 pub struct TableEcho {
     profile: String,

@@ -5,9 +5,11 @@
 //! Formats are made of [`Rows`]; only packed coordinates without further columns come straight
 //! from the kernel.
 
+#[cfg(feature = "daemon")]
 mod batches;
 mod buffer;
 mod canvas;
+#[cfg(feature = "daemon")]
 mod columnar;
 mod crs;
 mod csv;
@@ -22,12 +24,15 @@ mod npy;
 mod number;
 mod output;
 mod packed;
+#[cfg(feature = "daemon")]
 mod parquet;
 pub mod part;
 mod ply;
 mod png;
 pub mod preview;
 mod records;
+#[cfg(feature = "daemon")]
+mod row_group;
 pub mod rows;
 #[cfg(test)]
 mod sample_rows;
@@ -43,13 +48,13 @@ use bytes::Bytes;
 use strew_core::{F32, F64, Plan};
 
 use super::{Error, Fault, Planned};
-use batches::Batches;
-use columnar::Columnar;
 use head::Head;
 use members::Members;
 use preview::Frame;
 use records::{Layout, Records};
 use text::{TextBlocks, TextFormat};
+#[cfg(feature = "daemon")]
+use {batches::Batches, columnar::Columnar};
 
 pub use buffer::Pool;
 pub use crs::{CRS, Crs};
@@ -60,7 +65,7 @@ pub use output::{MOST_DECIMALS, Options, Output};
 pub use packed::{Packed, Scalars};
 pub use part::{Attributes, Part};
 pub use rows::{Batch, Coordinates, Row, Rows};
-pub use schema::{Column, LAYER, Schema, Values};
+pub use schema::{Column, Kind, LAYER, Schema, Values};
 pub use text::id_text;
 
 /// An answer that could not be made to its end: a bug, for what can be refused is refused before.
@@ -159,15 +164,8 @@ impl Answer {
             Encoding::Npy => (Layout::F64, Some(npy::head(&rows))),
             Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head()))),
             Encoding::Png => {
-                return Ok(Self {
-                    head: None,
-                    size: None,
-                    origin: None,
-                    legend: None,
-                    warning: None,
-                    plain: None,
-                    blocks: Box::new(png::Png::new(rows, head(), frame, block_bytes)),
-                });
+                let png = png::Png::new(rows, head(), frame, block_bytes);
+                return Ok(Self::of_blocks(None, png));
             }
             Encoding::Svg => {
                 let most = svg::MOST_POINTS;
@@ -180,20 +178,8 @@ impl Answer {
                 let format = svg::Svg::new(&rows, head(), frame, output.decimals);
                 return Ok(Self::of_text(rows, format, block_bytes));
             }
-            Encoding::Arrow => {
-                let batches = Batches::new(rows.schema(), &head(), false);
-                let writer = columnar::arrow_stream(batches.schema());
-                return Self::of_columns(rows, batches, writer, block_bytes);
-            }
-            Encoding::Feather => {
-                let batches = Batches::new(rows.schema(), &head(), false);
-                let writer = columnar::arrow_file(batches.schema());
-                return Self::of_columns(rows, batches, writer, block_bytes);
-            }
-            Encoding::Parquet => {
-                let batches = Batches::new(rows.schema(), &head(), true);
-                let writer = parquet::writer(batches.schema(), output.crs.as_ref());
-                return Self::of_columns(rows, batches, writer, block_bytes);
+            Encoding::Arrow | Encoding::Feather | Encoding::Parquet => {
+                return Self::in_columns(rows, &head(), output, block_bytes);
             }
             Encoding::Json => {
                 let format = json::Json::new(head(), members());
@@ -223,7 +209,63 @@ impl Answer {
         })
     }
 
+    /// An answer in a columnar format.
+    #[cfg(feature = "daemon")]
+    fn in_columns(
+        rows: Rows,
+        head: &Head,
+        output: &Output,
+        block_bytes: usize,
+    ) -> Result<Self, Error> {
+        if output.encoding == Encoding::Parquet {
+            let origin = rows.coordinates().origin();
+            let parquet = parquet::Parquet::new(rows, head, output.crs.as_ref())?;
+            return Ok(Self::of_blocks(origin, parquet));
+        }
+        let batches = Batches::new(rows.schema(), head, None);
+        if output.encoding == Encoding::Feather {
+            let writer = columnar::arrow_file(batches.schema());
+            return Self::of_columns(rows, batches, writer, block_bytes);
+        }
+        let writer = columnar::arrow_stream(batches.schema());
+        Self::of_columns(rows, batches, writer, block_bytes)
+    }
+
+    /// Libraries have no writers of columnar formats: their programs have better ones.
+    #[cfg(not(feature = "daemon"))]
+    fn in_columns(_: Rows, _: &Head, output: &Output, _: usize) -> Result<Self, Error> {
+        let name = output.encoding.name();
+        let is_other = |encoding| {
+            !matches!(
+                encoding,
+                Encoding::Arrow | Encoding::Feather | Encoding::Parquet
+            )
+        };
+        let allowed = Encoding::names_where(is_other);
+        Err(Fault::new(
+            "format",
+            name,
+            "only the daemon and `strew sample` write it",
+            allowed,
+        )
+        .into())
+    }
+
+    /// Blocks of unknown size, without anything before them.
+    fn of_blocks(origin: Option<[f64; 2]>, blocks: impl Blocks + 'static) -> Self {
+        Self {
+            head: None,
+            size: None,
+            origin,
+            legend: None,
+            warning: None,
+            plain: None,
+            blocks: Box::new(blocks),
+        }
+    }
+
     /// A columnar format of unknown size.
+    #[cfg(feature = "daemon")]
     fn of_columns(
         rows: Rows,
         batches: Batches,
@@ -231,16 +273,8 @@ impl Answer {
         block_bytes: usize,
     ) -> Result<Self, Error> {
         let origin = rows.coordinates().origin();
-        let writer = writer?;
-        Ok(Self {
-            head: None,
-            size: None,
-            origin,
-            legend: None,
-            warning: None,
-            plain: None,
-            blocks: Box::new(Columnar::new(rows, batches, writer, block_bytes)),
-        })
+        let columns = Columnar::new(rows, batches, writer?, block_bytes);
+        Ok(Self::of_blocks(origin, columns))
     }
 
     /// A text of unknown size.
@@ -248,15 +282,8 @@ impl Answer {
     where
         T: TextFormat + fmt::Debug + Send + 'static,
     {
-        Self {
-            head: None,
-            size: None,
-            origin: rows.coordinates().origin(),
-            legend: None,
-            warning: None,
-            plain: None,
-            blocks: Box::new(TextBlocks::new(rows, format, block_bytes)),
-        }
+        let origin = rows.coordinates().origin();
+        Self::of_blocks(origin, TextBlocks::new(rows, format, block_bytes))
     }
 
     /// Records after a head; straight from the kernel where they are no more than coordinates.

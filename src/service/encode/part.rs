@@ -3,13 +3,14 @@
 
 use std::{fmt, sync::Arc};
 
-use strew_core::{Blocks, F32, Offsets, Plan, Point, Points};
+use strew_core::{Blocks, F32, Offsets, Point};
 
 use super::{
     rows::Coordinates,
     schema::{Column, Kind, Schema, Values},
     shift::Shift,
 };
+use crate::service::{PlannedPoints, Walk};
 
 /// What gives the points of a part their further values.
 pub trait Attributes: fmt::Debug + Send + Sync {
@@ -25,7 +26,7 @@ pub trait Attributes: fmt::Debug + Send + Sync {
 #[derive(Clone, Debug)]
 pub struct Part {
     /// The points.
-    pub plan: Plan,
+    pub plan: PlannedPoints,
     /// The name of its layer, where there are several.
     pub layer: Option<String>,
     /// The points' further values.
@@ -45,7 +46,7 @@ pub(super) struct Current {
     /// Which of the parts.
     pub(super) number: usize,
     pub(super) part: Part,
-    pub(super) blocks: Blocks<Points>,
+    pub(super) blocks: Walk,
     near: Option<Blocks<F32>>,
     offsets: Option<(Blocks<Offsets>, Vec<[f64; 2]>)>,
     /// The values of the part's own columns.
@@ -83,7 +84,8 @@ impl Current {
                 Source::own(place, &columns[place].kind, &column.kind)
             })
         });
-        let is_own = |origin: &[f64; 2]| *origin == part.plan.origin();
+        let plane = part.plan.plane();
+        let is_own = |origin: &[f64; 2]| plane.is_some_and(|plan| *origin == plan.origin());
         let (near, offsets) = match coordinates {
             Coordinates::World => (false, false),
             Coordinates::Relative(origin) => (false, is_own(&origin)),
@@ -93,9 +95,11 @@ impl Current {
             number,
             sources: layer.chain(own).collect(),
             own: columns.iter().map(|c| Values::of(&c.kind)).collect(),
-            blocks: part.plan.blocks(),
-            near: near.then(|| part.plan.blocks()),
-            offsets: offsets.then(|| (part.plan.blocks(), vec![])),
+            blocks: part.plan.walk(),
+            near: plane.filter(|_| near).map(|plan| plan.blocks()),
+            offsets: plane
+                .filter(|_| offsets)
+                .map(|plan| (plan.blocks(), vec![])),
             part,
         }
     }

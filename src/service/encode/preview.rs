@@ -5,7 +5,7 @@
 //! follows. Dots have a quarter of the mean spacing as radius, within bounds, so that a few points
 //! are seen and many do not run together before they must.
 
-use strew_core::server;
+use strew_core::{Plan, server};
 
 use super::{
     EncodeError,
@@ -85,7 +85,7 @@ impl Frame {
     /// The same with dots of another size: in spacings of the first part's points at full density.
     pub(super) fn with_dots(mut self, dot: Option<f64>, parts: &[Part]) -> Self {
         if let (Some(dot), Some(part)) = (dot, parts.first()) {
-            let spacing = part.plan.placement().spacing.get() * self.scale;
+            let spacing = part.plan.spacing() * self.scale;
             self.radius = 0.5 * dot * spacing;
         }
         self
@@ -105,24 +105,37 @@ impl Frame {
             // In a strip thinner than a pixel few points lie side by side.
             let thinnest = sides[0].min(sides[1]).min(1.0);
             let wanted = DOTS_PER_PIXEL / (thinnest * thinnest).max(1e-3) * pixels.max(1.0);
-            let spacing = part.plan.placement().spacing.get();
-            let density = part.plan.placement().keep.get() / (spacing * spacing);
             let area = (max[0] - min[0]) * (max[1] - min[1]);
             let coarse = (area / wanted).sqrt();
-            if part.plan.count() as f64 <= 4.0 * wanted || density * area <= 4.0 * wanted {
+            if part.plan.count() as f64 <= 4.0 * wanted {
                 return Ok(part);
             }
-            if part.plan.is_window() {
-                let detail = format!("a part of {} points is drawn", part.plan.count());
+            let whole = part.plan.plane().filter(|plan| !plan.is_window());
+            let dense = |plan: &&Plan| {
+                let spacing = plan.placement().spacing.get();
+                let density = plan.placement().keep.get() / (spacing * spacing);
+                density * area <= 4.0 * wanted
+            };
+            if part.plan.plane().is_some_and(|plan| dense(&plan)) {
+                return Ok(part);
+            }
+            let Some(plan) = whole else {
+                let detail = format!(
+                    "a part or a period of {} points is drawn",
+                    part.plan.count()
+                );
                 let allowed = format!(
                     "png of all points, or of at most {:.0} of them at this size",
                     4.0 * wanted
                 );
                 let fault = Fault::new("format", "png", detail, allowed);
                 return Err(fault.into());
-            }
-            let plan = server::preview(&part.plan, coarse).map_err(EncodeError::of)?;
-            Ok(Part { plan, ..part })
+            };
+            let plan = server::preview(plan, coarse).map_err(EncodeError::of)?;
+            Ok(Part {
+                plan: plan.into(),
+                ..part
+            })
         };
         parts.into_iter().map(shown).collect()
     }

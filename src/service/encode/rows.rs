@@ -154,12 +154,13 @@ impl Rows {
         let [(_, part)] = self.parts.as_slice() else {
             return None;
         };
+        let plan = part.plan.plane()?;
         let as_made = match self.coordinates {
             Coordinates::World => true,
             Coordinates::Relative(_) => false,
-            Coordinates::Near(origin) => origin == part.plan.origin(),
+            Coordinates::Near(origin) => origin == plan.origin(),
         };
-        (as_made && self.schema.columns().is_empty()).then_some(&part.plan)
+        (as_made && self.schema.columns().is_empty()).then_some(plan)
     }
 
     /// The place after the rows given so far: the number of the part, and where in it.
@@ -286,7 +287,8 @@ mod tests {
             }
         }
         // The first layer's own corner is the origin: its numbers are the kernel's.
-        let plan = &parts()[0].plan;
+        let parts = parts();
+        let plan = parts[0].plan.plane().expect("of the plane");
         let mut kernel = vec![[0.0; 2]; usize::try_from(plan.count()).expect("few")];
         plan.blocks_f32().fill(&mut kernel);
         let near: Vec<_> = near.iter().take(kernel.len()).map(|row| row.3).collect();

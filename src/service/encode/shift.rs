@@ -1,6 +1,8 @@
 //! Coordinates relative to a point.
 
-use strew_core::{Plan, Point};
+use strew_core::Point;
+
+use crate::service::PlannedPoints;
 
 /// Moves the points of a plan. Rounding never takes one out of the moved region: what would reach
 /// its upper bound takes the number before.
@@ -10,7 +12,7 @@ pub(super) struct Shift {
 }
 
 impl Shift {
-    pub(super) fn new(plan: &Plan, origin: [f64; 2]) -> Self {
+    pub(super) fn new(plan: &PlannedPoints, origin: [f64; 2]) -> Self {
         let max = plan.region().max();
         Self {
             origin,

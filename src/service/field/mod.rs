@@ -20,6 +20,7 @@ mod sources;
 #[cfg(test)]
 mod tests;
 
+#[cfg(feature = "daemon")]
 pub(crate) use files::{Stamp, stamp};
 
 pub use build::build;

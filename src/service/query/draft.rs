@@ -14,9 +14,10 @@ use super::{
     number,
     parameter::{Group, groups},
     parameters::{
-        BBOX, COUNT, CRS, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, PARTS, PRESET, SEED, SIZE,
-        SUMMARY, WARP,
+        BBOX, COUNT, CRS, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, PARTS, PERIODIC, PRESET,
+        SEED, SIZE, SUMMARY, WARP,
     },
+    period::Period,
     region::REGION,
     table,
     text::parse_pairs,
@@ -102,7 +103,9 @@ impl Draft {
     pub fn try_out(&self, catalog: &Catalog, most_vertices: usize) -> Result<(), Error> {
         let missing = parse_pairs("bbox=0,0,1,1&spacing=1", groups::COUNT);
         let mut whole = self.clone();
-        whole.region = RegionDraft::of(&missing);
+        if !self.values.has(&PERIODIC) {
+            whole.region = RegionDraft::of(&missing);
+        }
         if matches!(&self.layers, Ok(layers) if layers.is_empty()) {
             whole.values.fill_from(&missing, groups::SET);
         }
@@ -134,6 +137,11 @@ impl Draft {
         );
         let ((), region, sets, window, options) =
             (read, region, sets, window, options).together()?;
+        let region = match (region, sets.first().and_then(|set| set.period)) {
+            (Some(region), _) => region,
+            (None, Some(period)) => period.region()?,
+            (None, None) => return Err(Fault::missing("region", REGION).into()),
+        };
         for set in &sets {
             table::hold(&set.entry, set.pin.as_deref())?;
         }
@@ -164,12 +172,19 @@ impl Draft {
         }
     }
 
-    fn region(&self) -> Checked<QueryRegion> {
+    /// The region; none for a period.
+    fn region(&self) -> Checked<Option<QueryRegion>> {
         match &self.region {
-            Ok(Some(region)) => region.check(),
-            Ok(None) if self.values.takes().any(|p| p.group == Group::Region) => {
-                Err(Fault::missing(BBOX.name, "one of bbox, circle and polygon").into())
+            Ok(Some(region)) if self.values.has(&PERIODIC) => {
+                let detail = "not with periodic: a period is [0, L)² and has no region";
+                let allowed = "either a region or periodic";
+                Err(Fault::new(&region.path, region.echo(), detail, allowed).into())
             }
+            Ok(None) if self.values.has(&PERIODIC) => Ok(None),
+            Ok(Some(region)) => region.check().map(Some),
+            Ok(None) if self.values.takes().any(|p| p.group == Group::Region) => Err(
+                Fault::missing(BBOX.name, "one of bbox, circle and polygon, or periodic").into(),
+            ),
             Ok(None) => Err(Fault::missing("region", REGION).into()),
             Err(faults) => Err(faults.clone()),
         }
@@ -180,7 +195,7 @@ impl Draft {
             let allowed = format!("at most {MOST_LAYERS} layers");
             return Err(Fault::new("layers", layers.len(), "too many layers", allowed).into());
         }
-        let is_of_set = |group: &Group| groups::SET.contains(group);
+        let is_of_set = |group: &Group| groups::SET.contains(group) || *group == Group::Period;
         let own = self
             .values
             .given()
@@ -359,6 +374,7 @@ impl Set {
             Some(kinds) => kinds.find(entry, values, loaded.catalog)?,
             None => entry,
         };
+        let period = Period::check(values, amount, &entry)?;
         let seed = Seed(seed.unwrap_or(0));
         Ok(Self {
             path: values.path().into(),
@@ -371,6 +387,7 @@ impl Set {
             keep: keep.unwrap_or(Keep::ALL),
             attributes,
             kinds,
+            period,
             field,
             region: None,
             clear_of: vec![],

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
 use serde_json::{Map, Value as Json, json};
-use strew_core::{ALGORITHM_VERSION, Spacing};
+use strew_core::{ALGORITHM_VERSION, Spacing, map::Twin};
 
 use super::{
     Parameter, Query, QueryRegion, Set, Value,
@@ -81,6 +82,34 @@ pub struct ResolvedSet {
     pub kinds: Vec<(String, u128)>,
     /// The distances that points of these variants keep.
     pub kind_distances: Vec<KindDistance>,
+    /// The period that the points are of.
+    pub period: Option<PeriodEcho>,
+}
+
+/// A period as answers echo it.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "Period")]
+pub struct PeriodEcho {
+    /// The fraction p/q, near α, whose pattern has the period.
+    pub p: u64,
+    /// Its denominator.
+    pub q: u64,
+    /// The number of points of the period, before any are left out.
+    pub points: u64,
+    /// The side L, in world units.
+    pub side: f64,
+}
+
+impl PeriodEcho {
+    /// The period of a twin on a side.
+    pub(super) const fn new(twin: Twin, side: f64) -> Self {
+        Self {
+            p: twin.p(),
+            q: twin.q(),
+            points: twin.points(),
+            side,
+        }
+    }
 }
 
 /// The distance that the points of two evenly spread variants, or of one, keep from each other.
@@ -109,6 +138,9 @@ impl Serialize for ResolvedSet {
         }
         if let Some(digest) = &self.field_digest {
             map.serialize_entry("field_digest", digest)?;
+        }
+        if let Some(period) = &self.period {
+            map.serialize_entry("period", period)?;
         }
         if !self.clear_of.is_empty() {
             map.serialize_entry("clear_of", &distances(&self.clear_of))?;
@@ -162,6 +194,9 @@ impl Set {
             clear_of: self.named_clear_of(all),
             kinds: names.map(Into::into).zip(kinds.iter().copied()).collect(),
             kind_distances: kind_distances.into(),
+            period: self
+                .period
+                .map(|period| PeriodEcho::new(period.twin, period.side)),
         }
     }
 

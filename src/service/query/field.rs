@@ -5,10 +5,7 @@ use std::cell::Cell;
 use strew_core::field::FieldSpec;
 
 use super::{Checked, Value, Values, parameters::FIELD};
-use crate::service::{
-    Catalog,
-    field::{Document, MOST_PIXELS},
-};
+use crate::service::{Catalog, field::Document};
 
 /// The field that a set is in.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,10 +33,10 @@ pub(super) struct Loaded<'a> {
 }
 
 impl<'a> Loaded<'a> {
-    pub(super) const fn new(catalog: &'a Catalog) -> Self {
+    pub(super) fn new(catalog: &'a Catalog) -> Self {
         Self {
             catalog,
-            pixels: Cell::new(MOST_PIXELS),
+            pixels: Cell::new(catalog.most_pixels()),
         }
     }
 

@@ -14,9 +14,12 @@ mod faults;
 mod field;
 mod json;
 mod kinds;
+mod lists;
 mod nearest;
 mod parameter;
 pub mod parameters;
+pub mod patterns;
+mod period;
 #[cfg(test)]
 mod recipe;
 mod region;
@@ -37,16 +40,18 @@ use super::{Entry, Error, Fault};
 pub use amount::Amount;
 pub use cursor::Token;
 pub use draft::{Draft, LayerDraft, entry, options, parts};
-pub use echo::{KindDistance, Resolved, ResolvedSet};
+pub use echo::{KindDistance, PeriodEcho, Resolved, ResolvedSet};
 pub use faults::{Checked, Faults, Together, all};
 pub use field::SetField;
-pub use json::{RegionSchema, read_body, read_region};
+pub use json::{RegionSchema, read_body, read_members, read_region};
 pub use kinds::{Kinds, Spread};
 pub use nearest::Nearest;
 pub(super) use parameter::unknown;
 pub use parameter::{Group, Parameter, groups, of};
+pub use period::{Period, Periods};
 pub use region::{QueryRegion, RegionDraft, Rings, ShapeDraft};
 pub use shape::Shape;
+pub use table::chosen;
 pub use text::parse_pairs;
 pub use value::Value;
 pub use values::Values;
@@ -115,6 +120,8 @@ pub struct Set {
     pub attributes: Attributes,
     /// The variants that are evenly spread.
     pub kinds: Option<Kinds>,
+    /// The period that the points are of, instead of a region.
+    pub period: Option<Period>,
     /// Where the layer is; everywhere if `None`.
     pub region: Option<QueryRegion>,
     /// The layers that are kept clear of, by position, with the distance; all before this one.
@@ -153,6 +160,9 @@ impl Query {
         let ([set], Area::Region(_)) = (&*self.sets, &self.region.area) else {
             return false;
         };
+        if set.period.is_some() {
+            return false;
+        }
         let spacing = match set.amount {
             Amount::Spacing(spacing) => spacing,
             Amount::Density(density) => density.sqrt().recip(),

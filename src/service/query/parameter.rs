@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::{Checked, Set, Shape, Value, parameters::PARAMETERS};
+use super::{Checked, Set, Shape, Value, parameters::PARAMETERS, patterns::PATTERN_PARAMETERS};
 use crate::service::Fault;
 
 /// A parameter of queries, under the same name in addresses, JSON bodies, messages and (with hyphens)
@@ -45,6 +45,8 @@ pub enum Group {
     Amount,
     /// The number of points in the region: an amount where there is a region.
     Count,
+    /// The points of a period, instead of a region.
+    Period,
     /// The name of a preset.
     Preset,
     /// The name of the profile.
@@ -63,6 +65,24 @@ pub enum Group {
     Nearest,
     /// Into how many parts a query is split.
     Split,
+    /// How much of a list.
+    Listed,
+    /// The α of a pattern, of which no table is needed.
+    Pattern,
+    /// The offsets of an arrangement.
+    Arrangement,
+    /// Where an arrangement occurs.
+    Occurrences,
+    /// Which points are a cluster.
+    Clusters,
+    /// Which clusters have the same shape.
+    Shapes,
+    /// A neighborhood map.
+    Map,
+    /// A finer map.
+    Refined,
+    /// What a figure shows.
+    Figure,
     /// A place in a path.
     Path,
 }
@@ -74,31 +94,59 @@ pub mod groups {
     /// A set of points in a region: a layer.
     pub const SET: &[Group] = &[Amount, Count, Profile, Table, Points, Attributes];
     /// A set without a region: single points.
-    pub const SINGLE: &[Group] = &[Amount, Profile, Table, Points, Attributes];
+    pub const SINGLE: &[Group] = &[Period, Amount, Profile, Table, Points, Attributes];
     /// `GET /v1/points`.
     pub const POINTS: &[Group] = &[
-        Region, Amount, Count, Preset, Profile, Table, Points, Attributes, Window, Output,
+        Region, Period, Amount, Count, Preset, Profile, Table, Points, Attributes, Window, Output,
     ];
-    /// `GET /v1/chunks/…`, whose region is in the path, and bodies, in which it is a member.
-    pub const QUERY: &[Group] = &[
+    /// `GET /v1/chunks/…`, whose region is in the path.
+    pub const CHUNK: &[Group] = &[
         Amount, Count, Preset, Profile, Table, Points, Attributes, Window, Output,
+    ];
+    /// Bodies, in which the region is a member.
+    pub const QUERY: &[Group] = &[
+        Period, Amount, Count, Preset, Profile, Table, Points, Attributes, Window, Output,
     ];
     /// `GET /v1/count`.
     pub const COUNT: &[Group] = &[
-        Region, Amount, Count, Preset, Profile, Table, Points, Attributes,
+        Region, Period, Amount, Count, Preset, Profile, Table, Points, Attributes,
     ];
     /// `POST /v1/count`.
-    pub const COUNTED: &[Group] = &[Amount, Count, Preset, Profile, Table, Points, Attributes];
+    pub const COUNTED: &[Group] = &[
+        Period, Amount, Count, Preset, Profile, Table, Points, Attributes,
+    ];
+    /// `GET /v1/periods`.
+    pub const PERIODS: &[Group] = &[Period, Profile, Table, Listed];
+    /// What `strew measure` takes.
+    pub const MEASURED: &[Group] = &[
+        Region, Amount, Count, Preset, Profile, Table, Points, Attributes,
+    ];
     /// `GET /v1/nearest`.
     pub const NEAREST: &[Group] = &[Nearest, Amount, Profile, Table, Points, Attributes];
     /// `POST /v1/points:split`, beside the body.
     pub const SPLIT: &[Group] = &[Split];
+    /// Which table.
+    pub const TABLES: &[Group] = &[Profile, Table];
     /// What is about one table of a profile.
     pub const TABLE: &[Group] = &[Table];
     /// What is about an answer, and not about the points of a set.
     pub const ANSWER: &[Group] = &[Window, Output];
     /// What the answer looks like.
     pub const OUTPUT: &[Group] = &[Output];
+    /// Arrangements, with the set that displaces their points.
+    pub const ARRANGEMENT: &[Group] = &[Pattern, Arrangement, Occurrences, Amount, Profile];
+    /// Clusters.
+    pub const CLUSTERS: &[Group] = &[Pattern, Clusters, Shapes];
+    /// Neighborhood maps.
+    pub const MAP: &[Group] = &[Pattern, Map, Refined];
+    /// The figure of the index.
+    pub const INDEX_FIGURE: &[Group] = &[Pattern, Figure];
+    /// The figure of an arrangement.
+    pub const ARRANGEMENT_FIGURE: &[Group] = &[Pattern, Arrangement, Figure];
+    /// The figure of clusters.
+    pub const CLUSTERS_FIGURE: &[Group] = &[Pattern, Clusters, Figure];
+    /// The figure of a map.
+    pub const MAP_FIGURE: &[Group] = &[Pattern, Map];
     /// What takes no parameters.
     pub const NONE: &[Group] = &[];
 }
@@ -147,7 +195,7 @@ impl Parameter {
 
 /// The parameters of some groups.
 pub fn of(groups: &'static [Group]) -> impl Iterator<Item = &'static Parameter> + Clone {
-    let all = PARAMETERS.iter().copied();
+    let all = PARAMETERS.iter().chain(PATTERN_PARAMETERS).copied();
     all.filter(|parameter| groups.contains(&parameter.group))
 }
 

@@ -3,7 +3,9 @@
 //! Addresses, command lines, JSON bodies, messages, presets, echoes, help texts and the API's
 //! description are loops over this table. ARCHITECTURE.md says how to add a parameter.
 
-use strew_core::{Attribute, Keep, ScaleRange, Spacing, UniformNumber, Variants, Warp};
+use strew_core::{
+    Attribute, Keep, PeriodicSet, ScaleRange, Spacing, UniformNumber, Variants, Warp,
+};
 
 use super::{
     DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_PARTS, Parameter, Shape, Value, kinds::Spread,
@@ -36,6 +38,9 @@ pub static ADDED: Parameter = Parameter {
     echo: Some(|_| Some(Value::Integer(3))),
     ..Parameter::PLAIN
 };
+
+/// The most periods of a list.
+pub const MOST_PERIODS: u64 = 1000;
 
 /// The most points of an answer about neighbors.
 pub const MOST_NEAREST: u64 = 10_000;
@@ -76,6 +81,19 @@ parameters! {
         allowed: Some("at least 3 different vertices as x1,y1,x2,y2,x3,y3,…; for holes and several \
                        polygons send the query as JSON"),
         example: "0,0,4,0,0,4",
+        ..Parameter::PLAIN
+    };
+    /// The least number of points of a period.
+    PERIODIC = Parameter {
+        name: "periodic",
+        about: "One exact period of points on [0, L)² instead of a region: the smallest that has at least this \
+                many points. Its copies, moved by L, continue one another. L is the mean spacing times the root of \
+                the number of points. The list of periods shows what there is.",
+        group: Group::Period,
+        shape: Shape::Integer { min: 1, max: PeriodicSet::MAX_POINTS },
+        default: Some("the points of a region, on the unbounded plane"),
+        example: "5000",
+        echo: Some(|set| Some(Value::Integer(set.period?.least))),
         ..Parameter::PLAIN
     };
     /// Points per unit of area.
@@ -437,6 +455,16 @@ parameters! {
         shape: Shape::Number { min: 0.0, max: f64::MAX },
         default: Some("unlimited"),
         example: "2",
+        ..Parameter::PLAIN
+    };
+    /// How many entries of a list.
+    MOST = Parameter {
+        name: "most",
+        about: "The greatest number of entries of the list.",
+        group: Group::Listed,
+        shape: Shape::Integer { min: 1, max: MOST_PERIODS },
+        default: Some("100"),
+        example: "4",
         ..Parameter::PLAIN
     };
     /// How many parts.

@@ -1,10 +1,15 @@
 //! The values of parameters: read from text and from JSON, checked against what is allowed, written.
 
-use std::{borrow::Cow, str::FromStr};
+use std::borrow::Cow;
 
 use serde_json::value::RawValue;
 
-use super::{Value, json, number, unknown, value::OTHER_TYPE};
+use super::{
+    Value, json,
+    lists::{Detail, finite, integer, integers, numbers, offsets, ranges, weights},
+    number, unknown,
+    value::OTHER_TYPE,
+};
 use crate::service::{Encoding, field::Document};
 
 /// The values that a parameter takes.
@@ -40,6 +45,18 @@ pub enum Shape {
         /// The bound.
         limit: i64,
     },
+    /// Several integers whose absolute values are bounded, by what each is called.
+    Integers {
+        /// Their names.
+        names: &'static [&'static str],
+        /// The bound, at most 2⁵³.
+        limit: i64,
+    },
+    /// Pairs of integers whose absolute values are bounded, at least one.
+    Offsets {
+        /// The bound, at most 2⁵³.
+        limit: i64,
+    },
     /// Names, each once.
     Names {
         /// A regular expression that each of them matches.
@@ -62,9 +79,6 @@ pub enum Shape {
     /// Any text: whether it is right shows when it is looked up.
     Text,
 }
-
-/// What is wrong with a value.
-type Detail = Cow<'static, str>;
 
 /// The longest value of a parameter in JSON, in bytes: far longer than any that is in order.
 pub(super) const LONGEST: usize = 1 << 16;
@@ -95,6 +109,14 @@ impl Shape {
             Self::Numbers(names) => format!("{} finite numbers: {}", names.len(), names.join(",")),
             Self::Vertices => "the coordinates of at least 3 vertices: x1,y1,x2,y2,x3,y3,…".into(),
             Self::Signed { limit } => format!("an integer within ±{limit}"),
+            Self::Integers { names, limit } => {
+                format!(
+                    "{} integers within ±{limit}: {}",
+                    names.len(),
+                    names.join(",")
+                )
+            }
+            Self::Offsets { limit } => format!("x,y pairs of integers within ±{limit}"),
             Self::Names { .. } => "different names, joined by commas".into(),
             Self::Weights => "name:weight pairs, joined by commas".into(),
             Self::Ranges => "name:min:max triples, joined by commas".into(),
@@ -146,6 +168,8 @@ impl Shape {
             }),
             Self::Numbers(names) => Value::Numbers(numbers(text, names)?),
             Self::Vertices => Value::Numbers(numbers(text, &[])?),
+            Self::Integers { names, .. } => Value::Numbers(numbers(text, names)?),
+            Self::Offsets { .. } => Value::Numbers(offsets(text)?),
             Self::Signed { .. } => Value::Signed(integer(text)?),
             Self::Names { .. } => {
                 Value::Names(text.split(',').map(|name| name.trim().into()).collect())
@@ -188,7 +212,12 @@ impl Shape {
             (Self::Strength { .. }, _) => return Err("must be \"off\", \"on\" or a number".into()),
             (Self::Integer { .. }, _) => Value::Integer(integer(json.get())?),
             (Self::Signed { .. }, _) => Value::Signed(integer(json.get())?),
-            (Self::Numbers(_) | Self::Vertices, _) => {
+            (Self::Offsets { .. }, _) => {
+                let pairs: Result<Vec<[f64; 2]>, _> = serde_json::from_str(json.get());
+                let pairs = pairs.map_err(|_| "must be an array of pairs of integers")?;
+                Value::Numbers(pairs.into_flattened())
+            }
+            (Self::Numbers(_) | Self::Vertices | Self::Integers { .. }, _) => {
                 let values = serde_json::from_str(json.get());
                 Value::Numbers(values.map_err(|_| "must be an array of numbers")?)
             }
@@ -262,6 +291,21 @@ impl Shape {
                     _ => Ok(value),
                 }
             }
+            (Self::Integers { names, limit }, Value::Numbers(values)) => {
+                if names.len() != values.len() {
+                    let (expected, count) = (names.len(), values.len());
+                    return Err(format!("expected {expected} integers, got {count}").into());
+                }
+                integers(values, limit)?;
+                Ok(value)
+            }
+            (Self::Offsets { limit }, Value::Numbers(values)) => {
+                if values.is_empty() {
+                    return Err("has no offsets".into());
+                }
+                integers(values, limit)?;
+                Ok(value)
+            }
             (Self::Choice(words), Value::Text(word)) => {
                 if words.contains(&word.as_str()) {
                     Ok(value)
@@ -290,71 +334,6 @@ impl Shape {
             _ => Err(OTHER_TYPE.into()),
         }
     }
-}
-
-fn finite(text: &str) -> Result<f64, &'static str> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(value) if value.is_nan() => Err("must be a number"),
-        Ok(_) => Err("must be finite"),
-        Err(_) => Err("must be a number"),
-    }
-}
-
-fn integer<T: FromStr>(text: &str) -> Result<T, &'static str> {
-    text.parse().map_err(|_| {
-        let digits = text.strip_prefix('-').unwrap_or(text);
-        let is_integer = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
-        if is_integer {
-            "out of range"
-        } else {
-            "must be an integer"
-        }
-    })
-}
-
-/// Numbers joined by commas, called by some names as far as there are names.
-fn numbers(text: &str, names: &[&str]) -> Result<Vec<f64>, Detail> {
-    let part = |(i, part): (usize, &str)| {
-        let part = part.trim();
-        finite(part).map_err(|detail| -> Detail {
-            match (names.get(i), part) {
-                (Some(name), "") => format!("{name} is missing").into(),
-                (Some(name), part) => format!("{name} is `{part}`, which {detail}").into(),
-                (None, "") => "a number is missing".into(),
-                (None, part) => format!("`{part}` {detail}").into(),
-            }
-        })
-    };
-    text.split(',').enumerate().map(part).collect()
-}
-
-/// Names with weights, such as `oak:3,birch:1`; the weight of a name without one is 1.
-fn weights(text: &str) -> Result<Vec<(String, f64)>, Detail> {
-    let pair = |part: &str| {
-        let (name, weight) = part.split_once(':').unwrap_or((part, "1"));
-        let weight = weight.trim();
-        let read = finite(weight).map_err(|detail| format!("the weight `{weight}` {detail}"))?;
-        Ok((name.trim().to_owned(), read))
-    };
-    text.split(',').map(pair).collect()
-}
-
-/// Names with two numbers each, such as `oak:0.8:1.2`.
-fn ranges(text: &str) -> Result<Vec<(String, [f64; 2])>, Detail> {
-    let range = |part: &str| {
-        let mut parts = part.split(':').map(str::trim);
-        let (Some(name), Some(min), Some(max), None) =
-            (parts.next(), parts.next(), parts.next(), parts.next())
-        else {
-            return Err(format!("`{part}` must be name:min:max").into());
-        };
-        let read = |number: &str| {
-            finite(number).map_err(|detail| format!("`{number}` of `{name}` {detail}"))
-        };
-        Ok((name.to_owned(), [read(min)?, read(max)?]))
-    };
-    text.split(',').map(range).collect()
 }
 
 #[cfg(test)]

@@ -8,7 +8,10 @@ use super::{
     Checked, DEFAULT_ALPHA, DEFAULT_PROFILE, Faults, Parameter, Together as _, Values,
     parameters::{ALPHA, MAP, PROFILE, TABLE},
 };
-use crate::service::{Catalog, Entry, Error, Fault, Key};
+use crate::service::{
+    Catalog, Entry, Error, Fault, Key,
+    catalog::{MAX_PATTERN_RADIUS, PATTERN},
+};
 
 /// The table of some values; `profile` where it is not among them.
 pub(super) fn check(
@@ -25,66 +28,110 @@ pub(super) fn check(
         .together()?;
     let profile = profile.map(Into::into).or(named);
     let profile = profile.unwrap_or_else(|| DEFAULT_PROFILE.into());
-    let text = text.unwrap_or_else(|| DEFAULT_ALPHA.into());
+    let alpha_text = text.unwrap_or_else(|| DEFAULT_ALPHA.into());
     let fault = |parameter: &Parameter, value: &str, detail: String, allowed: String| -> Faults {
         let field = format!("{}{}", values.path(), parameter.name);
         Fault::new(&field, value, detail, allowed).into()
     };
-    let is_loaded = (catalog.entries()).any(|entry| *entry.key.profile == *profile);
-    let allowed = || match is_loaded {
-        true => some(catalog.alphas(&profile).iter().map(ToString::to_string)),
-        false => loaded(catalog),
-    };
-    let alpha = parse(&text).map_err(|error| fault(&ALPHA, &text, error.to_string(), allowed()));
-    let known = match is_loaded {
+    let is_pattern = profile == PATTERN;
+    let is_known = is_pattern || catalog.has_profile(&profile);
+    let alpha = parse(&alpha_text).map_err(|error| {
+        let allowed = match is_known {
+            _ if is_pattern => "any number between 1 and 2".into(),
+            true => some(catalog.alphas(&profile).iter().map(ToString::to_string)),
+            false => loaded(catalog),
+        };
+        fault(&ALPHA, &alpha_text, error.to_string(), allowed)
+    });
+    let known = match is_known {
         true => Ok(()),
-        false => Err(fault(
-            &PROFILE,
-            &profile,
-            "no such profile is loaded".into(),
-            loaded(catalog),
-        )),
+        false => {
+            let detail =
+                "no such profile is loaded".to_owned() + &catalog.offer().of_profile(&profile);
+            Err(fault(&PROFILE, &profile, detail, loaded(catalog)))
+        }
     };
     let (alpha, ()) = (alpha, known).together()?;
-    let sizes = catalog.sizes(&profile, alpha);
-    let Some(&smallest) = sizes.first() else {
-        let detail = format!("the profile `{profile}` is not loaded for this alpha");
-        return Err(fault(&ALPHA, &text, detail, allowed()));
-    };
-    let size = match map.as_deref() {
-        Some(text) => {
-            let size = text.parse::<Size>().ok();
-            size.filter(|size| sizes.contains(size)).ok_or_else(|| {
-                let detail = format!("the profile `{profile}` is not loaded with this map size");
-                fault(
-                    &MAP,
-                    text,
-                    detail,
-                    some(sizes.iter().map(ToString::to_string)),
-                )
-            })?
-        }
-        None => *[Size::M, Size::S]
-            .iter()
-            .find(|size| sizes.contains(size))
-            .unwrap_or(&smallest),
-    };
-    let key = Key {
+    let wanted = Wanted {
         profile: profile.as_str().into(),
         alpha,
-        size,
-        mix: None,
+        catalog,
     };
-    let entry = catalog.entry(&key);
-    let gone = || {
-        fault(
-            &PROFILE,
-            &profile,
-            "no such profile is loaded".into(),
-            loaded(catalog),
-        )
+    let size = map.as_deref().map(|text| (text, text.parse::<Size>().ok()));
+    let found = match size {
+        Some((_, size)) => size.and_then(|size| wanted.of_size(size)),
+        None => wanted.of_any_size(),
     };
-    Ok((entry.ok_or_else(gone)?, pin))
+    if let Some(entry) = found {
+        return Ok((entry, pin));
+    }
+    let sizes = catalog.sizes(&profile, alpha);
+    let size = size.filter(|_| is_pattern || !sizes.is_empty());
+    let Some((text, size)) = size else {
+        let offer = catalog.offer().of_table(&profile, alpha, map.as_deref());
+        let detail = format!("the profile `{profile}` is not loaded for this alpha{offer}");
+        let allowed = some(catalog.alphas(&profile).iter().map(ToString::to_string));
+        return Err(fault(&ALPHA, &alpha_text, detail, allowed));
+    };
+    let offer = size.map_or(String::new(), |_| {
+        catalog.offer().of_table(&profile, alpha, Some(text))
+    });
+    let detail = format!("the profile `{profile}` is not loaded with this map size{offer}");
+    let allowed = match is_pattern {
+        true => format!("s, m, l, or r and R from 0 to {MAX_PATTERN_RADIUS}"),
+        false => some(sizes.iter().map(ToString::to_string)),
+    };
+    Err(fault(&MAP, text, detail, allowed))
+}
+
+/// The tables that a query could mean.
+struct Wanted<'a> {
+    profile: Arc<str>,
+    alpha: Alpha,
+    catalog: &'a Catalog,
+}
+
+impl Wanted<'_> {
+    fn loaded(&self, size: Size) -> Option<Arc<Entry>> {
+        self.catalog.entry(&Key {
+            profile: self.profile.clone(),
+            alpha: self.alpha,
+            size,
+            mix: None,
+        })
+    }
+
+    /// The pattern itself needs no table.
+    fn derived(&self, size: Size) -> Option<Arc<Entry>> {
+        let is_pattern = *self.profile == *PATTERN;
+        is_pattern.then(|| self.catalog.pattern(self.alpha, size))?
+    }
+
+    fn of_size(&self, size: Size) -> Option<Arc<Entry>> {
+        self.loaded(size).or_else(|| self.derived(size))
+    }
+
+    /// The usual sizes first, then the smallest.
+    fn of_any_size(&self) -> Option<Arc<Entry>> {
+        let usual = [Size::M, Size::S]
+            .iter()
+            .find_map(|&size| self.loaded(size));
+        let smallest = || {
+            let sizes = self.catalog.sizes(&self.profile, self.alpha);
+            self.loaded(*sizes.first()?)
+        };
+        usual.or_else(smallest).or_else(|| self.derived(Size::S))
+    }
+}
+
+/// The table that some values choose.
+///
+/// # Errors
+/// Every fault, and [`Error::OtherTable`] if a pinned table is not loaded.
+pub fn chosen(values: &Values, catalog: &Catalog) -> Result<Arc<Entry>, Error> {
+    let ((), (entry, pin)) = (values.read(), check(values, None, catalog)).together()?;
+    hold(&entry, pin.as_deref())?;
+    Ok(entry)
 }
 
 /// The digest that the table must have, in lower case.

@@ -70,6 +70,30 @@ pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
     Ok(draft)
 }
 
+/// Reads a body whose members are all parameters.
+///
+/// # Errors
+/// A fault of `body` if it is not a JSON object. Other faults are in their places.
+pub fn read_members(bytes: &[u8], groups: &'static [Group]) -> Checked<Values> {
+    let fault = |detail: String| {
+        let start = bytes.get(..bytes.len().min(100)).unwrap_or_default();
+        Fault::new(
+            "body",
+            String::from_utf8_lossy(start),
+            detail,
+            "a JSON object",
+        )
+    };
+    let whole: &RawValue =
+        serde_json::from_slice(bytes).map_err(|error| fault(format!("not JSON: {error}")))?;
+    let object = Object::read(whole).map_err(fault)?;
+    let mut values = Values::new(groups, "");
+    for (name, json) in object.members() {
+        values.add_json(name, json);
+    }
+    Ok(values)
+}
+
 /// Adds a member that is a parameter, or nothing known.
 fn add_member(
     values: &mut Values,

@@ -1,0 +1,93 @@
+//! `strew mask`: a tileable threshold mask as a picture.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::anyhow;
+use strew_forge::{
+    figure,
+    mask::{Mask, MaskError},
+};
+
+use super::{
+    Failure, config,
+    flags::{Flags, Tabled},
+    output::Output,
+    refusal::Source,
+};
+use crate::service::{Ready, query::chosen};
+
+/// Flags of `strew mask`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// The side of the mask in pixels, 16 to 1024.
+    #[arg(long, value_name = "PIXELS", default_value_t = 256)]
+    size: u32,
+    /// Which mask: every seed has another one.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0)]
+    seed: u64,
+    /// The bits of a threshold: 8 or 16.
+    #[arg(long, value_name = "BITS", default_value_t = 8)]
+    bits: u8,
+    /// The PNG file to write; - is standard output.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Draw the spectrum of the mask at the levels 1/8, 1/4 and 1/2, as SVG or PNG by the file's ending.
+    #[arg(long, value_name = "FILE")]
+    spectrum: Option<PathBuf>,
+    #[command(flatten)]
+    table: Flags<Tabled>,
+    #[command(flatten)]
+    settings: config::Args,
+}
+
+/// Makes a mask.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let config = args.settings.merged()?;
+    let catalog = config.tables()?;
+    let ready = chosen(&args.table.values(), &catalog).and_then(|entry| Ready::load(&entry));
+    let ready = ready.map_err(|error| Source::Flags.refused(error))?;
+    let output = Output::open(args.output.as_deref())?;
+    let mask = Mask::new(&ready.table, args.size, args.seed).map_err(refused)?;
+    let picture = mask.to_png(args.bits).map_err(refused)?;
+    if let Some(path) = &args.spectrum {
+        draw(&mask, path)?;
+    }
+    write(output, &picture)
+}
+
+fn draw(mask: &Mask, path: &Path) -> Result<(), Failure> {
+    /// The longer side of a PNG.
+    const SIZE: u32 = 1600;
+    let drawing = figure::mask_spectrum(mask);
+    let is = |ending: &str| {
+        path.extension()
+            .is_some_and(|own| own.eq_ignore_ascii_case(ending))
+    };
+    let bytes = if is("svg") {
+        drawing.to_svg().into_bytes()
+    } else if is("png") {
+        drawing
+            .to_png(SIZE)
+            .map_err(|error| Failure::Other(error.into()))?
+    } else {
+        return Err(Failure::Usage(anyhow!(
+            "--spectrum {}: allowed: a file whose name ends in .svg or .png",
+            path.display()
+        )));
+    };
+    write(Output::open(Some(path))?, &bytes)
+}
+
+fn write(mut output: Output, bytes: &[u8]) -> Result<(), Failure> {
+    output.write(bytes)?;
+    Ok(output.finish()?)
+}
+
+fn refused(error: MaskError) -> Failure {
+    let MaskError {
+        field,
+        value,
+        allowed,
+    } = error;
+    Failure::Usage(anyhow!("--{field} {value}: allowed: {allowed}"))
+}

@@ -1,0 +1,48 @@
+//! Lists of periods as messages.
+
+use super::proto::{self, ListPeriodsRequest, ListPeriodsResponse};
+use crate::service::{
+    Error, Service,
+    query::{
+        Parameter, PeriodEcho, Periods, Value, Values, groups,
+        parameters::{ALPHA, MAP, MOST, PERIODIC, PROFILE},
+    },
+};
+
+/// A period.
+pub(super) const fn period(echo: PeriodEcho) -> proto::Period {
+    proto::Period {
+        p: echo.p,
+        q: echo.q,
+        points: echo.points,
+        side: echo.side,
+    }
+}
+
+/// The list that a request asks for.
+pub(super) fn list(
+    request: ListPeriodsRequest,
+    service: &Service,
+) -> Result<ListPeriodsResponse, Error> {
+    let given: [(&'static Parameter, Option<Value>); 5] = [
+        (&PROFILE, request.profile.map(Value::Text)),
+        (&ALPHA, request.alpha.map(Value::Text)),
+        (&MAP, request.map.map(Value::Text)),
+        (&PERIODIC, request.periodic.map(Value::Integer)),
+        (&MOST, request.most.map(Value::Integer)),
+    ];
+    let mut values = Values::new(groups::PERIODS, "");
+    for (parameter, value) in given {
+        if let Some(value) = value {
+            values.add_value(parameter, value);
+        }
+    }
+    let found = Periods::of(&values, &service.catalog())?;
+    Ok(ListPeriodsResponse {
+        alpha: found.alpha,
+        map: found.map,
+        radius: found.radius,
+        most_points: found.most_points,
+        periods: found.periods.into_iter().map(period).collect(),
+    })
+}

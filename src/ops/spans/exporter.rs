@@ -1,0 +1,231 @@
+//! The exporter of a program with the feature `otlp`.
+//!
+//! The SDK's own tracer is not used, as requests are watched and named already (`observe`, `identity`);
+//! its exporter is.
+
+use std::{sync::Arc, time::Duration};
+
+use opentelemetry::KeyValue;
+use opentelemetry_otlp::{
+    SpanExporter, WithExportConfig as _, WithTonicConfig as _,
+    tonic_types::transport::{Certificate, ClientTlsConfig},
+};
+use opentelemetry_sdk::{
+    Resource,
+    trace::{SpanData, SpanExporter as _},
+};
+use tokio::sync::mpsc;
+use tokio_util::{sync::CancellationToken, task::AbortOnDropHandle};
+
+use super::{Answered, SpansError};
+use crate::{
+    config::{self, Telemetry as Settings},
+    ops::{
+        identity,
+        metrics::{Metrics, OfSpans},
+        throttle::LogThrottle,
+        tls::certificates,
+    },
+};
+
+/// The most spans of one message: some 0.5 MB, where collectors take 4 MiB.
+const MOST: usize = 512;
+
+/// How long the first span of a message waits for more.
+const DELAY: Duration = Duration::from_secs(1);
+
+/// A collector that has not been spoken to yet.
+#[derive(Debug)]
+pub(in crate::ops) struct Collector {
+    settings: Settings,
+    ca: Option<Vec<u8>>,
+}
+
+impl Collector {
+    /// Reads what is needed; `None` without a collector.
+    pub(in crate::ops) fn new(settings: &Settings) -> Result<Option<Self>, SpansError> {
+        if settings.otlp_endpoint.is_empty() {
+            return Ok(None);
+        }
+        let ca = match settings.is_https() {
+            false => None,
+            true => Some(read_authorities(settings)?),
+        };
+        Ok(Some(Self {
+            settings: settings.clone(),
+            ca,
+        }))
+    }
+
+    /// Starts to send, on the tokio runtime that this is called in. A collector that is not there yet
+    /// may come later.
+    pub(in crate::ops) fn start(&self, metrics: &Metrics) -> Result<(Spans, Sending), SpansError> {
+        let settings = &self.settings;
+        let timeout = config::seconds(settings.export_timeout_seconds);
+        let mut builder = SpanExporter::builder()
+            .with_tonic()
+            .with_endpoint(settings.otlp_endpoint.clone())
+            .with_timeout(timeout);
+        if let Some(ca) = &self.ca {
+            let tls = ClientTlsConfig::new().ca_certificate(Certificate::from_pem(ca));
+            builder = builder.with_tls_config(tls);
+        }
+        let mut exporter = builder.build().map_err(|error| SpansError {
+            setting: "telemetry.otlp_endpoint",
+            value: settings.otlp_endpoint.clone(),
+            problem: error.to_string(),
+        })?;
+        exporter.set_resource(&resource(&settings.service_name));
+        let (sender, queue) = mpsc::channel(settings.max_queued_spans);
+        let counted = Arc::new(metrics.spans());
+        let stop = CancellationToken::new();
+        let task = Task {
+            exporter,
+            queue,
+            counted: counted.clone(),
+            failed: LogThrottle::default(),
+        };
+        let task = AbortOnDropHandle::new(tokio::spawn(task.run(stop.clone())));
+        let spans = Spans {
+            sender,
+            sample_ratio: settings.sample_ratio,
+            counted,
+            full: Arc::default(),
+        };
+        Ok((
+            spans,
+            Sending {
+                stop,
+                task,
+                timeout,
+            },
+        ))
+    }
+}
+
+fn read_authorities(settings: &Settings) -> Result<Vec<u8>, SpansError> {
+    let wrong = |problem| SpansError {
+        setting: "telemetry.otlp_ca",
+        value: settings.otlp_ca.display().to_string(),
+        problem,
+    };
+    let pem = std::fs::read(&settings.otlp_ca)
+        .map_err(|error| wrong(format!("it cannot be read: {error}")))?;
+    certificates(&pem).map_err(wrong)?;
+    Ok(pem)
+}
+
+/// Who sends: what OTEL_RESOURCE_ATTRIBUTES says, and our name and version.
+fn resource(service_name: &str) -> Resource {
+    Resource::builder()
+        .with_service_name(service_name.to_owned())
+        .with_attribute(KeyValue::new("service.version", env!("CARGO_PKG_VERSION")))
+        .build()
+}
+
+/// Takes spans of requests that have ended. Cheap to clone.
+#[derive(Clone, Debug)]
+pub(in crate::ops) struct Spans {
+    sender: mpsc::Sender<SpanData>,
+    sample_ratio: f64,
+    counted: Arc<OfSpans>,
+    full: Arc<LogThrottle>,
+}
+
+impl Spans {
+    /// Whether a request that comes without a trace begins one.
+    pub(in crate::ops) fn begins_one(&self) -> bool {
+        // In [0, 1), so that a ratio of 1 is all and 0 none.
+        let drawn = (identity::next() >> 11) as f64 / (1u64 << 53) as f64;
+        drawn < self.sample_ratio
+    }
+
+    /// Has a request sent as a span, if its trace is one that is kept.
+    pub(in crate::ops) fn take(&self, answered: &Answered<'_>) {
+        let Some(span) = answered.span() else {
+            return;
+        };
+        if self.sender.try_send(span).is_err() {
+            self.counted.lost.increment(1);
+            if let Some(spans) = self.full.record() {
+                tracing::warn!(
+                    spans,
+                    "lost: the collector takes spans slower than they come"
+                );
+            }
+        }
+    }
+}
+
+/// The task that sends.
+#[derive(Debug)]
+pub(in crate::ops) struct Sending {
+    stop: CancellationToken,
+    task: AbortOnDropHandle<()>,
+    timeout: Duration,
+}
+
+impl Sending {
+    /// Sends what is left, for no longer than sending may take.
+    pub(in crate::ops) async fn finish(self) {
+        self.stop.cancel();
+        if tokio::time::timeout(self.timeout, self.task).await.is_err() {
+            tracing::warn!("the collector did not take the last spans in time");
+        }
+    }
+}
+
+struct Task {
+    exporter: SpanExporter,
+    queue: mpsc::Receiver<SpanData>,
+    counted: Arc<OfSpans>,
+    failed: LogThrottle,
+}
+
+impl Task {
+    /// Sends until it is stopped, or all senders are gone, and the queue is empty.
+    async fn run(mut self, stop: CancellationToken) {
+        let mut batch = vec![];
+        let mut is_open = true;
+        while is_open {
+            is_open = tokio::select! {
+                is_open = gather(&mut self.queue, &mut batch) => is_open,
+                () = stop.cancelled() => false,
+            };
+            self.send(&mut batch).await;
+        }
+        self.queue.close();
+        while self.queue.recv_many(&mut batch, MOST).await > 0 {
+            self.send(&mut batch).await;
+        }
+    }
+
+    async fn send(&self, batch: &mut Vec<SpanData>) {
+        if batch.is_empty() {
+            return;
+        }
+        let spans = batch.len() as u64;
+        match self.exporter.export(std::mem::take(batch)).await {
+            Ok(()) => self.counted.sent.increment(spans),
+            Err(error) => {
+                self.counted.lost.increment(spans);
+                if let Some(times) = self.failed.record() {
+                    tracing::warn!(%error, times, "spans could not be sent to the collector");
+                }
+            }
+        }
+    }
+}
+
+/// Fills a batch: as soon as there is one span it waits a moment for more; whether more may come. What it
+/// has taken stays in the batch when it is dropped.
+async fn gather(queue: &mut mpsc::Receiver<SpanData>, batch: &mut Vec<SpanData>) -> bool {
+    if queue.recv_many(batch, MOST).await == 0 {
+        return false;
+    }
+    let more = async {
+        while batch.len() < MOST && queue.recv_many(batch, MOST - batch.len()).await > 0 {}
+    };
+    let _ = tokio::time::timeout(DELAY, more).await;
+    true
+}

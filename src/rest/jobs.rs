@@ -1,0 +1,159 @@
+//! `/v1/jobs`: the jobs of the forge, how they stand, their events, and their end.
+
+use std::{convert::Infallible, sync::Arc};
+
+use axum::{
+    body::Body,
+    extract::{Path, State},
+    response::Response,
+    routing,
+};
+use bytes::Bytes;
+use futures_util::{StreamExt as _, stream};
+use http::{HeaderMap, HeaderValue, Method, header};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{
+    api::{self, Endpoint, Operation, Tag, schemas},
+    context::Context,
+    document,
+};
+use crate::service::{
+    Error, Kind, Record, Service,
+    forging::JobStatus,
+    query::{Parameter, groups},
+};
+
+/// The content type of server-sent events.
+const EVENTS: &str = "text/event-stream";
+
+const ID: Parameter = Parameter {
+    name: "id",
+    about: "The id of a job, as `POST /v1/tables` returns it.",
+    allowed: Some("the id of a job"),
+    is_required: true,
+    example: "0123456789abcdef",
+    ..Parameter::PLAIN
+};
+
+/// The path of the list.
+pub(super) fn list(service: Arc<Service>) -> Endpoint {
+    let operation = Operation {
+        id: "listJobs",
+        summary: "The jobs of the forge",
+        about: "Those that wait or run, and those that ended last.",
+        path_parameters: &[],
+        example: "/v1/jobs".into(),
+        ..operation(api::Answer::json::<Jobs>("The jobs, the newest first."))
+    };
+    Endpoint::new("/v1/jobs", service, vec![(operation, routing::get(all))])
+}
+
+/// The path of one job.
+pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
+    let mut answer = api::Answer::json::<JobStatus>("The job.");
+    answer.contents.push((EVENTS, schemas::text));
+    let get = Operation {
+        id: "getJob",
+        summary: "How a job of the forge stands",
+        about: "With `Accept: text/event-stream` as server-sent events: an event `job` with the document whenever it \
+                changes, at most five times a second, until the job is over.",
+        problems: vec![Kind::NotAllowed, Kind::NoSuchJob, Kind::Invalid, Kind::Busy],
+        example: "/v1/jobs/0123456789abcdef".into(),
+        ..operation(answer)
+    };
+    let cancel = Operation {
+        method: Method::DELETE,
+        id: "cancelJob",
+        summary: "Cancels a job of the forge",
+        about: "For the client that began it and for administrators. A job that is over stays as it is.",
+        problems: vec![Kind::NotAllowed, Kind::NoSuchJob, Kind::Invalid],
+        example: "/v1/jobs/0123456789abcdef -X DELETE".into(),
+        ..operation(api::Answer::json::<JobStatus>(
+            "The job, which ends with its current step.",
+        ))
+    };
+    let operations = vec![(get, routing::get(one)), (cancel, routing::delete(delete))];
+    Endpoint::new("/v1/jobs/{id}", service, operations)
+}
+
+/// What the operations share.
+fn operation(answer: api::Answer) -> Operation {
+    Operation {
+        method: Method::GET,
+        id: "",
+        summary: "",
+        about: "",
+        tag: Tag::Tables,
+        path_parameters: &[&ID],
+        parameters: groups::NONE,
+        body: None,
+        answers: vec![answer],
+        problems: vec![Kind::NotAllowed, Kind::Invalid],
+        example: String::new(),
+    }
+}
+
+/// The jobs of the forge.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Jobs")]
+struct Jobs {
+    /// The newest first.
+    jobs: Vec<JobStatus>,
+}
+
+async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+    context.values(groups::NONE).read()?;
+    let jobs = service.jobs(&context.caller)?;
+    Ok(fresh(document::json(&Jobs { jobs })?))
+}
+
+async fn one(
+    State(service): State<Arc<Service>>,
+    Path(id): Path<String>,
+    context: Context,
+) -> Result<Response, Error> {
+    context.values(groups::NONE).read()?;
+    let job = service.job(&context.caller, &id)?;
+    if !wants_events(&context.headers) {
+        return Ok(fresh(document::json(&job.status())?));
+    }
+    Record::in_format("events");
+    let states = service.follow_job(&context.caller, &job)?;
+    let events = states.map(|status| {
+        let text = serde_json::to_string(&status).unwrap_or_default();
+        Ok::<_, Infallible>(Bytes::from(format!("event: job\ndata: {text}\n\n")))
+    });
+    // Clients that see nothing for long would try again.
+    let first = stream::once(async { Ok(Bytes::from_static(b"retry: 2000\n\n")) });
+    let mut response = Response::new(Body::from_stream(first.chain(events)));
+    let value = HeaderValue::from_static(EVENTS);
+    response.headers_mut().insert(header::CONTENT_TYPE, value);
+    Ok(fresh(response))
+}
+
+async fn delete(
+    State(service): State<Arc<Service>>,
+    Path(id): Path<String>,
+    context: Context,
+) -> Result<Response, Error> {
+    context.values(groups::NONE).read()?;
+    document::json(&service.cancel_job(&context.caller, &id).await?)
+}
+
+fn wants_events(headers: &HeaderMap) -> bool {
+    let accept = headers.get_all(header::ACCEPT).iter();
+    let texts = accept.filter_map(|value| value.to_str().ok());
+    texts.flat_map(|text| text.split(',')).any(|part| {
+        let name = part.split(';').next().unwrap_or_default();
+        name.trim().eq_ignore_ascii_case(EVENTS)
+    })
+}
+
+/// What is true for a moment is not kept.
+fn fresh(mut response: Response) -> Response {
+    let value = HeaderValue::from_static("no-store");
+    response.headers_mut().insert(header::CACHE_CONTROL, value);
+    response
+}

@@ -1,0 +1,282 @@
+//! The service within a program, without a daemon: queries go in as text, points come out as columns.
+//!
+//! What the bindings for other languages are made on. A [`Library`] reads the bodies and the addresses that
+//! REST takes, refuses them with the same words, and has the same points. It answers in the calling thread and
+//! fills large answers on all threads of rayon's pool.
+
+mod columns;
+pub mod measured;
+
+use std::{
+    collections::HashMap,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
+
+use super::{
+    Answer, Catalog, Draft, Encoding, Error, Fault, Found, Limits, Nearest, Options, Output,
+    Placed, Planned, Presets, Query, Ready, Set, Token,
+    catalog::CatalogError,
+    field::{self, Document, FieldError, Fields, NamedField},
+    mix,
+    query::{self, groups, parse_pairs, read_body},
+};
+use crate::config::{ConfigError, Layers};
+
+pub use columns::{Columns, Further, FurtherValues};
+pub use measured::{Measured, measure};
+
+/// Tables, fields and limits, with which queries are answered.
+#[derive(Debug)]
+pub struct Library {
+    catalog: Catalog,
+    presets: Presets,
+    limits: Limits,
+    /// Tables that were used, by their digests; mixes by those and their shares.
+    ready: Mutex<HashMap<String, Ready>>,
+}
+
+/// Why there is no library.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Unavailable {
+    /// The built-in settings cannot be read.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// A built-in table cannot be read.
+    #[error(transparent)]
+    Catalog(#[from] CatalogError),
+    /// A built-in field cannot be read.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+}
+
+/// The most pixels that a query of a program may bring along: a program has them in memory anyway.
+const MOST_PIXELS: usize = 1 << 28;
+/// The most memory of fields that are held to be named, in bytes.
+const ROOM: usize = 1 << 30;
+
+impl Library {
+    /// The built-in tables and fields, with the limits that a daemon has by default.
+    ///
+    /// # Errors
+    /// [`Unavailable`] only if the program is damaged.
+    pub fn new() -> Result<Self, Unavailable> {
+        let config = Layers::new()?.finish()?;
+        let fields = Fields::load(&config.fields)?;
+        let catalog = Catalog::load(true, None)?.with_fields(fields);
+        Ok(Self::of(catalog, config.limits))
+    }
+
+    /// These tables and fields, and these limits.
+    #[must_use]
+    pub fn of(catalog: Catalog, limits: Limits) -> Self {
+        Self {
+            catalog: catalog.with_room(ROOM).with_pixels(MOST_PIXELS),
+            presets: Presets::default(),
+            limits,
+            ready: Mutex::default(),
+        }
+    }
+
+    /// The tables and the fields.
+    #[must_use]
+    pub const fn catalog(&self) -> &Catalog {
+        &self.catalog
+    }
+
+    /// The limits.
+    #[must_use]
+    pub const fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// Plans the query of a body of `POST /v1/points:query`: its points are counted and not made yet.
+    ///
+    /// # Errors
+    /// What the daemon answers to this body, but for too many points.
+    pub fn plan(&self, body: &[u8]) -> Result<(Planned, Options), Error> {
+        self.plan_draft(&read_body(body, groups::QUERY)?)
+    }
+
+    /// Plans the query of an address, the text after `/v1/points?`.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn plan_address(&self, address: &str) -> Result<(Planned, Options), Error> {
+        self.plan_draft(&Draft::of(parse_pairs(address, groups::POINTS)))
+    }
+
+    /// Plans a query.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn plan_draft(&self, draft: &Draft) -> Result<(Planned, Options), Error> {
+        let (draft, preset) = self.presets.fill(draft)?;
+        let (mut query, options) = draft.check(&self.catalog, self.limits.max_vertices)?;
+        query.preset = preset;
+        Ok((self.planned(query)?, options))
+    }
+
+    fn planned(&self, query: Query) -> Result<Planned, Error> {
+        let tables = query.sets.iter().map(|set| self.ready(set));
+        let tables = tables.collect::<Result<Vec<_>, _>>()?;
+        Planned::new(query, &tables, &self.limits)
+    }
+
+    /// The points of a planned query.
+    ///
+    /// # Errors
+    /// [`Error::TooManyPoints`] over the limit, [`Error::Internal`] without memory for them.
+    pub fn columns(&self, planned: &Planned) -> Result<Columns, Error> {
+        Columns::of(planned, self.count_to_make(planned)?)
+    }
+
+    /// The coordinates of a planned query's points alone, which takes a fraction of the time.
+    ///
+    /// # Errors
+    /// As [`columns`](Self::columns).
+    pub fn coordinates(&self, planned: &Planned) -> Result<Vec<[f64; 2]>, Error> {
+        columns::coordinates(planned, self.count_to_make(planned)?)
+    }
+
+    /// The points of a planned query as a document: the bytes that the daemon answers with.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if an option has no effect in the format or the format is not written here;
+    /// [`Error::TooManyPoints`] over the limit.
+    pub fn document(
+        &self,
+        planned: &Planned,
+        options: Options,
+        otherwise: Encoding,
+    ) -> Result<Answer, Error> {
+        self.count_to_make(planned)?;
+        let encoding = options.encoding.unwrap_or(otherwise);
+        let output = Output {
+            relative_to: planned.query.region.corner,
+            ..options.output(encoding)?
+        };
+        Answer::new(planned, &output, self.limits.block_bytes)
+    }
+
+    /// A planned query in parts of as many points, give or take one: the cursor at which each begins, and
+    /// how many points it has. With `cursor` and `limit` set to these, the query has the points of the part.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a number of parts that is not allowed, else as [`Planned::split`].
+    pub fn split(&self, planned: &Planned, parts: &str) -> Result<Vec<(Token, u64)>, Error> {
+        let mut values = query::Values::new(groups::SPLIT, "");
+        values.add_text(query::parameters::PARTS.name, parts);
+        planned.split(query::parts(&values)?)
+    }
+
+    /// The point of an id, in the set of an address: the text after `/v1/points/{id}?`.
+    ///
+    /// # Errors
+    /// What the daemon answers.
+    pub fn point(&self, id: &str, address: &str) -> Result<Found, Error> {
+        let values = parse_pairs(address, groups::SINGLE);
+        let set = Set::single(&values, &self.catalog)?;
+        self.placed(set)?.point(id)
+    }
+
+    /// The points nearest to a place, by an address: the text after `/v1/nearest?`.
+    ///
+    /// # Errors
+    /// What the daemon answers.
+    pub fn nearest(&self, address: &str) -> Result<Vec<Found>, Error> {
+        let values = parse_pairs(address, groups::NEAREST);
+        let (set, nearest) = Nearest::of_set(&values, &self.catalog)?;
+        self.placed(set)?.nearest(nearest)
+    }
+
+    /// Holds a field, a body of `POST /v1/fields`, and returns the digest by which queries name it.
+    ///
+    /// # Errors
+    /// What the daemon answers.
+    pub fn hold_field(&self, body: &str) -> Result<String, Error> {
+        let document = field::read_json("field", body.trim())?;
+        let held = hold_field(&self.catalog, document, MOST_PIXELS)?;
+        Ok(held.name.clone())
+    }
+
+    fn placed(&self, set: Set) -> Result<Placed, Error> {
+        let ready = self.ready(&set)?;
+        Placed::new(set, ready)
+    }
+
+    /// Refuses more points than an answer may have.
+    fn count_to_make(&self, planned: &Planned) -> Result<usize, Error> {
+        let (count, limit) = (planned.count(), self.limits.max_points);
+        match usize::try_from(count) {
+            Ok(few) if count <= u128::from(limit) => Ok(few),
+            _ => Err(Error::TooManyPoints { count, limit }),
+        }
+    }
+
+    /// The table of a set, which is read, or made, the first time.
+    fn ready(&self, set: &Set) -> Result<Ready, Error> {
+        let plain = self.kept(&set.entry.digest, || Ready::load(&set.entry))?;
+        let Some(kinds) = set.kinds.as_ref().filter(|_| plain.table.mix().is_none()) else {
+            return Ok(plain);
+        };
+        if let Some(made) = &kinds.made {
+            let Ready { table, .. } = self.kept(&made.digest, || Ready::load(made))?;
+            return Ok(Ready { table, ..plain });
+        }
+        let name = format!("{} {}", plain.entry.digest, kinds.shares());
+        self.kept(&name, || {
+            let table = mix::make(&plain.table, kinds.shares())?;
+            Ok(Ready::new(plain.entry.clone(), table))
+        })
+    }
+
+    /// What is known under a name. It is made without the lock: others go on meanwhile.
+    fn kept(
+        &self,
+        name: &str,
+        make: impl FnOnce() -> Result<Ready, Error>,
+    ) -> Result<Ready, Error> {
+        if let Some(known) = self.known().get(name) {
+            return Ok(known.clone());
+        }
+        let made = make()?;
+        self.known().insert(name.into(), made.clone());
+        Ok(made)
+    }
+
+    fn known(&self) -> MutexGuard<'_, HashMap<String, Ready>> {
+        self.ready.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Holds a field that a client sends, with at most so many pixels, under its digest.
+///
+/// # Errors
+/// [`Error::Invalid`] for a field that is not valid or too large to be held.
+pub(super) fn hold_field(
+    catalog: &Catalog,
+    document: Document,
+    pixels: usize,
+) -> Result<Arc<NamedField>, Error> {
+    let (spec, built) = catalog.build_field("field", &document, pixels);
+    let field = NamedField::sent(document, spec?, built.bytes, built.frame);
+    let name = field.name.clone();
+    let held = catalog
+        .sent()
+        .hold(field)
+        .then(|| catalog.sent().get(&name));
+    held.flatten().ok_or_else(|| {
+        let detail = format!("takes {} bytes, which there is no room for", built.bytes);
+        Fault::new(
+            "field",
+            "",
+            detail,
+            "a smaller field, or fields.max_sent_bytes raised",
+        )
+        .into()
+    })
+}
+
+#[cfg(test)]
+mod tests;

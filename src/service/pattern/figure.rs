@@ -1,0 +1,169 @@
+//! Figures of patterns: the drawings of `strew_forge::figure` behind checked parameters.
+
+use strew_core::{Alpha, server::Stop};
+use strew_forge::figure::{self, Drawing, FigureError};
+
+use super::{ClustersQuery, alpha, map::DEFAULT_RADIUS};
+use crate::{
+    access::Caller,
+    service::{
+        Error, Fault, Lane, Service,
+        query::{
+            Checked, Group, Together as _, Values, groups,
+            patterns::{BLOCK, OFFSETS, RADIUS, WINDOW},
+        },
+    },
+};
+
+/// The figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Figure {
+    /// The index torus and the set region.
+    Index,
+    /// An arrangement.
+    Arrangement,
+    /// Clusters.
+    Clusters,
+    /// A neighborhood map.
+    Map,
+}
+
+impl Figure {
+    /// The parameters that it takes.
+    #[must_use]
+    pub const fn groups(self) -> &'static [Group] {
+        match self {
+            Self::Index => groups::INDEX_FIGURE,
+            Self::Arrangement => groups::ARRANGEMENT_FIGURE,
+            Self::Clusters => groups::CLUSTERS_FIGURE,
+            Self::Map => groups::MAP_FIGURE,
+        }
+    }
+
+    /// The side of the window that it draws by default.
+    const fn window(self) -> u32 {
+        match self {
+            Self::Index => 64,
+            Self::Arrangement => 48,
+            Self::Clusters | Self::Map => 96,
+        }
+    }
+}
+
+/// A checked query for a figure.
+#[derive(Clone, Debug)]
+pub struct FigureQuery {
+    alpha: Alpha,
+    window: u32,
+    what: What,
+}
+
+/// What a figure draws.
+#[derive(Clone, Debug)]
+enum What {
+    Index,
+    Arrangement(Vec<(i64, i64)>),
+    Clusters(ClustersQuery),
+    Map(u32, [usize; 2]),
+}
+
+impl FigureQuery {
+    /// Checks some values.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with every fault.
+    pub fn check(figure: Figure, values: &Values) -> Result<Self, Error> {
+        let what = match figure {
+            Figure::Index => Ok(What::Index),
+            Figure::Arrangement => offsets(values).map(What::Arrangement),
+            Figure::Clusters => Ok(What::Clusters(ClustersQuery::check(values)?)),
+            Figure::Map => {
+                let given = (values.get::<u64>(&RADIUS), values.get::<[f64; 2]>(&BLOCK));
+                given.together().map(|(radius, block)| {
+                    let radius = radius.and_then(|radius| u32::try_from(radius).ok());
+                    let block = block.unwrap_or([0.0; 2]);
+                    // A negative one is no block of the map, either.
+                    let block = block.map(|i| if i < 0.0 { usize::MAX } else { i as usize });
+                    What::Map(radius.unwrap_or(DEFAULT_RADIUS), block)
+                })
+            }
+        };
+        let window = values.get::<u64>(&WINDOW);
+        let ((), alpha, window, what) = (values.read(), alpha(values), window, what).together()?;
+        let window = window.and_then(|window| u32::try_from(window).ok());
+        Ok(Self {
+            alpha,
+            window: window.unwrap_or(figure.window()),
+            what,
+        })
+    }
+
+    /// Draws it.
+    fn draw(self, stop: &Stop) -> Result<Drawing, Error> {
+        let Self {
+            alpha,
+            window,
+            what,
+        } = self;
+        let drawing = match what {
+            What::Index => figure::index(alpha, window),
+            What::Arrangement(offsets) => figure::arrangement(alpha, &offsets, window),
+            What::Clusters(query) => {
+                figure::found_clusters(&query.search(stop)?, query.distance, window)
+            }
+            What::Map(radius, block) => figure::map(alpha, radius, block),
+        };
+        drawing.map_err(|error| {
+            let FigureError {
+                field,
+                value,
+                allowed,
+            } = error;
+            Fault::new(&field, value, "cannot be drawn", allowed).into()
+        })
+    }
+}
+
+fn offsets(values: &Values) -> Checked<Vec<(i64, i64)>> {
+    /// A figure with more has nothing to see.
+    const MOST: usize = 256;
+    let numbers = values.require::<Vec<f64>>(&OFFSETS)?;
+    if numbers.len() / 2 > MOST {
+        let value = format!("{} offsets", numbers.len() / 2);
+        let allowed = format!("at most {MOST} offsets in a figure");
+        return Err(Fault::new(OFFSETS.name, value, "too many", allowed).into());
+    }
+    let pairs = numbers.chunks_exact(2);
+    // Within ±2⁵², so exact.
+    Ok(pairs.map(|pair| (pair[0] as i64, pair[1] as i64)).collect())
+}
+
+impl Service {
+    /// Draws a figure, charged, and makes something of it. It stops when its client leaves.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for what cannot be drawn, [`Error::Denied`] if the caller takes points too fast,
+    /// [`Error::TooManyBytes`] if there is no room.
+    pub async fn figure<T: Send + 'static>(
+        &self,
+        caller: &Caller,
+        query: FigureQuery,
+        answer: impl FnOnce(&Drawing) -> Result<T, Error> + Send + 'static,
+    ) -> Result<T, Error> {
+        /// The most that a drawing and its text take.
+        const BYTES: usize = 16 << 20;
+        let window = u128::from(query.window);
+        let searched = match &query.what {
+            What::Clusters(clusters) => clusters.points(),
+            What::Map(radius, _) => u128::from(*radius) * u128::from(*radius),
+            What::Index | What::Arrangement(_) => 0,
+        };
+        caller.charge(window * window + searched, 0)?;
+        let budget = self.own_budget();
+        let draw = move |stop: &Stop| {
+            let _held = budget.hold(BYTES)?;
+            answer(&query.draw(stop)?)
+        };
+        self.workers().take_turn(Lane::Long, draw).await?
+    }
+}
