@@ -9,7 +9,7 @@ serve *args:
 
 # All tests of the whole workspace.
 test:
-    cargo test
+    cargo test --workspace
 
 # What continuous integration runs.
 ci:
@@ -43,6 +43,10 @@ fuzz subject seconds="3600":
     mkdir -p fuzz/corpus/{{subject}}
     cd fuzz && RUSTC_BOOTSTRAP=1 cargo fuzz run -O {{subject}} corpus/{{subject}} seeds/{{subject}} \
         -- -max_total_time={{seconds}} -timeout=20 -max_len=2048
+
+# The tests of exported spans, which need the feature that images are built with.
+otlp:
+    cargo test --locked --features otlp --test suite -- ops::spans
 
 # The library without the standard library.
 no-std:

@@ -127,7 +127,7 @@ pub fn text(host: &Host, effort: Effort) {
     let planned = Planned::at_once(query, &limits).expect("within reach");
     let side = (count as f64).sqrt();
     let mut points = vec![Point::default(); PREPARED];
-    planned.sets[0].plan.blocks_points().fill(&mut points);
+    planned.sets[0].plan.walk().fill(&mut points);
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let alone = alone.expect("a thread");
 

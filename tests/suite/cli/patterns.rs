@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::support::command;
+use crate::support::{command, daemon::Daemon};
 
 /// What a command that succeeds prints.
 fn run(arguments: &[&str]) -> String {
@@ -32,7 +32,40 @@ fn figures_are_files_and_standard_output() {
         let drawn = std::fs::read_to_string(&file).expect("written");
         assert!(drawn.contains("α = 13/8"), "{name}");
         assert_eq!(run(&["figure", name, "--alpha", "1.625"]), drawn, "{name}");
+        let picture = file.with_extension("png");
+        let path = picture.to_str().expect("UTF-8");
+        run(&["figure", name, "--size", "300", "--output", path]);
+        let decoder = png::Decoder::new(std::io::BufReader::new(
+            std::fs::File::open(&picture).expect("written"),
+        ));
+        let info = decoder.read_info().expect("a PNG").info().size();
+        assert_eq!(info.0.max(info.1), 300, "{name}");
     }
+}
+
+#[test]
+fn masks_have_each_threshold_as_often() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).to_str().expect("UTF-8").to_owned();
+    let (mask, spectrum) = (file("mask.png"), file("spectrum.svg"));
+    let flags = [
+        "mask", "--map", "s", "--size", "64", "--seed", "3", "-o", &mask,
+    ];
+    run(&[&flags[..], &["--spectrum", &spectrum]].concat());
+    let decoder = png::Decoder::new(std::io::BufReader::new(
+        std::fs::File::open(&mask).expect("written"),
+    ));
+    let mut reader = decoder.read_info().expect("a PNG");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+    reader.next_frame(&mut pixels).expect("pixels");
+    let mut counts = [0; 256];
+    pixels.iter().for_each(|&v| counts[usize::from(v)] += 1);
+    assert_eq!(counts, [16; 256]);
+    let drawn = std::fs::read_to_string(&spectrum).expect("written");
+    assert!(drawn.contains("low power 0.0"), "{drawn}");
+    assert!(errors(&["mask", "--size", "5000"]).contains("16 to 1024"));
+    assert!(errors(&["mask", "--bits", "4"]).contains("8 or 16"));
+    assert!(errors(&["mask", "--spectrum", "a.txt", "-o", &mask]).contains(".svg or .png"));
 }
 
 #[test]
@@ -69,11 +102,68 @@ fn arrangements_have_facts_counts_and_places() {
         let id = format!("{}:{}", x + i, y + j);
         run(&["point", &id, "--seed", "7", "--spacing", "1"]);
     }
+    // With an amount the places are those of the points.
+    let placed = [
+        &[
+            "arrangement",
+            "2,1 3,3",
+            "--seed",
+            "7",
+            "--list",
+            "--spacing",
+            "0.5",
+        ],
+        &grid[..],
+    ];
+    let placed = run(&placed.concat());
+    let columns = |text: &str| text.lines().next().map(|line| line.split(',').count());
+    assert_eq!(columns(&placed), Some(8));
+    let first = placed.lines().nth(1).expect("an occurrence");
+    let id = format!("{x}:{y}");
+    let point: Value =
+        serde_json::from_str(&run(&["point", &id, "--seed", "7", "--spacing", "0.5"]))
+            .expect("JSON");
+    assert!(
+        first.starts_with(&format!("{x},{y},{},{},", point["x"], point["y"])),
+        "{first} {point}"
+    );
     let lone: Value = serde_json::from_str(&run(&["arrangement", "1,0"])).expect("JSON");
     assert_eq!(
         (&lone["exists"], &lone["margin"]),
         (&Value::Bool(false), &Value::Null)
     );
+}
+
+#[test]
+fn lists_are_those_of_the_daemon_byte_for_byte() {
+    let daemon = Daemon::start(&[]);
+    for list in ["csv", "json", "ndjson"] {
+        for (flags, parameters) in [
+            (&[][..], ""),
+            (&["--spacing", "0.5"][..], "&spacing=0.5"),
+            (
+                &["--limit", "9", "--cursor", "3:4"][..],
+                "&limit=9&cursor=3:4",
+            ),
+        ] {
+            let given = format!("--list={list}");
+            let own = [
+                "arrangement",
+                "2,1 3,3",
+                "--seed",
+                "7",
+                "--alpha",
+                "sqrt(3)",
+                &given,
+            ];
+            let grid = ["--grid", "-30", "-20", "40", "50"];
+            let printed = run(&[&own[..], &grid, flags].concat());
+            let address = format!(
+                "/v1/pattern/arrangements?offsets=2,1+3,3&seed=7&alpha=sqrt(3)&list={list}&grid=-30,-20,40,50{parameters}"
+            );
+            assert_eq!(daemon.get(&address).text(), printed, "{address}");
+        }
+    }
 }
 
 #[test]
@@ -91,14 +181,22 @@ fn wrong_settings_are_refused_by_name() {
             "two integers from 0 to 26",
         ),
         (&["figure", "clusters", "--distance", "99"], "--distance 99"),
-        (&["figure", "index", "-o", "x.png"], ".svg"),
+        (&["figure", "index", "-o", "x.gif"], ".svg or .png"),
+        (
+            &["figure", "index", "-o", "x.png", "--size", "20"],
+            "--size 20",
+        ),
         (&["arrangement", "2"], "two integers joined by a comma"),
-        (&["arrangement", "2,9007199254740993"], "offsets[0]"),
+        (&["arrangement", "2,9007199254740994"], "out of range"),
         (
             &["arrangement", "2,1", "--grid", "5", "0", "4", "9"],
             "--grid",
         ),
-        (&["arrangement", "2,1", "--list"], "--grid"),
+        (&["arrangement", "2,1", "--list"], "beside grid"),
+        (&["arrangement", ""], "has no offsets"),
+        (&["arrangement", "2,1.5"], "1.5 must be an integer"),
+        (&["arrangement", "2,1", "--alpha", "2"], "--alpha"),
+        (&["arrangement", "2,1", "--warp", "on"], "beside density"),
     ] {
         let text = errors(args);
         assert!(text.contains(expected), "{args:?}: {text}");

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use serde_json::{Value, json};
 use strew_testkit::http1;
 
@@ -265,18 +265,23 @@ fn parquet_holds_layers_and_attributes() {
     assert!(std::fs::read(&file).expect("written") == named);
 
     let file = std::fs::File::open(&file).expect("written");
-    let reader = ParquetRecordBatchReaderBuilder::try_new(file).expect("Parquet");
+    let reader = SerializedFileReader::new(file).expect("Parquet");
     let columns: BTreeSet<String> = reader
+        .metadata()
+        .file_metadata()
         .schema()
-        .fields()
+        .get_fields()
         .iter()
-        .map(|field| field.name().clone())
+        .map(|field| field.name().to_owned())
         .collect();
     let names: BTreeSet<String> = csv[0].split(',').map(Into::into).collect();
     let geometry = BTreeSet::from(["geometry".to_owned()]);
     assert_eq!(columns, &names | &geometry);
-    let batches = reader.build().expect("readable");
-    let rows: usize = batches.map(|batch| batch.expect("whole").num_rows()).sum();
+    let mut rows = 0;
+    for row in reader {
+        row.expect("whole");
+        rows += 1;
+    }
     assert_eq!(rows, csv.len() - 1);
     assert!(csv[1].starts_with("trees,") && csv[rows].starts_with("rocks,"));
 }

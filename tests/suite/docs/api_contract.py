@@ -129,9 +129,12 @@ def region(value, depth=0):
 
 def tidy_body(name, body):
     body = dict(body)
-    body["region"] = region(body.get("region"))
     layers = body.get("layers")
-    if isinstance(layers, list) and layers:
+    is_layered = isinstance(layers, list) and bool(layers)
+    is_periodic = "periodic" in body and not is_layered
+    body.pop("periodic", None)
+    body["region"] = region(body.get("region"))
+    if is_layered:
         for member in AMOUNTS + ["profile", "alpha", "map", "table", "seed", "warp", "keep"]:
             body.pop(member, None)
         for member in ["attributes", "variants", "scale_range", "scale_ranges", "spread", "only"]:
@@ -155,7 +158,11 @@ def tidy_body(name, body):
         body["layers"] = tidy
     else:
         body.pop("layers", None)
-        tidy_set(body, False)
+        tidy_set(body, False, AMOUNTS[:2] if is_periodic else AMOUNTS)
+        if is_periodic:
+            for member in ["min_distance", "count", "region"]:
+                body.pop(member, None)
+            body["periodic"] = 900
     tidy_output(body)
     if name == "countPoints":
         for member in ["format", "decimals", "size", "summary", "crs", "offset", "limit"]:
@@ -163,14 +170,76 @@ def tidy_body(name, body):
     return body
 
 
+def tidy_arrangement(query, is_text):
+    offsets = [[2, 1], [-3, 5 + len(str(query.get("offsets"))) % 4]]
+    query["offsets"] = " ".join(f"{x},{y}" for x, y in offsets) if is_text else offsets
+    if "grid" in query or "list" in query:
+        query["grid"] = "-20,3,31,40" if is_text else [-20, 3, 31, 40]
+    for name in ["alpha", "map", "cursor"]:
+        query.pop(name, None)
+    if "list" not in query:
+        query.pop("limit", None)
+    if "limit" in query:
+        query["limit"] = 1 + int(number(query["limit"], 0, 200))
+    if "seed" in query:
+        query["seed"] = int(number(query["seed"], 0, 2**53))
+    given = [name for name in AMOUNTS[:3] if name in query]
+    for name in given[1:]:
+        query.pop(name)
+    if given:
+        query[given[0]] = number(query[given[0]], 0.5, 4)
+    for name in ["profile", "warp"]:
+        if not given:
+            query.pop(name, None)
+    if "profile" in query:
+        query["profile"] = "blue"
+    if "warp" in query:
+        query["warp"] = "on"
+    return query
+
+
+def tidy_pattern(query):
+    """Parameters of clusters, maps and figures: small ones of one pattern."""
+    query.pop("alpha", None)
+    if "offsets" in query:
+        query["offsets"] = "2,1 3,3"
+    if "distance" in query:
+        query["distance"] = number(query["distance"], 1, 3)
+    if "most" in query:
+        query["most"] = 1 + int(number(query["most"], 0, 20))
+    if "radius" in query:
+        query["radius"] = 1 + int(number(query["radius"], 0, 30))
+    if "refined" in query:
+        query["refined"] = 40
+    if "block" in query:
+        query["block"] = "0,0"
+    if "window" in query:
+        query["window"] = 8 + int(number(query["window"], 0, 30))
+    return query
+
+
+PATTERNS = ["getClusters", "getMap"] + [f"get{name}Figure" for name in ["Index", "Arrangement", "Clusters", "Map"]]
+
+
 def tidy_query(name, rules, query):
     query = dict(query)
+    if name == "getArrangement":
+        return tidy_arrangement(query, True)
+    if name in PATTERNS:
+        return tidy_pattern(query)
     for rule in rules:
         if rule["rule"] == "exactly-one-of" and "bbox" in rule["parameters"]:
             shape = one_of(query, rule["parameters"], "bbox")
-            query[shape] = {"bbox": "-5,0,7,9", "circle": "1,2,6", "polygon": "0,0,9,1,3,12"}[shape]
+            shapes = {"bbox": "-5,0,7,9", "circle": "1,2,6", "polygon": "0,0,9,1,3,12", "periodic": 900}
+            query[shape] = shapes[shape]
         elif rule["rule"] == "exactly-one-of":
-            tidy_set(query, True, rule["parameters"])
+            amounts = rule["parameters"]
+            if "periodic" in query:
+                query["periodic"] = 900
+                amounts = [name for name in amounts if name not in ["min_distance", "count"]]
+            tidy_set(query, True, amounts)
+            for name in set(rule["parameters"]) - set(amounts):
+                query.pop(name, None)
     if name == "getNearest":
         query["at"] = "3,-2.5"
         if "k" in query:
@@ -179,6 +248,11 @@ def tidy_query(name, rules, query):
             query["radius"] = number(query["radius"], 0, 9)
     if name in ["getProfile", "getSpectrum"]:
         query.clear()
+    if name == "listPeriods":
+        for member in ["alpha", "map", "table"]:
+            query.pop(member, None)
+        if "profile" in query:
+            query["profile"] = choose(query["profile"], PROFILES)
     if name == "splitPoints":
         query["parts"] = 1 + int(number(query.get("parts"), 0, 50))
     tidy_output(query)
@@ -190,8 +264,12 @@ def before_call(context, case, kwargs):
     raw = case.operation.definition.raw
     name = raw.get("operationId", "")
     if isinstance(case.body, dict):
-        case.body = tidy_body(name, case.body)
-    if "x-rules" in raw or name in ["getProfile", "getSpectrum", "splitPoints"]:
+        case.body = (
+            tidy_arrangement(dict(case.body), False)
+            if name == "findArrangement"
+            else tidy_body(name, case.body)
+        )
+    if "x-rules" in raw or name in ["getProfile", "getSpectrum", "listPeriods", "splitPoints"] + PATTERNS:
         case.query = tidy_query(name, raw.get("x-rules", []), case.query or {})
     if name in ["getChunk", "getFieldChunk"]:
         path = dict(case.path_parameters or {})

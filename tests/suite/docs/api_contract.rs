@@ -50,7 +50,7 @@ fn a_fuzzer_finds_no_breach_of_contract() {
             .args(["--url", &daemon.url("/"), "--no-color"])
             .args(["--checks", "all", "--mode", mode, "--max-examples", "25"])
             .args(["--seed", "1", "--generation-deterministic"])
-            .args(["--request-timeout", "10"])
+            .args(["--request-timeout", "60"])
             // It writes .schemathesis/ into the folder it runs in.
             .current_dir(folder.path());
         if !in_order {

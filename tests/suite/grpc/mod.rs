@@ -1,5 +1,5 @@
 //! The gRPC API: the points, counts and echoes of REST as messages (queries, single points,
-//! encodings), what a call carries besides its message (deadlines, compression, cancellation),
+//! encodings), what is known of patterns, what a call carries besides its message (deadlines, compression, cancellation),
 //! gRPC-Web, discovery (profiles, health, reflection), the statuses of invalid requests, and the
 //! Python client.
 
@@ -9,6 +9,7 @@ mod encodings;
 mod fields;
 mod invalid_queries;
 mod invalid_requests;
+mod patterns;
 mod python;
 mod queries;
 mod single_points;

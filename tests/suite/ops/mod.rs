@@ -8,6 +8,7 @@ mod bad_calls;
 mod connections;
 mod fairness;
 mod files;
+mod forging;
 mod hostile_clients;
 mod keys;
 mod limits;
@@ -18,8 +19,10 @@ mod rates;
 mod reload;
 mod replicas;
 mod shutdown;
+#[cfg(feature = "otlp")]
 mod spans;
 mod startup;
 mod streaming;
+mod table_cache;
 mod timeouts;
 mod tls;

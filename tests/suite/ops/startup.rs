@@ -134,6 +134,20 @@ fn bad_tables_are_named() {
     assert!(text.contains("/nowhere/at/all"), "{text}");
 }
 
+#[cfg(not(feature = "otlp"))]
+#[test]
+fn a_collector_is_refused_with_the_name_of_the_missing_feature() {
+    let (code, text) = refused(&["--set", "telemetry.otlp_endpoint=http://127.0.0.1:4317"]);
+    assert_eq!(code, Some(2), "{text}");
+    for part in [
+        "telemetry.otlp_endpoint",
+        "http://127.0.0.1:4317",
+        "--features otlp",
+    ] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
 #[test]
 fn a_port_in_use_is_reported() {
     let daemon = Daemon::start(&[]);

@@ -1,8 +1,9 @@
 //! The page at `/` in headless Chromium: what it shows and how it moves (view), what can be set
-//! (controls), and the requests and files it offers (export). The tests are skipped where Chromium
+//! (controls), the tab How it works (works), and the requests and files it offers (export). The tests are skipped where Chromium
 //! and ChromeDriver are not installed.
 
 mod controls;
 mod export;
 mod fields;
 mod view;
+mod works;

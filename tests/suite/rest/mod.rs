@@ -1,9 +1,10 @@
 //! The REST API, a file for each subject: which points a query returns (amounts, regions, layers,
-//! single points, paging), how they are written (formats, and the same files read by other
+//! single points, paging), what is known of patterns without a table (patterns), how they are written (formats, and the same files read by other
 //! software), what HTTP adds (caching, compression, methods, headers for browsers), and which
 //! problem documents invalid queries, parameters and bodies get.
 
 mod amounts;
+mod any_alpha;
 mod browsers;
 mod caching;
 mod compression;
@@ -18,6 +19,8 @@ mod invalid_queries;
 mod kinds;
 mod layers;
 mod paging;
+mod patterns;
+mod periods;
 mod presets;
 mod profiles;
 mod regions;
