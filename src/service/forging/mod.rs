@@ -1,9 +1,9 @@
 //! Tables made on demand: jobs and their queue.
 //!
-//! A client names a table that is not loaded; it becomes a job, one for each table, which all its clients share. Jobs run one after
-//! another (or a few at once) on threads of their own, of the lowest priority. A finished table is judged. One that is
-//! accepted is written into the folder of tables and served. Jobs, checkpoints and verdicts are kept in a folder beside
-//! the tables (`folder`), so that a restart goes on where a stop or a crash was.
+//! A client names a table that is not loaded; it becomes a job, one for each table, which all its clients share.
+//! Jobs run one after another (or a few at once) on threads of their own, of the lowest priority. A finished table
+//! is judged. One that is accepted is written into the folder of tables and served. Jobs, checkpoints and verdicts
+//! are kept in a folder beside the tables (`folder`), so that a restart goes on where a stop or a crash was.
 
 mod folder;
 mod job;
