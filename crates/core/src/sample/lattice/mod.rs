@@ -9,7 +9,7 @@
 //! Work proceeds in pieces: `lines` lists the columns and rows that hold points (each a `line`), `prefix` counts them,
 //! `patch` has the bands and patches in which positions fit 32 bits, `flat` the points of a patch without
 //! gaps. `point` is what comes out, `rank` its place in the order in which points leave and its kind, `kinds` the
-//! points of one kind, `grade` the field that says how many have left, `moves` how far the others move there.
+//! points of one kind, `varied` kinds whose shares vary, `grade` the field that says how many have left, `moves` how far the others move there.
 
 mod flat;
 mod grade;
@@ -26,6 +26,7 @@ mod prefix;
 mod rank;
 mod spacing;
 mod span;
+mod varied;
 mod world;
 
 pub(super) use flat::{Flat, Found, Inside};
@@ -43,5 +44,6 @@ pub(super) use prefix::PrefixCounts;
 pub(super) use rank::{kind, rank};
 pub use spacing::Spacing;
 pub(super) use span::Span;
+pub use varied::VaryingKinds;
 pub use world::LATTICE_LIMIT;
 pub(super) use world::Lattice;
