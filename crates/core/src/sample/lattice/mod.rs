@@ -9,7 +9,8 @@
 //! Work proceeds in pieces: `lines` lists the columns and rows that hold points (each a `line`), `prefix` counts them,
 //! `patch` has the bands and patches in which positions fit 32 bits, `flat` the points of a patch without
 //! gaps. `point` is what comes out, `rank` its place in the order in which points leave and its kind, `kinds` the
-//! points of one kind, `varied` kinds whose shares vary, `grade` the field that says how many have left, `moves` how far the others move there.
+//! points of one kind, `varied` kinds whose shares vary (`picked` has their points), `grade` the field that says how
+//! many have left, `moves` how far the others move there.
 
 mod flat;
 mod grade;
@@ -20,6 +21,7 @@ mod lines;
 mod moves;
 mod multiple;
 mod patch;
+mod picked;
 mod placement;
 mod point;
 mod prefix;
