@@ -10,6 +10,7 @@ keep sending are processes of their own.
 
 import argparse
 import http.client
+import json
 import multiprocessing
 import re
 import socket
@@ -36,6 +37,8 @@ class Daemon:
         with socket.create_server(("127.0.0.1", 0)) as free:
             self.port = free.getsockname()[1]
         command = [program, "serve", "--listen", f"127.0.0.1:{self.port}", "--set", "log.filter=error"]
+        self.tables = tempfile.TemporaryDirectory()
+        command += ["--set", f"tables.folder={self.tables.name}", "--set", "forge.allow=anyone"]
         if keys:
             made = subprocess.run([program, "key", "new", "client"], capture_output=True, text=True)
             self.key = re.search("strew_[0-9a-f]+", made.stderr).group(0)
@@ -106,6 +109,15 @@ class Daemon:
         times.sort()
         middle, late = times[len(times) // 2], times[int(0.99 * (len(times) - 1))]
         return f"p50 {middle:.1f}, p99 {late:.1f}, max {times[-1]:.1f} ms {statuses}"
+
+    def json(self, method, path, body=None):
+        """The document of an answer."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
+        headers = {"content-type": "application/json", **self.headers()}
+        connection.request(method, path, body and json.dumps(body), headers)
+        answer = connection.getresponse().read()
+        connection.close()
+        return json.loads(answer)
 
     def report(self, what):
         print(f"{what}: {self.idle} MiB idle, {self.memory('VmHWM')} at most; victim: {self.victim(SMALL, 2)}", flush=True)
@@ -301,7 +313,20 @@ def health(daemon):
     calls(daemon, "Watch", bytes(5), 60)
 
 
-ATTACKS = [pages, answers, bodies, arriving, counts, readers, documents, health]
+def forges(daemon):
+    """A table is made, as many at once as the default settings allow, while others ask for points."""
+    victims = [SMALL, "/v1/points?bbox=0,0,200,200&spacing=1&seed=7&format=csv", "/v1/chunks/64/3/4?spacing=1&format=f32"]
+    alone = [daemon.victim(path, 4) for path in victims]
+    table = {"profile": "spaced", "alpha": "1.57079", "map": "m"}
+    job = daemon.json("POST", "/v1/tables", table)["id"]
+    while daemon.json("GET", f"/v1/jobs/{job}")["state"] != "running":
+        time.sleep(0.1)
+    for path, before in zip(victims, alone):
+        print(f"{path}\n    alone:         {before}\n    beside a forge: {daemon.victim(path, 4)}", flush=True)
+    print(f"    {daemon.memory('VmHWM')} MiB at most; the job: {daemon.json('GET', f'/v1/jobs/{job}')['state']}", flush=True)
+
+
+ATTACKS = [pages, answers, bodies, arriving, counts, readers, documents, health, forges]
 
 
 def main():

@@ -196,6 +196,28 @@ fn own_words(name: &str) -> Option<(String, &'static str)> {
     }
 }
 
+/// Those that `-h` leaves to `--help`, so that it fits a screen.
+const RARE: &[&str] = &[
+    "alpha",
+    "crs",
+    "cursor",
+    "decimals",
+    "map",
+    "offset",
+    "only",
+    "polygon",
+    "preset",
+    "raster_bbox",
+    "rings",
+    "scale_range",
+    "scale_ranges",
+    "size",
+    "spread",
+    "summary",
+    "table",
+    "warp",
+];
+
 fn argument(parameter: &'static Parameter) -> Arg {
     let name = parameter.name;
     let (about, default) = own_words(name).map_or_else(
@@ -217,6 +239,7 @@ fn argument(parameter: &'static Parameter) -> Arg {
         .help(format!("{short}{default}"))
         .long_help(long)
         .help_heading(heading(parameter.group))
+        .hide_short_help(RARE.contains(&name))
         .action(ArgAction::Set)
         // Negative numbers, also those that are wrong: the query says what is.
         .allow_hyphen_values(!is_name)

@@ -1,8 +1,11 @@
 //! The command line.
 
 mod arrangement;
+mod completions;
+mod compression;
 mod config;
 mod count;
+mod examples;
 mod fields;
 mod figure;
 mod flags;
@@ -15,6 +18,7 @@ mod output;
 mod periods;
 mod point;
 mod probe;
+mod profiles;
 mod progress;
 mod query;
 mod refusal;
@@ -28,7 +32,7 @@ mod watcher;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 /// What `strew` does.
 #[derive(Debug, Parser)]
@@ -41,42 +45,68 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Serve points over REST and gRPC on one port.
+    #[command(after_long_help = examples::SERVE)]
     Serve(serve::Args),
     /// Write the points of a region to a file or standard output, without a server.
+    #[command(after_long_help = examples::SAMPLE)]
     Sample(sample::Args),
     /// Turn a picture into dots.
+    #[command(after_long_help = examples::STIPPLE)]
     Stipple(stipple::Args),
     /// Say how many points a query has, exactly, without making them.
+    #[command(after_long_help = examples::COUNT)]
     Count(count::Args),
     /// Find a point by its id.
+    #[command(after_long_help = examples::POINT)]
     Point(point::PointArgs),
     /// List the sizes of periodic sets.
+    #[command(after_long_help = examples::PERIODS)]
     Periods(periods::Args),
     /// Find the points nearest to a place.
+    #[command(after_long_help = examples::NEAREST)]
     Nearest(point::NearestArgs),
     /// Split a query into parts for parallel readers.
+    #[command(after_long_help = examples::SPLIT)]
     Split(split::Args),
     /// Say whether an arrangement of points occurs in a pattern, how often, and where.
+    #[command(after_long_help = examples::ARRANGEMENT)]
     Arrangement(arrangement::Args),
     /// Draw a figure of an AA pattern: its index space, an arrangement, clusters, a neighborhood map.
     #[command(subcommand)]
+    #[command(after_long_help = examples::FIGURE)]
     Figure(figure::Command),
     /// Make a tileable threshold mask for dithering.
+    #[command(after_long_help = examples::MASK)]
     Mask(mask::Args),
     /// Make a table and judge it.
+    #[command(after_long_help = examples::FORGE)]
     Forge(forge::Args),
     /// Measure a table, the points of a region, or a file of points.
+    #[command(after_long_help = examples::MEASURE)]
     Measure(measure::Args),
     /// Look at tables.
     #[command(subcommand)]
+    #[command(after_long_help = examples::TABLE)]
     Table(table::Command),
     /// Make keys for clients.
     #[command(subcommand)]
+    #[command(after_long_help = examples::KEY)]
     Key(key::Command),
     /// Ask a running daemon whether it is ready: exit code 0 if so, 1 if not.
+    #[command(after_long_help = examples::PROBE)]
     Probe(probe::Args),
     /// Print the merged settings.
+    #[command(after_long_help = examples::CONFIG)]
     Config(config::Served),
+    /// List the tables that are loaded: profiles, α, sizes of maps.
+    #[command(after_long_help = examples::PROFILES)]
+    Profiles(profiles::Args),
+    /// Print a script that completes commands and flags in a shell.
+    #[command(after_long_help = examples::COMPLETIONS)]
+    Completions(completions::CompletionsArgs),
+    /// Write manual pages.
+    #[command(after_long_help = examples::MAN)]
+    Man(completions::ManArgs),
 }
 
 /// Why a command failed: decides the exit code.
@@ -120,6 +150,9 @@ pub fn main() -> ExitCode {
         Command::Key(command) => key::run(&command),
         Command::Probe(args) => probe::run(&args),
         Command::Config(args) => config::run(&args),
+        Command::Profiles(args) => profiles::run(&args),
+        Command::Completions(args) => completions::completions(&args, Cli::command()),
+        Command::Man(args) => completions::man(&args, Cli::command()),
     };
     let (error, code) = match done {
         Ok(()) => return ExitCode::SUCCESS,

@@ -4,19 +4,23 @@
 use std::{
     fmt,
     fs::{self, File},
-    io::{self, Write},
+    io::{self, Write as _},
     path::{Path, PathBuf},
 };
 
 use anyhow::{Context as _, anyhow};
 use serde::Serialize;
 
-use super::{Failure, signals::Incomplete};
+use super::{
+    Failure,
+    compression::{Compression, Sink},
+    signals::Incomplete,
+};
 
 /// An open output. Until [`finish`](Self::finish) a regular file is called `NAME.partial`. A command that
 /// fails or is ended by a signal removes it; what is left by one that is killed never looks complete.
 pub(super) struct Output {
-    writer: Box<dyn Write + Send>,
+    writer: Sink,
     /// The path that was given; `None` for standard output.
     path: Option<PathBuf>,
     pending: Option<Pending>,
@@ -44,19 +48,21 @@ impl fmt::Display for ReaderLeft {
 impl std::error::Error for ReaderLeft {}
 
 impl Output {
-    /// `None` or `-` is standard output. Fails if the path cannot be written.
+    /// `None` or `-` is standard output. A file is compressed if its name ends with .gz or .zst. Fails if the path
+    /// cannot be written.
     pub(super) fn open(path: Option<&Path>) -> anyhow::Result<Self> {
         let Some(path) = path.filter(|path| *path != Path::new("-")) else {
             return Ok(Self {
-                writer: Box::new(io::stdout()),
+                writer: Sink::Plain(Box::new(io::stdout())),
                 path: None,
                 pending: None,
             });
         };
-        let (file, pending) =
-            open(path).with_context(|| format!("cannot write {}", path.display()))?;
+        let unwritable = || format!("cannot write {}", path.display());
+        let (file, pending) = open(path).with_context(unwritable)?;
+        let compression = Compression::of(path).map(|(compression, _)| compression);
         Ok(Self {
-            writer: Box::new(file),
+            writer: Sink::new(Box::new(file), compression).with_context(unwritable)?,
             path: Some(path.to_owned()),
             pending,
         })
@@ -81,7 +87,8 @@ impl Output {
 
     /// Everything is written: a file gets its name, once the disk has it all.
     pub(super) fn finish(mut self) -> anyhow::Result<()> {
-        self.writer.flush().map_err(|error| self.explained(error))?;
+        let writer = std::mem::replace(&mut self.writer, Sink::Plain(Box::new(io::sink())));
+        writer.finish().map_err(|error| self.explained(error))?;
         let Some(Pending {
             file,
             incomplete,

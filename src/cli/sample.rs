@@ -9,6 +9,7 @@ use strew_core::{F32, F64, Plan, Tile};
 
 use super::{
     Failure,
+    compression::Compression,
     flags::Answered,
     output::Output as Target,
     progress::Progress,
@@ -25,7 +26,7 @@ use crate::{
 /// Flags of `strew sample`: a query, and where to write.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The file to write; - is standard output.
+    /// The file to write; - is standard output. It is compressed if its name ends with .gz or .zst.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Say nothing on standard error but errors.
@@ -37,7 +38,9 @@ pub(super) struct Args {
 
 /// The format that an output's name asks for; JSON if it has no ending.
 pub(super) fn encoding_of(output: Option<&Path>) -> Result<Encoding, Failure> {
-    let Some(ending) = output.and_then(Path::extension) else {
+    // What is compressed is named before that: points.csv.gz.
+    let inner = output.and_then(|path| Compression::of(path).map(|(_, inner)| inner));
+    let Some(ending) = inner.or(output).and_then(Path::extension) else {
         return Ok(Encoding::Json);
     };
     let ending = ending.to_string_lossy();

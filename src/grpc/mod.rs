@@ -5,6 +5,7 @@ mod deadline;
 mod field;
 mod forging;
 mod frames;
+mod mask;
 mod messages;
 mod pattern;
 mod periods;
@@ -37,13 +38,15 @@ use proto::point_service_server::PointServiceServer;
 const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
 
 /// The methods of the contract, by their paths.
-pub const METHODS: [&str; 12] = [
+pub const METHODS: [&str; 14] = [
     "/strew.v1.PointService/StreamPoints",
     "/strew.v1.PointService/CountPoints",
     "/strew.v1.PointService/SplitPoints",
     "/strew.v1.PointService/GetPoint",
     "/strew.v1.PointService/FindNearest",
     "/strew.v1.PointService/ListProfiles",
+    "/strew.v1.PointService/ListPeriods",
+    "/strew.v1.PointService/GetMask",
     "/strew.v1.PointService/ListFields",
     "/strew.v1.PointService/ForgeTable",
     "/strew.v1.PointService/GetArrangement",

@@ -63,11 +63,7 @@ fn query(
 }
 
 fn add<const N: usize>(values: &mut Values, given: [(&'static Parameter, Option<Value>); N]) {
-    for (parameter, value) in given {
-        if let Some(value) = value {
-            values.add_value(parameter, value);
-        }
-    }
+    values.add_values(given);
 }
 
 fn named(text: &str) -> Option<Value> {

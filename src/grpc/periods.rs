@@ -32,11 +32,7 @@ pub(super) fn list(
         (&MOST, request.most.map(Value::Integer)),
     ];
     let mut values = Values::new(groups::PERIODS, "");
-    for (parameter, value) in given {
-        if let Some(value) = value {
-            values.add_value(parameter, value);
-        }
-    }
+    values.add_values(given);
     let found = Periods::of(&values, &service.catalog())?;
     Ok(ListPeriodsResponse {
         alpha: found.alpha,

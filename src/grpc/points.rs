@@ -10,16 +10,18 @@ use tonic::{Request, Response, Status};
 use super::{
     compression, field, forging,
     frames::Frames,
+    mask,
     messages::{Framed, Messages},
     pattern::{self, OccurrenceStream},
     periods, profile,
     proto::{
         Arrangement, ArrangementRequest, ClustersRequest, ClustersResponse, CountPointsRequest,
         CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse, ForgeTableRequest,
-        ForgeTableResponse, GetPointRequest, GetPointResponse, ListFieldsRequest,
-        ListFieldsResponse, ListPeriodsRequest, ListPeriodsResponse, ListProfilesRequest,
-        ListProfilesResponse, MapRequest, MapResponse, SplitPointsRequest, SplitPointsResponse,
-        StreamPointsRequest, StreamPointsResponse, point_service_server::PointService,
+        ForgeTableResponse, GetMaskRequest, GetMaskResponse, GetPointRequest, GetPointResponse,
+        ListFieldsRequest, ListFieldsResponse, ListPeriodsRequest, ListPeriodsResponse,
+        ListProfilesRequest, ListProfilesResponse, MapRequest, MapResponse, SplitPointsRequest,
+        SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
+        point_service_server::PointService,
     },
     query, resolved, set, single, split, status,
 };
@@ -263,6 +265,14 @@ impl PointService for Points {
         listed
             .map(Response::new)
             .map_err(|error| status::status(&error))
+    }
+
+    async fn get_mask(
+        &self,
+        request: Request<GetMaskRequest>,
+    ) -> Result<Response<GetMaskResponse>, Status> {
+        let caller = caller(&request)?;
+        plainly(mask::mask(&self.service, &caller, request.into_inner()).await)
     }
 
     async fn get_arrangement(

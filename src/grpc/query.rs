@@ -56,11 +56,7 @@ fn draft(request: &StreamPointsRequest) -> Draft {
             (!cursor.is_empty()).then(|| Value::Text(cursor.clone())),
         ),
     ];
-    for (parameter, value) in others {
-        if let Some(value) = value {
-            values.add_value(parameter, value);
-        }
-    }
+    values.add_values(others);
     let mut layers = vec![];
     for (i, layer) in request.layers.iter().enumerate() {
         let path = format!("layers[{i}].");
@@ -109,10 +105,6 @@ pub(super) fn nearest(
         (&K, request.k.map(|k| Value::Integer(k.into()))),
         (&RADIUS, request.radius.map(Value::Number)),
     ];
-    for (parameter, value) in given {
-        if let Some(value) = value {
-            values.add_value(parameter, value);
-        }
-    }
+    values.add_values(given);
     Nearest::of_set(&values, &service.catalog())
 }

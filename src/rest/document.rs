@@ -1,4 +1,4 @@
-//! Answers that are one small JSON document.
+//! Answers that are one small document: JSON, or a file of another type.
 
 use axum::{body::Body, response::Response};
 use http::{HeaderValue, header};
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::service::Error;
 
-/// Their content type.
+/// The content type of JSON.
 pub(super) const JSON: &str = "application/json";
 
 /// A document as an answer.
@@ -14,8 +14,13 @@ pub fn json(document: &impl Serialize) -> Result<Response, Error> {
     let mut body = serde_json::to_vec(document)
         .map_err(|_| Error::Internal("a document cannot be written"))?;
     body.push(b'\n');
-    let mut response = Response::new(Body::from(body));
-    let value = HeaderValue::from_static(JSON);
+    Ok(file(body, JSON))
+}
+
+/// A file as an answer.
+pub fn file(bytes: impl Into<Body>, content_type: &'static str) -> Response {
+    let mut response = Response::new(bytes.into());
+    let value = HeaderValue::from_static(content_type);
     response.headers_mut().insert(header::CONTENT_TYPE, value);
-    Ok(response)
+    response
 }

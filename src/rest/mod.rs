@@ -16,6 +16,7 @@ mod fixed;
 mod freshness;
 mod harden;
 mod jobs;
+mod mask;
 mod negotiate;
 mod openapi;
 mod page;
@@ -56,6 +57,8 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         single::nearest(service.clone()),
         profiles::endpoint(service.clone()),
         periods::endpoint(service.clone()),
+        mask::endpoint(service.clone()),
+        mask::spectrum(service.clone()),
         presets::endpoint(service.clone()),
         portrait::endpoint(service.clone()),
         portrait::picture(service.clone()),

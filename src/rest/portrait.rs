@@ -3,12 +3,11 @@
 use std::sync::Arc;
 
 use axum::{
-    body::Body,
     extract::{Path, State},
     response::Response,
     routing,
 };
-use http::{HeaderValue, Method, header};
+use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
 use strew_forge::Aim;
@@ -139,10 +138,7 @@ async fn svg(
     let (entry, freshness) = chosen(&service, &name, &context, SVG)?;
     let make = async {
         let portrait = service.portrait(&entry).await?;
-        let mut response = Response::new(Body::from(portrait.svg.clone()));
-        let value = HeaderValue::from_static(SVG);
-        response.headers_mut().insert(header::CONTENT_TYPE, value);
-        Ok(response)
+        Ok(document::file(portrait.svg.clone(), SVG))
     };
     freshness.answer(&context.headers, make).await
 }

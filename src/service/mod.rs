@@ -24,6 +24,8 @@ pub mod field;
 pub mod forging;
 mod lane;
 pub mod library;
+#[cfg(feature = "daemon")]
+pub mod mask;
 mod mix;
 #[cfg(feature = "daemon")]
 mod mixes;

@@ -1,28 +1,27 @@
-//! `GET /v1/pattern/figures/….svg`: the figures of patterns.
+//! `GET /v1/pattern/figures/….svg` and `….png`: the figures of patterns.
 
 use std::sync::Arc;
 
-use axum::{body::Body, extract::State, response::Response, routing};
-use http::{HeaderValue, Method, header};
+use axum::{extract::State, response::Response, routing};
+use http::Method;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
     context::Context,
+    document,
     freshness::Freshness,
 };
 use crate::service::{
     Error, Kind, Service,
-    pattern::{Figure, FigureQuery},
+    pattern::{Figure, FigureQuery, Format},
 };
 
-/// The content type of figures.
-const SVG: &str = "image/svg+xml";
-
-/// What is said of a figure: itself, its path, its name for programs, a few words, the rest of its address.
+/// What is said of a figure: itself, its paths as a drawing and as pixels, their names for programs, a few words,
+/// the rest of its address.
 type Described = (
     Figure,
-    &'static str,
-    &'static str,
+    [&'static str; 2],
+    [&'static str; 2],
     &'static str,
     &'static str,
 );
@@ -30,29 +29,38 @@ type Described = (
 const FIGURES: [Described; 4] = [
     (
         Figure::Index,
-        "/v1/pattern/figures/index.svg",
-        "getIndexFigure",
+        [
+            "/v1/pattern/figures/index.svg",
+            "/v1/pattern/figures/index.png",
+        ],
+        ["getIndexFigure", "getIndexPicture"],
         "A figure of the pattern, the index torus and the set region",
         "alpha=sqrt(3)&window=32",
     ),
     (
         Figure::Arrangement,
-        "/v1/pattern/figures/arrangement.svg",
-        "getArrangementFigure",
+        [
+            "/v1/pattern/figures/arrangement.svg",
+            "/v1/pattern/figures/arrangement.png",
+        ],
+        ["getArrangementFigure", "getArrangementPicture"],
         "A figure of an arrangement, its image and its margin",
         "offsets=2,1+3,3",
     ),
     (
         Figure::Clusters,
-        "/v1/pattern/figures/clusters.svg",
-        "getClustersFigure",
+        [
+            "/v1/pattern/figures/clusters.svg",
+            "/v1/pattern/figures/clusters.png",
+        ],
+        ["getClustersFigure", "getClustersPicture"],
         "A figure of clusters in the plane and in the set region",
         "alpha=sqrt(3)&distance=2&window=32",
     ),
     (
         Figure::Map,
-        "/v1/pattern/figures/map.svg",
-        "getMapFigure",
+        ["/v1/pattern/figures/map.svg", "/v1/pattern/figures/map.png"],
+        ["getMapFigure", "getMapPicture"],
         "A figure of a neighborhood map, a block's neighbors and the growth with R",
         "radius=20&block=3,8",
     ),
@@ -60,47 +68,59 @@ const FIGURES: [Described; 4] = [
 
 /// The paths.
 pub(super) fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
-    let one = |described: Described| {
-        let (figure, path, id, summary, query) = described;
-        let operation = Operation {
-            method: Method::GET,
-            id,
-            summary,
-            about: "As strew figure draws it, for any α.",
-            tag: Tag::Patterns,
-            path_parameters: &[],
-            parameters: figure.groups(),
-            body: None,
-            answers: vec![
-                api::Answer {
-                    status: 200,
-                    about: "The figure.",
-                    headers: vec![],
-                    contents: vec![(SVG, schemas::text)],
-                },
-                api::Answer::unchanged(),
-            ],
-            problems: vec![Kind::Invalid],
-            example: format!("'{path}?{query}' -o figure.svg"),
-        };
-        let handler = routing::get(
-            move |State(service): State<Arc<Service>>, context: Context| async move {
-                draw(&service, &context, figure).await
-            },
-        );
-        Endpoint::new(path, service.clone(), vec![(operation, handler)])
+    let both = |described| {
+        [Format::Svg, Format::Png].map(|format| endpoint(service.clone(), described, format))
     };
-    FIGURES.into_iter().map(one).collect()
+    FIGURES.into_iter().flat_map(both).collect()
 }
 
-async fn draw(service: &Service, context: &Context, figure: Figure) -> Result<Response, Error> {
-    let query = FigureQuery::check(figure, &context.values(figure.groups()))?;
-    let freshness = Freshness::of(&context.uri, &context.headers, SVG, &());
-    let make = service.figure(&context.caller, query, |drawing| {
-        let mut response = Response::new(Body::from(drawing.to_svg()));
-        let value = HeaderValue::from_static(SVG);
-        response.headers_mut().insert(header::CONTENT_TYPE, value);
-        Ok(response)
-    });
+fn endpoint(service: Arc<Service>, described: Described, format: Format) -> Endpoint {
+    let (figure, paths, ids, summary, query) = described;
+    let (number, content, ending, more) = match format {
+        Format::Svg => (0, schemas::text as schemas::Content, "svg", ""),
+        Format::Png => (1, schemas::any as schemas::Content, "png", "&size=800"),
+    };
+    let operation = Operation {
+        method: Method::GET,
+        id: ids[number],
+        summary,
+        about: "As strew figure draws it, for any α.",
+        tag: Tag::Patterns,
+        path_parameters: &[],
+        parameters: figure.groups(format),
+        body: None,
+        answers: vec![
+            api::Answer {
+                status: 200,
+                about: "The figure.",
+                headers: vec![],
+                contents: vec![(format.content_type(), content)],
+            },
+            api::Answer::unchanged(),
+        ],
+        problems: vec![Kind::Invalid],
+        example: format!("'{}?{query}{more}' -o figure.{ending}", paths[number]),
+    };
+    let handler = routing::get(
+        move |State(service): State<Arc<Service>>, context: Context| async move {
+            draw(&service, &context, figure, format).await
+        },
+    );
+    Endpoint::new(paths[number], service, vec![(operation, handler)])
+}
+
+async fn draw(
+    service: &Service,
+    context: &Context,
+    figure: Figure,
+    format: Format,
+) -> Result<Response, Error> {
+    let query = FigureQuery::check(figure, &context.values(figure.groups(format)))?;
+    let content_type = format.content_type();
+    let freshness = Freshness::of(&context.uri, &context.headers, content_type, &());
+    let make = async {
+        let file = service.figure(&context.caller, query, format).await?;
+        Ok(document::file(file, content_type))
+    };
     freshness.answer(&context.headers, make).await
 }

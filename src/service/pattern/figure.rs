@@ -10,7 +10,7 @@ use crate::{
         Error, Fault, Lane, Service,
         query::{
             Checked, Group, Together as _, Values, groups,
-            patterns::{BLOCK, OFFSETS, RADIUS, WINDOW},
+            patterns::{BLOCK, OFFSETS, PIXELS, RADIUS, WINDOW},
         },
     },
 };
@@ -28,15 +28,39 @@ pub enum Figure {
     Map,
 }
 
+/// The formats of figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Lines and letters.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+impl Format {
+    /// The content type.
+    #[must_use]
+    pub const fn content_type(self) -> &'static str {
+        match self {
+            Self::Svg => "image/svg+xml",
+            Self::Png => "image/png",
+        }
+    }
+}
+
 impl Figure {
     /// The parameters that it takes.
     #[must_use]
-    pub const fn groups(self) -> &'static [Group] {
-        match self {
-            Self::Index => groups::INDEX_FIGURE,
-            Self::Arrangement => groups::ARRANGEMENT_FIGURE,
-            Self::Clusters => groups::CLUSTERS_FIGURE,
-            Self::Map => groups::MAP_FIGURE,
+    pub const fn groups(self, format: Format) -> &'static [Group] {
+        match (self, format) {
+            (Self::Index, Format::Svg) => groups::INDEX_FIGURE,
+            (Self::Arrangement, Format::Svg) => groups::ARRANGEMENT_FIGURE,
+            (Self::Clusters, Format::Svg) => groups::CLUSTERS_FIGURE,
+            (Self::Map, Format::Svg) => groups::MAP_FIGURE,
+            (Self::Index, Format::Png) => groups::INDEX_PICTURE,
+            (Self::Arrangement, Format::Png) => groups::ARRANGEMENT_PICTURE,
+            (Self::Clusters, Format::Png) => groups::CLUSTERS_PICTURE,
+            (Self::Map, Format::Png) => groups::MAP_PICTURE,
         }
     }
 
@@ -55,6 +79,7 @@ impl Figure {
 pub struct FigureQuery {
     alpha: Alpha,
     window: u32,
+    size: u32,
     what: What,
 }
 
@@ -89,11 +114,14 @@ impl FigureQuery {
             }
         };
         let window = values.get::<u64>(&WINDOW);
-        let ((), alpha, window, what) = (values.read(), alpha(values), window, what).together()?;
-        let window = window.and_then(|window| u32::try_from(window).ok());
+        let size = values.get::<u64>(&PIXELS);
+        let parts = (values.read(), alpha(values), window, size, what);
+        let ((), alpha, window, size, what) = parts.together()?;
+        let small = |number: Option<u64>| number.and_then(|number| u32::try_from(number).ok());
         Ok(Self {
             alpha,
-            window: window.unwrap_or(figure.window()),
+            window: small(window).unwrap_or(figure.window()),
+            size: small(size).unwrap_or(1600),
             what,
         })
     }
@@ -104,6 +132,7 @@ impl FigureQuery {
             alpha,
             window,
             what,
+            ..
         } = self;
         let drawing = match what {
             What::Index => figure::index(alpha, window),
@@ -113,15 +142,18 @@ impl FigureQuery {
             }
             What::Map(radius, block) => figure::map(alpha, radius, block),
         };
-        drawing.map_err(|error| {
-            let FigureError {
-                field,
-                value,
-                allowed,
-            } = error;
-            Fault::new(&field, value, "cannot be drawn", allowed).into()
-        })
+        drawing.map_err(refused)
     }
+}
+
+/// The fault of a figure that cannot be drawn.
+fn refused(error: FigureError) -> Error {
+    let FigureError {
+        field,
+        value,
+        allowed,
+    } = error;
+    Fault::new(&field, value, "cannot be drawn", allowed).into()
 }
 
 fn offsets(values: &Values) -> Checked<Vec<(i64, i64)>> {
@@ -139,19 +171,21 @@ fn offsets(values: &Values) -> Checked<Vec<(i64, i64)>> {
 }
 
 impl Service {
-    /// Draws a figure, charged, and makes something of it. It stops when its client leaves.
+    /// Draws a figure, charged, as a file. It stops when its client leaves.
     ///
     /// # Errors
     /// [`Error::Invalid`] for what cannot be drawn, [`Error::Denied`] if the caller takes points too fast,
     /// [`Error::TooManyBytes`] if there is no room.
-    pub async fn figure<T: Send + 'static>(
+    pub async fn figure(
         &self,
         caller: &Caller,
         query: FigureQuery,
-        answer: impl FnOnce(&Drawing) -> Result<T, Error> + Send + 'static,
-    ) -> Result<T, Error> {
+        format: Format,
+    ) -> Result<Vec<u8>, Error> {
         /// The most that a drawing and its text take.
         const BYTES: usize = 16 << 20;
+        /// What a pixel takes while it is painted.
+        const PIXEL: u32 = 16;
         let window = u128::from(query.window);
         let searched = match &query.what {
             What::Clusters(clusters) => clusters.points(),
@@ -162,7 +196,15 @@ impl Service {
         let budget = self.own_budget();
         let draw = move |stop: &Stop| {
             let _held = budget.hold(BYTES)?;
-            answer(&query.draw(stop)?)
+            let size = query.size;
+            let drawing = query.draw(stop)?;
+            match format {
+                Format::Svg => Ok(drawing.to_svg().into_bytes()),
+                Format::Png => {
+                    let _painted = budget.hold((size * size * PIXEL) as usize)?;
+                    drawing.to_png(size).map_err(refused)
+                }
+            }
         };
         self.workers().take_turn(Lane::Long, draw).await?
     }

@@ -15,7 +15,7 @@ use strew_core::{Alpha, ErrorKind};
 
 pub use arrangement::{ArrangementQuery, Facts};
 pub use clusters::{ClustersDocument, ClustersQuery};
-pub use figure::{Figure, FigureQuery};
+pub use figure::{Figure, FigureQuery, Format};
 pub use list::List;
 pub use listing::{Listing, Occurrence, Occurrences, Text};
 pub use map::{MapDocument, MapQuery};

@@ -83,6 +83,12 @@ pub enum Group {
     Refined,
     /// What a figure shows.
     Figure,
+    /// The pixels of a figure.
+    Picture,
+    /// A threshold mask.
+    Mask,
+    /// The file of a threshold mask.
+    MaskFile,
     /// A place in a path.
     Path,
 }
@@ -147,6 +153,18 @@ pub mod groups {
     pub const CLUSTERS_FIGURE: &[Group] = &[Pattern, Clusters, Figure];
     /// The figure of a map.
     pub const MAP_FIGURE: &[Group] = &[Pattern, Map];
+    /// The figure of the index as pixels.
+    pub const INDEX_PICTURE: &[Group] = &[Pattern, Figure, Picture];
+    /// The figure of an arrangement as pixels.
+    pub const ARRANGEMENT_PICTURE: &[Group] = &[Pattern, Arrangement, Figure, Picture];
+    /// The figure of clusters as pixels.
+    pub const CLUSTERS_PICTURE: &[Group] = &[Pattern, Clusters, Figure, Picture];
+    /// The figure of a map as pixels.
+    pub const MAP_PICTURE: &[Group] = &[Pattern, Map, Picture];
+    /// `GET /v1/mask.png`.
+    pub const MASK: &[Group] = &[Mask, MaskFile, Profile, Table];
+    /// `GET /v1/mask/spectrum.svg`.
+    pub const MASK_SPECTRUM: &[Group] = &[Mask, Profile, Table];
     /// What takes no parameters.
     pub const NONE: &[Group] = &[];
 }

@@ -1,9 +1,10 @@
-//! The parameters of requests about patterns: arrangements, clusters, maps and their figures.
+//! The parameters of requests about patterns: arrangements, clusters, maps and their figures; and of threshold masks.
 //!
 //! They stand beside the table of parameters because their names mean other things there: `alpha` is any
-//! number between 1 and 2, `radius` that of a map.
+//! number between 1 and 2, `radius` that of a map, `size` counts pixels.
 
 use strew_core::{LATTICE_LIMIT, map::Clusters, pattern::Arrangement};
+use strew_forge::mask::Mask;
 
 use super::{
     DEFAULT_ALPHA, Parameter, Shape,
@@ -189,6 +190,44 @@ parameters! {
         shape: Shape::Integer { min: 8, max: 200 },
         default: Some("64 for the index, 48 for an arrangement, 96 for clusters"),
         example: "64",
+        ..Parameter::PLAIN
+    };
+    /// The pixels of a figure.
+    PIXELS = Parameter {
+        name: "size",
+        about: "The longer side of the picture in pixels.",
+        group: Group::Picture,
+        shape: Shape::Integer { min: 64, max: 2048 },
+        default: Some("1600"),
+        example: "800",
+        ..Parameter::PLAIN
+    };
+    /// The side of a threshold mask.
+    MASK_SIZE = Parameter {
+        name: "size",
+        about: "The side of the mask in pixels.",
+        group: Group::Mask,
+        shape: Shape::Integer { min: Mask::LEAST_SIZE as u64, max: Mask::MOST_SIZE as u64 },
+        default: Some("256"),
+        example: "64",
+        ..Parameter::PLAIN
+    };
+    /// Which threshold mask.
+    MASK_SEED = Parameter {
+        name: "seed",
+        about: "Which mask: every seed has another one.",
+        group: Group::Mask,
+        ..SEED_OF_SET
+    };
+    /// The bits of a threshold.
+    BITS = Parameter {
+        name: "bits",
+        about: "The bits of a threshold.",
+        group: Group::MaskFile,
+        shape: Shape::Integer { min: 8, max: 16 },
+        allowed: Some("8 or 16"),
+        default: Some("8"),
+        example: "16",
         ..Parameter::PLAIN
     };
 }

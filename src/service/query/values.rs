@@ -79,6 +79,18 @@ impl Values {
         self.add(parameter, value.map_err(fault), || shown(json).into());
     }
 
+    /// Adds the typed values that are given.
+    pub fn add_values(
+        &mut self,
+        values: impl IntoIterator<Item = (&'static Parameter, Option<Value>)>,
+    ) {
+        for (parameter, value) in values {
+            if let Some(value) = value {
+                self.add_value(parameter, value);
+            }
+        }
+    }
+
     /// Adds a typed value.
     pub fn add_value(&mut self, parameter: &'static Parameter, value: Value) {
         if !self.takes().any(|taken| taken == parameter) {

@@ -257,3 +257,106 @@ fn records_say_what_their_columns_are() {
         "{text}"
     );
 }
+
+#[test]
+fn names_that_end_with_gz_and_zst_are_compressed() {
+    use std::io::Read as _;
+    let folder = tempfile::tempdir().expect("a folder");
+    let query = [
+        "sample",
+        "-q",
+        "--bbox",
+        "0,0,40,40",
+        "--spacing",
+        "1",
+        "--seed",
+        "7",
+    ];
+    let plain = run(&[&query[..], &["--format", "csv"]].concat(), "");
+    let written = |name: &str| {
+        let path = folder.path().join(name);
+        let output = run(
+            &[&query[..], &["-o", path.to_str().expect("text")]].concat(),
+            "",
+        );
+        assert!(output.status.success(), "{}", errors(&output));
+        fs::read(path).expect("a file")
+    };
+    let (gzip, zstd) = (written("points.csv.gz"), written("points.csv.zst"));
+    let mut unpacked = vec![];
+    let mut decoder = flate2::read::GzDecoder::new(&gzip[..]);
+    decoder
+        .read_to_end(&mut unpacked)
+        .expect("a whole gzip file");
+    assert_eq!(unpacked, plain.stdout);
+    let unpacked = zstd::stream::decode_all(&zstd[..]).expect("a whole zstd file");
+    assert_eq!(unpacked, plain.stdout);
+    let unknown = run(&[&query[..], &["-o", "points.foo.gz"]].concat(), "");
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(
+        errors(&unknown).contains("--output ends with .foo"),
+        "{}",
+        errors(&unknown)
+    );
+    let short = run(
+        &[&query[..], &["-o", "/dev/full", "--format", "csv"]].concat(),
+        "",
+    );
+    assert_eq!(short.status.code(), Some(1), "{}", errors(&short));
+}
+
+#[test]
+fn shells_and_man_know_every_command() {
+    for (shell, begins) in [
+        ("bash", "_strew()"),
+        ("zsh", "#compdef strew"),
+        ("fish", "# Print an optspec"),
+        ("powershell", ""),
+    ] {
+        let output = run(&["completions", shell], "");
+        let script = String::from_utf8_lossy(&output.stdout);
+        assert!(
+            script.starts_with(begins) && script.contains("min-distance"),
+            "{shell}: {script:.200}"
+        );
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = run(
+        &["man", "--out-dir", folder.path().to_str().expect("text")],
+        "",
+    );
+    assert!(output.status.success(), "{}", errors(&output));
+    let pages = names(folder.path());
+    for page in [
+        "strew.1",
+        "strew-sample.1",
+        "strew-figure-index.1",
+        "strew-table-show.1",
+    ] {
+        assert!(pages.iter().any(|name| name == page), "{page}: {pages:?}");
+    }
+    let page = fs::read_to_string(folder.path().join("strew-sample.1")).expect("a page");
+    assert!(
+        page.contains("EXTRA") || page.contains("Examples"),
+        "{page}"
+    );
+    let refused = run(&["man", "--out-dir", "/no/such/folder"], "");
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(errors(&refused).contains("--out-dir /no/such/folder"));
+}
+
+#[test]
+fn profiles_are_listed() {
+    let output = run(&["profiles"], "");
+    let list = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        list.starts_with("profile ") && list.contains("\nblue "),
+        "{list}"
+    );
+    let output = run(&["profiles", "--json"], "");
+    let documents = String::from_utf8_lossy(&output.stdout);
+    let first: serde_json::Value =
+        serde_json::from_str(documents.lines().next().expect("a line")).expect("JSON");
+    assert_eq!(first["digest"].as_str().map(str::len), Some(64));
+    assert_eq!(documents.lines().count() + 1, list.lines().count());
+}

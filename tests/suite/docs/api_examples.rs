@@ -234,6 +234,16 @@ fn the_page_on_kinds_shows_what_its_examples_print_and_draw() {
     compare(folder.path(), "kinds", &["chance.png", "even.png"]);
 }
 
+#[test]
+fn the_page_on_periods_shows_what_its_examples_print_and_draw() {
+    let folder = tempfile::tempdir().expect("a folder");
+    check_in("docs/periodic.md", folder.path(), &Daemon::built_in());
+    compare(folder.path(), "periodic", &["spectrum.svg"]);
+    let [by_command, by_daemon] =
+        ["mask.png", "served.png"].map(|name| std::fs::read(folder.path().join(name)));
+    assert!(by_command.is_ok() && by_command.ok() == by_daemon.ok());
+}
+
 /// Compares pictures that examples drew with those of the page.
 fn compare(folder: &Path, page: &str, names: &[&str]) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

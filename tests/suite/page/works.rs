@@ -170,3 +170,46 @@ fn displaced_points_end_where_the_server_has_them() {
     );
     browser.until("document.querySelector('#works-facts').textContent.includes('No table moves')");
 }
+
+#[test]
+fn a_finger_chooses_points_and_modes_on_a_phone() {
+    let Some((daemon, browser)) = looking(390, 844) else {
+        return;
+    };
+    open(&browser, &daemon, "", "index (5-sqrt(3))/2");
+    let middle = |selector: &str| {
+        let script = format!(
+            "(() => {{ const seen = document.querySelector('{selector}'); seen.scrollIntoView({{ block: 'center' }}); \
+             const box = seen.getBoundingClientRect(); \
+             return [Math.round(box.left + box.width / 2), Math.round(box.top + box.height / 2)]; }})()"
+        );
+        serde_json::from_value::<[i32; 2]>(browser.value(&script)).expect("a place")
+    };
+    let center = middle("#works-plane");
+    // A point of the pattern away from the one that is looked at, by its place in the drawing.
+    let place = browser.value(
+        "(() => { const { plane, points } = strew.works, box = plane.canvas.getBoundingClientRect(); \
+         const point = points.find(([x, y]) => x > 3 && x < 9 && y > 3 && y < 9); \
+         return { point: point.join(':'), at: [box.left + plane.x(point[0]), box.top + plane.y(point[1])] \
+         .map(Math.round) }; })()",
+    );
+    let at: [i32; 2] = serde_json::from_value(place["at"].clone()).expect("a place");
+    assert_ne!(at, center);
+    browser.tap(at);
+    browser.until(&format!(
+        "strew.works.point().join(':') === {}",
+        place["point"]
+    ));
+    browser.tap(middle("#works-arrangement"));
+    drawn_as(&browser, "arrangement (5-sqrt(3))/2");
+    let before = browser.value("strew.session.state.works.offsets");
+    middle("#works-plane");
+    let place = browser.value(
+        "(() => { const { plane, points } = strew.works, box = plane.canvas.getBoundingClientRect(); \
+         const point = points.find(([x, y]) => x < -3 && x > -9 && y < -3 && y > -9); \
+         return [box.left + plane.x(point[0]), box.top + plane.y(point[1])].map(Math.round); })()",
+    );
+    browser.tap(serde_json::from_value(place).expect("a place"));
+    browser.until(&format!("strew.session.state.works.offsets !== {before}"));
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}

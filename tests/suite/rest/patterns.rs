@@ -450,3 +450,34 @@ fn a_search_that_outlives_its_time_ends() {
         (small.status == 200).then_some(())
     });
 }
+
+#[test]
+fn figures_are_drawn_as_pixels_too() {
+    let daemon = Daemon::built_in();
+    for parameters in [
+        "index.png?alpha=sqrt(3)&window=32&size=200",
+        "arrangement.png?offsets=2,1+3,3&size=200",
+        "clusters.png?distance=2&window=32&size=200",
+        "map.png?radius=20&size=200",
+    ] {
+        let picture = daemon.get(&format!("/v1/pattern/figures/{parameters}"));
+        assert_eq!(
+            picture.header("content-type"),
+            "image/png",
+            "{}",
+            picture.text()
+        );
+        assert!(picture.body.starts_with(b"\x89PNG"), "{parameters}");
+        // The width and the height in the file's head.
+        let side = |at: usize| u32::from_be_bytes([0, 1, 2, 3].map(|i| picture.body[at + i]));
+        assert_eq!(side(16).max(side(20)), 200, "{parameters}");
+    }
+    for (wrong, says) in [
+        ("index.png?size=9", "64 to 2048"),
+        ("index.svg?size=200", "alpha, window"),
+    ] {
+        let refused = daemon.get(&format!("/v1/pattern/figures/{wrong}"));
+        assert_eq!(refused.status, 400, "{wrong}");
+        assert!(refused.text().contains(says), "{wrong}: {}", refused.text());
+    }
+}

@@ -2,11 +2,16 @@
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{
-    CountPointsRequest, GetPointRequest, ListPeriodsRequest, StreamPointsRequest,
+    CountPointsRequest, GetMaskRequest, GetPointRequest, ListPeriodsRequest, StreamPointsRequest,
     point_service_client::PointServiceClient, point_set::Amount,
 };
 
-use crate::support::{command, csv::Csv, daemon::Daemon, grpc};
+use crate::support::{
+    command,
+    csv::Csv,
+    daemon::Daemon,
+    grpc::{self, assert_faults},
+};
 
 /// The smallest period of the smallest default map, with a side of 142.
 const TILE: &str = "periodic=5000&map=s&spacing=2&seed=7";
@@ -284,4 +289,45 @@ async fn calls_and_commands_agree() {
     let request = GetPointRequest { id, set: Some(set) };
     let point = client.get_point(request).await.expect("found").into_inner();
     assert_eq!(point.point.expect("one").x, csv.points[77].x);
+}
+
+#[test]
+fn masks_are_those_of_the_command_line() {
+    let daemon = Daemon::built_in();
+    let mask = daemon.get("/v1/mask.png?size=32&seed=7&map=s&bits=16");
+    assert_eq!(mask.header("content-type"), "image/png");
+    let args = "mask --size 32 --seed 7 --map s --bits 16 --output -";
+    let made = command::run(&args.split(" ").collect::<Vec<_>>(), "");
+    assert!(made.status.success(), "{}", command::errors(&made));
+    assert_eq!(mask.body, made.stdout);
+    let spectrum = daemon.get("/v1/mask/spectrum.svg?size=32&seed=7&map=s");
+    assert!(spectrum.text().starts_with("<svg"), "{}", spectrum.text());
+    for (wrong, says) in [
+        ("size=8", "size"),
+        ("size=2000", "16 to 1024"),
+        ("bits=12", "8 or 16"),
+        ("periodic=9", "size, seed, bits"),
+        ("alpha=1.3", "alpha"),
+    ] {
+        let refused = daemon.get(&format!("/v1/mask.png?{wrong}"));
+        assert_eq!(refused.status, 400, "{wrong}");
+        assert!(refused.text().contains(says), "{wrong}: {}", refused.text());
+    }
+}
+
+#[tokio::test]
+async fn masks_are_the_same_over_grpc() {
+    let daemon = Daemon::built_in();
+    let mut client = PointServiceClient::new(daemon.channel().await);
+    let request = |size| GetMaskRequest {
+        size: Some(size),
+        seed: Some(7),
+        map: Some("s".into()),
+        ..GetMaskRequest::default()
+    };
+    let answer = client.get_mask(request(32)).await.expect("a mask");
+    let mask = daemon.get("/v1/mask.png?size=32&seed=7&map=s");
+    assert_eq!(answer.into_inner().png, mask.body);
+    let refused = client.get_mask(request(8)).await.expect_err("too small");
+    assert_faults(&refused, &["size"], &["16 to 1024"]);
 }

@@ -250,6 +250,21 @@ impl Browser {
         );
     }
 
+    /// Taps with a finger.
+    pub fn tap(&self, at: [i32; 2]) {
+        self.call(
+            "actions",
+            &json!({ "actions": [{
+                "type": "pointer", "id": "finger", "parameters": { "pointerType": "touch" },
+                "actions": [
+                    { "type": "pointerMove", "x": at[0], "y": at[1], "duration": 0 },
+                    { "type": "pointerDown", "button": 0 },
+                    { "type": "pointerUp", "button": 0 },
+                ],
+            }] }),
+        );
+    }
+
     /// Turns the wheel.
     pub fn wheel(&self, at: [i32; 2], by: i32) {
         self.call(

@@ -77,6 +77,33 @@ impl Mask {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn new(table: &Table, size: u32, seed: u64) -> Result<Self, MaskError> {
+        let Some(mask) = Self::new_while(table, size, seed, || true)? else {
+            unreachable!("nothing stops it");
+        };
+        Ok(mask)
+    }
+
+    /// As [`Mask::new`], as long as `goes_on` says so: it is asked every thousand pixels. `None` if it was stopped.
+    ///
+    /// # Errors
+    /// As [`Mask::new`].
+    ///
+    /// ```
+    /// use strew_core::Table;
+    /// use strew_forge::mask::Mask;
+    ///
+    /// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
+    /// assert!(Mask::new_while(&table, 64, 7, || false)?.is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn new_while(
+        table: &Table,
+        size: u32,
+        seed: u64,
+        mut goes_on: impl FnMut() -> bool,
+    ) -> Result<Option<Self>, MaskError> {
+        /// A few milliseconds of work.
+        const STEP: usize = 1000;
         if !(Self::LEAST_SIZE..=Self::MOST_SIZE).contains(&size) {
             return Err(MaskError {
                 field: "size".into(),
@@ -93,15 +120,22 @@ impl Mask {
         let mut ranks = vec![0; pixels];
         let mut voids = Voids::new(size as usize, &first);
         voids.choose(Choice::Clusters);
+        let mut goes_on = |rank: usize| !rank.is_multiple_of(STEP) || goes_on();
         for rank in (0..first.len()).rev() {
+            if !goes_on(rank) {
+                return Ok(None);
+            }
             ranks[voids.flip()] = rank as u32;
         }
         let mut voids = Voids::new(size as usize, &first);
         voids.choose(Choice::Voids);
         for rank in first.len()..pixels {
+            if !goes_on(rank) {
+                return Ok(None);
+            }
             ranks[voids.flip()] = rank as u32;
         }
-        Ok(Self { size, ranks })
+        Ok(Some(Self { size, ranks }))
     }
 
     /// A mask of ranks, one for each pixel, row by row: to compare other masks with.

@@ -1,0 +1,74 @@
+//! `strew completions` and `strew man`: what shells and `man` know of the commands.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, anyhow};
+use clap_complete::Shell;
+
+use super::{Failure, output::Output};
+
+/// Flags of `strew completions`.
+#[derive(Debug, clap::Args)]
+pub(super) struct CompletionsArgs {
+    /// The shell.
+    #[arg(value_name = "SHELL")]
+    shell: Shell,
+}
+
+/// Flags of `strew man`.
+#[derive(Debug, clap::Args)]
+pub(super) struct ManArgs {
+    /// The folder for the pages, one for each command: strew.1, strew-sample.1, … Without it the page of strew
+    /// itself goes to standard output.
+    #[arg(long, value_name = "DIR")]
+    out_dir: Option<PathBuf>,
+}
+
+/// Prints the completions of a shell.
+pub(super) fn completions(
+    args: &CompletionsArgs,
+    mut command: clap::Command,
+) -> Result<(), Failure> {
+    let mut script = vec![];
+    clap_complete::generate(args.shell, &mut command, "strew", &mut script);
+    write(None, &script)
+}
+
+/// Writes manual pages.
+pub(super) fn man(args: &ManArgs, command: clap::Command) -> Result<(), Failure> {
+    let Some(folder) = &args.out_dir else {
+        return write(None, &page(command)?);
+    };
+    if !folder.is_dir() {
+        let folder = folder.display();
+        return Err(Failure::Usage(anyhow!(
+            "--out-dir {folder}: there is no such folder"
+        )));
+    }
+    // The names of commands within commands begin with those around them.
+    let mut command = command.disable_help_subcommand(true);
+    command.build();
+    write_pages(folder, &command)
+}
+
+fn write_pages(folder: &Path, command: &clap::Command) -> Result<(), Failure> {
+    let name = command.get_display_name().unwrap_or(command.get_name());
+    let path = folder.join(format!("{name}.1"));
+    write(Some(&path), &page(command.clone().name(name.to_owned()))?)?;
+    command
+        .get_subcommands()
+        .try_for_each(|inner| write_pages(folder, inner))
+}
+
+fn page(command: clap::Command) -> anyhow::Result<Vec<u8>> {
+    let mut page = vec![];
+    let written = clap_mangen::Man::new(command).render(&mut page);
+    written.context("a manual page cannot be made")?;
+    Ok(page)
+}
+
+fn write(path: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> {
+    let mut output = Output::open(path)?;
+    output.write(bytes)?;
+    Ok(output.finish()?)
+}

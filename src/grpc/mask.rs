@@ -1,0 +1,38 @@
+//! Threshold masks as messages.
+
+use super::proto::{GetMaskRequest, GetMaskResponse};
+use crate::{
+    access::Caller,
+    service::{
+        Error, Service,
+        mask::{Drawn, MaskQuery},
+        query::{
+            Parameter, Value, Values, groups,
+            parameters::{ALPHA, MAP, PROFILE, TABLE},
+            patterns::{BITS, MASK_SEED, MASK_SIZE},
+        },
+    },
+};
+
+/// The mask that a request describes.
+pub(super) async fn mask(
+    service: &Service,
+    caller: &Caller,
+    request: GetMaskRequest,
+) -> Result<GetMaskResponse, Error> {
+    let integer = |number: Option<u32>| number.map(|number| Value::Integer(number.into()));
+    let given: [(&'static Parameter, Option<Value>); 7] = [
+        (&PROFILE, request.profile.map(Value::Text)),
+        (&ALPHA, request.alpha.map(Value::Text)),
+        (&MAP, request.map.map(Value::Text)),
+        (&TABLE, request.table.map(Value::Text)),
+        (&MASK_SIZE, integer(request.size)),
+        (&MASK_SEED, request.seed.map(Value::Integer)),
+        (&BITS, integer(request.bits)),
+    ];
+    let mut values = Values::new(groups::MASK, "");
+    values.add_values(given);
+    let query = MaskQuery::check(&values, &service.catalog())?;
+    let png = service.mask(caller, query, Drawn::Thresholds).await?;
+    Ok(GetMaskResponse { png: png.into() })
+}

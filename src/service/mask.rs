@@ -1,0 +1,119 @@
+//! Threshold masks: `strew_forge::mask` behind checked parameters.
+
+use std::sync::Arc;
+
+use strew_core::server::Stop;
+use strew_forge::{
+    figure,
+    mask::{Mask, MaskError},
+};
+
+use super::{
+    Catalog, Entry, Error, Fault, Lane, Service,
+    query::{
+        Checked, Together as _, Values, chosen,
+        parameters::TABLE,
+        patterns::{BITS, MASK_SEED, MASK_SIZE},
+    },
+};
+use crate::access::Caller;
+
+/// A checked query for a threshold mask.
+#[derive(Clone, Debug)]
+pub struct MaskQuery {
+    /// The table whose points come first.
+    pub entry: Arc<Entry>,
+    /// Whether the table is pinned by its digest.
+    pub is_pinned: bool,
+    size: u32,
+    seed: u64,
+    bits: u8,
+}
+
+/// What is made of a mask.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drawn {
+    /// Its thresholds, as PNG.
+    Thresholds,
+    /// Its spectrum at the levels 1/8, 1/4 and 1/2, as SVG.
+    Spectrum,
+}
+
+impl MaskQuery {
+    /// Checks some values.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with every fault, and [`Error::OtherTable`] if a pinned table is not loaded.
+    pub fn check(values: &Values, catalog: &Catalog) -> Result<Self, Error> {
+        let parts = (
+            values.read(),
+            values.get::<u64>(&MASK_SIZE),
+            values.get::<u64>(&MASK_SEED),
+            bits(values),
+        );
+        let ((), size, seed, bits) = parts.together()?;
+        Ok(Self {
+            entry: chosen(values, catalog)?,
+            is_pinned: values.has(&TABLE),
+            // The shape bounds it.
+            size: size.map_or(256, |size| size as u32),
+            seed: seed.unwrap_or(0),
+            bits,
+        })
+    }
+
+    fn draw(&self, drawn: Drawn, stop: &Stop) -> Result<Vec<u8>, Error> {
+        let table = self.entry.table()?;
+        let mask = Mask::new_while(&table, self.size, self.seed, || !stop.is_raised());
+        let mask = mask.map_err(refused)?;
+        let mask = mask.ok_or(Error::Internal("nothing waits for the mask any more"))?;
+        match drawn {
+            Drawn::Thresholds => mask.to_png(self.bits).map_err(refused),
+            Drawn::Spectrum => Ok(figure::mask_spectrum(&mask).to_svg().into_bytes()),
+        }
+    }
+}
+
+fn bits(values: &Values) -> Checked<u8> {
+    match values.get::<u64>(&BITS)? {
+        None | Some(8) => Ok(8),
+        Some(16) => Ok(16),
+        Some(_) => Err(values.fault(&BITS, "neither 8 nor 16").into()),
+    }
+}
+
+fn refused(error: MaskError) -> Error {
+    let MaskError {
+        field,
+        value,
+        allowed,
+    } = error;
+    Fault::new(&field, value, "no mask can be made", allowed).into()
+}
+
+impl Service {
+    /// Makes a mask, charged, as a file. It stops when its client leaves.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a table without periods, [`Error::Denied`] if the caller takes points too fast,
+    /// [`Error::TooManyBytes`] if there is no room.
+    pub async fn mask(
+        &self,
+        caller: &Caller,
+        query: MaskQuery,
+        drawn: Drawn,
+    ) -> Result<Vec<u8>, Error> {
+        /// A pixel takes as long as about so many points.
+        const POINTS: u128 = 100;
+        /// What a pixel takes in memory: its energy, its rank, its place in the spectrum.
+        const PIXEL: usize = 64;
+        let pixels = query.size as usize * query.size as usize;
+        caller.charge(pixels as u128 * POINTS, 0)?;
+        let budget = self.own_budget();
+        let make = move |stop: &Stop| {
+            let _held = budget.hold(pixels * PIXEL)?;
+            query.draw(drawn, stop)
+        };
+        self.workers().take_turn(Lane::Long, make).await?
+    }
+}
