@@ -37,7 +37,7 @@ pub use keep::Keep;
 pub(super) use kinds::OneKind;
 pub(super) use line::Line;
 pub(super) use lines::{Columns, Listed, lines_of_class, places};
-pub(super) use moves::{around, damping, is_gentle, moved, part_of_way, spread, steepness};
+pub(super) use moves::{around, damping, is_gentle, longer, moved, steepness};
 pub(super) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
 pub use placement::Placement;
