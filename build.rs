@@ -70,6 +70,11 @@ fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<
                 "v.iter().map(|(name, range)| (name.clone(), [range.min, range.max])).collect()",
                 "v.into_iter().map(|(name, [min, max])| (name, ScaleRange { min, max })).collect()",
             ),
+            Type::Message if name == "variant_fields" => (
+                "Fields",
+                "v.iter().map(|(name, field)| (name.clone(), Arc::new(document(field)))).collect()",
+                "v.into_iter().map(|(name, field)| (name, message_of(&field))).collect()",
+            ),
             Type::Message if is_map => (
                 "Weights",
                 "v.iter().map(|(name, weight)| (name.clone(), *weight)).collect()",

@@ -263,6 +263,7 @@ fn value_name(parameter: &Parameter) -> String {
         Shape::Choice(words) => words.join("|"),
         Shape::Format => "NAME".into(),
         Shape::Field => "NAME|FILE".into(),
+        Shape::Fields => "NAME:FIELD,…".into(),
         Shape::Pattern(_) | Shape::Text => "TEXT".into(),
     }
 }

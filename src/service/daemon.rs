@@ -257,13 +257,17 @@ impl Service {
         };
         if let Some(made) = &kinds.made {
             let Ready { table, .. } = self.samplers.get(made, &self.workers).await?;
-            return Ok(Ready { table, ..ready });
+            return Ok(ready.with_made(kinds, table));
         }
-        if let Some(known) = self.mixes.known(&ready, kinds.shares()).await {
-            return Ok(known);
-        }
-        caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
-        self.mixes.get(&ready, kinds.shares(), &self.workers).await
+        let what = kinds.made_of();
+        let made = match self.mixes.known(&ready, &what).await {
+            Some(known) => known,
+            None => {
+                caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
+                self.mixes.get(&ready, &what, &self.workers).await?
+            }
+        };
+        Ok(ready.with_made(kinds, made.table))
     }
 
     /// The right of a caller to start one more stream; a picture of that size is held whole.

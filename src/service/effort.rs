@@ -38,7 +38,11 @@ pub(super) const fn counts(set: &Set) -> f64 {
 pub(super) fn kinds(set: &Set) -> f64 {
     set.kinds
         .as_ref()
-        .map_or(0.0, |kinds| kinds.shares().kinds() as f64)
+        .map_or(0.0, |kinds| match kinds.vary_by_place() {
+            // All kinds at once.
+            true => 1.0,
+            false => kinds.shares().kinds() as f64,
+        })
 }
 
 /// A request for points, as far as it decides what counting costs.
@@ -48,8 +52,8 @@ pub(super) struct Selection {
     pub(super) set: PointSet,
     /// Where points are requested.
     pub(super) area: Area,
-    /// Whether the set keeps clear of others.
-    pub(super) keeps_clear: bool,
+    /// Whether points are looked at one by one: to keep clear of others, or for kinds whose shares vary.
+    pub(super) looks_at_all: bool,
 }
 
 /// What takes more rows than this, in rows of warped sets, is planned in the lane for long work:
@@ -112,11 +116,11 @@ fn counted(query: &Query, set: &Set, ready: &Ready) -> (f64, f64) {
         return (0.0, 0.0);
     };
     let selection = Selection {
-        set: set.points(&ready.table, spacing),
+        set: set.points(ready, spacing),
         area: set.area(&query.region),
-        keeps_clear: !set.clear_of.is_empty(),
+        looks_at_all: !set.clear_of.is_empty() || set.varies(),
     };
-    let is_plain = selection.set.placement().warp == Warp::OFF && !selection.keeps_clear;
+    let is_plain = selection.set.placement().warp == Warp::OFF && !selection.looks_at_all;
     let is_plain = is_plain && set.field.is_none();
     let weight = if is_plain { PLAIN } else { 1.0 };
     // Seeking an offset counts again.
@@ -169,7 +173,7 @@ impl Neighbors {
         Self {
             bytes: most * (POINT + values * VALUE),
             // In a field there may be nothing for long.
-            lane: match most > MANY || placed.set.field.is_some() {
+            lane: match most > MANY || placed.set.fields().next().is_some() {
                 true => Lane::Long,
                 false => Lane::Short,
             },
@@ -213,7 +217,7 @@ pub(super) fn rows(selection: &Selection) -> f64 {
     let area = &selection.area;
     let placement = selection.set.placement();
     let is_box = matches!(area, Area::Region(_));
-    let is_closed = placement.warp == Warp::OFF && !selection.keeps_clear;
+    let is_closed = placement.warp == Warp::OFF && !selection.looks_at_all;
     let looks = candidates(selection) as f64 * CANDIDATE;
     let Some(bounds) = area.bounds().filter(|_| !(is_box && is_closed)) else {
         return looks;
@@ -226,7 +230,7 @@ pub(super) fn rows(selection: &Selection) -> f64 {
     } else {
         height * UNITS / spacing
     };
-    let cleared = if selection.keeps_clear {
+    let cleared = if selection.looks_at_all {
         width * height * placement.spacing.density() * placement.keep.get()
     } else {
         0.0

@@ -1,20 +1,58 @@
 //! Making a mix: a table whose variants are evenly spread.
 
+use std::fmt;
+
 use strew_core::{Table, table::Shares};
 
 use super::{Error, Fault};
 
-/// Labels the blocks of a table. Takes seconds.
+/// What is made of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Made {
+    /// Labels of its blocks, for kinds in these shares.
+    Labels(Shares),
+    /// A second order of its blocks, for kinds whose shares vary.
+    SecondOrder,
+}
+
+impl fmt::Display for Made {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Labels(shares) => shares.fmt(f),
+            Self::SecondOrder => f.write_str("second order"),
+        }
+    }
+}
+
+impl Made {
+    /// Whether a table is what is made of another one.
+    pub(super) fn is(&self, made: &Table, of: &Table) -> bool {
+        let is_of = made.displacements() == of.displacements() && made.map() == of.map();
+        is_of
+            && match (self, made.mix()) {
+                (Self::Labels(shares), Some(mix)) => mix.shares() == shares,
+                (Self::SecondOrder, None) => made.ranks().is_some() && made.ranks() != of.ranks(),
+                _ => false,
+            }
+    }
+}
+
+/// Makes labels or a second order of a table. Takes seconds.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the table has too few blocks for the shares.
-pub(super) fn make(table: &Table, shares: &Shares) -> Result<Table, Error> {
+pub(super) fn make(table: &Table, what: &Made) -> Result<Table, Error> {
     let began = std::time::Instant::now();
-    let made = strew_forge::labels(table, shares, &()).map_err(|error| {
+    let made = match what {
+        Made::Labels(shares) => strew_forge::labels(table, shares, &()),
+        Made::SecondOrder => strew_forge::second_order(table, &())
+            .and_then(|order| Ok(order.map(|order| table.with_ranks(order)).transpose()?)),
+    };
+    let made = made.map_err(|error| {
         let allowed =
             "weights nearer to each other, fewer variants, a larger map, or spread chance";
-        Fault::new("variants", shares, error.to_string(), allowed)
+        Fault::new("variants", what, error.to_string(), allowed)
     })?;
-    tracing::info!(%shares, seconds = began.elapsed().as_secs_f32(), "made a mix");
+    tracing::info!(%what, seconds = began.elapsed().as_secs_f32(), "made a mix");
     made.ok_or(Error::Internal("a mix was stopped that is still wanted"))
 }

@@ -15,13 +15,13 @@ use futures_util::{
     FutureExt as _,
     future::{BoxFuture, Shared},
 };
-use strew_core::{
-    Table,
-    server::Stop,
-    table::{MAX_FILE_BYTES, Shares},
-};
+use strew_core::{Table, server::Stop, table::MAX_FILE_BYTES};
 
-use super::{Budget, Error, Lane, Ready, Workers, cache::Samplers, mix::make};
+use super::{
+    Budget, Error, Lane, Ready, Workers,
+    cache::Samplers,
+    mix::{Made, make},
+};
 use crate::bounded_file;
 
 /// The mixes that were made.
@@ -61,14 +61,14 @@ impl Mixes {
         }
     }
 
-    /// A table with kinds of these shares, if it is in memory.
-    pub(super) async fn known(&self, plain: &Ready, shares: &Shares) -> Option<Ready> {
-        self.samplers.known(&name(plain, shares)).await
+    /// What is made of a table, if it is in memory.
+    pub(super) async fn known(&self, plain: &Ready, what: &Made) -> Option<Ready> {
+        self.samplers.known(&name(plain, what)).await
     }
 
-    /// A table with kinds of these shares, which is made unless that has begun.
-    pub(super) fn get(&self, plain: &Ready, shares: &Shares, workers: &Workers) -> Making {
-        let name = name(plain, shares);
+    /// What is made of a table, unless that has begun.
+    pub(super) fn get(&self, plain: &Ready, what: &Made, workers: &Workers) -> Making {
+        let name = name(plain, what);
         let mut making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(begun) = making.get(&name) {
             return begun.clone();
@@ -76,7 +76,7 @@ impl Mixes {
         let work = tokio::spawn(self.clone().work(
             name.clone(),
             plain.clone(),
-            shares.clone(),
+            what.clone(),
             workers.clone(),
         ));
         // It goes on when nobody waits any more: the next one will ask again.
@@ -91,10 +91,10 @@ impl Mixes {
         self,
         name: String,
         plain: Ready,
-        shares: Shares,
+        what: Made,
         workers: Workers,
     ) -> Result<Ready, Error> {
-        let made = self.make(&name, &plain, shares, &workers).await;
+        let made = self.make(&name, &plain, what, &workers).await;
         if let Ok(ready) = &made {
             self.samplers.keep(name.clone(), ready.clone()).await;
         }
@@ -107,7 +107,7 @@ impl Mixes {
         &self,
         name: &str,
         plain: &Ready,
-        shares: Shares,
+        what: Made,
         workers: &Workers,
     ) -> Result<Ready, Error> {
         // It may have been made since it was looked for.
@@ -119,12 +119,12 @@ impl Mixes {
             .hold(ROOM + ROOM_BY_BLOCK * plain.entry.blocks())?;
         let path = self.folder.as_deref();
         let path = path.map(|folder| folder.join(format!("{name}.strew")));
-        let Ready { entry, table } = plain.clone();
+        let Ready { entry, table, .. } = plain.clone();
         let work = move |_: &Stop| {
             let _held = held;
             let made = match path {
-                Some(path) => read_or_make(&path, &table, &shares),
-                None => make(&table, &shares),
+                Some(path) => read_or_make(&path, &table, &what),
+                None => make(&table, &what),
             };
             Ok(Ready::new(entry, made?))
         };
@@ -133,27 +133,22 @@ impl Mixes {
 }
 
 /// What a mix is known by.
-fn name(plain: &Ready, shares: &Shares) -> String {
+fn name(plain: &Ready, what: &Made) -> String {
     format!(
         "{}-{}",
         plain.entry.digest,
-        shares.to_string().replace(':', "-")
+        what.to_string().replace([':', ' '], "-")
     )
 }
 
 /// Reads a mix that was made earlier, or makes it and keeps it.
-fn read_or_make(path: &Path, plain: &Table, shares: &Shares) -> Result<Table, Error> {
-    let is_of = |table: &Table| {
-        table.mix().is_some_and(|mix| mix.shares() == shares)
-            && table.displacements() == plain.displacements()
-            && table.map() == plain.map()
-    };
+fn read_or_make(path: &Path, plain: &Table, what: &Made) -> Result<Table, Error> {
     let known = bounded_file::read(path, MAX_FILE_BYTES).ok();
     let known = known.and_then(|bytes| Table::from_bytes(&bytes).ok());
-    if let Some(known) = known.filter(is_of) {
+    if let Some(known) = known.filter(|made| what.is(made, plain)) {
         return Ok(known);
     }
-    let made = make(plain, shares)?;
+    let made = make(plain, what)?;
     if let Err(error) = keep(path, &made) {
         tracing::warn!(path = %path.display(), %error, "a mix could not be kept, and a restart will make it again");
     }

@@ -66,7 +66,7 @@ impl Placed {
                 set.periodic(&ready.table, period)
                     .map_err(resolve::no_period)?,
             ),
-            None => PlacedPoints::Plane(Box::new(set.points(&ready.table, spacing))),
+            None => PlacedPoints::Plane(Box::new(set.points(&ready, spacing))),
         };
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least, (&[], &distances)),
@@ -184,9 +184,9 @@ impl Planned {
                 Some(kinds) if ready.table.mix().is_none() => {
                     let table = match &kinds.made {
                         Some(made) => made.table()?,
-                        None => mix::make(&ready.table, kinds.shares())?,
+                        None => mix::make(&ready.table, &kinds.made_of())?,
                     };
-                    Ok(Ready { table, ..ready })
+                    Ok(ready.with_made(kinds, table))
                 }
                 _ => Ok(ready),
             }

@@ -49,11 +49,11 @@ impl<'a> Planner<'a> {
             Resolved::Known(spacing, _) => Ok(spacing),
             Resolved::Count(count) => here.and_then(|token| token.spacing).ok_or(count),
         };
-        let points = set.points(&ready.table, known.unwrap_or(Spacing::ONE));
+        let points = set.points(ready, known.unwrap_or(Spacing::ONE));
         let mut selection = Selection {
             set: self.keeping_clear(set, points)?,
             area: set.area(region),
-            keeps_clear: !set.clear_of.is_empty(),
+            looks_at_all: !set.clear_of.is_empty() || set.varies(),
         };
         let plan = match (known, here) {
             (Ok(spacing), _) if is_over || here.is_some() => {

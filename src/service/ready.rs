@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use strew_core::Table;
 
-use super::{Entry, Error};
+use super::{Entry, Error, query::Kinds};
 
 /// A table ready to answer.
 #[derive(Clone, Debug)]
@@ -13,6 +13,8 @@ pub struct Ready {
     pub entry: Arc<Entry>,
     /// The table; its least distances have been computed.
     pub table: Table,
+    /// The table with its second order, if the set has kinds whose shares vary.
+    pub second: Option<Table>,
 }
 
 impl Ready {
@@ -27,6 +29,24 @@ impl Ready {
     /// A table, once its least distances are computed.
     pub(super) fn new(entry: Arc<Entry>, table: Table) -> Self {
         let _ = (table.least_distance(), table.least_distance_of(0, 0));
-        Self { entry, table }
+        Self {
+            entry,
+            table,
+            second: None,
+        }
+    }
+
+    /// This table with what was made of it for some kinds.
+    pub(super) fn with_made(self, kinds: &Kinds, made: Table) -> Self {
+        match kinds.vary_by_place() {
+            true => Self {
+                second: Some(made),
+                ..self
+            },
+            false => Self {
+                table: made,
+                ..self
+            },
+        }
     }
 }

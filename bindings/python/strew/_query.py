@@ -60,6 +60,7 @@ class Query(TypedDict, total=False):
     attributes: str | Sequence[str]
     scale_range: Numbers
     scale_ranges: Mapping[str, Any]
+    variant_fields: Mapping[str, Any]
     variants: Mapping[str, float]
     spread: str
     only: str

@@ -5,7 +5,7 @@
 
 use std::{hint::black_box, time::Instant};
 
-use rounds::{fill_all, is_quick, medians};
+use rounds::{fill_all, is_quick, medians, now};
 use strew_core::{
     F32, Field, Plan, PointSet, Raster, Region,
     field::{Edges, FieldSpec, Filter, Marks, Noise, Pixels},
@@ -181,11 +181,11 @@ fn main() {
             let share = (-octaves * (corner[0] + 20.0) / side).exp2();
             let wide = (1000.0 / share).sqrt();
             let region = Region::new(corner, corner.map(|v| v + wide)).expect("ordered");
-            let start = Instant::now();
+            let start = now();
             let plan = graded.within(region).expect("near");
             let mut points = vec![[0f32; 2]; plan.count() as usize];
             counted += plan.blocks_f32().fill(&mut points);
-            times.push(start.elapsed().as_secs_f64());
+            times.push(now() - start);
             black_box(points);
         }
         times.sort_by(f64::total_cmp);

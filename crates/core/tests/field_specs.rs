@@ -176,6 +176,24 @@ proptest! {
     }
 
     #[test]
+    fn no_share_changes_faster_than_its_slopes(
+        spec in spec(), within in region(),
+        pairs in prop::collection::vec((prop::array::uniform2(0.0..=1.0f64), 0.0..=1.0f64, 0..2usize), 12),
+    ) {
+        let slopes = spec.slopes(&within);
+        let (min, max) = (within.min(), within.max());
+        let ends = [[0.0, 0.5], [0.5, 0.0]].map(|at| (at, 1.0, usize::from(at[0] > 0.0)));
+        for (part, other, axis) in pairs.into_iter().chain(ends) {
+            let at = [0, 1].map(|i| (min[i] + (max[i] - min[i]) * part[i]).min(max[i]));
+            let mut there = at;
+            there[axis] = (min[axis] + (max[axis] - min[axis]) * other).min(max[axis]);
+            let change = (spec.share(there) - spec.share(at)).abs();
+            let most = slopes[axis] * (there[axis] - at[axis]).abs();
+            prop_assert!(!(change > most * (1.0 + 1e-9) + 1e-12), "{change} > {most} at {at:?}, axis {axis}");
+        }
+    }
+
+    #[test]
     fn many_places_have_the_shares_of_each(
         spec in spec(), number in 0usize..90, scale in prop_oneof![Just(1.0), Just(1e5), Just(1e14)],
         step in place(),

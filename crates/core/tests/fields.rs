@@ -4,8 +4,8 @@ mod subject;
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Circle, Field, Map, Placement, PointId, PointSet, Raster, Region, Seed, Spacing, Table,
-    Warp,
+    Area, Circle, Field, Map, Placement, Point, PointId, PointSet, Raster, Region, Seed, Spacing,
+    Table, Warp,
     field::{Edges, FieldSpec, Filter},
     table::{Ladder, Provenance, Ranks, Rung},
 };
@@ -258,6 +258,39 @@ proptest! {
             prop_assert!((a[axis] - b[axis]).abs() <= 2 + (7e4 * step * f64::from(1 << 20)) as i32);
         }
     }
+}
+
+/// A field with slopes that are not its own.
+struct Lying(FieldSpec);
+
+impl Field for Lying {
+    fn share(&self, at: [f64; 2]) -> f64 {
+        self.0.share(at)
+    }
+
+    fn bounds(&self, within: &Region) -> [f64; 2] {
+        self.0.bounds(within)
+    }
+
+    fn slopes(&self, _: &Region) -> [f64; 2] {
+        [0.0; 2]
+    }
+}
+
+/// Slopes are believed, and only by walks: were those of a shape too small, the tests that compare walks with the
+/// definition would fail as they do here.
+#[test]
+fn a_field_whose_slopes_are_too_small_is_found_out() {
+    let set = set(true, 7, 1.0, 1.0);
+    let region = Region::new([-20.0, -20.0], [20.0, 20.0]).expect("ordered");
+    let points = |set: &PointSet| set.within(region).expect("near").to_vec();
+    let ramp = FieldSpec::ramp([-40.0, 0.0], [40.0, 0.0], [0.9, 0.1]).expect("valid");
+    let (honest, lying) = (set.in_field(ramp.clone()), set.in_field(Lying(ramp)));
+    let bits = |at: [f64; 2]| at.map(f64::to_bits);
+    let defined = |point: &Point| honest.point(point.id).map(|member| bits(member.at()));
+    let is_defined = |point: &Point| defined(point) == Some(bits(point.at()));
+    assert!(points(&honest).iter().all(is_defined));
+    assert!(!points(&lying).iter().all(is_defined));
 }
 
 #[test]

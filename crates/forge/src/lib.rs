@@ -69,7 +69,7 @@ pub use forge::{Outcome, forge, resume};
 pub use job::{DEFAULT_SEED, Job, MAX_RADIUS, MAX_STEPS};
 pub use judge::{Complaint, Figure, gravest};
 pub use ladder::{LadderJob, LadderOutcome, ThinnedTwin, ladder, with_ranks};
-pub use mix::{MixJob, MixOutcome, labels, mix, mix_file_name};
+pub use mix::{MixJob, MixOutcome, labels, mix, mix_file_name, second_order};
 pub use picture::{PictureError, picture};
 pub use profile::{Aim, Profile};
 pub use prospect::{FEW_INTERVALS, Hopeless, Prospect};

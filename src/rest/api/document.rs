@@ -172,6 +172,10 @@ fn as_text(shape: Shape) -> Value {
         }
         Shape::Switch => json!({ "type": "string", "enum": ["on", "off"] }),
         Shape::Field => json!({ "type": "string", "pattern": format!("^{}$", sets::NAME) }),
+        Shape::Fields => {
+            let pair = format!("{}:{}", sets::NAME, sets::NAME);
+            json!({ "type": "string", "pattern": format!("^{pair}(,{pair})*$") })
+        }
         other => schema(other),
     }
 }
@@ -237,6 +241,12 @@ pub(super) fn schema(shape: Shape) -> Value {
             json!({ "type": "string", "enum": Encoding::ALL.map(Encoding::name) })
         }
         Shape::Pattern(pattern) => json!({ "type": "string", "pattern": pattern }),
+        Shape::Fields => json!({
+            "type": "object",
+            "propertyNames": { "pattern": format!("^{}$", sets::NAME) },
+            "additionalProperties": schema(Shape::Field),
+            "minProperties": 1, "maxProperties": 32,
+        }),
         Shape::Field => json!({ "anyOf": [
             { "type": "string", "pattern": format!("^{}$", sets::NAME) },
             { "$ref": "#/components/schemas/Field" },

@@ -9,7 +9,7 @@ use crate::service::{
         Group, Parameter, Spread, of as parameters_of,
         parameters::{
             ATTRIBUTES, COUNT, CRS, DECIMALS, FORMAT, MIN_DISTANCE, ONLY, PARAMETERS, PERIODIC,
-            PROFILE, SCALE_RANGE, SCALE_RANGES, SIZE, SPREAD, SUMMARY, VARIANTS,
+            PROFILE, SCALE_RANGE, SCALE_RANGES, SIZE, SPREAD, SUMMARY, VARIANT_FIELDS, VARIANTS,
         },
         patterns::{
             CURSOR as PATTERN_CURSOR, GRID, LIMIT as PATTERN_LIMIT, LIST, MAP as PATTERN_MAP,
@@ -139,6 +139,11 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
             others: amounts
                 .into_iter()
                 .filter(|name| taken.contains(name))
+                .chain(
+                    names(&[Group::Attributes])
+                        .into_iter()
+                        .filter(|name| *name == VARIANT_FIELDS.name),
+                )
                 .collect(),
         });
     }
@@ -177,6 +182,11 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
             ],
         });
         rules.push(only_with(&ONLY, &SPREAD, EVEN.into()));
+        rules.push(only_with(
+            &VARIANT_FIELDS,
+            &SPREAD,
+            vec![Spread::Even.name()],
+        ));
         rules.extend(EVEN.iter().map(|value| Rule::Needs {
             parameter: SPREAD.name,
             value,

@@ -183,6 +183,13 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
         json!({ "type": "string", "description": "The digest of the field, if there is one." }),
     );
     put(
+        "variant_field_digests",
+        json!({
+            "type": "object", "additionalProperties": { "type": "string" },
+            "description": "The digests of the fields of variants.",
+        }),
+    );
+    put(
         "clear_of",
         json!({ "type": "object", "additionalProperties": { "type": "number" } }),
     );

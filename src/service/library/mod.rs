@@ -222,13 +222,15 @@ impl Library {
         };
         if let Some(made) = &kinds.made {
             let Ready { table, .. } = self.kept(&made.digest, || Ready::load(made))?;
-            return Ok(Ready { table, ..plain });
+            return Ok(plain.with_made(kinds, table));
         }
-        let name = format!("{} {}", plain.entry.digest, kinds.shares());
-        self.kept(&name, || {
-            let table = mix::make(&plain.table, kinds.shares())?;
+        let what = kinds.made_of();
+        let name = format!("{} {what}", plain.entry.digest);
+        let made = self.kept(&name, || {
+            let table = mix::make(&plain.table, &what)?;
             Ok(Ready::new(plain.entry.clone(), table))
-        })
+        })?;
+        Ok(plain.with_made(kinds, made.table))
     }
 
     /// What is known under a name. It is made without the lock: others go on meanwhile.

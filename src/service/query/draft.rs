@@ -371,7 +371,10 @@ impl Set {
         let (amount, seed, warp, keep, (attributes, mut kinds), (entry, pin), field) =
             checked.together()?;
         let entry = match &mut kinds {
-            Some(kinds) => kinds.find(entry, values, loaded.catalog)?,
+            Some(kinds) => {
+                kinds.vary(values, loaded)?;
+                kinds.find(entry, values, loaded.catalog)?
+            }
             None => entry,
         };
         let period = Period::check(values, amount, &entry)?;

@@ -9,7 +9,7 @@ use strew_core::{ALGORITHM_VERSION, Spacing, map::Twin};
 
 use super::{
     Parameter, Query, QueryRegion, Set, Value,
-    parameters::{FIELD, PARAMETERS},
+    parameters::{FIELD, PARAMETERS, VARIANT_FIELDS},
 };
 
 /// A query as answers echo it, with everything filled in.
@@ -78,6 +78,8 @@ pub struct ResolvedSet {
     pub values: Vec<(&'static Parameter, Value)>,
     /// The layers that are kept clear of, with the distances.
     pub clear_of: Vec<(String, f64)>,
+    /// The digests of the fields of variants, by the names of these.
+    pub variant_field_digests: Vec<(String, String)>,
     /// How many points of the region each variant has, if they are evenly spread.
     pub kinds: Vec<(String, u128)>,
     /// The distances that points of these variants keep.
@@ -139,6 +141,12 @@ impl Serialize for ResolvedSet {
         if let Some(digest) = &self.field_digest {
             map.serialize_entry("field_digest", digest)?;
         }
+        if !self.variant_field_digests.is_empty() {
+            let digests: BTreeMap<&str, &str> = (self.variant_field_digests.iter())
+                .map(|(name, digest)| (name.as_str(), digest.as_str()))
+                .collect();
+            map.serialize_entry("variant_field_digests", &digests)?;
+        }
         if let Some(period) = &self.period {
             map.serialize_entry("period", period)?;
         }
@@ -190,6 +198,7 @@ impl Set {
             spacing: spacing.get(),
             least_distance,
             field_digest: self.field.as_ref().map(|field| field.digest.clone()),
+            variant_field_digests: self.variant_field_digests(),
             values: self.echoes().collect(),
             clear_of: self.named_clear_of(all),
             kinds: names.map(Into::into).zip(kinds.iter().copied()).collect(),
@@ -198,6 +207,14 @@ impl Set {
                 .period
                 .map(|period| PeriodEcho::new(period.twin, period.side)),
         }
+    }
+
+    /// The digests of the fields of variants, by name.
+    fn variant_field_digests(&self) -> Vec<(String, String)> {
+        let fields = self.kinds.iter().flat_map(|kinds| &kinds.fields);
+        fields
+            .map(|(name, field)| (name.clone(), field.digest.clone()))
+            .collect()
     }
 
     /// The parameters with their values.
@@ -224,10 +241,14 @@ impl Set {
         if let Some(field) = &self.field {
             identity["field_digest"] = json!(field.digest);
         }
+        if self.varies() {
+            identity["variant_field_digests"] = json!(self.variant_field_digests());
+        }
         if let Some(made) = self.kinds.as_ref().and_then(|kinds| kinds.made.as_ref()) {
             identity["kinds_table"] = json!(made.digest);
         }
-        for (parameter, value) in self.echoes().filter(|(parameter, _)| **parameter != FIELD) {
+        let is_named = |parameter: &Parameter| *parameter == FIELD || *parameter == VARIANT_FIELDS;
+        for (parameter, value) in self.echoes().filter(|(parameter, _)| !is_named(parameter)) {
             identity[parameter.name] = json!(value);
         }
         identity

@@ -46,18 +46,21 @@ impl<'a> Loaded<'a> {
             return Ok(None);
         };
         let path = format!("{}{}", values.path(), FIELD.name);
-        let (spec, sources) = self
-            .catalog
-            .build_field(&path, &document, self.pixels.get());
+        self.built(&path, &document).map(Some)
+    }
+
+    /// A field that is described at a path.
+    pub(super) fn built(&self, path: &str, document: &Document) -> Checked<SetField> {
+        let (spec, sources) = self.catalog.build_field(path, document, self.pixels.get());
         self.pixels.set(sources.left);
         let spec = spec?;
-        Ok(Some(SetField {
-            name: match &*document {
+        Ok(SetField {
+            name: match document {
                 Document::Name(name) => Some(name.clone()),
                 _ => None,
             },
             digest: spec.digest().to_string(),
             spec,
-        }))
+        })
     }
 }

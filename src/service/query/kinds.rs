@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
-use strew_core::{EvenVariants, table::Shares};
+use strew_core::{EvenVariants, Field, PointSet, VaryingKinds, table::Shares};
 
 use super::{
-    Checked, Together as _, Values,
-    parameters::{ONLY, SPREAD, VARIANTS},
+    Checked, Faults, SetField, Together as _, Value, Values, all,
+    field::Loaded,
+    parameters::{ONLY, PERIODIC, SPREAD, VARIANT_FIELDS, VARIANTS},
 };
-use crate::service::{Catalog, Entry, Fault, catalog::MixKey, query::unknown};
+use crate::service::{
+    Catalog, Entry, Fault, Ready, catalog::MixKey, field::Document, mix::Made, query::unknown,
+};
 
 /// How variants are spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +48,8 @@ pub struct Kinds {
     pub spread: Spread,
     /// The name and the kind of the one to which points are limited.
     pub only: Option<(String, u8)>,
+    /// The fields that multiply the weights of variants, by name.
+    pub fields: Vec<(String, SetField)>,
     /// The loaded table whose labels spread them evenly, if there is one.
     pub made: Option<Arc<Entry>>,
 }
@@ -56,6 +61,10 @@ impl Kinds {
             (values.get::<String>(&SPREAD), values.get::<String>(&ONLY)).together()?;
         let spread = match name.as_deref() {
             Some("even") => Spread::Even,
+            _ if values.has(&VARIANT_FIELDS) => {
+                let detail = "needs spread even";
+                return Err(values.fault(&VARIANT_FIELDS, detail).into());
+            }
             Some("joint") => Spread::Joint,
             _ if only.is_some() => {
                 return Err(values
@@ -97,8 +106,87 @@ impl Kinds {
             only: only.map(kind).transpose()?,
             variants,
             spread,
+            fields: vec![],
             made: None,
         }))
+    }
+
+    /// Reads the fields of variants among some values.
+    pub(super) fn vary(&mut self, values: &Values, loaded: &Loaded<'_>) -> Checked<()> {
+        let Some(given) = values.get::<Vec<(String, Arc<Document>)>>(&VARIANT_FIELDS)? else {
+            return Ok(());
+        };
+        let path = format!("{}{}", values.path(), VARIANT_FIELDS.name);
+        let fault = |detail: String| Faults::from(values.fault(&VARIANT_FIELDS, detail));
+        if values.has(&PERIODIC) {
+            let detail = "not with periodic: shares that vary do not repeat";
+            return Err(fault(detail.into()));
+        }
+        if let Some(twice) = given.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            return Err(fault(format!("`{}` is given twice", twice[0].0)));
+        }
+        let names = || self.variants.variants().names();
+        let field = |(name, document): &(String, Arc<Document>)| {
+            let field = format!("{path}.{name}");
+            if !names().any(|known| known == name) {
+                let detail = unknown("variant", name, names());
+                let allowed: Vec<&str> = names().collect();
+                return Err(Fault::new(&field, name, detail, allowed.join(", ")).into());
+            }
+            let field = loaded.built(&field, document)?;
+            Ok((name.clone(), field))
+        };
+        self.fields = all(given.iter().map(field))?;
+        Ok(())
+    }
+
+    /// Whether shares vary from place to place.
+    #[must_use]
+    pub const fn vary_by_place(&self) -> bool {
+        !self.fields.is_empty()
+    }
+
+    /// The names of the loaded fields of variants, as answers echo them.
+    pub(super) fn echo_fields(&self) -> Option<Value> {
+        let named = self.fields.iter().filter_map(|(name, field)| {
+            let document = Document::Name(field.name.clone()?);
+            Some((name.clone(), Arc::new(document)))
+        });
+        let named: Vec<_> = named.collect();
+        (!named.is_empty()).then_some(Value::Fields(named))
+    }
+
+    /// What has to be made of a table for them.
+    #[must_use]
+    pub(in crate::service) fn made_of(&self) -> Made {
+        match self.vary_by_place() {
+            true => Made::SecondOrder,
+            false => Made::Labels(self.shares().clone()),
+        }
+    }
+
+    /// The points of a set that have these kinds, limited to one of them if that is wanted.
+    pub(super) fn of(&self, mut points: PointSet, ready: &Ready) -> PointSet {
+        let varying = || {
+            let second = ready.second.as_ref()?;
+            let mut fields: Vec<Option<Arc<dyn Field>>> = vec![None; self.shares().kinds()];
+            for (name, field) in &self.fields {
+                let place = fields.get_mut(usize::from(self.variants.kind(name)?))?;
+                *place = Some(Arc::new(field.spec.clone()));
+            }
+            VaryingKinds::new(second, self.shares().clone(), fields).ok()
+        };
+        if let Some(varying) = varying()
+            && let Ok(varied) = points.clone().with_varying_kinds(varying)
+        {
+            points = varied;
+        }
+        if let Some((_, kind)) = self.only
+            && let Ok(of_kind) = points.clone().only(kind)
+        {
+            points = of_kind;
+        }
+        points
     }
 
     /// Finds the table of the kinds among those of a catalog, beside a plain one: that of a joint spread answers
@@ -109,6 +197,9 @@ impl Kinds {
         values: &Values,
         catalog: &Catalog,
     ) -> Checked<Arc<Entry>> {
+        if self.vary_by_place() {
+            return Ok(plain);
+        }
         let are_moved = self.spread == Spread::Joint;
         let mixes = || catalog.mixes(&plain, are_moved);
         let is_wanted = |mix: &MixKey| *mix.shares == *self.shares().parts();
@@ -170,6 +261,16 @@ mod tests {
         for (text, field, part) in [
             ("only=oak", "only", "no effect with spread chance"),
             ("spread=even", "variants", "missing"),
+            (
+                "variant_fields=oak:hill&variants=oak:1",
+                "variant_fields",
+                "needs spread even",
+            ),
+            (
+                "spread=joint&variants=oak:1,elm:1&variant_fields=oak:hill",
+                "variant_fields",
+                "needs spread even",
+            ),
             ("spread=even&variants=oak:1", "variants", "from 2 to"),
             (
                 "spread=even&variants=oak:1,elm:1000000",

@@ -1,8 +1,9 @@
 //! Numbers and lists of numbers and names, as text has them.
 
-use std::{borrow::Cow, str::FromStr};
+use std::{borrow::Cow, str::FromStr, sync::Arc};
 
 use super::number;
+use crate::service::field::Document;
 
 /// What is wrong with a value.
 pub(super) type Detail = Cow<'static, str>;
@@ -79,6 +80,18 @@ pub(super) fn weights(text: &str) -> Result<Vec<(String, f64)>, Detail> {
         let weight = weight.trim();
         let read = finite(weight).map_err(|detail| format!("the weight `{weight}` {detail}"))?;
         Ok((name.trim().to_owned(), read))
+    };
+    text.split(',').map(pair).collect()
+}
+
+/// Names with the names of fields, such as `birch:river`.
+pub(super) fn fields(text: &str) -> Result<Vec<(String, Arc<Document>)>, Detail> {
+    let pair = |part: &str| {
+        let Some((name, field)) = part.split_once(':') else {
+            return Err(format!("`{part}` must be name:field").into());
+        };
+        let field = Document::Name(field.trim().to_owned());
+        Ok((name.trim().to_owned(), field.into()))
     };
     text.split(',').map(pair).collect()
 }

@@ -31,11 +31,9 @@ mod values;
 
 use std::{fmt, sync::Arc};
 
-use strew_core::{
-    Area, Attributes, ErrorKind, Keep, Placement, PointSet, Seed, Spacing, Table, Warp,
-};
+use strew_core::{Area, Attributes, ErrorKind, Keep, Placement, PointSet, Seed, Spacing, Warp};
 
-use super::{Entry, Error, Fault};
+use super::{Entry, Error, Fault, Ready};
 
 pub use amount::Amount;
 pub use cursor::Token;
@@ -134,7 +132,7 @@ impl Query {
     #[must_use]
     pub fn is_pinned(&self) -> bool {
         let is_named = |field: &SetField| field.name.is_some();
-        let is_fixed = |set: &Set| set.pin.is_some() && !set.field.as_ref().is_some_and(is_named);
+        let is_fixed = |set: &Set| set.pin.is_some() && !set.fields().any(is_named);
         let is_given = |set: &Set| set.kinds.as_ref().is_some_and(|kinds| kinds.made.is_some());
         self.preset.is_none() && self.sets.iter().all(|set| is_fixed(set) && !is_given(set))
     }
@@ -142,12 +140,15 @@ impl Query {
     /// The digests of all that its points are made of besides what it says: tables, then fields.
     pub fn digests(&self) -> impl Iterator<Item = &str> {
         let tables = self.sets.iter().map(|set| set.entry.digest.as_str());
-        let fields = self.sets.iter().map(|set| set.field.as_ref());
         let mixes = self
             .sets
             .iter()
             .filter_map(|set| set.kinds.as_ref()?.made.as_ref());
-        let fields = fields.map(|field| field.map_or("", |field| &field.digest));
+        let fields = self.sets.iter().flat_map(|set| {
+            let none = if set.field.is_none() { Some("") } else { None };
+            none.into_iter()
+                .chain(set.fields().map(|field| field.digest.as_str()))
+        });
         tables
             .chain(fields)
             .chain(mixes.map(|entry| entry.digest.as_str()))
@@ -173,7 +174,7 @@ impl Query {
         let is_plain = set.region.is_none() && set.clear_of.is_empty();
         // A look at a field of many parts takes longer.
         let is_quick = |field: &SetField| field.spec.parts() <= 4;
-        let is_plain = is_plain && set.field.as_ref().is_none_or(is_quick);
+        let is_plain = is_plain && set.fields().all(is_quick);
         is_plain && width * height <= 2048.0 && width.max(height) <= 128.0
     }
 }
@@ -189,18 +190,26 @@ impl Set {
 
     /// The points of a table at a spacing.
     #[must_use]
-    pub(super) fn points(&self, table: &Table, spacing: Spacing) -> PointSet {
-        let mut points = PointSet::new(table.clone()).placed(self.placement(spacing));
-        if let Some(kinds) = &self.kinds
-            && let Some((_, kind)) = kinds.only
-            && let Ok(of_kind) = points.clone().only(kind)
-        {
-            points = of_kind;
+    pub(super) fn points(&self, ready: &Ready, spacing: Spacing) -> PointSet {
+        let mut points = PointSet::new(ready.table.clone()).placed(self.placement(spacing));
+        if let Some(kinds) = &self.kinds {
+            points = kinds.of(points, ready);
         }
         match &self.field {
             Some(field) => points.in_field(field.spec.clone()),
             None => points,
         }
+    }
+
+    /// The fields that it depends on: its own, then those of its variants.
+    pub(super) fn fields(&self) -> impl Iterator<Item = &SetField> {
+        let of_variants = self.kinds.iter().flat_map(|kinds| &kinds.fields);
+        self.field.iter().chain(of_variants.map(|(_, field)| field))
+    }
+
+    /// Whether it has kinds whose shares vary from place to place.
+    pub(super) fn varies(&self) -> bool {
+        self.kinds.as_ref().is_some_and(Kinds::vary_by_place)
     }
 
     /// The share of the table's points that are of the set, without a field.

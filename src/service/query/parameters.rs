@@ -22,22 +22,9 @@ macro_rules! parameters {
         $($(#[$doc])* pub static $name: Parameter = $parameter;)+
 
         /// All parameters, in the order of help texts.
-        pub static PARAMETERS: &[&Parameter] = &[$(&$name,)+ #[cfg(test)] &ADDED];
+        pub static PARAMETERS: &[&Parameter] = &[$(&$name,)+ #[cfg(test)] &super::recipe::ADDED];
     };
 }
-
-/// A parameter that only tests have: they follow the recipe of ARCHITECTURE.md.
-#[cfg(test)]
-pub static ADDED: Parameter = Parameter {
-    name: "added",
-    about: "Made for a test.",
-    group: Group::Window,
-    shape: Shape::Integer { min: 1, max: 9 },
-    default: Some("1"),
-    example: "3",
-    echo: Some(|_| Some(Value::Integer(3))),
-    ..Parameter::PLAIN
-};
 
 /// The most periods of a list.
 pub const MOST_PERIODS: u64 = 1000;
@@ -326,6 +313,20 @@ parameters! {
         default: Some("chance"),
         example: "even",
         echo: Some(|set| Some(Value::Text(set.kinds.as_ref()?.spread.name().into()))),
+        ..Parameter::PLAIN
+    };
+    /// The fields of variants.
+    VARIANT_FIELDS = Parameter {
+        name: "variant_fields",
+        about: "The fields that multiply the weights of variants, from place to place. A variant without one has \
+                its weight; where all weights are zero, the fields do not count.",
+        group: Group::Attributes,
+        shape: Shape::Fields,
+        allowed: Some("name:field pairs joined by commas, such as birch:river, each name one of variants, each field \
+                       the name of a loaded one or in JSON also an object that describes one, with spread even"),
+        default: Some("none"),
+        example: "birch:forest",
+        echo: Some(|set| set.kinds.as_ref()?.echo_fields()),
         ..Parameter::PLAIN
     };
     /// The one variant wanted.

@@ -3,8 +3,20 @@
 
 use serde_json::json;
 
-use super::{Draft, Value, groups, parameters::ADDED, parse_pairs, read_body};
+use super::{Draft, Group, Parameter, Shape, Value, groups, parse_pairs, read_body};
 use crate::service::Catalog;
+
+/// A parameter that only tests have: they follow the recipe of ARCHITECTURE.md.
+pub(super) static ADDED: Parameter = Parameter {
+    name: "added",
+    about: "Made for a test.",
+    group: Group::Window,
+    shape: Shape::Integer { min: 1, max: 9 },
+    default: Some("1"),
+    example: "3",
+    echo: Some(|_| Some(Value::Integer(3))),
+    ..Parameter::PLAIN
+};
 
 #[test]
 fn addresses_and_bodies_read_it_and_say_what_is_allowed() {

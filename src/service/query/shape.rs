@@ -6,7 +6,7 @@ use serde_json::value::RawValue;
 
 use super::{
     Value, json,
-    lists::{Detail, finite, integer, integers, numbers, offsets, ranges, weights},
+    lists::{Detail, fields, finite, integer, integers, numbers, offsets, ranges, weights},
     number, unknown,
     value::OTHER_TYPE,
 };
@@ -76,6 +76,8 @@ pub enum Shape {
     Pattern(&'static str),
     /// A field: a name, or in JSON also a description.
     Field,
+    /// Names with a field each: by name, or in JSON also described.
+    Fields,
     /// Any text: whether it is right shows when it is looked up.
     Text,
 }
@@ -129,6 +131,9 @@ impl Shape {
             Self::Field => {
                 "the name of a loaded field, or in JSON an object that describes one".into()
             }
+            Self::Fields => {
+                "name:field pairs, joined by commas, or in JSON an object of fields by name".into()
+            }
             Self::Text => "text".into(),
         }
     }
@@ -144,6 +149,7 @@ impl Shape {
                 | Self::Choice(_)
                 | Self::Format
                 | Self::Field
+                | Self::Fields
         )
     }
 
@@ -177,6 +183,7 @@ impl Shape {
             Self::Weights => Value::Weights(weights(text)?),
             Self::Ranges => Value::Ranges(ranges(text)?),
             Self::Field => Value::Field(Document::Name(text.into()).into()),
+            Self::Fields => Value::Fields(fields(text)?),
             Self::Choice(_) | Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text => {
                 Value::Text(text.into())
             }
@@ -228,6 +235,7 @@ impl Shape {
             (Self::Weights, _) => Value::Weights(json::weights(json)?),
             (Self::Ranges, _) => Value::Ranges(json::ranges(json)?),
             (Self::Field, _) => return Err("must be a name".into()),
+            (Self::Fields, _) => return Err("must be an object of fields by name".into()),
             (Self::Quadratic, _) if is_number => Value::Text(json.get().into()),
             (
                 Self::Choice(_) | Self::Format | Self::Quadratic | Self::Pattern(_) | Self::Text,
@@ -323,6 +331,11 @@ impl Shape {
                 let mut sorted = ranges.clone();
                 sorted.sort_by(|a, b| a.0.cmp(&b.0));
                 Ok(Value::Ranges(sorted))
+            }
+            (Self::Fields, Value::Fields(fields)) => {
+                let mut sorted = fields.clone();
+                sorted.sort_by(|a, b| a.0.cmp(&b.0));
+                Ok(Value::Fields(sorted))
             }
             (Self::Switch, Value::Switch(_))
             | (Self::Names { .. }, Value::Names(_))

@@ -30,6 +30,8 @@ pub enum Value {
     Text(String),
     /// A field.
     Field(Arc<Document>),
+    /// Fields by name, sorted by name.
+    Fields(Vec<(String, Arc<Document>)>),
 }
 
 /// What is wrong with a value that is not of the shape's type: only programs can make one.
@@ -58,10 +60,33 @@ impl Value {
                 listed(ranges.iter().map(range).collect())
             }
             Self::Text(text) => text.clone(),
-            Self::Field(field) => match &**field {
-                Document::Name(name) => name.clone(),
-                field => serde_json::to_string(field).unwrap_or_default(),
-            },
+            Self::Field(field) => field_text(field),
+            Self::Fields(fields) => {
+                let pair = |(name, field): &(String, Arc<Document>)| {
+                    format!("{name}:{}", field_text(field))
+                };
+                listed(fields.iter().map(pair).collect())
+            }
+        }
+    }
+}
+
+/// A field as text: its name, or its description as JSON.
+fn field_text(field: &Document) -> String {
+    match field {
+        Document::Name(name) => name.clone(),
+        field => serde_json::to_string(field).unwrap_or_default(),
+    }
+}
+
+/// A field in an answer: by its name, or described.
+struct Written<'a>(&'a Document);
+
+impl Serialize for Written<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0 {
+            Document::Name(name) => name.serialize(serializer),
+            field => field.serialize(serializer),
         }
     }
 }
@@ -93,6 +118,7 @@ read_as! {
     Ranges as Vec<(String, [f64; 2])>;
     Text as String;
     Field as Arc<Document>;
+    Fields as Vec<(String, Arc<Document>)>;
 }
 
 impl<const N: usize> TryFrom<&Value> for [f64; N] {
@@ -128,10 +154,10 @@ impl Serialize for Value {
                 map.end()
             }
             Self::Text(text) => text.serialize(serializer),
-            Self::Field(field) => match &**field {
-                Document::Name(name) => name.serialize(serializer),
-                field => field.serialize(serializer),
-            },
+            Self::Field(field) => Written(field).serialize(serializer),
+            Self::Fields(fields) => {
+                serializer.collect_map(fields.iter().map(|(name, field)| (name, Written(field))))
+            }
         }
     }
 }

@@ -67,6 +67,15 @@ impl Values {
             let value = field.map(|field| Value::Field(field.into()));
             return self.add(parameter, value, || shown(json).into());
         }
+        if matches!(parameter.shape, Shape::Fields) && json.get().starts_with('{') {
+            let path = format!("{}{name}", self.path);
+            let fields = super::json::fields(&path, json, parameter.allowed());
+            let value = fields.and_then(|fields| {
+                let checked = parameter.shape.check(Value::Fields(fields));
+                checked.map_err(|detail| self.described(parameter, shown(json), detail).into())
+            });
+            return self.add(parameter, value, || shown(json).into());
+        }
         let value = parameter.shape.read_json(json);
         let fault = |detail: Cow<'static, str>| {
             // Some programs write what they leave open.

@@ -39,7 +39,7 @@ def tidy_set(query, is_text, amounts=AMOUNTS):
     query[amount] = 1 + int(number(query[amount], 0, 300)) if amount == "count" else number(
         query[amount], 0.5, 4
     )
-    for name in ["alpha", "map", "table", "cursor", "preset", "field"]:
+    for name in ["alpha", "map", "table", "cursor", "preset", "field", "variant_fields"]:
         query.pop(name, None)
     if "profile" in query:
         query["profile"] = "blue" if amount == "min_distance" else choose(query["profile"], PROFILES)
@@ -137,7 +137,7 @@ def tidy_body(name, body):
     if is_layered:
         for member in AMOUNTS + ["profile", "alpha", "map", "table", "seed", "warp", "keep"]:
             body.pop(member, None)
-        for member in ["attributes", "variants", "scale_range", "scale_ranges", "spread", "only"]:
+        for member in ["attributes", "variants", "scale_range", "scale_ranges", "spread", "only", "variant_fields"]:
             body.pop(member, None)
         for member in ["cursor", "preset", "field"]:
             body.pop(member, None)

@@ -231,7 +231,11 @@ fn the_page_on_kinds_shows_what_its_examples_print_and_draw() {
     let folder = tempfile::tempdir().expect("a folder");
     let daemon = Daemon::built_in();
     check_in("docs/kinds.md", folder.path(), &daemon);
-    compare(folder.path(), "kinds", &["chance.png", "even.png"]);
+    compare(
+        folder.path(),
+        "kinds",
+        &["chance.png", "even.png", "river.png"],
+    );
 }
 
 #[test]

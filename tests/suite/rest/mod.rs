@@ -25,3 +25,4 @@ mod presets;
 mod profiles;
 mod regions;
 mod single_points;
+mod varying_kinds;

@@ -45,7 +45,7 @@ pub use cursor::Cursor;
 pub use field::{Edges, Field, FieldSpec, Filter, Marks, Noise, Pixels, Raster, Terrain};
 pub use iter::Members;
 pub use kernel::{Backend, F32, F64, Format, Offsets, Points};
-pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing};
+pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing, VaryingKinds};
 pub use member::Member;
 pub use near::{Clearance, LeastDistance};
 pub use periodic::{PeriodicBlocks, PeriodicPlan, PeriodicSet};

@@ -160,7 +160,7 @@ impl Scope {
             Some(chunk) => Corner::of_chunk(lattice, *chunk),
             None => Corner::of_box(lattice, region, [x.bounds.start, y.bounds.start]),
         };
-        let sieve = if is_box && mask.clear.is_empty() {
+        let sieve = if is_box && mask.clear.is_empty() && !lattice.picks() {
             None
         } else {
             let area = area.map(Area::around_chunks);

@@ -25,7 +25,7 @@ use crate::error::{Error, ErrorKind};
 pub const LADDER_BITS: u32 = 8;
 
 /// What a fixed-point coordinate of a table is, in units of a ladder's vectors.
-const SHIFT: u32 = FRACTION_BITS - LADDER_BITS;
+pub(crate) const SHIFT: u32 = FRACTION_BITS - LADDER_BITS;
 
 /// The unit of [`Rung::event`]: a 255th of the way from one level to the next.
 const EVENT_UNITS: f64 = 255.0;
@@ -65,17 +65,25 @@ pub struct Rung {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ladder {
-    levels: Vec<Level>,
+    pub(super) levels: Vec<Level>,
+    /// The rungs of all levels, one after another.
+    pub(super) rungs: Vec<Rung>,
     /// For each sixteenth of an octave of shares, from 1 down, the first level that may lie below it.
     hints: Vec<u16>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-struct Level {
+pub(super) struct Level {
     /// λ, in units of 2⁻³².
     share: u32,
-    /// By position in the order of blocks.
-    rungs: Vec<Rung>,
+    /// The same as a number.
+    least: f64,
+    /// Where its rungs start, and their number: by position in the order of blocks.
+    pub(super) first: u32,
+    pub(super) length: u32,
+    /// The share of the level above, and the units of a stage's way down from there that a share of 1 takes.
+    pub(super) above: f64,
+    pub(super) per_share: f64,
     /// The largest component of a vector of this level or one above it.
     reach: u16,
 }
@@ -105,22 +113,36 @@ impl Stage {
         spread: 0.0,
     };
 
-    /// The stage with events that last longer by twice a difference of shares.
+    /// The stage with events that begin earlier and end later, in units of its way.
     #[inline(always)]
-    pub(crate) const fn spread_by(self, share: f64) -> Self {
-        Self {
-            spread: self.per_share * share,
-            ..self
-        }
+    pub(crate) const fn spread_by(self, spread: f64) -> Self {
+        Self { spread, ..self }
+    }
+
+    /// The units of the way that a share of 1 takes; 0 where no event goes on.
+    #[inline(always)]
+    pub(crate) const fn per_share(self) -> f64 {
+        self.per_share
     }
 
     /// The part of a block's move that is done.
     #[inline(always)]
     fn part(self, event: [u8; 2]) -> f64 {
-        let start = (f64::from(event[0]) - self.spread).max(0.0);
-        let end = (f64::from(event[1]) + self.spread).min(EVENT_UNITS);
-        ((self.way - start) / (end - start)).clamp(0.0, 1.0)
+        part([self.way, self.spread], event.map(f64::from))
     }
+}
+
+/// The part of a block's move that is done at a place on the way down, with an event that begins earlier and ends
+/// later by `spread`.
+#[inline(always)]
+pub(crate) fn part([way, spread]: [f64; 2], event: [f64; 2]) -> f64 {
+    let start = event[0] - spread;
+    let start = if start > 0.0 { start } else { 0.0 };
+    let end = event[1] + spread;
+    let end = if end < EVENT_UNITS { end } else { EVENT_UNITS };
+    let part = (way - start) / (end - start);
+    let part = if part > 0.0 { part } else { 0.0 };
+    if part < 1.0 { part } else { 1.0 }
 }
 
 impl Ladder {
@@ -143,27 +165,24 @@ impl Ladder {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn new(levels: Vec<(f64, Vec<Rung>)>) -> Result<Self, Error> {
-        let level = |(share, rungs): (f64, Vec<Rung>)| Level {
-            // A conversion outside 32 bits saturates, and is refused below.
-            share: libm::round(share * SHARE_UNITS) as u32,
-            rungs,
-            reach: 0,
-        };
-        Self::of_levels(levels.into_iter().map(level).collect())
+        // A conversion outside 32 bits saturates, and is refused below.
+        let raw = |(share, rungs)| (libm::round(share * SHARE_UNITS) as u32, rungs);
+        Self::from_raw(levels.into_iter().map(raw).collect())
     }
 
-    fn of_levels(mut levels: Vec<Level>) -> Result<Self, Error> {
+    /// The ladder of levels in the file's numbers.
+    pub(super) fn from_raw(levels: Vec<(u32, Vec<Rung>)>) -> Result<Self, Error> {
         let refused = |value: alloc::string::String, allowed: &'static str| {
             Err(Error::new(ErrorKind::Table, "ladder", value, allowed))
         };
         if !(1..=Self::MAX_LEVELS).contains(&levels.len()) {
             return refused(format!("{} levels", levels.len()), "1 to 512 levels");
         }
-        let falls = levels.windows(2).all(|pair| pair[0].share > pair[1].share);
+        let falls = levels.windows(2).all(|pair| pair[0].0 > pair[1].0);
         if !falls
             || levels
                 .iter()
-                .any(|level| [0, u32::MAX].contains(&level.share))
+                .any(|(share, _)| [0, u32::MAX].contains(share))
         {
             return refused(
                 "not in order".into(),
@@ -175,28 +194,46 @@ impl Ladder {
             rung.event[0] < rung.event[1]
                 && rung.vector.iter().all(|v| (1 - limit..limit).contains(v))
         };
-        let mut rungs = levels.iter().flat_map(|level| &level.rungs);
-        if let Some(rung) = rungs.find(|rung| !is_valid(rung)) {
+        let mut all = levels.iter().flat_map(|(_, rungs)| rungs);
+        if let Some(rung) = all.find(|rung| !is_valid(rung)) {
             let allowed =
                 "events that start before they end, and vectors shorter than 127 grid units";
             return refused(format!("{rung:?}"), allowed);
         }
-        let mut reach = 0;
-        for level in &mut levels {
-            let components = level.rungs.iter().flat_map(|rung| rung.vector);
+        Ok(Self::of_valid(&levels))
+    }
+
+    fn of_valid(raw: &[(u32, Vec<Rung>)]) -> Self {
+        let (mut reach, mut above) = (0, 1.0);
+        let mut levels = Vec::with_capacity(raw.len());
+        let mut all = Vec::with_capacity(raw.iter().map(|(_, rungs)| rungs.len()).sum());
+        for (share, rungs) in raw {
+            let components = rungs.iter().flat_map(|rung| rung.vector);
             reach = components.fold(reach, |reach: u16, v| reach.max(v.unsigned_abs()));
-            level.reach = reach;
+            let least = f64::from(*share) / SHARE_UNITS;
+            levels.push(Level {
+                share: *share,
+                least,
+                first: all.len() as u32,
+                length: rungs.len() as u32,
+                above,
+                per_share: EVENT_UNITS / (above - least),
+                reach,
+            });
+            all.extend(rungs);
+            above = least;
         }
         let hints = (0..HINTS).map(|bucket| {
             // Shares of this bucket are below its upper end.
             let high = (1.0f64.to_bits() >> HINT_SHIFT) - bucket;
             let most = f64::from_bits(high << HINT_SHIFT);
-            levels.partition_point(|level| level.share() >= most) as u16
+            levels.partition_point(|level| level.least >= most) as u16
         });
-        Ok(Self {
+        Self {
             hints: hints.collect(),
             levels,
-        })
+            rungs: all,
+        }
     }
 
     /// Refuses a ladder whose levels do not have the blocks that an order leaves.
@@ -204,12 +241,12 @@ impl Ladder {
         let mut before = 1.0;
         for (level, k) in self.levels.iter().zip(1..) {
             let expected = order.alive(before);
-            if level.rungs.len() != expected {
-                let value = format!("{} vectors at level {k}", level.rungs.len());
+            if level.length as usize != expected {
+                let value = format!("{} vectors at level {k}", level.length);
                 let allowed = format!("{expected}, the number of blocks left above it");
                 return Err(Error::new(ErrorKind::Table, "ladder", value, allowed));
             }
-            before = level.share();
+            before = level.least;
         }
         Ok(())
     }
@@ -225,7 +262,7 @@ impl Ladder {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn shares(&self) -> impl Iterator<Item = f64> + '_ {
-        self.levels.iter().map(Level::share)
+        self.levels.iter().map(|level| level.least)
     }
 
     /// The share of the last level. Below it points return to where they are in the full set, while the share
@@ -240,7 +277,7 @@ impl Ladder {
     /// ```
     #[must_use]
     pub fn least_share(&self) -> f64 {
-        self.levels.last().map_or(1.0, Level::share)
+        self.levels.last().map_or(1.0, |level| level.least)
     }
 
     /// The rungs of level `k`, from 1 on, by position in the order of blocks; none past the last level.
@@ -258,23 +295,19 @@ impl Ladder {
     #[inline]
     pub fn level(&self, k: usize) -> &[Rung] {
         let level = k.checked_sub(1).and_then(|at| self.levels.get(at));
-        level.map_or(&[], |level| &level.rungs)
+        level.map_or(&[], |level| self.of(level))
+    }
+
+    /// The rungs of a level.
+    #[inline(always)]
+    fn of(&self, level: &Level) -> &[Rung] {
+        &self.rungs[level.first as usize..][..level.length as usize]
     }
 
     /// The place of a share between the levels.
     #[inline]
     pub(crate) fn stage(&self, share: f64) -> Stage {
-        // The highest bits of a number below 1 fall as it falls.
-        let high = 1.0f64.to_bits() - 1;
-        let bucket = (high >> HINT_SHIFT).saturating_sub(share.to_bits() >> HINT_SHIFT) as usize;
-        let mut below = usize::from(self.hints[bucket.min(self.hints.len() - 1)]);
-        while self
-            .levels
-            .get(below)
-            .is_some_and(|level| level.share() > share)
-        {
-            below += 1;
-        }
+        let below = self.below(share);
         let Some(level) = self.levels.get(below) else {
             let least = self.least_share();
             return Stage {
@@ -284,17 +317,13 @@ impl Ladder {
                 ..Stage::FULL
             };
         };
-        let above = below
-            .checked_sub(1)
-            .map_or(1.0, |at| self.levels[at].share());
-        if share >= above {
+        if share >= level.above {
             return Stage::FULL;
         }
-        let per_share = EVENT_UNITS / (above - level.share());
         Stage {
             below: below + 1,
-            way: (above - share) * per_share,
-            per_share,
+            way: (level.above - share) * level.per_share,
+            per_share: level.per_share,
             ..Stage::FULL
         }
     }
@@ -324,43 +353,28 @@ impl Ladder {
         let Some(&rung) = self.level(below).get(position) else {
             return self.last(below, position, full);
         };
-        let to = widened(rung);
         let from = match below {
             1 => full,
             _ => widened(self.level(below - 1)[position]),
         };
-        between(from, to, stage.part(rung.event))
-    }
-
-    /// The vectors of the levels above and below a stage at a position, and the event, if both levels have the
-    /// block; the first is arbitrary above level 1. Looking these up for many points before any is used lets
-    /// memory answer many at once.
-    #[inline(always)]
-    pub(crate) fn rungs(&self, stage: Stage, position: usize) -> Option<[Rung; 2]> {
-        let below = stage.below.checked_sub(1)?;
-        let to = *self.levels.get(below)?.rungs.get(position)?;
-        let above = below.saturating_sub(1);
-        Some([*self.levels[above].rungs.get(position)?, to])
-    }
-
-    /// The [displacement](Self::displacement) by the rungs that were looked up.
-    #[inline(always)]
-    pub(crate) fn displacement_by(
-        &self,
-        stage: Stage,
-        rungs: Option<[Rung; 2]>,
-        position: usize,
-        full: Displacement,
-    ) -> Displacement {
-        let Some([above, rung]) = rungs.filter(|_| stage.back <= 0.0) else {
-            return self.displacement(stage, position, full);
-        };
-        let from = if stage.below == 1 {
-            full
-        } else {
-            widened(above)
-        };
         between(from, widened(rung), stage.part(rung.event))
+    }
+
+    /// The number of levels above a share, the table itself not included.
+    #[inline(always)]
+    pub(super) fn below(&self, share: f64) -> usize {
+        // The highest bits of a number below 1 fall as it falls.
+        let high = 1.0f64.to_bits() - 1;
+        let bucket = (high >> HINT_SHIFT).saturating_sub(share.to_bits() >> HINT_SHIFT) as usize;
+        let mut below = usize::from(self.hints[bucket.min(self.hints.len() - 1)]);
+        while self
+            .levels
+            .get(below)
+            .is_some_and(|level| level.least > share)
+        {
+            below += 1;
+        }
+        below
     }
 
     /// The displacement of a block at the last level up to `below` that knows it.
@@ -372,23 +386,14 @@ impl Ladder {
 
     /// About the memory that the ladder holds, in bytes.
     pub(super) fn memory_bytes(&self) -> usize {
-        let rungs = self.levels.iter().map(|level| size_of_val(&*level.rungs));
-        rungs.sum::<usize>() + size_of_val(&*self.levels)
+        size_of_val(&*self.rungs) + size_of_val(&*self.levels)
     }
 
     /// The levels in the file's numbers.
     pub(super) fn raw(&self) -> impl Iterator<Item = (u32, &[Rung])> {
-        self.levels.iter().map(|level| (level.share, &*level.rungs))
-    }
-
-    /// The ladder of levels in the file's numbers.
-    pub(super) fn from_raw(levels: Vec<(u32, Vec<Rung>)>) -> Result<Self, Error> {
-        let level = |(share, rungs)| Level {
-            share,
-            rungs,
-            reach: 0,
-        };
-        Self::of_levels(levels.into_iter().map(level).collect())
+        self.levels
+            .iter()
+            .map(|level| (level.share, self.of(level)))
     }
 }
 
@@ -400,15 +405,9 @@ const HINTS: u64 = 160;
 /// The unit of a level's share.
 const SHARE_UNITS: f64 = 4_294_967_296.0;
 
-impl Level {
-    fn share(&self) -> f64 {
-        f64::from(self.share) / SHARE_UNITS
-    }
-}
-
 /// A part of the way from one vector to another.
 #[inline(always)]
-fn between(from: Displacement, to: Displacement, part: f64) -> Displacement {
+pub(crate) fn between(from: Displacement, to: Displacement, part: f64) -> Displacement {
     let along = |from: i32, to: i32| from + ((f64::from(to) - f64::from(from)) * part) as i32;
     [along(from[0], to[0]), along(from[1], to[1])]
 }

@@ -204,6 +204,11 @@ impl Order {
         floors.partition_point(|&floor| floor < share)
     }
 
+    /// The number of positions of which all points have ranks below `share`.
+    pub(crate) fn whole(&self, share: f64) -> usize {
+        self.floors[1..].partition_point(|&end| end <= share)
+    }
+
     /// The rank of a point: its block's position, and where its dX lies in the interval. In [0, 1).
     #[inline]
     pub(crate) fn rank(&self, position: usize, offset: u64, length: u64) -> f64 {

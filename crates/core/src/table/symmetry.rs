@@ -45,17 +45,6 @@ impl Symmetry {
         if self.is_swapped { [y, x] } else { [x, y] }
     }
 
-    /// The vector of the table that is this one, turned.
-    #[inline(always)]
-    pub(super) fn unturn(self, [x, y]: Displacement) -> Displacement {
-        let signed = |v: i32, is_reversed: bool| if is_reversed { -v } else { v };
-        let [x, y] = [
-            signed(x, self.is_reversed[0]),
-            signed(y, self.is_reversed[1]),
-        ];
-        if self.is_swapped { [y, x] } else { [x, y] }
-    }
-
     /// A vector of the table, turned.
     #[inline(always)]
     pub(super) fn turn(self, [x, y]: Displacement) -> Displacement {

@@ -3,7 +3,7 @@
 use alloc::sync::Arc;
 
 use super::{
-    Displacement, Labels, Ladder, Order, Rung, Table,
+    Displacement, Labels, Ladder, Order, Table,
     ladder::Stage,
     symmetry::{Symmetry, Turned, Upright},
 };
@@ -78,18 +78,10 @@ impl TurnedTable {
             .turn(ladder.displacement(stage, position, full))
     }
 
-    /// The same for a block whose displacement in the full set and whose [rungs](Ladder::rungs) are known.
+    /// A vector of the table, turned.
     #[inline(always)]
-    pub(crate) fn moved_from(
-        &self,
-        ladder: &Ladder,
-        (stage, rungs): (Stage, Option<[Rung; 2]>),
-        position: usize,
-        full: Displacement,
-    ) -> Displacement {
-        let full = self.symmetry.unturn(full);
-        self.symmetry
-            .turn(ladder.displacement_by(stage, rungs, position, full))
+    pub(crate) fn turn(&self, vector: Displacement) -> Displacement {
+        self.symmetry.turn(vector)
     }
 
     /// The table as it is.

@@ -1,7 +1,7 @@
 //! Where a seed puts a point, written from "A seed" in ARCHITECTURE.md and not from the library's code:
 //! wide integers, one step after another, nothing kept.
 
-use strew_core::{Field, PointId, PointSet, Seed, Table};
+use strew_core::{Field, Keep, PointId, PointSet, Seed, Table};
 
 const KNOT: i128 = 1 << 27;
 
@@ -144,6 +144,49 @@ pub fn kind(set: &PointSet, id: PointId) -> Option<u8> {
     let mut split = split.filter(|split| split.block as usize == source && beyond(split.offset));
     let label = mix.labels()[source];
     Some(split.next().map_or(label, |split| split.kind))
+}
+
+/// The kind of a point of the pattern where shares vary: written from "Kinds" in ARCHITECTURE.md. `order` is the
+/// table of the second order, `weights` has the part and the field of each kind.
+pub fn varying_kind(
+    set: &PointSet,
+    order: &Table,
+    weights: &[(f64, Option<&dyn Field>)],
+    id: PointId,
+) -> Option<u8> {
+    let second = rank(&PointSet::new(order.clone()).placed(set.placement()), id)?;
+    let at = place(
+        &set.clone().placed(set.placement().with_keep(Keep::ALL)),
+        id,
+    )?;
+    let weight = |&(part, field): &(f64, Option<&dyn Field>)| {
+        let share = field.map_or(1.0, |field| field.share(at));
+        if share > 0.0 {
+            part * share.min(1.0)
+        } else {
+            0.0
+        }
+    };
+    let mut all: Vec<f64> = weights.iter().map(weight).collect();
+    if all.iter().all(|weight| *weight == 0.0) {
+        all = weights.iter().map(|(part, _)| *part).collect();
+    }
+    // The rarest first, the next last, and so on.
+    let (mut first, mut last) = (Vec::new(), Vec::new());
+    for kind in 0..all.len() {
+        if kind % 2 == 0 { &mut first } else { &mut last }.push(kind);
+    }
+    first.extend(last.iter().rev());
+    let total = first.iter().fold(0.0, |sum, &kind| sum + all[kind]);
+    let mark = (second * total).min(total.next_down());
+    let mut end = 0.0;
+    for kind in first {
+        end += all[kind];
+        if mark < end {
+            return Some(kind as u8);
+        }
+    }
+    None
 }
 
 /// The place of a point of the lattice, if the set has one there.

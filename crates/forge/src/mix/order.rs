@@ -11,7 +11,7 @@ use strew_core::{
     table::{Mix, Ranks},
 };
 
-use super::press::longest;
+use super::{fullest::Fullest, press::longest};
 use crate::{
     ForgeError,
     ladder::{Ground, moves_of},
@@ -213,13 +213,14 @@ impl Leaving {
             sum / self.ground.share(block)
         };
         let mut potential: Vec<f64> = lists.par_iter().enumerate().map(of_block).collect();
+        let mut fullest = Fullest::new(&self.members, &potential);
         let mut first = true;
         while (self.left > target || first) && !self.is_done() {
             first = false;
-            let Some((kind, at)) = self.fullest(&potential) else {
+            let Some((kind, at)) = self.leaving(&fullest) else {
                 return;
             };
-            let block = self.members[kind].swap_remove(at) as usize;
+            let block = fullest.take(&mut self.members, kind, at);
             let share = self.ground.share(block);
             self.is_left[block] = false;
             self.left -= share;
@@ -229,13 +230,14 @@ impl Leaving {
                 let to = pair.to as usize;
                 if self.is_left[to] {
                     potential[to] -= self.press(&law, block, pair) / self.ground.share(to);
+                    fullest.set(self.labels[to].into(), to, potential[to]);
                 }
             }
         }
     }
 
     /// The block of the highest potential among the kinds that may lose one: its kind, and its place there.
-    fn fullest(&self, potential: &[f64]) -> Option<(usize, usize)> {
+    fn leaving(&self, fullest: &Fullest) -> Option<(usize, usize)> {
         let excess = |kind: usize| {
             let share = self.shares[kind];
             (self.areas[kind] / self.left - share) / SLACK[0].min(SLACK[1] * share)
@@ -243,9 +245,9 @@ impl Leaving {
         let kinds = (0..self.shares.len()).filter(|&kind| !self.members[kind].is_empty());
         let most = kinds.clone().map(excess).fold(f64::NEG_INFINITY, f64::max);
         let may_lose = kinds.filter(|&kind| excess(kind) >= most.min(-1.0));
-        let places = may_lose.flat_map(|kind| {
-            let members = self.members[kind].iter().enumerate();
-            members.map(move |(at, &block)| (potential[block as usize], kind, at))
+        let places = may_lose.filter_map(|kind| {
+            let (potential, at) = fullest.of_kind(kind)?;
+            Some((potential, kind, at))
         });
         // The first of equal ones.
         let higher = |best: (f64, usize, usize), next: (f64, usize, usize)| {

@@ -19,7 +19,7 @@ use super::{
 use crate::service::Fault;
 use object::Object;
 
-pub(super) use object::{ranges, weights};
+pub(super) use object::{fields, ranges, weights};
 pub use region::read_region;
 pub use schema::RegionSchema;
 

@@ -1,9 +1,15 @@
 //! Objects and arrays of JSON, read one level at a time.
 
-use std::fmt;
+use std::{fmt, sync::Arc};
 
 use serde::de::{Deserializer as _, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::{Deserializer, value::RawValue};
+
+use crate::service::{
+    Fault,
+    field::{self, Document},
+    query::{Checked, all, values::shown},
+};
 
 /// The most members of an object: more than the largest valid one has.
 const MOST_MEMBERS: usize = 300;
@@ -147,6 +153,24 @@ pub(in crate::service::query) fn ranges(
         Ok((name.to_owned(), range))
     };
     Object::read(json)?.members().map(read).collect()
+}
+
+/// Fields: an object of fields by name. `path` is put before the names in faults.
+///
+/// # Errors
+/// Every fault.
+pub(in crate::service::query) fn fields(
+    path: &str,
+    json: &RawValue,
+    allowed: String,
+) -> Checked<Vec<(String, Arc<Document>)>> {
+    let object = Object::read(json);
+    let object = object.map_err(|detail| Fault::new(path, shown(json), detail, allowed))?;
+    let read = |(name, json): (&str, &RawValue)| {
+        let field = field::read_json(&format!("{path}.{name}"), json.get())?;
+        Ok((name.to_owned(), Arc::new(field)))
+    };
+    all(object.members().map(read))
 }
 
 /// Two coordinates; further numbers, an elevation, do not matter.

@@ -16,7 +16,7 @@ use crate::{
         lattice::{Lattice, Point, PointId, kind, rank},
         seed::Seed,
     },
-    table::{Table, TurnedTable},
+    table::{Mix, Shares, Table, TurnedTable},
 };
 
 /// The values of one attribute for some points.
@@ -103,6 +103,8 @@ pub struct BoundAttributes {
 #[derive(Clone, Debug)]
 enum Indexed {
     Plane(TurnedTable, Pattern),
+    /// In the plane, with kinds whose shares vary.
+    Varied(Arc<Lattice>),
     Other(Arc<dyn Indices>),
 }
 
@@ -118,6 +120,7 @@ impl Indexed {
     fn rank(&self, id: PointId) -> f64 {
         match self {
             Self::Plane(table, pattern) => rank(table, pattern, id),
+            Self::Varied(lattice) => lattice.rank(id),
             Self::Other(indices) => indices.rank(id),
         }
     }
@@ -125,6 +128,7 @@ impl Indexed {
     fn kind(&self, id: PointId) -> Option<u8> {
         match self {
             Self::Plane(table, pattern) => kind(table, pattern, id),
+            Self::Varied(lattice) => lattice.kind_of(id),
             Self::Other(indices) => indices.kind(id),
         }
     }
@@ -182,12 +186,12 @@ impl<N: Fn(u64) -> f64> PlainLoop for Hashed<'_, N> {
 
 impl BoundAttributes {
     pub(crate) fn new(attributes: &Attributes, lattice: &Lattice) -> Result<Self, Error> {
-        let indexed = Indexed::Plane(lattice.turned.clone(), lattice.pattern);
-        Self::indexed(
-            attributes,
-            (&lattice.table, lattice.placement.seed),
-            indexed,
-        )
+        let indexed = match lattice.is_varied() {
+            true => Indexed::Varied(Arc::new(lattice.clone())),
+            false => Indexed::Plane(lattice.turned.clone(), lattice.pattern),
+        };
+        let seed = lattice.placement.seed;
+        Self::indexed(attributes, (lattice.kind_parts(), seed), indexed)
     }
 
     /// The attributes of a set that is not one of the plane.
@@ -196,12 +200,14 @@ impl BoundAttributes {
         of: (&Table, Seed),
         indices: Arc<dyn Indices>,
     ) -> Result<Self, Error> {
-        Self::indexed(attributes, of, Indexed::Other(indices))
+        let (table, seed) = of;
+        let shares = table.mix().map(Mix::shares);
+        Self::indexed(attributes, (shares, seed), Indexed::Other(indices))
     }
 
     fn indexed(
         attributes: &Attributes,
-        (table, seed): (&Table, Seed),
+        (shares, seed): (Option<&Shares>, Seed),
         indexed: Indexed,
     ) -> Result<Self, Error> {
         for attribute in attributes.as_slice() {
@@ -213,7 +219,7 @@ impl BoundAttributes {
                 },
                 _ => None,
             };
-            even.map_or(Ok(()), |even| even.check(table))?;
+            even.map_or(Ok(()), |even| even.check(shares))?;
         }
         let bind = |attribute: &Attribute| Bound {
             key: key(seed, attribute.code()),

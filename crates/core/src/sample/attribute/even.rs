@@ -5,7 +5,7 @@ use alloc::{sync::Arc, vec::Vec};
 use super::Variants;
 use crate::{
     error::{Error, ErrorKind},
-    table::{Shares, Table},
+    table::Shares,
 };
 
 /// Variants of which each is spread evenly, as the kinds of a table with a [mix](crate::table::Mix) of their
@@ -133,12 +133,12 @@ impl EvenVariants {
         u8::try_from(kind).ok()
     }
 
-    /// Refuses a table whose points are not of these kinds.
-    pub(super) fn check(&self, table: &Table) -> Result<(), Error> {
+    /// Refuses points that are not of these kinds.
+    pub(super) fn check(&self, shares: Option<&Shares>) -> Result<(), Error> {
         let allowed = alloc::format!("those of a mix in the ratio {}", self.shares);
-        let value = match table.mix() {
-            Some(mix) if *mix.shares() == self.shares => return Ok(()),
-            Some(mix) => alloc::format!("in the ratio {}", mix.shares()),
+        let value = match shares {
+            Some(shares) if *shares == self.shares => return Ok(()),
+            Some(shares) => alloc::format!("in the ratio {shares}"),
             None => "none".into(),
         };
         Err(Error::new(

@@ -9,7 +9,7 @@ use crate::{
     pattern::Axis,
     sample::{
         area::Area,
-        lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PrefixCounts, Span},
+        lattice::{BAND_WIDTH, Columns, Lattice, PATCH_HEIGHT, Patch, PointId, PrefixCounts, Span},
         sieve::{LocalSieve, Run, STRIP_ROWS, Scale, Sieve},
     },
     stop::Stop,
@@ -132,7 +132,9 @@ impl Edges<'_> {
                     let [dx, dy] = vectors[column.block as usize];
                     let x = patch.relative(Axis::X, column.at) + dx;
                     let place = patch.place([x, row + dy]);
-                    let passes = patch.holds(place) && self.sieve.passes(run, scale.world(place));
+                    let id = PointId { x: column.at, y };
+                    let passes =
+                        patch.holds(place) && self.sieve.passes(run, id, scale.world(place));
                     count += usize::from(passes);
                 }
             }

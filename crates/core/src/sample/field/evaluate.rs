@@ -168,9 +168,7 @@ impl Field for FieldSpec {
                 widened([low.min(high), low.max(high)])
             }
             Shape::Radial { center, slide } => {
-                let (min, max) = (within.min(), within.max());
-                let near = [0, 1].map(|i| (min[i] - center[i]).max(center[i] - max[i]).max(0.0));
-                let far = [0, 1].map(|i| (max[i] - center[i]).max(center[i] - min[i]));
+                let (near, far) = beside(*center, within);
                 slide.bounds([length(near[0], near[1]), length(far[0], far[1])])
             }
             Shape::Distance(measure, slide) => slide.bounds(measure.bounds(within)),
@@ -210,12 +208,33 @@ impl Field for FieldSpec {
                 let change = (shares[1] - shares[0]).abs() * (1.0 + 1e-9);
                 per.map(|per| per.abs() * change)
             }
+            Shape::Radial { center, slide } => {
+                let (near, far) = beside(*center, within);
+                let least = length(near[0], near[1]);
+                let slope = slide.slope([least, length(far[0], far[1])]);
+                // Along an axis the distance changes by the part of it that lies along the axis.
+                far.map(|v| slope * (v.abs() / least).min(1.0))
+            }
+            Shape::Distance(measure, slide) => [slide.slope(measure.bounds(within)); 2],
+            Shape::Noise(noise) => noise.slopes(),
             Shape::Raster(raster) => raster.slopes(within),
+            Shape::Terrain(terrain, slide) => terrain.slopes(slide, within),
             // Shares are at most 1.
             Shape::Multiply(parts) => over(parts, |a, b| a + b),
             Shape::Min(parts) | Shape::Max(parts) => over(parts, f64::max),
             Shape::Invert(part) => part.slopes(within),
-            _ => [f64::INFINITY; 2],
+            Shape::Curve(part, points) => {
+                let [low, high] = part.bounds(within);
+                let pairs = points.windows(2);
+                let touched = pairs.filter(|pair| pair[0][0] <= high && low <= pair[1][0]);
+                let slope =
+                    touched.map(|pair| (pair[1][1] - pair[0][1]).abs() / (pair[1][0] - pair[0][0]));
+                let most = slope.fold(0.0, f64::max) * (1.0 + 1e-9);
+                match most {
+                    0.0 => [0.0; 2],
+                    _ => part.slopes(within).map(|slope| slope * most),
+                }
+            }
         }
     }
 }
@@ -245,6 +264,14 @@ fn together(
 /// The square root of a sum of squares. Rounds alike everywhere, unlike `hypot`.
 fn length(x: f64, y: f64) -> f64 {
     libm::sqrt(x * x + y * y)
+}
+
+/// The least and the greatest distance of the places of a box from a place, along x and y.
+fn beside(center: [f64; 2], within: &Region) -> ([f64; 2], [f64; 2]) {
+    let (min, max) = (within.min(), within.max());
+    let near = |i: usize| (min[i] - center[i]).max(center[i] - max[i]).max(0.0);
+    let far = |i: usize| (max[i] - center[i]).max(center[i] - min[i]);
+    ([near(0), near(1)], [far(0), far(1)])
 }
 
 /// The share of a ramp.

@@ -1,6 +1,6 @@
 //! Pixels laid over the plane.
 
-use core::ops::RangeInclusive;
+use core::ops::{Range, RangeInclusive};
 
 use super::{
     canon::Canon,
@@ -272,44 +272,44 @@ impl Grid {
         if columns.len() * rows.len() > MOST_SLOPES {
             return unknown;
         }
-        let width = self.size[0];
-        let pixels = |y: usize| y * width + columns.start..y * width + columns.end;
-        let mut most = [0f32; 2];
-        let mut add = |pixel: &dyn Fn(usize, &mut [f32])| {
-            let mut lines = [[0f32; MOST_SLOPES]; 2];
-            let length = columns.len();
-            for (number, y) in rows.clone().enumerate() {
-                let [line, last] = &mut lines;
-                core::mem::swap(line, last);
-                pixel(pixels(y).start, &mut line[..length]);
-                let (line, last) = (&line[..length], &last[..length]);
-                for pair in line.windows(2) {
-                    most[0] = most[0].max((pair[1] - pair[0]).abs());
-                }
-                if number > 0 {
-                    for (a, b) in line.iter().zip(last) {
-                        most[1] = most[1].max((a - b).abs());
-                    }
-                }
+        let most = match self.pixels.store() {
+            Store::Floats(all) => self.steps(columns, rows, |at| all[at]),
+            Store::Bytes(all) => self.steps(columns, rows, |at| tone(tones, all[at].into(), 255.0)),
+            Store::Words(all) => {
+                self.steps(columns, rows, |at| tone(tones, all[at].into(), 65535.0))
             }
         };
-        match self.pixels.store() {
-            Store::Floats(all) => {
-                add(&|start, line| line.copy_from_slice(&all[start..][..line.len()]))
-            }
-            Store::Bytes(all) => add(&|start, line| {
-                for (v, &pixel) in line.iter_mut().zip(&all[start..]) {
-                    *v = tone(tones, pixel.into(), 255.0);
-                }
-            }),
-            Store::Words(all) => add(&|start, line| {
-                for (v, &pixel) in line.iter_mut().zip(&all[start..]) {
-                    *v = tone(tones, pixel.into(), 65535.0);
-                }
-            }),
-        }
         // With room for what rounds.
         [0, 1].map(|axis| f64::from(most[axis]) * self.scale[axis] * (1.0 + 1e-6))
+    }
+
+    /// The largest differences from one pixel to the next along x and y.
+    #[inline(always)]
+    fn steps(
+        &self,
+        columns: Range<usize>,
+        rows: Range<usize>,
+        pixel: impl Fn(usize) -> f32,
+    ) -> [f32; 2] {
+        let greater = |a: f32, b: f32| if a > b { a } else { b };
+        let [mut across, mut up] = [0f32; 2];
+        for y in rows.clone() {
+            let (first, end) = (
+                y * self.size[0] + columns.start,
+                y * self.size[0] + columns.end,
+            );
+            let above = if y + 1 < rows.end { self.size[0] } else { 0 };
+            let mut v = pixel(first);
+            for at in first..end {
+                up = greater((pixel(at + above) - v).abs(), up);
+                if at + 1 < end {
+                    let next = pixel(at + 1);
+                    across = greater((next - v).abs(), across);
+                    v = next;
+                }
+            }
+        }
+        [across, up]
     }
 
     /// The pixels along an axis that matter between two coordinates.

@@ -8,8 +8,8 @@
 //! `definition` has the trait. `spec` has the descriptions that a program can keep, compare and name by a digest,
 //! `evaluate` their shares; they are made of `raster` and `terrain` (both `pixels` laid over the plane by `grid`),
 //! `marks`, `noise` and the lines of `scale`. `rows` finds the points of a field in some rows, many at a time, where
-//! `tiles` leaves any. `Lattice::place` is the definition, point by point; walks leave out what bounds of the field rule out
-//! and find the same points with the same bits.
+//! `tiles` leaves any, and `steps` moves them. `Lattice::place` is the definition, point by point; walks leave out
+//! what bounds of the field rule out and find the same points with the same bits.
 
 mod canon;
 mod definition;
@@ -22,6 +22,7 @@ mod raster;
 mod rows;
 mod scale;
 mod spec;
+mod steps;
 mod terrain;
 mod tiles;
 

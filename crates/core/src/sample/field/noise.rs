@@ -130,6 +130,22 @@ impl Noise {
         widened([a.min(b), a.max(b)])
     }
 
+    /// Bounds of the change along x and y for each world unit, anywhere.
+    pub(super) fn slopes(&self) -> [f64; 2] {
+        // Of 6t⁵ − 15t⁴ + 10t³, at ½; octaves after the first are turned, so they change along both axes at once.
+        const STEEPEST: f64 = 1.875;
+        let (mut sum, mut weight, mut weights) = (0.0, 1.0, 0.0);
+        let (mut scale, mut axes) = (1.0, 1.0);
+        for _ in 0..self.octaves {
+            sum += weight * scale * axes * STEEPEST;
+            weights += weight;
+            (weight, scale, axes) = (0.5 * weight, 2.0 * scale, core::f64::consts::SQRT_2);
+        }
+        let range = (self.range[1] - self.range[0]).abs();
+        // With room for what rounds.
+        [sum / weights / self.wavelength * range * (1.0 + 1e-9); 2]
+    }
+
     fn within_range(&self, v: f64) -> f64 {
         let [low, high] = self.range;
         low + (high - low) * unit(v)

@@ -3,50 +3,48 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::tiles::{self, TILE, Tile};
+use super::{
+    steps::{POSITION, Points, Steps, WHOLE},
+    tiles::{self, Strip, TILE},
+};
 use crate::{
     pattern::Axis,
     sample::{
-        kernel::{Backend, warp_all},
-        lattice::{
-            Columns, Found, Grade, Lattice, Patch, PointId, Span, around, damping, part_of_way,
-            spread, steepness,
-        },
+        kernel::{Backend, PlainLoop, compiled_loop, warp_all},
+        lattice::{Columns, Found, Grade, Lattice, Patch, PointId, Span},
         sieve::Scale,
     },
-    table::{FRACTION_BITS, Rung, Stage},
+    table::{Displacement, FRACTION_BITS},
 };
 
 /// Lists end at a multiple of this, a pair of the widest vectors.
-const WHOLE: usize = 32;
+const PAIR: usize = 32;
 
-/// Marks a position whose point must look at the field around its place. There are fewer blocks than this.
-const STEEP: u32 = 1 << 31;
+/// The number of candidates that are kept at once if all are left.
+const FEW: usize = 16;
 
 /// The points of some rows of a patch, and the memory to find them.
 ///
 /// They are found in stages, each for all candidates before the next: addresses that tiles leave, their
 /// places at full density, the shares there, those that are left, how far they have moved, and their
-/// places.
+/// places. Lists are longer than the number of candidates.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FieldRows {
-    /// The tiles of the strip that ends at `strip_end`.
-    tiles: Vec<Tile>,
-    strip: Option<[i64; 2]>,
+    strip: Strip,
+    /// The number of candidates, then of the points among them that are left.
+    number: usize,
     /// Positions relative to the patch, and where the warp moves them.
     displaced: [Vec<i32>; 2],
     places: [Vec<i32>; 2],
     /// Columns in the lower 16 bits and rows in the upper ones, relative to the patch.
     addresses: Vec<u32>,
-    /// By position in the order of blocks, with [`STEEP`].
+    /// By position in the order of blocks, with the marks of `steps`.
     positions: Vec<u32>,
     at: Vec<[f64; 2]>,
     shares: Vec<f64>,
-    stages: Vec<(Stage, Option<[Rung; 2]>)>,
-    /// The points where the field is steep, the places that tell how steep, and the shares at these.
-    steep: Vec<u32>,
-    around: Vec<[[f64; 2]; 4]>,
-    shares_around: Vec<f64>,
+    /// Which of the candidates are left.
+    left: Vec<u32>,
+    steps: Steps,
     /// What was found.
     found: Vec<Found>,
     next: usize,
@@ -65,7 +63,7 @@ pub(crate) struct Source<'a> {
 impl FieldRows {
     /// Forgets the points and the tiles, before another patch.
     pub(crate) fn clear(&mut self) {
-        self.strip = None;
+        self.strip.forget();
         self.found.clear();
         self.next = 0;
     }
@@ -96,92 +94,86 @@ impl FieldRows {
     ) -> i64 {
         self.found.clear();
         self.next = 0;
-        self.addresses.clear();
-        self.positions.clear();
-        self.displaced.iter_mut().for_each(Vec::clear);
+        self.number = 0;
         let mut next = rows.start;
-        while next < rows.end && self.addresses.len() < enough {
+        while next < rows.end && self.number < enough {
             let strip = next..rows.end.min((next & !(TILE - 1)) + TILE);
-            let known = self
-                .strip
-                .is_some_and(|[start, end]| start <= next && next < end);
-            if !known {
+            if !self.strip.holds(next) {
                 let Source {
                     lattice,
                     grade,
+                    patch,
                     spans,
                     columns,
-                    ..
                 } = source;
-                tiles::list(lattice, grade, spans, columns, &strip, &mut self.tiles);
-                self.strip = Some([strip.start, strip.end]);
+                tiles::list(
+                    lattice,
+                    grade,
+                    patch,
+                    spans,
+                    columns,
+                    &strip,
+                    &mut self.strip,
+                );
             }
             next = self.candidates(source, strip, enough);
         }
-        if !self.addresses.is_empty() {
+        if self.number > 0 {
             self.find(source, backend);
         }
         next
     }
 
+    /// Makes room for more candidates.
+    fn reserve(&mut self, more: usize) {
+        let length = (self.number + more).next_multiple_of(PAIR);
+        if self.addresses.len() < length {
+            self.addresses.resize(length, 0);
+            self.positions.resize(length, 0);
+            self.left.resize(length, 0);
+            self.at.resize(length, [0.0; 2]);
+            self.shares.resize(length, 0.0);
+            for list in self.displaced.iter_mut().chain(&mut self.places) {
+                list.resize(length, 0);
+            }
+        }
+    }
+
     /// Lists what the tiles of a strip leave. Returns the first row that is not listed.
     fn candidates(&mut self, source: Source<'_>, strip: Range<i64>, enough: usize) -> i64 {
-        let Source {
-            lattice,
-            patch,
-            columns: (columns, _),
-            ..
-        } = source;
-        if self.tiles.is_empty() {
+        let Source { lattice, patch, .. } = source;
+        let rows = self.strip.rows();
+        if rows.is_empty() {
             return strip.end;
         }
-        let [left, bottom] = patch.origin();
+        let [_, bottom] = patch.origin();
         let n = lattice.map().intervals();
-        for y in strip.clone() {
-            if self.addresses.len() >= enough {
+        for y in strip.start.max(rows.start)..strip.end.min(rows.end) {
+            if self.number >= enough {
                 return y;
             }
             let Some((class, block_y)) = lattice.row(y) else {
                 continue;
             };
-            let listed = columns.of(class);
-            let vectors = lattice.vectors(block_y);
-            let positions = lattice.order().positions(block_y * n..(block_y + 1) * n);
-            let kinds = lattice.kinds_in_row(block_y);
-            let row = patch.relative(Axis::Y, y);
-            let first = ((y - bottom) as u32) << 16;
-            let ordinal = class.ordinal();
-            let tiles = self.tiles.iter().filter(|tile| tile.rows.contains(&y));
-            let mut number = self.addresses.len();
-            let most = number + listed.len();
-            self.addresses.resize(most, 0);
-            self.positions.resize(most, 0);
-            self.displaced
-                .iter_mut()
-                .for_each(|list| list.resize(most, 0));
+            self.reserve(self.strip.columns(class).len());
+            let columns = self.strip.columns(class);
+            let start = self.number;
+            let most = start + columns.len();
             let [xs, ys] = &mut self.displaced;
-            let (xs, ys) = (&mut xs[..most], &mut ys[..most]);
-            let addresses = &mut self.addresses[..most];
-            let all = &mut self.positions[..most];
-            for tile in tiles {
-                let flag = if tile.is_gentle { 0 } else { STEEP };
-                for line in &listed[tile.columns[ordinal].clone()] {
-                    let block = line.block as usize;
-                    let (position, [dx, dy]) = (positions[block], vectors[block]);
-                    // Written in any case; the next one goes to the same place if this has left.
-                    xs[number] = patch.relative(Axis::X, line.at) + dx;
-                    ys[number] = row + dy;
-                    addresses[number] = first | (line.at - left) as u32;
-                    all[number] = position | flag;
-                    let is_kept = kinds.is_none_or(|kinds| kinds.keeps(block, line.strips));
-                    number += usize::from((position < tile.alive) & is_kept);
-                }
-            }
-            self.addresses.truncate(number);
-            self.positions.truncate(number);
-            self.displaced
-                .iter_mut()
-                .for_each(|list| list.truncate(number));
+            let mut listed = ListedRow {
+                first: ((y - bottom) as u32) << 16,
+                row: patch.relative(Axis::Y, y),
+                columns,
+                positions: lattice.order().positions(block_y * n..(block_y + 1) * n),
+                vectors: lattice.vectors(block_y),
+                displaced: [&mut xs[start..most], &mut ys[start..most]],
+                addresses: &mut self.addresses[start..most],
+                all: &mut self.positions[start..most],
+            };
+            self.number += match lattice.kinds_in_row(block_y) {
+                None => listed.list(|_| true),
+                Some(kinds) => listed.list(|c| kinds.keeps(c.block as usize, c.strips)),
+            };
         }
         strip.end
     }
@@ -196,26 +188,44 @@ impl FieldRows {
         } = source;
         let scale = Scale::new(lattice, patch);
         self.place(patch, backend);
-        let number = self.addresses.len();
+        let number = self.number;
         let [xs, ys] = &self.places;
-        self.at.clear();
-        self.at.extend(
-            xs.iter()
-                .zip(ys)
-                .take(number)
-                .map(|(&x, &y)| scale.world([x, y])),
+        compiled_loop(
+            backend,
+            &mut Convert {
+                scale,
+                places: [&xs[..number], &ys[..number]],
+                at: &mut self.at[..number],
+            },
         );
-        self.shares.clear();
-        self.shares.resize(number, 0.0);
-        grade.shares(&self.at, &mut self.shares);
+        grade.shares(&self.at[..number], &mut self.shares[..number]);
         self.keep(lattice, patch);
-        if lattice.table.ladder().is_some() {
-            self.displace(lattice, grade);
-            self.place(patch, backend);
+        match lattice.table.ladder() {
+            Some(ladder) => {
+                let (number, [xs, ys]) = (self.number, &mut self.displaced);
+                let points = Points {
+                    addresses: &self.addresses[..number],
+                    positions: &self.positions[..number],
+                    shares: &self.shares[..number],
+                    displaced: [&mut xs[..number], &mut ys[..number]],
+                };
+                let (at, left) = (&self.at, &self.left);
+                let place = |i: usize| at[left[i] as usize];
+                self.steps
+                    .take((lattice, grade), ladder, points, place, backend);
+                self.place(patch, backend);
+            }
+            None => {
+                for list in &mut self.places {
+                    for (i, &from) in self.left[..self.number].iter().enumerate() {
+                        list[i] = list[from as usize];
+                    }
+                }
+            }
         }
-        let [xs, ys] = &self.places;
+        let (number, [xs, ys]) = (self.number, &self.places);
         let places = xs.iter().zip(ys).map(|(&x, &y)| [x, y]);
-        let all = places.zip(&self.addresses);
+        let all = places.zip(&self.addresses).take(number);
         let all = all.filter(|(place, _)| patch.holds(*place));
         self.found
             .extend(all.map(|(place, &address)| Found { place, address }));
@@ -223,18 +233,19 @@ impl FieldRows {
 
     /// Moves displaced positions by the warp.
     fn place(&mut self, patch: &Patch, backend: Backend) {
-        let whole = self.addresses.len().next_multiple_of(WHOLE);
-        for (list, places) in self.displaced.iter_mut().zip(&mut self.places) {
-            let last = list.last().copied().unwrap_or(0);
-            list.resize(whole, last);
-            places.resize(whole, 0);
+        let whole = self.number.next_multiple_of(PAIR);
+        for list in &mut self.displaced {
+            // What comes after the last one must be near it.
+            let last = list[self.number.saturating_sub(1)];
+            list[self.number..whole].fill(last);
         }
         let [x, y] = &self.displaced;
+        let displaced = [&x[..whole], &y[..whole]];
         match patch.shears() {
-            Some(shears) => warp_all(backend, shears, [x, y], &mut self.places),
+            Some(shears) => warp_all(backend, shears, displaced, &mut self.places),
             None => {
-                for (list, places) in self.displaced.iter().zip(&mut self.places) {
-                    places.copy_from_slice(list);
+                for (list, places) in displaced.into_iter().zip(&mut self.places) {
+                    places[..whole].copy_from_slice(list);
                 }
             }
         }
@@ -244,110 +255,111 @@ impl FieldRows {
     fn keep(&mut self, lattice: &Lattice, patch: &Patch) {
         let order = lattice.order();
         let [left, bottom] = patch.origin();
-        let number = self.addresses.len();
+        let number = self.number;
         let addresses = &mut self.addresses[..number];
         let positions = &mut self.positions[..number];
         let shares = &mut self.shares[..number];
-        let at = &mut self.at[..number];
+        let from = &mut self.left[..number];
         let [xs, ys] = &mut self.displaced;
         let (xs, ys) = (&mut xs[..number], &mut ys[..number]);
-        let [place_xs, place_ys] = &mut self.places;
-        let (place_xs, place_ys) = (&mut place_xs[..number], &mut place_ys[..number]);
-        let mut next = 0;
-        for i in 0..number {
-            let (address, position, share) = (addresses[i], positions[i], shares[i]);
+        // Tells whether a candidate is left of which the tile does not tell it.
+        let is_left = |address: u32, position: u32, share: f64| {
             // Ranks of a position are at least the number before its start, and less than its end.
-            let ranks = order.floors((position & !STEEP) as usize);
-            let mut is_left = share >= ranks.end;
-            // Rare, where one test after another would be guessed wrong half of the time.
-            if !is_left & (share >= ranks.start) {
-                let id = PointId {
-                    x: left + i64::from(address & 0xffff),
-                    y: bottom + i64::from(address >> 16),
-                };
-                is_left = lattice.rank(id) < share;
-            }
-            // Written in any case; the next one goes to the same place if this has left.
-            addresses[next] = address;
-            positions[next] = position;
-            shares[next] = share;
-            at[next] = at[i];
-            (xs[next], ys[next]) = (xs[i], ys[i]);
-            (place_xs[next], place_ys[next]) = (place_xs[i], place_ys[i]);
-            next += usize::from(is_left);
-        }
-        self.addresses.truncate(next);
-        self.positions.truncate(next);
-        self.shares.truncate(next);
-        self.at.truncate(next);
-        for list in self.displaced.iter_mut().chain(&mut self.places) {
-            list.truncate(next);
-        }
-    }
-
-    /// Moves the points that are left as the ladder says.
-    fn displace(&mut self, lattice: &Lattice, grade: &Grade) {
-        let Some(ladder) = lattice.table.ladder() else {
-            return;
+            let ranks = order.floors((position & POSITION) as usize);
+            let id = || PointId {
+                x: left + i64::from(address & 0xffff),
+                y: bottom + i64::from(address >> 16),
+            };
+            share >= ranks.end || share >= ranks.start && lattice.rank(id()) < share
         };
-        let number = self.addresses.len();
-        let points = self.shares.iter().zip(&self.positions);
-        self.stages.clear();
-        self.stages.extend(points.map(|(&share, &position)| {
-            let stage = ladder.stage(share);
-            (stage, ladder.rungs(stage, (position & !STEEP) as usize))
-        }));
-        self.look_around(lattice, grade);
+        let (mut next, mut start) = (0, 0);
+        while start < number {
+            let end = number.min(start + FEW);
+            let is_whole = positions[start..end].iter().fold(WHOLE, |all, p| all & p) != 0;
+            if is_whole && end - start == FEW {
+                for list in [&mut *addresses, &mut *positions] {
+                    list.copy_within(start..start + FEW, next);
+                }
+                for list in [&mut *xs, &mut *ys] {
+                    list.copy_within(start..start + FEW, next);
+                }
+                shares.copy_within(start..start + FEW, next);
+                for (k, from) in from[next..next + FEW].iter_mut().enumerate() {
+                    *from = (start + k) as u32;
+                }
+                (next, start) = (next + FEW, end);
+                continue;
+            }
+            for i in start..end {
+                let (address, position, share) = (addresses[i], positions[i], shares[i]);
+                let is_left = position & WHOLE != 0 || is_left(address, position, share);
+                // Written in any case; the next one goes to the same place if this has left.
+                addresses[next] = address;
+                positions[next] = position;
+                shares[next] = share;
+                from[next] = i as u32;
+                (xs[next], ys[next]) = (xs[i], ys[i]);
+                next += usize::from(is_left);
+            }
+            start = end;
+        }
+        self.number = next;
+    }
+}
+
+/// A row whose candidates are listed. All lists that are written have a place for each column.
+struct ListedRow<'a> {
+    /// The address of its column 0, and its coordinate.
+    first: u32,
+    row: i32,
+    columns: &'a [tiles::Column],
+    /// Of the blocks of the row.
+    positions: &'a [u32],
+    vectors: &'a [Displacement],
+    displaced: [&'a mut [i32]; 2],
+    addresses: &'a mut [u32],
+    all: &'a mut [u32],
+}
+
+impl ListedRow<'_> {
+    /// Lists the columns of which a point may be left. Returns their number.
+    #[inline(always)]
+    fn list(&mut self, keeps: impl Fn(&tiles::Column) -> bool) -> usize {
+        let length = self.columns.len();
         let [xs, ys] = &mut self.displaced;
-        let (xs, ys) = (&mut xs[..number], &mut ys[..number]);
-        let (stages, positions) = (&self.stages[..number], &self.positions[..number]);
-        let addresses = &self.addresses[..number];
-        // What is left of a displaced position without its address.
-        let full = |i: usize, x: i32, y: i32| {
-            let address = addresses[i];
-            [
-                x - (((address & 0xffff) as i32) << FRACTION_BITS),
-                y - (((address >> 16) as i32) << FRACTION_BITS),
-            ]
-        };
-        for i in 0..number {
-            let position = positions[i];
-            if position & STEEP == 0 {
-                let full = full(i, xs[i], ys[i]);
-                let to = (lattice.turned).moved_from(ladder, stages[i], position as usize, full);
-                xs[i] += to[0] - full[0];
-                ys[i] += to[1] - full[1];
-            }
+        let (xs, ys) = (&mut xs[..length], &mut ys[..length]);
+        let (addresses, all) = (&mut self.addresses[..length], &mut self.all[..length]);
+        let positions = self.positions;
+        let vectors = &self.vectors[..positions.len()];
+        let mut number = 0;
+        for column in self.columns {
+            let block = column.block as usize;
+            let (position, [dx, dy]) = (positions[block], vectors[block]);
+            // Written in any case; the next one goes to the same place if this has left.
+            xs[number] = column.x + dx;
+            ys[number] = self.row + dy;
+            addresses[number] = self.first | (column.x >> FRACTION_BITS) as u32;
+            let whole = if position < column.whole { WHOLE } else { 0 };
+            all[number] = position | column.flag | whole;
+            number += usize::from((position < column.alive) & keeps(column));
         }
-        let steep = self.steep.iter().zip(self.shares_around.as_chunks().0);
-        for (&i, around) in steep {
-            let i = i as usize;
-            let (share, position) = (self.shares[i], positions[i] & !STEEP);
-            let full = full(i, xs[i], ys[i]);
-            let steepness = steepness(share, *around);
-            let (stage, rungs) = stages[i];
-            let from = (spread(stage, share, steepness), rungs);
-            let to = (lattice.turned).moved_from(ladder, from, position as usize, full);
-            let vector = part_of_way(full, to, damping(steepness));
-            xs[i] += vector[0] - full[0];
-            ys[i] += vector[1] - full[1];
-        }
+        number
     }
+}
 
-    /// Looks at the field around the places where it may be steep.
-    fn look_around(&mut self, lattice: &Lattice, grade: &Grade) {
-        let spacing = lattice.placement.spacing.get();
-        self.steep.clear();
-        self.around.clear();
-        let points = self.positions.iter().zip(&self.stages).enumerate();
-        for (i, (position, (stage, _))) in points {
-            if position & STEEP != 0 && *stage != Stage::FULL {
-                self.steep.push(i as u32);
-                (self.around).push(around(self.at[i], self.shares[i], spacing));
-            }
+/// Converts places of a patch into those of the world.
+struct Convert<'a> {
+    scale: Scale,
+    places: [&'a [i32]; 2],
+    at: &'a mut [[f64; 2]],
+}
+
+impl PlainLoop for Convert<'_> {
+    #[inline(always)]
+    fn run(&mut self) {
+        let [xs, ys] = self.places;
+        for (at, (&x, &y)) in self.at.iter_mut().zip(xs.iter().zip(ys)) {
+            *at = self.scale.world([x, y]);
         }
-        self.shares_around.clear();
-        self.shares_around.resize(4 * self.steep.len(), 0.0);
-        grade.shares(self.around.as_flattened(), &mut self.shares_around);
     }
 }

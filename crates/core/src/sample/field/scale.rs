@@ -39,6 +39,17 @@ impl Slide {
         }
     }
 
+    /// A bound of how much the share changes for each unit, within a range of numbers.
+    pub(super) fn slope(&self, ends: [f64; 2]) -> f64 {
+        let [low, high] = self.bounds(ends);
+        if low == high {
+            return 0.0;
+        }
+        let ([a, b], [from, to]) = (self.from, self.to);
+        // With room for what rounds.
+        (to - from).abs() / (b - a) * (1.0 + 1e-9)
+    }
+
     /// Bounds of the shares of a range of numbers.
     pub(super) fn bounds(&self, ends: [f64; 2]) -> [f64; 2] {
         let [a, b] = ends.map(|v| self.share(v));

@@ -148,4 +148,16 @@ impl Terrain {
         }
         slide.bounds(widened(ends))
     }
+
+    pub(super) fn slopes(&self, slide: &Slide, within: &Region) -> [f64; 2] {
+        let (ends, is_outside) = self.grid.bounds(within);
+        let ends = ends.unwrap_or_default().map(f64::from);
+        if is_outside {
+            return [f64::INFINITY; 2];
+        }
+        match slide.slope(widened(ends)) {
+            0.0 => [0.0; 2],
+            slope => self.grid.slopes(within, None).map(|rise| rise * slope),
+        }
+    }
 }

@@ -5,14 +5,15 @@
 //! field around a tile leave out all of it, or the blocks that have left, and the ladder's reach at the least
 //! share tells how far outside of the box its addresses can be.
 
-use alloc::collections::VecDeque;
+use alloc::{collections::VecDeque, vec::Vec};
 use core::ops::Range;
 
+use super::steps::STEEP;
 use crate::{
-    pattern::Class,
+    pattern::{Axis, Class},
     sample::{
         area::Region,
-        lattice::{Columns, Grade, Lattice, Span, is_gentle, places},
+        lattice::{Columns, Grade, Lattice, Line, Patch, Span, is_gentle, places},
     },
     table::{FRACTION_BITS, fixed},
 };
@@ -20,16 +21,63 @@ use crate::{
 /// The sides of a tile in lattice units. Both divide those of a band and a patch.
 pub(super) const TILE: i64 = 64;
 
-/// Some columns and rows of a strip of tiles.
-#[derive(Clone, Debug)]
-pub(super) struct Tile {
-    /// The places of its columns in the list of each class.
-    pub(super) columns: [Range<usize>; 4],
-    pub(super) rows: Range<i64>,
-    /// The number of positions of which any point may be left.
+/// A column in a strip of tiles: how much of it is visited.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Column {
+    /// Its coordinate relative to the patch.
+    pub(super) x: i32,
+    pub(super) block: u32,
+    /// See [`Line::strips`](crate::sample::lattice::Line::strips).
+    pub(super) strips: u32,
+    /// The number of positions of which any point may be left, and of those of which all are.
     pub(super) alive: u32,
-    /// Whether the field changes so little that it counts as constant for all moves.
-    pub(super) is_gentle: bool,
+    pub(super) whole: u32,
+    /// [`STEEP`] unless the field changes so little that it counts as constant for all moves.
+    pub(super) flag: u32,
+}
+
+/// The tiles of some rows of a patch.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Strip {
+    /// The rows that were looked at, and those among them that may have points.
+    known: Range<i64>,
+    rows: Range<i64>,
+    /// The columns that may have points, by class.
+    columns: [Vec<Column>; 4],
+}
+
+impl Strip {
+    /// Forgets the tiles, before another patch.
+    pub(super) fn forget(&mut self) {
+        self.known = 0..0;
+    }
+
+    /// Whether a row was looked at.
+    pub(super) fn holds(&self, y: i64) -> bool {
+        self.known.contains(&y)
+    }
+
+    /// The rows that may have points.
+    pub(super) fn rows(&self) -> Range<i64> {
+        self.rows.clone()
+    }
+
+    /// The columns of a class that may have points.
+    pub(super) fn columns(&self, class: Class) -> &[Column] {
+        &self.columns[class.ordinal()]
+    }
+
+    /// Adds a tile.
+    fn add(&mut self, columns: [&[Line]; 4], rows: &Range<i64>, of: impl Fn(&Line) -> Column) {
+        self.rows = if self.rows.is_empty() {
+            rows.clone()
+        } else {
+            self.rows.start.min(rows.start)..self.rows.end.max(rows.end)
+        };
+        for (all, columns) in self.columns.iter_mut().zip(columns) {
+            all.extend(columns.iter().map(&of));
+        }
+    }
 }
 
 /// Some columns and rows of the lattice.
@@ -58,7 +106,11 @@ pub(super) fn shares(lattice: &Lattice, grade: &Grade, piece: &Piece) -> [f64; 2
 
 /// The box around the places of a piece's points with displacements up to `reach`.
 fn around(lattice: &Lattice, piece: &Piece, reach: [[i32; 2]; 2]) -> Region {
-    let distances = distances(lattice, piece, reach);
+    box_at(lattice, piece, distances(lattice, piece, reach))
+}
+
+/// The box around a piece's points that are between two distances from their addresses.
+fn box_at(lattice: &Lattice, piece: &Piece, distances: [[i32; 2]; 2]) -> Region {
     // The conversion is monotone.
     let [x, y] = [0, 1].map(|i| {
         [
@@ -104,8 +156,16 @@ fn is_gentle_near(lattice: &Lattice, grade: &Grade, near: &Region, least: f64) -
     if least <= 0.0 || lattice.table.ladder().is_none() {
         return false;
     }
-    let slopes = grade.slopes(&looked_at(lattice, near, least));
-    is_gentle(least, slopes, lattice.placement.spacing.get())
+    let wide = looked_at(lattice, near, least);
+    // So far out that what rounds matters.
+    let (min, max) = (wide.min(), wide.max());
+    if (0..2).any(|i| max[i] - min[i] < 1e-10 * min[i].abs().max(max[i].abs())) {
+        return false;
+    }
+    is_gentle(least, grade.slopes(&wide), lattice.placement.spacing.get()) || {
+        let [low, high] = grade.bounds(&wide);
+        low.to_bits() == high.to_bits()
+    }
 }
 
 /// The end of the first rows of a piece that have no points because the field has none there; its rows
@@ -195,48 +255,67 @@ pub(crate) fn candidates(lattice: &Lattice, grade: &Grade, piece: Piece) -> u128
     sum as u128
 }
 
-/// Lists the tiles of some rows of a strip whose points may be left and lie inside.
+/// Lists the tiles of some rows of a patch whose points may be left and lie inside.
 pub(super) fn list(
     lattice: &Lattice,
     grade: &Grade,
-    [x, y]: [&Span; 2],
+    patch: &Patch,
+    spans: [&Span; 2],
     (columns, range): (&Columns, &Range<i64>),
     rows: &Range<i64>,
-    tiles: &mut alloc::vec::Vec<Tile>,
+    strip: &mut Strip,
 ) {
-    tiles.clear();
+    (strip.known, strip.rows) = (rows.clone(), 0..0);
+    strip.columns.iter_mut().for_each(Vec::clear);
     let mut start = range.start;
     while start < range.end {
         let end = range.end.min((start & !(TILE - 1)) + TILE);
         let piece = [start..end, rows.clone()];
         start = end;
-        let near = around(lattice, &piece, lattice.turned.reach());
+        let drift = patch.drift(lattice, &piece);
+        let full = lattice.turned.reach();
+        let near = box_at(lattice, &piece, added(full, drift));
         let [low, high] = grade.bounds(&near);
         if high <= 0.0 {
             continue;
         }
-        let [across, up] = inside(lattice, low, [x, y], &piece);
+        let [across, up] = inside(lattice, low, spans, &piece, drift);
         if across.is_empty() || up.is_empty() {
             continue;
         }
-        tiles.push(Tile {
-            columns: Class::ALL.map(|class| places(columns.of(class), &across)),
-            rows: up,
-            // One more: a rank may lie just below the start of its position.
-            alive: lattice.order().alive(high.next_up()) as u32,
-            is_gentle: is_gentle_near(lattice, grade, &near, low),
+        // One more: a rank may lie just below the start of its position.
+        let alive = lattice.order().alive(high.next_up()) as u32;
+        let whole = lattice.order().whole(low) as u32;
+        let is_gentle = is_gentle_near(lattice, grade, &near, low);
+        let listed = Class::ALL.map(|class| {
+            let all = columns.of(class);
+            &all[places(all, &across)]
+        });
+        strip.add(listed, &up, |line| Column {
+            x: patch.relative(Axis::X, line.at),
+            block: line.block,
+            strips: line.strips,
+            alive,
+            whole,
+            flag: if is_gentle { 0 } else { STEEP },
         });
     }
 }
 
 /// The part of a piece whose points may lie inside if their shares are from `low` on.
-fn inside(lattice: &Lattice, low: f64, spans: [&Span; 2], piece: &Piece) -> Piece {
+fn inside(
+    lattice: &Lattice,
+    low: f64,
+    spans: [&Span; 2],
+    piece: &Piece,
+    drift: [[i32; 2]; 2],
+) -> Piece {
     let ladder = lattice.ladder_reach(low);
     let reach = lattice
         .turned
         .reach()
         .map(|[least, most]| [least.min(-ladder), most.max(ladder)]);
-    let distances = distances(lattice, piece, reach);
+    let distances = added(reach, drift);
     [0, 1].map(|i| {
         let bounds = &spans[i].bounds;
         let first = |k: i128| (-((-k) >> FRACTION_BITS)) as i64;
@@ -244,4 +323,8 @@ fn inside(lattice: &Lattice, low: f64, spans: [&Span; 2], piece: &Piece) -> Piec
         let end = first(bounds.end - i128::from(distances[i][0]));
         piece[i].start.max(start)..piece[i].end.min(end)
     })
+}
+
+fn added(a: [[i32; 2]; 2], b: [[i32; 2]; 2]) -> [[i32; 2]; 2] {
+    [0, 1].map(|i| [a[i][0] + b[i][0], a[i][1] + b[i][1]])
 }

@@ -9,7 +9,8 @@
 //! Work proceeds in pieces: `lines` lists the columns and rows that hold points (each a `line`), `prefix` counts them,
 //! `patch` has the bands and patches in which positions fit 32 bits, `flat` the points of a patch without
 //! gaps. `point` is what comes out, `rank` its place in the order in which points leave and its kind, `kinds` the
-//! points of one kind, `grade` the field that says how many have left, `moves` how far the others move there.
+//! points of one kind, `varied` kinds whose shares vary (`picked` has their points), `grade` the field that says how
+//! many have left, `moves` how far the others move there.
 
 mod flat;
 mod grade;
@@ -20,12 +21,14 @@ mod lines;
 mod moves;
 mod multiple;
 mod patch;
+mod picked;
 mod placement;
 mod point;
 mod prefix;
 mod rank;
 mod spacing;
 mod span;
+mod varied;
 mod world;
 
 pub(super) use flat::{Flat, Found, Inside};
@@ -34,7 +37,7 @@ pub use keep::Keep;
 pub(super) use kinds::OneKind;
 pub(super) use line::Line;
 pub(super) use lines::{Columns, Listed, lines_of_class, places};
-pub(super) use moves::{around, damping, is_gentle, moved, part_of_way, spread, steepness};
+pub(super) use moves::{around, damping, is_gentle, longer, moved, steepness};
 pub(super) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
 pub use placement::Placement;
@@ -43,5 +46,6 @@ pub(super) use prefix::PrefixCounts;
 pub(super) use rank::{kind, rank};
 pub use spacing::Spacing;
 pub(super) use span::Span;
+pub use varied::VaryingKinds;
 pub use world::LATTICE_LIMIT;
 pub(super) use world::Lattice;

@@ -4,7 +4,7 @@
 //! different stages of it: one has moved because another leaves, which its other neighbors have not done yet. So
 //! moves take longer where a field is steep, and points go only a part of the way where it is steeper still.
 
-use crate::table::{Displacement, Ladder, Stage, TurnedTable};
+use crate::table::{Displacement, Ladder, Stage, TurnedTable, between};
 
 /// The relative change of the share across a local spacing up to which a field counts as constant.
 const GENTLE: f64 = 1.0 / 256.0;
@@ -51,23 +51,17 @@ pub(crate) fn is_gentle(least: f64, [x, y]: [f64; 2], spacing: f64) -> bool {
     change * 1.01 + 1e-12 <= GENTLE * least
 }
 
-/// The stage of a share where a field has the square of a [`steepness`]: events begin earlier and end later.
+/// By how much events begin earlier and end later where a field has the square of a [`steepness`]: by the units
+/// of a stage's way that a share of 1 takes.
 #[inline(always)]
-pub(crate) fn spread(stage: Stage, share: f64, steepness: f64) -> Stage {
-    stage.spread_by(share * square_root(steepness))
+pub(crate) fn longer(per_share: f64, share: f64, steepness: f64) -> f64 {
+    per_share * (share * square_root(steepness))
 }
 
 /// The part of a move that is left, by the square of a [`steepness`].
 #[inline(always)]
 pub(crate) fn damping(steepness: f64) -> f64 {
     1.0 / (1.0 + STEEP * STEEP * steepness)
-}
-
-/// A part of the way from one displacement to another.
-#[inline(always)]
-pub(crate) fn part_of_way(from: Displacement, to: Displacement, part: f64) -> Displacement {
-    let along = |from: i32, to: i32| from + ((f64::from(to) - f64::from(from)) * part) as i32;
-    [along(from[0], to[0]), along(from[1], to[1])]
 }
 
 /// The displacement in a field of the block at a position of the order, whose displacement at full density is
@@ -85,6 +79,7 @@ pub(crate) fn moved(
         return full;
     }
     let steepness = steepness(share, around());
-    let to = turned.moved(ladder, spread(stage, share, steepness), position);
-    part_of_way(full, to, damping(steepness))
+    let stage = stage.spread_by(longer(stage.per_share(), share, steepness));
+    let to = turned.moved(ladder, stage, position);
+    between(full, to, damping(steepness))
 }

@@ -105,6 +105,24 @@ impl Patch {
         self.shears().map_or(displaced, |shears| shears.apply(x, y))
     }
 
+    /// The least and the greatest movement by the warp of the points of some columns and rows of the patch, which
+    /// are not empty, along x and y.
+    pub(crate) fn drift(&self, lattice: &Lattice, piece: &[Range<i64>; 2]) -> [[i32; 2]; 2] {
+        let (Some(own), Some(shears)) = (self.shears(), &lattice.shears) else {
+            return [[0; 2]; 2];
+        };
+        let ends = [Axis::X, Axis::Y].map(|axis| {
+            let range = &piece[axis as usize];
+            let [least, most] = lattice.table_reach(axis);
+            let relative = |v: i64| self.relative(axis, v);
+            [
+                relative(range.start) + least,
+                relative(range.end - 1) + most,
+            ]
+        });
+        own.drift(shears, ends)
+    }
+
     /// A lattice row or column of the patch, relative to the origin.
     pub(crate) const fn relative(&self, axis: Axis, v: i64) -> i32 {
         ((v - self.origin[axis as usize]) << FRACTION_BITS) as i32

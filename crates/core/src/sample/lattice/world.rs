@@ -9,6 +9,7 @@ use super::{
     kinds::KindRow,
     moves,
     rank::{kind, rank},
+    varied::Varied,
 };
 use crate::{
     map::Map,
@@ -47,7 +48,9 @@ pub(crate) struct Lattice {
     /// Which of its points are kept, if not all.
     cut: Option<Cut>,
     /// The kind that points are of, if not any.
-    kinds: Option<Arc<OneKind>>,
+    pub(super) kinds: Option<Arc<OneKind>>,
+    /// The kinds whose shares vary, if there are such.
+    pub(super) varied: Option<Varied>,
     /// The vectors where points have moved as others left, if they do.
     moved: Option<Arc<Moved>>,
     /// The field that decides which points are kept, and how far they have moved.
@@ -121,6 +124,7 @@ impl Lattice {
                 _ => None,
             },
             kinds: None,
+            varied: None,
             grade: None,
             turned,
             stretch: Stretch::of(shears.as_ref()),
@@ -132,6 +136,9 @@ impl Lattice {
 
     /// The points of this lattice that are of a kind; none if the table has no mix.
     pub(crate) fn of_kind(self, kind: u8) -> Self {
+        if self.varied.is_some() {
+            return self.picking(kind);
+        }
         let (map, mix) = (self.table.map(), self.table.mix());
         let kinds = self.turned.labels().zip(mix);
         let kinds = kinds.map(|(labels, mix)| Arc::new(OneKind::new(map, mix, labels, kind)));
@@ -140,9 +147,14 @@ impl Lattice {
 
     /// A lattice of the same table at another placement, of the same kind as this one.
     fn at(&self, placement: Placement) -> Self {
-        let lattice = Self::new(self.table.clone(), placement);
+        let symmetry = placement.seed.symmetry();
+        let varied = self.varied.as_ref();
+        let lattice = Self {
+            varied: varied.map(|varied| varied.turned(symmetry)),
+            ..Self::new(self.table.clone(), placement)
+        };
         match &self.kinds {
-            Some(kinds) if placement.seed.symmetry() != self.placement.seed.symmetry() => {
+            Some(kinds) if symmetry != self.placement.seed.symmetry() => {
                 lattice.of_kind(kinds.kind())
             }
             kinds => Self {
@@ -154,12 +166,18 @@ impl Lattice {
 
     /// The kind that points are of, if not any.
     pub(crate) fn kind(&self) -> Option<u8> {
-        self.kinds.as_ref().map(|kinds| kinds.kind())
+        match &self.varied {
+            Some(varied) => varied.only(),
+            None => self.kinds.as_ref().map(|kinds| kinds.kind()),
+        }
     }
 
-    /// The share of all points that are of the lattice's kind, if it has one.
+    /// The share of all points that are of the lattice's kind, if it has one; about, where shares vary.
     pub(crate) fn kind_share(&self) -> f64 {
-        self.kinds.as_ref().map_or(1.0, |kinds| kinds.share())
+        match &self.varied {
+            Some(varied) => varied.share(),
+            None => self.kinds.as_ref().map_or(1.0, |kinds| kinds.share()),
+        }
     }
 
     /// About the share of all points that the lattice has, before a field decides.
@@ -325,7 +343,10 @@ impl Lattice {
 
     /// The kind of a point of the pattern, if the table has kinds; `None` for other addresses.
     pub(crate) fn kind_of(&self, id: PointId) -> Option<u8> {
-        kind(&self.turned, &self.pattern, id)
+        match &self.varied {
+            Some(varied) => self.varied_kind_of(varied, id),
+            None => kind(&self.turned, &self.pattern, id),
+        }
     }
 
     /// The blocks of dX and dY of an address, or `None` if it has no point.
@@ -338,7 +359,7 @@ impl Lattice {
         let map = self.map();
         let [block_x, block_y] = [map.interval_of(index_x)?, map.interval_of(index_y)?];
         let line = self.line(id.x, index_x);
-        (self.keeps(block_y)(&line)).then_some([block_x, block_y])
+        (self.keeps(block_y)(&line) && self.has_kind(id)).then_some([block_x, block_y])
     }
 
     /// The rank of a point of the pattern; the greatest for other addresses.
@@ -396,7 +417,7 @@ impl Lattice {
     }
 
     /// The fixed-point place of an address that has a point, with a displacement.
-    fn displaced_place(&self, id: PointId, [dx, dy]: Displacement) -> [i128; 2] {
+    pub(super) fn displaced_place(&self, id: PointId, [dx, dy]: Displacement) -> [i128; 2] {
         let displaced = [fixed(id.x) + i128::from(dx), fixed(id.y) + i128::from(dy)];
         match &self.shears {
             Some(shears) => {

@@ -103,7 +103,9 @@ pub(super) fn scan(
             let [x, y_place] = [0, 1].map(|i| lattice.world(origin[i] + i128::from(place[i])));
             let (x_offset, y_offset) = (x - at[0], y_place - at[1]);
             let point = Point { id, x, y: y_place };
-            visit(x_offset * x_offset + y_offset * y_offset, point)?;
+            if lattice.has_kind(id) {
+                visit(x_offset * x_offset + y_offset * y_offset, point)?;
+            }
         }
     }
     ControlFlow::Continue(())

@@ -1,21 +1,55 @@
 //! The kinds of a set's points.
 
-use alloc::vec::Vec;
+use alloc::{vec, vec::Vec};
 
 use super::PointSet;
 use crate::{
     error::{Error, ErrorKind},
     sample::{
         area::Area,
-        lattice::{Placement, PointId},
+        lattice::{Placement, Point, PointId, VaryingKinds},
         plan::Plan,
     },
     stop::Stop,
+    table::Shares,
 };
 
 impl PointSet {
-    /// The points of one kind. Kinds are those of the table's [mix](crate::Table::mix), numbered in the order of
-    /// its shares, the rarest first.
+    /// The set with kinds whose shares vary from place to place, in place of those of its table. Neither ids nor
+    /// places change. The points of each kind are counted one by one.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Kinds`] if the second order is of another map.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use strew_core::{PointSet, Table, VaryingKinds};
+    ///
+    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let right = |[x, _]: [f64; 2]| if x < 0.0 { 0.0 } else { 1.0 };
+    /// let kinds = VaryingKinds::new(&table, "1:1".parse()?, vec![Some(Arc::new(right)), None])?;
+    /// let set = PointSet::new(table).with_varying_kinds(kinds.clone())?;
+    /// // To the left all points are of the other kind.
+    /// assert_eq!(set.clone().only(0)?.chunk(20.0, [-1, 0])?.count(), 0);
+    /// assert_eq!(set.only(1)?.chunk(20.0, [-1, 0])?.count(), set.chunk(20.0, [-1, 0])?.count());
+    /// let other = Table::undisplaced("sqrt(3)".parse()?, 15, "pattern")?;
+    /// assert!(PointSet::new(other).with_varying_kinds(kinds).is_err());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn with_varying_kinds(self, kinds: VaryingKinds) -> Result<Self, Error> {
+        if kinds.order().map() != self.table().map() {
+            let field = "the second order";
+            let (value, allowed) = ("of another map", "of the map of the table");
+            return Err(Error::new(ErrorKind::Kinds, field, value, allowed));
+        }
+        Ok(Self {
+            lattice: self.lattice.with_varied(kinds),
+            ..self
+        })
+    }
+
+    /// The points of one kind. Kinds are those of the table's [mix](crate::Table::mix), or those that
+    /// [vary](Self::with_varying_kinds), numbered in the order of the shares, the rarest first.
     ///
     /// It is a set like any other: its areas, chunks, windows and searches have the points of the whole set that
     /// are of this kind, with the same ids and at the same places. Spacing and density remain those of the whole
@@ -55,10 +89,9 @@ impl PointSet {
         })
     }
 
-    /// The number of kinds of the table, 0 if it has none.
+    /// The number of kinds, 0 if there are none.
     fn kinds(&self) -> usize {
-        let mix = self.table().mix();
-        mix.map_or(0, |mix| mix.shares().kinds())
+        self.lattice.kind_parts().map_or(0, Shares::kinds)
     }
 
     /// The kind of [all points](Self::only) of the set, or `None` if it was not limited to one.
@@ -120,6 +153,9 @@ impl PointSet {
 
     /// [`kind_counts`](Self::kind_counts), whose counting a flag stops.
     pub(crate) fn kind_counts_until(&self, area: &Area, stop: &Stop) -> Result<Vec<u128>, Error> {
+        if self.lattice.is_varied() {
+            return self.varied_counts(area, stop);
+        }
         let own = self.lattice.kind();
         let count = |kind: u8| {
             if own.is_some_and(|own| own != kind) {
@@ -132,9 +168,29 @@ impl PointSet {
         (0..self.kinds() as u8).map(count).collect()
     }
 
+    /// The number of points of each kind whose shares vary: they are looked at one by one.
+    fn varied_counts(&self, area: &Area, stop: &Stop) -> Result<Vec<u128>, Error> {
+        let plan = Plan::new(&self.lattice, &self.mask, area.clone(), stop.clone(), None)?;
+        let mut counts = vec![0; self.kinds()];
+        let (mut blocks, mut block) = (plan.blocks_points(), [Point::default(); 1024]);
+        loop {
+            let filled = blocks.fill(&mut block);
+            if stop.is_raised() {
+                return Err(Stop::error());
+            }
+            if filled == 0 {
+                return Ok(counts);
+            }
+            let kinds = block[..filled].iter();
+            for kind in kinds.filter_map(|point| self.lattice.kind_of(point.id)) {
+                counts[usize::from(kind)] += 1;
+            }
+        }
+    }
+
     /// The least distance between a point of one kind and one of another, or between two of the same kind, in
     /// world units: a guarantee, as [`least_distance`](Self::least_distance) is. `None` if the table has no such
-    /// kinds.
+    /// kinds. Where shares vary it is that of any two points.
     ///
     /// ```
     /// use strew_core::{PointSet, Table, table::{Mix, Ranks}};
@@ -150,6 +206,10 @@ impl PointSet {
     /// ```
     #[must_use]
     pub fn least_distance_of(&self, a: u8, b: u8) -> Option<f64> {
+        if self.lattice.is_varied() {
+            let are_kinds = usize::from(a.max(b)) < self.kinds();
+            return are_kinds.then(|| self.least_distance());
+        }
         let least = self.table().least_distance_of(a, b)?;
         if self.moves() {
             return Some(0.0);

@@ -1,12 +1,13 @@
 //! The sieve of one piece of the lattice.
 
-use alloc::vec::Vec;
+use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
 use crate::{
     pattern::Axis,
     sample::{
         area::{Area, Near, Region, State, Stepper},
+        lattice::{Lattice, PointId},
         near::Guard,
     },
     table::FRACTION_BITS,
@@ -17,6 +18,8 @@ use crate::{
 pub(crate) struct LocalSieve {
     area: Option<Area>,
     guards: Vec<Guard>,
+    /// The set, if its points are left out by their kind one by one.
+    picked: Option<Arc<Lattice>>,
     /// The least and the greatest distance of a point from its lattice address, in lattice units, by
     /// axis.
     reach: [[f64; 2]; 2],
@@ -38,10 +41,15 @@ pub(crate) struct Run {
 }
 
 impl LocalSieve {
-    pub(super) fn new(guards: Vec<Guard>, reach: [[f64; 2]; 2], unit: f64) -> Self {
+    pub(super) fn new(
+        (guards, picked): (Vec<Guard>, Option<Arc<Lattice>>),
+        reach: [[f64; 2]; 2],
+        unit: f64,
+    ) -> Self {
         Self {
             area: None,
             guards,
+            picked,
             reach,
             unit,
             per_unit: 1.0 / unit,
@@ -79,18 +87,25 @@ impl LocalSieve {
 
     /// Whether a point of one of the last [`runs`](Self::runs) passes.
     #[inline]
-    pub(crate) fn passes(&self, run: &Run, p: [f64; 2]) -> bool {
+    pub(crate) fn passes(&self, run: &Run, id: PointId, p: [f64; 2]) -> bool {
         let inside = match (run.near, &self.area) {
             (Some(near), _) => self.stepper.contains(near, p),
             (None, Some(area)) => area.contains(p),
             (None, None) => true,
         };
-        inside && self.guards.iter().all(|guard| guard.permits(p))
+        inside && self.is_picked(id) && self.guards.iter().all(|guard| guard.permits(p))
+    }
+
+    /// Whether a point is of the kind that is wanted.
+    #[inline]
+    fn is_picked(&self, id: PointId) -> bool {
+        self.picked.as_ref().is_none_or(|set| set.has_kind(id))
     }
 
     /// Whether a point of the piece passes.
-    pub(crate) fn permits(&self, p: [f64; 2]) -> bool {
+    pub(crate) fn permits(&self, id: PointId, p: [f64; 2]) -> bool {
         self.area.as_ref().is_none_or(|area| area.contains(p))
+            && self.is_picked(id)
             && self.guards.iter().all(|guard| guard.permits(p))
     }
 
@@ -103,7 +118,7 @@ impl LocalSieve {
             Some(area) => area.steps(strip, &mut self.stepper),
             None => self.stepper.steps.restart(State::In),
         }
-        let is_guarded = !self.guards.is_empty();
+        let is_guarded = !self.guards.is_empty() || self.picked.is_some();
         let mut push = |run: Range<i64>, passes: bool, near: Option<Near>| {
             let passes = passes && !is_guarded;
             match runs.last_mut() {

@@ -384,14 +384,8 @@ impl<F: Format> Blocks<F> {
             let out = &mut out[filled..];
             if is_direct && self.at.done == 0 && columns.len() <= out.len() {
                 filled += compiled(self.backend, || {
-                    write_row(
-                        format,
-                        patch,
-                        row,
-                        (columns, inner),
-                        (vectors, is_inner),
-                        out,
-                    )
+                    let (columns, vectors) = ((columns, inner), (vectors, is_inner));
+                    write_row(format, patch, row, columns, vectors, out)
                 });
                 self.at.next_row();
                 continue;
@@ -483,8 +477,10 @@ impl<F: Format> Blocks<F> {
                     template.fill(format, patch, row, part, self.backend, out)
                 } else {
                     let columns = displaced(patch, &columns[part], vectors);
-                    let passes =
-                        |place| patch.holds(place) && sifting.patch.passes(run, scale.world(place));
+                    let passes = |x, place| {
+                        let id = PointId { x, y };
+                        patch.holds(place) && sifting.patch.passes(run, id, scale.world(place))
+                    };
                     sift(format, row, columns, (|p| patch.place(p), passes), out)
                 };
                 filled += progress.written;

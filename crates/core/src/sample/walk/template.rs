@@ -228,7 +228,7 @@ impl<F: Format> Template<F> {
                 let columns = lattice.iter().zip(displaced).zip(dys);
                 let columns = columns.map(|((&lattice, &x), &dy)| Displaced { lattice, x, dy });
                 let place = |[x, y]: [i32; 2]| shears.apply_others(x, y);
-                sift(format, row, columns, (place, |p| patch.holds(p)), out)
+                sift(format, row, columns, (place, |_, p| patch.holds(p)), out)
             }
             (Check::Outside, _) => Progress {
                 written: 0,
@@ -318,19 +318,22 @@ pub(super) fn write_row<F: Format>(
     written
 }
 
-/// Writes those points of some columns of a row whose place passes; `place` is the place of a displaced
+/// Writes those points of some columns of a row whose column and place pass; `place` is the place of a displaced
 /// position, both relative to the patch's origin.
 pub(super) fn sift<F: Format>(
     format: &F,
     row: Row,
     columns: impl Iterator<Item = Displaced>,
-    (place, passes): (impl Fn([i32; 2]) -> [i32; 2], impl Fn([i32; 2]) -> bool),
+    (place, passes): (
+        impl Fn([i32; 2]) -> [i32; 2],
+        impl Fn(i64, [i32; 2]) -> bool,
+    ),
     out: &mut [F::Item],
 ) -> Progress {
     let (mut written, mut done) = (0, 0);
     for Displaced { lattice, x, dy } in columns {
         let position = place([x, row.y + dy]);
-        if passes(position) {
+        if passes(lattice, position) {
             let Some(out) = out.get_mut(written) else {
                 break;
             };

@@ -77,6 +77,31 @@ impl PatchShears {
         bounds
     }
 
+    /// The least and the greatest movement, along x and y, of positions in some ranges, both ends of which belong to
+    /// them: that of the middle, and as much more or less as slopes allow. Faster than
+    /// [`Shears::drift_from`], and nearly as tight where ranges are short.
+    pub(crate) fn drift(&self, shears: &Shears, ranges: [[i32; 2]; 2]) -> [[i32; 2]; 2] {
+        // Room for rounding in `f32`.
+        const ROOM: f64 = 256.0;
+        let [middle, half] = [
+            ranges.map(|[first, last]| first + (last - first) / 2),
+            ranges.map(|[first, last]| last - first - (last - first) / 2),
+        ];
+        let moved = self.apply(middle[0], middle[1]);
+        let [first, second, third, fourth] = shears.slopes();
+        let [across, up] = half.map(f64::from);
+        let y = first * across;
+        let x = second * (up + y);
+        let rising = third * (across + x + up + y);
+        let falling = fourth * (across + x + up + y + 2.0 * rising);
+        let both = rising + falling + ROOM;
+        let more = [x + both, y + both].map(|v| v as i32);
+        [0, 1].map(|i| {
+            let by = moved[i] - middle[i];
+            [by - more[i], by + more[i]]
+        })
+    }
+
     #[inline(always)]
     fn noise(&self, direction: usize, s: i32) -> i32 {
         let cell = (s >> CELL_BITS) as usize % Self::CELLS;

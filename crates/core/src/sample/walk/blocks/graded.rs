@@ -185,9 +185,9 @@ impl<F: Format> Blocks<F> {
         };
         let enough = (2 * room).clamp(128, MOST);
         let from = self.at.from.take().map(|x| [x, self.at.y]);
+        let [left, bottom] = self.patch.origin();
         let next = rows.list(source, self.at.y..end, enough, self.backend);
         if let Some([x, y]) = from {
-            let [left, bottom] = self.patch.origin();
             rows.retain(|found| {
                 let [column, row] = found.address();
                 row != y - bottom || column >= x - left
@@ -195,7 +195,14 @@ impl<F: Format> Blocks<F> {
         }
         if let Some(sifting) = self.sieve.as_ref().filter(|sifting| sifting.is_cut) {
             let scale = Scale::new(lattice, &self.patch);
-            rows.retain(|found| sifting.patch.permits(scale.world(found.place)));
+            rows.retain(|found| {
+                let [x, y] = found.address();
+                let id = PointId {
+                    x: left + x,
+                    y: bottom + y,
+                };
+                sifting.patch.permits(id, scale.world(found.place))
+            });
         }
         self.at = Place::row(next);
     }

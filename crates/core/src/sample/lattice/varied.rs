@@ -1,0 +1,244 @@
+//! Kinds whose shares vary from place to place.
+//!
+//! Each point has a second rank, by a second order of the blocks. The kinds lie side by side in [0, 1), each as
+//! long as its share is where the point is at full density. The point is of the kind in which its second rank
+//! lies. The rarest kinds lie at the two ends, because an order of void and cluster is most even there.
+
+use alloc::{format, sync::Arc, vec::Vec};
+use core::fmt;
+
+use crate::{
+    error::{Error, ErrorKind},
+    sample::field::Field,
+    table::{Shares, Symmetry, Table, TurnedTable},
+};
+
+/// Kinds in shares that vary from place to place.
+///
+/// The weight of a kind at a place is its part of the shares times the share of its field there, or its part alone
+/// if it has no field. A share is a weight over the sum of all. Where all weights are zero, the fields do not
+/// count. Cheap to clone.
+///
+/// A point is looked at once, at its place at full density; so thinning and fields of density do not change its
+/// kind, and kinds change neither places nor ids.
+///
+/// ```
+/// use std::sync::Arc;
+/// use strew_core::{PointSet, Region, Table, VaryingKinds, table::Ranks};
+///
+/// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// // A second order of the blocks: here any; the forge makes even ones.
+/// let blocks = table.displacements().len() as u32;
+/// let order = table.with_ranks(Ranks::new((0..blocks).collect())?)?;
+/// // More birches, the kind of the smaller part, toward a river at x = 0.
+/// let river = |[x, _]: [f64; 2]| 1.0 / (1.0 + x.abs() / 20.0);
+/// let kinds = VaryingKinds::new(&order, "1:3".parse()?, vec![Some(Arc::new(river)), None])?;
+/// let forest = PointSet::new(table).with_varying_kinds(kinds)?;
+///
+/// let share = |region| Ok::<_, strew_core::Error>({
+///     let counts = forest.kind_counts(region)?;
+///     counts[0] as f64 / (counts[0] + counts[1]) as f64
+/// });
+/// assert!(share(Region::new([0.0, 0.0], [10.0, 100.0])?)? > 0.15);
+/// assert!(share(Region::new([90.0, 0.0], [100.0, 100.0])?)? < 0.1);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct VaryingKinds {
+    order: Table,
+    shares: Shares,
+    /// By kind.
+    fields: Arc<[Option<Arc<dyn Field>>]>,
+    /// The kinds as they lie in [0, 1).
+    arranged: Arc<[u8]>,
+}
+
+impl fmt::Debug for VaryingKinds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("VaryingKinds")
+            .field("shares", &self.shares)
+            .field("order", &self.order.digest())
+            .finish_non_exhaustive()
+    }
+}
+
+impl VaryingKinds {
+    /// Kinds by a second order: the ranks of `order`, a table of the same map as that of the set. `fields` has one
+    /// place for each kind, the smallest part first.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Kinds`] unless there are as many fields as kinds, and at least one field.
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, Table, VaryingKinds};
+    ///
+    /// let order = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let error = VaryingKinds::new(&order, "1:3".parse()?, vec![None, None]).unwrap_err();
+    /// assert_eq!(error.kind(), ErrorKind::Kinds);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn new(
+        order: &Table,
+        shares: Shares,
+        fields: Vec<Option<Arc<dyn Field>>>,
+    ) -> Result<Self, Error> {
+        let number = fields.iter().flatten().count();
+        if fields.len() != shares.kinds() || number == 0 {
+            let value = format!("{number} in {} places", fields.len());
+            let allowed = format!("at least one, in {} places", shares.kinds());
+            return Err(Error::new(
+                ErrorKind::Kinds,
+                "the fields of kinds",
+                value,
+                allowed,
+            ));
+        }
+        Ok(Self {
+            order: order.clone(),
+            arranged: arranged(shares.kinds()).into(),
+            shares,
+            fields: fields.into(),
+        })
+    }
+
+    /// The parts of the kinds, which their fields multiply.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use strew_core::{Table, VaryingKinds};
+    ///
+    /// let order = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let half = |_: [f64; 2]| 0.5;
+    /// let kinds = VaryingKinds::new(&order, "3:1".parse()?, vec![None, Some(Arc::new(half))])?;
+    /// assert_eq!(kinds.shares().to_string(), "1:3");
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub const fn shares(&self) -> &Shares {
+        &self.shares
+    }
+
+    /// The table whose ranks are the second order.
+    pub(crate) const fn order(&self) -> &Table {
+        &self.order
+    }
+
+    /// The kind of a point by its second rank and its place at full density.
+    pub(crate) fn kind(&self, rank: f64, at: [f64; 2]) -> u8 {
+        let own = |kind: usize| f64::from(self.shares.parts()[kind]);
+        let weight = |kind: usize| match &self.fields[kind] {
+            None => own(kind),
+            Some(field) => match field.share(at) {
+                share if share > 0.0 => own(kind) * share.min(1.0),
+                _ => 0.0,
+            },
+        };
+        let mut weights = [0.0; Shares::MAX_KINDS];
+        let weights = &mut weights[..self.shares.kinds()];
+        for (kind, out) in weights.iter_mut().enumerate() {
+            *out = weight(kind);
+        }
+        if weights.iter().all(|weight| *weight == 0.0) {
+            for (kind, out) in weights.iter_mut().enumerate() {
+                *out = own(kind);
+            }
+        }
+        let in_order = || {
+            let all = self.arranged.iter();
+            all.map(|&kind| (kind, weights[usize::from(kind)]))
+        };
+        let total = in_order().fold(0.0, |sum, (_, weight)| sum + weight);
+        // Rounding may carry the greatest ranks to the sum.
+        let mark = (rank * total).min(total.next_down());
+        let mut end = 0.0;
+        for (kind, weight) in in_order() {
+            end += weight;
+            if mark < end {
+                return kind;
+            }
+        }
+        0
+    }
+}
+
+/// Kinds whose shares vary, of a lattice.
+#[derive(Clone, Debug)]
+pub(super) struct Varied {
+    pub(super) kinds: VaryingKinds,
+    /// The table of the second order, turned as that of the lattice.
+    pub(super) turned: TurnedTable,
+    /// The kind that points are of, if not any.
+    pub(super) only: Option<u8>,
+}
+
+impl Varied {
+    pub(super) fn new(kinds: VaryingKinds, symmetry: Symmetry, only: Option<u8>) -> Self {
+        Self {
+            turned: TurnedTable::new(&kinds.order, symmetry),
+            kinds,
+            only,
+        }
+    }
+
+    /// These kinds of a lattice whose table is turned.
+    pub(super) fn turned(&self, symmetry: Symmetry) -> Self {
+        Self::new(self.kinds.clone(), symmetry, self.only)
+    }
+
+    /// The kind that points are of, if not any.
+    pub(super) const fn only(&self) -> Option<u8> {
+        self.only
+    }
+
+    /// About the share of all points that are of that kind.
+    pub(super) fn share(&self) -> f64 {
+        self.only.map_or(1.0, |kind| self.kinds.shares.of(kind))
+    }
+}
+
+/// Kinds from one end to the other: the rarest at the first, the next at the last, and so on to the middle.
+fn arranged(kinds: usize) -> Vec<u8> {
+    let kinds = 0..kinds as u8;
+    let first = kinds.clone().filter(|kind| kind % 2 == 0);
+    first
+        .chain(kinds.rev().filter(|kind| kind % 2 == 1))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use super::*;
+
+    #[test]
+    fn rare_kinds_lie_at_the_ends() {
+        assert_eq!(arranged(2), [0, 1]);
+        assert_eq!(arranged(3), [0, 2, 1]);
+        assert_eq!(arranged(6), [0, 2, 4, 5, 3, 1]);
+    }
+
+    #[test]
+    fn a_kind_of_weight_zero_has_no_points() {
+        let order = Table::undisplaced("sqrt(3)".parse().expect("valid"), 5, "p").expect("small");
+        let kinds = |shares: [f64; 3]| {
+            let fields = shares.map(|share| Some(Arc::new(move |_: [f64; 2]| share) as _));
+            let parts = "1:3:10".parse().expect("valid");
+            VaryingKinds::new(&order, parts, fields.to_vec()).expect("three")
+        };
+        let greatest = 1.0f64.next_down();
+        let at = |shares, rank| kinds(shares).kind(rank, [0.0; 2]);
+        for rank in [0.0, 0.3, greatest] {
+            assert_eq!(at([1.0, 0.0, 0.0], rank), 0);
+            assert_eq!(at([0.0, f64::NAN, 1e-300], rank), 2);
+            assert_eq!(at([-1.0, 1e-9, 0.0], rank), 1);
+            // Without any weight, and with all of them, the parts alone.
+            assert_eq!(at([0.0; 3], rank), at([9.0; 3], rank));
+        }
+        assert_eq!(
+            [0.0, 0.5, greatest].map(|rank| at([0.0; 3], rank)),
+            [0, 2, 1]
+        );
+        assert!(VaryingKinds::new(&order, "1:3".parse().expect("valid"), vec![None]).is_err());
+    }
+}
