@@ -44,7 +44,7 @@ Examples:
 pub(super) const MEASURE: &str = "\
 Examples:
   strew measure --profile blue --seed 7
-  strew measure --points points.csv";
+  strew measure --points points.csv --bbox 0,0,100,100";
 pub(super) const TABLE: &str = "\
 Examples:
   strew table show --profile blue

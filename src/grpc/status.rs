@@ -118,6 +118,7 @@ fn facts(error: &Error) -> HashMap<String, String> {
         Error::Busy { limit }
         | Error::TooManyRequests { limit }
         | Error::TooManyBytes { limit }
+        | Error::NeedsMoreBytes { limit, .. }
         | Error::TooManyJobs { limit }
         | Error::Denied(
             Denied::TooManyStreams { limit }

@@ -93,6 +93,7 @@ impl<'a> Problem<'a> {
             | Error::TooManyConnections { limit }
             | Error::TooManyRequests { limit }
             | Error::TooManyBytes { limit }
+            | Error::NeedsMoreBytes { limit, .. }
             | Error::TooManyJobs { limit }
             | Error::Denied(
                 Denied::TooManyStreams { limit }

@@ -56,8 +56,8 @@ impl Budget {
     /// Takes bytes.
     ///
     /// # Errors
-    /// [`Error::TooManyBytes`] if there is no room, [`Denied::Address`] if the address has used its
-    /// own.
+    /// [`Error::NeedsMoreBytes`] if there can never be room, [`Error::TooManyBytes`] if there is none now,
+    /// [`Denied::Address`] if the address has used its own.
     pub fn hold(&self, bytes: usize) -> Result<Held, Error> {
         let mut held = self.hold_anyway(0);
         held.grow(bytes)?;
@@ -94,6 +94,19 @@ impl Held {
             return Ok(());
         }
         let Budget { all, address } = &self.budget;
+        for (limit, setting) in [
+            (all.limit(), "limits.max_bytes_in_flight"),
+            (address.bytes.limit(), "per_address.max_bytes_in_flight"),
+        ] {
+            let needed = self.bytes.saturating_add(bytes);
+            if needed > limit {
+                return Err(Error::NeedsMoreBytes {
+                    needed,
+                    limit,
+                    setting,
+                });
+            }
+        }
         if !address.bytes.take(bytes) {
             let (what, limit) = ("bytes", address.bytes.limit());
             return Err(Denied::Address { what, limit }.into());
@@ -135,6 +148,13 @@ mod tests {
         assert_eq!(
             budget.hold(41).expect_err("no room").kind(),
             crate::service::Kind::Busy
+        );
+        let never = budget.hold(101).expect_err("never room");
+        assert_eq!(never.retry_seconds(), None);
+        assert!(
+            never
+                .to_string()
+                .contains("limits.max_bytes_in_flight = 100")
         );
         let second = budget.hold(40).expect("room");
         assert!(first.grow(1).is_err() && first.grow(usize::MAX).is_err());

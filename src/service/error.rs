@@ -209,6 +209,18 @@ pub enum Error {
         /// The limit.
         limit: usize,
     },
+    /// What is wanted takes more memory at once than this server ever has for it.
+    #[error(
+        "this takes {needed} bytes at once, and {setting} = {limit} on this server, which its operator can raise"
+    )]
+    NeedsMoreBytes {
+        /// What it takes.
+        needed: usize,
+        /// The limit.
+        limit: usize,
+        /// The setting of the limit.
+        setting: &'static str,
+    },
     /// The body took longer to come than it may.
     #[error("the body did not arrive within {seconds} seconds")]
     BodyTooSlow {
@@ -274,7 +286,7 @@ pub enum Kind {
     /// The caller takes points too fast.
     TooFast,
     /// [`Error::Busy`], [`Error::TooManyConnections`], [`Error::TooManyRequests`],
-    /// [`Error::TooManyBytes`], [`Error::TooManyJobs`].
+    /// [`Error::TooManyBytes`], [`Error::NeedsMoreBytes`], [`Error::TooManyJobs`].
     Busy,
     /// [`Error::BodyTooSlow`].
     BodyTooSlow,
@@ -344,7 +356,8 @@ impl Error {
             | Self::TooManyConnections { .. }
             | Self::TooManyRequests { .. }
             | Self::TooManyJobs { .. }
-            | Self::TooManyBytes { .. } => Kind::Busy,
+            | Self::TooManyBytes { .. }
+            | Self::NeedsMoreBytes { .. } => Kind::Busy,
             Self::BodyTooSlow { .. } => Kind::BodyTooSlow,
             Self::TimeOver { .. } => Kind::TimeOver,
             Self::ShuttingDown => Kind::ShuttingDown,
@@ -359,6 +372,8 @@ impl Error {
             Self::ShuttingDown => Some(1),
             // It was slow because others ask, too: soon it may be fast.
             Self::TimeOver { .. } | Self::TableUnreadable { .. } => Some(5),
+            // Never, with these settings.
+            Self::NeedsMoreBytes { .. } => None,
             #[cfg(feature = "daemon")]
             Self::Denied(denied) => denied.wait_seconds(),
             _ => (self.kind() == Kind::Busy).then_some(1),
