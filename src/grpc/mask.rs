@@ -20,15 +20,16 @@ pub(super) async fn mask(
     caller: &Caller,
     request: GetMaskRequest,
 ) -> Result<GetMaskResponse, Error> {
-    let integer = |number: Option<u32>| number.map(|number| Value::Integer(number.into()));
+    let bits = request.bits.map(|bits| Value::Text(bits.to_string()));
+    let size = request.size.map(|size| Value::Integer(size.into()));
     let given: [(&'static Parameter, Option<Value>); 7] = [
         (&PROFILE, request.profile.map(Value::Text)),
         (&ALPHA, request.alpha.map(Value::Text)),
         (&MAP, request.map.map(Value::Text)),
         (&TABLE, request.table.map(Value::Text)),
-        (&MASK_SIZE, integer(request.size)),
+        (&MASK_SIZE, size),
         (&MASK_SEED, request.seed.map(Value::Integer)),
-        (&BITS, integer(request.bits)),
+        (&BITS, bits),
     ];
     let mut values = Values::new(groups::MASK, "");
     values.add_values(given);

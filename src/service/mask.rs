@@ -75,11 +75,9 @@ impl MaskQuery {
 }
 
 fn bits(values: &Values) -> Checked<u8> {
-    match values.get::<u64>(&BITS)? {
-        None | Some(8) => Ok(8),
-        Some(16) => Ok(16),
-        Some(_) => Err(values.fault(&BITS, "neither 8 nor 16").into()),
-    }
+    let bits = values.get::<String>(&BITS)?;
+    // One of the two.
+    Ok(if bits.as_deref() == Some("16") { 16 } else { 8 })
 }
 
 fn refused(error: MaskError) -> Error {

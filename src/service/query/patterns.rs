@@ -224,7 +224,7 @@ parameters! {
         name: "bits",
         about: "The bits of a threshold.",
         group: Group::MaskFile,
-        shape: Shape::Integer { min: 8, max: 16 },
+        shape: Shape::Choice(&["8", "16"]),
         allowed: Some("8 or 16"),
         default: Some("8"),
         example: "16",

@@ -215,10 +215,26 @@ def tidy_pattern(query):
         query["block"] = "0,0"
     if "window" in query:
         query["window"] = 8 + int(number(query["window"], 0, 30))
+    if "size" in query:
+        query["size"] = 64 + int(number(query["size"], 0, 300))
     return query
 
 
-PATTERNS = ["getClusters", "getMap"] + [f"get{name}Figure" for name in ["Index", "Arrangement", "Clusters", "Map"]]
+def tidy_mask(query):
+    """Parameters of masks: small ones of loaded tables."""
+    for member in ["alpha", "map", "table"]:
+        query.pop(member, None)
+    if "profile" in query:
+        query["profile"] = choose(query["profile"], PROFILES)
+    if "seed" in query:
+        query["seed"] = int(number(query["seed"], 0, 2**53))
+    query["size"] = 16 + int(number(query.get("size"), 0, 60))
+    return query
+
+
+FIGURES = ["Index", "Arrangement", "Clusters", "Map"]
+PATTERNS = ["getClusters", "getMap"] + [f"get{name}{form}" for name in FIGURES for form in ["Figure", "Picture"]]
+MASKS = ["getMask", "getMaskSpectrum"]
 
 
 def tidy_query(name, rules, query):
@@ -227,6 +243,8 @@ def tidy_query(name, rules, query):
         return tidy_arrangement(query, True)
     if name in PATTERNS:
         return tidy_pattern(query)
+    if name in MASKS:
+        return tidy_mask(query)
     for rule in rules:
         if rule["rule"] == "exactly-one-of" and "bbox" in rule["parameters"]:
             shape = one_of(query, rule["parameters"], "bbox")
@@ -269,7 +287,7 @@ def before_call(context, case, kwargs):
             if name == "findArrangement"
             else tidy_body(name, case.body)
         )
-    if "x-rules" in raw or name in ["getProfile", "getSpectrum", "listPeriods", "splitPoints"] + PATTERNS:
+    if "x-rules" in raw or name in ["getProfile", "getSpectrum", "listPeriods", "splitPoints"] + PATTERNS + MASKS:
         case.query = tidy_query(name, raw.get("x-rules", []), case.query or {})
     if name in ["getChunk", "getFieldChunk"]:
         path = dict(case.path_parameters or {})
