@@ -35,7 +35,7 @@ impl Mask {
     ///
     /// let table = Table::undisplaced("(5-sqrt(3))/2".parse()?, 49, "pattern")?;
     /// let mask = Mask::new(&table, 64, 7)?;
-    /// assert!(mask.spectrum(0.25).low_power < 0.1);
+    /// assert!(mask.spectrum(0.25).low_power < 0.2);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]

@@ -31,7 +31,7 @@ impl PointSet {
     /// let set = PointSet::new(table).with_varying_kinds(kinds.clone())?;
     /// // To the left all points are of the other kind.
     /// assert_eq!(set.clone().only(0)?.chunk(20.0, [-1, 0])?.count(), 0);
-    /// assert_eq!(set.only(1)?.chunk(20.0, [-1, 0])?.count(), set.chunk(20.0, [-1, 0])?.count());
+    /// assert_eq!(set.clone().only(1)?.chunk(20.0, [-1, 0])?.count(), set.chunk(20.0, [-1, 0])?.count());
     /// let other = Table::undisplaced("sqrt(3)".parse()?, 15, "pattern")?;
     /// assert!(PointSet::new(other).with_varying_kinds(kinds).is_err());
     /// # Ok::<(), strew_core::Error>(())
