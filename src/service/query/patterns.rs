@@ -14,6 +14,8 @@ use super::{
 
 /// The largest half-width of a map.
 pub const MOST_RADIUS: u32 = strew_core::map::MAX_RADIUS;
+/// The largest side of a threshold mask that the daemon makes.
+pub const MOST_MASK: u32 = 512;
 /// The most offsets of an arrangement whose places are listed.
 pub const MOST_PLACED: usize = 1000;
 
@@ -207,7 +209,7 @@ parameters! {
         name: "size",
         about: "The side of the mask in pixels.",
         group: Group::Mask,
-        shape: Shape::Integer { min: Mask::LEAST_SIZE as u64, max: Mask::MOST_SIZE as u64 },
+        shape: Shape::Integer { min: Mask::LEAST_SIZE as u64, max: MOST_MASK as u64 },
         default: Some("256"),
         example: "64",
         ..Parameter::PLAIN

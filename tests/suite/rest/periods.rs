@@ -304,7 +304,7 @@ fn masks_are_those_of_the_command_line() {
     assert!(spectrum.text().starts_with("<svg"), "{}", spectrum.text());
     for (wrong, says) in [
         ("size=8", "size"),
-        ("size=2000", "16 to 1024"),
+        ("size=2000", "16 to 512"),
         ("bits=12", "8 or 16"),
         ("periodic=9", "size, seed, bits"),
         ("alpha=1.3", "alpha"),
@@ -329,5 +329,5 @@ async fn masks_are_the_same_over_grpc() {
     let mask = daemon.get("/v1/mask.png?size=32&seed=7&map=s");
     assert_eq!(answer.into_inner().png, mask.body);
     let refused = client.get_mask(request(8)).await.expect_err("too small");
-    assert_faults(&refused, &["size"], &["16 to 1024"]);
+    assert_faults(&refused, &["size"], &["16 to 512"]);
 }

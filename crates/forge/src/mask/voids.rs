@@ -30,6 +30,13 @@ pub(super) struct Voids {
     blocks: usize,
     /// The best pixel of each block with how good it is, if it has any.
     best: Vec<Option<(u32, usize)>>,
+    /// The best of each row of blocks.
+    best_of_rows: Vec<Option<(u32, usize)>>,
+}
+
+/// The better one of two; the first of equals.
+fn better(a: (u32, usize), b: (u32, usize)) -> (u32, usize) {
+    if b.0 > a.0 { b } else { a }
 }
 
 impl Voids {
@@ -44,6 +51,7 @@ impl Voids {
             kernel: kernel(),
             blocks,
             best: vec![None; blocks * blocks],
+            best_of_rows: vec![None; blocks],
         };
         for &pixel in on {
             voids.is_on[pixel] = true;
@@ -58,12 +66,20 @@ impl Voids {
         for block in 0..self.best.len() {
             self.renew(block);
         }
+        for row in 0..self.blocks {
+            self.renew_row(row);
+        }
+    }
+
+    /// Finds the best of a row of blocks anew.
+    fn renew_row(&mut self, row: usize) {
+        let blocks = &self.best[row * self.blocks..][..self.blocks];
+        self.best_of_rows[row] = blocks.iter().flatten().copied().reduce(better);
     }
 
     /// Flips the best pixel and returns it; of equally good ones, the first of the first block.
     pub(super) fn flip(&mut self) -> usize {
-        let better = |a: (u32, usize), b: (u32, usize)| if b.0 > a.0 { b } else { a };
-        let best = self.best.iter().flatten().copied().reduce(better);
+        let best = self.best_of_rows.iter().flatten().copied().reduce(better);
         let pixel = best.map_or(0, |(_, pixel)| pixel);
         self.is_on[pixel] = self.choice == Choice::Voids;
         match self.choice {
@@ -82,6 +98,7 @@ impl Voids {
             for column in &columns {
                 self.renew(row * self.blocks + column);
             }
+            self.renew_row(row);
         }
         pixel
     }
