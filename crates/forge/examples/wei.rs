@@ -25,18 +25,17 @@ fn hexagonal(density: f64) -> f64 {
 /// The least distances between kinds, the rarest kind first.
 fn distances(densities: &[f64]) -> Vec<Vec<f64>> {
     let kinds = densities.len();
-    let mut all = vec![vec![0.0; kinds]; kinds];
-    for i in 0..kinds {
-        // Kinds of the same density are one group.
-        let group = densities.iter().filter(|&&d| d <= densities[i]);
-        let between = RADIUS * hexagonal(group.sum());
-        for j in 0..=i {
-            all[i][j] = between;
-            all[j][i] = between;
-        }
-        all[i][i] = RADIUS * hexagonal(densities[i]);
-    }
-    all
+    // Between two kinds it is that of all kinds up to the denser one.
+    let up_to = |kind: usize| {
+        let group = densities.iter().filter(|&&d| d <= densities[kind]);
+        RADIUS * hexagonal(group.sum())
+    };
+    let apart = |i: usize, j: usize| match i == j {
+        true => RADIUS * hexagonal(densities[i]),
+        false => up_to(i.max(j)),
+    };
+    let row = |i: usize| (0..kinds).map(|j| apart(i, j)).collect();
+    (0..kinds).map(row).collect()
 }
 
 /// Points on the unit torus in cells.
