@@ -61,7 +61,7 @@ Examples:
 pub(super) const PROFILES: &str = "\
 Examples:
   strew profiles
-  strew profiles --tables tables --json";
+  strew profiles --tables tables";
 pub(super) const COMPLETIONS: &str = "\
 Examples:
   strew completions bash > /etc/bash_completion.d/strew

@@ -1,78 +1,38 @@
 //! `strew profiles`: the tables that would answer.
 
-use serde::Serialize;
-
 use super::{Failure, config, output};
 use crate::service::{Catalog, Entry};
 
 /// Flags of `strew profiles`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// Print each table as JSON, one a line.
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
     settings: config::Args,
 }
 
-/// A table, as `GET /v1/profiles` describes it, without its provenance.
-#[derive(Serialize)]
-struct Listed<'a> {
-    profile: &'a str,
-    alpha: String,
-    map: String,
-    radius: u32,
-    blocks: usize,
-    joint_kinds: Vec<String>,
-    bytes: u64,
-    digest: &'a str,
-}
+/// The titles of the columns.
+const TITLES: [&str; 5] = ["profile", "alpha", "map", "blocks", "joint kinds"];
 
-impl<'a> Listed<'a> {
-    fn new(entry: &'a Entry, catalog: &Catalog) -> Self {
-        Self {
-            profile: &entry.key.profile,
-            alpha: entry.key.alpha.to_string(),
-            map: entry.key.size.to_string(),
-            radius: entry.radius,
-            blocks: entry.blocks(),
-            joint_kinds: catalog.joint_kinds(entry),
-            bytes: entry.bytes,
-            digest: &entry.digest,
-        }
-    }
-
-    /// The columns of the list.
-    fn cells(&self) -> [String; 5] {
-        [
-            self.profile.into(),
-            self.alpha.clone(),
-            self.map.clone(),
-            format!("{}", self.blocks),
-            self.joint_kinds.join(" "),
-        ]
-    }
+fn cells(entry: &Entry, catalog: &Catalog) -> [String; 5] {
+    [
+        entry.key.profile.to_string(),
+        entry.key.alpha.to_string(),
+        entry.key.size.to_string(),
+        entry.blocks().to_string(),
+        catalog.joint_kinds(entry).join(" "),
+    ]
 }
 
 /// Prints the tables.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let catalog = args.settings.merged()?.tables()?;
-    let listed = || catalog.entries().map(|entry| Listed::new(entry, &catalog));
-    if args.json {
-        return output::print_json(listed());
-    }
-    let head = ["profile", "alpha", "map", "blocks", "joint kinds"].map(String::from);
-    let rows: Vec<[String; 5]> = [head]
+    let tables = catalog.entries().map(|entry| cells(entry, &catalog));
+    let rows: Vec<[String; 5]> = [TITLES.map(String::from)]
         .into_iter()
-        .chain(listed().map(|table| table.cells()))
+        .chain(tables)
         .collect();
-    let width = |column: usize| {
-        rows.iter()
-            .map(|row| row[column].chars().count())
-            .max()
-            .unwrap_or(0)
-    };
-    let widths = [0, 1, 2, 3, 4].map(width);
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
+    let widths = [0, 1, 2, 3, 4].map(|column| width(column).unwrap_or(0));
     let mut text = String::new();
     for row in &rows {
         let cells = row

@@ -55,7 +55,7 @@ pub(super) fn list(service: Arc<Service>) -> Endpoint {
         method: Method::POST,
         id: "sendField",
         summary: "Sends a field to be named later",
-        about: "Queries name it by its digest: field=DIGEST. So a mask is sent once, and asked for chunk by chunk. \
+        about: "Queries name it by its digest: field=DIGEST. So a mask is sent once, and used chunk by chunk. \
                 It is held for as long as there is room; one that is gone is \
                 no loaded field, and is sent again.",
         path_parameters: &[],
@@ -163,7 +163,7 @@ struct Summary<'a> {
     digest: String,
     /// The shape that it is.
     shape: &'static str,
-    /// How many shapes it is made of.
+    /// The number of shapes in it.
     parts: usize,
     /// A box around its pixels, if it has any: min x, min y, max x, max y.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -30,7 +30,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         method: Method::POST,
         id: "forgeTable",
         summary: "Has a table made",
-        about: "For profiles, alphas and maps that are not loaded. There is one job for a table, whoever sends the \
+        about: "For profiles, alphas and maps that are not loaded. There is one job for a table, for all who send the \
                 request; a job that was rejected is answered as it ended. The finished table is judged, kept and \
                 served. The settings [forge] say who may do this: by default nobody.",
         tag: Tag::Tables,

@@ -169,7 +169,7 @@ impl Catalog {
         loaded.or_else(|| self.sent.get(name))
     }
 
-    /// Makes the field of a document that a client has written, with at most so many pixels in it.
+    /// Makes the field of a document that a client has written, of a limited number of pixels.
     pub fn build_field(
         &self,
         path: &str,

@@ -358,7 +358,7 @@ impl Service {
         Placed::new(set, ready)
     }
 
-    /// What is made of the points of a set nearest to a place, where they are found: there may be
+    /// The answer about the points of a set nearest to a place, made where they are found: there may be
     /// thousands. Charges them.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use strew_core::{Table, table::Shares};
 
 use super::{Error, Fault};
 
-/// What is made of a table.
+/// What kinds need beside a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Made {
     /// Labels of its blocks, for kinds in these shares.
@@ -25,7 +25,7 @@ impl fmt::Display for Made {
 }
 
 impl Made {
-    /// Whether a table is what is made of another one.
+    /// Whether a table has it, and is the other one in all else.
     pub(super) fn is(&self, made: &Table, of: &Table) -> bool {
         let is_of = made.displacements() == of.displacements() && made.map() == of.map();
         is_of

@@ -61,12 +61,12 @@ impl Mixes {
         }
     }
 
-    /// What is made of a table, if it is in memory.
+    /// The labels or the second order of a table, if they are in memory.
     pub(super) async fn known(&self, plain: &Ready, what: &Made) -> Option<Ready> {
         self.samplers.known(&name(plain, what)).await
     }
 
-    /// What is made of a table, unless that has begun.
+    /// Makes the labels or the second order of a table, unless that has begun.
     pub(super) fn get(&self, plain: &Ready, what: &Made, workers: &Workers) -> Making {
         let name = name(plain, what);
         let mut making = self.making.lock().unwrap_or_else(PoisonError::into_inner);

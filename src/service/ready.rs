@@ -36,7 +36,7 @@ impl Ready {
         }
     }
 
-    /// This table with what was made of it for some kinds.
+    /// This table with the labels or the second order of some kinds.
     pub(super) fn with_made(self, kinds: &Kinds, made: Table) -> Self {
         match kinds.vary_by_place() {
             true => Self {

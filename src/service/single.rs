@@ -21,10 +21,10 @@ pub struct Found {
     pub x: f64,
     /// Its y.
     pub y: f64,
-    /// How far it is from the place asked for.
+    /// Its distance from the given place.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance: Option<f64>,
-    /// Its block of the neighborhood map, column and row, where one point alone is asked for.
+    /// Its block of the neighborhood map, column and row, where a single point is requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<[usize; 2]>,
     /// Its attributes by name.

@@ -52,7 +52,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--points", type=int, default=10_000)
     count = parser.parse_args().points
-    # A maximal set of disks of this radius has about so many points.
+    # A maximal set of disks of this radius has about this number of points.
     radius = float(np.sqrt(0.7 / count))
     ways: dict[str, Callable[[], Points]] = {
         "strew": lambda: strew.points(bbox=(0, 0, 1, 1), spacing=count**-0.5, seed=1).xy,

@@ -114,7 +114,7 @@ def connect(
         points = strew.points(bbox=(0, 0, 10, 10), spacing=1)
         points = strew.connect("http://localhost:8080").points(bbox=(0, 0, 10, 10), spacing=1)
 
-    A daemon is asked when an answer is needed: :class:`StrewError` is raised then.
+    The daemon is called when an answer is needed: :class:`StrewError` is raised then.
     """
     return Daemon(url, key, timeout, retries, verify)
 

@@ -252,7 +252,7 @@ impl Library {
     }
 }
 
-/// Holds a field that a client sends, with at most so many pixels, under its digest.
+/// Holds a field that a client sends, of a limited number of pixels, under its digest.
 ///
 /// # Errors
 /// [`Error::Invalid`] for a field that is not valid or too large to be held.

@@ -122,8 +122,11 @@ impl Kinds {
             let detail = "not with periodic: shares that vary do not repeat";
             return Err(fault(detail.into()));
         }
-        if let Some(twice) = given.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            return Err(fault(format!("`{}` is given twice", twice[0].0)));
+        let is_known = |(i, (name, _)): &(usize, &(String, _))| {
+            given[..*i].iter().any(|(first, _)| first == name)
+        };
+        if let Some((_, (name, _))) = given.iter().enumerate().find(is_known) {
+            return Err(fault(format!("`{name}` is given twice")));
         }
         let names = || self.variants.variants().names();
         let field = |(name, document): &(String, Arc<Document>)| {
@@ -156,7 +159,7 @@ impl Kinds {
         (!named.is_empty()).then_some(Value::Fields(named))
     }
 
-    /// What has to be made of a table for them.
+    /// The labels or the order that they need beside a table.
     #[must_use]
     pub(in crate::service) fn made_of(&self) -> Made {
         match self.vary_by_place() {

@@ -167,6 +167,11 @@ fn wrong_fields_are_refused_by_name() {
             "variant_fields",
             "given twice",
         ),
+        (
+            "variant_fields=birch:ramp,oak:left,birch:left",
+            "variant_fields",
+            "given twice",
+        ),
     ] {
         let answer = daemon.get(&format!("/v1/count?bbox=0,0,9,9&{SET}&{more}"));
         assert_fault(&answer, more, field, &[part]);

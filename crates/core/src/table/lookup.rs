@@ -37,7 +37,7 @@ impl<const N: usize> Lookup<N> {
 
 impl Ladder {
     /// Looks up the moves of points by their shares and positions, of which there are at most `N`. Nothing else is
-    /// done meanwhile, so that memory is asked for many at a time.
+    /// done meanwhile, so that many loads wait for memory at once.
     #[inline(always)]
     pub(crate) fn look_up<const N: usize>(
         &self,

@@ -83,7 +83,7 @@ impl Mask {
         Ok(mask)
     }
 
-    /// As [`Mask::new`], as long as `goes_on` says so: it is asked every thousand pixels. `None` if it was stopped.
+    /// As [`Mask::new`], while `goes_on` returns true: it is called every thousand pixels. `None` if it was stopped.
     ///
     /// # Errors
     /// As [`Mask::new`].
