@@ -42,6 +42,7 @@ kinds! {
     TooManyRows: "too-many-rows", "Counting the points would take too long", PAYLOAD_TOO_LARGE, ResourceExhausted;
     BodyTooLarge: "body-too-large", "The query is too long", PAYLOAD_TOO_LARGE, ResourceExhausted;
     OtherTable: "other-table", "Another table would answer", CONFLICT, FailedPrecondition;
+    OtherWorld: "other-world", "The world has changed", CONFLICT, FailedPrecondition;
     TableUnreadable: "table-unreadable", "The table cannot be read", SERVICE_UNAVAILABLE, Unavailable;
     NotAcceptable: "not-acceptable", "No acceptable format", NOT_ACCEPTABLE, InvalidArgument;
     NoSuchPoint: "no-such-point", "There is no such point", NOT_FOUND, NotFound;

@@ -9,6 +9,7 @@ Examples:
   strew sample --bbox 0,0,100,100 --spacing 2 --seed 7 --format csv
   strew sample --chunk 64/3/-2 --spacing 4 --seed 7 -o chunk.parquet
   strew sample --circle 0,0,50 --min-distance 1.5 --attributes angle,scale -o trees.csv.gz
+  strew sample --chunk 64/3/-2 --world forest --config strew.toml -o chunk.arrow
   strew sample --bbox 0,0,512,512 --spacing 3 --raster forest.png --raster-bbox 0,0,512,512 -o forest.svg";
 pub(super) const STIPPLE: &str = "\
 Examples:
@@ -62,6 +63,10 @@ pub(super) const PROFILES: &str = "\
 Examples:
   strew profiles
   strew profiles --tables tables";
+pub(super) const WORLDS: &str = "\
+Examples:
+  strew worlds list --config strew.toml
+  strew worlds check --config strew.toml";
 pub(super) const COMPLETIONS: &str = "\
 Examples:
   strew completions bash > /etc/bash_completion.d/strew

@@ -64,7 +64,8 @@ impl Takes for Parted {
         Group::Period,
         Group::Amount,
         Group::Count,
-        Group::Preset,
+        Group::World,
+        Group::WorldPin,
         Group::Profile,
         Group::Table,
         Group::Points,
@@ -206,7 +207,6 @@ const RARE: &[&str] = &[
     "offset",
     "only",
     "polygon",
-    "preset",
     "raster_bbox",
     "rings",
     "scale_range",
@@ -216,6 +216,7 @@ const RARE: &[&str] = &[
     "summary",
     "table",
     "warp",
+    "world_digest",
 ];
 
 fn argument(parameter: &'static Parameter) -> Arg {

@@ -29,6 +29,7 @@ mod split;
 mod stipple;
 mod table;
 mod watcher;
+mod worlds;
 
 use std::process::ExitCode;
 
@@ -101,6 +102,10 @@ enum Command {
     /// List the tables that are loaded: profiles, α, sizes of maps.
     #[command(after_long_help = examples::PROFILES)]
     Profiles(profiles::Args),
+    /// Look at worlds: queries that are described once.
+    #[command(subcommand)]
+    #[command(after_long_help = examples::WORLDS)]
+    Worlds(worlds::Command),
     /// Print a script that completes commands and flags in a shell.
     #[command(after_long_help = examples::COMPLETIONS)]
     Completions(completions::CompletionsArgs),
@@ -151,6 +156,7 @@ pub fn main() -> ExitCode {
         Command::Probe(args) => probe::run(&args),
         Command::Config(args) => config::run(&args),
         Command::Profiles(args) => profiles::run(&args),
+        Command::Worlds(command) => worlds::run(&command),
         Command::Completions(args) => completions::completions(&args, Cli::command()),
         Command::Man(args) => completions::man(&args, Cli::command()),
     };

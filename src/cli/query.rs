@@ -16,7 +16,7 @@ use super::{
 use crate::{
     config::Config,
     service::{
-        Catalog, Draft, Error, Options, Placed, Planned, PlannedSet, Presets, Ready, Set,
+        Catalog, Draft, Error, Options, Placed, Planned, PlannedSet, Ready, Set, Worlds,
         catalog::CatalogError,
         query::{Faults, Group, RegionDraft, ShapeDraft, groups, of, read_body, read_region},
     },
@@ -59,20 +59,20 @@ impl<T: Takes> QueryArgs<T> {
         let (mut draft, source) = self.read()?;
         let catalog = self.field.load(&mut draft.values, config.tables()?)?;
         let limits = &config.limits;
-        let presets = Presets::read(&config.presets, &catalog, limits.max_vertices)
+        let worlds = Worlds::load(&config.worlds, &catalog, limits.max_vertices)
             .map_err(|error| Failure::Usage(error.into()))?;
-        let filled = presets
-            .fill(&draft)
-            .map_err(|faults| source.refused(faults.into()))?;
-        let draft = filled.0.into_owned();
+        let catalog = catalog.with_worlds(worlds);
         let checked = draft.check(&catalog, limits.max_vertices);
         let planned = checked.and_then(|(query, options)| {
             let planned = Planned::at_once(query, limits)?;
             Ok((planned, options))
         });
         let (planned, options) = planned.map_err(|error| source.refused(error))?;
+        // Whoever goes on with it may not know the world.
+        let filled = catalog.worlds().fill(&draft);
+        let filled = filled.map_err(|error| source.refused(error))?;
         Ok(PlannedQuery {
-            draft,
+            draft: filled.0.into_owned(),
             options,
             planned,
             source,

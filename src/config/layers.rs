@@ -1,9 +1,9 @@
 //! Merging settings: defaults < file < environment < flags.
 //!
 //! The defaults name every key and fix its type; a later layer can change values, never add keys. Only the
-//! sections of [`FREE`] hold what a file puts there.
+//! sections of [`NAMED`] hold tables that a file names.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
@@ -11,18 +11,18 @@ use super::{Config, ConfigError, DEFAULTS, validate::validate};
 
 /// Variables of the environment that begin so are settings.
 const PREFIX: &str = "STREW_";
-/// The sections whose keys are free.
-const FREE: [&str; 1] = ["presets"];
 /// The variable that names a configuration file: the only one with the prefix that is no setting.
 const FILE_VARIABLE: &str = "STREW_CONFIG";
 
-/// The section whose tables are named by files.
-const NAMED: &str = "fields.";
+/// The sections whose tables are named by files.
+const NAMED: [&str; 2] = ["fields.", "worlds."];
 
 /// Layers of settings, merged so far, of which a [`Config`] is made.
 #[derive(Clone, Debug)]
 pub struct Layers {
     merged: Table,
+    /// The last file that was laid over.
+    file: Option<PathBuf>,
 }
 
 impl Layers {
@@ -33,6 +33,7 @@ impl Layers {
     pub fn new() -> Result<Self, ConfigError> {
         Ok(Self {
             merged: parse("the built-in configuration", DEFAULTS)?,
+            file: None,
         })
     }
 
@@ -49,6 +50,7 @@ impl Layers {
         let over = parse(&name, &text)?;
         let keys = self.keys();
         merge(&mut self.merged, over, "", &name, &keys)?;
+        self.file = Some(path.into());
         Ok(self)
     }
 
@@ -113,11 +115,18 @@ impl Layers {
     /// # Errors
     /// For values that do not read as what they should be, or are out of range.
     pub fn finish(self) -> Result<Config, ConfigError> {
-        let config: Config = self
+        let config = self.read()?;
+        validate(&config)?;
+        Ok(config)
+    }
+
+    /// The merged settings, unchecked.
+    pub(super) fn read(self) -> Result<Config, ConfigError> {
+        let mut config: Config = self
             .merged
             .try_into()
             .map_err(|error| ConfigError::Invalid(Box::new(error)))?;
-        validate(&config)?;
+        config.file = self.file;
         Ok(config)
     }
 
@@ -125,7 +134,6 @@ impl Layers {
     fn keys(&self) -> Vec<String> {
         self.merged
             .iter()
-            .filter(|(section, _)| !FREE.contains(&section.as_str()))
             .filter_map(|(section, value)| Some((section, value.as_table()?)))
             .flat_map(|(section, table)| table.keys().map(move |key| format!("{section}.{key}")))
             .collect()
@@ -179,8 +187,8 @@ fn merge(
 ) -> Result<(), ConfigError> {
     for (name, value) in over {
         let key = format!("{prefix}{name}");
-        // Fields have names of their own; what they say is read when they are loaded.
-        if prefix == NAMED && value.is_table() {
+        // Fields and worlds have names of their own; what they say is read when they are loaded.
+        if NAMED.contains(&prefix) && value.is_table() {
             under.insert(name, value);
             continue;
         }
@@ -192,9 +200,6 @@ fn merge(
             });
         };
         match (slot, value) {
-            (Value::Table(under), Value::Table(over)) if FREE.contains(&key.as_str()) => {
-                under.extend(over);
-            }
             (Value::Table(under), Value::Table(over)) => {
                 merge(under, over, &format!("{key}."), source_name, keys)?;
             }

@@ -1,9 +1,4 @@
-//! Settings of work: tables, fields, limits of queries and of memory, threads.
-
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-};
+//! Settings of work: limits of queries and of memory, threads, when files are read again.
 
 use serde::{Deserialize, Serialize};
 
@@ -58,50 +53,6 @@ impl Limits {
             block_bytes: 4096.0..=f64::from(512 << 10),
             cache_bytes: 0.0..=1e15,
         )
-    }
-}
-
-/// Which tables to load.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Tables {
-    /// Whether the built-in ones are loaded.
-    pub embedded: bool,
-    /// A folder with more; empty for none.
-    pub folder: PathBuf,
-    /// The bytes of the folder's files that are read and held at the start. Bounds memory.
-    pub preload_bytes: u64,
-}
-
-impl Tables {
-    /// The folder, if there is one.
-    #[must_use]
-    pub fn folder(&self) -> Option<&Path> {
-        Some(self.folder.as_path()).filter(|folder| !folder.as_os_str().is_empty())
-    }
-}
-
-/// Which fields to load.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Fields {
-    /// Whether the built-in one is loaded.
-    pub embedded: bool,
-    /// A folder with documents and rasters; empty for none.
-    pub folder: PathBuf,
-    /// The most memory that the pixels of all fields may take, in bytes.
-    pub max_bytes: usize,
-    /// The most memory that fields may take which clients send to name them later, in bytes; 0 for none.
-    pub max_sent_bytes: usize,
-    /// Fields by name, as documents.
-    #[serde(flatten)]
-    pub named: BTreeMap<String, toml::Table>,
-}
-
-impl Fields {
-    /// The folder, if there is one.
-    #[must_use]
-    pub fn folder(&self) -> Option<&Path> {
-        Some(self.folder.as_path()).filter(|folder| !folder.as_os_str().is_empty())
     }
 }
 

@@ -11,19 +11,21 @@ mod forge;
 mod layers;
 mod limits;
 mod listen;
+mod loaded;
 mod networks;
 mod range;
 mod reports;
 mod server;
 mod validate;
 
-use std::time::Duration;
+use std::{path::PathBuf, time::Duration};
 
 use serde::{Deserialize, Serialize};
 
 pub use access::{Access, AddressLimits, Rate};
 pub use forge::{Allow, Forge};
-pub use limits::{Fields, Limits, Reload, Tables, Workers};
+pub use limits::{Limits, Reload, Workers};
+pub use loaded::{Fields, Tables, Worlds};
 pub use networks::{NETWORKS, Networks};
 pub use reports::{Http, Log, LogFormat, Metrics, Telemetry};
 pub use server::{Admin, Server, Shutdown, Tls};
@@ -72,8 +74,11 @@ pub struct Config {
     pub metrics: Metrics,
     /// Where to send spans.
     pub telemetry: Telemetry,
-    /// Parts of queries by their names.
-    pub presets: toml::Table,
+    /// Which worlds to load.
+    pub worlds: Worlds,
+    /// The file that settings were read from.
+    #[serde(skip)]
+    pub file: Option<PathBuf>,
 }
 
 impl Config {
@@ -83,6 +88,23 @@ impl Config {
     /// Only if a path is not Unicode.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string_pretty(self)
+    }
+}
+
+impl Config {
+    /// What the file names now: its fields and worlds. Other settings stay as they were at the start.
+    ///
+    /// # Errors
+    /// If the file is not valid any more.
+    pub fn read_names(&self) -> Result<Self, ConfigError> {
+        let Some(file) = &self.file else {
+            return Ok(self.clone());
+        };
+        let now = Layers::new()?.file(file)?.read()?;
+        let mut after = self.clone();
+        after.fields.named = now.fields.named;
+        after.worlds.named = now.worlds.named;
+        Ok(after)
     }
 }
 

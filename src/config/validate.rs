@@ -23,7 +23,8 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         forge,
         fields: _,
         // Checked with the tables at hand.
-        presets: _,
+        worlds: _,
+        file: _,
     } = config;
     let faults = [
         server.faults(),

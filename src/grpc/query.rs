@@ -8,7 +8,7 @@ use crate::service::{
     Draft, Error, Fault, Nearest, Query, Service, Set,
     query::{
         Checked, LayerDraft, Parameter, RegionDraft, Value, groups,
-        parameters::{AT, CURSOR, K, LIMIT, OFFSET, PRESET, RADIUS},
+        parameters::{AT, CURSOR, K, LIMIT, OFFSET, RADIUS, WORLD, WORLD_DIGEST},
     },
 };
 
@@ -47,8 +47,9 @@ pub(super) fn query(
 fn draft(request: &StreamPointsRequest) -> Draft {
     let mut values = set::values(request.set.as_ref(), groups::QUERY, "");
     let cursor = &request.cursor;
-    let others: [(&'static Parameter, Option<Value>); 4] = [
-        (&PRESET, request.preset.clone().map(Value::Text)),
+    let others: [(&'static Parameter, Option<Value>); 5] = [
+        (&WORLD, request.world.clone().map(Value::Text)),
+        (&WORLD_DIGEST, request.world_digest.clone().map(Value::Text)),
         (&OFFSET, Some(Value::Integer(request.offset))),
         (&LIMIT, request.limit.map(Value::Integer)),
         (

@@ -22,6 +22,8 @@ pub(super) fn query(
         layers,
         offset,
         limit,
+        world,
+        world_digest,
         ..
     } = planned.resolved();
     let sets = alone
@@ -47,6 +49,8 @@ pub(super) fn query(
         encoding: encoding.into(),
         offset: u64::try_from(offset).unwrap_or(u64::MAX),
         limit,
+        world,
+        world_digest,
     }
 }
 

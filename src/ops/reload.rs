@@ -1,4 +1,4 @@
-//! Reading tables, fields, keys and certificates again while the daemon serves: on SIGHUP, when files change, on
+//! Reading tables, fields, worlds, keys and certificates again while the daemon serves: on SIGHUP, when files change, on
 //! request.
 //!
 //! Files are polled, because notifications of changes do not come through network volumes and the
@@ -114,7 +114,7 @@ impl Reloader {
         let read = move || {
             let keys = gate.settings().has_keys().then(|| gate.reload());
             let certificates = tls.map(|tls| tls.reload());
-            let tables = service.read_tables(watched.folder(), watched.fields());
+            let tables = service.read_tables(watched.config());
             (tables, keys, certificates)
         };
         let (tables, keys, certificates) = self.read(read).await?;
@@ -232,11 +232,10 @@ async fn wait(every: Option<Duration>) {
 /// Whether a reload did or found anything that the one before did not.
 fn differs(before: &Done, now: &Done) -> bool {
     let tables = &now.tables;
-    let fields = &tables.fields;
-    let lists = [&fields.loaded, &fields.removed];
     let has_changed = !tables.loaded.is_empty()
         || !tables.removed.is_empty()
-        || lists.iter().any(|list| !list.is_empty());
+        || tables.fields.is_any()
+        || tables.worlds.is_any();
     has_changed || tables.refused != before.tables.refused || now.keys != before.keys
 }
 
@@ -264,11 +263,13 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
             "table removed: no file holds it any more"
         );
     }
-    for name in &reload.fields.loaded {
-        tracing::info!(cause, name, "field loaded");
-    }
-    for name in &reload.fields.removed {
-        tracing::warn!(cause, name, "field removed: nothing describes it any more");
+    for (kind, changes) in [("field", &reload.fields), ("world", &reload.worlds)] {
+        for name in &changes.loaded {
+            tracing::info!(cause, name, "{kind} loaded");
+        }
+        for name in &changes.removed {
+            tracing::warn!(cause, name, "{kind} removed: nothing describes it any more");
+        }
     }
     for refusal in &reload.refused {
         metrics.refused_tables().increment(1);

@@ -24,7 +24,7 @@ use crate::{
     config::{self, Config},
     grpc, rest,
     service::{
-        Catalog, PresetError, Presets, Service, Workers,
+        Catalog, Service, Workers, WorldError, Worlds,
         catalog::CatalogError,
         field::{FieldError, Fields},
     },
@@ -52,9 +52,9 @@ pub enum ServeError {
     /// The keys cannot be used.
     #[error(transparent)]
     Keys(#[from] KeysError),
-    /// A preset cannot be used.
+    /// A world cannot be used.
     #[error(transparent)]
-    Presets(#[from] PresetError),
+    Worlds(#[from] WorldError),
     /// Spans cannot be sent.
     #[error(transparent)]
     Spans(#[from] SpansError),
@@ -107,10 +107,11 @@ impl App {
         let catalog = catalog.with_room(config.fields.max_sent_bytes);
         let workers = Workers::new(config.workers.threads)?;
         let metrics = Metrics::default();
-        let presets = Presets::read(&config.presets, &catalog, config.limits.max_vertices)?;
+        let worlds = Worlds::load(&config.worlds, &catalog, config.limits.max_vertices)?;
+        let catalog = catalog.with_worlds(worlds);
         let service = Service::new(catalog, config.limits.clone(), workers);
         let mixes = config.tables.folder().map(|folder| folder.join("mixes"));
-        let service = service.with_presets(presets).with_mixes(mixes);
+        let service = service.with_mixes(mixes);
         let service = service.with_forge(config.forge.clone(), folder.map(Into::into));
         let service = Arc::new(service);
         let gate = Arc::new(Gate::new(

@@ -22,6 +22,7 @@ use crate::service::{
 
 const COUNT: HeaderName = HeaderName::from_static("strew-count");
 const TABLE: HeaderName = HeaderName::from_static("strew-table");
+const WORLD: HeaderName = HeaderName::from_static("strew-world");
 const ALGORITHM: HeaderName = HeaderName::from_static("strew-algorithm");
 const ORIGIN: HeaderName = HeaderName::from_static("strew-origin");
 
@@ -31,9 +32,13 @@ const WARNING: HeaderName = HeaderName::from_static("strew-warning");
 const NEXT: HeaderName = HeaderName::from_static("strew-next");
 
 /// The headers of an answer with points, and what they say.
-const HEADERS: [(&str, &str); 9] = [
+const HEADERS: [(&str, &str); 10] = [
     ("strew-count", "Exactly how many points follow."),
     ("strew-table", "The digest of the table that answers."),
+    (
+        "strew-world",
+        "The digest of the world, if the query names one: of its document, tables and fields.",
+    ),
     (
         "strew-algorithm",
         "The version of the algorithm that answers.",
@@ -125,6 +130,7 @@ pub(super) fn problems() -> Vec<Kind> {
         Kind::Invalid,
         Kind::NotAcceptable,
         Kind::OtherTable,
+        Kind::OtherWorld,
         Kind::TooManyPoints,
         Kind::TooManyRows,
         Kind::TooManyStreams,
@@ -225,7 +231,7 @@ pub(super) fn freshness(
     let made_of = (
         digests,
         service.limits().max_points,
-        query.preset.as_deref(),
+        query.world.as_ref().map(|world| &world.digest),
     );
     Freshness::of(&context.uri, &context.headers, content_type, &made_of).pinned(query.is_pinned())
 }
@@ -254,6 +260,9 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
         headers.insert(NEXT, text(&token.to_string())?);
     }
     headers.insert(ALGORITHM, ALGORITHM_VERSION.into());
+    if let Some(world) = &planned.query.world {
+        headers.insert(WORLD, text(&world.digest)?);
+    }
     if let Some([x, y]) = answer.origin() {
         let mut origin = vec![];
         write_number(x, &mut origin);

@@ -17,7 +17,7 @@ use super::{
 };
 use crate::service::{
     Draft, Error, Service,
-    query::{Parameter, RegionDraft, Shape, ShapeDraft, Together as _, groups},
+    query::{Checked, Parameter, RegionDraft, Shape, ShapeDraft, Together as _, groups},
 };
 
 /// The path.
@@ -82,12 +82,16 @@ async fn get(
     Path([size, x, y]): Path<[String; 3]>,
     context: Context,
 ) -> Result<Response, Error> {
-    let address = (SIZE.read(&size), COLUMN.read(&x), ROW.read(&y));
-    let region = address.together().map(|(size, x, y)| RegionDraft {
-        path: "chunk".into(),
-        shape: ShapeDraft::Chunk(size, [x, y]),
-    });
-    let draft = Draft::new(context.values(groups::CHUNK)).within(region);
+    let draft = Draft::new(context.values(groups::CHUNK)).within(region([&size, &x, &y]));
     let (query, options) = service.check(&draft)?;
     answer::stream(&service, &context, query, options).await
+}
+
+/// The region of a path.
+pub(super) fn region([size, x, y]: [&str; 3]) -> Checked<RegionDraft> {
+    let address = (SIZE.read(size), COLUMN.read(x), ROW.read(y));
+    address.together().map(|(size, x, y)| RegionDraft {
+        path: "chunk".into(),
+        shape: ShapeDraft::Chunk(size, [x, y]),
+    })
 }

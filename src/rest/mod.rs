@@ -24,7 +24,6 @@ mod pattern;
 mod periods;
 mod points;
 mod portrait;
-mod presets;
 mod problem;
 mod profiles;
 mod quality;
@@ -33,6 +32,7 @@ mod single;
 mod split;
 mod tables;
 mod vary;
+mod worlds;
 
 use std::sync::Arc;
 
@@ -59,7 +59,9 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         periods::endpoint(service.clone()),
         mask::endpoint(service.clone()),
         mask::spectrum(service.clone()),
-        presets::endpoint(service.clone()),
+        worlds::list(service.clone()),
+        worlds::endpoint(service.clone()),
+        worlds::chunks(service.clone()),
         portrait::endpoint(service.clone()),
         portrait::picture(service.clone()),
         fields::list(service.clone()),

@@ -24,6 +24,7 @@ use bytes::Bytes;
 use strew_core::{Alpha, field::FieldSpec, map::Size, table::BLUE};
 
 use super::{
+    Worlds,
     field::{self, Document, Fields, NamedField, Sent},
     query::Checked,
 };
@@ -49,6 +50,8 @@ pub struct Catalog {
     built_in: BTreeMap<Key, Arc<Entry>>,
     /// The fields that queries may name.
     fields: Arc<Fields>,
+    /// The worlds that queries may name, checked against all else.
+    worlds: Arc<Worlds>,
     /// The fields that clients have sent.
     sent: Arc<Sent>,
     /// Plain patterns that queries have named.
@@ -115,6 +118,19 @@ impl Catalog {
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.fields = Arc::new(fields);
         self
+    }
+
+    /// The same with these worlds.
+    #[must_use]
+    pub fn with_worlds(mut self, worlds: Worlds) -> Self {
+        self.worlds = Arc::new(worlds);
+        self
+    }
+
+    /// The worlds that queries may name.
+    #[must_use]
+    pub fn worlds(&self) -> &Worlds {
+        &self.worlds
     }
 
     /// The same, forging others on demand.
@@ -230,19 +246,30 @@ impl Catalog {
     pub(in crate::service) fn with(&self, entry: Arc<Entry>) -> Self {
         let mut more = self.clone();
         more.entries.insert(entry.key.clone(), entry);
-        more
+        more.with_worlds_renewed()
     }
 
     /// The same with the tables that `now` has and `base` had not: those that came while this one was read.
     #[must_use]
     pub(in crate::service) fn with_later(mut self, base: &Self, now: &Self) -> Self {
+        let mut is_more = false;
         for (key, entry) in &now.entries {
             if !base.entries.contains_key(key) {
                 let slot = self.entries.entry(key.clone());
                 slot.or_insert_with(|| entry.clone());
+                is_more = true;
             }
         }
-        self
+        match is_more {
+            true => self.with_worlds_renewed(),
+            false => self,
+        }
+    }
+
+    /// The same with the digests that worlds have over these tables.
+    pub(super) fn with_worlds_renewed(self) -> Self {
+        let worlds = self.worlds.over(&self);
+        self.with_worlds(worlds)
     }
 
     /// All tables without kinds, by profile, then α.

@@ -4,10 +4,7 @@
 //! what they take, and streams hold their share of memory to the end. A program that embeds the service without
 //! any of this uses a [`Library`](super::Library).
 
-use std::{
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::{path::PathBuf, sync::Arc};
 
 use arc_swap::ArcSwap;
 use bytes::Bytes;
@@ -16,8 +13,8 @@ use strew_core::server::Stop;
 
 use super::{
     Answer, BlockStream, Budget, Catalog, Draft, Entry, Error, Found, Held, Interrupted, Lane,
-    Limits, Nearest, Neighbors, Options, Permit, Placed, Planned, Portrait, Presets, Query, Ready,
-    Record, Reload, Set, Streams, Token, Workers,
+    Limits, Nearest, Neighbors, Options, Permit, Placed, Planned, Portrait, Query, Ready, Record,
+    Reload, Set, Streams, Token, Workers,
     cache::{CacheState, Samplers},
     considered, effort,
     field::{self, Document, NamedField},
@@ -28,14 +25,13 @@ use super::{
     query,
     record::Recorded,
 };
-use crate::{access::Caller, config};
+use crate::{access::Caller, config::Config};
 
 /// Everything a front end needs. Cheap to share behind an [`Arc`].
 #[derive(Debug)]
 pub struct Service {
     pub(super) catalog: Arc<ArcSwap<Catalog>>,
     pub(super) forging: Forging,
-    presets: Presets,
     limits: Limits,
     samplers: Samplers,
     mixes: Mixes,
@@ -59,16 +55,9 @@ impl Service {
             budget,
             catalog: Arc::new(ArcSwap::from_pointee(catalog)),
             forging: Forging::default(),
-            presets: Presets::default(),
             limits,
             workers,
         }
-    }
-
-    /// The service with presets.
-    #[must_use]
-    pub fn with_presets(self, presets: Presets) -> Self {
-        Self { presets, ..self }
     }
 
     /// The service with a folder of mixes, where those are kept that queries have made.
@@ -80,28 +69,18 @@ impl Service {
         }
     }
 
-    /// The presets.
-    #[must_use]
-    pub const fn presets(&self) -> &Presets {
-        &self.presets
-    }
-
     /// The tables that are loaded now. A query holds on to those that it was checked against.
     #[must_use]
     pub fn catalog(&self) -> Arc<Catalog> {
         self.catalog.load_full()
     }
 
-    /// Reads the folders of tables and of fields again. A file that is not valid is refused, and what it
-    /// held so far stays.
+    /// Reads the folders and the names of the configuration again. What is not valid is refused, and what was
+    /// there so far stays.
     #[must_use]
-    pub fn read_tables(
-        &self,
-        folder: Option<&Path>,
-        fields: &config::Fields,
-    ) -> (Arc<Catalog>, Catalog, Reload) {
+    pub fn read_tables(&self, config: &Config) -> (Arc<Catalog>, Catalog, Reload) {
         let before = self.catalog();
-        let (after, reload) = before.reload(folder, fields);
+        let (after, reload) = before.reload(config);
         (before, after, reload)
     }
 
@@ -161,9 +140,7 @@ impl Service {
     /// # Errors
     /// As [`Draft::check`], and [`Error::Invalid`] for a format that is for files only.
     pub fn check(&self, draft: &Draft) -> Result<(Query, Options), Error> {
-        let (draft, preset) = self.presets.fill(draft)?;
-        let (mut query, options) = draft.check(&self.catalog(), self.limits.max_vertices)?;
-        query.preset = preset;
+        let (query, options) = draft.check(&self.catalog(), self.limits.max_vertices)?;
         match options.encoding {
             Some(encoding) if !encoding.is_streamed() => {
                 let format = &query::parameters::FORMAT;

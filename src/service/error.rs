@@ -126,6 +126,19 @@ pub enum Error {
         /// The digest of the table that is loaded.
         loaded: String,
     },
+    /// The world that the query names is another one than the one that it pins.
+    #[error(
+        "the query names the world {name} of the digest {pinned}, but this server's is {loaded}: leave out \
+         `world_digest`, or request what that world has become"
+    )]
+    OtherWorld {
+        /// The name.
+        name: String,
+        /// The digest in the query.
+        pinned: String,
+        /// The digest of the world that is loaded.
+        loaded: String,
+    },
     /// The table is loaded, but its file cannot be read.
     #[error("the table of {table} cannot be read now: its file is gone, has changed or is damaged")]
     TableUnreadable {
@@ -261,6 +274,8 @@ pub enum Kind {
     BodyTooLarge,
     /// [`Error::OtherTable`].
     OtherTable,
+    /// [`Error::OtherWorld`].
+    OtherWorld,
     /// [`Error::TableUnreadable`].
     TableUnreadable,
     /// [`Error::NotAcceptable`].
@@ -300,12 +315,13 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::Invalid,
         Self::TooManyPoints,
         Self::TooManyRows,
         Self::BodyTooLarge,
         Self::OtherTable,
+        Self::OtherWorld,
         Self::TableUnreadable,
         Self::NotAcceptable,
         Self::NoSuchPoint,
@@ -336,6 +352,7 @@ impl Error {
             Self::TooManyRows { .. } => Kind::TooManyRows,
             Self::BodyTooLarge { .. } => Kind::BodyTooLarge,
             Self::OtherTable { .. } => Kind::OtherTable,
+            Self::OtherWorld { .. } => Kind::OtherWorld,
             Self::TableUnreadable { .. } => Kind::TableUnreadable,
             Self::NotAcceptable { .. } => Kind::NotAcceptable,
             Self::NoSuchPoint { .. } => Kind::NoSuchPoint,

@@ -29,6 +29,7 @@ pub mod mask;
 mod mix;
 #[cfg(feature = "daemon")]
 mod mixes;
+pub mod named;
 #[cfg(feature = "daemon")]
 pub mod pattern;
 mod planned;
@@ -37,7 +38,6 @@ mod planned_set;
 mod planner;
 #[cfg(feature = "daemon")]
 mod portrait;
-mod presets;
 pub mod query;
 mod ready;
 #[cfg(feature = "daemon")]
@@ -52,6 +52,7 @@ mod tables;
 mod turns;
 #[cfg(feature = "daemon")]
 pub mod workers;
+pub mod world;
 
 pub use catalog::{Catalog, Entry, Key, Reload};
 pub use effort::{Neighbors, considered};
@@ -62,10 +63,10 @@ pub use library::{Columns, Library};
 pub use planned::{Placed, PlacedPoints, Planned};
 pub use planned_points::{PlannedPoints, Walk};
 pub use planned_set::PlannedSet;
-pub use presets::{PresetError, Presets};
 pub use query::{Draft, Nearest, Query, Set, Token};
 pub use ready::Ready;
 pub use single::Found;
+pub use world::{World, WorldError, Worlds};
 #[cfg(feature = "daemon")]
 pub use {
     budget::{Budget, Held},

@@ -356,9 +356,14 @@ impl Planned {
         };
         let mut sets: Vec<ResolvedSet> = all.iter().zip(&self.sets).map(resolved).collect();
         let set = (!self.query.is_layered).then(|| sets.remove(0));
+        let world = self.query.world.as_ref();
+        let only = self.query.only.and_then(|only| all.get(only));
         Resolved {
             bbox: self.query.region.bbox(),
             region: self.query.region.echo.clone(),
+            world: world.map(|world| world.name.clone()),
+            world_digest: world.map(|world| world.digest.clone()),
+            only_layer: only.map(|set| set.name.clone()),
             set,
             layers: sets,
             offset: self.offset,

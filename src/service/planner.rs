@@ -34,7 +34,8 @@ impl<'a> Planner<'a> {
     /// Plans set number `i`; those before it are planned.
     ///
     /// With a cursor, sets before the cursor's have given all they had, and the cursor's is found
-    /// again without counting.
+    /// again without counting. Layers that are not wanted have no points, and others keep clear of them all the
+    /// same.
     pub(super) fn plan(&mut self, i: usize, set: &Set, ready: &Ready) -> Result<PlannedSet, Error> {
         if let Some(period) = set.period {
             return self.period(i, set, period, ready);
@@ -44,7 +45,9 @@ impl<'a> Planner<'a> {
         check_reach(set, region.reach())?;
         let cursor = self.query.window.cursor;
         let here = cursor.filter(|token| i == usize::from(token.set));
-        let is_over = cursor.is_some_and(|token| i < usize::from(token.set));
+        let is_unwanted = self.query.only.is_some_and(|only| only != i);
+        let is_over = is_unwanted || cursor.is_some_and(|token| i < usize::from(token.set));
+        let here = here.filter(|_| !is_unwanted);
         let known = match resolved {
             Resolved::Known(spacing, _) => Ok(spacing),
             Resolved::Count(count) => here.and_then(|token| token.spacing).ok_or(count),
@@ -91,7 +94,7 @@ impl<'a> Planner<'a> {
         };
         let kinds = match &set.kinds {
             // The first answer has told.
-            Some(_) if cursor.is_some() => vec![],
+            Some(_) if cursor.is_some() || is_unwanted => vec![],
             Some(kinds) => self.kind_counts(kinds, &selection, &plan)?,
             None => vec![],
         };

@@ -64,7 +64,8 @@ class Query(TypedDict, total=False):
     variants: Mapping[str, float]
     spread: str
     only: str
-    preset: str
+    world: str
+    world_digest: str
     #: Several sets at once: a list of dicts with a ``name`` each.
     layers: Sequence[Mapping[str, Any]]
     offset: int

@@ -97,7 +97,7 @@ WRONG: list[dict[str, Any]] = [
     {"bbox": (0, 0, 1, 1), "spacing": 1, "limit": 0},
     {"bbox": (0, 0, 1, 1), "layers": [{"name": "a", "spacing": 1}, {"name": "a", "spacing": 0}]},
     {"bbox": (0, 0, 1, 1), "layers": []},
-    {"bbox": (0, 0, 1, 1), "spacing": 1, "preset": "none"},
+    {"bbox": (0, 0, 1, 1), "spacing": 1, "world": "none"},
     {"circle": (0, 0, 1e7), "spacing": 1e-3},
 ]
 

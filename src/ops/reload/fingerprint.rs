@@ -4,6 +4,7 @@ use std::{
     fs,
     io::{self, Read as _, Seek as _, SeekFrom},
     path::{Path, PathBuf},
+    sync::Arc,
     time::UNIX_EPOCH,
 };
 
@@ -11,18 +12,16 @@ use strew_core::table::MAX_FILE_BYTES;
 
 use crate::{
     bounded_file,
-    config::{Config, Fields},
+    config::Config,
     service::field::{self, Stamp},
 };
 
 /// The files that are watched.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Watched {
-    /// The folder of tables.
-    folder: Option<PathBuf>,
-    /// The fields.
-    fields: Fields,
-    /// Keys and certificates.
+    /// The settings.
+    config: Arc<Config>,
+    /// The configuration, keys and certificates.
     files: Vec<PathBuf>,
 }
 
@@ -31,30 +30,39 @@ impl Watched {
     pub fn of(config: &Config) -> Self {
         let files = config.access.keys_file().into_iter();
         Self {
-            folder: config.tables.folder().map(Into::into),
-            fields: config.fields.clone(),
-            files: files.chain(config.tls.files()).map(Into::into).collect(),
+            config: Arc::new(config.clone()),
+            files: (files
+                .chain(config.tls.files())
+                .chain(config.file.as_deref()))
+            .map(Into::into)
+            .collect(),
         }
     }
 
-    /// The folder of tables, if there is one.
-    pub(super) fn folder(&self) -> Option<&Path> {
-        self.folder.as_deref()
-    }
-
-    /// The fields.
-    pub(super) const fn fields(&self) -> &Fields {
-        &self.fields
+    /// The settings.
+    pub(super) fn config(&self) -> &Config {
+        &self.config
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        let has_fields = self.fields.folder().is_some() || !self.fields.named.is_empty();
-        self.folder.is_none() && self.files.is_empty() && !has_fields
+        let Config {
+            tables,
+            fields,
+            worlds,
+            ..
+        } = self.config();
+        let folders = [tables.folder(), fields.folder(), worlds.folder()];
+        let has_folder = folders.iter().any(Option::is_some);
+        !has_folder && self.files.is_empty() && fields.named.is_empty()
     }
 
     /// Reads all of them. Links are followed: orchestrators change what a link points to.
     pub fn look(&self) -> Fingerprint {
-        let listed = self.folder().and_then(|folder| fs::read_dir(folder).ok());
+        let listed = self
+            .config
+            .tables
+            .folder()
+            .and_then(|folder| fs::read_dir(folder).ok());
         let tables = listed.into_iter().flatten().filter_map(|file| {
             let path = file.ok()?.path();
             let is_table = path.extension().is_some_and(|e| e == "strew");
@@ -62,7 +70,9 @@ impl Watched {
         });
         let mut tables: Vec<PathBuf> = tables.collect();
         tables.sort();
-        Fingerprint::of(&tables, &self.files, &field::stamp(&self.fields))
+        let fields = field::stamp(&self.config.fields);
+        let worlds = field::stamp_of(self.config.worlds.folder());
+        Fingerprint::of(&tables, &self.files, &[fields, worlds])
     }
 }
 
@@ -72,7 +82,7 @@ impl Watched {
 pub struct Fingerprint(blake3::Hash);
 
 impl Fingerprint {
-    fn of(tables: &[PathBuf], files: &[PathBuf], fields: &Stamp) -> Self {
+    fn of(tables: &[PathBuf], files: &[PathBuf], stamps: &[Stamp]) -> Self {
         let mut hasher = blake3::Hasher::new();
         let tables = tables.iter().map(|path| (path, ends(path)));
         let files = files
@@ -85,7 +95,9 @@ impl Fingerprint {
                 hasher.update(part);
             }
         }
-        fields.hash(&mut hasher);
+        for stamp in stamps {
+            stamp.hash(&mut hasher);
+        }
         Self(hasher.finalize())
     }
 }
@@ -122,17 +134,15 @@ mod tests {
             let file = fs::File::options().write(true).open(&path).expect("there");
             file.set_modified(then).expect("settable");
         };
-        let watched = Watched {
-            folder: Some(folder.path().into()),
-            fields: Fields {
-                embedded: false,
-                folder: PathBuf::new(),
-                max_bytes: 0,
-                max_sent_bytes: 0,
-                named: Default::default(),
-            },
-            files: vec![folder.path().join("keys.toml")],
-        };
+        let layers = crate::config::Layers::new().expect("built in");
+        let folder = folder.path();
+        let tables = folder.display().to_string();
+        let layers = layers.flag("--tables", "tables.folder", &tables);
+        let mut config = layers
+            .and_then(crate::config::Layers::finish)
+            .expect("valid");
+        config.file = Some(folder.join("keys.toml"));
+        let watched = Watched::of(&config);
         let look = || watched.look();
         let none = look();
         assert_eq!(look(), none);
@@ -143,9 +153,9 @@ mod tests {
         assert_ne!(look(), one);
         write("one");
         assert_eq!(look(), one);
-        fs::write(folder.path().join("notes.txt"), "no table").expect("writable");
+        fs::write(folder.join("notes.txt"), "no table").expect("writable");
         assert_eq!(look(), one);
-        fs::write(folder.path().join("keys.toml"), "").expect("writable");
+        fs::write(folder.join("keys.toml"), "").expect("writable");
         assert_ne!(look(), one);
     }
 }

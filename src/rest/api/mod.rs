@@ -69,6 +69,8 @@ pub enum Tag {
     Profiles,
     /// Fields.
     Fields,
+    /// Worlds.
+    Worlds,
     /// Tables made on demand.
     Tables,
     /// Patterns without displacements.
@@ -81,10 +83,11 @@ pub enum Tag {
 
 impl Tag {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Points,
         Self::Profiles,
         Self::Fields,
+        Self::Worlds,
         Self::Tables,
         Self::Patterns,
         Self::About,
@@ -98,6 +101,7 @@ impl Tag {
             Self::Points => "points",
             Self::Profiles => "profiles",
             Self::Fields => "fields",
+            Self::Worlds => "worlds",
             Self::Tables => "tables",
             Self::Patterns => "patterns",
             Self::About => "about",
@@ -112,6 +116,7 @@ impl Tag {
             Self::Points => "Points of regions, counts, and single points.",
             Self::Profiles => "The noise profiles that are loaded.",
             Self::Fields => "The fields that are loaded.",
+            Self::Worlds => "The worlds that are loaded: queries that are described once.",
             Self::Tables => "Tables made on demand, and the jobs that make them.",
             Self::Patterns => "The AA pattern of any α: arrangements, clusters, maps, figures.",
             Self::About => "Pages for people and this document.",

@@ -10,6 +10,7 @@ use crate::service::{
         parameters::{
             ATTRIBUTES, COUNT, CRS, DECIMALS, FORMAT, MIN_DISTANCE, ONLY, PARAMETERS, PERIODIC,
             PROFILE, SCALE_RANGE, SCALE_RANGES, SIZE, SPREAD, SUMMARY, VARIANT_FIELDS, VARIANTS,
+            WORLD, WORLD_DIGEST,
         },
         patterns::{
             CURSOR as PATTERN_CURSOR, GRID, LIMIT as PATTERN_LIMIT, LIST, MAP as PATTERN_MAP,
@@ -98,9 +99,11 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
         let taken = parameters_of(groups).filter(|parameter| wanted.contains(&parameter.group));
         taken.map(|parameter| parameter.name).collect()
     };
-    let preset = names(&[Group::Preset]).first().copied();
+    let world = names(&[Group::World]).first().copied();
+    // The world is in the path, and may have an amount.
+    let is_of_world = world.is_none() && groups.contains(&Group::WorldPin);
     let mut places = names(&[Group::Region, Group::Period]);
-    let is_body = preset.is_some() && names(&[Group::Region]).is_empty();
+    let is_body = world.is_some() && names(&[Group::Region]).is_empty();
     match groups.contains(&Group::Period) {
         // The region is a member of its own.
         true if is_body => places.insert(0, "region"),
@@ -112,12 +115,12 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
     let alternatives = [
         (places, None),
         (
-            if is_optional {
+            if is_optional || is_of_world {
                 vec![]
             } else {
                 names(&[Group::Amount, Group::Count])
             },
-            preset,
+            world,
         ),
     ];
     let mut rules: Vec<Rule> = alternatives
@@ -145,6 +148,19 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
                         .filter(|name| *name == VARIANT_FIELDS.name),
                 )
                 .collect(),
+        });
+    }
+    if is_of_world {
+        rules.push(Rule::AtMostOneOf {
+            parameters: names(&[Group::Amount, Group::Count]),
+        });
+    } else if groups.contains(&Group::WorldPin) {
+        rules.push(Rule::OnlyWithOneOf {
+            parameter: WORLD_DIGEST.name,
+            others: vec![Other {
+                parameter: WORLD.name,
+                values: vec![],
+            }],
         });
     }
     if is_optional {
@@ -181,7 +197,18 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
                 other(&SCALE_RANGES, &[]),
             ],
         });
-        rules.push(only_with(&ONLY, &SPREAD, EVEN.into()));
+        // Beside layers, which a world may have, it is one of them.
+        let layers = world.into_iter().chain(is_body.then_some("layers"));
+        let layers = layers.map(|parameter| Other {
+            parameter,
+            values: vec![],
+        });
+        if !is_of_world {
+            rules.push(Rule::OnlyWithOneOf {
+                parameter: ONLY.name,
+                others: [other(&SPREAD, EVEN)].into_iter().chain(layers).collect(),
+            });
+        }
         rules.push(only_with(
             &VARIANT_FIELDS,
             &SPREAD,

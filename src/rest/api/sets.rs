@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 use super::{document::schema, rules, schemas::reference};
 use crate::service::query::{
     Group, MOST_LAYERS, Parameter, groups, of,
-    parameters::{COUNT, PARAMETERS, PERIODIC, PRESET},
+    parameters::{COUNT, ONLY, PARAMETERS, PERIODIC, SEED, WORLD},
 };
 
 /// The names of layers and variants.
@@ -76,13 +76,16 @@ fn query(groups: &'static [Group], about: &str) -> Value {
         "description": "Several sets of points, one after another, instead of one.",
     });
     properties.insert("layers".into(), layers);
-    let of_set = of(groups::SET).map(|parameter| (parameter.name.to_owned(), nothing()));
+    // The common seed, and the one layer that is wanted.
+    let is_common = |parameter: &Parameter| [&SEED, &ONLY].contains(&parameter);
+    let of_set = of(groups::SET).filter(|parameter| !is_common(parameter));
+    let of_set = of_set.map(|parameter| (parameter.name.to_owned(), nothing()));
     let mut of_set: Map<String, Value> = of_set.collect();
     of_set.insert(PERIODIC.name.into(), nothing());
-    let preset = json!({ "required": [PRESET.name] });
+    let world = json!({ "required": [WORLD.name] });
     let rules_of_all = vec![json!({ "oneOf": [
         { "required": ["layers"], "properties": of_set },
-        { "properties": { "layers": nothing() }, "allOf": rules_of_set(Some(preset)) },
+        { "properties": { "layers": nothing() }, "allOf": rules_of_set(Some(world)) },
     ] })];
     let published = rules::of(groups);
     json!({

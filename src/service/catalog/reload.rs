@@ -14,7 +14,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Catalog, CatalogError, Entry, Key, Preload, Source, table_files};
-use crate::{config, service::field::FieldReload};
+use crate::{
+    config::Config,
+    service::named::{Changes, Refused},
+};
 
 /// What reading the folder again gave.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
@@ -28,7 +31,9 @@ pub struct Reload {
     /// Files that were not taken, and why.
     pub refused: Vec<Refusal>,
     /// The fields.
-    pub fields: FieldReload,
+    pub fields: Changes,
+    /// The worlds.
+    pub worlds: Changes,
 }
 
 /// A table, as told to who runs the daemon.
@@ -78,6 +83,20 @@ impl Serving {
 }
 
 impl Reload {
+    /// Adds documents that were not taken.
+    fn refuse<E: std::fmt::Display>(
+        &mut self,
+        refused: Vec<Refused<E>>,
+        source: impl Fn(&E) -> String,
+    ) {
+        self.refused
+            .extend(refused.into_iter().map(|(error, serving)| Refusal {
+                source: source(&error),
+                detail: error.to_string(),
+                serving,
+            }));
+    }
+
     /// The digests of tables that are not loaded any more.
     pub(in crate::service) fn gone(&self) -> impl Iterator<Item = &str> {
         let replaced = self.loaded.iter().filter_map(|new| new.replaces.as_deref());
@@ -87,22 +106,30 @@ impl Reload {
 
 impl Catalog {
     /// The catalog after reading the folders of tables and of fields again, and what came of it.
-    pub(in crate::service) fn reload(
-        &self,
-        folder: Option<&Path>,
-        fields: &config::Fields,
-    ) -> (Self, Reload) {
-        let (after, mut reload) = self.reload_tables(folder);
-        let (fields, changes, refused) = self.fields.reload(fields);
+    pub(in crate::service) fn reload(&self, config: &Config) -> (Self, Reload) {
+        let (after, mut reload) = self.reload_tables(config.tables.folder());
+        let mut names = config.read_names();
+        let config = match &mut names {
+            Ok(now) => now,
+            Err(error) => {
+                let source = config.file.as_deref().unwrap_or(Path::new(""));
+                reload.refused.push(Refusal {
+                    source: source.display().to_string(),
+                    detail: error.to_string(),
+                    serving: None,
+                });
+                // The fields and worlds of before stay, those of folders, too.
+                return (after.with_worlds_renewed(), reload);
+            }
+        };
+        let (fields, changes, refused) = self.fields.reload(&config.fields);
         reload.fields = changes;
-        reload
-            .refused
-            .extend(refused.into_iter().map(|(error, serving)| Refusal {
-                source: error.source_name.clone(),
-                detail: error.to_string(),
-                serving,
-            }));
-        (after.with_fields(fields), reload)
+        reload.refuse(refused, |error| error.source_name.clone());
+        let after = after.with_fields(fields);
+        let (worlds, changes, refused) = self.worlds.reload(&config.worlds, &after);
+        reload.worlds = changes;
+        reload.refuse(refused, |error| error.source_name.clone());
+        (after.with_worlds(worlds), reload)
     }
 
     fn reload_tables(&self, folder: Option<&Path>) -> (Self, Reload) {

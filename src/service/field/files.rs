@@ -15,15 +15,26 @@ const RASTERS: [&str; 4] = ["png", "tif", "tiff", "npy"];
 /// Files up to this size are compared by content.
 const COMPARED: u64 = 4 << 20;
 
+/// The documents of a folder, in the order of their names.
+///
+/// # Errors
+/// If the folder cannot be read.
+pub(in crate::service) fn documents_of(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let mut listed = all(folder).map_err(|error| error.to_string())?;
+    listed.retain(|path| has_ending(path, &DOCUMENTS));
+    Ok(listed)
+}
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| endings.contains(&ending))
+}
+
 /// The files of a folder that are fields, documents first, in the order of their names. A raster with the
 /// name of a document belongs to it.
 pub(super) fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let listed = all(folder).map_err(|error| error.to_string())?;
-    let has_ending = |path: &Path, endings: &[&str]| {
-        let ending = path.extension().and_then(|ending| ending.to_str());
-        ending.is_some_and(|ending| endings.contains(&ending))
-    };
-    let of = |endings| listed.iter().filter(move |path| has_ending(path, endings));
+    let of = |endings: &'static [&str]| listed.iter().filter(move |path| has_ending(path, endings));
     let documents: Vec<&PathBuf> = of(&DOCUMENTS).collect();
     let rasters = of(&RASTERS).filter(|raster| {
         !documents
@@ -108,14 +119,19 @@ const fn place(_: &fs::Metadata) -> u64 {
     0
 }
 
+/// What the files of a folder hold now.
+pub(crate) fn stamp_of(folder: Option<&Path>) -> Stamp {
+    let mut stamp = Stamp::default();
+    let files = folder.and_then(|folder| all(folder).ok());
+    for path in files.unwrap_or_default() {
+        stamp.add(&path);
+    }
+    stamp
+}
+
 /// What the fields of some settings hold now, whether it is valid or not.
 pub(crate) fn stamp(settings: &crate::config::Fields) -> Stamp {
-    let mut stamp = Stamp::default();
-    if let Some(folder) = settings.folder() {
-        for path in all(folder).unwrap_or_default() {
-            stamp.add(&path);
-        }
-    }
+    let mut stamp = stamp_of(settings.folder());
     for (name, table) in &settings.named {
         if let Ok(document) = super::read_toml(name, table) {
             of_document(&document, &mut |file| stamp.add(Path::new(file)));

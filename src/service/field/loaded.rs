@@ -13,21 +13,20 @@ use std::{
     sync::Arc,
 };
 
-use schemars::JsonSchema;
-use serde::Serialize;
 use strew_core::field::FieldSpec;
 
 use super::{
     Document, Sources, build,
     document::Pixels,
     files::{self, Stamp},
-    named::{NamedField, Source},
+    named::NamedField,
     read,
 };
 use crate::{
     bounded_file,
     config::Fields as Settings,
     raster::{Image, Limits, MOST_SIDE, Meaning, RasterError},
+    service::named::{self, Changes, Refused, Source},
 };
 
 /// The longest document.
@@ -52,18 +51,6 @@ pub struct Fields {
     entries: BTreeMap<String, Arc<NamedField>>,
 }
 
-/// What reading the fields again changed.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
-#[schemars(rename = "ReloadedFields")]
-pub struct FieldReload {
-    /// Names of fields that were not there before, or not with this content.
-    pub loaded: Vec<String>,
-    /// Names of fields that answer as before.
-    pub kept: Vec<String>,
-    /// Names of fields that are gone.
-    pub removed: Vec<String>,
-}
-
 impl Fields {
     /// Loads the fields that the settings name.
     ///
@@ -80,25 +67,9 @@ impl Fields {
     /// The fields after reading everything again, what changed, and what was refused, with the digest of the
     /// field that stays in its place.
     #[must_use]
-    pub fn reload(
-        &self,
-        settings: &Settings,
-    ) -> (Self, FieldReload, Vec<(FieldError, Option<String>)>) {
+    pub fn reload(&self, settings: &Settings) -> (Self, Changes, Vec<Refused<FieldError>>) {
         let (after, refused) = self.read(settings);
-        let mut changes = FieldReload::default();
-        for (name, new) in &after.entries {
-            let old = self.entries.get(name);
-            let is_same = old.is_some_and(|old| old.spec.digest() == new.spec.digest());
-            let list = if is_same {
-                &mut changes.kept
-            } else {
-                &mut changes.loaded
-            };
-            list.push(name.clone());
-        }
-        let gone = self.entries.keys();
-        let gone = gone.filter(|name| !after.entries.contains_key(*name));
-        changes.removed = gone.cloned().collect();
+        let changes = Changes::between(&self.entries, &after.entries, NamedField::digest);
         (after, changes, refused)
     }
 
@@ -121,22 +92,11 @@ impl Fields {
     /// The names, for faults: not all of a long list.
     #[must_use]
     pub fn names(&self) -> String {
-        const SHOWN: usize = 16;
-        let mut names: Vec<&str> = self.entries.keys().map(String::as_str).collect();
-        let more = names.len().saturating_sub(SHOWN);
-        names.truncate(SHOWN);
-        match (names.as_slice(), more) {
-            ([], _) => "nothing: no field is loaded".into(),
-            (names, 0) => names.join(", "),
-            (names, more) => format!(
-                "{}, and {more} more (see the list of fields)",
-                names.join(", ")
-            ),
-        }
+        named::listed("field", self.entries.keys().map(String::as_str))
     }
 
     /// Reads everything; what is refused keeps the field that it was before.
-    fn read(&self, settings: &Settings) -> (Self, Vec<(FieldError, Option<String>)>) {
+    fn read(&self, settings: &Settings) -> (Self, Vec<Refused<FieldError>>) {
         let mut refused = vec![];
         let mut open: Vec<Unbuilt> = vec![];
         let base = settings.folder().unwrap_or(Path::new("."));
@@ -145,7 +105,7 @@ impl Fields {
             after.insert_embedded();
         }
         for (name, table) in &settings.named {
-            let source = Source::Config(name.clone());
+            let source = Source::Config("fields", name.clone());
             let document = read::read_toml(&format!("fields.{name}"), table);
             let document = document.map_err(|faults| super::listed(&faults));
             open.push(Unbuilt::new(name.clone(), source, document, Path::new(".")));
@@ -222,7 +182,7 @@ impl Fields {
         field: Unbuilt,
         after: &mut Self,
         room: &mut usize,
-        refused: &mut Vec<(FieldError, Option<String>)>,
+        refused: &mut Vec<Refused<FieldError>>,
         is_last: bool,
     ) -> Option<Unbuilt> {
         let waits = match &field.document {
@@ -269,13 +229,9 @@ struct Unbuilt {
 
 impl Unbuilt {
     fn new(name: String, source: Source, document: Result<Document, String>, base: &Path) -> Self {
-        let is_allowed = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
-        let is_name = (1..=64).contains(&name.len()) && name.chars().all(is_allowed);
-        let document = match is_name {
+        let document = match named::is_name(&name) {
             true => document,
-            false => Err(format!(
-                "`{name}` is no name; allowed: 1 to 64 ASCII letters, digits, _, - and ."
-            )),
+            false => Err(format!("`{name}` is no name; allowed: {}", named::NAME)),
         };
         Self {
             name,
@@ -329,7 +285,7 @@ impl Unbuilt {
     fn build(&self, fields: &Fields, room: usize, stamp: Stamp) -> Result<NamedField, String> {
         let document = self.document.clone()?;
         let field = match &self.source {
-            Source::Config(name) => format!("fields.{name}"),
+            Source::Config(_, name) => format!("fields.{name}"),
             Source::File(_) | Source::Embedded => "field".into(),
         };
         let (spec, bytes, bbox) = of_files(&field, &document, &self.base, fields, room)?;
@@ -415,7 +371,7 @@ pub fn from_document(
     document: Document,
     fields: &Fields,
 ) -> Result<NamedField, FieldError> {
-    let source = Source::Config(name.into());
+    let source = Source::Config("fields", name.into());
     let field = Unbuilt::new(name.into(), source, Ok(document), Path::new(""));
     let built = field.build(fields, usize::MAX, Stamp::default());
     built.map_err(|detail| field.error(detail))

@@ -21,12 +21,13 @@ mod sources;
 mod tests;
 
 #[cfg(feature = "daemon")]
-pub(crate) use files::{Stamp, stamp};
+pub(crate) use files::{Stamp, stamp, stamp_of};
 
 pub use build::build;
 pub use document::Document;
-pub use loaded::{FieldError, FieldReload, Fields, from_document, from_file};
-pub use named::{NamedField, Source};
+pub(super) use files::documents_of;
+pub use loaded::{FieldError, Fields, from_document, from_file};
+pub use named::NamedField;
 pub use picture::SIDE;
 pub use read::{read_json, read_toml};
 pub use sent::Sent;

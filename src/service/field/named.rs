@@ -1,31 +1,9 @@
 //! A field with its name.
 
-use std::{fmt, path::PathBuf};
-
 use strew_core::field::FieldSpec;
 
 use super::{Document, files::Stamp};
-
-/// Where a field comes from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// The program.
-    Embedded,
-    /// The configuration.
-    Config(String),
-    /// A file of the folder.
-    File(PathBuf),
-}
-
-impl fmt::Display for Source {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Embedded => f.write_str("built in"),
-            Self::Config(name) => write!(f, "[fields.{name}] of the configuration"),
-            Self::File(path) => path.display().fmt(f),
-        }
-    }
-}
+use crate::service::named::Source;
 
 /// A field that is loaded.
 #[derive(Clone, Debug)]
@@ -52,7 +30,7 @@ impl NamedField {
     pub fn of_spec(name: &str, spec: FieldSpec) -> Self {
         Self {
             name: name.into(),
-            source: Source::Config(name.into()),
+            source: Source::Config("fields", name.into()),
             document: Document::Name(name.into()),
             spec,
             bytes: 0,

@@ -14,7 +14,7 @@ use std::{
 
 use super::{
     Answer, Catalog, Draft, Encoding, Error, Fault, Found, Limits, Nearest, Options, Output,
-    Placed, Planned, Presets, Query, Ready, Set, Token,
+    Placed, Planned, Query, Ready, Set, Token,
     catalog::CatalogError,
     field::{self, Document, FieldError, Fields, NamedField},
     mix,
@@ -29,7 +29,6 @@ pub use measured::{Measured, measure};
 #[derive(Debug)]
 pub struct Library {
     catalog: Catalog,
-    presets: Presets,
     limits: Limits,
     /// Tables that were used, by their digests; mixes by those and their shares.
     ready: Mutex<HashMap<String, Ready>>,
@@ -72,7 +71,6 @@ impl Library {
     pub fn of(catalog: Catalog, limits: Limits) -> Self {
         Self {
             catalog: catalog.with_room(ROOM).with_pixels(MOST_PIXELS),
-            presets: Presets::default(),
             limits,
             ready: Mutex::default(),
         }
@@ -111,9 +109,7 @@ impl Library {
     /// # Errors
     /// As [`plan`](Self::plan).
     pub fn plan_draft(&self, draft: &Draft) -> Result<(Planned, Options), Error> {
-        let (draft, preset) = self.presets.fill(draft)?;
-        let (mut query, options) = draft.check(&self.catalog, self.limits.max_vertices)?;
-        query.preset = preset;
+        let (query, options) = draft.check(&self.catalog, self.limits.max_vertices)?;
         Ok((self.planned(query)?, options))
     }
 

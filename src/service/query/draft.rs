@@ -1,6 +1,6 @@
 //! Drafts: queries as they were read, with their faults in their places, not checked yet.
 
-use std::sync::Arc;
+use std::{borrow::Cow, sync::Arc};
 
 use serde_json::{Map, Value as Json};
 use strew_core::{Keep, Placement, Seed, Warp};
@@ -12,17 +12,17 @@ use super::{
     faults::all,
     field::Loaded,
     number,
-    parameter::{Group, groups},
+    parameter::{Group, Parameter, groups, unknown},
     parameters::{
-        BBOX, COUNT, CRS, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, PARTS, PERIODIC, PRESET,
-        SEED, SIZE, SUMMARY, WARP,
+        BBOX, COUNT, CRS, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, ONLY, PARTS, PERIODIC,
+        SEED, SIZE, SUMMARY, WARP, WORLD, WORLD_DIGEST,
     },
     period::Period,
     region::REGION,
     table,
     text::parse_pairs,
 };
-use crate::service::{Catalog, Encoding, Entry, Error, Fault, encode::Options};
+use crate::service::{Catalog, Encoding, Entry, Error, Fault, encode::Options, named::is_name};
 
 /// A query as it was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,27 +81,35 @@ impl Draft {
         self
     }
 
-    /// Takes over what a preset has and this query lacks.
-    pub fn fill_from(&mut self, preset: &Self) {
-        self.values.replace(&PRESET, None);
+    /// Takes over what a world has and this query lacks.
+    pub fn fill_from(&mut self, world: &Self) {
+        self.values.replace(&WORLD, None);
+        self.values.replace(&WORLD_DIGEST, None);
         let is_layered =
             |layers: &Checked<Vec<LayerDraft>>| !matches!(layers, Ok(layers) if layers.is_empty());
         let groups = if is_layered(&self.layers) {
-            // They take the place of all sets of the preset.
+            // They take the place of all sets of the world.
             groups::ANSWER
         } else {
-            self.layers.clone_from(&preset.layers);
+            self.layers.clone_from(&world.layers);
             groups::QUERY
         };
-        self.values.fill_from(&preset.values, groups);
+        self.values.fill_from(&world.values, groups);
     }
 
     /// Checks a part of a query, with a region and an amount of its own in place of those that it lacks.
     ///
     /// # Errors
     /// As [`check`](Self::check).
-    pub fn try_out(&self, catalog: &Catalog, most_vertices: usize) -> Result<(), Error> {
-        let missing = parse_pairs("bbox=0,0,1,1&spacing=1", groups::COUNT);
+    pub fn try_out(&self, catalog: &Catalog, most_vertices: usize) -> Result<Query, Error> {
+        let whole = self.tried("bbox=0,0,1,1");
+        Ok(whole.check(catalog, most_vertices)?.0)
+    }
+
+    /// A part of a query, made whole with a region and an amount where it has none.
+    #[must_use]
+    pub fn tried(&self, region: &str) -> Self {
+        let missing = parse_pairs(&format!("{region}&spacing=1"), groups::COUNT);
         let mut whole = self.clone();
         if !self.values.has(&PERIODIC) {
             whole.region = RegionDraft::of(&missing);
@@ -109,7 +117,7 @@ impl Draft {
         if matches!(&self.layers, Ok(layers) if layers.is_empty()) {
             whole.values.fill_from(&missing, groups::SET);
         }
-        whole.check(catalog, most_vertices).map(drop)
+        whole
     }
 
     /// Checks everything against what is loaded; `most_vertices` bounds the polygons of all regions.
@@ -117,6 +125,18 @@ impl Draft {
     /// # Errors
     /// [`Error::Invalid`] with every fault, [`Error::OtherTable`] if a pinned table is not loaded.
     pub fn check(
+        &self,
+        catalog: &Catalog,
+        most_vertices: usize,
+    ) -> Result<(Query, Options), Error> {
+        let (draft, world) = catalog.worlds().fill(self)?;
+        let (mut query, options) = draft.check_whole(catalog, most_vertices)?;
+        query.world = world;
+        Ok((query, options))
+    }
+
+    /// Checks a query that takes nothing from a world.
+    fn check_whole(
         &self,
         catalog: &Catalog,
         most_vertices: usize,
@@ -150,7 +170,8 @@ impl Draft {
             sets: sets.into(),
             is_layered: !matches!(&self.layers, Ok(layers) if layers.is_empty()),
             window,
-            preset: None,
+            world: None,
+            only: self.only()?,
         };
         Ok((query, options))
     }
@@ -195,21 +216,54 @@ impl Draft {
             let allowed = format!("at most {MOST_LAYERS} layers");
             return Err(Fault::new("layers", layers.len(), "too many layers", allowed).into());
         }
-        let is_of_set = |group: &Group| groups::SET.contains(group) || *group == Group::Period;
+        let is_of_set = |parameter: &Parameter| {
+            let is_one = groups::SET.contains(&parameter.group) || parameter.group == Group::Period;
+            is_one && ![&SEED, &ONLY].contains(&parameter)
+        };
         let own = self
             .values
             .given()
-            .filter(|(parameter, _)| is_of_set(&parameter.group));
+            .filter(|(parameter, _)| is_of_set(parameter));
         let beside = own.map(|(parameter, _)| {
             let detail = "has no effect beside layers: each layer has its own";
             let field = format!("{}{}", self.values.path(), parameter.name);
             let text = self.values.text(parameter);
             Err::<(), _>(Fault::new(&field, text, detail, "either layers or one set").into())
         });
+        let seed = self.values.get::<u64>(&SEED);
+        let common = seed.as_ref().ok().copied().flatten();
         let sets = layers.iter().enumerate();
-        let sets = sets.map(|(i, layer)| layer.check(&layers[..i], loaded));
-        let (_, sets) = (all(beside), all(sets)).together()?;
+        let sets = sets.map(|(i, layer)| match common {
+            Some(seed) => layer.seeded(seed).check(&layers[..i], loaded),
+            None => layer.check(&layers[..i], loaded),
+        });
+        let (_, sets, _, _) = (all(beside), all(sets), seed, self.only()).together()?;
         Ok(sets)
+    }
+
+    /// The one layer that is wanted, by number; all without layers.
+    fn only(&self) -> Checked<Option<usize>> {
+        let layers = match &self.layers {
+            Ok(layers) if !layers.is_empty() => layers,
+            _ => return Ok(None),
+        };
+        let Some(only) = self.values.get::<String>(&ONLY)? else {
+            return Ok(None);
+        };
+        let names = || layers.iter().filter_map(LayerDraft::known_name);
+        let place = layers
+            .iter()
+            .position(|layer| layer.known_name() == Some(&only));
+        place.map(Some).ok_or_else(|| {
+            let names: Vec<&str> = names().collect();
+            let fault = Fault {
+                allowed: names.join(", "),
+                ..self
+                    .values
+                    .fault(&ONLY, unknown("layer", &only, names.iter().copied()))
+            };
+            fault.into()
+        })
     }
 
     /// The part of the query that begins at a place and has a number of points.
@@ -253,6 +307,22 @@ impl LayerDraft {
         }
     }
 
+    /// The layer with a seed of its own under a common one, unless it says its seed: the first 53 bits of
+    /// BLAKE3 over the common seed, as eight bytes, and the name. So long numbers survive JSON.
+    fn seeded(&self, common: u64) -> Cow<'_, Self> {
+        let Some(name) = self.known_name().filter(|_| !self.values.has(&SEED)) else {
+            return Cow::Borrowed(self);
+        };
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(&common.to_be_bytes()).update(name.as_bytes());
+        let mut first = [0; 8];
+        hasher.finalize_xof().fill(&mut first);
+        let seed = u64::from_be_bytes(first) >> 11;
+        let mut layer = self.clone();
+        layer.values.replace(&SEED, Some(Value::Integer(seed)));
+        Cow::Owned(layer)
+    }
+
     /// Checks the layer after some others.
     fn check(&self, before: &[Self], loaded: &Loaded<'_>) -> Checked<Set> {
         let names: Vec<Option<&str>> = before.iter().map(Self::known_name).collect();
@@ -288,10 +358,9 @@ impl LayerDraft {
         let Some(name) = self.name.clone()? else {
             return Err(Fault::missing(&self.field("name"), NAME).into());
         };
-        let is_allowed = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
         let detail = if before.contains(&Some(&name)) {
             "an earlier layer has this name"
-        } else if !(1..=64).contains(&name.len()) || !name.chars().all(is_allowed) {
+        } else if !is_name(&name) {
             "not a name of layers"
         } else {
             return Ok(name);

@@ -20,6 +20,15 @@ pub struct Resolved {
     /// The region, unless it is that box.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub region: Option<Json>,
+    /// The world that a part of the query comes from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub world: Option<String>,
+    /// Its digest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub world_digest: Option<String>,
+    /// The one layer whose points are wanted.
+    #[serde(skip_serializing_if = "Option::is_none", rename = "only")]
+    pub only_layer: Option<String>,
     /// The points, if there are no layers.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub set: Option<ResolvedSet>,
@@ -269,12 +278,15 @@ impl Query {
     /// of the sets' tables.
     #[must_use]
     pub fn identity(&self, digests: &[&str]) -> [u8; 32] {
-        let document = json!({
+        let mut document = json!({
             "algorithm": ALGORITHM_VERSION,
             "region": self.region.full_echo(),
             "sets": self.sets.iter().map(|set| set.identity(&self.sets)).collect::<Vec<_>>(),
             "tables": digests,
         });
+        if let Some(only) = self.only {
+            document["only"] = json!(only);
+        }
         *blake3::hash(document.to_string().as_bytes()).as_bytes()
     }
 }

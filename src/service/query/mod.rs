@@ -33,7 +33,7 @@ use std::{fmt, sync::Arc};
 
 use strew_core::{Area, Attributes, ErrorKind, Keep, Placement, PointSet, Seed, Spacing, Warp};
 
-use super::{Entry, Error, Fault, Ready};
+use super::{Entry, Error, Fault, Ready, world::Named};
 
 pub use amount::Amount;
 pub use cursor::Token;
@@ -77,8 +77,10 @@ pub struct Query {
     pub is_layered: bool,
     /// Which of the points, in their order.
     pub window: Window,
-    /// The preset that a part of it comes from, as JSON.
-    pub preset: Option<Arc<str>>,
+    /// The world that a part of it comes from.
+    pub world: Option<Named>,
+    /// The number of the one layer whose points are wanted.
+    pub only: Option<usize>,
 }
 
 /// Which part of the points is asked for, in their order.
@@ -127,14 +129,17 @@ pub struct Set {
 }
 
 impl Query {
-    /// Whether it holds all that its answer depends on: it names the digests of all of its tables, no preset, no
-    /// field that may change, and no kinds of a loaded table.
+    /// Whether it holds all that its answer depends on: it names the digests of all of its tables, no field that may
+    /// change, and no kinds of a loaded table; or the digest of a world that all of these come from.
     #[must_use]
     pub fn is_pinned(&self) -> bool {
         let is_named = |field: &SetField| field.name.is_some();
         let is_fixed = |set: &Set| set.pin.is_some() && !set.fields().any(is_named);
         let is_given = |set: &Set| set.kinds.as_ref().is_some_and(|kinds| kinds.made.is_some());
-        self.preset.is_none() && self.sets.iter().all(|set| is_fixed(set) && !is_given(set))
+        match &self.world {
+            Some(world) => world.is_pinned,
+            None => self.sets.iter().all(|set| is_fixed(set) && !is_given(set)),
+        }
     }
 
     /// The digests of all that its points are made of besides what it says: tables, then fields.

@@ -47,8 +47,10 @@ pub enum Group {
     Count,
     /// The points of a period, instead of a region.
     Period,
-    /// The name of a preset.
-    Preset,
+    /// The name of a world.
+    World,
+    /// The digest of the world.
+    WorldPin,
     /// The name of the profile.
     Profile,
     /// The table of the profile.
@@ -103,29 +105,34 @@ pub mod groups {
     pub const SINGLE: &[Group] = &[Period, Amount, Profile, Table, Points, Attributes];
     /// `GET /v1/points`.
     pub const POINTS: &[Group] = &[
-        Region, Period, Amount, Count, Preset, Profile, Table, Points, Attributes, Window, Output,
+        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Attributes, Window,
+        Output,
     ];
     /// `GET /v1/chunks/…`, whose region is in the path.
     pub const CHUNK: &[Group] = &[
-        Amount, Count, Preset, Profile, Table, Points, Attributes, Window, Output,
+        Amount, Count, World, WorldPin, Profile, Table, Points, Attributes, Window, Output,
+    ];
+    /// `GET /v1/worlds/…`, whose world and region are in the path.
+    pub const WORLD_CHUNK: &[Group] = &[
+        Amount, Count, WorldPin, Profile, Table, Points, Attributes, Window, Output,
     ];
     /// Bodies, in which the region is a member.
     pub const QUERY: &[Group] = &[
-        Period, Amount, Count, Preset, Profile, Table, Points, Attributes, Window, Output,
+        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Attributes, Window, Output,
     ];
     /// `GET /v1/count`.
     pub const COUNT: &[Group] = &[
-        Region, Period, Amount, Count, Preset, Profile, Table, Points, Attributes,
+        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Attributes,
     ];
     /// `POST /v1/count`.
     pub const COUNTED: &[Group] = &[
-        Period, Amount, Count, Preset, Profile, Table, Points, Attributes,
+        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Attributes,
     ];
     /// `GET /v1/periods`.
     pub const PERIODS: &[Group] = &[Period, Profile, Table, Listed];
     /// What `strew measure` takes.
     pub const MEASURED: &[Group] = &[
-        Region, Amount, Count, Preset, Profile, Table, Points, Attributes,
+        Region, Amount, Count, World, WorldPin, Profile, Table, Points, Attributes,
     ];
     /// `GET /v1/nearest`.
     pub const NEAREST: &[Group] = &[Nearest, Amount, Profile, Table, Points, Attributes];

@@ -1,6 +1,6 @@
 //! The table of parameters: each is described once, here.
 //!
-//! Addresses, command lines, JSON bodies, messages, presets, echoes, help texts and the API's
+//! Addresses, command lines, JSON bodies, messages, worlds, echoes, help texts and the API's
 //! description are loops over this table. ARCHITECTURE.md says how to add a parameter.
 
 use strew_core::{
@@ -120,15 +120,27 @@ parameters! {
         example: "100",
         ..Parameter::PLAIN
     };
-    /// The name of a preset.
-    PRESET = Parameter {
-        name: "preset",
-        about: "The preset of the server's settings that everything is taken from that the query leaves \
-                open. The list of presets shows them.",
-        group: Group::Preset,
-        allowed: Some("the name of a preset"),
+    /// The name of a world.
+    WORLD = Parameter {
+        name: "world",
+        about: "The world that everything is taken from that the query leaves open: layers or a set of \
+                points, seed, limit, format. The list of worlds shows what is loaded.",
+        group: Group::World,
+        allowed: Some("the name of a loaded world"),
         default: Some("none"),
         example: "forest",
+        ..Parameter::PLAIN
+    };
+    /// The digest of the world.
+    WORLD_DIGEST = Parameter {
+        name: "world_digest",
+        about: "The digest that the world must have: caches may keep the answer forever. If the server's world \
+                has another one, the query is refused.",
+        group: Group::WorldPin,
+        shape: Shape::Pattern("^[0-9a-fA-F]{64}$"),
+        allowed: Some("64 hexadecimal digits, as in the header strew-world, beside world"),
+        default: Some("any"),
+        example: "fa1115781ca1238868dadf339c84291489d491b478c8689f4d1e42402fda860e",
         ..Parameter::PLAIN
     };
     /// The name of the profile.
@@ -180,7 +192,8 @@ parameters! {
     /// The seed.
     SEED = Parameter {
         name: "seed",
-        about: "Which set of points. Seed 0 is the plain pattern, every other seed a set of its own.",
+        about: "Which set of points. Seed 0 is the plain pattern, every other seed a set of its own. Beside layers: \
+                the common seed, from which each layer without a seed has one by its name.",
         group: Group::Points,
         shape: Shape::Integer { min: 0, max: u64::MAX },
         default: Some("0"),
@@ -332,11 +345,12 @@ parameters! {
     /// The one variant wanted.
     ONLY = Parameter {
         name: "only",
-        about: "The one variant whose points are wanted, of those that are evenly spread.",
+        about: "The one variant whose points are wanted, of those that are evenly spread. Beside layers: the one \
+                layer.",
         group: Group::Attributes,
         shape: Shape::Pattern("^[A-Za-z0-9_.-]{1,64}$"),
-        allowed: Some("one of the names in variants, with spread even or joint"),
-        default: Some("all variants"),
+        allowed: Some("one of the names in variants, with spread even or joint; or the name of a layer"),
+        default: Some("all of them"),
         example: "oak",
         echo: Some(|set| Some(Value::Text(set.kinds.as_ref()?.only_name()?.into()))),
         ..Parameter::PLAIN

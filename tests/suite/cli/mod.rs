@@ -12,3 +12,4 @@ mod outputs;
 mod patterns;
 mod probe;
 mod queries;
+mod worlds;

@@ -1,4 +1,4 @@
-//! The examples of docs/api.md, docs/fields.md, docs/pattern.md and README.md run against a daemon and must print what the documents show.
+//! The examples of docs/*.md and README.md run against a daemon and must print what the documents show.
 //!
 //! An example is a fenced `sh` block that begins with `curl`, `grpcurl` or `strew`, and the block right
 //! after it shows its output; or a `console` block of `$ `, such a command and its output. In an output a
@@ -224,6 +224,15 @@ fn the_page_on_fields_shows_what_its_examples_print_and_draw() {
     check_in("docs/fields.md", folder.path(), &daemon);
     let names = ["valley.png", "woods.png", "clearing.png", "hills.png"];
     compare(folder.path(), "fields", &names);
+}
+
+#[test]
+fn the_page_on_worlds_shows_what_its_examples_print() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let setting = format!("worlds.folder={}", root.join("docs/worlds").display());
+    let daemon = Daemon::with_tables(no_tables(), &[&setting]);
+    let folder = tempfile::tempdir().expect("a folder");
+    check_in("docs/worlds.md", folder.path(), &daemon);
 }
 
 #[test]

@@ -1,0 +1,86 @@
+//! `strew worlds`: the worlds of the settings, and what is wrong with them.
+
+use anyhow::anyhow;
+
+use super::{Failure, config, output};
+use crate::{
+    config::Config,
+    service::{
+        Catalog, Error, Planned, World, Worlds,
+        world::{by_layer, with_path},
+    },
+};
+
+/// The commands about worlds.
+#[derive(Debug, clap::Subcommand)]
+pub(super) enum Command {
+    /// List the worlds that are loaded: names, digests, layers.
+    List(Args),
+    /// Check every world against the tables and fields that are loaded.
+    Check(Args),
+}
+
+/// Flags of both.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    #[command(flatten)]
+    settings: config::Args,
+}
+
+/// Runs one of them.
+pub(super) fn run(command: &Command) -> Result<(), Failure> {
+    match command {
+        Command::List(args) => list(&args.settings.merged()?),
+        Command::Check(args) => check(&args.settings.merged()?),
+    }
+}
+
+fn list(config: &Config) -> Result<(), Failure> {
+    let catalog = config.tables()?;
+    let worlds = Worlds::load(&config.worlds, &catalog, config.limits.max_vertices)
+        .map_err(|error| Failure::Usage(error.into()))?;
+    let lines: Vec<String> = worlds.iter().map(|world| line(world)).collect();
+    output::print(&lines.concat())
+}
+
+/// A world in one line.
+fn line(world: &World) -> String {
+    let layers: Vec<&str> = world.layers().collect();
+    let line = format!("{}  {}  {}", world.name, world.digest, layers.join(","));
+    format!("{}\n", line.trim_end())
+}
+
+/// Prints those that are in order, and fails with what is wrong with the others.
+fn check(config: &Config) -> Result<(), Failure> {
+    let catalog = config.tables()?;
+    let each = Worlds::each(&config.worlds, &catalog, config.limits.max_vertices)
+        .map_err(|error| Failure::Usage(error.into()))?;
+    let (mut good, mut wrong) = (String::new(), vec![]);
+    for (name, world) in each {
+        let checked = world.map_err(|error| error.to_string()).and_then(|world| {
+            let planned = plan(&world, &catalog, config);
+            let named = |error| with_path(by_layer(error, world.draft()), &name);
+            planned.map_err(named).map(|()| world)
+        });
+        match checked {
+            Ok(world) => good += &line(&world),
+            Err(error) => wrong.push(error),
+        }
+    }
+    output::print(&good)?;
+    match wrong.as_slice() {
+        [] => Ok(()),
+        wrong => Err(Failure::Usage(anyhow!("{}", wrong.join("\nerror: ")))),
+    }
+}
+
+/// Plans a chunk of a world, which shows what only its tables know: distances that cannot be kept.
+fn plan(world: &World, catalog: &Catalog, config: &Config) -> Result<(), Error> {
+    let draft = world.draft().tried("bbox=0,0,64,64");
+    let (query, _) = draft.check(catalog, config.limits.max_vertices)?;
+    match Planned::at_once(query, &config.limits) {
+        // It depends on the region, too.
+        Ok(_) | Err(Error::TooManyPoints { .. } | Error::TooManyRows { .. }) => Ok(()),
+        Err(error) => Err(error),
+    }
+}

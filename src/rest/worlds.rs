@@ -1,0 +1,200 @@
+//! `GET /v1/worlds`: the worlds that are loaded, one of them, and its chunks.
+
+use std::sync::Arc;
+
+use axum::{
+    extract::{Path, State},
+    response::Response,
+    routing,
+};
+use http::Method;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::value::RawValue;
+
+use super::{
+    answer,
+    api::{self, Endpoint, Operation, Tag},
+    chunks::{self, COLUMN, ROW, SIZE},
+    context::Context,
+    document,
+    freshness::Freshness,
+};
+use crate::service::{
+    Draft, Error, Kind, Service, World,
+    query::{Parameter, Value, groups, parameters::WORLD},
+};
+
+const NAME: Parameter = Parameter {
+    name: "name",
+    about: "The name of a world. The list of worlds shows what is loaded.",
+    allowed: Some("the name of a loaded world"),
+    is_required: true,
+    example: "forest",
+    ..Parameter::PLAIN
+};
+
+/// The path of the list.
+pub(super) fn list(service: Arc<Service>) -> Endpoint {
+    let operation = Operation {
+        id: "listWorlds",
+        summary: "The worlds that are loaded",
+        about: "Worlds of the daemon's configuration and of its folder, which queries name.",
+        path_parameters: &[],
+        problems: vec![Kind::Invalid],
+        example: "/v1/worlds".into(),
+        ..operation(api::Answer::json::<List<'_>>("The list, sorted by name."))
+    };
+    Endpoint::new("/v1/worlds", service, vec![(operation, routing::get(all))])
+}
+
+/// The path of one world.
+pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
+    let operation = Operation {
+        id: "getWorld",
+        summary: "One world",
+        about: "Its digest and its description.",
+        example: "/v1/worlds/forest".into(),
+        ..operation(api::Answer::json::<Described<'_>>("The world."))
+    };
+    Endpoint::new(
+        "/v1/worlds/{name}",
+        service,
+        vec![(operation, routing::get(one))],
+    )
+}
+
+/// The path of chunks.
+pub(super) fn chunks(service: Arc<Service>) -> Endpoint {
+    let operation = Operation {
+        id: "getWorldChunk",
+        summary: "The points of a chunk of a world",
+        about: "As a chunk of /v1/chunks with world. Parameters are stronger than the world's: seed is the common \
+                seed of its layers, only the one layer that is wanted.",
+        tag: Tag::Points,
+        path_parameters: &[&NAME, &SIZE, &COLUMN, &ROW],
+        parameters: groups::WORLD_CHUNK,
+        problems: [answer::problems(), vec![Kind::NoSuchPath]].concat(),
+        example: "'/v1/worlds/forest/chunks/64/3/-2?format=csv'".into(),
+        ..operation(answer::described())
+    };
+    Endpoint::new(
+        "/v1/worlds/{name}/chunks/{size}/{cx}/{cy}",
+        service,
+        vec![(operation, routing::get(chunk))],
+    )
+}
+
+/// What the operations share.
+fn operation(answer: api::Answer) -> Operation {
+    Operation {
+        method: Method::GET,
+        id: "",
+        summary: "",
+        about: "",
+        tag: Tag::Worlds,
+        path_parameters: &[&NAME],
+        parameters: groups::NONE,
+        body: None,
+        answers: vec![answer, api::Answer::unchanged()],
+        problems: vec![Kind::Invalid, Kind::NoSuchPath],
+        example: String::new(),
+    }
+}
+
+/// The worlds that are loaded.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Worlds")]
+struct List<'a> {
+    /// Sorted by name.
+    worlds: Vec<Summary<'a>>,
+}
+
+/// A world that is loaded.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "LoadedWorld")]
+struct Summary<'a> {
+    /// Its name.
+    name: &'a str,
+    /// The BLAKE3 digest of all that its points depend on.
+    digest: &'a str,
+    /// The names of its layers; none if it is one set of points.
+    layers: Vec<&'a str>,
+}
+
+/// A world that is loaded, with its description.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "DescribedWorld")]
+struct Described<'a> {
+    #[serde(flatten)]
+    summary: Summary<'a>,
+    /// Members of a query: those that it lacks are taken from here.
+    #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
+    query: &'a RawValue,
+}
+
+impl<'a> Summary<'a> {
+    fn new(world: &'a World) -> Self {
+        Self {
+            name: &world.name,
+            digest: &world.digest,
+            layers: world.layers().collect(),
+        }
+    }
+}
+
+async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+    context.values(groups::NONE).read()?;
+    let catalog = service.catalog();
+    let worlds = List {
+        worlds: (catalog.worlds().iter())
+            .map(|world| Summary::new(world))
+            .collect(),
+    };
+    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &worlds);
+    let make = async { document::json(&worlds) };
+    freshness.answer(&context.headers, make).await
+}
+
+async fn one(
+    State(service): State<Arc<Service>>,
+    Path(name): Path<String>,
+    context: Context,
+) -> Result<Response, Error> {
+    context.values(groups::NONE).read()?;
+    let world = named(&service, &name, &context)?;
+    let unreadable = |_| Error::Internal("a world is no JSON");
+    let described = Described {
+        summary: Summary::new(&world),
+        query: serde_json::from_str(&world.json).map_err(unreadable)?,
+    };
+    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &described);
+    let make = async { document::json(&described) };
+    freshness.answer(&context.headers, make).await
+}
+
+async fn chunk(
+    State(service): State<Arc<Service>>,
+    Path([name, size, x, y]): Path<[String; 4]>,
+    context: Context,
+) -> Result<Response, Error> {
+    named(&service, &name, &context)?;
+    let mut values = context.values(groups::WORLD_CHUNK);
+    values.replace(&WORLD, Some(Value::Text(name)));
+    let draft = Draft::new(values).within(chunks::region([&size, &x, &y]));
+    let (query, options) = service.check(&draft)?;
+    answer::stream(&service, &context, query, options).await
+}
+
+/// The world of a path.
+fn named(service: &Service, name: &str, context: &Context) -> Result<Arc<World>, Error> {
+    let catalog = service.catalog();
+    let world = catalog.worlds().get(name).cloned();
+    world.ok_or_else(|| Error::NoSuchPath {
+        path: context.uri.path().into(),
+        available: format!(
+            "/v1/worlds/{{name}}, where name is {}",
+            catalog.worlds().names()
+        ),
+    })
+}
