@@ -131,7 +131,7 @@ fn examples(lines: &[String]) -> Vec<Example> {
         let program = example.script.split(' ').next().unwrap_or_default();
         match program {
             "curl" | "grpcurl" | "python3" => clients::find(program).is_some(),
-            other => ["strew", "for"].contains(&other),
+            other => ["strew", "for", "cat"].contains(&other),
         }
     });
     examples
