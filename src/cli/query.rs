@@ -18,6 +18,7 @@ use crate::{
     service::{
         Catalog, Draft, Error, Options, Placed, Planned, PlannedSet, Ready, Set, Worlds,
         catalog::CatalogError,
+        except::Lists,
         query::{Faults, Group, RegionDraft, ShapeDraft, groups, of, read_body, read_region},
     },
 };
@@ -240,6 +241,9 @@ impl Config {
         let catalog = self
             .catalog()
             .map_err(|error| Failure::Usage(error.into()))?;
-        Ok(catalog.with_fields(self.loaded_fields()?))
+        let lists = Lists::load(&self.except).map_err(|error| Failure::Usage(error.into()))?;
+        Ok(catalog
+            .with_fields(self.loaded_fields()?)
+            .with_except(lists))
     }
 }

@@ -46,7 +46,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         | ServeError::Fields(_)
         | ServeError::Tls(_)
         | ServeError::Keys(_)
-        | ServeError::Worlds(_)
+        | ServeError::Named(_)
         | ServeError::Spans(_) => Failure::Usage(error.into()),
         _ => Failure::Other(error.into()),
     })?;

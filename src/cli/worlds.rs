@@ -56,10 +56,10 @@ fn check(config: &Config) -> Result<(), Failure> {
     let each = Worlds::each(&config.worlds, &catalog, config.limits.max_vertices)
         .map_err(|error| Failure::Usage(error.into()))?;
     let (mut good, mut wrong) = (String::new(), vec![]);
-    for (name, world) in each {
+    for (found, world) in each {
         let checked = world.map_err(|error| error.to_string()).and_then(|world| {
             let planned = plan(&world, &catalog, config);
-            let named = |error| with_path(by_layer(error, world.draft()), &name);
+            let named = |error| with_path(by_layer(error, world.draft()), &found.name);
             planned.map_err(named).map(|()| world)
         });
         match checked {

@@ -15,7 +15,7 @@ const PREFIX: &str = "STREW_";
 const FILE_VARIABLE: &str = "STREW_CONFIG";
 
 /// The sections whose tables are named by files.
-const NAMED: [&str; 2] = ["fields.", "worlds."];
+const NAMED: [&str; 3] = ["fields.", "worlds.", "except."];
 
 /// Layers of settings, merged so far, of which a [`Config`] is made.
 #[derive(Clone, Debug)]
@@ -187,7 +187,7 @@ fn merge(
 ) -> Result<(), ConfigError> {
     for (name, value) in over {
         let key = format!("{prefix}{name}");
-        // Fields and worlds have names of their own; what they say is read when they are loaded.
+        // Fields, worlds and lists have names of their own; what they say is read when they are loaded.
         if NAMED.contains(&prefix) && value.is_table() {
             under.insert(name, value);
             continue;

@@ -1,4 +1,4 @@
-//! Settings of what is loaded: tables, fields, worlds.
+//! Settings of what is loaded: tables, fields, worlds, lists of points.
 
 use std::{
     collections::BTreeMap,
@@ -6,6 +6,8 @@ use std::{
 };
 
 use serde::{Deserialize, Serialize};
+
+use super::range::out_of_range;
 
 /// Which tables to load.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,6 +68,30 @@ impl Worlds {
     #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         some(&self.folder)
+    }
+}
+
+/// Which lists of points to load, which queries leave out.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Except {
+    /// A folder with lists; empty for none.
+    pub folder: PathBuf,
+    /// The most ids of one list. Bounds memory.
+    pub max_ids: usize,
+    /// Lists by name, as documents.
+    #[serde(flatten)]
+    pub named: BTreeMap<String, toml::Table>,
+}
+
+impl Except {
+    /// The folder, if there is one.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        some(&self.folder)
+    }
+
+    pub(super) fn faults(&self) -> Vec<String> {
+        out_of_range!(self, "except", max_ids: 0.0..=1e8)
     }
 }
 

@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 pub use access::{Access, AddressLimits, Rate};
 pub use forge::{Allow, Forge};
 pub use limits::{Limits, Reload, Workers};
-pub use loaded::{Fields, Tables, Worlds};
+pub use loaded::{Except, Fields, Tables, Worlds};
 pub use networks::{NETWORKS, Networks};
 pub use reports::{Http, Log, LogFormat, Metrics, Telemetry};
 pub use server::{Admin, Server, Shutdown, Tls};
@@ -74,6 +74,8 @@ pub struct Config {
     pub metrics: Metrics,
     /// Where to send spans.
     pub telemetry: Telemetry,
+    /// Which lists of points to load.
+    pub except: Except,
     /// Which worlds to load.
     pub worlds: Worlds,
     /// The file that settings were read from.
@@ -92,7 +94,7 @@ impl Config {
 }
 
 impl Config {
-    /// What the file names now: its fields and worlds. Other settings stay as they were at the start.
+    /// What the file names now: its fields, lists and worlds. Other settings stay as they were at the start.
     ///
     /// # Errors
     /// If the file is not valid any more.
@@ -103,6 +105,7 @@ impl Config {
         let now = Layers::new()?.file(file)?.read()?;
         let mut after = self.clone();
         after.fields.named = now.fields.named;
+        after.except.named = now.except.named;
         after.worlds.named = now.worlds.named;
         Ok(after)
     }

@@ -23,6 +23,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         forge,
         fields: _,
         // Checked with the tables at hand.
+        except,
         worlds: _,
         file: _,
     } = config;
@@ -41,6 +42,7 @@ pub(super) fn validate(config: &Config) -> Result<(), ConfigError> {
         telemetry.faults(),
         reload.faults(),
         forge.faults(tables),
+        except.faults(),
     ]
     .concat();
     if faults.is_empty() {

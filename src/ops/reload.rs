@@ -235,7 +235,8 @@ fn differs(before: &Done, now: &Done) -> bool {
     let has_changed = !tables.loaded.is_empty()
         || !tables.removed.is_empty()
         || tables.fields.is_any()
-        || tables.worlds.is_any();
+        || tables.worlds.is_any()
+        || tables.except.is_any();
     has_changed || tables.refused != before.tables.refused || now.keys != before.keys
 }
 
@@ -263,7 +264,12 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
             "table removed: no file holds it any more"
         );
     }
-    for (kind, changes) in [("field", &reload.fields), ("world", &reload.worlds)] {
+    let kinds = [
+        ("field", &reload.fields),
+        ("list", &reload.except),
+        ("world", &reload.worlds),
+    ];
+    for (kind, changes) in kinds {
         for name in &changes.loaded {
             tracing::info!(cause, name, "{kind} loaded");
         }

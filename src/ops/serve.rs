@@ -24,9 +24,11 @@ use crate::{
     config::{self, Config},
     grpc, rest,
     service::{
-        Catalog, Service, Workers, WorldError, Worlds,
+        Catalog, Service, Workers, Worlds,
         catalog::CatalogError,
+        except::Lists,
         field::{FieldError, Fields},
+        named::NamedError,
     },
 };
 
@@ -52,9 +54,9 @@ pub enum ServeError {
     /// The keys cannot be used.
     #[error(transparent)]
     Keys(#[from] KeysError),
-    /// A world cannot be used.
+    /// A world or a list of points cannot be used.
     #[error(transparent)]
-    Worlds(#[from] WorldError),
+    Named(#[from] NamedError),
     /// Spans cannot be sent.
     #[error(transparent)]
     Spans(#[from] SpansError),
@@ -107,6 +109,8 @@ impl App {
         let catalog = catalog.with_room(config.fields.max_sent_bytes);
         let workers = Workers::new(config.workers.threads)?;
         let metrics = Metrics::default();
+        let lists = Lists::load(&config.except)?;
+        let catalog = catalog.with_except(lists);
         let worlds = Worlds::load(&config.worlds, &catalog, config.limits.max_vertices)?;
         let catalog = catalog.with_worlds(worlds);
         let service = Service::new(catalog, config.limits.clone(), workers);

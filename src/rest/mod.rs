@@ -10,6 +10,7 @@ mod cors;
 mod count;
 mod docs;
 mod document;
+mod except;
 mod fields;
 mod finish;
 mod fixed;
@@ -59,6 +60,7 @@ pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
         periods::endpoint(service.clone()),
         mask::endpoint(service.clone()),
         mask::spectrum(service.clone()),
+        except::endpoint(service.clone()),
         worlds::list(service.clone()),
         worlds::endpoint(service.clone()),
         worlds::chunks(service.clone()),

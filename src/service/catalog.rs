@@ -25,6 +25,7 @@ use strew_core::{Alpha, field::FieldSpec, map::Size, table::BLUE};
 
 use super::{
     Worlds,
+    except::Lists,
     field::{self, Document, Fields, NamedField, Sent},
     query::Checked,
 };
@@ -50,6 +51,8 @@ pub struct Catalog {
     built_in: BTreeMap<Key, Arc<Entry>>,
     /// The fields that queries may name.
     fields: Arc<Fields>,
+    /// The lists of points that queries may leave out.
+    except: Arc<Lists>,
     /// The worlds that queries may name, checked against all else.
     worlds: Arc<Worlds>,
     /// The fields that clients have sent.
@@ -118,6 +121,19 @@ impl Catalog {
     pub fn with_fields(mut self, fields: Fields) -> Self {
         self.fields = Arc::new(fields);
         self
+    }
+
+    /// The same with these lists of points.
+    #[must_use]
+    pub fn with_except(mut self, lists: Lists) -> Self {
+        self.except = Arc::new(lists);
+        self
+    }
+
+    /// The lists of points that queries may leave out.
+    #[must_use]
+    pub fn except(&self) -> &Lists {
+        &self.except
     }
 
     /// The same with these worlds.

@@ -19,6 +19,7 @@ mod daemon;
 mod effort;
 pub mod encode;
 pub mod error;
+pub mod except;
 pub mod field;
 #[cfg(feature = "daemon")]
 pub mod forging;
@@ -66,7 +67,7 @@ pub use planned_set::PlannedSet;
 pub use query::{Draft, Nearest, Query, Set, Token};
 pub use ready::Ready;
 pub use single::Found;
-pub use world::{World, WorldError, Worlds};
+pub use world::{World, Worlds};
 #[cfg(feature = "daemon")]
 pub use {
     budget::{Budget, Held},

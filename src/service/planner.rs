@@ -1,7 +1,7 @@
 //! Planning the sets of a query one after another, each knowing the layers before it.
 
 use strew_core::{
-    Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Region, Spacing,
+    Area, Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Region, Spacing,
     server::{self, Stop},
 };
 
@@ -53,9 +53,10 @@ impl<'a> Planner<'a> {
             Resolved::Count(count) => here.and_then(|token| token.spacing).ok_or(count),
         };
         let points = set.points(ready, known.unwrap_or(Spacing::ONE));
+        let area = self.left(set, ready, &points)?;
         let mut selection = Selection {
             set: self.keeping_clear(set, points)?,
-            area: set.area(region),
+            area,
             looks_at_all: !set.clear_of.is_empty() || set.varies(),
         };
         let plan = match (known, here) {
@@ -114,6 +115,18 @@ impl<'a> Planner<'a> {
             candidates,
         )
         .with_kinds(kinds, kind_distances(set, ready, spacing, region.reach())))
+    }
+
+    /// The area of a set, without the places of points that are left out.
+    fn left(&self, set: &Set, ready: &Ready, points: &PointSet) -> Result<Area, Error> {
+        let area = set.area(&self.query.region);
+        let Some(except) = &set.except else {
+            return Ok(area);
+        };
+        except.check(set, points)?;
+        // Positions are multiples of 2^-20 grid units.
+        let unit = points.placement().spacing.get() * ready.table.alpha().set_side_f64();
+        except.cut(set, points, area, unit * f64::from(1 << 22).recip())
     }
 
     /// Plans a period.

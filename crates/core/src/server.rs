@@ -16,6 +16,7 @@
 //! ```
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use crate::{
     error::Error,
@@ -169,6 +170,28 @@ pub fn kinds_of_period(set: &PeriodicSet, stop: &Stop) -> Result<Vec<u64>, Error
 /// ```
 pub fn candidates(set: &PointSet, area: impl Into<Area>) -> Result<u128, Error> {
     set.candidates(area.into())
+}
+
+/// The columns and rows of the lattice that hold all points of an area, and a few more around it: an id beyond them
+/// is no point there.
+///
+/// # Errors
+/// As [`PointSet::within`].
+///
+/// ```
+/// use strew_core::{PointSet, Region, Table, server};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let set = PointSet::new(table).seed(7);
+/// let region = Region::new([100.0, 0.0], [110.0, 10.0])?;
+/// let [columns, rows] = server::addresses(&set, region)?;
+/// for point in set.within(region)? {
+///     assert!(columns.contains(&point.id().x) && rows.contains(&point.id().y));
+/// }
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub fn addresses(set: &PointSet, area: impl Into<Area>) -> Result<[Range<i64>; 2], Error> {
+    set.addresses(area.into())
 }
 
 /// The plan with another flag: its windows and cursors, which may have to count, stop once that is raised.

@@ -49,9 +49,15 @@ impl Watched {
             tables,
             fields,
             worlds,
+            except,
             ..
         } = self.config();
-        let folders = [tables.folder(), fields.folder(), worlds.folder()];
+        let folders = [
+            tables.folder(),
+            fields.folder(),
+            worlds.folder(),
+            except.folder(),
+        ];
         let has_folder = folders.iter().any(Option::is_some);
         !has_folder && self.files.is_empty() && fields.named.is_empty()
     }
@@ -72,7 +78,8 @@ impl Watched {
         tables.sort();
         let fields = field::stamp(&self.config.fields);
         let worlds = field::stamp_of(self.config.worlds.folder());
-        Fingerprint::of(&tables, &self.files, &[fields, worlds])
+        let except = field::stamp_of(self.config.except.folder());
+        Fingerprint::of(&tables, &self.files, &[fields, worlds, except])
     }
 }
 

@@ -8,9 +8,9 @@ use crate::service::{
     query::{
         Group, Parameter, Spread, of as parameters_of,
         parameters::{
-            ATTRIBUTES, COUNT, CRS, DECIMALS, FORMAT, MIN_DISTANCE, ONLY, PARAMETERS, PERIODIC,
-            PROFILE, SCALE_RANGE, SCALE_RANGES, SIZE, SPREAD, SUMMARY, VARIANT_FIELDS, VARIANTS,
-            WORLD, WORLD_DIGEST,
+            ATTRIBUTES, COUNT, CRS, DECIMALS, EXCEPT, FORMAT, MIN_DISTANCE, ONLY, PARAMETERS,
+            PERIODIC, PROFILE, SCALE_RANGE, SCALE_RANGES, SIZE, SPREAD, SUMMARY, VARIANT_FIELDS,
+            VARIANTS, WORLD, WORLD_DIGEST,
         },
         patterns::{
             CURSOR as PATTERN_CURSOR, GRID, LIMIT as PATTERN_LIMIT, LIST, MAP as PATTERN_MAP,
@@ -148,6 +148,13 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
                         .filter(|name| *name == VARIANT_FIELDS.name),
                 )
                 .collect(),
+        });
+    }
+    if groups.contains(&Group::Except) {
+        let others = names(&[Group::Count, Group::Period]);
+        rules.push(Rule::NotWith {
+            parameter: EXCEPT.name,
+            others,
         });
     }
     if is_of_world {

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 use super::{document::schema, rules, schemas::reference};
 use crate::service::query::{
     Group, MOST_LAYERS, Parameter, groups, of,
-    parameters::{COUNT, ONLY, PARAMETERS, PERIODIC, SEED, WORLD},
+    parameters::{COUNT, EXCEPT, ONLY, PARAMETERS, PERIODIC, SEED, WORLD},
 };
 
 /// The names of layers and variants.
@@ -77,7 +77,7 @@ fn query(groups: &'static [Group], about: &str) -> Value {
     });
     properties.insert("layers".into(), layers);
     // The common seed, and the one layer that is wanted.
-    let is_common = |parameter: &Parameter| [&SEED, &ONLY].contains(&parameter);
+    let is_common = |parameter: &Parameter| [&SEED, &ONLY, &EXCEPT].contains(&parameter);
     let of_set = of(groups::SET).filter(|parameter| !is_common(parameter));
     let of_set = of_set.map(|parameter| (parameter.name.to_owned(), nothing()));
     let mut of_set: Map<String, Value> = of_set.collect();
@@ -184,6 +184,10 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
     put(
         "field_digest",
         json!({ "type": "string", "description": "The digest of the field, if there is one." }),
+    );
+    put(
+        "except_digest",
+        json!({ "type": "string", "description": "The digest of the ids that are left out, if there are any." }),
     );
     put(
         "variant_field_digests",

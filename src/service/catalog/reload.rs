@@ -32,6 +32,8 @@ pub struct Reload {
     pub refused: Vec<Refusal>,
     /// The fields.
     pub fields: Changes,
+    /// The lists of points that are left out.
+    pub except: Changes,
     /// The worlds.
     pub worlds: Changes,
 }
@@ -125,7 +127,10 @@ impl Catalog {
         let (fields, changes, refused) = self.fields.reload(&config.fields);
         reload.fields = changes;
         reload.refuse(refused, |error| error.source_name.clone());
-        let after = after.with_fields(fields);
+        let (lists, changes, refused) = self.except.reload(&config.except);
+        reload.except = changes;
+        reload.refuse(refused, |error| error.source_name.clone());
+        let after = after.with_fields(fields).with_except(lists);
         let (worlds, changes, refused) = self.worlds.reload(&config.worlds, &after);
         reload.worlds = changes;
         reload.refuse(refused, |error| error.source_name.clone());

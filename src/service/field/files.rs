@@ -15,16 +15,6 @@ const RASTERS: [&str; 4] = ["png", "tif", "tiff", "npy"];
 /// Files up to this size are compared by content.
 const COMPARED: u64 = 4 << 20;
 
-/// The documents of a folder, in the order of their names.
-///
-/// # Errors
-/// If the folder cannot be read.
-pub(in crate::service) fn documents_of(folder: &Path) -> Result<Vec<PathBuf>, String> {
-    let mut listed = all(folder).map_err(|error| error.to_string())?;
-    listed.retain(|path| has_ending(path, &DOCUMENTS));
-    Ok(listed)
-}
-
 fn has_ending(path: &Path, endings: &[&str]) -> bool {
     let ending = path.extension().and_then(|ending| ending.to_str());
     ending.is_some_and(|ending| endings.contains(&ending))

@@ -25,7 +25,6 @@ pub(crate) use files::{Stamp, stamp, stamp_of};
 
 pub use build::build;
 pub use document::Document;
-pub(super) use files::documents_of;
 pub use loaded::{FieldError, Fields, from_document, from_file};
 pub use named::NamedField;
 pub use picture::SIDE;

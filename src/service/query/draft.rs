@@ -9,13 +9,14 @@ use super::{
     Amount, Checked, Faults, Kinds, MOST_LAYERS, Query, QueryRegion, RegionDraft, Set,
     Together as _, Value, Values, Window, attributes,
     cursor::Token,
+    except,
     faults::all,
     field::Loaded,
     number,
     parameter::{Group, Parameter, groups, unknown},
     parameters::{
-        BBOX, COUNT, CRS, CURSOR, DECIMALS, FORMAT, KEEP, LIMIT, OFFSET, ONLY, PARTS, PERIODIC,
-        SEED, SIZE, SUMMARY, WARP, WORLD, WORLD_DIGEST,
+        BBOX, COUNT, CRS, CURSOR, DECIMALS, EXCEPT, FORMAT, KEEP, LIMIT, OFFSET, ONLY, PARTS,
+        PERIODIC, SEED, SIZE, SUMMARY, WARP, WORLD, WORLD_DIGEST,
     },
     period::Period,
     region::REGION,
@@ -144,7 +145,7 @@ impl Draft {
         self.check_vertices(most_vertices)?;
         let loaded = Loaded::new(catalog);
         let sets = match &self.layers {
-            Ok(layers) if layers.is_empty() => Set::of(&self.values, &loaded).map(|set| vec![set]),
+            Ok(layers) if layers.is_empty() => self.alone(&loaded).map(|set| vec![set]),
             Ok(layers) => self.layers(layers, &loaded),
             Err(faults) => Err(faults.clone()),
         };
@@ -211,6 +212,13 @@ impl Draft {
         }
     }
 
+    /// The one set.
+    fn alone(&self, loaded: &Loaded<'_>) -> Checked<Set> {
+        let except = except::of_set(&self.values, loaded.catalog);
+        let (set, except) = (Set::of(&self.values, loaded), except).together()?;
+        Ok(Set { except, ..set })
+    }
+
     fn layers(&self, layers: &[LayerDraft], loaded: &Loaded<'_>) -> Checked<Vec<Set>> {
         if layers.len() > MOST_LAYERS {
             let allowed = format!("at most {MOST_LAYERS} layers");
@@ -218,7 +226,7 @@ impl Draft {
         }
         let is_of_set = |parameter: &Parameter| {
             let is_one = groups::SET.contains(&parameter.group) || parameter.group == Group::Period;
-            is_one && ![&SEED, &ONLY].contains(&parameter)
+            is_one && ![&SEED, &ONLY, &EXCEPT].contains(&parameter)
         };
         let own = self
             .values
@@ -237,7 +245,9 @@ impl Draft {
             Some(seed) => layer.seeded(seed).check(&layers[..i], loaded),
             None => layer.check(&layers[..i], loaded),
         });
-        let (_, sets, _, _) = (all(beside), all(sets), seed, self.only()).together()?;
+        let (_, mut sets, _, _) = (all(beside), all(sets), seed, self.only()).together()?;
+        let values: Vec<&Values> = layers.iter().map(|layer| &layer.values).collect();
+        except::of_layers(&self.values, &values, &mut sets, loaded.catalog)?;
         Ok(sets)
     }
 
@@ -461,6 +471,7 @@ impl Set {
             kinds,
             period,
             field,
+            except: None,
             region: None,
             clear_of: vec![],
         })

@@ -9,8 +9,9 @@ use strew_core::{ALGORITHM_VERSION, Spacing, map::Twin};
 
 use super::{
     Parameter, Query, QueryRegion, Set, Value,
-    parameters::{FIELD, PARAMETERS, VARIANT_FIELDS},
+    parameters::{EXCEPT, FIELD, PARAMETERS, VARIANT_FIELDS},
 };
+use crate::service::except::Except;
 
 /// A query as answers echo it, with everything filled in.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -83,6 +84,8 @@ pub struct ResolvedSet {
     pub least_distance: f64,
     /// The digest of the field.
     pub field_digest: Option<String>,
+    /// The digest of the ids that are left out.
+    pub except_digest: Option<String>,
     /// The parameters that say which points, with everything filled in.
     pub values: Vec<(&'static Parameter, Value)>,
     /// The layers that are kept clear of, with the distances.
@@ -147,6 +150,9 @@ impl Serialize for ResolvedSet {
         for (parameter, value) in &self.values {
             map.serialize_entry(parameter.name, value)?;
         }
+        if let Some(digest) = &self.except_digest {
+            map.serialize_entry("except_digest", digest)?;
+        }
         if let Some(digest) = &self.field_digest {
             map.serialize_entry("field_digest", digest)?;
         }
@@ -208,6 +214,7 @@ impl Set {
             least_distance,
             field_digest: self.field.as_ref().map(|field| field.digest.clone()),
             variant_field_digests: self.variant_field_digests(),
+            except_digest: self.except.as_ref().map(Except::digest),
             values: self.echoes().collect(),
             clear_of: self.named_clear_of(all),
             kinds: names.map(Into::into).zip(kinds.iter().copied()).collect(),
@@ -250,13 +257,17 @@ impl Set {
         if let Some(field) = &self.field {
             identity["field_digest"] = json!(field.digest);
         }
+        if let Some(except) = &self.except {
+            identity["except_digest"] = json!(except.digest());
+        }
         if self.varies() {
             identity["variant_field_digests"] = json!(self.variant_field_digests());
         }
         if let Some(made) = self.kinds.as_ref().and_then(|kinds| kinds.made.as_ref()) {
             identity["kinds_table"] = json!(made.digest);
         }
-        let is_named = |parameter: &Parameter| *parameter == FIELD || *parameter == VARIANT_FIELDS;
+        let is_named =
+            |parameter: &Parameter| [&FIELD, &VARIANT_FIELDS, &EXCEPT].contains(&parameter);
         for (parameter, value) in self.echoes().filter(|(parameter, _)| !is_named(parameter)) {
             identity[parameter.name] = json!(value);
         }

@@ -10,6 +10,7 @@ mod attributes;
 mod cursor;
 mod draft;
 mod echo;
+mod except;
 mod faults;
 mod field;
 mod json;
@@ -33,7 +34,7 @@ use std::{fmt, sync::Arc};
 
 use strew_core::{Area, Attributes, ErrorKind, Keep, Placement, PointSet, Seed, Spacing, Warp};
 
-use super::{Entry, Error, Fault, Ready, world::Named};
+use super::{Entry, Error, Fault, Ready, except::Except, world::Named};
 
 pub use amount::Amount;
 pub use cursor::Token;
@@ -122,6 +123,8 @@ pub struct Set {
     pub kinds: Option<Kinds>,
     /// The period that the points are of, instead of a region.
     pub period: Option<Period>,
+    /// The points that it is without.
+    pub except: Option<Except>,
     /// Where the layer is; everywhere if `None`.
     pub region: Option<QueryRegion>,
     /// The layers that are kept clear of, by position, with the distance; all before this one.
@@ -130,11 +133,14 @@ pub struct Set {
 
 impl Query {
     /// Whether it holds all that its answer depends on: it names the digests of all of its tables, no field that may
-    /// change, and no kinds of a loaded table; or the digest of a world that all of these come from.
+    /// change, no list of points, and no kinds of a loaded table; or the digest of a world that all of these come from.
     #[must_use]
     pub fn is_pinned(&self) -> bool {
         let is_named = |field: &SetField| field.name.is_some();
-        let is_fixed = |set: &Set| set.pin.is_some() && !set.fields().any(is_named);
+        let has_lists =
+            |set: &Set| (set.except.as_ref()).is_some_and(|except| !except.names.is_empty());
+        let is_fixed =
+            |set: &Set| set.pin.is_some() && !set.fields().any(is_named) && !has_lists(set);
         let is_given = |set: &Set| set.kinds.as_ref().is_some_and(|kinds| kinds.made.is_some());
         match &self.world {
             Some(world) => world.is_pinned,
@@ -142,8 +148,10 @@ impl Query {
         }
     }
 
-    /// The digests of all that its points are made of besides what it says: tables, then fields.
+    /// The digests of all that its points are made of besides what it says: tables, then fields, then lists.
     pub fn digests(&self) -> impl Iterator<Item = &str> {
+        let except = self.sets.iter().filter_map(|set| set.except.as_ref());
+        let except = except.flat_map(|except| except.parts.iter().map(|part| part.digest()));
         let tables = self.sets.iter().map(|set| set.entry.digest.as_str());
         let mixes = self
             .sets
@@ -157,6 +165,7 @@ impl Query {
         tables
             .chain(fields)
             .chain(mixes.map(|entry| entry.digest.as_str()))
+            .chain(except)
     }
 
     /// Whether planning it and making its points takes no longer than handing it to another
@@ -176,7 +185,7 @@ impl Query {
         };
         let [min_x, min_y, max_x, max_y] = self.region.bbox();
         let [width, height] = [(max_x - min_x) / spacing, (max_y - min_y) / spacing];
-        let is_plain = set.region.is_none() && set.clear_of.is_empty();
+        let is_plain = set.region.is_none() && set.clear_of.is_empty() && set.except.is_none();
         // A look at a field of many parts takes longer.
         let is_quick = |field: &SetField| field.spec.parts() <= 4;
         let is_plain = is_plain && set.fields().all(is_quick);

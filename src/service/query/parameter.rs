@@ -57,6 +57,8 @@ pub enum Group {
     Table,
     /// Which points.
     Points,
+    /// Which points are left out one by one.
+    Except,
     /// Values of points.
     Attributes,
     /// Which part of the points.
@@ -100,33 +102,34 @@ pub mod groups {
     use super::Group::{self, *};
 
     /// A set of points in a region: a layer.
-    pub const SET: &[Group] = &[Amount, Count, Profile, Table, Points, Attributes];
+    pub const SET: &[Group] = &[Amount, Count, Profile, Table, Points, Except, Attributes];
     /// A set without a region: single points.
     pub const SINGLE: &[Group] = &[Period, Amount, Profile, Table, Points, Attributes];
     /// `GET /v1/points`.
     pub const POINTS: &[Group] = &[
-        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Attributes, Window,
-        Output,
+        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes,
+        Window, Output,
     ];
     /// `GET /v1/chunks/…`, whose region is in the path.
     pub const CHUNK: &[Group] = &[
-        Amount, Count, World, WorldPin, Profile, Table, Points, Attributes, Window, Output,
+        Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes, Window, Output,
     ];
     /// `GET /v1/worlds/…`, whose world and region are in the path.
     pub const WORLD_CHUNK: &[Group] = &[
-        Amount, Count, WorldPin, Profile, Table, Points, Attributes, Window, Output,
+        Amount, Count, WorldPin, Profile, Table, Points, Except, Attributes, Window, Output,
     ];
     /// Bodies, in which the region is a member.
     pub const QUERY: &[Group] = &[
-        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Attributes, Window, Output,
+        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes, Window,
+        Output,
     ];
     /// `GET /v1/count`.
     pub const COUNT: &[Group] = &[
-        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Attributes,
+        Region, Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes,
     ];
     /// `POST /v1/count`.
     pub const COUNTED: &[Group] = &[
-        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Attributes,
+        Period, Amount, Count, World, WorldPin, Profile, Table, Points, Except, Attributes,
     ];
     /// `GET /v1/periods`.
     pub const PERIODS: &[Group] = &[Period, Profile, Table, Listed];

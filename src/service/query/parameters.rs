@@ -11,9 +11,12 @@ use super::{
     DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_PARTS, Parameter, Shape, Value, kinds::Spread,
     parameter::Group,
 };
-use crate::service::encode::{
-    CRS as CRS_ALLOWED, MOST_DECIMALS,
-    preview::{LEAST_SIZE, MOST_SIZE},
+use crate::service::{
+    encode::{
+        CRS as CRS_ALLOWED, MOST_DECIMALS,
+        preview::{LEAST_SIZE, MOST_SIZE},
+    },
+    except::MOST_GIVEN,
 };
 
 /// Makes a static of each parameter, and the list of all.
@@ -235,6 +238,26 @@ parameters! {
         default: Some("none"),
         example: "forest",
         echo: Some(|set| set.field.as_ref()?.echo()),
+        ..Parameter::PLAIN
+    };
+    /// The points to leave out.
+    EXCEPT = Parameter {
+        name: "except",
+        about: "The points that are left out, by their ids, and lists of the server by their names. Other layers keep \
+                clear of them all the same. Beside layers ids are layer/column:row. The list of lists shows what is \
+                loaded.",
+        group: Group::Except,
+        shape: Shape::Names {
+            pattern: "^([A-Za-z0-9_.-]{1,64}/)?-?[0-9]+:-?[0-9]+$|^[A-Za-z0-9_.-]{1,64}$",
+        },
+        allowed: Some("at most 10000 ids of points (column:row, beside layers layer/column:row) and names of loaded \
+                       lists, joined by commas; not with count or periodic"),
+        default: Some("none"),
+        example: "18:-17",
+        echo: Some(|set| {
+            let names = &set.except.as_ref()?.names;
+            (!names.is_empty()).then(|| Value::Names(names.clone()))
+        }),
         ..Parameter::PLAIN
     };
     /// The names of the points' attributes.
@@ -500,4 +523,5 @@ const _: () = assert!(
         && Variants::MAX == 256
         && Variants::MAX_NAME == 64
         && ScaleRange::LIMIT == 1e9
+        && MOST_GIVEN == 10_000
 );

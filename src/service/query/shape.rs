@@ -84,6 +84,8 @@ pub enum Shape {
 
 /// The longest value of a parameter in JSON, in bytes: far longer than any that is in order.
 pub(super) const LONGEST: usize = 1 << 16;
+/// The same of names.
+const LONGEST_NAMES: usize = 1 << 20;
 
 impl Shape {
     /// What is allowed, in words.
@@ -197,9 +199,14 @@ impl Shape {
     /// # Errors
     /// What is wrong with it.
     pub fn read_json(self, json: &RawValue) -> Result<Value, Detail> {
-        if json.get().len() > LONGEST {
+        let longest = match self {
+            // As many ids as a query may have.
+            Self::Names { .. } => LONGEST_NAMES,
+            _ => LONGEST,
+        };
+        if json.get().len() > longest {
             return Err(
-                format!("is {} bytes long, the most is {LONGEST}", json.get().len()).into(),
+                format!("is {} bytes long, the most is {longest}", json.get().len()).into(),
             );
         }
         let text = serde_json::from_str::<String>(json.get());

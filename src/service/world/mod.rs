@@ -10,15 +10,14 @@ use std::{borrow::Cow, collections::BTreeMap, sync::Arc};
 
 use super::{
     Catalog, Draft, Error, Fault,
-    named::{self, Source},
+    named::{self, Found, Source},
     query::{
         Faults, Group, Query, groups,
-        parameters::{FIELD, ONLY, WORLD, WORLD_DIGEST},
+        parameters::{EXCEPT, FIELD, ONLY, WORLD, WORLD_DIGEST},
         read_body, unknown,
     },
 };
 
-pub use loaded::WorldError;
 #[cfg(feature = "daemon")]
 pub(crate) use loaded::with_path;
 
@@ -155,8 +154,7 @@ impl Worlds {
 impl World {
     /// Reads and checks a document.
     fn read(
-        name: &str,
-        source: Source,
+        found: &Found,
         json: &str,
         catalog: &Catalog,
         most_vertices: usize,
@@ -175,8 +173,8 @@ impl World {
         let checked = draft.try_out(catalog, most_vertices);
         let query = checked.map_err(|error| by_layer(error, &draft))?;
         Ok(Self {
-            name: name.into(),
-            source,
+            name: found.name.clone(),
+            source: found.source.clone(),
             digest: digest(json, &query),
             json: json.into(),
             draft,
@@ -200,7 +198,8 @@ impl World {
         let own = [Group::Profile, Group::Table, Group::Attributes];
         let is_own = |(parameter, _): (&'static _, &_)| {
             let parameter: &super::query::Parameter = parameter;
-            *parameter == FIELD || own.contains(&parameter.group) && *parameter != ONLY
+            [&FIELD, &EXCEPT].contains(&parameter)
+                || own.contains(&parameter.group) && *parameter != ONLY
         };
         matches!(&draft.layers, Ok(layers) if layers.is_empty())
             && !draft.values.given().any(is_own)

@@ -3,10 +3,10 @@
 use super::*;
 use crate::{
     config::Worlds as Settings,
-    service::{Catalog, query::parse_pairs},
+    service::{Catalog, named::NamedError, query::parse_pairs},
 };
 
-fn loaded(text: &str) -> Result<Catalog, WorldError> {
+fn loaded(text: &str) -> Result<Catalog, NamedError> {
     let catalog = Catalog::load(true, None).expect("built in");
     let table: toml::Table = text.parse().expect("TOML");
     let named = table.into_iter().filter_map(|(name, value)| {

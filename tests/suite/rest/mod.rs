@@ -9,6 +9,7 @@ mod browsers;
 mod caching;
 mod compression;
 mod curl;
+mod except;
 mod fields;
 mod format_readers;
 mod formats;

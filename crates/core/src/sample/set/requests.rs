@@ -1,5 +1,7 @@
 //! The points of an area: plans of a set, and their counts.
 
+use core::ops::Range;
+
 use super::PointSet;
 use crate::{
     error::Error,
@@ -148,6 +150,12 @@ impl PointSet {
     #[must_use]
     pub fn limit(&self) -> f64 {
         self.lattice.limit()
+    }
+
+    /// The columns and rows that hold all points of an area.
+    pub(crate) fn addresses(&self, area: Area) -> Result<[Range<i64>; 2], Error> {
+        let scope = Scope::new(&self.lattice, &self.mask, area, Stop::default())?;
+        Ok([scope.x.all, scope.y.all])
     }
 
     /// About the number of points that counting an area visits one by one; 0 without a field.

@@ -1,0 +1,73 @@
+//! Areas without the places of some points.
+//!
+//! A point is left out by a hole in the area that holds its reported coordinates and no others. The area then
+//! decides everything, as it does for polygons.
+
+use strew_core::{Area, PointId, PointSet, Polygon, server};
+
+use super::{Error, Except, MOST_HOLES};
+use crate::service::query::Set;
+
+impl Except {
+    /// An area without the places of the points that are left out. `step` is at most a quarter of the distance that
+    /// coordinates of two points can have along an axis near the origin, in world units.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for too many of them in the area.
+    pub(in crate::service) fn cut(
+        &self,
+        set: &Set,
+        points: &PointSet,
+        area: Area,
+        step: f64,
+    ) -> Result<Area, Error> {
+        // An area out of reach is refused when it is planned.
+        let Ok([columns, rows]) = server::addresses(points, area.clone()) else {
+            return Ok(area);
+        };
+        let mut rings: Vec<[[f64; 2]; 4]> = vec![];
+        for part in &self.parts {
+            let ids = &part.sorted;
+            let start = ids.partition_point(|id| id.x < columns.start);
+            let end = ids.partition_point(|id| id.x < columns.end);
+            let near = ids[start..end.max(start)].iter();
+            let near = near.filter(|id| rows.contains(&id.y));
+            let places = near.filter_map(|id| place(points, *id));
+            let room = MOST_HOLES + 1 - rings.len();
+            rings.extend(places.take(room).map(|at| ring(at, step)));
+            if rings.len() > MOST_HOLES {
+                let detail = "more of its ids than may be left out at once lie in the region";
+                let allowed = format!("at most {MOST_HOLES} in a region: request smaller ones");
+                return Err(set.fault("except", self.names.join(","), detail, allowed));
+            }
+        }
+        if rings.is_empty() {
+            return Ok(area);
+        }
+        // A point of two lists would have two holes, of which a polygon makes none.
+        rings.sort_unstable_by(|a, b| {
+            a[0][0]
+                .total_cmp(&b[0][0])
+                .then(a[0][1].total_cmp(&b[0][1]))
+        });
+        rings.dedup();
+        let holes = Polygon::new(&rings).map_err(|error| {
+            tracing::error!(%error, "a point is at no place");
+            Error::Internal("a point is at no place")
+        })?;
+        Ok(area.without([holes.into()]))
+    }
+}
+
+/// Where a set has a point, if it has it.
+fn place(points: &PointSet, id: PointId) -> Option<[f64; 2]> {
+    points.point(id).map(|member| member.at())
+}
+
+/// The corners of a hole that holds one place.
+fn ring([x, y]: [f64; 2], step: f64) -> [[f64; 2]; 4] {
+    // Next to zero, numbers are finer than any product of two of them can tell.
+    let beyond = |v: f64| v.next_up().max(v + step);
+    let [right, top] = [x, y].map(beyond);
+    [[x, y], [right, y], [right, top], [x, top]]
+}

@@ -1,0 +1,275 @@
+//! What was taken away stays away: in every region, format and part, and nothing appears in its place.
+
+use std::fs;
+
+use serde_json::{Value, json};
+use strew_testkit::wait::until;
+
+use crate::support::daemon::Daemon;
+
+/// The rows of an answer as CSV, without its head.
+fn rows(daemon: &Daemon, path: &str) -> Vec<String> {
+    let answer = daemon.get(path);
+    assert_eq!(answer.status, 200, "{path}: {}", answer.text());
+    answer.text().lines().skip(1).map(Into::into).collect()
+}
+
+/// The column of ids of rows.
+fn id(row: &str, column: usize) -> &str {
+    row.split(',').nth(column).expect("an id")
+}
+
+/// Every seventh id.
+fn some(rows: &[String], column: usize) -> Vec<String> {
+    let ids = rows.iter().skip(2).step_by(7);
+    ids.map(|row| id(row, column).to_owned()).collect()
+}
+
+fn without(rows: &[String], ids: &[String], column: usize) -> Vec<String> {
+    let is_left = |row: &&String| !ids.iter().any(|other| other == id(row, column));
+    rows.iter().filter(is_left).cloned().collect()
+}
+
+#[test]
+fn answers_are_those_of_before_without_the_points() {
+    let daemon = Daemon::built_in();
+    for query in [
+        "bbox=-9,3,20,21&spacing=1.5&seed=0",
+        "bbox=-9,3,20,21&spacing=1.5&seed=7",
+        "bbox=90000000,3,90000020,21&spacing=1.5&seed=7",
+        "circle=4,4,11&density=1&seed=3&map=s&profile=step",
+        "polygon=0,0,30,4,9,25&spacing=1&keep=0.6&seed=5&map=s",
+        "bbox=0,0,40,30&spacing=1&seed=2&field=forest",
+        "bbox=0,0,20,20&spacing=1&seed=2&map=s&variants=a:1,b:2&spread=even&only=b",
+    ] {
+        let address = format!("/v1/points?{query}&format=csv");
+        let all = rows(&daemon, &address);
+        let gone = some(&all, 0);
+        assert!(gone.len() > 10, "{query}: {}", all.len());
+        let except = format!("&except={}", gone.join(","));
+        let left = without(&all, &gone, 0);
+        assert_eq!(
+            rows(&daemon, &format!("{address}{except}")),
+            left,
+            "{query}"
+        );
+        let count = daemon.get(&format!("/v1/count?{query}{except}")).json();
+        assert_eq!(count["count"], left.len(), "{query}");
+        // Packed formats say how long they are before the first byte.
+        let packed = daemon.get(&format!("/v1/points?{query}{except}&format=f64"));
+        assert_eq!(packed.body.len(), 16 * left.len(), "{query}");
+        let page = rows(&daemon, &format!("{address}{except}&offset=9&limit=20"));
+        assert_eq!(page, left[9..29], "{query}");
+    }
+}
+
+#[test]
+fn chunks_parts_and_pages_leave_out_the_same_points() {
+    let daemon = Daemon::built_in();
+    let set = "spacing=2&seed=7&format=csv";
+    for corner in [0_i64, 1 << 40] {
+        let chunk = |side: i64, x: i64, y: i64, except: &str| {
+            rows(&daemon, &format!("/v1/chunks/{side}/{x}/{y}?{set}{except}"))
+        };
+        let all = chunk(32, corner, -1, "");
+        let gone = some(&all, 0);
+        let except = format!("&except={}", gone.join(","));
+        let left = without(&all, &gone, 0);
+        assert_eq!(chunk(32, corner, -1, &except), left);
+        let ids = |rows: &[String]| {
+            let mut ids: Vec<String> = rows.iter().map(|row| id(row, 0).to_owned()).collect();
+            ids.sort();
+            ids
+        };
+        let quarters = [(0, -2), (1, -2), (0, -1), (1, -1)];
+        let parts = quarters.map(|(x, y)| chunk(16, 2 * corner + x, y, &except));
+        assert_eq!(ids(&parts.concat()), ids(&left));
+        let (mut read, mut cursor) = (vec![], String::new());
+        loop {
+            let path = format!("/v1/chunks/32/{corner}/-1?{set}{except}&limit=31{cursor}");
+            let page = daemon.get(&path);
+            read.extend(page.text().lines().skip(1).map(ToString::to_string));
+            match page.headers.get("strew-next") {
+                Some(next) => cursor = format!("&cursor={next}"),
+                None => break,
+            }
+        }
+        assert_eq!(read, left);
+    }
+    let region = json!({ "chunk": { "size": 32, "x": 0, "y": -1 } });
+    let all = rows(&daemon, &format!("/v1/chunks/32/0/-1?{set}"));
+    let gone = some(&all, 0);
+    let body = json!({ "region": region, "spacing": 2, "seed": 7, "except": gone });
+    let split = daemon.post("/v1/points:split?parts=3", &body).json();
+    let parts = split["parts"].as_array().expect("parts");
+    let points = parts.iter().flat_map(|part| {
+        let mut query = part["query"].clone();
+        query["format"] = json!("csv");
+        let text = daemon.post("/v1/points:query", &query).text().to_owned();
+        text.lines()
+            .skip(1)
+            .map(ToString::to_string)
+            .collect::<Vec<_>>()
+    });
+    assert_eq!(points.collect::<Vec<_>>(), without(&all, &gone, 0));
+}
+
+const WORLD: &str = "
+[except.felled]
+ids = []
+[[worlds.forest.layers]]
+name = 'trees'
+spacing = 3
+seed = 1
+except = ['felled']
+[[worlds.forest.layers]]
+name = 'rocks'
+spacing = 2
+seed = 2
+clear_of = { trees = 1.5 }
+";
+const CHUNK: &str = "/v1/worlds/forest/chunks/32/3/-2?format=csv";
+
+#[test]
+fn nothing_appears_where_a_tree_was_felled() {
+    let daemon = Daemon::with_config(WORLD);
+    let all = rows(&daemon, CHUNK);
+    let trees = all.iter().filter(|row| row.starts_with("trees,"));
+    let gone = some(&trees.cloned().collect::<Vec<_>>(), 1);
+    let tag = daemon.get(CHUNK).header("etag").to_owned();
+    let items: Vec<String> = gone.iter().map(|id| format!("trees/{id}")).collect();
+    // By the address, by the layer of a body, and by a list that changes while the daemon runs.
+    let left = without(&all, &gone, 1);
+    assert_eq!(
+        rows(&daemon, &format!("{CHUNK}&except={}", items.join(","))),
+        left
+    );
+    let list = serde_json::to_string(&items).expect("JSON");
+    let file = daemon.folder().join("strew.toml");
+    fs::write(&file, WORLD.replace("ids = []", &format!("ids = {list}"))).expect("writable");
+    daemon.signal("-HUP");
+    until("the list is read", || {
+        (rows(&daemon, CHUNK) == left).then_some(())
+    });
+    assert_ne!(daemon.get(CHUNK).header("etag"), tag);
+    let lists = daemon.get("/v1/except").json();
+    assert_eq!(lists["lists"][0]["count"], gone.len());
+    assert_eq!(lists["lists"][0]["layers"], json!(["trees"]));
+    // The rocks alone are as before, too.
+    let only = format!("{CHUNK}&only=rocks");
+    let is_rock = |row: &&String| row.starts_with("rocks,");
+    assert_eq!(
+        rows(&daemon, &only),
+        left.iter().filter(is_rock).cloned().collect::<Vec<_>>()
+    );
+    let echo = daemon.get("/v1/worlds/forest/chunks/32/3/-2").json();
+    assert_eq!(echo["query"]["layers"][0]["except"], json!(["felled"]));
+    assert_eq!(
+        echo["query"]["layers"][0]["except_digest"]
+            .as_str()
+            .map(str::len),
+        Some(64)
+    );
+}
+
+#[test]
+fn a_folder_of_lists_is_watched() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let write = |text: &str| fs::write(folder.path().join("dug.txt"), text).expect("writable");
+    let setting = format!("except.folder={}", folder.path().display());
+    write("# nothing yet\n");
+    let daemon = Daemon::start(&[&setting, "reload.watch_seconds=0.05"]);
+    let address = "/v1/points?bbox=0,0,9,9&spacing=1&seed=4&format=csv";
+    let all = rows(&daemon, address);
+    let listed = format!("{address}&except=dug");
+    assert_eq!(rows(&daemon, &listed), all);
+    let gone = some(&all, 0);
+    // Ids that are no points of this set, or are elsewhere, change nothing.
+    write(&format!("{}\n\n1:0 # none\n99999:5\n", gone.join("\n")));
+    let left = without(&all, &gone, 0);
+    until("the list is read", || {
+        (rows(&daemon, &listed) == left).then_some(())
+    });
+    // A wrong list does not replace it.
+    write("1:2\nthree\n");
+    daemon.signal("-HUP");
+    fs::write(folder.path().join("new.txt"), "1:2").expect("writable");
+    until("the folder is read", || {
+        let lists = daemon.get("/v1/except").json();
+        (lists["lists"].as_array().map(Vec::len) == Some(2)).then_some(())
+    });
+    assert_eq!(rows(&daemon, &listed), left);
+}
+
+#[test]
+fn what_is_no_point_or_list_is_refused() {
+    let daemon =
+        Daemon::with_config("[except.felled]\nids = ['oak/1:2']\n[except.dug]\nids = ['3:4']\n");
+    let fault = |answer: Value| {
+        let fault = &answer["errors"][0];
+        let text = |name: &str| fault[name].as_str().unwrap_or_default().to_owned();
+        (text("field"), text("detail"), text("allowed"))
+    };
+    let by_address = |more: &str| {
+        let path = format!("/v1/points?bbox=0,0,9,9&{more}");
+        let answer = daemon.get(&path);
+        assert_eq!(answer.status, 400, "{path}: {}", answer.text());
+        fault(answer.json())
+    };
+    for (more, field, detail) in [
+        (
+            "spacing=1&except=1:0",
+            "except[0]",
+            "this set has no such point",
+        ),
+        (
+            "spacing=1&except=fell",
+            "except[0]",
+            "unknown list; did you mean `felled`?",
+        ),
+        ("spacing=1&except=1:x", "except[0]", "not an id"),
+        (
+            "spacing=1&except=felled",
+            "except[0]",
+            "the list has ids of layers only",
+        ),
+        (
+            "spacing=1&except=oak/1:2",
+            "except[0]",
+            "there are no layers here",
+        ),
+        ("count=9&except=dug", "count", "not with except"),
+    ] {
+        let (found, said, _) = by_address(more);
+        assert_eq!(found, field, "{more}: {said}");
+        assert!(said.starts_with(detail), "{more}: {said}");
+    }
+    let layers = json!([{ "name": "oak", "spacing": 1 }, { "name": "elm", "spacing": 2 }]);
+    for (except, field, detail) in [
+        (json!(["1:2"]), "except[0]", "beside layers an id needs"),
+        (json!(["felled", "ash/1:2"]), "except[1]", "unknown layer"),
+        (
+            json!(["dug"]),
+            "except[0]",
+            "the list has ids without a layer",
+        ),
+        (
+            json!(["elm/1:0"]),
+            "except[0]",
+            "the layer elm has no such point",
+        ),
+    ] {
+        let body =
+            json!({ "region": { "bbox": [0, 0, 9, 9] }, "layers": layers, "except": except });
+        let answer = daemon.post("/v1/points:query", &body);
+        assert_eq!(answer.status, 400, "{except}");
+        let (found, said, _) = fault(answer.json());
+        assert_eq!(found, field, "{except}: {said}");
+        assert!(said.starts_with(detail), "{except}: {said}");
+    }
+    let many: Vec<String> = (0..10_001).map(|i| format!("{i}:0")).collect();
+    let body = json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1, "except": many });
+    let (field, detail, allowed) = fault(daemon.post("/v1/points:query", &body).json());
+    assert_eq!((field.as_str(), detail.as_str()), ("except", "too many"));
+    assert!(allowed.contains("10000"), "{allowed}");
+}
