@@ -39,7 +39,7 @@ def tidy_set(query, is_text, amounts=AMOUNTS):
     query[amount] = 1 + int(number(query[amount], 0, 300)) if amount == "count" else number(
         query[amount], 0.5, 4
     )
-    for name in ["alpha", "map", "table", "cursor", "world", "world_digest", "field", "variant_fields"]:
+    for name in ["alpha", "map", "table", "cursor", "world", "world_digest", "field", "variant_fields", "except"]:
         query.pop(name, None)
     if "profile" in query:
         query["profile"] = "blue" if amount == "min_distance" else choose(query["profile"], PROFILES)
@@ -139,7 +139,7 @@ def tidy_body(name, body):
             body.pop(member, None)
         for member in ["attributes", "variants", "scale_range", "scale_ranges", "spread", "only", "variant_fields"]:
             body.pop(member, None)
-        for member in ["cursor", "world", "world_digest", "field"]:
+        for member in ["cursor", "world", "world_digest", "field", "except"]:
             body.pop(member, None)
         tidy = []
         for i, layer in enumerate(layers[:4]):

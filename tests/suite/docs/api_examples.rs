@@ -229,8 +229,11 @@ fn the_page_on_fields_shows_what_its_examples_print_and_draw() {
 #[test]
 fn the_page_on_worlds_shows_what_its_examples_print() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let setting = format!("worlds.folder={}", root.join("docs/worlds").display());
-    let daemon = Daemon::with_tables(no_tables(), &[&setting]);
+    let settings = ["worlds", "except"].map(|name| {
+        let folder = root.join("docs").join(name);
+        format!("{name}.folder={}", folder.display())
+    });
+    let daemon = Daemon::with_tables(no_tables(), &settings.each_ref().map(String::as_str));
     let folder = tempfile::tempdir().expect("a folder");
     check_in("docs/worlds.md", folder.path(), &daemon);
 }
