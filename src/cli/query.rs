@@ -70,7 +70,7 @@ impl<T: Takes> QueryArgs<T> {
         });
         let (planned, options) = planned.map_err(|error| source.refused(error))?;
         // Whoever goes on with it may not know the world.
-        let filled = catalog.worlds().fill(&draft);
+        let filled = draft.filled(catalog.worlds());
         let filled = filled.map_err(|error| source.refused(error))?;
         Ok(PlannedQuery {
             draft: filled.0.into_owned(),

@@ -6,7 +6,7 @@ use super::{Failure, config, output};
 use crate::{
     config::Config,
     service::{
-        Catalog, Error, Planned, World, Worlds,
+        Catalog, Draft, Error, Planned, World, Worlds,
         world::{by_layer, with_path},
     },
 };
@@ -45,8 +45,12 @@ fn list(config: &Config) -> Result<(), Failure> {
 
 /// A world in one line.
 fn line(world: &World) -> String {
-    let layers: Vec<&str> = world.layers().collect();
-    let line = format!("{}  {}  {}", world.name, world.digest, layers.join(","));
+    let line = format!(
+        "{}  {}  {}",
+        world.name,
+        world.digest,
+        world.layers.join(",")
+    );
     format!("{}\n", line.trim_end())
 }
 
@@ -58,8 +62,12 @@ fn check(config: &Config) -> Result<(), Failure> {
     let (mut good, mut wrong) = (String::new(), vec![]);
     for (found, world) in each {
         let checked = world.map_err(|error| error.to_string()).and_then(|world| {
-            let planned = plan(&world, &catalog, config);
-            let named = |error| with_path(by_layer(error, world.draft()), &found.name);
+            let draft = world.draft();
+            let planned = (draft.clone()).and_then(|draft| plan(&draft, &catalog, config));
+            let named = |error| match &draft {
+                Ok(draft) => with_path(by_layer(error, draft), &found.name),
+                Err(_) => error.to_string(),
+            };
             planned.map_err(named).map(|()| world)
         });
         match checked {
@@ -75,8 +83,8 @@ fn check(config: &Config) -> Result<(), Failure> {
 }
 
 /// Plans a chunk of a world, which shows what only its tables know: distances that cannot be kept.
-fn plan(world: &World, catalog: &Catalog, config: &Config) -> Result<(), Error> {
-    let draft = world.draft().tried("bbox=0,0,64,64");
+fn plan(draft: &Draft, catalog: &Catalog, config: &Config) -> Result<(), Error> {
+    let draft = draft.tried("bbox=0,0,64,64");
     let (query, _) = draft.check(catalog, config.limits.max_vertices)?;
     match Planned::at_once(query, &config.limits) {
         // It depends on the region, too.

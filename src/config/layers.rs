@@ -170,6 +170,24 @@ impl Layers {
     }
 }
 
+impl Config {
+    /// What the file names now: its fields, lists and worlds. Other settings stay as they were at the start.
+    ///
+    /// # Errors
+    /// If the file is not valid any more.
+    pub fn read_names(&self) -> Result<Self, ConfigError> {
+        let Some(file) = &self.file else {
+            return Ok(self.clone());
+        };
+        let now = Layers::new()?.file(file)?.read()?;
+        let mut after = self.clone();
+        after.fields.named = now.fields.named;
+        after.except.named = now.except.named;
+        after.worlds.named = now.worlds.named;
+        Ok(after)
+    }
+}
+
 fn parse(source_name: &str, text: &str) -> Result<Table, ConfigError> {
     text.parse().map_err(|error| ConfigError::Syntax {
         source_name: source_name.into(),

@@ -93,24 +93,6 @@ impl Config {
     }
 }
 
-impl Config {
-    /// What the file names now: its fields, lists and worlds. Other settings stay as they were at the start.
-    ///
-    /// # Errors
-    /// If the file is not valid any more.
-    pub fn read_names(&self) -> Result<Self, ConfigError> {
-        let Some(file) = &self.file else {
-            return Ok(self.clone());
-        };
-        let now = Layers::new()?.file(file)?.read()?;
-        let mut after = self.clone();
-        after.fields.named = now.fields.named;
-        after.except.named = now.except.named;
-        after.worlds.named = now.worlds.named;
-        Ok(after)
-    }
-}
-
 /// Seconds of a setting as a duration; settings are checked to be within range before.
 pub(crate) fn seconds(value: f64) -> Duration {
     Duration::try_from_secs_f64(value).unwrap_or(Duration::MAX)

@@ -119,7 +119,7 @@ struct Summary<'a> {
     /// The BLAKE3 digest of all that its points depend on.
     digest: &'a str,
     /// The names of its layers; none if it is one set of points.
-    layers: Vec<&'a str>,
+    layers: &'a [String],
 }
 
 /// A world that is loaded, with its description.
@@ -138,7 +138,7 @@ impl<'a> Summary<'a> {
         Self {
             name: &world.name,
             digest: &world.digest,
-            layers: world.layers().collect(),
+            layers: &world.layers,
         }
     }
 }

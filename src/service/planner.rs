@@ -123,10 +123,12 @@ impl<'a> Planner<'a> {
         let Some(except) = &set.except else {
             return Ok(area);
         };
-        except.check(set, points)?;
+        except.check(&set.name, points)?;
         // Positions are multiples of 2^-20 grid units.
         let unit = points.placement().spacing.get() * ready.table.alpha().set_side_f64();
-        except.cut(set, points, area, unit * f64::from(1 << 22).recip())
+        let step = unit * f64::from(1 << 22).recip();
+        let field = format!("{}{}", set.path, parameters::EXCEPT.name);
+        Ok(except.cut(&field, points, area, step)?)
     }
 
     /// Plans a period.

@@ -5,22 +5,23 @@
 
 use strew_core::{Area, PointId, PointSet, Polygon, server};
 
-use super::{Error, Except, MOST_HOLES};
-use crate::service::query::Set;
+use super::{Except, Fault, MOST_HOLES};
 
 impl Except {
     /// An area without the places of the points that are left out. `step` is at most a quarter of the distance that
     /// coordinates of two points can have along an axis near the origin, in world units.
     ///
+    /// `field` is named in faults.
+    ///
     /// # Errors
-    /// [`Error::Invalid`] for too many of them in the area.
-    pub(in crate::service) fn cut(
+    /// A fault for too many of them in the area.
+    pub fn cut(
         &self,
-        set: &Set,
+        field: &str,
         points: &PointSet,
         area: Area,
         step: f64,
-    ) -> Result<Area, Error> {
+    ) -> Result<Area, Fault> {
         // An area out of reach is refused when it is planned.
         let Ok([columns, rows]) = server::addresses(points, area.clone()) else {
             return Ok(area);
@@ -38,7 +39,7 @@ impl Except {
             if rings.len() > MOST_HOLES {
                 let detail = "more of its ids than may be left out at once lie in the region";
                 let allowed = format!("at most {MOST_HOLES} in a region: request smaller ones");
-                return Err(set.fault("except", self.names.join(","), detail, allowed));
+                return Err(Fault::new(field, self.names.join(","), detail, allowed));
             }
         }
         if rings.is_empty() {
@@ -52,8 +53,7 @@ impl Except {
         });
         rings.dedup();
         let holes = Polygon::new(&rings).map_err(|error| {
-            tracing::error!(%error, "a point is at no place");
-            Error::Internal("a point is at no place")
+            Fault::new(field, "", error.to_string(), "points at finite coordinates")
         })?;
         Ok(area.without([holes.into()]))
     }

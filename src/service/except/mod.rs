@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use strew_core::{PointId, PointSet};
 
-use super::{Error, Fault, query::Set};
+use super::Fault;
 
 pub use list::{Lists, NamedList, split};
 
@@ -91,12 +91,12 @@ impl Except {
         }
     }
 
-    /// Refuses ids of the query that are no points of the set's table. Those that the set leaves out anyway, by its
+    /// Refuses ids of the query that are no points of a set's table. Those that the set leaves out anyway, by its
     /// share or its field, are in order.
     ///
     /// # Errors
-    /// [`Error::Invalid`] for the first that is none.
-    pub(super) fn check(&self, set: &Set, points: &PointSet) -> Result<(), Error> {
+    /// A fault of the first that is none.
+    pub fn check(&self, layer: &str, points: &PointSet) -> Result<(), Fault> {
         let wrong = self
             .given
             .iter()
@@ -104,10 +104,10 @@ impl Except {
         let Some((field, id)) = wrong else {
             return Ok(());
         };
-        let detail = match set.name.as_str() {
+        let detail = match layer {
             "" => "this set has no such point".to_owned(),
             layer => format!("the layer {layer} has no such point"),
         };
-        Err(Fault::new(field, id, detail, "ids of points of this set").into())
+        Err(Fault::new(field, id, detail, "ids of points of this set"))
     }
 }

@@ -1,29 +1,28 @@
 //! Drafts: queries as they were read, with their faults in their places, not checked yet.
 
-use std::{borrow::Cow, sync::Arc};
+use std::sync::Arc;
 
 use serde_json::{Map, Value as Json};
 use strew_core::{Keep, Placement, Seed, Warp};
 
 use super::{
-    Amount, Checked, Faults, Kinds, MOST_LAYERS, Query, QueryRegion, RegionDraft, Set,
+    Amount, Checked, Kinds, LayerDraft, MOST_LAYERS, Query, QueryRegion, RegionDraft, Set,
     Together as _, Value, Values, Window, attributes,
     cursor::Token,
     except,
     faults::all,
     field::Loaded,
-    number,
     parameter::{Group, Parameter, groups, unknown},
     parameters::{
-        BBOX, COUNT, CRS, CURSOR, DECIMALS, EXCEPT, FORMAT, KEEP, LIMIT, OFFSET, ONLY, PARTS,
-        PERIODIC, SEED, SIZE, SUMMARY, WARP, WORLD, WORLD_DIGEST,
+        BBOX, CRS, CURSOR, DECIMALS, EXCEPT, FORMAT, KEEP, LIMIT, OFFSET, ONLY, PARTS, PERIODIC,
+        SEED, SIZE, SUMMARY, WARP, WORLD, WORLD_DIGEST,
     },
     period::Period,
     region::REGION,
     table,
     text::parse_pairs,
 };
-use crate::service::{Catalog, Encoding, Entry, Error, Fault, encode::Options, named::is_name};
+use crate::service::{Catalog, Encoding, Entry, Error, Fault, encode::Options};
 
 /// A query as it was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,25 +34,6 @@ pub struct Draft {
     /// The layers; none if there is one set.
     pub layers: Checked<Vec<LayerDraft>>,
 }
-
-/// A layer as it was read.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LayerDraft {
-    /// Its name; it must be there.
-    pub name: Checked<Option<String>>,
-    /// Where it is; everywhere by default.
-    pub region: Checked<Option<RegionDraft>>,
-    /// Its points.
-    pub values: Values,
-    /// Names of earlier layers and the distances kept from their points.
-    pub clear_of: Checked<Vec<(String, f64)>>,
-}
-
-/// What layers may be called.
-pub(super) const NAME: &str =
-    "1 to 64 ASCII letters, digits, _, - and ., another name for each layer";
-/// What clear_of may be.
-const CLEAR_OF: &str = "names of layers before this one, each with a finite distance above 0";
 
 impl Draft {
     /// A query of one set, without a region yet.
@@ -130,7 +110,7 @@ impl Draft {
         catalog: &Catalog,
         most_vertices: usize,
     ) -> Result<(Query, Options), Error> {
-        let (draft, world) = catalog.worlds().fill(self)?;
+        let (draft, world) = self.filled(catalog.worlds())?;
         let (mut query, options) = draft.check_whole(catalog, most_vertices)?;
         query.world = world;
         Ok((query, options))
@@ -305,124 +285,8 @@ impl Draft {
     }
 }
 
-impl LayerDraft {
-    /// A layer without a name yet.
-    #[must_use]
-    pub const fn new(values: Values) -> Self {
-        Self {
-            name: Ok(None),
-            region: Ok(None),
-            values,
-            clear_of: Ok(vec![]),
-        }
-    }
-
-    /// The layer with a seed of its own under a common one, unless it says its seed: the first 53 bits of
-    /// BLAKE3 over the common seed, as eight bytes, and the name. So long numbers survive JSON.
-    fn seeded(&self, common: u64) -> Cow<'_, Self> {
-        let Some(name) = self.known_name().filter(|_| !self.values.has(&SEED)) else {
-            return Cow::Borrowed(self);
-        };
-        let mut hasher = blake3::Hasher::new();
-        hasher.update(&common.to_be_bytes()).update(name.as_bytes());
-        let mut first = [0; 8];
-        hasher.finalize_xof().fill(&mut first);
-        let seed = u64::from_be_bytes(first) >> 11;
-        let mut layer = self.clone();
-        layer.values.replace(&SEED, Some(Value::Integer(seed)));
-        Cow::Owned(layer)
-    }
-
-    /// Checks the layer after some others.
-    fn check(&self, before: &[Self], loaded: &Loaded<'_>) -> Checked<Set> {
-        let names: Vec<Option<&str>> = before.iter().map(Self::known_name).collect();
-        let region = match &self.region {
-            Ok(region) => region.as_ref().map(RegionDraft::check).transpose(),
-            Err(faults) => Err(faults.clone()),
-        };
-        let (read, set, name, region, clear_of) = (
-            self.values.read(),
-            Set::of(&self.values, loaded),
-            self.name(&names),
-            region,
-            self.clear_of(&names),
-        );
-        let ((), set, name, region, clear_of) = (read, set, name, region, clear_of).together()?;
-        Ok(Set {
-            name,
-            region,
-            clear_of,
-            ..set
-        })
-    }
-
-    fn known_name(&self) -> Option<&str> {
-        self.name.as_ref().ok()?.as_deref()
-    }
-
-    fn field(&self, name: &str) -> String {
-        format!("{}{name}", self.values.path())
-    }
-
-    fn name(&self, before: &[Option<&str>]) -> Checked<String> {
-        let Some(name) = self.name.clone()? else {
-            return Err(Fault::missing(&self.field("name"), NAME).into());
-        };
-        let detail = if before.contains(&Some(&name)) {
-            "an earlier layer has this name"
-        } else if !is_name(&name) {
-            "not a name of layers"
-        } else {
-            return Ok(name);
-        };
-        Err(Fault::new(&self.field("name"), name, detail, NAME).into())
-    }
-
-    fn clear_of(&self, before: &[Option<&str>]) -> Checked<Vec<(usize, f64)>> {
-        let pairs = self.clear_of.clone()?;
-        let field = self.field("clear_of");
-        let place = |(name, distance): &(String, f64)| {
-            let fault = |detail: &str| {
-                let value = format!("{name}: {}", number(*distance));
-                Faults::from(Fault::new(&field, value, detail, CLEAR_OF))
-            };
-            let place = before.iter().position(|earlier| *earlier == Some(name));
-            let place = place.ok_or_else(|| fault("no earlier layer has this name"))?;
-            if *distance > 0.0 && distance.is_finite() {
-                return Ok((place, *distance));
-            }
-            Err(fault("the distance must be finite and above 0"))
-        };
-        let places = all(pairs.iter().map(place))?;
-        if !places.is_empty() && self.values.has(&COUNT) {
-            let detail = "not with clear_of: such a layer has as many points as the others leave";
-            let text = self.values.text(&COUNT);
-            let allowed = "density, spacing or min_distance";
-            return Err(Fault::new(&self.field(COUNT.name), text, detail, allowed).into());
-        }
-        Ok(places)
-    }
-
-    fn to_json(&self) -> Json {
-        let mut members = written(&self.values);
-        members.extend(self.known_name().map(|name| ("name".into(), name.into())));
-        if let Ok(Some(region)) = &self.region {
-            members.insert("region".into(), region.echo());
-        }
-        if let Ok(pairs) = &self.clear_of
-            && !pairs.is_empty()
-        {
-            let pairs = pairs
-                .iter()
-                .map(|(name, distance)| (name.clone(), (*distance).into()));
-            members.insert("clear_of".into(), Json::Object(pairs.collect()));
-        }
-        members.into()
-    }
-}
-
 /// Values as members of JSON.
-fn written(values: &Values) -> Map<String, Json> {
+pub(super) fn written(values: &Values) -> Map<String, Json> {
     let in_body = |group: &Group| groups::QUERY.contains(group);
     let given = values
         .given()
@@ -435,7 +299,7 @@ fn written(values: &Values) -> Map<String, Json> {
 
 impl Set {
     /// Checks the set of some values.
-    fn of(values: &Values, loaded: &Loaded<'_>) -> Checked<Self> {
+    pub(super) fn of(values: &Values, loaded: &Loaded<'_>) -> Checked<Self> {
         let kinds = Kinds::check(values);
         let known = kinds.as_ref().ok().and_then(Option::as_ref);
         let checked = (

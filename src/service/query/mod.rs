@@ -15,7 +15,9 @@ mod faults;
 mod field;
 mod json;
 mod kinds;
+mod layer;
 mod lists;
+mod named;
 mod nearest;
 mod parameter;
 pub mod parameters;
@@ -29,6 +31,7 @@ mod table;
 mod text;
 mod value;
 mod values;
+mod world;
 
 use std::{fmt, sync::Arc};
 
@@ -38,12 +41,13 @@ use super::{Entry, Error, Fault, Ready, except::Except, world::Named};
 
 pub use amount::Amount;
 pub use cursor::Token;
-pub use draft::{Draft, LayerDraft, entry, options, parts};
+pub use draft::{Draft, entry, options, parts};
 pub use echo::{KindDistance, PeriodEcho, Resolved, ResolvedSet};
 pub use faults::{Checked, Faults, Together, all};
 pub use field::SetField;
 pub use json::{RegionSchema, read_body, read_members, read_region};
 pub use kinds::{Kinds, Spread};
+pub use layer::LayerDraft;
 pub use nearest::Nearest;
 pub(super) use parameter::unknown;
 pub use parameter::{Group, Parameter, groups, of};

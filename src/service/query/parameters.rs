@@ -8,15 +8,12 @@ use strew_core::{
 };
 
 use super::{
-    DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_PARTS, Parameter, Shape, Value, kinds::Spread,
+    DEFAULT_ALPHA, DEFAULT_PROFILE, MOST_PARTS, Parameter, Shape, Value, kinds::Spread, named,
     parameter::Group,
 };
-use crate::service::{
-    encode::{
-        CRS as CRS_ALLOWED, MOST_DECIMALS,
-        preview::{LEAST_SIZE, MOST_SIZE},
-    },
-    except::MOST_GIVEN,
+use crate::service::encode::{
+    CRS as CRS_ALLOWED, MOST_DECIMALS,
+    preview::{LEAST_SIZE, MOST_SIZE},
 };
 
 /// Makes a static of each parameter, and the list of all.
@@ -124,28 +121,9 @@ parameters! {
         ..Parameter::PLAIN
     };
     /// The name of a world.
-    WORLD = Parameter {
-        name: "world",
-        about: "The world that everything is taken from that the query leaves open: layers or a set of \
-                points, seed, limit, format. The list of worlds shows what is loaded.",
-        group: Group::World,
-        allowed: Some("the name of a loaded world"),
-        default: Some("none"),
-        example: "forest",
-        ..Parameter::PLAIN
-    };
+    WORLD = named::WORLD;
     /// The digest of the world.
-    WORLD_DIGEST = Parameter {
-        name: "world_digest",
-        about: "The digest that the world must have: caches may keep the answer forever. If the server's world \
-                has another one, the query is refused.",
-        group: Group::WorldPin,
-        shape: Shape::Pattern("^[0-9a-fA-F]{64}$"),
-        allowed: Some("64 hexadecimal digits, as in the header strew-world, beside world"),
-        default: Some("any"),
-        example: "fa1115781ca1238868dadf339c84291489d491b478c8689f4d1e42402fda860e",
-        ..Parameter::PLAIN
-    };
+    WORLD_DIGEST = named::WORLD_DIGEST;
     /// The name of the profile.
     PROFILE = Parameter {
         name: "profile",
@@ -241,25 +219,7 @@ parameters! {
         ..Parameter::PLAIN
     };
     /// The points to leave out.
-    EXCEPT = Parameter {
-        name: "except",
-        about: "The points that are left out, by their ids, and lists of the server by their names. Other layers keep \
-                clear of them all the same. Beside layers ids are layer/column:row. The list of lists shows what is \
-                loaded.",
-        group: Group::Except,
-        shape: Shape::Names {
-            pattern: "^([A-Za-z0-9_.-]{1,64}/)?-?[0-9]+:-?[0-9]+$|^[A-Za-z0-9_.-]{1,64}$",
-        },
-        allowed: Some("at most 10000 ids of points (column:row, beside layers layer/column:row) and names of loaded \
-                       lists, joined by commas; not with count or periodic"),
-        default: Some("none"),
-        example: "18:-17",
-        echo: Some(|set| {
-            let names = &set.except.as_ref()?.names;
-            (!names.is_empty()).then(|| Value::Names(names.clone()))
-        }),
-        ..Parameter::PLAIN
-    };
+    EXCEPT = named::EXCEPT;
     /// The names of the points' attributes.
     ATTRIBUTES = Parameter {
         name: "attributes",
@@ -523,5 +483,4 @@ const _: () = assert!(
         && Variants::MAX == 256
         && Variants::MAX_NAME == 64
         && ScaleRange::LIMIT == 1e9
-        && MOST_GIVEN == 10_000
 );

@@ -1,10 +1,24 @@
 //! Loading worlds: from the configuration and from a folder, at the start and again.
 
-use super::{Catalog, Error, World, Worlds};
+use std::sync::Arc;
+
+use super::{World, Worlds};
 use crate::{
     config::Worlds as Settings,
-    service::named::{Changes, Found, NamedError, Places, Refused},
+    service::{
+        Catalog, Draft, Error, Fault,
+        named::{Changes, Found, NamedError, Places, Refused},
+        query::{
+            Query, groups,
+            parameters::{WORLD, WORLD_DIGEST},
+            read_body,
+        },
+    },
 };
+
+/// What a world may be.
+const ALLOWED: &str =
+    "members of a query: layers or a set of points, seed, limit and the form of answers";
 
 /// Where worlds are described.
 fn places(settings: &Settings) -> Places<'_> {
@@ -71,6 +85,29 @@ impl Worlds {
         (after, changes, refused)
     }
 
+    /// The same worlds over other tables and fields: their digests follow. Worlds that these do not fit keep
+    /// theirs, and queries that name them are refused.
+    #[must_use]
+    pub fn over(&self, catalog: &Catalog) -> Self {
+        let renewed = |(name, world): (&String, &Arc<World>)| {
+            let query =
+                (world.draft()).and_then(|draft| draft.try_out(catalog, self.most_vertices));
+            let digest = query.map(|query| digest(&world.json, &query));
+            let world = match digest {
+                Ok(digest) if digest != world.digest => Arc::new(World {
+                    digest,
+                    ..World::clone(world)
+                }),
+                _ => Arc::clone(world),
+            };
+            (name.clone(), world)
+        };
+        Self {
+            entries: self.entries.iter().map(renewed).collect(),
+            ..*self
+        }
+    }
+
     /// Reads every world by itself.
     ///
     /// # Errors
@@ -82,6 +119,80 @@ impl Worlds {
     ) -> Result<Vec<(Found, Result<World, NamedError>)>, NamedError> {
         places(settings).each(|found, json| check(found, json, catalog, most_vertices))
     }
+}
+
+impl World {
+    /// Reads and checks a document.
+    fn read(
+        found: &Found,
+        json: &str,
+        catalog: &Catalog,
+        most_vertices: usize,
+    ) -> Result<Self, Error> {
+        let draft = read_body(json.as_bytes(), groups::QUERY)?;
+        for (member, is_given) in [
+            ("region", !matches!(draft.region, Ok(None))),
+            (WORLD.name, draft.values.has(&WORLD)),
+            (WORLD_DIGEST.name, draft.values.has(&WORLD_DIGEST)),
+        ] {
+            if is_given {
+                let detail = "not allowed in a world";
+                return Err(Fault::new(member, json, detail, ALLOWED).into());
+            }
+        }
+        let checked = draft.try_out(catalog, most_vertices);
+        let query = checked.map_err(|error| by_layer(error, &draft))?;
+        Ok(Self {
+            name: found.name.clone(),
+            source: found.source.clone(),
+            digest: digest(json, &query),
+            json: json.into(),
+            layers: (draft.layers.iter().flatten())
+                .filter_map(|layer| layer.name.clone().ok()?)
+                .collect(),
+        })
+    }
+
+    /// The members of a query, without a region.
+    ///
+    /// # Errors
+    /// Never: the document was read before.
+    pub fn draft(&self) -> Result<Draft, Error> {
+        Ok(read_body(self.json.as_bytes(), groups::QUERY)?)
+    }
+}
+
+/// The digest of a document with the tables and fields of its query.
+fn digest(json: &str, query: &Query) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for part in [json].into_iter().chain(query.digests()) {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        hasher.update(part.as_bytes());
+    }
+    hasher.update(&strew_core::ALGORITHM_VERSION.to_le_bytes());
+    hasher.finalize().to_hex().to_string()
+}
+
+/// Names the layers of faults by their names: `layers[2].spacing` is `layers.oak.spacing`.
+#[must_use]
+pub fn by_layer(error: Error, draft: &Draft) -> Error {
+    let Error::Invalid(faults) = error else {
+        return error;
+    };
+    let renamed = faults.rename(|field| {
+        let named = || {
+            let (number, rest) = field.strip_prefix("layers[")?.split_once("].")?;
+            let layer = draft
+                .layers
+                .as_ref()
+                .ok()?
+                .get(number.parse::<usize>().ok()?)?;
+            let name = layer.name.as_ref().ok()?.as_deref()?;
+            Some(format!("layers.{name}.{rest}"))
+        };
+        named().unwrap_or_else(|| field.into())
+    });
+    renamed.into()
 }
 
 /// The text of an error, whose faults begin with `worlds.NAME`.

@@ -1,9 +1,13 @@
 //! Tests of worlds: what queries take from them, and which are refused.
 
-use super::*;
+use super::Worlds;
 use crate::{
     config::Worlds as Settings,
-    service::{Catalog, named::NamedError, query::parse_pairs},
+    service::{
+        Catalog, Draft, Error,
+        named::NamedError,
+        query::{groups, parse_pairs},
+    },
 };
 
 fn loaded(text: &str) -> Result<Catalog, NamedError> {
@@ -25,7 +29,7 @@ fn loaded(text: &str) -> Result<Catalog, NamedError> {
 
 fn body(catalog: &Catalog, address: &str) -> serde_json::Value {
     let draft = Draft::of(parse_pairs(address, groups::POINTS));
-    let (filled, world) = catalog.worlds().fill(&draft).expect("known");
+    let (filled, world) = draft.filled(catalog.worlds()).expect("known");
     assert!(world.is_some());
     filled.to_body().into()
 }
@@ -70,7 +74,7 @@ fn a_common_seed_gives_each_layer_one_of_its_own() {
 fn names_that_are_not_there_are_refused_with_those_that_are() {
     let worlds = loaded("[forest]\nspacing = 2").expect("valid");
     let draft = Draft::of(parse_pairs("bbox=0,0,1,1&world=forrest", groups::POINTS));
-    let error = worlds.worlds().fill(&draft).expect_err("unknown");
+    let error = draft.filled(worlds.worlds()).expect_err("unknown");
     let fault = &error.faults()[0];
     assert_eq!(
         (fault.field.as_str(), fault.allowed.as_str()),

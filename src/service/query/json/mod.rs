@@ -161,7 +161,7 @@ fn layer(path: &str, json: &RawValue) -> Result<LayerDraft, Fault> {
             "name" => {
                 let wrong = |_| {
                     let field = format!("{path}.name");
-                    Fault::new(&field, shown(json), "must be text", super::draft::NAME).into()
+                    Fault::new(&field, shown(json), "must be text", super::layer::NAME).into()
                 };
                 layer.name = serde_json::from_str(json.get()).map_err(wrong);
             }

@@ -1,0 +1,77 @@
+//! Queries that take what they leave open from a world.
+
+use std::borrow::Cow;
+
+use super::{
+    Draft, Faults, Group, Parameter, groups,
+    parameters::{EXCEPT, FIELD, ONLY, WORLD, WORLD_DIGEST},
+    read_body, unknown,
+};
+use crate::service::{
+    Error, Fault,
+    world::{Named, Worlds},
+};
+
+impl Draft {
+    /// The draft with what it lacks taken from the world that it names, and that world.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there is none of that name, and [`Error::OtherWorld`] if it has another digest than
+    /// the draft wants.
+    pub fn filled(&self, worlds: &Worlds) -> Result<(Cow<'_, Self>, Option<Named>), Error> {
+        let pin = self.values.get::<String>(&WORLD_DIGEST);
+        let (Ok(named), Ok(pin)) = (self.values.get::<String>(&WORLD), pin) else {
+            // What could not be read is a fault of the draft.
+            return Ok((Cow::Borrowed(self), None));
+        };
+        let Some(name) = named else {
+            return match pin {
+                Some(_) => {
+                    let detail = "has no effect without world";
+                    Err(self.values.fault(&WORLD_DIGEST, detail).into())
+                }
+                None => Ok((Cow::Borrowed(self), None)),
+            };
+        };
+        let Some(world) = worlds.get(&name) else {
+            return Err(self.no_world(worlds).into());
+        };
+        let pin = pin.map(|pin| pin.to_lowercase());
+        if let Some(pinned) = pin.as_ref().filter(|pin| **pin != world.digest) {
+            return Err(Error::OtherWorld {
+                name,
+                pinned: pinned.clone(),
+                loaded: world.digest.clone(),
+            });
+        }
+        let used = Named {
+            is_pinned: pin.is_some() && self.adds_nothing(),
+            digest: world.digest.clone(),
+            name,
+        };
+        let mut draft = self.clone();
+        draft.fill_from(&read_body(world.json.as_bytes(), groups::QUERY)?);
+        Ok((Cow::Owned(draft), Some(used)))
+    }
+
+    fn no_world(&self, worlds: &Worlds) -> Faults {
+        let name = self.values.text(&WORLD);
+        let names = worlds.iter().map(|world| world.name.as_str());
+        let fault = Fault {
+            allowed: worlds.names(),
+            ..self.values.fault(&WORLD, unknown("world", &name, names))
+        };
+        fault.into()
+    }
+
+    /// Whether all that a server could change comes from the world.
+    fn adds_nothing(&self) -> bool {
+        let own = [Group::Profile, Group::Table, Group::Attributes];
+        let is_own = |(parameter, _): (&'static _, &_)| {
+            let parameter: &Parameter = parameter;
+            [&FIELD, &EXCEPT].contains(&parameter)
+                || own.contains(&parameter.group) && *parameter != ONLY
+        };
+        matches!(&self.layers, Ok(layers) if layers.is_empty()) && !self.values.given().any(is_own)
+    }
+}
