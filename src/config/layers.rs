@@ -11,6 +11,7 @@ use super::{Config, ConfigError, DEFAULTS, validate::validate};
 
 /// Variables of the environment that begin so are settings.
 const PREFIX: &str = "STREW_";
+const TEST_PREFIX: &str = "STREW_TEST_";
 /// The sections whose keys are free.
 const FREE: [&str; 1] = ["presets"];
 /// The variable that names a configuration file: the only one with the prefix that is no setting.
@@ -52,7 +53,8 @@ impl Layers {
         Ok(self)
     }
 
-    /// Lays the environment over what is there: `STREW_LIMITS_MAX_POINTS` is `limits.max_points`.
+    /// Lays the environment over what is there: `STREW_LIMITS_MAX_POINTS` is `limits.max_points`. Variables that
+    /// begin with `STREW_TEST_` are those of the tests.
     ///
     /// # Errors
     /// For a variable with the prefix that is no setting, or a value of the wrong type.
@@ -64,7 +66,8 @@ impl Layers {
         let variable = |key: &str| format!("{PREFIX}{}", key.replace('.', "_").to_uppercase());
         let names: Vec<String> = keys.iter().map(|key| variable(key)).collect();
         for (name, value) in variables {
-            if !name.starts_with(PREFIX) || name == FILE_VARIABLE {
+            let is_setting = name.starts_with(PREFIX) && !name.starts_with(TEST_PREFIX);
+            if !is_setting || name == FILE_VARIABLE {
                 continue;
             }
             let Some(at) = names.iter().position(|known| *known == name) else {
