@@ -11,10 +11,11 @@ use super::{Config, ConfigError, DEFAULTS, validate::validate};
 
 /// Variables of the environment that begin so are settings.
 const PREFIX: &str = "STREW_";
+/// Variables that begin so are for tests, and no settings.
 const TEST_PREFIX: &str = "STREW_TEST_";
 /// The sections whose keys are free.
 const FREE: [&str; 1] = ["presets"];
-/// The variable that names a configuration file: the only one with the prefix that is no setting.
+/// The variable that names a configuration file: neither a setting nor for tests.
 const FILE_VARIABLE: &str = "STREW_CONFIG";
 
 /// The section whose tables are named by files.
