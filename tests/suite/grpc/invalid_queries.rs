@@ -250,16 +250,16 @@ fn layers() -> Vec<Case> {
     };
     let clear = |name: &str, distance| [(name.to_owned(), distance)].into();
     let dense = |amount| move |layer: &mut Layer| layer.set = set(amount);
-    let with_seed = StreamPointsRequest {
+    let with_warp = StreamPointsRequest {
         set: Some(PointSet {
-            seed: Some(3),
+            warp: Some(1.0),
             ..PointSet::default()
         }),
         ..of(&[trees()])
     };
     vec![
         (of(&vec![trees(); 17]), vec!["layers"], vec!["16"]),
-        (with_seed, vec!["set.seed"], vec!["beside layers"]),
+        (with_warp, vec!["set.warp"], vec!["beside layers"]),
         (
             of(&[trees(), trees()]),
             vec!["layers[1].name"],
