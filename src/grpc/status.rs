@@ -41,6 +41,9 @@ pub(super) fn status(error: &Error) -> Status {
     if let Error::OtherTable { pinned, .. } = error {
         details.add_precondition_failure_violation("TABLE", pinned, error.to_string());
     }
+    if let Error::OtherWorld { pinned, .. } = error {
+        details.add_precondition_failure_violation("WORLD", pinned, error.to_string());
+    }
     if let Some(seconds) = error.retry_seconds() {
         details.set_retry_info(Some(Duration::from_secs(seconds)));
     }
@@ -136,7 +139,7 @@ fn facts(error: &Error) -> HashMap<String, String> {
             ),
             ("burst_points", short.level.rate.burst_points.to_string()),
         ],
-        Error::OtherTable { pinned, loaded } => {
+        Error::OtherTable { pinned, loaded } | Error::OtherWorld { pinned, loaded, .. } => {
             vec![("pinned", pinned.clone()), ("loaded", loaded.clone())]
         }
         _ => vec![],

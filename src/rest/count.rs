@@ -32,6 +32,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         vec![
             Kind::Invalid,
             Kind::OtherTable,
+            Kind::OtherWorld,
             Kind::TooManyRows,
             Kind::TooManyPoints,
         ]

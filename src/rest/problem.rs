@@ -103,7 +103,9 @@ impl<'a> Problem<'a> {
             _ => (None, None),
         };
         let digests = match error {
-            Error::OtherTable { pinned, loaded } => Some((pinned.as_str(), loaded.as_str())),
+            Error::OtherTable { pinned, loaded } | Error::OtherWorld { pinned, loaded, .. } => {
+                Some((pinned.as_str(), loaded.as_str()))
+            }
             _ => None,
         };
         let rate = match error {

@@ -42,6 +42,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         problems: vec![
             Kind::Invalid,
             Kind::OtherTable,
+            Kind::OtherWorld,
             Kind::TooManyRows,
             Kind::TooManyPoints,
             Kind::BodyTooLarge,
