@@ -1,8 +1,12 @@
 //! `strew count`: how many points a query has, exactly, without making them.
 
-use serde::Serialize;
+use std::io::Read as _;
 
-use super::{Failure, flags::Counted, output, query::QueryArgs};
+use anyhow::Context as _;
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
+
+use super::{Failure, flags::Counted, output, query::QueryArgs, remote::RemoteArgs};
 use crate::service::query::Resolved;
 
 /// Flags of `strew count`.
@@ -13,6 +17,14 @@ pub(super) struct Args {
     json: bool,
     #[command(flatten)]
     query: QueryArgs<Counted>,
+    #[command(flatten)]
+    remote: RemoteArgs,
+}
+
+/// The answer of a server.
+#[derive(Deserialize)]
+struct FromServer {
+    count: Box<RawValue>,
 }
 
 #[derive(Serialize)]
@@ -23,6 +35,9 @@ struct Document {
 
 /// Counts.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    if args.remote.is_given() {
+        return from_server(args);
+    }
     let config = args.query.settings.merged()?;
     let planned = args.query.plan(&config)?.planned;
     let count = planned.count();
@@ -31,4 +46,18 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         return output::print_json([Document { count, query }]);
     }
     output::print(&format!("{count}\n"))
+}
+
+/// Prints the count of a server.
+fn from_server(args: &Args) -> Result<(), Failure> {
+    let body = args.query.for_server()?.to_body();
+    let mut answer = args.remote.ask("/v1/count", &body)?;
+    let mut text = String::new();
+    let read = answer.body.read_to_string(&mut text);
+    read.context("the answer broke off")?;
+    if args.json {
+        return output::print(&format!("{}\n", text.trim_end()));
+    }
+    let counted: FromServer = serde_json::from_str(&text).context("the answer holds no count")?;
+    output::print(&format!("{}\n", counted.count.get()))
 }

@@ -10,13 +10,15 @@ Examples:
   strew sample --chunk 64/3/-2 --spacing 4 --seed 7 -o chunk.parquet
   strew sample --circle 0,0,50 --min-distance 1.5 --attributes angle,scale -o trees.csv.gz
   strew sample --chunk 64/3/-2 --world forest --config strew.toml -o chunk.arrow
+  strew sample --bbox 0,0,100,100 --spacing 2 --url http://127.0.0.1:8080 -o trees.arrows
   strew sample --bbox 0,0,512,512 --spacing 3 --raster forest.png --raster-bbox 0,0,512,512 -o forest.svg";
 pub(super) const STIPPLE: &str = "\
 Examples:
   strew stipple portrait.jpg --points 50000 -o portrait.svg";
 pub(super) const COUNT: &str = "\
 Examples:
-  strew count --bbox 0,0,1000,1000 --spacing 2";
+  strew count --bbox 0,0,1000,1000 --spacing 2
+  strew count --bbox 0,0,1000,1000 --world forest --url http://127.0.0.1:8080";
 pub(super) const POINT: &str = "\
 Examples:
   strew point -31:52 --spacing 2 --seed 7";

@@ -66,6 +66,23 @@ impl FieldArgs {
         Ok(catalog.with_fields(fields))
     }
 
+    /// Refuses files: a server has fields of its own.
+    pub(super) fn must_be_named(&self, values: &Values) -> Result<(), Failure> {
+        let named = values.text(&parameters::FIELD);
+        let raster = self
+            .raster
+            .as_ref()
+            .map(|file| ("--raster", file.display().to_string()));
+        let file = is_file(&named, &Fields::default()).then_some(("--field", named));
+        match raster.or(file) {
+            None => Ok(()),
+            Some((flag, file)) => Err(Failure::Usage(anyhow!(
+                "{flag} {file}: a file of this machine, which --url does not send; allowed: --field with the name of \
+                 a field of the server, or --query with the field in it"
+            ))),
+        }
+    }
+
     fn raster(&self, file: &Path, fields: &Fields) -> Result<NamedField, Failure> {
         const BOX: Shape = parameters::BBOX.shape;
         let wrong = |text: &str, detail: &str| {

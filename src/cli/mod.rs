@@ -22,6 +22,7 @@ mod profiles;
 mod progress;
 mod query;
 mod refusal;
+mod remote;
 mod sample;
 mod serve;
 mod signals;

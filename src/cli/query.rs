@@ -80,6 +80,15 @@ impl<T: Takes> QueryArgs<T> {
         })
     }
 
+    /// The query for a server, whose tables and names are not known here.
+    pub(super) fn for_server(&self) -> Result<Draft, Failure> {
+        let (draft, source) = self.read()?;
+        let refused = |faults: Faults| source.refused(faults.into());
+        draft.read().map_err(refused)?;
+        self.field.must_be_named(&draft.values)?;
+        Ok(draft)
+    }
+
     /// Which parameters a query in a file has.
     fn in_file() -> &'static [Group] {
         match T::GROUPS.contains(&Group::Output) {

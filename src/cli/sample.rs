@@ -1,4 +1,4 @@
-//! `strew sample`: the answers of `GET /v1/points`, to a file or standard output, without a server.
+//! `strew sample`: the answers of `GET /v1/points`, to a file or standard output, without a server or from one.
 
 use std::path::{Path, PathBuf};
 
@@ -14,12 +14,15 @@ use super::{
     output::Output as Target,
     progress::Progress,
     query::{QueryArgs, described},
+    refusal::Source,
+    remote::{self, RemoteArgs},
 };
 use crate::{
     config::Config,
     service::{
         Answer, Encoding, Error, Output, Planned,
         encode::{Plain, Scalars, write_number},
+        query::{options, parameters::FORMAT},
     },
 };
 
@@ -34,6 +37,8 @@ pub(super) struct Args {
     quiet: bool,
     #[command(flatten)]
     query: QueryArgs<Answered>,
+    #[command(flatten)]
+    remote: RemoteArgs,
 }
 
 /// The format that an output's name asks for; JSON if it has no ending.
@@ -63,6 +68,9 @@ pub(super) fn encoding_of(output: Option<&Path>) -> Result<Encoding, Failure> {
 
 /// Writes the points.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    if args.remote.is_given() {
+        return from_server(args);
+    }
     let config = args.query.settings.merged()?;
     let output = Target::open(args.output.as_deref())?;
     let ask = args.query.plan(&config)?;
@@ -81,6 +89,31 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Ok(failure) => failure,
         Err(error) => ask.source.refused(error),
     })
+}
+
+/// Writes the answer of a server.
+fn from_server(args: &Args) -> Result<(), Failure> {
+    let output = Target::open(args.output.as_deref())?;
+    let draft = args.query.for_server()?;
+    let named = options(&draft.values).map_err(|faults| Source::Flags.refused(faults.into()))?;
+    let encoding = match named.encoding {
+        Some(encoding) => encoding,
+        None => encoding_of(args.output.as_deref())?,
+    };
+    if !encoding.is_streamed() {
+        let formats = Encoding::ALL.map(Encoding::name).join(", ");
+        return Err(Failure::Usage(anyhow!(
+            "{}: no server writes it; allowed with --url: {formats}",
+            encoding.name()
+        )));
+    }
+    let mut body = draft.to_body();
+    body.insert(FORMAT.name.into(), encoding.name().into());
+    let answer = args.remote.ask("/v1/points:query", &body)?;
+    if !args.quiet {
+        remote::announce(&answer, encoding.name());
+    }
+    remote::write(answer, output)
 }
 
 /// Writes an answer. What the service refuses is returned as it is, because flags have other names than

@@ -13,8 +13,8 @@ use super::{Config, ConfigError, DEFAULTS, validate::validate};
 const PREFIX: &str = "STREW_";
 /// Variables that begin so are for tests, and no settings.
 const TEST_PREFIX: &str = "STREW_TEST_";
-/// The variable that names a configuration file: neither a setting nor for tests.
-const FILE_VARIABLE: &str = "STREW_CONFIG";
+/// Variables that are neither settings nor for tests: the name of a configuration file, a key for a server.
+const OTHERS: [&str; 2] = ["STREW_CONFIG", "STREW_API_KEY"];
 
 /// The sections whose tables are named by files.
 const NAMED: [&str; 3] = ["fields.", "worlds.", "except."];
@@ -70,7 +70,7 @@ impl Layers {
         let names: Vec<String> = keys.iter().map(|key| variable(key)).collect();
         for (name, value) in variables {
             let is_setting = name.starts_with(PREFIX) && !name.starts_with(TEST_PREFIX);
-            if !is_setting || name == FILE_VARIABLE {
+            if !is_setting || OTHERS.contains(&name.as_str()) {
                 continue;
             }
             let Some(at) = names.iter().position(|known| *known == name) else {

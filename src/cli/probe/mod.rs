@@ -15,7 +15,7 @@ use std::{
 use anyhow::{Context as _, anyhow, bail};
 use rustls::{AlertDescription, ClientConnection, StreamOwned};
 
-use self::trust::{Trust, TrustArgs};
+pub(super) use self::trust::{Trust, TrustArgs};
 use super::{Failure, config};
 
 /// Flags of `strew probe`.
@@ -83,7 +83,7 @@ fn usage(error: anyhow::Error) -> Failure {
 }
 
 /// Whether a URL asks for TLS, and its host and port.
-fn host(url: &str) -> anyhow::Result<(bool, String)> {
+pub(super) fn host(url: &str) -> anyhow::Result<(bool, String)> {
     let wrong = || anyhow!("--url {url}: allowed: http://host:port or https://host:port");
     let (scheme, rest) = url.split_once("://").ok_or_else(wrong)?;
     let host = rest.strip_suffix('/').unwrap_or(rest);
@@ -124,11 +124,14 @@ fn local(mut listen: SocketAddr) -> anyhow::Result<String> {
 /// The status of an answer.
 fn ask(host: &str, path: &str, trust: Option<Trust>, timeout: Duration) -> anyhow::Result<u16> {
     let end = Instant::now() + timeout;
-    let asked = connect(host, end).and_then(|stream| match trust {
-        None => exchange(stream, host, path),
-        Some(trust) => {
-            let connection = ClientConnection::new(trust.config, trust.name)?;
-            exchange(StreamOwned::new(connection, stream), host, path)
+    let asked = connect(host, end).and_then(|stream| {
+        let stream = Timed { stream, end };
+        match trust {
+            None => exchange(stream, host, path),
+            Some(trust) => {
+                let connection = ClientConnection::new(trust.config, trust.name)?;
+                exchange(StreamOwned::new(connection, stream), host, path)
+            }
         }
     });
     asked.map_err(|error| match error.downcast_ref::<io::Error>() {
@@ -216,11 +219,11 @@ impl Write for Timed {
 }
 
 /// A connection to the first address of a host that takes one.
-fn connect(host: &str, end: Instant) -> anyhow::Result<Timed> {
+pub(super) fn connect(host: &str, end: Instant) -> anyhow::Result<TcpStream> {
     let mut last = anyhow!("the name has no address");
     for address in host.to_socket_addrs()? {
         match TcpStream::connect_timeout(&address, left(end)?) {
-            Ok(stream) => return Ok(Timed { stream, end }),
+            Ok(stream) => return Ok(stream),
             Err(error) => last = error.into(),
         }
     }

@@ -1,4 +1,4 @@
-//! How `strew probe` speaks TLS: whom it believes, and what it shows of itself.
+//! How `strew probe` and `--url` speak TLS: whom it believes, and what it shows of itself.
 
 use std::{
     path::{Path, PathBuf},
@@ -19,36 +19,46 @@ use crate::ops::tls::certificates;
 
 /// Flags for a daemon that speaks TLS.
 #[derive(Debug, clap::Args)]
-pub(super) struct TrustArgs {
+pub(in crate::cli) struct TrustArgs {
     /// A PEM file with the authorities that vouch for the daemon.
-    #[arg(long, value_name = "FILE", conflicts_with = "insecure")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with = "insecure",
+        hide_short_help = true
+    )]
     ca: Option<PathBuf>,
     /// The name that the daemon's certificate has to have. Default: the host of the URL.
-    #[arg(long, value_name = "NAME", requires = "ca")]
+    #[arg(long, value_name = "NAME", requires = "ca", hide_short_help = true)]
     server_name: Option<String>,
     /// Believe any certificate. This is the default without --url: what answers then is on this
     /// machine, and nothing secret is sent.
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     insecure: bool,
     /// A PEM file with the certificate to show to a daemon that asks for one (tls.client_ca), and
     /// those that vouch for it.
-    #[arg(long, value_name = "FILE", requires = "key")]
+    #[arg(long, value_name = "FILE", requires = "key", hide_short_help = true)]
     certificate: Option<PathBuf>,
     /// A PEM file with the private key of --certificate.
-    #[arg(long, value_name = "FILE", requires = "certificate")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "certificate",
+        hide_short_help = true
+    )]
     key: Option<PathBuf>,
 }
 
 /// What a connection is made with.
 #[derive(Debug)]
-pub(super) struct Trust {
-    pub(super) config: Arc<ClientConfig>,
-    pub(super) name: ServerName<'static>,
+pub(in crate::cli) struct Trust {
+    pub(in crate::cli) config: Arc<ClientConfig>,
+    pub(in crate::cli) name: ServerName<'static>,
 }
 
 impl TrustArgs {
     /// Refuses flags that would mean nothing.
-    pub(super) fn must_be_unused(&self) -> anyhow::Result<()> {
+    pub(in crate::cli) fn must_be_unused(&self) -> anyhow::Result<()> {
         let given = [
             ("--ca", self.ca.is_some()),
             ("--insecure", self.insecure),
@@ -61,7 +71,7 @@ impl TrustArgs {
     }
 
     /// What to connect to `host` with; `is_here` if it is of this machine.
-    pub(super) fn trust(&self, host: &str, is_here: bool) -> anyhow::Result<Trust> {
+    pub(in crate::cli) fn trust(&self, host: &str, is_here: bool) -> anyhow::Result<Trust> {
         if self.ca.is_none() && !self.insecure && !is_here {
             bail!("https asks for --ca FILE, or --insecure to believe any certificate");
         }

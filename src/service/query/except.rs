@@ -1,6 +1,6 @@
 //! Reading what sets are without: ids of points and names of lists.
 
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
 use strew_core::PointId;
 
@@ -34,6 +34,12 @@ impl Items {
             let allowed = format!("at most {MOST_GIVEN}; more in a list of the server");
             let name = format!("{}{}", values.path(), EXCEPT.name);
             return Err(Fault::new(&name, texts.len(), "too many", allowed).into());
+        }
+        let mut seen = BTreeSet::new();
+        let twice = texts.iter().position(|text| !seen.insert(text.as_str()));
+        if let Some(i) = twice {
+            let allowed = "each id and list once";
+            return Err(Fault::new(&field(i), &texts[i], "given twice", allowed).into());
         }
         let lists = catalog.except();
         let item = |(i, text): (usize, &String)| {

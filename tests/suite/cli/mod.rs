@@ -12,4 +12,5 @@ mod outputs;
 mod patterns;
 mod probe;
 mod queries;
+mod remote;
 mod worlds;

@@ -89,7 +89,19 @@ fn the_flags_are_the_parameters_of_rest() {
         "raster",
         "raster-bbox",
     ];
-    let query = ["query", "region", "chunk"];
+    // Where the query comes from, and a server that answers.
+    let query = [
+        "query",
+        "region",
+        "chunk",
+        "url",
+        "key-file",
+        "ca",
+        "server-name",
+        "insecure",
+        "certificate",
+        "key",
+    ];
     for (command, path, more) in [
         ("sample", "/v1/points", &["output", "quiet"][..]),
         ("count", "/v1/count", &["json"]),

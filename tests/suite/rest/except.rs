@@ -238,6 +238,7 @@ fn what_is_no_point_or_list_is_refused() {
             "except[0]",
             "there are no layers here",
         ),
+        ("spacing=1&except=dug,dug", "except[1]", "given twice"),
         ("count=9&except=dug", "count", "not with except"),
     ] {
         let (found, said, _) = by_address(more);

@@ -1,0 +1,155 @@
+//! `--url`: the answers of a daemon, through the program.
+
+use std::{
+    fs,
+    io::{Read as _, Write as _},
+    net::TcpListener,
+    process::Output,
+    thread,
+};
+
+use crate::support::{
+    command::{errors, run},
+    daemon::{Daemon, strew},
+    keys::{entry, keys},
+};
+
+const QUERY: [&str; 7] = [
+    "sample",
+    "-q",
+    "--chunk",
+    "16/3/-2",
+    "--spacing",
+    "1.5",
+    "--seed=7",
+];
+
+fn printed(arguments: &[&str]) -> Vec<u8> {
+    let output = run(arguments, "");
+    assert!(
+        output.status.success(),
+        "{arguments:?}: {}",
+        errors(&output)
+    );
+    output.stdout
+}
+
+fn refused(arguments: &[&str], code: i32) -> String {
+    let output: Output = run(arguments, "");
+    assert_eq!(output.status.code(), Some(code), "{}", errors(&output));
+    errors(&output)
+}
+
+#[test]
+fn a_daemon_answers_what_the_program_would() {
+    let daemon = Daemon::built_in();
+    let url = daemon.url("");
+    for format in ["csv", "json", "f32", "npy", "ndjson", "arrow", "svg"] {
+        let here = [&QUERY[..], &["--format", format]].concat();
+        let there = [&here[..], &["--url", &url]].concat();
+        assert!(printed(&there) == printed(&here), "{format}");
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("points.csv.gz");
+    let file = file.to_str().expect("Unicode");
+    printed(&[&QUERY[..], &["--url", &url, "-o", file]].concat());
+    let mut text = String::new();
+    let packed = fs::File::open(file).expect("written");
+    let mut unpacked = flate2::read::GzDecoder::new(packed);
+    unpacked.read_to_string(&mut text).expect("gzip");
+    let csv = printed(&[&QUERY[..], &["--format", "csv"]].concat());
+    assert_eq!(text.into_bytes(), csv);
+    let count = ["count", "--bbox", "0,0,1e6,1e6", "--spacing", "1"];
+    let there = [&count[..], &["--url", &url]].concat();
+    assert_eq!(printed(&there), printed(&count));
+    let body = r#"{ "region": { "circle": { "center": [0, 0], "radius": 9 } }, "format": "csv",
+        "layers": [ { "name": "a", "spacing": 2 }, { "name": "b", "density": 1, "clear_of": { "a": 1 } } ] }"#;
+    let here = run(&["sample", "-q", "--query", "-"], body);
+    let there = run(&["sample", "-q", "--query", "-", "--url", &url], body);
+    assert!(
+        here.status.success() && here.stdout == there.stdout,
+        "{}",
+        errors(&there)
+    );
+}
+
+#[test]
+fn names_are_those_of_the_daemon_and_its_refusals_are_shown() {
+    let daemon = Daemon::with_config("[worlds.heath]\nspacing = 2\nseed = 3\n");
+    let url = daemon.url("");
+    let chunk = ["sample", "-q", "--chunk", "16/0/0", "--format", "csv"];
+    let heath = printed(&[&chunk[..], &["--world", "heath", "--url", &url]].concat());
+    let known = printed(&[&chunk[..], &["--spacing", "2", "--seed", "3"]].concat());
+    assert_eq!(heath, known);
+    let error = refused(
+        &[&chunk[..], &["--world", "heat", "--url", &url]].concat(),
+        2,
+    );
+    assert!(
+        error.contains("status 400: The query is not valid"),
+        "{error}"
+    );
+    assert!(error.contains("did you mean `heath`?"), "{error}");
+    // What no server could take is refused before it is sent.
+    let nowhere = ["--url", "http://127.0.0.1:1"];
+    for (flags, expected) in [
+        (["--spacing", "-1"], "--spacing -1"),
+        (
+            ["--field", "a/mask.png"],
+            "--field a/mask.png: a file of this machine",
+        ),
+    ] {
+        let all = [&chunk[..4], &["--density", "1"][..0], &flags, &nowhere].concat();
+        let error = refused(&all, 2);
+        assert!(error.contains(expected), "{error}");
+    }
+    let parquet = [
+        &chunk[..4],
+        &["--spacing", "1", "--format", "parquet"],
+        &nowhere,
+    ]
+    .concat();
+    assert!(refused(&parquet, 2).contains("parquet"));
+    let error = refused(&[&chunk[..], &["--spacing", "1"], &nowhere].concat(), 1);
+    assert!(error.contains("http://127.0.0.1:1"), "{error}");
+}
+
+#[test]
+fn a_key_opens_what_is_behind_one() {
+    let key = "a-key-of-alice";
+    let daemon = Daemon::start(&[&keys(&entry("alice", key, ""))]);
+    let url = daemon.url("");
+    let all = [&QUERY[..], &["--format", "csv", "--url", &url]].concat();
+    let error = refused(&all, 1);
+    assert!(error.contains("status 401: A key is needed"), "{error}");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("key");
+    fs::write(&file, format!("{key}\n")).expect("writable");
+    let file = file.to_str().expect("Unicode");
+    let by_file = printed(&[&all[..], &["--key-file", file]].concat());
+    let by_variable = strew().args(&all).env("STREW_API_KEY", key).output();
+    assert_eq!(by_variable.expect("it runs").stdout, by_file);
+    assert!(by_file.len() > 1000);
+}
+
+#[test]
+fn an_answer_that_is_cut_leaves_no_file() {
+    let server = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let url = format!("http://{}", server.local_addr().expect("an address"));
+    let served = thread::spawn(move || {
+        let (mut stream, _) = server.accept().expect("a client");
+        let mut part = [0; 4096];
+        let _ = stream.read(&mut part);
+        let head =
+            "HTTP/1.1 200 OK\r\ntransfer-encoding: chunked\r\n\r\n9\r\nid,x,y\n1:\r\n5\r\n2,3";
+        stream.write_all(head.as_bytes()).expect("writable");
+    });
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("points.csv");
+    let file = file.to_str().expect("Unicode");
+    let error = refused(&[&QUERY[..], &["--url", &url, "-o", file]].concat(), 1);
+    assert!(error.contains("the answer broke off"), "{error}");
+    let left = fs::read_dir(folder.path()).expect("a folder").count();
+    assert_eq!(left, 0);
+    served.join().expect("served");
+}
