@@ -4,6 +4,8 @@ use bytes::Bytes;
 
 use super::{
     Blocks, EncodeError,
+    pose::Pose,
+    posed,
     rows::{Batch, Rows},
     schema::{Column, Kind, Schema},
 };
@@ -17,6 +19,10 @@ pub(super) enum Layout {
     F64,
     /// x, y, z = 0 and the columns as `f64`, but names as `i32` indices.
     Vertex,
+    /// Those of a `MultiMesh`.
+    Multimesh,
+    /// Those of 16 bytes.
+    Instance,
 }
 
 impl Layout {
@@ -33,6 +39,8 @@ impl Layout {
                 };
                 24 + columns.iter().map(bytes).sum::<usize>()
             }
+            Self::Multimesh => posed::MULTIMESH_BYTES,
+            Self::Instance => posed::INSTANCE_BYTES,
         }
     }
 
@@ -41,12 +49,13 @@ impl Layout {
         match self {
             Self::F32 => Some(true),
             Self::F64 => Some(false),
-            Self::Vertex => None,
+            Self::Vertex | Self::Multimesh | Self::Instance => None,
         }
     }
 
     /// Appends the records of some rows; a number that a row lacks is NaN, an index −1.
-    fn write(self, schema: &Schema, batch: Batch<'_>, out: &mut Vec<u8>) {
+    fn write(self, schema: &Schema, pose: &Pose, batch: Batch<'_>, out: &mut Vec<u8>) {
+        let ranges = pose.ranges(schema);
         for row in batch.rows() {
             let columns = row.columns.iter();
             let numbers = columns.map(|values| values.number(row.index).unwrap_or(f64::NAN));
@@ -80,6 +89,15 @@ impl Layout {
                         }
                     }
                 }
+                Self::Multimesh => {
+                    for v in posed::multimesh(pose, row, batch.near[row.index]) {
+                        out.extend_from_slice(&v.to_le_bytes());
+                    }
+                }
+                Self::Instance => {
+                    let near = batch.near[row.index];
+                    out.extend_from_slice(&posed::instance(pose, &ranges, row, near));
+                }
             }
         }
     }
@@ -90,13 +108,15 @@ impl Layout {
 pub(super) struct Records {
     rows: Rows,
     layout: Layout,
+    pose: Pose,
     block_bytes: usize,
     points: u64,
 }
 
 impl Records {
-    pub(super) const fn new(rows: Rows, layout: Layout, block_bytes: usize) -> Self {
+    pub(super) fn new(rows: Rows, layout: Layout, block_bytes: usize) -> Self {
         Self {
+            pose: Pose::new(rows.schema()),
             rows,
             layout,
             block_bytes,
@@ -115,7 +135,7 @@ impl Blocks for Records {
         let bytes = self.layout.record_bytes(&schema);
         let batch = self.rows.next(self.block_bytes / bytes)?;
         let mut out = Vec::with_capacity(batch.points.len() * bytes);
-        self.layout.write(&schema, batch, &mut out);
+        self.layout.write(&schema, &self.pose, batch, &mut out);
         self.points += batch.points.len() as u64;
         Some(Ok(out.into()))
     }
