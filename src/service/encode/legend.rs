@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{
     Encoding,
     members::write_json,
-    pose::Pose,
+    pose::{Pose, Z},
     posed::MULTIMESH_OTHERS,
     schema::{Column, Kind, LAYER, Schema},
 };
@@ -83,7 +83,10 @@ fn listed(schema: &Schema, encoding: Encoding, has_names: bool) -> Option<String
         _ => return None,
     };
     let coordinates = coordinates.iter().map(|name| Entry::new(name, number));
-    let columns = schema.columns().iter().map(|column| {
+    // In ply the height is a coordinate.
+    let columns = schema.columns().iter();
+    let columns = columns.filter(|column| encoding != Encoding::Ply || column.name != Z);
+    let columns = columns.map(|column| {
         let kind = match &column.kind {
             Kind::Number => number,
             Kind::Dictionary(_) => index,

@@ -71,6 +71,7 @@ pub use number::{Digits, write_number};
 pub use output::{MOST_DECIMALS, Options, Output};
 pub use packed::{Packed, Scalars};
 pub use part::{Attributes, Part};
+pub use pose::{ROTATION as POSE_ROTATION, Z as POSE_Z};
 pub use rows::{Batch, Coordinates, Row, Rows};
 pub use schema::{Column, Kind, LAYER, Schema, Values};
 pub use text::id_text;

@@ -9,9 +9,9 @@ use super::{
 };
 
 /// The height of a point.
-pub(super) const Z: &str = "z";
+pub const Z: &str = "z";
 /// A rotation as a quaternion, which an angle is part of.
-pub(super) const ROTATION: [&str; 4] = ["qx", "qy", "qz", "qw"];
+pub const ROTATION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 const ANGLE: &str = "angle";
 const SCALE: &str = "scale";
 const VARIANT: &str = "variant";

@@ -4,7 +4,7 @@ use bytes::Bytes;
 
 use super::{
     Blocks, EncodeError,
-    pose::Pose,
+    pose::{Pose, Z},
     posed,
     rows::{Batch, Rows},
     schema::{Column, Kind, Schema},
@@ -17,7 +17,7 @@ pub(super) enum Layout {
     F32,
     /// x, y and the columns as `f64`.
     F64,
-    /// x, y, z = 0 and the columns as `f64`, but names as `i32` indices.
+    /// x, y, z (0 without a column of it) and the other columns as `f64`, but names as `i32` indices.
     Vertex,
     /// Those of a `MultiMesh`.
     Multimesh,
@@ -34,6 +34,7 @@ impl Layout {
             Self::F64 => 8 * (2 + columns.len()),
             Self::Vertex => {
                 let bytes = |column: &Column| match column.kind {
+                    Kind::Number if column.name == Z => 0,
                     Kind::Number => 8,
                     Kind::Dictionary(_) => 4,
                 };
@@ -72,11 +73,12 @@ impl Layout {
                     }
                 }
                 Self::Vertex => {
-                    for v in [row.point.x, row.point.y, 0.0] {
+                    for v in [row.point.x, row.point.y, pose.z(row)] {
                         out.extend_from_slice(&v.to_le_bytes());
                     }
                     for (column, values) in schema.columns().iter().zip(row.columns) {
                         match column.kind {
+                            Kind::Number if column.name == Z => {}
                             Kind::Number => {
                                 let number = values.number(row.index).unwrap_or(f64::NAN);
                                 out.extend_from_slice(&number.to_le_bytes());

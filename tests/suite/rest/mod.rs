@@ -26,4 +26,5 @@ mod presets;
 mod profiles;
 mod regions;
 mod single_points;
+mod terrain;
 mod varying_kinds;
