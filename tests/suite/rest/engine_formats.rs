@@ -62,7 +62,12 @@ fn expected(daemon: &Daemon) -> Vec<Stand> {
 }
 
 fn written(daemon: &Daemon, format: &str, folder: &Path) -> PathBuf {
-    let answer = daemon.get(&format!("{QUERY}&format={format}"));
+    // A record of 16 bytes has no room for the number.
+    let query = match format {
+        "instances" => QUERY.replace(",u1", ""),
+        _ => QUERY.into(),
+    };
+    let answer = daemon.get(&format!("{query}&format={format}"));
     assert_eq!(answer.status, 200, "{format}: {}", answer.text());
     assert_eq!(answer.header("strew-origin"), "-3.5,1.0", "{format}");
     let file = folder.join(format!("points.{format}"));
