@@ -56,6 +56,10 @@ no-std:
 targets:
     .ci/targets
 
+# Everything that a release has, made and checked in empty environments; publishes nothing. See docs/releasing.md.
+release folder="dist":
+    deploy/release {{folder}}
+
 # Licenses, bans and sources of all dependencies; the advisories need a network.
 deny:
     cargo deny --locked --offline check licenses bans sources

@@ -11,9 +11,11 @@ use super::{Config, ConfigError, DEFAULTS, validate::validate};
 
 /// Variables of the environment that begin so are settings.
 const PREFIX: &str = "STREW_";
+/// Variables that begin so are for tests, and no settings.
+const TEST_PREFIX: &str = "STREW_TEST_";
 /// The sections whose keys are free.
 const FREE: [&str; 1] = ["presets"];
-/// The variable that names a configuration file: the only one with the prefix that is no setting.
+/// The variable that names a configuration file: neither a setting nor for tests.
 const FILE_VARIABLE: &str = "STREW_CONFIG";
 
 /// The section whose tables are named by files.
@@ -52,7 +54,8 @@ impl Layers {
         Ok(self)
     }
 
-    /// Lays the environment over what is there: `STREW_LIMITS_MAX_POINTS` is `limits.max_points`.
+    /// Lays the environment over what is there: `STREW_LIMITS_MAX_POINTS` is `limits.max_points`. Variables that
+    /// begin with `STREW_TEST_` are those of the tests.
     ///
     /// # Errors
     /// For a variable with the prefix that is no setting, or a value of the wrong type.
@@ -64,7 +67,8 @@ impl Layers {
         let variable = |key: &str| format!("{PREFIX}{}", key.replace('.', "_").to_uppercase());
         let names: Vec<String> = keys.iter().map(|key| variable(key)).collect();
         for (name, value) in variables {
-            if !name.starts_with(PREFIX) || name == FILE_VARIABLE {
+            let is_setting = name.starts_with(PREFIX) && !name.starts_with(TEST_PREFIX);
+            if !is_setting || name == FILE_VARIABLE {
                 continue;
             }
             let Some(at) = names.iter().position(|known| *known == name) else {

@@ -180,8 +180,10 @@ fn decoded(field: &str, text: &str) -> Result<Vec<u8>, Faults> {
 }
 
 fn wrong(field: &str, value: &str, error: &RasterError) -> Faults {
-    let allowed = "a whole PNG, GeoTIFF, npy or raw f32 raster of finite numbers";
-    Fault::new(field, value, error.to_string(), allowed).into()
+    let text = error.to_string();
+    let whole = "a whole PNG, GeoTIFF, npy or raw f32 raster of finite numbers";
+    let (problem, allowed) = text.split_once("; allowed: ").unwrap_or((&text, whole));
+    Fault::new(field, value, problem, allowed).into()
 }
 
 fn refused(path: &str, value: &str, error: &strew_core::Error) -> Faults {

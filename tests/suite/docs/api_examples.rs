@@ -1,11 +1,15 @@
-//! The examples of docs/api.md, docs/fields.md, docs/pattern.md and README.md run against a daemon and must print what the documents show.
+//! The examples of docs/api.md, docs/fields.md, docs/pattern.md, README.md and examples/README.md run against a
+//! daemon and must print what the documents show.
 //!
 //! An example is a fenced `sh` block that begins with `curl`, `grpcurl` or `strew`, and the block right
 //! after it shows its output; or a `console` block of `$ `, such a command and its output. In an output a
 //! line `…` stands for any number of lines, and a line that ends in `…` for a longer one.
 //! `UPDATE_GOLDEN=1` writes the current output, shortened in the same places; an empty block is filled.
 
-use std::{path::Path, process::Command};
+use std::{
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 use crate::support::{
     clients,
@@ -45,8 +49,11 @@ fn run(script: &str, daemon: &Daemon, folder: &Path) -> Vec<String> {
     let program = strew();
     let programs = Path::new(program.get_program()).parent().expect("a folder");
     let path = std::env::var_os("PATH").unwrap_or_default();
+    let python = std::env::var_os("STREW_TEST_PYTHON").map(PathBuf::from);
+    let python = python.and_then(|python| Some(python.parent()?.to_owned()));
     let path = [programs.into()]
         .into_iter()
+        .chain(python)
         .chain(std::env::split_paths(&path));
     command.env("PATH", std::env::join_paths(path).expect("a path"));
     for (name, _) in program.get_envs() {
@@ -130,11 +137,30 @@ fn examples(lines: &[String]) -> Vec<Example> {
     examples.retain(|example| {
         let program = example.script.split(' ').next().unwrap_or_default();
         match program {
-            "curl" | "grpcurl" | "python3" => clients::find(program).is_some(),
+            "python3" => has_packages(&example.script),
+            "curl" | "grpcurl" => clients::find(program).is_some(),
             other => ["strew", "for"].contains(&other),
         }
     });
     examples
+}
+
+/// Whether there is a Python with what an example imports.
+fn has_packages(script: &str) -> bool {
+    let Some(plain) = clients::find("python3") else {
+        return false;
+    };
+    let imports = |line: &&str| line.starts_with("import ") || line.starts_with("from ");
+    let imports: Vec<&str> = script.lines().filter(imports).collect();
+    let python = std::env::var_os("STREW_TEST_PYTHON").unwrap_or(plain.into());
+    let output = Command::new(python)
+        .args(["-c", &imports.join("\n")])
+        .output();
+    let has_all = output.is_ok_and(|output| output.status.success());
+    if !has_all {
+        eprintln!("skipped: a Python with {}", imports.join(", "));
+    }
+    has_all
 }
 
 /// The commands of a `console` block, which begin with `$ ` and may be continued, with their output.
@@ -207,6 +233,11 @@ fn the_api_document_shows_what_its_examples_print() {
 #[test]
 fn the_readme_shows_what_its_examples_print() {
     check("README.md");
+}
+
+#[test]
+fn the_page_of_samples_shows_what_its_examples_print() {
+    check("examples/README.md");
 }
 
 #[test]

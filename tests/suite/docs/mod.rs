@@ -6,3 +6,4 @@ mod api_examples;
 mod deploy;
 mod generated_client;
 mod openapi;
+mod samples;

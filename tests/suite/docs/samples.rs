@@ -1,0 +1,123 @@
+//! The programs of `examples/`, run against the daemon by what they are written for, where it is installed.
+
+use std::{
+    io::{BufRead as _, BufReader},
+    path::Path,
+    process::{Child, Command, Stdio},
+};
+
+use crate::support::{browser::looking, clients, daemon::Daemon};
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// The Python of `STREW_TEST_BLENDER`, which has Blender's module.
+#[test]
+fn blender_has_an_instance_for_each_point() {
+    let Some(python) = std::env::var_os("STREW_TEST_BLENDER") else {
+        eprintln!("skipped: STREW_TEST_BLENDER names no Python with bpy");
+        return;
+    };
+    let daemon = Daemon::built_in();
+    let output = Command::new(python)
+        .arg(Path::new(ROOT).join("tests/suite/docs/blender_check.py"))
+        .arg(Path::new(ROOT).join("examples/blender/scatter.py"))
+        .arg(daemon.url(""))
+        .output()
+        .expect("Python runs");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    let count = daemon.get("/v1/count?bbox=0,0,30,20&spacing=2&seed=7");
+    let printed = String::from_utf8_lossy(&output.stdout);
+    let found = printed.lines().last().expect("a number");
+    assert_eq!(
+        count.json()["count"],
+        found.parse::<u64>().expect("a number")
+    );
+}
+
+/// A folder served over HTTP by Python; ends when dropped.
+struct Folder {
+    server: Child,
+    url: String,
+}
+
+impl Folder {
+    fn serve(folder: &Path) -> Option<Self> {
+        let mut server = Command::new(clients::find("python3")?)
+            .args(["-u", "-m", "http.server", "0", "--bind", "127.0.0.1"])
+            .arg("--directory")
+            .arg(folder)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("Python runs");
+        let mut line = String::new();
+        BufReader::new(server.stdout.take().expect("piped"))
+            .read_line(&mut line)
+            .expect("a line");
+        let port = line
+            .split_whitespace()
+            .skip_while(|word| *word != "port")
+            .nth(1)?;
+        let url = format!("http://127.0.0.1:{port}");
+        Some(Self { server, url })
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = self.server.kill();
+        let _ = self.server.wait();
+    }
+}
+
+#[test]
+fn a_forest_of_three_js_grows_around_the_camera() {
+    let Some(npm) = clients::find("npm") else {
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in [
+        "index.html",
+        "main.js",
+        "chunks.js",
+        "package.json",
+        "package-lock.json",
+    ] {
+        let from = Path::new(ROOT).join("examples/three").join(name);
+        std::fs::copy(from, folder.path().join(name)).expect("copied");
+    }
+    let installed = Command::new(npm)
+        .args(["ci", "--silent", "--no-audit", "--no-fund"])
+        .current_dir(folder.path())
+        .status()
+        .expect("npm runs");
+    if !installed.success() {
+        eprintln!("skipped: npm cannot install three");
+        return;
+    }
+    let (Some(files), Some((daemon, browser))) = (Folder::serve(folder.path()), looking(300, 200))
+    else {
+        return;
+    };
+    // Far away, where f32 alone would not know one tree from the next.
+    let address = |url: &str| format!("{}/index.html?x=3e8&y=-7e8&speed=0&url={url}", files.url);
+    browser.go(&address(&daemon.url("")));
+    let said = "document.querySelector('#said').textContent";
+    let text = browser.until(&format!("/[1-9].* in 187 chunks/.test({said}) && {said}"));
+    let text = text.as_str().expect("text").replace(',', "");
+    let mut numbers = text.split_whitespace().filter_map(|word| word.parse().ok());
+    let (drawn, loaded): (u64, u64) = (
+        numbers.next().expect("drawn"),
+        numbers.next().expect("loaded"),
+    );
+    assert!(0 < drawn && drawn < loaded, "{text}");
+    let errors = browser.errors();
+    assert!(
+        errors.iter().all(|error| error.contains("favicon")),
+        "{errors:?}"
+    );
+    drop(daemon);
+    browser.go(&address("http://127.0.0.1:1"));
+    browser.until(&format!("{said}.includes('does not answer')"));
+}
