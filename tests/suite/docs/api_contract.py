@@ -66,10 +66,7 @@ def tidy_set(query, is_text, amounts=AMOUNTS):
     if "scale" not in names or has_ranges:
         query.pop("scale_range", None)
     if "terrain" in query and not is_text:
-        query["terrain"] = {"noise": {"wavelength": 9}}
-        for name, value in [("heights", [-3, 7]), ("normals", True), ("align", 0.5)]:
-            if name in query:
-                query[name] = value
+        query["terrain"] = {"constant": 0.5}
     else:
         # No field is loaded that an address could name.
         for name in ["terrain", "heights", "normals", "align"]:
