@@ -220,8 +220,8 @@ fn a_wrong_terrain_is_refused_by_its_fields() {
     assert_fault(
         &answer,
         "layers",
-        "layers[1].terrain.noise",
-        &["wavelength"],
+        "layers[1].terrain.noise.wavelength",
+        &["-1"],
     );
     let aligned = daemon.get(&format!("{path}&terrain=ramp&align=1&format=instances"));
     assert_fault(&aligned, "aligned", "format", &["whole rotation"]);
