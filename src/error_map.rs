@@ -20,13 +20,13 @@ pub struct Wire {
 
 /// Makes the table, and the match from a kind to its row.
 macro_rules! kinds {
-    ($($kind:ident: $slug:literal, $title:literal, $status:ident, $code:ident;)+) => {
+    ($($kind:ident: $title:literal, $status:ident, $code:ident;)+) => {
         /// What a kind of error is on the wire.
         #[must_use]
         pub const fn wire(kind: Kind) -> Wire {
             match kind {
                 $(Kind::$kind => Wire {
-                    slug: $slug,
+                    slug: Kind::$kind.slug(),
                     title: $title,
                     status: StatusCode::$status,
                     code: Code::$code,
@@ -37,28 +37,28 @@ macro_rules! kinds {
 }
 
 kinds! {
-    Invalid: "invalid-query", "The query is not valid", BAD_REQUEST, InvalidArgument;
-    TooManyPoints: "too-many-points", "The answer would have too many points", PAYLOAD_TOO_LARGE, ResourceExhausted;
-    TooManyRows: "too-many-rows", "Counting the points would take too long", PAYLOAD_TOO_LARGE, ResourceExhausted;
-    BodyTooLarge: "body-too-large", "The query is too long", PAYLOAD_TOO_LARGE, ResourceExhausted;
-    OtherTable: "other-table", "Another table would answer", CONFLICT, FailedPrecondition;
-    TableUnreadable: "table-unreadable", "The table cannot be read", SERVICE_UNAVAILABLE, Unavailable;
-    NotAcceptable: "not-acceptable", "No acceptable format", NOT_ACCEPTABLE, InvalidArgument;
-    NoSuchPoint: "no-such-point", "There is no such point", NOT_FOUND, NotFound;
-    NoSuchJob: "no-such-job", "There is no such job", NOT_FOUND, NotFound;
-    NoSuchPath: "no-such-path", "Nothing is here", NOT_FOUND, Unimplemented;
-    NoSuchMethod: "no-such-method", "The path does not take this method", METHOD_NOT_ALLOWED, Unimplemented;
-    Unauthenticated: "unauthenticated", "A key is needed", UNAUTHORIZED, Unauthenticated;
-    NotAllowed: "not-allowed", "The caller may not do this", FORBIDDEN, PermissionDenied;
-    TooManyStreams: "too-many-streams", "Too many current streams", TOO_MANY_REQUESTS, ResourceExhausted;
-    TooManyJobs: "too-many-jobs", "Too many tables are being made for the client", TOO_MANY_REQUESTS, ResourceExhausted;
-    TooManyForAddress: "too-many-for-address", "The client's address uses as much as one address may", TOO_MANY_REQUESTS, ResourceExhausted;
-    TooFast: "too-fast", "Points are taken too fast", TOO_MANY_REQUESTS, ResourceExhausted;
-    Busy: "busy", "The server is busy", SERVICE_UNAVAILABLE, ResourceExhausted;
-    BodyTooSlow: "body-too-slow", "The query arrived too slowly", REQUEST_TIMEOUT, DeadlineExceeded;
-    TimeOver: "time-over", "The answer took too long", SERVICE_UNAVAILABLE, ResourceExhausted;
-    ShuttingDown: "shutting-down", "The server is shutting down", SERVICE_UNAVAILABLE, Unavailable;
-    Internal: "internal", "An internal error", INTERNAL_SERVER_ERROR, Internal;
+    Invalid: "The query is not valid", BAD_REQUEST, InvalidArgument;
+    TooManyPoints: "The answer would have too many points", PAYLOAD_TOO_LARGE, ResourceExhausted;
+    TooManyRows: "Counting the points would take too long", PAYLOAD_TOO_LARGE, ResourceExhausted;
+    BodyTooLarge: "The query is too long", PAYLOAD_TOO_LARGE, ResourceExhausted;
+    OtherTable: "Another table would answer", CONFLICT, FailedPrecondition;
+    TableUnreadable: "The table cannot be read", SERVICE_UNAVAILABLE, Unavailable;
+    NotAcceptable: "No acceptable format", NOT_ACCEPTABLE, InvalidArgument;
+    NoSuchPoint: "There is no such point", NOT_FOUND, NotFound;
+    NoSuchJob: "There is no such job", NOT_FOUND, NotFound;
+    NoSuchPath: "Nothing is here", NOT_FOUND, Unimplemented;
+    NoSuchMethod: "The path does not take this method", METHOD_NOT_ALLOWED, Unimplemented;
+    Unauthenticated: "A key is needed", UNAUTHORIZED, Unauthenticated;
+    NotAllowed: "The caller may not do this", FORBIDDEN, PermissionDenied;
+    TooManyStreams: "Too many current streams", TOO_MANY_REQUESTS, ResourceExhausted;
+    TooManyJobs: "Too many tables are being made for the client", TOO_MANY_REQUESTS, ResourceExhausted;
+    TooManyForAddress: "The client's address uses as much as one address may", TOO_MANY_REQUESTS, ResourceExhausted;
+    TooFast: "Points are taken too fast", TOO_MANY_REQUESTS, ResourceExhausted;
+    Busy: "The server is busy", SERVICE_UNAVAILABLE, ResourceExhausted;
+    BodyTooSlow: "The query arrived too slowly", REQUEST_TIMEOUT, DeadlineExceeded;
+    TimeOver: "The answer took too long", SERVICE_UNAVAILABLE, ResourceExhausted;
+    ShuttingDown: "The server is shutting down", SERVICE_UNAVAILABLE, Unavailable;
+    Internal: "An internal error", INTERNAL_SERVER_ERROR, Internal;
 }
 
 /// The problem type of a kind of error.

@@ -159,7 +159,7 @@ impl Which {
             let place = match &entry.source {
                 Source::Embedded(name) => format!("{name} (built in)"),
                 Source::File(path) => path.display().to_string(),
-                Source::Pattern => entry.source.to_string(),
+                Source::Memory(_) | Source::Pattern => entry.source.to_string(),
             };
             let table = entry
                 .table()

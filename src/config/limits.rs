@@ -39,6 +39,23 @@ pub struct Limits {
     pub cache_bytes: u64,
 }
 
+impl Default for Limits {
+    /// Those of the built-in settings.
+    fn default() -> Self {
+        Self {
+            max_points: 2_000_000_000,
+            max_rows: 5_000_000,
+            max_vertices: 100_000,
+            max_body_bytes: 4 << 20,
+            max_requests: 1024,
+            max_bytes_in_flight: 1 << 30,
+            max_streams: 256,
+            block_bytes: 256 << 10,
+            cache_bytes: 64 << 20,
+        }
+    }
+}
+
 impl Limits {
     /// The bytes of one answer and one query of the largest size, which have to fit.
     pub(super) const fn least_bytes(&self) -> usize {

@@ -110,6 +110,17 @@ impl Catalog {
         Ok(catalog)
     }
 
+    /// The tables of these files, which a program has in memory, and no others.
+    ///
+    /// # Errors
+    /// [`CatalogError`] with the number of a file that is no table or has the key of another one.
+    pub fn of_files(files: impl IntoIterator<Item = Vec<u8>>) -> Result<Self, CatalogError> {
+        let mut catalog = Self::default();
+        let files = files.into_iter().enumerate();
+        catalog.add(files.map(|(i, file)| Entry::read(file.into(), Source::Memory(i))))?;
+        Ok(catalog)
+    }
+
     /// The same with these fields.
     #[must_use]
     pub fn with_fields(mut self, fields: Fields) -> Self {

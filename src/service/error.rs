@@ -324,6 +324,35 @@ impl Kind {
         Self::ShuttingDown,
         Self::Internal,
     ];
+
+    /// Its name in answers: the last part of the problem type `urn:strew:problem:…`.
+    #[must_use]
+    pub const fn slug(self) -> &'static str {
+        match self {
+            Self::Invalid => "invalid-query",
+            Self::TooManyPoints => "too-many-points",
+            Self::TooManyRows => "too-many-rows",
+            Self::BodyTooLarge => "body-too-large",
+            Self::OtherTable => "other-table",
+            Self::TableUnreadable => "table-unreadable",
+            Self::NotAcceptable => "not-acceptable",
+            Self::NoSuchPoint => "no-such-point",
+            Self::NoSuchJob => "no-such-job",
+            Self::NoSuchPath => "no-such-path",
+            Self::NoSuchMethod => "no-such-method",
+            Self::Unauthenticated => "unauthenticated",
+            Self::NotAllowed => "not-allowed",
+            Self::TooManyStreams => "too-many-streams",
+            Self::TooManyJobs => "too-many-jobs",
+            Self::TooManyForAddress => "too-many-for-address",
+            Self::TooFast => "too-fast",
+            Self::Busy => "busy",
+            Self::BodyTooSlow => "body-too-slow",
+            Self::TimeOver => "time-over",
+            Self::ShuttingDown => "shutting-down",
+            Self::Internal => "internal",
+        }
+    }
 }
 
 impl Error {

@@ -19,22 +19,6 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     });
     let faults = faults.collect::<PyResult<Vec<_>>>()?;
     let class = py.import("strew._errors")?.getattr("StrewError")?;
-    let made = class.call1((error.to_string(), slug(error), faults))?;
+    let made = class.call1((error.to_string(), error.kind().slug(), faults))?;
     Ok(PyErr::from_value(made))
-}
-
-/// The name of a kind of error, as in the problem documents of REST.
-fn slug(error: &Error) -> String {
-    let name = format!("{:?}", error.kind());
-    let mut slug = String::new();
-    for (i, letter) in name.char_indices() {
-        if i > 0 && letter.is_ascii_uppercase() {
-            slug.push('-');
-        }
-        slug.push(letter.to_ascii_lowercase());
-    }
-    match slug.as_str() {
-        "invalid" => "invalid-query".into(),
-        _ => slug,
-    }
 }

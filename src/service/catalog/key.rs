@@ -72,6 +72,8 @@ pub enum Source {
     Embedded(&'static str),
     /// A file.
     File(PathBuf),
+    /// The memory of a program: the table of this number.
+    Memory(usize),
     /// None: a pattern without displacements.
     Pattern,
 }
@@ -81,6 +83,7 @@ impl fmt::Display for Source {
         match self {
             Self::Embedded(name) => write!(f, "built-in {name}"),
             Self::File(path) => path.display().fmt(f),
+            Self::Memory(number) => write!(f, "table {number} in memory"),
             Self::Pattern => f.write_str("derived from alpha"),
         }
     }

@@ -148,7 +148,7 @@ impl Catalog {
             .values()
             .filter_map(|entry| match &entry.source {
                 Source::File(path) => Some((path.as_path(), entry)),
-                Source::Embedded(_) | Source::Pattern => None,
+                Source::Embedded(_) | Source::Memory(_) | Source::Pattern => None,
             })
             .collect();
         files.sort_by_key(|file| !served.contains_key(file.as_path()));

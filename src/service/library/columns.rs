@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use strew_core::{F64, Point};
+use strew_core::{F32, F64, Point};
 
 use crate::service::{
     Error, Planned,
-    encode::{Coordinates, Kind, Part, Rows, Values},
+    encode::{Coordinates, Encoding, Kind, Output, Part, Rows, Values},
 };
 
 /// Points as columns of the same length.
@@ -93,15 +93,16 @@ impl Columns {
 
 /// The coordinates of the `count` points of a plan.
 pub(super) fn coordinates(planned: &Planned, count: usize) -> Result<Vec<[f64; 2]>, Error> {
-    let coordinates = coordinates_of(planned);
     let mut at = room::<[f64; 2]>(count)?;
-    let size = piece(count);
-    let bare = planned.parts()?.into_iter().map(|part| Part {
-        attributes: None,
-        layer: None,
-        ..part
-    });
-    let parts: Vec<Part> = bare.collect();
+    fill_coordinates(planned, &mut at)?;
+    Ok(at)
+}
+
+/// Writes the coordinates of a plan's points; there are as many as places.
+pub(super) fn fill_coordinates(planned: &Planned, at: &mut [[f64; 2]]) -> Result<(), Error> {
+    let coordinates = coordinates_of(planned);
+    let parts = bare(planned)?;
+    let size = piece(at.len());
     at.par_chunks_mut(size).enumerate().for_each(|(i, at)| {
         let parts = window(&parts, i * size, at.len());
         if let ([part], Coordinates::World) = (parts.as_slice(), coordinates)
@@ -119,7 +120,45 @@ pub(super) fn coordinates(planned: &Planned, count: usize) -> Result<Vec<[f64; 2
             }
         }
     });
-    Ok(at)
+    Ok(())
+}
+
+/// Writes the offsets of a plan's points from an origin, which is returned; there are as many as places.
+pub(super) fn fill_offsets(planned: &Planned, at: &mut [[f32; 2]]) -> Result<[f64; 2], Error> {
+    let parts = bare(planned)?;
+    let output = Output {
+        relative_to: planned.query.region.corner,
+        ..Output::new(Encoding::F32)
+    };
+    let coordinates = Coordinates::of(&output, &parts);
+    let size = piece(at.len());
+    at.par_chunks_mut(size).enumerate().for_each(|(i, at)| {
+        let parts = window(&parts, i * size, at.len());
+        if let [part] = parts.as_slice()
+            && let Some(plan) = part.plan.plane()
+            && coordinates.origin() == Some(plan.origin())
+        {
+            plan.blocks::<F32>().fill(at);
+            return;
+        }
+        let mut rows = Rows::new(parts, coordinates);
+        let mut filled = 0;
+        while let Some(batch) = rows.next(BATCH) {
+            at[filled..filled + batch.near.len()].copy_from_slice(batch.near);
+            filled += batch.near.len();
+        }
+    });
+    Ok(coordinates.origin().unwrap_or_default())
+}
+
+/// The parts of a plan without layers and attributes.
+fn bare(planned: &Planned) -> Result<Vec<Part>, Error> {
+    let bare = planned.parts()?.into_iter().map(|part| Part {
+        attributes: None,
+        layer: None,
+        ..part
+    });
+    Ok(bare.collect())
 }
 
 const fn coordinates_of(planned: &Planned) -> Coordinates {

@@ -9,6 +9,7 @@ pub mod measured;
 
 use std::{
     collections::HashMap,
+    path::Path,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
@@ -42,7 +43,7 @@ pub enum Unavailable {
     /// The built-in settings cannot be read.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// A built-in table cannot be read.
+    /// A table cannot be read.
     #[error(transparent)]
     Catalog(#[from] CatalogError),
     /// A built-in field cannot be read.
@@ -61,10 +62,26 @@ impl Library {
     /// # Errors
     /// [`Unavailable`] only if the program is damaged.
     pub fn new() -> Result<Self, Unavailable> {
+        Self::open(None)
+    }
+
+    /// The same with the tables of a folder, if there is one, which replace built-in ones with the same key.
+    ///
+    /// # Errors
+    /// [`Unavailable`] with the file that cannot be read.
+    pub fn open(folder: Option<&Path>) -> Result<Self, Unavailable> {
         let config = Layers::new()?.finish()?;
         let fields = Fields::load(&config.fields)?;
-        let catalog = Catalog::load(true, None)?.with_fields(fields);
+        let catalog = Catalog::load(true, folder)?.with_fields(fields);
         Ok(Self::of(catalog, config.limits))
+    }
+
+    /// The tables of these files alone, without fields, with the limits that a daemon has by default.
+    ///
+    /// # Errors
+    /// [`Unavailable`] with the number of the file that is no table.
+    pub fn of_tables(files: impl IntoIterator<Item = Vec<u8>>) -> Result<Self, Unavailable> {
+        Ok(Self::of(Catalog::of_files(files)?, Limits::default()))
     }
 
     /// These tables and fields, and these limits.
@@ -106,6 +123,18 @@ impl Library {
         self.plan_draft(&Draft::of(parse_pairs(address, groups::POINTS)))
     }
 
+    /// Reads a query: a body if it begins with `{`, else an address. It is not checked yet.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a body that is not JSON.
+    pub fn read(text: &str) -> Result<Draft, Error> {
+        let text = text.trim();
+        match text.starts_with('{') {
+            true => Ok(read_body(text.as_bytes(), groups::QUERY)?),
+            false => Ok(Draft::of(parse_pairs(text, groups::POINTS))),
+        }
+    }
+
     /// Plans a query.
     ///
     /// # Errors
@@ -137,6 +166,40 @@ impl Library {
     /// As [`columns`](Self::columns).
     pub fn coordinates(&self, planned: &Planned) -> Result<Vec<[f64; 2]>, Error> {
         columns::coordinates(planned, self.count_to_make(planned)?)
+    }
+
+    /// Writes the coordinates of a planned query's points to the beginning of `at`, and returns their number.
+    ///
+    /// # Errors
+    /// As [`columns`](Self::columns); [`Error::Invalid`] if `at` is too short.
+    pub fn fill_coordinates(&self, planned: &Planned, at: &mut [[f64; 2]]) -> Result<usize, Error> {
+        let at = self.places(planned, at)?;
+        columns::fill_coordinates(planned, at)?;
+        Ok(at.len())
+    }
+
+    /// Writes the offsets of a planned query's points to the beginning of `at`: the coordinates of the format `f32`.
+    /// Returns their number and what they are relative to.
+    ///
+    /// # Errors
+    /// As [`fill_coordinates`](Self::fill_coordinates).
+    pub fn fill_offsets(
+        &self,
+        planned: &Planned,
+        at: &mut [[f32; 2]],
+    ) -> Result<(usize, [f64; 2]), Error> {
+        let at = self.places(planned, at)?;
+        let origin = columns::fill_offsets(planned, at)?;
+        Ok((at.len(), origin))
+    }
+
+    /// The places for all points of a plan.
+    fn places<'a, T>(&self, planned: &Planned, room: &'a mut [T]) -> Result<&'a mut [T], Error> {
+        let (count, length) = (self.count_to_make(planned)?, room.len());
+        room.get_mut(..count).ok_or_else(|| {
+            let detail = format!("has room for fewer than the {count} points");
+            Fault::new("capacity", length, detail, format!("{count} or more")).into()
+        })
     }
 
     /// The points of a planned query as a document: the bytes that the daemon answers with.
@@ -205,8 +268,11 @@ impl Library {
         Placed::new(set, ready)
     }
 
-    /// Refuses more points than an answer may have.
-    fn count_to_make(&self, planned: &Planned) -> Result<usize, Error> {
+    /// The number of points of a planned query.
+    ///
+    /// # Errors
+    /// [`Error::TooManyPoints`] for more than an answer may have.
+    pub fn count_to_make(&self, planned: &Planned) -> Result<usize, Error> {
         let (count, limit) = (planned.count(), self.limits.max_points);
         match usize::try_from(count) {
             Ok(few) if count <= u128::from(limit) => Ok(few),

@@ -96,6 +96,38 @@ fn chunks_are_relative_to_their_corner_and_parts_are_the_whole() {
 }
 
 #[test]
+fn offsets_are_those_of_the_format_f32_and_need_room() {
+    let library = library();
+    for query in [
+        "bbox=-500,-300,200,210&spacing=0.9&seed=5&attributes=angle",
+        "circle=1e9,-7,20&spacing=0.8&keep=0.5",
+        r#"{"region": {"chunk": {"size": 64, "x": -3, "y": 2}}, "spacing": 3}"#,
+        r#"{"region": {"bbox": [3, 4, 40, 30]}, "layers": [
+            {"name": "a", "spacing": 2}, {"name": "b", "spacing": 3, "region": {"bbox": [9, 9, 20, 20]}}]}"#,
+    ] {
+        let draft = Library::read(query).expect("read");
+        let (planned, options) = library.plan_draft(&draft).expect(query);
+        let count = library.columns(&planned).expect("few").len();
+        let mut at = vec![[0_f32; 2]; count + 1];
+        let (filled, origin) = library.fill_offsets(&planned, &mut at).expect("room");
+        assert_eq!((filled, at[count]), (count, [0.0; 2]));
+        let answer = library.document(&planned, options, Encoding::F32);
+        let answer = answer.expect("written");
+        assert_eq!(answer.origin(), Some(origin));
+        let bytes: Vec<u8> = answer.flat_map(|block| block.expect("whole")).collect();
+        let record = bytes.len() / count;
+        for (record, at) in bytes.chunks(record).zip(&at) {
+            assert_eq!(
+                record[..8],
+                [at[0].to_le_bytes(), at[1].to_le_bytes()].concat()
+            );
+        }
+        let few = library.fill_coordinates(&planned, &mut vec![[0.0; 2]; count - 1]);
+        assert_eq!(few.expect_err("no room").faults()[0].field, "capacity");
+    }
+}
+
+#[test]
 fn an_empty_answer_has_its_columns() {
     let library = library();
     let query = "bbox=0.1,0.1,0.2,0.2&spacing=50&attributes=angle,variant&variants=oak:1,birch:1";
@@ -104,6 +136,25 @@ fn an_empty_answer_has_its_columns() {
     assert!(columns.is_empty());
     let names: Vec<&str> = columns.further.iter().map(|column| &*column.name).collect();
     assert_eq!(names, ["angle", "variant"]);
+}
+
+#[test]
+fn tables_in_memory_have_the_points_of_the_built_in_ones() {
+    let whole = library();
+    let library = Library::of_tables([strew_core::table::BLUE.to_vec()]).expect("a table");
+    assert_eq!(library.limits(), whole.limits());
+    let plan = |library: &Library| {
+        let planned = library.plan_address("bbox=0,0,30,30&spacing=1&seed=2&keep=0.5");
+        library.columns(&planned.expect("valid").0).expect("few")
+    };
+    assert_eq!(plan(&library), plan(&whole));
+    let missing = library.plan_address("bbox=0,0,30,30&spacing=1&profile=step");
+    assert_eq!(missing.expect_err("not there").faults()[0].field, "profile");
+    let damaged = Library::of_tables([vec![1, 2, 3]]).expect_err("no table");
+    assert!(
+        damaged.to_string().contains("table 0 in memory"),
+        "{damaged}"
+    );
 }
 
 #[test]

@@ -1,0 +1,179 @@
+/* Strew for C++11 and newer: handles that free themselves, and exceptions with the words of the library. */
+
+#ifndef STREW_HPP
+#define STREW_HPP
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "strew.h"
+
+namespace strew {
+
+/* What went wrong. what() has the words of REST: the field, its value and what is allowed. */
+class Error : public std::runtime_error {
+public:
+    explicit Error(strew_code code)
+        : std::runtime_error(strew_error_message()), code(code), kind(strew_error_kind()),
+          field(strew_error_field()), document(strew_error_document()) {}
+
+    /* The code of the call. */
+    strew_code code;
+    /* The kind of problem: invalid-query, too-many-points, ... */
+    std::string kind;
+    /* The first field that is wrong, or empty. */
+    std::string field;
+    /* Everything that is wrong, as JSON. */
+    std::string document;
+};
+
+/* Throws an Error unless the code is STREW_OK. */
+inline void check(strew_code code) {
+    if (code != STREW_OK) throw Error(code);
+}
+
+namespace detail {
+
+struct Free {
+    void operator()(strew_library *handle) const { strew_library_free(handle); }
+    void operator()(strew_plan *handle) const { strew_plan_free(handle); }
+    void operator()(strew_bytes *handle) const { strew_bytes_free(handle); }
+};
+
+inline std::string text(strew_bytes *handle) {
+    std::unique_ptr<strew_bytes, Free> bytes(handle);
+    return std::string(strew_bytes_data(bytes.get()), strew_bytes_length(bytes.get()));
+}
+
+} // namespace detail
+
+/* A planned query: its points are counted, and made when they are wanted. */
+class Plan {
+public:
+    explicit Plan(strew_plan *handle) : handle_(handle) {}
+
+    /* The exact number of points. */
+    std::uint64_t count() const {
+        std::uint64_t count = 0;
+        check(strew_plan_count(get(), &count));
+        return count;
+    }
+
+    /* What the coordinates of xy() are relative to. */
+    std::array<double, 2> origin() const {
+        std::array<double, 2> origin{};
+        check(strew_plan_origin(get(), origin.data()));
+        return origin;
+    }
+
+    /* x and y of each point, by turns. */
+    std::vector<double> xy() const {
+        std::vector<double> xy(2 * count());
+        check(strew_plan_fill_xy(get(), xy.data(), xy.size() / 2));
+        return xy;
+    }
+
+    /* The same as float, relative to the lower corner of the region, which is written to `origin`. */
+    std::vector<float> xy_f32(std::array<double, 2> *origin = nullptr) const {
+        std::vector<float> xy(2 * count());
+        double *out = origin ? origin->data() : nullptr;
+        check(strew_plan_fill_xy_f32(get(), xy.data(), xy.size() / 2, out));
+        return xy;
+    }
+
+    /* The two integers of each id, by turns. */
+    std::vector<std::int64_t> ids() const {
+        std::vector<std::int64_t> ids(2 * count());
+        check(strew_plan_fill_ids(get(), ids.data(), ids.size() / 2));
+        return ids;
+    }
+
+    /* A column of numbers, such as angle. */
+    std::vector<double> numbers(const std::string &column) const {
+        std::vector<double> values(count());
+        check(strew_plan_fill_numbers(get(), column.c_str(), values.data(), values.size()));
+        return values;
+    }
+
+    /* A column of names, such as variant: indices into the names that columns() lists. */
+    std::vector<std::int32_t> codes(const std::string &column) const {
+        std::vector<std::int32_t> values(count());
+        check(strew_plan_fill_codes(get(), column.c_str(), values.data(), values.size()));
+        return values;
+    }
+
+    /* The columns and their names, as JSON. */
+    std::string columns() const {
+        strew_bytes *bytes = nullptr;
+        check(strew_plan_columns(get(), &bytes));
+        return detail::text(bytes);
+    }
+
+    /* The points as a document: format=csv&decimals=2. */
+    std::string document(const std::string &options) const {
+        strew_bytes *bytes = nullptr;
+        check(strew_plan_document(get(), options.c_str(), &bytes));
+        return detail::text(bytes);
+    }
+
+    /* The handle, which stays this object's. */
+    const strew_plan *get() const { return handle_.get(); }
+
+private:
+    std::unique_ptr<strew_plan, detail::Free> handle_;
+};
+
+/* Tables, with which queries are answered. Threads may share one. */
+class Library {
+public:
+    /* The built-in tables, and those of a folder, if one is named. */
+    explicit Library(const std::string &folder = "") {
+        strew_library *handle = nullptr;
+        check(strew_library_open(folder.empty() ? nullptr : folder.c_str(), &handle));
+        handle_.reset(handle);
+    }
+
+    /* Plans a query: JSON, or text such as bbox=0,0,10,10&spacing=1&seed=7. */
+    Plan plan(const std::string &query) const {
+        strew_plan *plan = nullptr;
+        check(strew_plan_query(get(), query.c_str(), &plan));
+        return Plan(plan);
+    }
+
+    /* Plans a chunk of a query without a region. */
+    Plan chunk(const std::string &query, double size, std::int64_t column, std::int64_t row) const {
+        strew_plan *plan = nullptr;
+        check(strew_plan_chunk(get(), query.c_str(), size, column, row, &plan));
+        return Plan(plan);
+    }
+
+    /* The points nearest to a place: at=5,5&k=3&spacing=1. At most `most` are returned. */
+    std::vector<strew_point> nearest(const std::string &query, std::size_t most = 1024) const {
+        std::vector<strew_point> found(most);
+        std::size_t count = 0;
+        check(strew_nearest(get(), query.c_str(), found.data(), most, &count, nullptr));
+        found.resize(count < most ? count : most);
+        return found;
+    }
+
+    /* The point of an id, in a set such as spacing=1&seed=7. */
+    strew_point point(const std::string &set, std::int64_t x, std::int64_t y) const {
+        strew_point found{};
+        check(strew_point_by_id(get(), set.c_str(), x, y, &found, nullptr));
+        return found;
+    }
+
+    /* The handle, which stays this object's. */
+    const strew_library *get() const { return handle_.get(); }
+
+private:
+    std::unique_ptr<strew_library, detail::Free> handle_;
+};
+
+} // namespace strew
+
+#endif /* STREW_HPP */

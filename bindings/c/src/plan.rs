@@ -1,0 +1,373 @@
+//! Planned queries: counted, then written into buffers.
+
+use std::ffi::c_char;
+
+use serde_json::json;
+use strew::service::{
+    Draft, Encoding, Library,
+    library::{Further, FurtherValues},
+    query::{RegionDraft, ShapeDraft, Values, groups, options},
+};
+
+use crate::{
+    failure::{Code, Failure, guarded},
+    handles::{strew_bytes, strew_library, strew_plan},
+    memory::{borrowed, place, room, text},
+};
+
+/// Plans a query and counts its points. Free the plan with `strew_plan_free`.
+///
+/// `query` is the JSON body of `POST /v1/points:query`, or what stands behind `GET /v1/points?`:
+/// `bbox=0,0,10,10&spacing=1&seed=7`.
+///
+/// # Safety
+/// `library` is a library, `query` a text, `plan` a place for a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_query(
+    library: *const strew_library,
+    query: *const c_char,
+    plan: *mut *mut strew_plan,
+) -> Code {
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { planned(library, query, plan, |draft| draft) })
+}
+
+/// Plans the points of a chunk, the square of the world grid with this size, column and row. Coordinates are
+/// relative to its corner (`strew_plan_origin`). Chunks that share an edge share no point and lose none.
+///
+/// `query` is as in `strew_plan_query`, without a region: one text serves all chunks.
+///
+/// # Safety
+/// As `strew_plan_query`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_chunk(
+    library: *const strew_library,
+    query: *const c_char,
+    size: f64,
+    column: i64,
+    row: i64,
+    plan: *mut *mut strew_plan,
+) -> Code {
+    let within = |draft: Draft| {
+        draft.within(Ok(RegionDraft {
+            path: "chunk".into(),
+            shape: ShapeDraft::Chunk(size, [column, row]),
+        }))
+    };
+    // SAFETY: as the caller promises.
+    guarded(|| unsafe { planned(library, query, plan, within) })
+}
+
+/// # Safety
+/// As [`strew_plan_query`].
+unsafe fn planned(
+    library: *const strew_library,
+    query: *const c_char,
+    plan: *mut *mut strew_plan,
+    within: impl FnOnce(Draft) -> Draft,
+) -> Result<(), Failure> {
+    // SAFETY: as the caller promises.
+    let (library, query, out) = unsafe {
+        let library = borrowed(library, "library")?;
+        (library, text(query, "query")?, place(plan, "plan")?)
+    };
+    let (planned, _) = library.0.plan_draft(&within(Library::read(query)?))?;
+    out.put(Box::into_raw(Box::new(strew_plan {
+        library: library.0.clone(),
+        planned,
+        columns: std::sync::OnceLock::new(),
+    })));
+    Ok(())
+}
+
+/// The exact number of points, which can be more than an answer may have.
+///
+/// Returns `STREW_TOO_MANY_POINTS` for 2^64 points and more; the message has their number.
+///
+/// # Safety
+/// `plan` is a plan, `count` a place for a number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_count(plan: *const strew_plan, count: *mut u64) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let (plan, out) = unsafe { (borrowed(plan, "plan")?, place(count, "count")?) };
+        let (count, limit) = (plan.planned.count(), u64::MAX);
+        let few = u64::try_from(count);
+        out.put(few.map_err(|_| strew::service::Error::TooManyPoints { count, limit })?);
+        Ok(())
+    })
+}
+
+/// What the `f64` coordinates are relative to: the corner of a chunk, else the origin of the world.
+///
+/// # Safety
+/// `plan` is a plan, `origin` has room for two numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_origin(plan: *const strew_plan, origin: *mut f64) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let (plan, out) = unsafe { (borrowed(plan, "plan")?, room(origin, 2, "origin")?) };
+        out.copy_from_slice(&plan.planned.query.region.corner.unwrap_or_default());
+        Ok(())
+    })
+}
+
+/// Writes the coordinates: x and y by turns, for each point, in the fixed order of the query.
+///
+/// `capacity` is the number of points that `xy` has room for; `STREW_BUFFER_TOO_SMALL` if it is too little. No
+/// other memory is needed. Large answers are made on all cores.
+///
+/// # Safety
+/// `plan` is a plan, `xy` has room for 2 * `capacity` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_fill_xy(
+    plan: *const strew_plan,
+    xy: *mut f64,
+    capacity: usize,
+) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises; two numbers are as long as a pair.
+        let (plan, at) = unsafe {
+            let plan = borrowed(plan, "plan")?;
+            let count = plan.count_for(capacity)?;
+            (plan, room(xy.cast::<[f64; 2]>(), count, "xy")?)
+        };
+        plan.library.fill_coordinates(&plan.planned, at)?;
+        Ok(())
+    })
+}
+
+/// The same as `f32`, relative to the lower corner of the region, which is written to `origin` unless that is null.
+///
+/// # Safety
+/// `plan` is a plan, `xy` has room for 2 * `capacity` numbers, `origin` is null or has room for two.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_fill_xy_f32(
+    plan: *const strew_plan,
+    xy: *mut f32,
+    capacity: usize,
+    origin: *mut f64,
+) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises; two numbers are as long as a pair.
+        let (plan, at) = unsafe {
+            let plan = borrowed(plan, "plan")?;
+            let count = plan.count_for(capacity)?;
+            (plan, room(xy.cast::<[f32; 2]>(), count, "xy")?)
+        };
+        let (_, from) = plan.library.fill_offsets(&plan.planned, at)?;
+        if !origin.is_null() {
+            // SAFETY: as the caller promises.
+            unsafe { room(origin, 2, "origin")? }.copy_from_slice(&from);
+        }
+        Ok(())
+    })
+}
+
+/// Writes the stable ids: two integers for each point, which are `x:y` in text.
+///
+/// The first call that needs ids or a column makes all of them; they stay in memory until the plan is freed.
+///
+/// # Safety
+/// `plan` is a plan, `ids` has room for 2 * `capacity` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_fill_ids(
+    plan: *const strew_plan,
+    ids: *mut i64,
+    capacity: usize,
+) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises; two numbers are as long as a pair.
+        unsafe {
+            let plan = borrowed(plan, "plan")?;
+            let count = plan.count_for(capacity)?;
+            let ids = room(ids.cast::<[i64; 2]>(), count, "ids")?;
+            ids.copy_from_slice(&plan.columns()?.ids);
+        }
+        Ok(())
+    })
+}
+
+/// Writes a column of numbers, such as `angle` or `scale`; NaN where a layer lacks it.
+///
+/// Returns `STREW_INVALID_ARGUMENT` if the query has no such column or its values are names.
+///
+/// # Safety
+/// `plan` is a plan, `column` a text, `values` has room for `capacity` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_fill_numbers(
+    plan: *const strew_plan,
+    column: *const c_char,
+    values: *mut f64,
+    capacity: usize,
+) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let (plan, name) = (borrowed(plan, "plan")?, text(column, "column")?);
+            let count = plan.count_for(capacity)?;
+            let FurtherValues::Numbers(numbers) = plan.further(name)? else {
+                let allowed = "strew_plan_fill_codes for columns of names";
+                return Err(Failure::argument("column", "a column of names", allowed));
+            };
+            room(values, count, "values")?.copy_from_slice(numbers);
+        }
+        Ok(())
+    })
+}
+
+/// Writes a column of names, such as `variant` or `layer`, as indices into the list of `strew_plan_columns`; -1
+/// where a layer lacks it.
+///
+/// Returns `STREW_INVALID_ARGUMENT` if the query has no such column or its values are numbers.
+///
+/// # Safety
+/// `plan` is a plan, `column` a text, `codes` has room for `capacity` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_fill_codes(
+    plan: *const strew_plan,
+    column: *const c_char,
+    codes: *mut i32,
+    capacity: usize,
+) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let (plan, name) = (borrowed(plan, "plan")?, text(column, "column")?);
+            let count = plan.count_for(capacity)?;
+            let FurtherValues::Names(_, indices) = plan.further(name)? else {
+                let allowed = "strew_plan_fill_numbers for columns of numbers";
+                return Err(Failure::argument("column", "a column of numbers", allowed));
+            };
+            room(codes, count, "codes")?.copy_from_slice(indices);
+        }
+        Ok(())
+    })
+}
+
+/// The columns beside ids and coordinates as JSON: a list of objects with `name` and `names`, which is the list of
+/// names, or null for numbers.
+///
+/// # Safety
+/// `plan` is a plan, `columns` a place for a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_columns(
+    plan: *const strew_plan,
+    columns: *mut *mut strew_bytes,
+) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let made = unsafe { borrowed(plan, "plan")? }.columns()?;
+        let column = |column: &Further| match &column.values {
+            FurtherValues::Numbers(_) => json!({"name": column.name, "names": null}),
+            FurtherValues::Names(names, _) => json!({"name": column.name, "names": &**names}),
+        };
+        let list: Vec<_> = made.further.iter().map(column).collect();
+        // SAFETY: as the caller promises.
+        unsafe { strew_bytes::hand_over(json!(list).to_string().into_bytes(), columns) }
+    })
+}
+
+/// The points as a document of the daemon, by options as in an address: `format=csv&decimals=2`. The default is
+/// `format=json`.
+///
+/// # Safety
+/// `plan` is a plan, `wanted` a text, `document` a place for a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_document(
+    plan: *const strew_plan,
+    wanted: *const c_char,
+    document: *mut *mut strew_bytes,
+) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let (plan, wanted) = unsafe { (borrowed(plan, "plan")?, text(wanted, "wanted")?) };
+        let mut values = Values::new(groups::OUTPUT, "");
+        for pair in wanted.split('&').filter(|pair| !pair.is_empty()) {
+            let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
+            values.add_text(name, value);
+        }
+        values.read().map_err(strew::service::Error::from)?;
+        let chosen = options(&values).map_err(strew::service::Error::from)?;
+        let library = &plan.library;
+        let mut whole = vec![];
+        for block in library.document(&plan.planned, chosen, Encoding::Json)? {
+            whole.extend_from_slice(&block.map_err(strew::service::Error::from)?);
+        }
+        // SAFETY: as the caller promises.
+        unsafe { strew_bytes::hand_over(whole, document) }
+    })
+}
+
+/// The query with everything filled in, as JSON.
+///
+/// # Safety
+/// `plan` is a plan, `query` a place for a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_resolved(
+    plan: *const strew_plan,
+    query: *mut *mut strew_bytes,
+) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let plan = unsafe { borrowed(plan, "plan")? };
+        let text = json!(plan.planned.resolved()).to_string();
+        // SAFETY: as the caller promises.
+        unsafe { strew_bytes::hand_over(text.into_bytes(), query) }
+    })
+}
+
+/// Splits the points into up to `parts` parts of the same size, give or take one, as JSON: a list of objects with
+/// the `cursor` and the `limit` that, put into the query, make the part.
+///
+/// # Safety
+/// `plan` is a plan, `list` a place for a pointer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn strew_plan_split(
+    plan: *const strew_plan,
+    parts: u32,
+    list: *mut *mut strew_bytes,
+) -> Code {
+    guarded(|| {
+        // SAFETY: as the caller promises.
+        let plan = unsafe { borrowed(plan, "plan")? };
+        let parts = plan.library.split(&plan.planned, &parts.to_string())?;
+        let part = |(cursor, count): (strew::service::Token, u64)| json!({"cursor": cursor.to_string(), "limit": count});
+        let text = json!(parts.into_iter().map(part).collect::<Vec<_>>()).to_string();
+        // SAFETY: as the caller promises.
+        unsafe { strew_bytes::hand_over(text.into_bytes(), list) }
+    })
+}
+
+impl strew_plan {
+    /// The number of points, which a buffer must have room for.
+    fn count_for(&self, capacity: usize) -> Result<usize, Failure> {
+        let count = self.library.count_to_make(&self.planned)?;
+        match count <= capacity {
+            true => Ok(count),
+            false => Err(Failure::room(capacity, count)),
+        }
+    }
+
+    fn columns(&self) -> Result<&strew::service::Columns, Failure> {
+        if let Some(made) = self.columns.get() {
+            return Ok(made);
+        }
+        let made = self.library.columns(&self.planned)?;
+        Ok(self.columns.get_or_init(|| made))
+    }
+
+    /// The values of a column by its name.
+    fn further(&self, name: &str) -> Result<&FurtherValues, Failure> {
+        let columns = self.columns()?;
+        let found = columns.further.iter().find(|column| column.name == name);
+        found.map(|column| &column.values).ok_or_else(|| {
+            let names: Vec<&str> = columns.further.iter().map(|column| &*column.name).collect();
+            let allowed = match names.as_slice() {
+                [] => "columns that the query names in attributes; it names none".into(),
+                names => names.join(", "),
+            };
+            Failure::argument("column", &format!("no column `{name}`"), &allowed)
+        })
+    }
+}

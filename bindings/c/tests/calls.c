@@ -1,0 +1,141 @@
+/* What callers do wrong has a code and words, and harms nothing: run under AddressSanitizer by .ci/c. */
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <pthread.h>
+
+#include <strew.h>
+
+#define EXPECT(condition)                                                        \
+    do {                                                                         \
+        if (!(condition)) {                                                      \
+            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #condition);      \
+            fprintf(stderr, "the last error: %s\n", strew_error_message());      \
+            exit(1);                                                             \
+        }                                                                        \
+    } while (0)
+
+static strew_library *library;
+
+static strew_plan *planned(const char *query) {
+    strew_plan *plan = NULL;
+    EXPECT(strew_plan_query(library, query, &plan) == STREW_OK);
+    return plan;
+}
+
+/* Null for every pointer, text that is not UTF-8, buffers that are too small. */
+static void arguments(void) {
+    strew_plan *plan = NULL;
+    EXPECT(strew_library_open(NULL, NULL) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_query(NULL, "", &plan) == STREW_INVALID_ARGUMENT);
+    EXPECT(strcmp(strew_error_field(), "library") == 0);
+    EXPECT(strew_plan_query(library, NULL, &plan) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_query(library, "spacing=1", NULL) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_query(library, "\xff", &plan) == STREW_INVALID_ARGUMENT);
+    EXPECT(strcmp(strew_error_message(), "`query`: not UTF-8; allowed: text in UTF-8") == 0);
+    EXPECT(strew_plan_chunk(library, "spacing=1", 0.0 / 0.0, 0, 0, &plan) == STREW_INVALID_QUERY);
+    EXPECT(strew_plan_chunk(library, "spacing=1", -1, 0, 0, &plan) == STREW_INVALID_QUERY);
+    EXPECT(plan == NULL);
+    EXPECT(strew_plan_count(NULL, NULL) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_nearest(library, "at=0,0&spacing=1", NULL, 1, NULL, NULL) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_nearest(library, "at=0,0&spacing=1", NULL, 0, NULL, NULL) == STREW_OK);
+    EXPECT(strew_point_by_id(library, "spacing=1", 1, 1, NULL, NULL) == STREW_INVALID_ARGUMENT);
+    strew_point point;
+    EXPECT(strew_point_by_id(library, "spacing=1", 1, 1, &point, NULL) == STREW_NO_SUCH_POINT);
+    EXPECT(strcmp(strew_error_kind(), "no-such-point") == 0);
+    strew_library *other = NULL;
+    EXPECT(strew_library_open("no/such/folder", &other) == STREW_TABLE_UNREADABLE);
+    EXPECT(other == NULL && strstr(strew_error_message(), "no/such/folder"));
+    EXPECT(strew_bytes_data(NULL) == NULL && strew_bytes_length(NULL) == 0);
+    strew_library_free(NULL);
+    strew_plan_free(NULL);
+    strew_bytes_free(NULL);
+}
+
+/* The buffers, to their last place and not beyond. */
+static void buffers(void) {
+    strew_plan *plan = planned("bbox=0,0,10,10&spacing=1&seed=7&attributes=angle,variant&variants=oak:3,birch:1");
+    uint64_t count = 0;
+    EXPECT(strew_plan_count(plan, &count) == STREW_OK && count == 102);
+    double *xy = malloc(2 * count * sizeof *xy), *angles = malloc(count * sizeof *angles);
+    float *near = malloc(2 * count * sizeof *near);
+    int64_t *ids = malloc(2 * count * sizeof *ids);
+    int32_t *codes = malloc(count * sizeof *codes);
+    EXPECT(xy && angles && near && ids && codes);
+    EXPECT(strew_plan_fill_xy(plan, xy, count - 1) == STREW_BUFFER_TOO_SMALL);
+    EXPECT(strcmp(strew_error_message(),
+                  "`capacity` = `101`: has room for fewer than the 102 points; allowed: 102 or more") == 0);
+    EXPECT(strew_plan_fill_xy(plan, NULL, count) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_fill_xy(plan, xy, count) == STREW_OK);
+    double origin[2] = {1, 1};
+    EXPECT(strew_plan_fill_xy_f32(plan, near, count, origin) == STREW_OK && origin[0] == 0);
+    EXPECT(strew_plan_fill_xy_f32(plan, near, count, NULL) == STREW_OK);
+    EXPECT(strew_plan_fill_ids(plan, ids, count) == STREW_OK);
+    EXPECT(strew_plan_fill_ids(plan, ids, 0) == STREW_BUFFER_TOO_SMALL);
+    EXPECT(strew_plan_fill_numbers(plan, "angle", angles, count) == STREW_OK);
+    EXPECT(strew_plan_fill_codes(plan, "variant", codes, count) == STREW_OK);
+    EXPECT(strew_plan_fill_codes(plan, "angle", codes, count) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_fill_numbers(plan, "variant", angles, count) == STREW_INVALID_ARGUMENT);
+    EXPECT(strew_plan_fill_numbers(plan, "size", angles, count) == STREW_INVALID_ARGUMENT);
+    EXPECT(strcmp(strew_error_message(), "`column`: no column `size`; allowed: angle, variant") == 0);
+    for (uint64_t i = 0; i < count; i++) {
+        strew_point found;
+        EXPECT(strew_point_by_id(library, "spacing=1&seed=7", ids[2 * i], ids[2 * i + 1], &found, NULL) == STREW_OK);
+        EXPECT(found.x == xy[2 * i] && found.y == xy[2 * i + 1]);
+        EXPECT(near[2 * i] >= 0 && near[2 * i] < 10 && codes[i] >= 0 && codes[i] < 2);
+    }
+    strew_bytes *bytes = NULL;
+    EXPECT(strew_plan_document(plan, "format=csv&decimals=2", &bytes) == STREW_OK);
+    EXPECT(strncmp(strew_bytes_data(bytes), "id,x,y,angle,variant\n", 21) == 0);
+    EXPECT(strlen(strew_bytes_data(bytes)) == strew_bytes_length(bytes));
+    strew_bytes_free(bytes);
+    EXPECT(strew_plan_document(plan, "format=cvs", &bytes) == STREW_INVALID_QUERY);
+    EXPECT(strew_plan_split(plan, 4, &bytes) == STREW_OK && strstr(strew_bytes_data(bytes), "\"limit\":26"));
+    strew_bytes_free(bytes);
+    EXPECT(strew_plan_split(plan, 0, &bytes) == STREW_INVALID_QUERY);
+    strew_plan_free(plan);
+    free(codes);
+    free(ids);
+    free(near);
+    free(angles);
+    free(xy);
+    plan = planned("bbox=0.1,0.1,0.2,0.2&spacing=50");
+    EXPECT(strew_plan_fill_xy(plan, NULL, 0) == STREW_OK);
+    strew_plan_free(plan);
+    plan = planned("bbox=-5e5,-5e5,5e5,5e5&spacing=0.001");
+    EXPECT(strew_plan_count(plan, &count) == STREW_OK && count > 999999999000000000u);
+    EXPECT(strew_plan_fill_xy(plan, NULL, 0) == STREW_TOO_MANY_POINTS);
+    strew_plan_free(plan);
+}
+
+/* Words are those of the thread that made the mistake. */
+static void *mistaken(void *query) {
+    strew_plan *plan = NULL;
+    EXPECT(strcmp(strew_error_message(), "") == 0);
+    EXPECT(strew_plan_query(library, query, &plan) == STREW_INVALID_QUERY);
+    EXPECT(strstr(strew_error_message(), query));
+    EXPECT(strstr(strew_error_document(), "\"errors\":[{\"field\":"));
+    return NULL;
+}
+
+int main(void) {
+    EXPECT(strlen(strew_version()) > 0);
+    EXPECT(strew_library_open(NULL, &library) == STREW_OK);
+    arguments();
+    buffers();
+    pthread_t threads[2];
+    char queries[2][16] = {"one", "two"};
+    for (int i = 0; i < 2; i++) EXPECT(pthread_create(&threads[i], NULL, mistaken, queries[i]) == 0);
+    for (int i = 0; i < 2; i++) EXPECT(pthread_join(threads[i], NULL) == 0);
+    /* A plan outlives its library. */
+    strew_plan *plan = planned("circle=0,0,2&spacing=1");
+    strew_library_free(library);
+    uint64_t count = 0;
+    EXPECT(strew_plan_count(plan, &count) == STREW_OK && count > 8);
+    double xy[2 * 32];
+    EXPECT(strew_plan_fill_xy(plan, xy, 32) == STREW_OK);
+    strew_plan_free(plan);
+    puts("all calls are as they should be");
+    return 0;
+}
