@@ -60,6 +60,10 @@ targets:
 release folder="dist":
     deploy/release {{folder}}
 
+# The data source of Spark on a cluster of two workers, one of which is killed.
+spark *args:
+    .ci/spark {{args}}
+
 # Licenses, bans and sources of all dependencies; the advisories need a network.
 deny:
     cargo deny --locked --offline check licenses bans sources

@@ -192,17 +192,26 @@ fn own_words(name: &str) -> Option<(String, &'static str)> {
                 .into(),
             "none",
         )),
+        "terrain" => Some((
+            "The terrain that points stand on, which adds a height z: a field by its name or in a file, whose \
+             share becomes a height between heights."
+                .into(),
+            "none",
+        )),
         _ => None,
     }
 }
 
 /// Those that `-h` leaves to `--help`, so that it fits a screen.
 const RARE: &[&str] = &[
+    "align",
     "alpha",
     "crs",
     "cursor",
     "decimals",
+    "heights",
     "map",
+    "normals",
     "offset",
     "only",
     "polygon",
@@ -215,6 +224,7 @@ const RARE: &[&str] = &[
     "spread",
     "summary",
     "table",
+    "terrain",
     "warp",
 ];
 

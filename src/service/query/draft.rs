@@ -19,7 +19,7 @@ use super::{
     },
     period::Period,
     region::REGION,
-    table,
+    table, terrain,
     text::parse_pairs,
 };
 use crate::service::{Catalog, Encoding, Entry, Error, Fault, encode::Options};
@@ -366,9 +366,9 @@ impl Set {
             keep(values),
             (attributes::check(values, known), kinds.clone()).together(),
             table::check(values, None, loaded.catalog),
-            loaded.field(values),
+            (loaded.field(values), terrain::check(values, loaded)).together(),
         );
-        let (amount, seed, warp, keep, (attributes, mut kinds), (entry, pin), field) =
+        let (amount, seed, warp, keep, (attributes, mut kinds), (entry, pin), (field, terrain)) =
             checked.together()?;
         let entry = match &mut kinds {
             Some(kinds) => {
@@ -392,6 +392,7 @@ impl Set {
             kinds,
             period,
             field,
+            terrain,
             region: None,
             clear_of: vec![],
         })

@@ -9,7 +9,7 @@ use strew_core::{ALGORITHM_VERSION, Spacing, map::Twin};
 
 use super::{
     Parameter, Query, QueryRegion, Set, Value,
-    parameters::{FIELD, PARAMETERS, VARIANT_FIELDS},
+    parameters::{FIELD, PARAMETERS, TERRAIN, VARIANT_FIELDS},
 };
 
 /// A query as answers echo it, with everything filled in.
@@ -74,6 +74,8 @@ pub struct ResolvedSet {
     pub least_distance: f64,
     /// The digest of the field.
     pub field_digest: Option<String>,
+    /// The digest of the terrain's field.
+    pub terrain_digest: Option<String>,
     /// The parameters that say which points, with everything filled in.
     pub values: Vec<(&'static Parameter, Value)>,
     /// The layers that are kept clear of, with the distances.
@@ -141,6 +143,9 @@ impl Serialize for ResolvedSet {
         if let Some(digest) = &self.field_digest {
             map.serialize_entry("field_digest", digest)?;
         }
+        if let Some(digest) = &self.terrain_digest {
+            map.serialize_entry("terrain_digest", digest)?;
+        }
         if !self.variant_field_digests.is_empty() {
             let digests: BTreeMap<&str, &str> = (self.variant_field_digests.iter())
                 .map(|(name, digest)| (name.as_str(), digest.as_str()))
@@ -198,6 +203,10 @@ impl Set {
             spacing: spacing.get(),
             least_distance,
             field_digest: self.field.as_ref().map(|field| field.digest.clone()),
+            terrain_digest: self
+                .terrain
+                .as_ref()
+                .map(|terrain| terrain.field.digest.clone()),
             variant_field_digests: self.variant_field_digests(),
             values: self.echoes().collect(),
             clear_of: self.named_clear_of(all),
@@ -247,7 +256,11 @@ impl Set {
         if let Some(made) = self.kinds.as_ref().and_then(|kinds| kinds.made.as_ref()) {
             identity["kinds_table"] = json!(made.digest);
         }
-        let is_named = |parameter: &Parameter| *parameter == FIELD || *parameter == VARIANT_FIELDS;
+        if let Some(terrain) = &self.terrain {
+            identity["terrain_digest"] = json!(terrain.field.digest);
+        }
+        let is_named =
+            |parameter: &Parameter| [&FIELD, &VARIANT_FIELDS, &TERRAIN].contains(&parameter);
         for (parameter, value) in self.echoes().filter(|(parameter, _)| !is_named(parameter)) {
             identity[parameter.name] = json!(value);
         }

@@ -1,0 +1,234 @@
+"""Points as a data source of Spark 4: every task makes its own part, and no data is moved to it.
+
+    from strew.spark import StrewDataSource
+    spark.dataSource.register(StrewDataSource)
+    trees = spark.read.format("strew").options(bbox="0,0,1e5,1e5", spacing=1, seed=7).load()
+
+The options are the keywords of :func:`strew.points` with values as in REST's addresses, and:
+
+- ``query``: a whole body of REST in JSON, such as one with layers, in place of the keywords;
+- ``url``: a daemon that makes the points; without it the tasks do, each in its own process;
+- ``partitions``: the number of tasks, which get equal numbers of points; by default one for each million points;
+- ``batch``: the most points in memory of a task at a time, 262,144 by default;
+- ``narrow``: ``on`` to narrow the box of a query by filters on ``x`` and ``y`` before it is split, so that no point
+  outside is made. It needs ``spark.sql.python.filterPushdown.enabled``. Use such a DataFrame with one filter only:
+  Spark 4.3.0 uses the narrowed source again for the same DataFrame without its filter, and then points are missing.
+  A second ``load()`` is independent. It is ``off`` by default.
+
+A task is a query with a cursor, a few hundred bytes. One that is lost is made again with the same points, bit for bit.
+Spark has no way to say to a source written in Python which columns it needs: choose them by ``attributes``. A limit
+stops a task after the batch that fills it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import pyarrow as pa
+from pyspark.sql.datasource import (
+    DataSource,
+    DataSourceReader,
+    EqualTo,
+    Filter,
+    GreaterThan,
+    GreaterThanOrEqual,
+    InputPartition,
+    LessThan,
+    LessThanOrEqual,
+)
+from pyspark.sql.pandas.types import from_arrow_schema
+from pyspark.sql.types import StructType
+
+from ._local import LOCAL
+from ._points import PointSet
+from ._query import Query, body
+from ._remote import connect
+from ._source import Source
+
+#: What is an option and no part of a query.
+OWN = ("query", "url", "partitions", "batch", "narrow", "path")
+TASK = 1_000_000
+BATCH = 1 << 18
+
+
+def _number(text: str) -> float:
+    try:
+        return int(text)
+    except ValueError:
+        return float(text)
+
+
+def _numbers(text: str) -> list[float]:
+    return [_number(part) for part in text.split(",")]
+
+
+def _pairs(text: str) -> list[list[float]]:
+    numbers = _numbers(text)
+    return [numbers[i : i + 2] for i in range(0, len(numbers), 2)]
+
+
+def _shares(text: str) -> dict[str, float]:
+    shares = (part.split(":") for part in text.split(","))
+    return {name: float(share) for name, share in shares}
+
+
+def _ranges(text: str) -> dict[str, list[float]]:
+    ranges = (part.split(":") for part in text.split(","))
+    return {name: [float(low), float(high)] for name, low, high in ranges}
+
+
+def _fields(text: str) -> dict[str, str]:
+    return dict((name, field) for name, field in (part.split(":") for part in text.split(",")))
+
+
+READERS: dict[str, Callable[[str], Any]] = {
+    **dict.fromkeys(("bbox", "circle", "chunk", "scale_range"), _numbers),
+    **dict.fromkeys(("spacing", "density", "min_distance", "keep"), _number),
+    **dict.fromkeys(("count", "seed", "offset", "limit"), int),
+    "polygon": _pairs,
+    "attributes": lambda text: [name.strip() for name in text.split(",")],
+    "variants": _shares,
+    "scale_ranges": _ranges,
+    "variant_fields": _fields,
+}
+
+
+def _read(name: str, text: str) -> Any:
+    if text.lstrip().startswith(("{", "[")):
+        return json.loads(text)
+    try:
+        return READERS.get(name, str)(text)
+    except ValueError:
+        # It is passed on as it is, to be refused in the words of REST.
+        return text
+
+
+def _positive(options: Mapping[str, str], name: str, default: int) -> int:
+    text = options.get(name, str(default))
+    if not text.isdecimal() or int(text) == 0:
+        raise ValueError(f"`{name}` = `{text}`: not a whole number from 1; allowed: a whole number from 1")
+    return int(text)
+
+
+def points(options: Mapping[str, str]) -> PointSet:
+    """The set of points that options describe."""
+    known = Query.__annotations__
+    for name in options:
+        if name not in known and name not in OWN:
+            allowed = ", ".join(sorted([*known, *OWN]))
+            raise ValueError(f"`{name}` = `{options[name]}`: unknown; allowed: {allowed}")
+    source: Source = connect(options["url"]) if "url" in options else LOCAL
+    keywords = {name: _read(name, text) for name, text in options.items() if name not in OWN}
+    if "query" not in options:
+        return source.query(body(keywords))
+    if keywords:
+        raise ValueError(f"`{next(iter(keywords))}`: not beside `query`; allowed: a member of `query`")
+    return source.query(json.loads(options["query"]))
+
+
+def _plain(schema: pa.Schema) -> pa.Schema:
+    """The schema with names as text, which Spark's columns are."""
+    columns = (
+        pa.field(column.name, pa.string() if pa.types.is_dictionary(column.type) else column.type, column.nullable)
+        for column in schema
+    )
+    return pa.schema(list(columns))
+
+
+@dataclass
+class Part(InputPartition):
+    """The points of a task."""
+
+    points: PointSet
+    number: int
+
+
+class StrewReader(DataSourceReader):
+    """Splits a query into tasks, and makes the points of one."""
+
+    def __init__(self, options: Mapping[str, str], schema: pa.Schema) -> None:
+        self.points = points(options)
+        self.schema = schema
+        self.tasks = _positive(options, "partitions", 0) if "partitions" in options else None
+        self.batch = _positive(options, "batch", BATCH)
+        #: Whether filters leave nothing.
+        self.is_empty = False
+
+    def partitions(self) -> list[Part]:  # type: ignore[override]
+        count = 0 if self.is_empty else self.points.count()
+        tasks = min(self.tasks or -(-count // TASK), count)
+        # Spark wants one, even of no points.
+        if tasks <= 1:
+            return [Part(self.points, count)]
+        return [Part(part, part.body["limit"]) for part in self.points.split(tasks)]
+
+    def read(self, partition: Part) -> Iterator[pa.RecordBatch]:  # type: ignore[override]
+        part, left = partition.points, partition.number
+        while left > 0:
+            some = part._with(limit=min(left, self.batch))
+            yield from pa.table(some).cast(self.schema).to_batches()
+            left -= self.batch
+            if left > 0:
+                part = part._with(cursor=some.next, offset=None)
+
+
+class NarrowedReader(StrewReader):
+    """Makes only the points of the box that filters leave. Spark filters them, too: filters may include an edge."""
+
+    def pushFilters(self, filters: list[Filter]) -> Iterable[Filter]:
+        """Narrows the box. Spark filters the points, too, because boxes have no upper edge and filters may."""
+        if not self._is_box():
+            return filters
+        body = self.points.body
+        low, high = list(map(float, body["region"]["bbox"][:2])), list(map(float, body["region"]["bbox"][2:]))
+        for one in filters:
+            axis = {("x",): 0, ("y",): 1}.get(getattr(one, "attribute", ()))
+            if axis is None or not isinstance(getattr(one, "value", None), (int, float)):
+                continue
+            value = float(one.value)  # type: ignore[attr-defined]
+            if isinstance(one, (GreaterThan, GreaterThanOrEqual, EqualTo)):
+                low[axis] = max(low[axis], value)
+            if isinstance(one, (LessThan, LessThanOrEqual, EqualTo)):
+                high[axis] = min(high[axis], math.nextafter(value, math.inf))
+        if low + high == [*map(float, body["region"]["bbox"])]:
+            return filters
+        self.is_empty = any(low[axis] >= high[axis] for axis in (0, 1))
+        if self.is_empty:
+            return filters
+        if "count" in body:
+            # The set of the whole box, not one with so many points in a part of it.
+            self.points = self.points._with(count=None, spacing=self.points.query["spacing"])
+        self.points = self.points.within(bbox=[*low, *high])
+        return filters
+
+    def _is_box(self) -> bool:
+        body = self.points.body
+        windows = any(name in body for name in ("offset", "limit", "cursor"))
+        return set(body.get("region", {})) == {"bbox"} and len(body["region"]["bbox"]) == 4 and not windows
+
+
+NARROW: dict[str, type[StrewReader]] = {"off": StrewReader, "on": NarrowedReader}
+
+
+class StrewDataSource(DataSource):
+    """``spark.read.format("strew")``."""
+
+    @classmethod
+    def name(cls) -> str:
+        return "strew"
+
+    def _arrow(self) -> pa.Schema:
+        return _plain(pa.table(points(self.options)._with(limit=1)).schema)
+
+    def schema(self) -> StructType:
+        return from_arrow_schema(self._arrow())
+
+    def reader(self, schema: StructType) -> StrewReader:
+        way = self.options.get("narrow", "off")
+        if way not in NARROW:
+            raise ValueError(f"`narrow` = `{way}`: unknown; allowed: {', '.join(NARROW)}")
+        return NARROW[way](self.options, self._arrow())
