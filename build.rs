@@ -85,6 +85,12 @@ fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<
                 "vec![v.min, v.max]",
                 "ScaleRange { min: v[0], max: v[1] }",
             ),
+            Type::Bool => ("Switch", "*v", "v"),
+            Type::Message if field.type_name() == ".strew.v1.Heights" => (
+                "Numbers",
+                "vec![v.low, v.high]",
+                "Heights { low: v[0], high: v[1] }",
+            ),
             Type::Message if field.type_name() == ".strew.v1.Field" => {
                 ("Field", "Arc::new(document(v))", "message_of(&v)")
             }

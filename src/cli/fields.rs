@@ -14,7 +14,7 @@ use crate::{
             document::{EdgesName, Pixels},
             from_document, from_file,
         },
-        query::{Shape, Value, Values, parameters},
+        query::{Parameter, Shape, Value, Values, parameters},
     },
 };
 
@@ -50,19 +50,26 @@ impl FieldArgs {
         let fields = catalog.fields();
         let field = match (&self.raster, values.text(&parameters::FIELD)) {
             (Some(raster), _) => Some(self.raster(raster, fields)?),
-            (None, given) if is_file(&given, fields) => {
-                let loaded = from_file(Path::new(&given), fields);
-                Some(loaded.map_err(|error| Failure::Usage(anyhow!("--field {given}: {error}")))?)
-            }
-            _ => None,
+            (None, given) => of_file(&parameters::FIELD, &given, fields)?,
         };
-        let Some(field) = field else {
-            return Ok(catalog);
-        };
-        let value = Value::Field(Document::Name(field.name.clone()).into());
-        values.replace(&parameters::FIELD, Some(value));
+        let mut terrain = of_file(
+            &parameters::TERRAIN,
+            &values.text(&parameters::TERRAIN),
+            fields,
+        )?;
+        if let (Some(field), Some(terrain)) = (&field, &mut terrain)
+            && field.name == terrain.name
+        {
+            terrain.name += "-terrain";
+        }
         let mut fields = fields.clone();
-        fields.insert(field);
+        for (parameter, field) in [(&parameters::FIELD, field), (&parameters::TERRAIN, terrain)] {
+            if let Some(field) = field {
+                let value = Value::Field(Document::Name(field.name.clone()).into());
+                values.replace(parameter, Some(value));
+                fields.insert(field);
+            }
+        }
         Ok(catalog.with_fields(fields))
     }
 
@@ -108,7 +115,20 @@ impl FieldArgs {
     }
 }
 
-/// Whether a value of `--field` is a file instead of a name.
+/// The field of a parameter whose value is a file instead of a name.
+fn of_file(
+    parameter: &Parameter,
+    given: &str,
+    fields: &Fields,
+) -> Result<Option<NamedField>, Failure> {
+    if !is_file(given, fields) {
+        return Ok(None);
+    }
+    let wrong = |error| Failure::Usage(anyhow!("--{} {given}: {error}", parameter.name));
+    from_file(Path::new(given), fields).map(Some).map_err(wrong)
+}
+
+/// Whether a value is a file instead of a name.
 fn is_file(given: &str, fields: &Fields) -> bool {
     let endings = ["json", "toml", "png", "tif", "tiff", "npy"];
     let ending = Path::new(given).extension();

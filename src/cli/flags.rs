@@ -194,18 +194,27 @@ fn own_words(name: &str) -> Option<(String, &'static str)> {
                 .into(),
             "none",
         )),
+        "terrain" => Some((
+            "The terrain that points stand on, which adds a height z: a field by its name or in a file, whose \
+             share becomes a height between heights."
+                .into(),
+            "none",
+        )),
         _ => None,
     }
 }
 
 /// Those that `-h` leaves to `--help`, so that it fits a screen.
 const RARE: &[&str] = &[
+    "align",
     "alpha",
     "crs",
     "cursor",
     "decimals",
     "except",
+    "heights",
     "map",
+    "normals",
     "offset",
     "only",
     "polygon",
@@ -217,6 +226,7 @@ const RARE: &[&str] = &[
     "spread",
     "summary",
     "table",
+    "terrain",
     "warp",
     "world_digest",
 ];

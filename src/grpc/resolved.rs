@@ -71,6 +71,7 @@ fn resolved(echo: ResolvedSet, entry: &Entry, region: Option<Region>) -> proto::
         density: echo.density,
         least_distance: echo.least_distance,
         field_digest: echo.field_digest,
+        terrain_digest: echo.terrain_digest,
         variant_field_digests: echo.variant_field_digests.into_iter().collect(),
         clear_of: echo.clear_of.into_iter().collect(),
         kind_distances: (echo.kind_distances.into_iter())

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{
     field::{document, message_of},
-    proto::{PointSet, ScaleRange, point_set::Amount},
+    proto::{Heights, PointSet, ScaleRange, point_set::Amount},
 };
 use crate::service::query::{Faults, Group, Parameter, Value, Values, groups};
 

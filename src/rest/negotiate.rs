@@ -23,7 +23,7 @@ impl Chosen {
 }
 
 /// What is on offer by media type, in the order of preference where a client has none.
-const OFFERS: [(&str, Chosen); 16] = [
+const OFFERS: [(&str, Chosen); 20] = [
     ("application/json", Chosen::named(Encoding::Json)),
     ("application/x-ndjson", Chosen::named(Encoding::Ndjson)),
     (
@@ -76,6 +76,22 @@ const OFFERS: [(&str, Chosen); 16] = [
     ),
     ("image/png", Chosen::named(Encoding::Png)),
     ("image/svg+xml", Chosen::named(Encoding::Svg)),
+    ("model/gltf-binary", Chosen::named(Encoding::Glb)),
+    ("model/vnd.usda", Chosen::named(Encoding::Usda)),
+    (
+        "application/vnd.strew.multimesh",
+        Chosen {
+            encoding: Encoding::Multimesh,
+            content_type: "application/vnd.strew.multimesh",
+        },
+    ),
+    (
+        "application/vnd.strew.instances",
+        Chosen {
+            encoding: Encoding::Instances,
+            content_type: "application/vnd.strew.instances",
+        },
+    ),
 ];
 
 /// The content types that a client can be given, each once.

@@ -1,5 +1,7 @@
 //! The attributes of points as columns of an answer.
 
+use std::f64::consts::TAU;
+
 use strew_core::{Attribute, Attributes, BoundAttributes, Column, Point};
 
 use super::encode::{self, Values};
@@ -20,12 +22,30 @@ impl PointAttributes {
                 let names: Vec<String> = variants.names().map(Into::into).collect();
                 encode::Column::dictionary(attribute.name(), names)
             }
-            None => encode::Column::number(attribute.name()),
+            None => encode::Column {
+                range: range(attribute),
+                ..encode::Column::number(attribute.name())
+            },
         };
         Self {
             columns: list.as_slice().iter().map(column).collect(),
             bound,
         }
+    }
+}
+
+/// What the numbers of an attribute lie between.
+fn range(attribute: &Attribute) -> Option<[f64; 2]> {
+    match attribute {
+        Attribute::Angle => Some([0.0, TAU]),
+        Attribute::Scale(range) => Some([range.min(), range.max()]),
+        Attribute::VariantScale(scales) => {
+            let ranges = scales.ranges().iter();
+            let ranges = ranges.map(|range| [range.min(), range.max()]);
+            ranges.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
+        }
+        Attribute::Rank | Attribute::Uniform(_) => Some([0.0, 1.0]),
+        _ => None,
     }
 }
 

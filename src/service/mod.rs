@@ -49,6 +49,7 @@ mod single;
 pub mod stream;
 #[cfg(feature = "daemon")]
 mod tables;
+mod terrain;
 #[cfg(feature = "daemon")]
 mod turns;
 #[cfg(feature = "daemon")]

@@ -13,6 +13,7 @@ use super::{
     planner::Planner,
     query::{Amount, Query, Resolved, ResolvedSet, Set, Token},
     resolve,
+    terrain::{Ground, OnTerrain},
 };
 
 /// A query with its tables and plans: the exact count is known, no point is made yet.
@@ -40,6 +41,8 @@ pub struct Placed {
     pub points: PlacedPoints,
     /// Their attributes.
     pub(super) attributes: BoundAttributes,
+    /// What they stand on.
+    pub(super) ground: Option<Ground>,
     /// As answers echo it.
     pub resolved: ResolvedSet,
 }
@@ -72,6 +75,10 @@ impl Placed {
             resolved: set.resolved(&[], density, spacing, least, (&[], &distances)),
             attributes: points.attributes(&set.attributes).map_err(other_kinds)?,
             points,
+            ground: set
+                .terrain
+                .clone()
+                .map(|terrain| Ground::new(terrain, spacing.get())),
             set,
         })
     }
@@ -323,6 +330,11 @@ impl Planned {
                 attributes =
                     Some(Arc::new(PointAttributes::new(&set.attributes, bound))
                         as Arc<dyn Attributes>);
+            }
+            if let Some(terrain) = &set.terrain {
+                let spacing = planned.spacing.get();
+                let on = OnTerrain::new(attributes.take(), terrain.clone(), spacing);
+                attributes = Some(Arc::new(on));
             }
             Ok(Part {
                 layer: self.query.is_layered.then(|| set.name.clone()),

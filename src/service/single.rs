@@ -9,6 +9,7 @@ use super::{
     Error, Fault, Placed, PlacedPoints,
     query::{Nearest, number, parameters},
     resolve,
+    terrain::ANGLE,
 };
 
 /// A point with its attributes.
@@ -98,13 +99,20 @@ impl Placed {
             };
             (attribute.name().to_owned(), value)
         };
+        let attributes = list.iter().enumerate().map(value);
+        let ground = self.ground.iter().flat_map(|ground| {
+            let angle = list.iter().position(|attribute| attribute.name() == ANGLE);
+            let angle = angle.and_then(|i| self.attributes.value(i, point.id));
+            let values = ground.values([point.x, point.y], angle.unwrap_or(0.0));
+            ground.names().map(Into::into).zip(values.map(Into::into))
+        });
         Found {
             id: point.id.to_string(),
             x: point.x,
             y: point.y,
             distance,
             block: None,
-            attributes: list.iter().enumerate().map(value).collect(),
+            attributes: attributes.chain(ground).collect(),
         }
     }
 }

@@ -145,8 +145,9 @@ class PointSet:
         if "count" in values and "region" in self._body:
             del values["count"]
             values["spacing"] = self.query["spacing"]
-        if isinstance(values.get("field"), Mapping):
-            values["field"] = self._source.hold_field(values["field"])
+        for name in ("field", "terrain"):
+            if isinstance(values.get(name), Mapping):
+                values[name] = self._source.hold_field(values[name])
         return address({name: value for name, value in values.items() if value is not None})
 
     def nearest(self, at: Any, k: int | None = None, radius: float | None = None) -> list[Point]:

@@ -64,6 +64,14 @@ class Query(TypedDict, total=False):
     variants: Mapping[str, float]
     spread: str
     only: str
+    #: Where points stand: a field whose share is a height between ``heights``. Adds the column z.
+    terrain: str | Mapping[str, Any]
+    #: The heights of the terrain where its field is 0 and where it is 1.
+    heights: Numbers
+    #: Whether there are the columns nx, ny, nz.
+    normals: bool
+    #: How far things lean from the vertical (0) to the normal (1). Adds the columns qx, qy, qz, qw.
+    align: float
     world: str
     world_digest: str
     #: Several sets at once: a list of dicts with a ``name`` each.

@@ -8,9 +8,9 @@ use crate::service::{
     query::{
         Group, Parameter, Spread, of as parameters_of,
         parameters::{
-            ATTRIBUTES, COUNT, CRS, DECIMALS, EXCEPT, FORMAT, MIN_DISTANCE, ONLY, PARAMETERS,
-            PERIODIC, PROFILE, SCALE_RANGE, SCALE_RANGES, SIZE, SPREAD, SUMMARY, VARIANT_FIELDS,
-            VARIANTS, WORLD, WORLD_DIGEST,
+            ALIGN, ATTRIBUTES, COUNT, CRS, DECIMALS, EXCEPT, FORMAT, HEIGHTS, MIN_DISTANCE,
+            NORMALS, ONLY, PARAMETERS, PERIODIC, PROFILE, SCALE_RANGE, SCALE_RANGES, SIZE, SPREAD,
+            SUMMARY, TERRAIN, VARIANT_FIELDS, VARIANTS, WORLD, WORLD_DIGEST,
         },
         patterns::{
             CURSOR as PATTERN_CURSOR, GRID, LIMIT as PATTERN_LIMIT, LIST, MAP as PATTERN_MAP,
@@ -192,6 +192,15 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
     if groups.contains(&Group::Attributes) {
         rules.push(only_with(&SCALE_RANGE, &ATTRIBUTES, vec!["scale"]));
         rules.push(only_with(&SCALE_RANGES, &ATTRIBUTES, vec!["scale"]));
+        rules.extend(
+            [&HEIGHTS, &NORMALS, &ALIGN].map(|given| Rule::OnlyWithOneOf {
+                parameter: given.name,
+                others: vec![Other {
+                    parameter: TERRAIN.name,
+                    values: vec![],
+                }],
+            }),
+        );
         let other = |parameter: &Parameter, values: &[&'static str]| Other {
             parameter: parameter.name,
             values: values.into(),

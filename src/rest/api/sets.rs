@@ -172,7 +172,7 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
             // Text in requests, too, but always a number in answers.
             "warp" => json!({ "type": "number" }),
             // Described ones are known by their digests.
-            "field" => json!({ "type": "string" }),
+            "field" | "terrain" => json!({ "type": "string" }),
             _ => schema(parameter.shape),
         };
         echoed["description"] = parameter.about.into();
@@ -188,6 +188,10 @@ pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
     put(
         "except_digest",
         json!({ "type": "string", "description": "The digest of the ids that are left out, if there are any." }),
+    );
+    put(
+        "terrain_digest",
+        json!({ "type": "string", "description": "The digest of the terrain's field." }),
     );
     put(
         "variant_field_digests",

@@ -27,6 +27,14 @@ pub enum Encoding {
     Png,
     /// A picture of circles.
     Svg,
+    /// A binary glTF file: meshes that are drawn at every point.
+    Glb,
+    /// A USD stage as text: instancers.
+    Usda,
+    /// The buffer of a Godot `MultiMesh`.
+    Multimesh,
+    /// Records of 16 bytes for graphics cards, relative to the box's lower corner.
+    Instances,
     /// A Parquet file. Only the command line writes it.
     Parquet,
     /// An Arrow IPC file. Only the command line writes it.
@@ -38,7 +46,7 @@ impl Encoding {
     pub const FILES: [Self; 2] = [Self::Parquet, Self::Feather];
 
     /// The formats that are streamed.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 16] = [
         Self::Json,
         Self::Ndjson,
         Self::Csv,
@@ -51,6 +59,10 @@ impl Encoding {
         Self::Arrow,
         Self::Png,
         Self::Svg,
+        Self::Glb,
+        Self::Usda,
+        Self::Multimesh,
+        Self::Instances,
     ];
 
     /// The name in queries.
@@ -69,6 +81,10 @@ impl Encoding {
             Self::Arrow => "arrow",
             Self::Png => "png",
             Self::Svg => "svg",
+            Self::Glb => "glb",
+            Self::Usda => "usda",
+            Self::Multimesh => "multimesh",
+            Self::Instances => "instances",
             Self::Parquet => "parquet",
             Self::Feather => "feather",
         }
@@ -95,7 +111,7 @@ impl Encoding {
             Self::Json => "application/json",
             Self::Ndjson => "application/x-ndjson",
             Self::Csv => "text/csv; charset=utf-8; header=present",
-            Self::F32 | Self::F64 => "application/octet-stream",
+            Self::F32 | Self::F64 | Self::Multimesh | Self::Instances => "application/octet-stream",
             Self::Geojson => "application/geo+json",
             Self::Geojsonseq => "application/geo+json-seq",
             Self::Npy => "application/x-npy",
@@ -103,6 +119,8 @@ impl Encoding {
             Self::Arrow => "application/vnd.apache.arrow.stream",
             Self::Png => "image/png",
             Self::Svg => "image/svg+xml",
+            Self::Glb => "model/gltf-binary",
+            Self::Usda => "model/vnd.usda",
             Self::Parquet => "application/vnd.apache.parquet",
             Self::Feather => "application/vnd.apache.arrow.file",
         }
@@ -124,6 +142,10 @@ impl Encoding {
             Self::Arrow => "points.arrows",
             Self::Png => "points.png",
             Self::Svg => "points.svg",
+            Self::Glb => "points.glb",
+            Self::Usda => "points.usda",
+            Self::Multimesh => "points.multimesh",
+            Self::Instances => "points.instances",
             Self::Parquet => "points.parquet",
             Self::Feather => "points.arrow",
         }
@@ -135,7 +157,16 @@ impl Encoding {
         matches!(self, Self::Json | Self::Png | Self::Svg)
     }
 
-    /// Whether numbers are written as digits.
+    /// Whether coordinates are `f32`, relative to a corner.
+    #[must_use]
+    pub const fn is_near(self) -> bool {
+        matches!(
+            self,
+            Self::F32 | Self::Glb | Self::Usda | Self::Multimesh | Self::Instances
+        )
+    }
+
+    /// Whether `decimals` has an effect.
     #[must_use]
     pub const fn is_text(self) -> bool {
         match self {
@@ -151,6 +182,10 @@ impl Encoding {
             | Self::Ply
             | Self::Arrow
             | Self::Png
+            | Self::Glb
+            | Self::Usda
+            | Self::Multimesh
+            | Self::Instances
             | Self::Parquet
             | Self::Feather => false,
         }

@@ -9,13 +9,16 @@
 mod batches;
 mod buffer;
 mod canvas;
+mod chunks;
 #[cfg(feature = "daemon")]
 mod columnar;
 mod crs;
 mod csv;
 mod encoding;
 mod geojson;
+mod glb;
 mod head;
+mod ids;
 mod json;
 mod legend;
 mod members;
@@ -29,6 +32,8 @@ mod parquet;
 pub mod part;
 mod ply;
 mod png;
+mod pose;
+mod posed;
 pub mod preview;
 mod records;
 #[cfg(feature = "daemon")]
@@ -40,6 +45,7 @@ pub mod schema;
 mod shift;
 mod svg;
 mod text;
+mod usda;
 mod writer;
 
 use std::fmt;
@@ -50,6 +56,7 @@ use strew_core::{F32, F64, Plan};
 use super::{Error, Fault, Planned};
 use head::Head;
 use members::Members;
+use pose::Pose;
 use preview::Frame;
 use records::{Layout, Records};
 use text::{TextBlocks, TextFormat};
@@ -64,6 +71,7 @@ pub use number::{Digits, write_number};
 pub use output::{MOST_DECIMALS, Options, Output};
 pub use packed::{Packed, Scalars};
 pub use part::{Attributes, Part};
+pub use pose::{ROTATION as POSE_ROTATION, Z as POSE_Z};
 pub use rows::{Batch, Coordinates, Row, Rows};
 pub use schema::{Column, Kind, LAYER, Schema, Values};
 pub use text::id_text;
@@ -155,14 +163,33 @@ impl Answer {
             Encoding::Png => frame.shown(parts)?,
             _ => parts,
         };
-        let rows = Rows::new(parts, coordinates);
         let head = || Head::new(planned, output, count);
+        let rows = Rows::new(parts, coordinates);
         let members = || Members::new(&rows, output);
         let (layout, before) = match output.encoding {
             Encoding::F32 => (Layout::F32, None),
             Encoding::F64 => (Layout::F64, None),
             Encoding::Npy => (Layout::F64, Some(npy::head(&rows))),
             Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head()))),
+            Encoding::Multimesh | Encoding::Instances => {
+                posed::check(output.encoding, rows.schema(), &Pose::new(rows.schema()))?;
+                let layout = match output.encoding {
+                    Encoding::Multimesh => Layout::Multimesh,
+                    _ => Layout::Instance,
+                };
+                (layout, None)
+            }
+            Encoding::Glb => {
+                let glb = glb::Glb::new(rows, head())?;
+                return Ok(Self {
+                    size: glb.size(),
+                    ..Self::of_blocks(coordinates.origin(), glb)
+                });
+            }
+            Encoding::Usda => {
+                let usda = usda::Usda::new(rows, &head())?;
+                return Ok(Self::of_blocks(coordinates.origin(), usda));
+            }
             Encoding::Png => {
                 let png = png::Png::new(rows, head(), frame, block_bytes);
                 return Ok(Self::of_blocks(None, png));

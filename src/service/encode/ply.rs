@@ -1,4 +1,4 @@
-//! PLY, binary and little-endian: vertices with x, y and z = 0 as `double`, columns as properties.
+//! PLY, binary and little-endian: vertices with x, y and z (0 without a terrain) as `double`, columns as properties.
 //!
 //! A column of numbers is a `double`; a dictionary is an `int`, the index into names that comments
 //! list, −1 where a row has none.
@@ -8,6 +8,7 @@ use bytes::Bytes;
 use super::{
     head::Head,
     members::write_json,
+    pose::Z,
     rows::Rows,
     schema::{Column, Kind},
 };
@@ -25,7 +26,9 @@ pub(super) fn head(rows: &Rows, head: &Head) -> Bytes {
     let count = rows.count();
     out.extend_from_slice(format!("element vertex {count}\n").as_bytes());
     out.extend_from_slice(b"property double x\nproperty double y\nproperty double z\n");
-    for column in rows.schema().columns() {
+    // The height stands in the vertex itself.
+    let columns = rows.schema().columns();
+    for column in columns.iter().filter(|column| column.name != Z) {
         let kind = match column.kind {
             Kind::Number => "double",
             Kind::Dictionary(_) => "int",

@@ -4,6 +4,8 @@ use bytes::Bytes;
 
 use super::{
     Blocks, EncodeError,
+    pose::{Pose, Z},
+    posed,
     rows::{Batch, Rows},
     schema::{Column, Kind, Schema},
 };
@@ -15,8 +17,12 @@ pub(super) enum Layout {
     F32,
     /// x, y and the columns as `f64`.
     F64,
-    /// x, y, z = 0 and the columns as `f64`, but names as `i32` indices.
+    /// x, y, z (0 without a column of it) and the other columns as `f64`, but names as `i32` indices.
     Vertex,
+    /// Those of a `MultiMesh`.
+    Multimesh,
+    /// Those of 16 bytes.
+    Instance,
 }
 
 impl Layout {
@@ -28,11 +34,14 @@ impl Layout {
             Self::F64 => 8 * (2 + columns.len()),
             Self::Vertex => {
                 let bytes = |column: &Column| match column.kind {
+                    Kind::Number if column.name == Z => 0,
                     Kind::Number => 8,
                     Kind::Dictionary(_) => 4,
                 };
                 24 + columns.iter().map(bytes).sum::<usize>()
             }
+            Self::Multimesh => posed::MULTIMESH_BYTES,
+            Self::Instance => posed::INSTANCE_BYTES,
         }
     }
 
@@ -41,12 +50,13 @@ impl Layout {
         match self {
             Self::F32 => Some(true),
             Self::F64 => Some(false),
-            Self::Vertex => None,
+            Self::Vertex | Self::Multimesh | Self::Instance => None,
         }
     }
 
     /// Appends the records of some rows; a number that a row lacks is NaN, an index −1.
-    fn write(self, schema: &Schema, batch: Batch<'_>, out: &mut Vec<u8>) {
+    fn write(self, schema: &Schema, pose: &Pose, batch: Batch<'_>, out: &mut Vec<u8>) {
+        let ranges = pose.ranges(schema);
         for row in batch.rows() {
             let columns = row.columns.iter();
             let numbers = columns.map(|values| values.number(row.index).unwrap_or(f64::NAN));
@@ -63,11 +73,12 @@ impl Layout {
                     }
                 }
                 Self::Vertex => {
-                    for v in [row.point.x, row.point.y, 0.0] {
+                    for v in [row.point.x, row.point.y, pose.z(row)] {
                         out.extend_from_slice(&v.to_le_bytes());
                     }
                     for (column, values) in schema.columns().iter().zip(row.columns) {
                         match column.kind {
+                            Kind::Number if column.name == Z => {}
                             Kind::Number => {
                                 let number = values.number(row.index).unwrap_or(f64::NAN);
                                 out.extend_from_slice(&number.to_le_bytes());
@@ -80,6 +91,15 @@ impl Layout {
                         }
                     }
                 }
+                Self::Multimesh => {
+                    for v in posed::multimesh(pose, row, batch.near[row.index]) {
+                        out.extend_from_slice(&v.to_le_bytes());
+                    }
+                }
+                Self::Instance => {
+                    let near = batch.near[row.index];
+                    out.extend_from_slice(&posed::instance(pose, &ranges, row, near));
+                }
             }
         }
     }
@@ -90,13 +110,15 @@ impl Layout {
 pub(super) struct Records {
     rows: Rows,
     layout: Layout,
+    pose: Pose,
     block_bytes: usize,
     points: u64,
 }
 
 impl Records {
-    pub(super) const fn new(rows: Rows, layout: Layout, block_bytes: usize) -> Self {
+    pub(super) fn new(rows: Rows, layout: Layout, block_bytes: usize) -> Self {
         Self {
+            pose: Pose::new(rows.schema()),
             rows,
             layout,
             block_bytes,
@@ -115,7 +137,7 @@ impl Blocks for Records {
         let bytes = self.layout.record_bytes(&schema);
         let batch = self.rows.next(self.block_bytes / bytes)?;
         let mut out = Vec::with_capacity(batch.points.len() * bytes);
-        self.layout.write(&schema, batch, &mut out);
+        self.layout.write(&schema, &self.pose, batch, &mut out);
         self.points += batch.points.len() as u64;
         Some(Ok(out.into()))
     }

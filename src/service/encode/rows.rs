@@ -9,7 +9,7 @@ use std::{ops::Range, sync::Arc, vec};
 use strew_core::{Cursor, Plan, Point};
 
 use super::{
-    Encoding, Output,
+    Output,
     part::{Current, Part},
     schema::{Schema, Values},
 };
@@ -36,7 +36,7 @@ impl Coordinates {
             least.unwrap_or_default()
         };
         match (output.encoding, output.relative_to) {
-            (Encoding::F32, origin) => Self::Near(origin.unwrap_or_else(corner)),
+            (encoding, origin) if encoding.is_near() => Self::Near(origin.unwrap_or_else(corner)),
             (encoding, Some(origin)) if !encoding.is_picture() => Self::Relative(origin),
             _ => Self::World,
         }
@@ -139,6 +139,16 @@ impl Rows {
     #[must_use]
     pub const fn count(&self) -> u128 {
         self.count
+    }
+
+    /// The parts that are not begun; all of them before the first batch.
+    pub(super) fn parts(&self) -> impl Iterator<Item = &Part> {
+        self.parts.as_slice().iter().map(|(_, part)| part)
+    }
+
+    /// The same rows again. Called before the first batch.
+    pub(super) fn again(&self) -> Self {
+        Self::new(self.parts().cloned().collect(), self.coordinates)
     }
 
     /// What coordinates are relative to.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 /// A column besides id, x and y.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Column {
     /// Its name.
     pub name: String,
@@ -11,6 +11,8 @@ pub struct Column {
     pub kind: Kind,
     /// Whether some layer lacks it.
     pub optional: bool,
+    /// What its numbers lie between, where that is known. Formats of small integers need it.
+    pub range: Option<[f64; 2]>,
 }
 
 /// What the values of a column are.
@@ -30,6 +32,16 @@ impl Column {
             name: name.into(),
             kind: Kind::Number,
             optional: false,
+            range: None,
+        }
+    }
+
+    /// The same with bounds of its numbers.
+    #[must_use]
+    pub fn within(self, range: [f64; 2]) -> Self {
+        Self {
+            range: Some(range),
+            ..self
         }
     }
 
@@ -40,6 +52,7 @@ impl Column {
             name: name.into(),
             kind: Kind::Dictionary(names.into()),
             optional: false,
+            range: None,
         }
     }
 }
@@ -48,7 +61,7 @@ impl Column {
 pub const LAYER: &str = "layer";
 
 /// All columns besides id, x and y, in order.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Schema {
     columns: Vec<Column>,
     layered: bool,
@@ -101,8 +114,10 @@ impl Schema {
 }
 
 impl Column {
-    /// Takes in the names of another column's dictionary.
+    /// Takes in the names of another column's dictionary, or its range.
     fn join(&mut self, other: &Self) {
+        let ranges = self.range.zip(other.range);
+        self.range = ranges.map(|([a, b], [c, d])| [a.min(c), b.max(d)]);
         if let (Kind::Dictionary(names), Kind::Dictionary(more)) = (&mut self.kind, &other.kind) {
             let new: Vec<String> = more
                 .iter()

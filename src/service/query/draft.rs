@@ -19,7 +19,7 @@ use super::{
     },
     period::Period,
     region::REGION,
-    table,
+    table, terrain,
     text::parse_pairs,
 };
 use crate::service::{Catalog, Encoding, Entry, Error, Fault, encode::Options};
@@ -322,9 +322,9 @@ impl Set {
             keep(values),
             (attributes::check(values, known), kinds.clone()).together(),
             table::check(values, None, loaded.catalog),
-            loaded.field(values),
+            (loaded.field(values), terrain::check(values, loaded)).together(),
         );
-        let (amount, seed, warp, keep, (attributes, mut kinds), (entry, pin), field) =
+        let (amount, seed, warp, keep, (attributes, mut kinds), (entry, pin), (field, terrain)) =
             checked.together()?;
         let entry = match &mut kinds {
             Some(kinds) => {
@@ -349,6 +349,7 @@ impl Set {
             period,
             field,
             except: None,
+            terrain,
             region: None,
             clear_of: vec![],
         })

@@ -9,7 +9,7 @@ use strew_core::{ALGORITHM_VERSION, Spacing, map::Twin};
 
 use super::{
     Parameter, Query, QueryRegion, Set, Value,
-    parameters::{EXCEPT, FIELD, PARAMETERS, VARIANT_FIELDS},
+    parameters::{EXCEPT, FIELD, PARAMETERS, TERRAIN, VARIANT_FIELDS},
 };
 use crate::service::except::Except;
 
@@ -86,6 +86,8 @@ pub struct ResolvedSet {
     pub field_digest: Option<String>,
     /// The digest of the ids that are left out.
     pub except_digest: Option<String>,
+    /// The digest of the terrain's field.
+    pub terrain_digest: Option<String>,
     /// The parameters that say which points, with everything filled in.
     pub values: Vec<(&'static Parameter, Value)>,
     /// The layers that are kept clear of, with the distances.
@@ -156,6 +158,9 @@ impl Serialize for ResolvedSet {
         if let Some(digest) = &self.field_digest {
             map.serialize_entry("field_digest", digest)?;
         }
+        if let Some(digest) = &self.terrain_digest {
+            map.serialize_entry("terrain_digest", digest)?;
+        }
         if !self.variant_field_digests.is_empty() {
             let digests: BTreeMap<&str, &str> = (self.variant_field_digests.iter())
                 .map(|(name, digest)| (name.as_str(), digest.as_str()))
@@ -213,6 +218,10 @@ impl Set {
             spacing: spacing.get(),
             least_distance,
             field_digest: self.field.as_ref().map(|field| field.digest.clone()),
+            terrain_digest: self
+                .terrain
+                .as_ref()
+                .map(|terrain| terrain.field.digest.clone()),
             variant_field_digests: self.variant_field_digests(),
             except_digest: self.except.as_ref().map(Except::digest),
             values: self.echoes().collect(),
@@ -266,8 +275,11 @@ impl Set {
         if let Some(made) = self.kinds.as_ref().and_then(|kinds| kinds.made.as_ref()) {
             identity["kinds_table"] = json!(made.digest);
         }
-        let is_named =
-            |parameter: &Parameter| [&FIELD, &VARIANT_FIELDS, &EXCEPT].contains(&parameter);
+        if let Some(terrain) = &self.terrain {
+            identity["terrain_digest"] = json!(terrain.field.digest);
+        }
+        let named = [&FIELD, &VARIANT_FIELDS, &TERRAIN, &EXCEPT];
+        let is_named = |parameter: &Parameter| named.contains(&parameter);
         for (parameter, value) in self.echoes().filter(|(parameter, _)| !is_named(parameter)) {
             identity[parameter.name] = json!(value);
         }

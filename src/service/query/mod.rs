@@ -28,6 +28,7 @@ mod recipe;
 mod region;
 mod shape;
 mod table;
+mod terrain;
 mod text;
 mod value;
 mod values;
@@ -55,6 +56,7 @@ pub use period::{Period, Periods};
 pub use region::{QueryRegion, RegionDraft, Rings, ShapeDraft};
 pub use shape::Shape;
 pub use table::chosen;
+pub use terrain::Terrain;
 pub use text::parse_pairs;
 pub use value::Value;
 pub use values::Values;
@@ -123,6 +125,8 @@ pub struct Set {
     pub field: Option<SetField>,
     /// The further values of points.
     pub attributes: Attributes,
+    /// The terrain that points stand on.
+    pub terrain: Option<Terrain>,
     /// The variants that are evenly spread.
     pub kinds: Option<Kinds>,
     /// The period that the points are of, instead of a region.
@@ -143,8 +147,11 @@ impl Query {
         let is_named = |field: &SetField| field.name.is_some();
         let has_lists =
             |set: &Set| (set.except.as_ref()).is_some_and(|except| !except.names.is_empty());
-        let is_fixed =
-            |set: &Set| set.pin.is_some() && !set.fields().any(is_named) && !has_lists(set);
+        let is_fixed = |set: &Set| {
+            let terrain = set.terrain.iter().map(|terrain| &terrain.field);
+            let has_names = set.fields().chain(terrain).any(is_named) || has_lists(set);
+            set.pin.is_some() && !has_names
+        };
         let is_given = |set: &Set| set.kinds.as_ref().is_some_and(|kinds| kinds.made.is_some());
         match &self.world {
             Some(world) => world.is_pinned,
@@ -166,8 +173,13 @@ impl Query {
             none.into_iter()
                 .chain(set.fields().map(|field| field.digest.as_str()))
         });
+        let terrains = self.sets.iter().filter_map(|set| {
+            let terrain = set.terrain.as_ref()?;
+            Some(terrain.field.digest.as_str())
+        });
         tables
             .chain(fields)
+            .chain(terrains)
             .chain(mixes.map(|entry| entry.digest.as_str()))
             .chain(except)
     }
@@ -192,7 +204,8 @@ impl Query {
         let is_plain = set.region.is_none() && set.clear_of.is_empty() && set.except.is_none();
         // A look at a field of many parts takes longer.
         let is_quick = |field: &SetField| field.spec.parts() <= 4;
-        let is_plain = is_plain && set.fields().all(is_quick);
+        let terrain = set.terrain.iter().map(|terrain| &terrain.field);
+        let is_plain = is_plain && set.fields().chain(terrain).all(is_quick);
         is_plain && width * height <= 2048.0 && width.max(height) <= 128.0
     }
 }

@@ -16,13 +16,22 @@ use crate::service::encode::{
     preview::{LEAST_SIZE, MOST_SIZE},
 };
 
+pub use super::terrain::{ALIGN, HEIGHTS, NORMALS, TERRAIN};
+
 /// Makes a static of each parameter, and the list of all.
 macro_rules! parameters {
     ($($(#[$doc:meta])* $name:ident = $parameter:expr;)+) => {
         $($(#[$doc])* pub static $name: Parameter = $parameter;)+
 
         /// All parameters, in the order of help texts.
-        pub static PARAMETERS: &[&Parameter] = &[$(&$name,)+ #[cfg(test)] &super::recipe::ADDED];
+        pub static PARAMETERS: &[&Parameter] = &[
+            $(&$name,)+
+            &TERRAIN,
+            &HEIGHTS,
+            &NORMALS,
+            &ALIGN,
+            #[cfg(test)] &super::recipe::ADDED,
+        ];
     };
 }
 

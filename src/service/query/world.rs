@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::{
     Draft, Faults, Group, Parameter, groups,
-    parameters::{EXCEPT, FIELD, ONLY, WORLD, WORLD_DIGEST},
+    parameters::{EXCEPT, FIELD, ONLY, TERRAIN, WORLD, WORLD_DIGEST},
     read_body, unknown,
 };
 use crate::service::{
@@ -69,7 +69,7 @@ impl Draft {
         let own = [Group::Profile, Group::Table, Group::Attributes];
         let is_own = |(parameter, _): (&'static _, &_)| {
             let parameter: &Parameter = parameter;
-            [&FIELD, &EXCEPT].contains(&parameter)
+            [&FIELD, &TERRAIN, &EXCEPT].contains(&parameter)
                 || own.contains(&parameter.group) && *parameter != ONLY
         };
         matches!(&self.layers, Ok(layers) if layers.is_empty()) && !self.values.given().any(is_own)

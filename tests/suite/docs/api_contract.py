@@ -65,6 +65,12 @@ def tidy_set(query, is_text, amounts=AMOUNTS):
         query["scale_range"] = "0.5,2" if is_text else [0.5, 2]
     if "scale" not in names or has_ranges:
         query.pop("scale_range", None)
+    if "terrain" in query and not is_text:
+        query["terrain"] = {"constant": 0.5}
+    else:
+        # No field is loaded that an address could name.
+        for name in ["terrain", "heights", "normals", "align"]:
+            query.pop(name, None)
     query.pop("variants", None)
     if is_mixed:
         query["variants"] = "oak:3,birch" if is_text else {"oak": 3, "birch": 1}
@@ -80,6 +86,9 @@ def tidy_set(query, is_text, amounts=AMOUNTS):
 
 
 def tidy_output(query):
+    # Records without room for some attributes are refused.
+    if query.get("format") in ["multimesh", "instances"]:
+        query["format"] = "glb"
     if "decimals" in query:
         query["decimals"] = int(number(query["decimals"], 0, 17))
         if query.get("format") not in ["json", "ndjson", "csv", "geojson"]:
@@ -139,7 +148,7 @@ def tidy_body(name, body):
             body.pop(member, None)
         for member in ["attributes", "variants", "scale_range", "scale_ranges", "spread", "only", "variant_fields"]:
             body.pop(member, None)
-        for member in ["cursor", "world", "world_digest", "field", "except"]:
+        for member in ["cursor", "world", "world_digest", "except", "field", "terrain", "heights", "normals", "align"]:
             body.pop(member, None)
         tidy = []
         for i, layer in enumerate(layers[:4]):

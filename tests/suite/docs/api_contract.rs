@@ -80,7 +80,28 @@ fn without_fields(mut document: Value) -> Value {
             schemas[name] = constant.clone();
         }
     }
+    without_parts_of_terrains(&mut document);
+    let schemas = &mut document["components"]["schemas"];
     // Answers have all shapes.
     schemas["DescribedField"]["properties"]["field"] = json!({});
     document
+}
+
+/// Takes what only goes with a terrain out of bodies: the generator gives up on so many members.
+fn without_parts_of_terrains(value: &mut Value) {
+    match value {
+        Value::Object(members) => {
+            if let Some(Value::Object(properties)) = members.get_mut("properties")
+                && let Some(terrain) = properties.get("terrain")
+                && terrain["type"] != "string"
+            {
+                for name in ["heights", "normals", "align"] {
+                    properties.remove(name);
+                }
+            }
+            members.values_mut().for_each(without_parts_of_terrains);
+        }
+        Value::Array(items) => items.iter_mut().for_each(without_parts_of_terrains),
+        _ => {}
+    }
 }

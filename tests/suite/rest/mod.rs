@@ -1,6 +1,6 @@
 //! The REST API, a file for each subject: which points a query returns (amounts, regions, layers,
 //! single points, paging), what is known of patterns without a table (patterns), how they are written (formats, and the same files read by other
-//! software), what HTTP adds (caching, compression, methods, headers for browsers), and which
+//! software and by engines), what HTTP adds (caching, compression, methods, headers for browsers), and which
 //! problem documents invalid queries, parameters and bodies get.
 
 mod amounts;
@@ -9,6 +9,7 @@ mod browsers;
 mod caching;
 mod compression;
 mod curl;
+mod engine_formats;
 mod except;
 mod fields;
 mod format_readers;
@@ -25,5 +26,6 @@ mod periods;
 mod profiles;
 mod regions;
 mod single_points;
+mod terrain;
 mod varying_kinds;
 mod worlds;
