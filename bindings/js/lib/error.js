@@ -1,0 +1,16 @@
+// What can go wrong, in the words of the REST API.
+
+/** A query that has no answer. */
+export class StrewError extends Error {
+    /**
+     * @param {string} message the words of REST
+     * @param {string} kind as in REST's problem types: invalid-query, too-many-points, …
+     * @param {object[]} faults everything that is wrong: field, value, detail, allowed
+     */
+    constructor(message, kind = "", faults = []) {
+        super(message);
+        this.name = "StrewError";
+        this.kind = kind;
+        this.faults = faults;
+    }
+}

@@ -1,0 +1,145 @@
+/** Numbers: a list or a typed array. */
+export type Numbers = ArrayLike<number>;
+
+/** The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves. */
+export interface Query {
+    /** min x, min y, max x, max y; points with min ≤ p < max. */
+    bbox?: Numbers | null;
+    /** x, y, radius. */
+    circle?: Numbers | object | null;
+    /** Vertices, or GeoJSON. */
+    polygon?: ArrayLike<Numbers> | object | null;
+    /** Size, column, row of a square of the world grid; coordinates are relative to its corner. */
+    chunk?: Numbers | object | null;
+    /** Any region as JSON has it. */
+    region?: object | null;
+    /** The mean spacing; or one of the next three. */
+    spacing?: number;
+    /** Points per unit of area. */
+    density?: number;
+    /** No two points are nearer than this. */
+    min_distance?: number;
+    /** The number of points in the region, exactly. */
+    count?: number;
+    /** Which set of points; 0 is the plain pattern. */
+    seed?: number | bigint;
+    profile?: string;
+    alpha?: string;
+    map?: string;
+    /** The digest of the table that must answer. */
+    table?: string;
+    warp?: "on" | "off" | number | boolean;
+    /** The share of points to keep, those of the lowest rank. */
+    keep?: number;
+    /** What thins the points out: a name, or a field as JSON has it. See `raster`. */
+    field?: string | object;
+    /** Further columns: angle, scale, variant, rank, u1 to u16. */
+    attributes?: string | string[];
+    variants?: Record<string, number>;
+    /** Several sets at once. */
+    layers?: object[];
+    offset?: number;
+    limit?: number;
+    cursor?: string;
+    [member: string]: unknown;
+}
+
+/** One thing that is wrong with a query. */
+export interface Fault {
+    field: string;
+    value: string | null;
+    detail: string;
+    allowed: string;
+}
+
+/** A query that has no answer; `message` has the words of REST. */
+export class StrewError extends Error {
+    /** As in REST's problem types: invalid-query, too-many-points, … */
+    readonly kind: string;
+    /** Everything that is wrong with an invalid query. */
+    readonly faults: Fault[];
+    constructor(message: string, kind?: string, faults?: Fault[]);
+}
+
+/** A point of a set, with its attributes by name. */
+export interface Point {
+    /** Its stable id. */
+    id: string;
+    x: number;
+    y: number;
+    /** How far it is from the place whose neighbors were wanted. */
+    distance?: number;
+    [attribute: string]: unknown;
+}
+
+/** A value now, in process, or later, from a daemon. */
+export type Answer<Where extends "here" | "there", T> = Where extends "here" ? T : Promise<T>;
+
+/** The points of a query, made when they are wanted. */
+export class PointSet<Where extends "here" | "there" = "here"> implements Iterable<Point> {
+    private constructor();
+    /** The body of `POST /v1/points:query`. */
+    readonly body: Record<string, unknown>;
+    /** The exact number of points: a number, or a bigint from 2⁵³ on. */
+    count(): Answer<Where, number | bigint>;
+    /** The query with everything filled in. */
+    resolved(): Answer<Where, Record<string, unknown>>;
+    /** x and y of each point, by turns. */
+    xy(): Answer<Where, Float64Array>;
+    /** The same as `f32`, relative to the lower corner of the region. */
+    xyF32(): Answer<Where, { xy: Float32Array; origin: [number, number] }>;
+    /** What the coordinates of `xy()` are relative to: the corner of a chunk, else 0, 0. */
+    origin(): Answer<Where, [number, number]>;
+    /** Two integers for each point; `x:y` as text. */
+    ids(): Answer<Where, BigInt64Array>;
+    /** The names of the columns beside ids and coordinates. */
+    names(): Answer<Where, string[]>;
+    /** Numbers, NaN where a layer lacks them; or names, null where they are lacking. */
+    column(name: string): Answer<Where, Float64Array | (string | null)[]>;
+    /** A column of names as indices, −1 where it is lacking. */
+    codes(name: string): Answer<Where, { codes: Int32Array; names: string[] }>;
+    /** The same set in another region. */
+    within(shape: Pick<Query, "bbox" | "circle" | "polygon" | "chunk" | "region">): PointSet<Where>;
+    /** The points of a square of the world grid. */
+    chunk(size: number, x: number, y: number): PointSet<Where>;
+    /** The points in up to so many parts of the same size, give or take one. */
+    split(parts: number): Answer<Where, PointSet<Where>[]>;
+    /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
+    nearest(at: Numbers, limits?: { k?: number; radius?: number }): Answer<Where, Point[]>;
+    /** The point of an id. */
+    point(id: string): Answer<Where, Point>;
+    /** The points in a format of REST, as bytes. */
+    document(
+        format: string,
+        options?: { decimals?: number; size?: number; summary?: boolean; crs?: string },
+    ): Answer<Where, Uint8Array>;
+    /** The points one by one; in process only. */
+    [Symbol.iterator](): Iterator<Point>;
+}
+
+/** Where points come from. */
+export class Source<Where extends "here" | "there" = "here"> {
+    protected constructor();
+    /** The points of a query by its keywords. */
+    points(query: Query): PointSet<Where>;
+    /** The points of a query in JSON, the body of `POST /v1/points:query`. */
+    query(body: object): PointSet<Where>;
+}
+
+/** The tables that are loaded by default. */
+export const DEFAULT_TABLES: string[];
+
+/** Loads the module and tables: names of this package's files, addresses, or bytes. */
+export function open(options?: {
+    tables?: (string | URL | ArrayBuffer | ArrayBufferView)[];
+    wasm?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
+}): Promise<Source<"here">>;
+
+/** A daemon, with the functions of what `open` returns; its answers are promises. */
+export function connect(url: string | URL, options?: { key?: string }): Source<"there">;
+
+/** Pixels as JSON has them: rows from the top, where y is greatest. */
+export function pixels(values: Numbers, width: number, height: number, where?: object): object;
+
+/** A field of an array: shares of the density from 0 to 1; of bytes, 255 is 1. */
+export function raster(values: Numbers, width: number, height: number, where?: object): { raster: object };

@@ -1,0 +1,92 @@
+// The WebAssembly module: the C library of bindings/c, its calls and its memory.
+
+import { StrewError } from "./error.js";
+
+const ENCODER = new TextEncoder();
+const DECODER = new TextDecoder();
+
+/** A compiled module with its memory. Pointers are numbers. */
+export class Module {
+    #plans = new FinalizationRegistry((plan) => this.calls.strew_plan_free(plan));
+
+    constructor(instance) {
+        this.calls = instance.exports;
+    }
+
+    /** Does something with room for its arguments, which is released afterwards. */
+    scoped(work) {
+        const held = [];
+        const room = (bytes) => {
+            const at = this.calls.strew_allocate(bytes);
+            if (!at) throw new RangeError("there is not enough memory");
+            held.push([at, bytes]);
+            return at;
+        };
+        try {
+            return work(room);
+        } finally {
+            for (const [at, bytes] of held) this.calls.strew_release(at, bytes);
+        }
+    }
+
+    /** Calls a function that returns a code. */
+    call(name, ...values) {
+        if (this.calls[name](...values) === 0) return;
+        const { kind, detail, errors } = JSON.parse(this.#text(this.calls.strew_error_document()));
+        throw new StrewError(detail, kind, errors);
+    }
+
+    /** Memory as it is now: a call may make it grow, and older views are then empty. */
+    get memory() {
+        return this.calls.memory.buffer;
+    }
+
+    /** The number that a call has put at a place. */
+    pointer(at) {
+        return new DataView(this.memory).getUint32(at, true);
+    }
+
+    #text(at) {
+        const bytes = new Uint8Array(this.memory, at);
+        return DECODER.decode(bytes.subarray(0, bytes.indexOf(0)));
+    }
+
+    /** A text with a zero behind it. */
+    text(room, text) {
+        const bytes = ENCODER.encode(text);
+        const at = room(bytes.length + 1);
+        const memory = new Uint8Array(this.memory, at, bytes.length + 1);
+        memory.set(bytes);
+        memory[bytes.length] = 0;
+        return at;
+    }
+
+    /** The bytes that a call makes, whose last argument says where they are. */
+    bytes(name, room, ...values) {
+        const out = room(4);
+        this.call(name, ...values, out);
+        const made = this.pointer(out);
+        const [at, length] = [this.calls.strew_bytes_data(made), this.calls.strew_bytes_length(made)];
+        const copy = new Uint8Array(this.memory, at, length).slice();
+        this.calls.strew_bytes_free(made);
+        return copy;
+    }
+
+    /** The same as JSON. */
+    json(name, room, ...values) {
+        return JSON.parse(DECODER.decode(this.bytes(name, room, ...values)));
+    }
+
+    /** An array that a call fills. */
+    filled(kind, length, room, fill) {
+        const bytes = length * kind.BYTES_PER_ELEMENT;
+        const at = room(bytes);
+        fill(at);
+        return new kind(this.memory.slice(at, at + bytes));
+    }
+
+    /** A plan, freed after the object that holds it. */
+    held(owner, plan) {
+        this.#plans.register(owner, plan);
+    }
+}

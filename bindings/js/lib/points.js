@@ -1,0 +1,185 @@
+// Sets of points, over any source: this page, or a daemon. A daemon's answers are promises.
+
+import { OF_ANSWERS, address, body, text } from "./query.js";
+import { StrewError } from "./error.js";
+
+/** What comes of a value, now or when it is there. */
+const after = (value, use) => (value instanceof Promise ? value.then(use) : use(value));
+
+/** Where points come from. */
+export class Source {
+    /** The points of a query by its keywords: `points({ bbox: [0, 0, 10, 10], spacing: 1, seed: 7 })`. */
+    points(keywords) {
+        return this.query(body(keywords));
+    }
+
+    /** The points of a query in JSON, the body of `POST /v1/points:query`. */
+    query(query) {
+        const set = new PointSet(this, query);
+        if (this.checksAtOnce && "region" in query) set.plan();
+        return set;
+    }
+}
+
+/** The points of a query, made when they are wanted. */
+export class PointSet {
+    #source;
+    #body;
+    #plan;
+    #columns;
+
+    constructor(source, query) {
+        this.#source = source;
+        this.#body = { ...query };
+    }
+
+    /** The body of `POST /v1/points:query`. */
+    get body() {
+        return { ...this.#body };
+    }
+
+    /** What the points are made from. */
+    plan() {
+        this.#plan ??= this.#source.plan(text(this.#body), this.#body);
+        return this.#plan;
+    }
+
+    /** The exact number of points: a number, or a bigint from 2⁵³ on. */
+    count() {
+        return this.plan().count();
+    }
+
+    /** The query with everything filled in. */
+    resolved() {
+        return this.plan().resolved();
+    }
+
+    /** x and y of each point, by turns: a Float64Array. */
+    xy() {
+        return this.#columns ? after(this.#columns, (columns) => columns.xy) : this.plan().xy();
+    }
+
+    /** The same as a Float32Array, relative to an origin: `{ xy, origin }`. */
+    xyF32() {
+        return this.plan().xyF32();
+    }
+
+    /** What the coordinates of `xy()` are relative to: the corner of a chunk, else 0, 0. */
+    origin() {
+        return this.plan().origin();
+    }
+
+    /** The ids: two integers for each point in a BigInt64Array, `x:y` as text. */
+    ids() {
+        return after(this.#all(), (columns) => columns.ids);
+    }
+
+    #all() {
+        this.#columns ??= this.plan().columns();
+        return this.#columns;
+    }
+
+    /** The names of the columns beside ids and coordinates. */
+    names() {
+        return after(this.#all(), (columns) => [...columns.further.keys()]);
+    }
+
+    #further(name) {
+        return after(this.#all(), ({ further }) => {
+            const column = further.get(name);
+            if (column) return column;
+            const known = ["x", "y", ...further.keys()].join(", ");
+            throw new RangeError(`no column ${JSON.stringify(name)}; there are ${known}`);
+        });
+    }
+
+    /** Numbers in a Float64Array, NaN where a layer lacks them; or a list of names, null where they are lacking. */
+    column(name) {
+        if (name === "x" || name === "y") {
+            const axis = name === "x" ? 0 : 1;
+            return after(this.xy(), (xy) => Float64Array.from({ length: xy.length / 2 }, (_, i) => xy[2 * i + axis]));
+        }
+        return after(this.#further(name), ({ values, names }) =>
+            names ? Array.from(values, (code) => names[code] ?? null) : values,
+        );
+    }
+
+    /** A column of names as indices, −1 where it is lacking: `{ codes, names }`. */
+    codes(name) {
+        return after(this.#further(name), ({ values, names }) => {
+            if (!names) throw new RangeError(`${JSON.stringify(name)} is a column of numbers`);
+            return { codes: values, names };
+        });
+    }
+
+    #with(members) {
+        const query = { ...this.#body, ...members };
+        for (const [name, value] of Object.entries(members)) if (value === undefined) delete query[name];
+        return this.#source.query(query);
+    }
+
+    /** The same set in another region: `within({ circle: [0, 0, 5] })`. */
+    within(shape) {
+        const { region } = body(shape);
+        if (!region) throw new TypeError("within takes one of region, bbox, circle, polygon, chunk");
+        return this.#with({ region, offset: undefined, limit: undefined, cursor: undefined });
+    }
+
+    /** The points of a square of the world grid. Coordinates are relative to its corner, `origin()`. */
+    chunk(size, x, y) {
+        return this.within({ chunk: [size, x, y] });
+    }
+
+    /** The points in up to so many parts of the same size, give or take one. A part's `body` can go to a worker. */
+    split(parts) {
+        const made = ({ cursor, limit }) => this.#with({ cursor, limit, offset: undefined });
+        return after(this.plan().split(parts), (places) => places.map(made));
+    }
+
+    #set(more) {
+        const values = { ...more, ...this.#body };
+        for (const name of OF_ANSWERS) delete values[name];
+        const whole = () => address(values);
+        const field = values.field;
+        const spaced = () => {
+            if (!("count" in values && "region" in this.#body)) return whole();
+            delete values.count;
+            return after(this.resolved(), ({ spacing }) => {
+                values.spacing = spacing;
+                return whole();
+            });
+        };
+        if (field === null || typeof field !== "object") return spaced();
+        return after(this.#source.holdField(text(field)), (name) => {
+            values.field = name;
+            return spaced();
+        });
+    }
+
+    /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
+    nearest(at, { k, radius } = {}) {
+        return after(this.#set({ at, k, radius }), (where) => this.#source.nearest(where));
+    }
+
+    /** The point of an id. */
+    point(id) {
+        return after(this.#set({}), (where) => this.#source.point(id, where));
+    }
+
+    /** The points in a format of REST, as bytes: `document("csv", { decimals: 2 })`. */
+    document(format, options = {}) {
+        return this.plan().document({ format, ...options });
+    }
+
+    /** The points one by one, as objects with an id, x, y and attributes; in process only. */
+    *[Symbol.iterator]() {
+        const [ids, xy] = [this.ids(), this.xy()];
+        if (ids instanceof Promise) throw new StrewError("a daemon's points come as columns: await points.xy()");
+        const columns = this.names().map((name) => [name, this.column(name)]);
+        for (let i = 0; i < xy.length / 2; i++) {
+            const point = { id: `${ids[2 * i]}:${ids[2 * i + 1]}`, x: xy[2 * i], y: xy[2 * i + 1] };
+            for (const [name, values] of columns) point[name] = values[i];
+            yield point;
+        }
+    }
+}

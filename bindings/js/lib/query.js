@@ -1,0 +1,67 @@
+// Queries: keywords as the body, and as the address, that REST takes.
+
+const SHAPES = ["bbox", "circle", "polygon", "chunk"];
+// Members of a query that are not about its set of points.
+export const OF_ANSWERS = ["region", "offset", "limit", "cursor", "format", "decimals", "size", "summary", "crs"];
+
+const isList = (value) => Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView));
+const isObject = (value) => value !== null && typeof value === "object" && !isList(value);
+
+function region(shape, value) {
+    // What is not of this form is passed on, to be refused in the words of REST.
+    if (isList(value)) {
+        const list = Array.from(value);
+        if (shape === "circle" && list.length === 3) return { center: [list[0], list[1]], radius: list[2] };
+        if (shape === "chunk" && list.length === 3) return { size: list[0], x: list[1], y: list[2] };
+        if (shape === "polygon") {
+            const ring = list.map((vertex) => Array.from(vertex));
+            const [first, last] = [ring[0], ring.at(-1)];
+            if (first && (first[0] !== last[0] || first[1] !== last[1])) ring.push(first);
+            return { type: "Polygon", coordinates: [ring] };
+        }
+    }
+    return value;
+}
+
+/** Keywords as a body. Those that are undefined or null are left out. */
+export function body(keywords) {
+    const made = {};
+    for (const [name, value] of Object.entries(keywords)) {
+        if (value === undefined || value === null) continue;
+        if (SHAPES.includes(name)) {
+            // Several shapes are refused together, with all their names.
+            made.region = { ...made.region, [name]: region(name, value) };
+        } else if (name === "attributes" && typeof value === "string") {
+            made[name] = value.split(",").map((word) => word.trim());
+        } else {
+            made[name] = value;
+        }
+    }
+    return made;
+}
+
+/** A body as JSON: a bigint is an integer, a typed array a list. */
+export function text(value) {
+    const plain = (_, part) => {
+        if (typeof part === "bigint") return `\u0001${part}\u0001`;
+        if (typeof part === "number" && !Number.isFinite(part)) throw new TypeError(`a query cannot hold ${part}`);
+        return isList(part) ? Array.from(part) : part;
+    };
+    return JSON.stringify(value, plain).replace(/"\\u0001(-?\d+)\\u0001"/g, "$1");
+}
+
+function word(value) {
+    if (typeof value === "boolean") return value ? "on" : "off";
+    if (isList(value)) return Array.from(value, word).join(",");
+    if (isObject(value)) {
+        const pair = ([name, part]) => [name, ...(isList(part) ? Array.from(part) : [part]).map(word)].join(":");
+        return Object.entries(value).map(pair).join(",");
+    }
+    return String(value);
+}
+
+/** Values as the parameters of an address. */
+export function address(values) {
+    const there = Object.entries(values).filter(([, value]) => value !== undefined && value !== null);
+    return there.map(([name, value]) => `${encodeURIComponent(name)}=${encodeURIComponent(word(value))}`).join("&");
+}

@@ -1,0 +1,109 @@
+// The same points, documents and words as the real daemon, for 1,000 random queries: those of the Python package.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { fileURLToPath } from "node:url";
+import { after, before, test } from "node:test";
+
+import { connect } from "../lib/index.js";
+import { daemon, whole } from "./support.js";
+
+const QUERIES = 1000;
+const queries = () => {
+    const folder = fileURLToPath(new URL("../../python/tests", import.meta.url));
+    const code = `import json, queries\nfor seed in range(${QUERIES}): print(json.dumps(queries.random_query(seed)))`;
+    const lines = execFileSync("python3", ["-c", code], { cwd: folder, encoding: "utf8", maxBuffer: 1 << 26 });
+    return lines.trim().split("\n");
+};
+
+let strew;
+let remote;
+before(async () => {
+    strew = await whole();
+    remote = await daemon();
+});
+after(() => remote?.end());
+
+const headers = { "content-type": "application/json" };
+const ask = (body) => fetch(`${remote.url}/v1/points:query`, { method: "POST", body, headers });
+
+function samePoints(plan, points) {
+    const { ids, xy, further } = plan.columns();
+    assert.deepEqual([...xy], points.flatMap(({ x, y }) => [x, y]));
+    assert.deepEqual([...ids], points.flatMap(({ id }) => id.split(":").map(BigInt)));
+    for (const [name, { names, values }] of further) {
+        const expected = points.map((point) => point[name] ?? null);
+        const own = Array.from(values, (v) => (names ? (names[v] ?? null) : isNaN(v) ? null : v));
+        assert.deepEqual(own, expected, name);
+    }
+}
+
+function sameWords(error, problem) {
+    const own = [error.message, error.kind, error.faults];
+    assert.deepEqual(own, [problem.detail, problem.type.split(":").at(-1), problem.errors ?? []]);
+}
+
+test("random queries have the points of the daemon", async (t) => {
+    if (!remote) return t.skip("the daemon is not built");
+    let refused = 0;
+    for (const text of queries()) {
+        const response = await ask(text);
+        const content = await response.text();
+        let plan;
+        try {
+            plan = strew.plan(text);
+        } catch (error) {
+            sameWords(error, JSON.parse(content));
+            refused++;
+            continue;
+        }
+        assert.ok(response.ok, content);
+        assert.equal(new TextDecoder().decode(plan.document({ format: "json" })), content);
+        samePoints(plan, JSON.parse(content).points);
+    }
+    assert.ok(refused < QUERIES / 50);
+});
+
+const WRONG = [
+    {},
+    { region: {}, spacing: 1 },
+    { region: { bbox: [0, 0, 0, 1] }, spacing: 1 },
+    { region: { bbox: [0, 0, 1, 1] }, spacing: -1, sed: 3 },
+    { region: { bbox: [0, 0, 1, 1] }, spacing: 1, profile: "blu" },
+    { region: { bbox: [0, 0, 1, 1] }, spacing: 1, table: "0".repeat(64) },
+    { region: { bbox: [0, 0, 1, 1] }, spacing: 1, field: { noise: { wavelength: -1 } } },
+    { region: { bbox: [0, 0, 1e300, 1] }, spacing: 1 },
+];
+
+test("wrong queries are refused with the same words", async (t) => {
+    if (!remote) return t.skip("the daemon is not built");
+    for (const query of WRONG) {
+        const problem = await (await ask(JSON.stringify(query))).json();
+        assert.throws(() => strew.plan(JSON.stringify(query)), (error) => sameWords(error, problem) ?? true);
+        await assert.rejects(connect(remote.url).query(query).xy(), (error) => sameWords(error, problem) ?? true);
+    }
+});
+
+test("a daemon has the functions of the package", async (t) => {
+    if (!remote) return t.skip("the daemon is not built");
+    const there = connect(remote.url);
+    const attributes = { attributes: ["angle", "variant"], variants: { oak: 1, fir: 2 } };
+    const query = { bbox: [-9, -9, 20, 21], spacing: 1.5, seed: 2n ** 63n, ...attributes };
+    const noise = { noise: { wavelength: 9 } };
+    const chunk = { ...query, chunk: [16, -1, 0], bbox: null };
+    for (const keywords of [query, { ...query, field: noise }, chunk, { ...query, limit: 9 }]) {
+        const [here, far] = [strew.points(keywords), there.points(keywords)];
+        assert.equal(await far.count(), here.count());
+        assert.deepEqual(await far.xy(), here.xy());
+        assert.deepEqual(await far.xyF32(), here.xyF32());
+        assert.deepEqual(await far.ids(), here.ids());
+        assert.deepEqual(await far.origin(), here.origin());
+        for (const name of here.names()) assert.deepEqual(await far.column(name), here.column(name));
+        assert.deepEqual(await far.resolved(), here.resolved());
+        assert.deepEqual(await far.nearest([3, 4], { k: 3 }), here.nearest([3, 4], { k: 3 }));
+        const { id } = here.nearest([3, 4])[0];
+        assert.deepEqual(await far.point(id), here.point(id));
+        const parts = await far.split(2);
+        assert.deepEqual(parts.map(({ body }) => body), here.split(2).map(({ body }) => body));
+        assert.deepEqual(await far.document("csv", { decimals: 2 }), here.document("csv", { decimals: 2 }));
+    }
+});

@@ -1,0 +1,87 @@
+// The package by itself.
+import assert from "node:assert/strict";
+import { before, test } from "node:test";
+
+import { StrewError, open, raster } from "../lib/index.js";
+
+let strew;
+before(async () => {
+    strew = await open();
+});
+
+test("points, ids and columns", () => {
+    const attributes = { attributes: "angle, variant", variants: { oak: 3, birch: 1 } };
+    const points = strew.points({ bbox: [0, 0, 10, 10], spacing: 1, seed: 7, ...attributes });
+    assert.equal(points.count(), 102);
+    assert.equal(points.xy().length, 204);
+    assert.equal(points.ids().length, 204);
+    assert.deepEqual(points.names(), ["angle", "variant"]);
+    assert.equal(points.column("angle").length, 102);
+    assert.deepEqual([...new Set(points.column("variant"))].sort(), ["birch", "oak"]);
+    const [first] = points;
+    assert.equal(first.x, points.xy()[0]);
+    assert.throws(() => points.column("size"), /no column "size"; there are x, y, angle, variant/);
+    assert.throws(() => points.codes("angle"), RangeError);
+    const { xy, origin } = points.xyF32();
+    assert.deepEqual(origin, [0, 0]);
+    assert.equal(xy[0], Math.fround(first.x));
+});
+
+test("a set without a region has chunks, neighbors and points by id", () => {
+    const forest = strew.points({ spacing: 2, seed: 2n ** 64n - 1n });
+    const chunk = forest.chunk(64, -3, 2);
+    assert.deepEqual(chunk.origin(), [-192, 128]);
+    assert.ok(chunk.xy().every((v) => v >= 0 && v < 64));
+    const [near, next] = forest.nearest([100, -3], { k: 2 });
+    assert.ok(near.distance < next.distance);
+    assert.equal(forest.point(near.id).x, near.x);
+    assert.throws(() => forest.point("1:x"), TypeError);
+    assert.throws(() => forest.point("1:1"), { kind: "no-such-point" });
+});
+
+test("parts are the whole, and their bodies are queries", () => {
+    const points = strew.points({ bbox: [0, 0, 50, 50], spacing: 1, seed: 2 });
+    const parts = points.split(3).map((part) => strew.query(structuredClone(part.body)));
+    assert.deepEqual(parts.map((part) => part.count()), [833, 833, 832]);
+    assert.deepEqual(parts.flatMap((part) => [...part.xy()]), [...points.xy()]);
+});
+
+test("counts of any size are exact", () => {
+    assert.equal(strew.points({ bbox: [-5e8, -5e8, 5e8, 5e8], spacing: 1 }).count(), 1000000000097677487n);
+    const many = strew.points({ bbox: [0, 0, 1e6, 1e6], spacing: 1 });
+    for (const call of ["xy", "xyF32", "ids"]) assert.throws(() => many[call](), { kind: "too-many-points" });
+});
+
+test("fields of arrays thin out", () => {
+    const mask = new Uint8Array(64).map((_, i) => (i % 8 < 4 ? 0 : 255));
+    const field = raster(mask, 8, 8, { bbox: [0, 0, 8, 8], filter: "nearest" });
+    const points = strew.points({ bbox: [0, 0, 8, 8], spacing: 0.2, field });
+    assert.ok(points.count() > 100 && points.column("x").every((x) => x >= 4));
+    const [near] = points.nearest([1, 1]);
+    assert.ok(near.x >= 4);
+});
+
+test("what is wrong has the words of REST", () => {
+    const wrong = () => strew.points({ bbox: [0, 0, 10, 10], spacing: -1 });
+    assert.throws(wrong, (error) => {
+        assert.ok(error instanceof StrewError);
+        assert.equal(error.message, "`spacing` = `-1`: out of range; allowed: a number from 1e-100 to 1e100");
+        assert.equal(error.kind, "invalid-query");
+        assert.deepEqual(error.faults.map(({ field }) => field), ["spacing"]);
+        return true;
+    });
+    assert.throws(() => strew.points({ spacing: NaN }).nearest([0, 0]), StrewError);
+    assert.throws(() => strew.points({ bbox: [0, 0, 1, NaN], spacing: 1 }), TypeError);
+});
+
+test("a module without the default table says what is loaded", async () => {
+    const small = await open({ tables: ["blue-5-sqrt3-over-2-s.strew"] });
+    assert.ok(small.points({ bbox: [0, 0, 9, 9], spacing: 1, map: "s" }).count() > 70);
+    await assert.rejects(open({ tables: [new Uint8Array(9)] }), StrewError);
+});
+
+test("plans are freed and memory does not grow", () => {
+    const count = () => strew.points({ bbox: [0, 0, 100, 100], spacing: 1, seed: 3 }).xy().length;
+    const first = count();
+    for (let i = 0; i < 200; i++) assert.equal(count(), first);
+});
