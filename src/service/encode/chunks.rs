@@ -18,7 +18,7 @@ pub(super) const CHUNK: usize = 1 << 13;
 #[derive(Debug)]
 pub(super) struct Chunks {
     rows: Rows,
-    /// The points left in each part, from the one under way on.
+    /// The points left in each part, from the current one on.
     left: VecDeque<u128>,
     part: usize,
 }

@@ -18,7 +18,7 @@ pub(super) struct Node {
     pub(super) part: u16,
 }
 
-/// What a document is made of.
+/// What a document describes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Described<'a> {
     pub(super) head: &'a Head,
