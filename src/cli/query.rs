@@ -69,7 +69,7 @@ impl<T: Takes> QueryArgs<T> {
             Ok((planned, options))
         });
         let (planned, options) = planned.map_err(|error| source.refused(error))?;
-        // Whoever goes on with it may not know the world.
+        // The parts of a split may be answered where the world is not known.
         let filled = draft.filled(catalog.worlds());
         let filled = filled.map_err(|error| source.refused(error))?;
         Ok(PlannedQuery {
