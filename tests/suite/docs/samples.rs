@@ -121,3 +121,35 @@ fn a_forest_of_three_js_grows_around_the_camera() {
     browser.go(&address("http://127.0.0.1:1"));
     browser.until(&format!("{said}.includes('does not answer')"));
 }
+
+#[test]
+fn a_forest_of_godot_has_the_points_of_its_chunks() {
+    let Some(godot) = clients::find("godot3-server") else {
+        return;
+    };
+    let (daemon, home) = (Daemon::built_in(), tempfile::tempdir().expect("a folder"));
+    let run = |url: &str| {
+        Command::new(&godot)
+            .arg("--path")
+            .arg(Path::new(ROOT).join("examples/godot"))
+            .args(["-s", "main.gd"])
+            .env("STREW_URL", url)
+            .env("HOME", home.path())
+            .output()
+            .expect("Godot runs")
+    };
+    let output = run(&daemon.url(""));
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{output:?}");
+    // The place is (1000, −500) in the plane, in the chunk (31, −16).
+    let bbox = [29, -18, 34, -13].map(|edge: i32| (32 * edge).to_string());
+    let count = daemon.get(&format!(
+        "/v1/count?bbox={}&spacing=2&seed=7",
+        bbox.join(",")
+    ));
+    let words = format!("{} points in 25 chunks", count.json()["count"]);
+    assert!(printed.contains(&words), "{printed} and not {words}");
+    let output = run("http://127.0.0.1:1");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no answer from"));
+}
