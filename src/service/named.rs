@@ -111,6 +111,9 @@ pub struct NamedError {
     pub detail: String,
 }
 
+/// A document, and what it describes or why it is refused.
+pub type Checked<T> = (Found, Result<T, NamedError>);
+
 /// A document that is found, and not checked yet.
 #[derive(Clone, Debug)]
 pub struct Found {
@@ -170,8 +173,8 @@ impl Places<'_> {
     pub fn each<T>(
         &self,
         check: impl Fn(&Found, &str) -> Result<T, String>,
-    ) -> Result<Vec<(Found, Result<T, NamedError>)>, NamedError> {
-        let mut all: Vec<(Found, Result<T, NamedError>)> = vec![];
+    ) -> Result<Vec<Checked<T>>, NamedError> {
+        let mut all: Vec<Checked<T>> = vec![];
         for found in self.found()? {
             let first = all.iter().find(|(first, _)| first.name == found.name);
             let checked = match (first, &found.text) {

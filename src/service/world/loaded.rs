@@ -7,7 +7,7 @@ use crate::{
     config::Worlds as Settings,
     service::{
         Catalog, Draft, Error, Fault,
-        named::{Changes, Found, NamedError, Places, Refused},
+        named::{Changes, Checked, Found, NamedError, Places, Refused},
         query::{
             Query, groups,
             parameters::{WORLD, WORLD_DIGEST},
@@ -116,7 +116,7 @@ impl Worlds {
         settings: &Settings,
         catalog: &Catalog,
         most_vertices: usize,
-    ) -> Result<Vec<(Found, Result<World, NamedError>)>, NamedError> {
+    ) -> Result<Vec<Checked<World>>, NamedError> {
         places(settings).each(|found, json| check(found, json, catalog, most_vertices))
     }
 }

@@ -19,6 +19,8 @@ use crate::support::{
 /// The daemon's address in the documents.
 const ADDRESS: &str = "127.0.0.1:8080";
 const MORE: &str = "…";
+/// The languages of commands.
+const PROGRAMS: [&str; 2] = ["sh", "python"];
 
 /// A fenced block: the lines of the document between its fences.
 struct Block {
@@ -119,10 +121,10 @@ fn examples(lines: &[String]) -> Vec<Example> {
     for (i, block) in blocks.iter().enumerate() {
         if block.language == "console" {
             examples.extend(dialogue(lines, block));
-        } else if ["sh", "python"].contains(&&*block.language) {
+        } else if PROGRAMS.contains(&&*block.language) {
             let next = blocks.get(i + 1).filter(|next| {
                 let between = &lines[block.end + 1..next.first - 1];
-                next.language != "sh" && between.iter().all(String::is_empty)
+                !PROGRAMS.contains(&&*next.language) && between.iter().all(String::is_empty)
             });
             let text = lines[block.first..block.end].join("\n");
             examples.push(Example {

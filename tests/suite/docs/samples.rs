@@ -55,10 +55,8 @@ impl Folder {
         BufReader::new(server.stdout.take().expect("piped"))
             .read_line(&mut line)
             .expect("a line");
-        let port = line
-            .split_whitespace()
-            .skip_while(|word| *word != "port")
-            .nth(1)?;
+        let mut words = line.split_whitespace().skip_while(|word| *word != "port");
+        let port = words.nth(1).expect("a port");
         let url = format!("http://127.0.0.1:{port}");
         Some(Self { server, url })
     }
