@@ -35,7 +35,7 @@ struct Document {
 
 /// Counts.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    if args.remote.is_given() {
+    if args.remote.is_given()? {
         return from_server(args);
     }
     let config = args.query.settings.merged()?;
@@ -51,7 +51,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 /// Prints the count of a server.
 fn from_server(args: &Args) -> Result<(), Failure> {
     let body = args.query.for_server()?.to_body();
-    let mut answer = args.remote.ask("/v1/count", &body)?;
+    let mut answer = args.remote.request("/v1/count", &body)?;
     let mut text = String::new();
     let read = answer.body.read_to_string(&mut text);
     read.context("the answer broke off")?;

@@ -75,17 +75,22 @@ impl FieldArgs {
 
     /// Refuses files: a server has fields of its own.
     pub(super) fn must_be_named(&self, values: &Values) -> Result<(), Failure> {
-        let named = values.text(&parameters::FIELD);
         let raster = self
             .raster
             .as_ref()
             .map(|file| ("--raster", file.display().to_string()));
-        let file = is_file(&named, &Fields::default()).then_some(("--field", named));
+        let flags = [
+            ("--field", &parameters::FIELD),
+            ("--terrain", &parameters::TERRAIN),
+        ];
+        let named = flags.map(|(flag, parameter)| (flag, values.text(parameter)));
+        let mut files = named.into_iter();
+        let file = files.find(|(_, name)| is_file(name, &Fields::default()));
         match raster.or(file) {
             None => Ok(()),
             Some((flag, file)) => Err(Failure::Usage(anyhow!(
-                "{flag} {file}: a file of this machine, which --url does not send; allowed: --field with the name of \
-                 a field of the server, or --query with the field in it"
+                "{flag} {file}: a file of this machine, which --url does not send; allowed: the name of a field of \
+                 the server, or --query with the field in it"
             ))),
         }
     }

@@ -68,7 +68,7 @@ pub(super) fn encoding_of(output: Option<&Path>) -> Result<Encoding, Failure> {
 
 /// Writes the points.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    if args.remote.is_given() {
+    if args.remote.is_given()? {
         return from_server(args);
     }
     let config = args.query.settings.merged()?;
@@ -109,7 +109,7 @@ fn from_server(args: &Args) -> Result<(), Failure> {
     }
     let mut body = draft.to_body();
     body.insert(FORMAT.name.into(), encoding.name().into());
-    let answer = args.remote.ask("/v1/points:query", &body)?;
+    let answer = args.remote.request("/v1/points:query", &body)?;
     if !args.quiet {
         remote::announce(&answer, encoding.name());
     }

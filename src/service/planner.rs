@@ -8,6 +8,7 @@ use strew_core::{
 use super::{
     Error, Limits, PlannedPoints, PlannedSet, Ready,
     effort::{self, Selection},
+    except::MOST_HOLES,
     query::{Amount, Kinds, Period, Query, Set, Token, parameters},
     resolve::{Resolved, check_reach, kind_distances, least_distance, no_period, resolve, unit},
 };
@@ -18,6 +19,8 @@ pub(super) struct Planner<'a> {
     limits: &'a Limits,
     stop: &'a Stop,
     layers: Vec<PointSet>,
+    /// How many more points all sets together may leave out.
+    room: usize,
 }
 
 impl<'a> Planner<'a> {
@@ -28,6 +31,7 @@ impl<'a> Planner<'a> {
             limits,
             stop,
             layers: vec![],
+            room: MOST_HOLES,
         }
     }
 
@@ -53,7 +57,7 @@ impl<'a> Planner<'a> {
             Resolved::Count(count) => here.and_then(|token| token.spacing).ok_or(count),
         };
         let points = set.points(ready, known.unwrap_or(Spacing::ONE));
-        let area = self.left(set, ready, &points)?;
+        let area = self.left(set, ready, &points, is_over)?;
         let mut selection = Selection {
             set: self.keeping_clear(set, points)?,
             area,
@@ -94,7 +98,7 @@ impl<'a> Planner<'a> {
             None => 0,
         };
         let kinds = match &set.kinds {
-            // The first answer has told.
+            // The first answer reported them.
             Some(_) if cursor.is_some() || is_unwanted => vec![],
             Some(kinds) => self.kind_counts(kinds, &selection, &plan)?,
             None => vec![],
@@ -117,18 +121,28 @@ impl<'a> Planner<'a> {
         .with_kinds(kinds, kind_distances(set, ready, spacing, region.reach())))
     }
 
-    /// The area of a set, without the places of points that are left out.
-    fn left(&self, set: &Set, ready: &Ready, points: &PointSet) -> Result<Area, Error> {
+    /// The area of a set, without the places of points that are left out; with them if it has no points in the
+    /// answer anyway.
+    fn left(
+        &mut self,
+        set: &Set,
+        ready: &Ready,
+        points: &PointSet,
+        is_over: bool,
+    ) -> Result<Area, Error> {
         let area = set.area(&self.query.region);
         let Some(except) = &set.except else {
             return Ok(area);
         };
         except.check(&set.name, points)?;
+        if is_over {
+            return Ok(area);
+        }
         // Positions are multiples of 2^-20 grid units.
         let unit = points.placement().spacing.get() * ready.table.alpha().set_side_f64();
         let step = unit * f64::from(1 << 22).recip();
         let field = format!("{}{}", set.path, parameters::EXCEPT.name);
-        Ok(except.cut(&field, points, area, step)?)
+        Ok(except.cut(&field, points, area, step, &mut self.room)?)
     }
 
     /// Plans a period.

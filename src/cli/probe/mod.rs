@@ -15,7 +15,7 @@ use std::{
 use anyhow::{Context as _, anyhow, bail};
 use rustls::{AlertDescription, ClientConnection, StreamOwned};
 
-pub(super) use self::trust::{Trust, TrustArgs};
+pub(super) use self::trust::{OVER_HTTP, Trust, TrustArgs};
 use super::{Failure, config};
 
 /// Flags of `strew probe`.
@@ -62,7 +62,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     };
     let trust = match is_tls {
         true => args.trust.trust(&host, args.url.is_none()).map(Some),
-        false => args.trust.must_be_unused().map(|()| None),
+        false => args.trust.must_be_unused(OVER_HTTP).map(|()| None),
     };
     let trust = trust.map_err(usage)?;
     let scheme = if is_tls { "https" } else { "http" };
@@ -134,13 +134,18 @@ fn ask(host: &str, path: &str, trust: Option<Trust>, timeout: Duration) -> anyho
             }
         }
     });
-    asked.map_err(|error| match error.downcast_ref::<io::Error>() {
+    asked.map_err(|error| explained(error, timeout))
+}
+
+/// An error of a connection in words that say what to do.
+pub(super) fn explained(error: anyhow::Error, timeout: Duration) -> anyhow::Error {
+    match error.downcast_ref::<io::Error>() {
         Some(error) if is_late(error) => anyhow!("no answer within {timeout:?}"),
         Some(cause) if wants_certificate(cause) => {
-            error.context("it asks for a certificate: give --certificate and --key")
+            error.context("it wants a certificate: use --certificate and --key")
         }
         _ => error,
-    })
+    }
 }
 
 /// Asks, and reads the first line of the answer.
@@ -157,14 +162,14 @@ fn exchange(mut stream: impl Read + Write, host: &str, path: &str) -> anyhow::Re
             Err(error) => return Err(error.into()),
         }
         if head.len() > MOST_BYTES {
-            bail!("the answer is no HTTP");
+            bail!("the answer is not HTTP");
         }
     }
     let line = String::from_utf8_lossy(&head);
     let status = line
         .strip_prefix("HTTP/1.")
         .and_then(|rest| rest.split_whitespace().nth(1)?.parse().ok());
-    status.context("the answer is no HTTP")
+    status.context("the answer is not HTTP")
 }
 
 fn is_late(error: &io::Error) -> bool {

@@ -1,4 +1,4 @@
-//! How `strew probe` and `--url` speak TLS: whom it believes, and what it shows of itself.
+//! How `strew probe` and `--url` speak TLS: which authorities are trusted, and the client certificate.
 
 use std::{
     path::{Path, PathBuf},
@@ -31,7 +31,7 @@ pub(in crate::cli) struct TrustArgs {
     /// The name that the daemon's certificate has to have. Default: the host of the URL.
     #[arg(long, value_name = "NAME", requires = "ca", hide_short_help = true)]
     server_name: Option<String>,
-    /// Believe any certificate. This is the default without --url: what answers then is on this
+    /// Believe any certificate. `strew probe` does so without --url: what answers then is on this
     /// machine, and nothing secret is sent.
     #[arg(long, hide_short_help = true)]
     insecure: bool,
@@ -49,6 +49,9 @@ pub(in crate::cli) struct TrustArgs {
     key: Option<PathBuf>,
 }
 
+/// Why flags of TLS mean nothing for a URL of http.
+pub(in crate::cli) const OVER_HTTP: &str = "the URL is http";
+
 /// What a connection is made with.
 #[derive(Debug)]
 pub(in crate::cli) struct Trust {
@@ -58,14 +61,14 @@ pub(in crate::cli) struct Trust {
 
 impl TrustArgs {
     /// Refuses flags that would mean nothing.
-    pub(in crate::cli) fn must_be_unused(&self) -> anyhow::Result<()> {
+    pub(in crate::cli) fn must_be_unused(&self, problem: &str) -> anyhow::Result<()> {
         let given = [
             ("--ca", self.ca.is_some()),
             ("--insecure", self.insecure),
             ("--certificate", self.certificate.is_some()),
         ];
         match given.into_iter().find(|(_, is_given)| *is_given) {
-            Some((flag, _)) => bail!("{flag}: the daemon is asked over http; allowed: with https"),
+            Some((flag, _)) => bail!("{flag}: {problem}; allowed: with an --url of https"),
             None => Ok(()),
         }
     }
@@ -73,7 +76,7 @@ impl TrustArgs {
     /// What to connect to `host` with; `is_here` if it is of this machine.
     pub(in crate::cli) fn trust(&self, host: &str, is_here: bool) -> anyhow::Result<Trust> {
         if self.ca.is_none() && !self.insecure && !is_here {
-            bail!("https asks for --ca FILE, or --insecure to believe any certificate");
+            bail!("https needs --ca FILE, or --insecure to believe any certificate");
         }
         let provider = Arc::new(default_provider());
         let builder = ClientConfig::builder_with_provider(provider.clone())

@@ -35,9 +35,9 @@ pub(in crate::cli) struct Body {
 /// What is left of a body.
 #[derive(Clone, Copy, Debug)]
 enum Left {
-    /// So many bytes.
+    /// This number of bytes.
     Bytes(u64),
-    /// So many bytes of a chunk, then others.
+    /// The bytes left of a chunk; more chunks follow.
     Chunk(u64),
     /// A chunk, after the end of another if `true`.
     Chunks(bool),
@@ -67,9 +67,15 @@ pub(super) fn post(
          content-length: {}\r\naccept-encoding: identity\r\n{key}\r\n",
         body.len()
     );
-    stream.write_all(&[head.as_bytes(), body].concat())?;
-    stream.flush()?;
-    read(BufReader::new(stream))
+    let sent = stream
+        .write_all(&[head.as_bytes(), body].concat())
+        .and_then(|()| stream.flush());
+    let answer = read(BufReader::new(stream));
+    match (answer, sent) {
+        // What is refused early is not read to its end.
+        (Err(_), Err(unsent)) => Err(unsent.into()),
+        (answer, _) => answer,
+    }
 }
 
 /// Reads the head of an answer.
@@ -79,14 +85,14 @@ fn read(mut stream: BufReader<Box<dyn Stream>>) -> anyhow::Result<Answer> {
     let status = first
         .strip_prefix("HTTP/1.")
         .and_then(|rest| rest.split_whitespace().nth(1)?.parse().ok());
-    let status = status.context("the answer is no HTTP")?;
+    let status = status.context("the answer is not HTTP")?;
     let mut headers = vec![];
     loop {
         let line = line(&mut stream, &mut room)?;
         if line.is_empty() {
             break;
         }
-        let (name, value) = line.split_once(':').context("the answer is no HTTP")?;
+        let (name, value) = line.split_once(':').context("the answer is not HTTP")?;
         headers.push((name.to_ascii_lowercase(), value.trim().to_owned()));
     }
     let header = |wanted: &str| {
@@ -95,8 +101,8 @@ fn read(mut stream: BufReader<Box<dyn Stream>>) -> anyhow::Result<Answer> {
     };
     let left = match (header("transfer-encoding"), header("content-length")) {
         (Some(coding), _) if coding.eq_ignore_ascii_case("chunked") => Left::Chunks(false),
-        (None, Some(length)) => Left::Bytes(length.parse().context("the answer is no HTTP")?),
-        _ => bail!("the answer does not say how long it is"),
+        (None, Some(length)) => Left::Bytes(length.parse().context("the answer is not HTTP")?),
+        _ => bail!("the answer has no length"),
     };
     Ok(Answer {
         status,

@@ -6,7 +6,7 @@
 mod http;
 
 use std::{
-    io::Read as _,
+    io::{ErrorKind, Read as _},
     path::PathBuf,
     time::{Duration, Instant},
 };
@@ -18,14 +18,14 @@ use self::http::Answer;
 use super::{
     Failure,
     output::Output,
-    probe::{TrustArgs, connect, host},
+    probe::{OVER_HTTP, TrustArgs, connect, explained, host},
 };
 
 /// Flags of a server that answers instead of this program.
 #[derive(Debug, clap::Args)]
 pub(super) struct RemoteArgs {
-    /// Let the daemon at this address answer, such as http://127.0.0.1:8080 or https://strew.example: its tables,
-    /// fields, worlds, lists and limits count.
+    /// Let the daemon at this address answer, such as http://127.0.0.1:8080, or https://strew.example with --ca: its
+    /// tables, fields, worlds, lists and limits count.
     #[arg(long, value_name = "URL", conflicts_with_all = ["tables", "set"])]
     url: Option<String>,
     /// A file with the key for that daemon [default: the key in the variable STREW_API_KEY, if it is set]
@@ -43,24 +43,28 @@ const PATIENCE: Duration = Duration::from_secs(60);
 const MOST_BYTES: u64 = 1 << 20;
 
 impl RemoteArgs {
-    /// Whether a server is to answer.
-    pub(super) const fn is_given(&self) -> bool {
-        self.url.is_some()
+    /// Whether a server is to answer. Without one, flags of a connection mean nothing.
+    pub(super) fn is_given(&self) -> Result<bool, Failure> {
+        if self.url.is_none() {
+            let unused = self.trust.must_be_unused("there is no --url");
+            unused.map_err(Failure::Usage)?;
+        }
+        Ok(self.url.is_some())
     }
 
     /// The answer of the server to a body.
-    pub(super) fn ask(&self, path: &str, body: &Map<String, Value>) -> Result<Answer, Failure> {
+    pub(super) fn request(&self, path: &str, body: &Map<String, Value>) -> Result<Answer, Failure> {
         let url = self.url.as_deref().unwrap_or_default();
         let usage = Failure::Usage;
         let (is_tls, host) = host(url).map_err(usage)?;
         let trust = match is_tls {
             true => self.trust.trust(&host, false).map(Some),
-            false => self.trust.must_be_unused().map(|()| None),
+            false => self.trust.must_be_unused(OVER_HTTP).map(|()| None),
         };
         let trust = trust.map_err(usage)?;
         let key = self.key().map_err(usage)?;
         let text = Value::Object(body.clone()).to_string();
-        let asked = connect(&host, Instant::now() + PATIENCE).and_then(|stream| {
+        let response = connect(&host, Instant::now() + PATIENCE).and_then(|stream| {
             stream.set_read_timeout(Some(PATIENCE))?;
             stream.set_write_timeout(Some(PATIENCE))?;
             http::post(
@@ -71,7 +75,8 @@ impl RemoteArgs {
                 text.as_bytes(),
             )
         });
-        let mut answer = asked.with_context(|| format!("{url}{path}"))?;
+        let response = response.map_err(|error| explained(error, PATIENCE));
+        let mut answer = response.with_context(|| format!("{url}{path}"))?;
         if answer.status == 200 {
             return Ok(answer);
         }
@@ -104,7 +109,7 @@ impl RemoteArgs {
     }
 }
 
-/// What a refusal says.
+/// The text of a refusal.
 fn problem(answer: &mut Answer) -> anyhow::Result<String> {
     let mut text = vec![];
     (&mut answer.body).take(MOST_BYTES).read_to_end(&mut text)?;
@@ -121,10 +126,11 @@ fn problem(answer: &mut Answer) -> anyhow::Result<String> {
 pub(super) fn write(mut answer: Answer, mut output: Output) -> Result<(), Failure> {
     let mut part = vec![0; 1 << 16];
     loop {
-        let read = answer
-            .body
-            .read(&mut part)
-            .context("the answer broke off")?;
+        let read = match answer.body.read(&mut part) {
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            read => read.map_err(|error| explained(error.into(), PATIENCE)),
+        };
+        let read = read.context("the answer broke off")?;
         if read == 0 {
             return Ok(output.finish()?);
         }
@@ -132,7 +138,7 @@ pub(super) fn write(mut answer: Answer, mut output: Output) -> Result<(), Failur
     }
 }
 
-/// Says on standard error what comes.
+/// Announces the answer on standard error.
 pub(super) fn announce(answer: &Answer, format: &str) {
     let header = |name: &str| answer.header(name);
     eprintln!(

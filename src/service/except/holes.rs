@@ -11,7 +11,7 @@ impl Except {
     /// An area without the places of the points that are left out. `step` is at most a quarter of the distance that
     /// coordinates of two points can have along an axis near the origin, in world units.
     ///
-    /// `field` is named in faults.
+    /// `field` is named in faults, `room` is the number of holes that are left, and is lowered.
     ///
     /// # Errors
     /// A fault for too many of them in the area.
@@ -21,6 +21,7 @@ impl Except {
         points: &PointSet,
         area: Area,
         step: f64,
+        room: &mut usize,
     ) -> Result<Area, Fault> {
         // An area out of reach is refused when it is planned.
         let Ok([columns, rows]) = server::addresses(points, area.clone()) else {
@@ -34,24 +35,25 @@ impl Except {
             let near = ids[start..end.max(start)].iter();
             let near = near.filter(|id| rows.contains(&id.y));
             let places = near.filter_map(|id| place(points, *id));
-            let room = MOST_HOLES + 1 - rings.len();
-            rings.extend(places.take(room).map(|at| ring(at, step)));
-            if rings.len() > MOST_HOLES {
+            rings.extend(places.take(*room + 1).map(|at| ring(at, step)));
+            // A point of two lists would have two holes, of which a polygon makes none.
+            rings.sort_unstable_by(|a, b| {
+                let by_x = a[0][0].total_cmp(&b[0][0]);
+                by_x.then(a[0][1].total_cmp(&b[0][1]))
+            });
+            rings.dedup();
+            if rings.len() > *room {
                 let detail = "more of its ids than may be left out at once lie in the region";
-                let allowed = format!("at most {MOST_HOLES} in a region: request smaller ones");
+                let allowed = format!(
+                    "at most {MOST_HOLES} in a region, of all layers: request smaller ones"
+                );
                 return Err(Fault::new(field, self.names.join(","), detail, allowed));
             }
         }
+        *room -= rings.len();
         if rings.is_empty() {
             return Ok(area);
         }
-        // A point of two lists would have two holes, of which a polygon makes none.
-        rings.sort_unstable_by(|a, b| {
-            a[0][0]
-                .total_cmp(&b[0][0])
-                .then(a[0][1].total_cmp(&b[0][1]))
-        });
-        rings.dedup();
         let holes = Polygon::new(&rings).map_err(|error| {
             Fault::new(field, "", error.to_string(), "points at finite coordinates")
         })?;

@@ -183,7 +183,7 @@ impl Items {
 
 /// Nothing if nothing is left out; refuses what cannot go together.
 fn fits(values: &Values, except: Except) -> Checked<Option<Except>> {
-    if except.parts.is_empty() {
+    if except.parts.is_empty() && except.names.is_empty() {
         return Ok(None);
     }
     for (parameter, detail, allowed) in [

@@ -159,7 +159,7 @@ impl Query {
         }
     }
 
-    /// The digests of all that its points are made of besides what it says: tables, then fields, then lists.
+    /// The digests of everything that its points depend on beyond the query itself: tables, then fields, then lists.
     pub fn digests(&self) -> impl Iterator<Item = &str> {
         let except = self.sets.iter().filter_map(|set| set.except.as_ref());
         let except = except.flat_map(|except| except.parts.iter().map(|part| part.digest()));

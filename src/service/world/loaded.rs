@@ -137,7 +137,10 @@ impl World {
         ] {
             if is_given {
                 let detail = "not allowed in a world";
-                return Err(Fault::new(member, json, detail, ALLOWED).into());
+                let document: Option<serde_json::Value> = serde_json::from_str(json).ok();
+                let value = document.and_then(|document| Some(document.get(member)?.to_string()));
+                let value = value.unwrap_or_default();
+                return Err(Fault::new(member, value, detail, ALLOWED).into());
             }
         }
         let checked = draft.try_out(catalog, most_vertices);

@@ -77,11 +77,8 @@ fn wrong_flags_are_reported() {
         (&["--timeout", "NaN"], "allowed: 0.001 to 3600"),
         (&["--listen", "127.0.0.1:0"], "name it with --url"),
         (&["--live", "--ready"], "cannot be used with"),
-        (&["--insecure"], "--insecure: the daemon is asked over http"),
-        (
-            &["--url", "http://x", "--ca", "y"],
-            "--ca: the daemon is asked",
-        ),
+        (&["--insecure"], "--insecure: the URL is http"),
+        (&["--url", "http://x", "--ca", "y"], "--ca: the URL is http"),
         (&["--ca", "x", "--insecure"], "cannot be used with"),
         (&["--certificate", "x"], "--key <FILE>"),
         (
@@ -139,7 +136,7 @@ fn the_probe_speaks_tls() {
         ),
         // Plain HTTP gets no answer from a TLS port.
         (&["--url", &daemon.url("")], 1, "the connection ended"),
-        (&["--url", &named], 2, "https asks for --ca FILE"),
+        (&["--url", &named], 2, "https needs --ca FILE"),
     ] {
         let (ended, message) = probe(arguments);
         assert_eq!(ended, Some(code), "{arguments:?}: {message}");
@@ -174,10 +171,7 @@ fn the_probe_presents_a_client_certificate() {
     assert_eq!(probe(&with_key), (Some(0), String::new()));
     let (code, message) = probe(&["--url", &url, "--ca", &ca]);
     assert_eq!(code, Some(1));
-    assert!(
-        message.contains("give --certificate and --key"),
-        "{message}"
-    );
+    assert!(message.contains("use --certificate and --key"), "{message}");
 
     let server_key = folder.path().join("server.key").display().to_string();
     for (key, part) in [

@@ -98,11 +98,17 @@ fn names_are_those_of_the_daemon_and_its_refusals_are_shown() {
             ["--field", "a/mask.png"],
             "--field a/mask.png: a file of this machine",
         ),
+        (
+            ["--terrain", "a/hills.png"],
+            "--terrain a/hills.png: a file of this machine",
+        ),
     ] {
         let all = [&chunk[..4], &["--density", "1"][..0], &flags, &nowhere].concat();
         let error = refused(&all, 2);
         assert!(error.contains(expected), "{error}");
     }
+    let error = refused(&[&chunk[..], &["--spacing", "1", "--insecure"]].concat(), 2);
+    assert!(error.contains("--insecure: there is no --url"), "{error}");
     let parquet = [
         &chunk[..4],
         &["--spacing", "1", "--format", "parquet"],
@@ -112,6 +118,27 @@ fn names_are_those_of_the_daemon_and_its_refusals_are_shown() {
     assert!(refused(&parquet, 2).contains("parquet"));
     let error = refused(&[&chunk[..], &["--spacing", "1"], &nowhere].concat(), 1);
     assert!(error.contains("http://127.0.0.1:1"), "{error}");
+}
+
+#[test]
+fn a_body_that_is_refused_early_shows_why() {
+    let daemon = Daemon::start(&["limits.max_body_bytes=65536"]);
+    let turn = |i: i32| (f64::from(i) * std::f64::consts::TAU / 50_000.0).sin_cos();
+    let vertices: Vec<[f64; 2]> = (0..50_000)
+        .chain([0])
+        .map(turn)
+        .map(|(x, y)| [x, y])
+        .collect();
+    let body = serde_json::json!({
+        "region": { "polygon": { "type": "Polygon", "coordinates": [vertices] } }, "spacing": 1,
+    });
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("query.json");
+    fs::write(&file, body.to_string()).expect("writable");
+    let file = file.to_str().expect("Unicode");
+    let url = daemon.url("");
+    let error = refused(&["count", "--query", file, "--url", &url], 2);
+    assert!(error.contains("status 413"), "{error}");
 }
 
 #[test]

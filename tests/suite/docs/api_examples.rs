@@ -299,6 +299,12 @@ fn compare(folder: &Path, page: &str, names: &[&str]) {
     for name in names {
         let drawn = std::fs::read(folder.join(name));
         let kept = root.join("docs/pictures").join(page).join(name);
+        let is_picture =
+            |drawn: &Vec<u8>| drawn.starts_with(b"\x89PNG") || drawn.starts_with(b"<svg");
+        assert!(
+            drawn.as_ref().map_or(true, is_picture),
+            "{name} is no picture"
+        );
         match drawn {
             Ok(drawn) if std::env::var_os("UPDATE_GOLDEN").is_some() => {
                 std::fs::write(kept, drawn).expect("writable");
