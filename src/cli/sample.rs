@@ -110,6 +110,11 @@ fn from_server(args: &Args) -> Result<(), Failure> {
     let mut body = draft.to_body();
     body.insert(FORMAT.name.into(), encoding.name().into());
     let answer = args.remote.request("/v1/points:query", &body)?;
+    if answer.header("strew-count").is_none() {
+        let problem =
+            "the answer has no header strew-count; allowed: the address of a strew daemon";
+        return Err(anyhow!("--url: {problem}").into());
+    }
     if !args.quiet {
         remote::announce(&answer, encoding.name());
     }

@@ -134,7 +134,7 @@ impl<'a> Planner<'a> {
         let Some(except) = &set.except else {
             return Ok(area);
         };
-        except.check(&set.name, points)?;
+        except.check(&set.name, &set.every_point(ready))?;
         if is_over {
             return Ok(area);
         }

@@ -121,7 +121,7 @@ fn line(stream: &mut impl io::BufRead, room: &mut u64) -> io::Result<String> {
             0 => io::ErrorKind::InvalidData,
             _ => io::ErrorKind::UnexpectedEof,
         };
-        return Err(io::Error::new(kind, "the head of the answer does not end"));
+        return Err(io::Error::new(kind, "the answer ended early"));
     }
     if line.last() == Some(&b'\r') {
         line.pop();

@@ -98,11 +98,13 @@ impl Lists {
 impl NamedList {
     /// Reads a list.
     fn read(found: &Found, text: &str, most: usize) -> Result<Self, String> {
+        // Editors of Windows begin files with this mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut by_layer: BTreeMap<String, Vec<PointId>> = BTreeMap::new();
         let mut count = 0;
         let mut add = |place: &str, item: &str| {
             let (layer, id) = split(item).ok_or_else(|| {
-                format!("{place}: `{item}` is no id; allowed: column:row, or layer/column:row")
+                format!("{place}: `{item}` is not an id; allowed: column:row, or layer/column:row")
             })?;
             count += 1;
             if count > most {

@@ -92,7 +92,7 @@ impl Except {
     }
 
     /// Refuses ids of the query that are no points of a set's table. Those that the set leaves out anyway, by its
-    /// share or its field, are in order.
+    /// share or its field, are allowed.
     ///
     /// # Errors
     /// A fault of the first that is none.

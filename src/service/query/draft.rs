@@ -73,9 +73,23 @@ impl Draft {
             groups::ANSWER
         } else {
             self.layers.clone_from(&world.layers);
+            self.join_except(world);
             groups::QUERY
         };
         self.values.fill_from(&world.values, groups);
+    }
+
+    /// Leaves out what a world leaves out, too: what was taken away stays away.
+    fn join_except(&mut self, world: &Self) {
+        let items = |draft: &Self| draft.values.get::<Vec<String>>(&EXCEPT).ok().flatten();
+        if let (Some(mut own), Some(others)) = (items(self), items(world)) {
+            let more: Vec<String> = others
+                .into_iter()
+                .filter(|item| !own.contains(item))
+                .collect();
+            own.extend(more);
+            self.values.replace(&EXCEPT, Some(Value::Names(own)));
+        }
     }
 
     /// Whether all of it could be read. What it means is not checked.

@@ -232,6 +232,12 @@ impl Set {
         }
     }
 
+    /// All points that the table has for it, whatever its share, its kinds and its fields leave out.
+    #[must_use]
+    pub(super) fn every_point(&self, ready: &Ready) -> PointSet {
+        PointSet::new(ready.table.clone()).placed(Placement::new(Spacing::ONE, self.seed))
+    }
+
     /// The fields that it depends on: its own, then those of its variants.
     pub(super) fn fields(&self) -> impl Iterator<Item = &SetField> {
         let of_variants = self.kinds.iter().flat_map(|kinds| &kinds.fields);

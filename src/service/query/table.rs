@@ -23,7 +23,7 @@ pub(super) fn check(
         values.get::<String>(&PROFILE),
         values.get::<String>(&ALPHA),
         values.get::<String>(&MAP),
-        pin(values),
+        digest(values, &TABLE),
     )
         .together()?;
     let profile = profile.map(Into::into).or(named);
@@ -134,15 +134,15 @@ pub fn chosen(values: &Values, catalog: &Catalog) -> Result<Arc<Entry>, Error> {
     Ok(entry)
 }
 
-/// The digest that the table must have, in lower case.
-fn pin(values: &Values) -> Checked<Option<String>> {
-    let Some(text) = values.get::<String>(&TABLE)? else {
+/// A digest that something must have, in lower case.
+pub fn digest(values: &Values, parameter: &'static Parameter) -> Checked<Option<String>> {
+    let Some(text) = values.get::<String>(parameter)? else {
         return Ok(None);
     };
     if text.len() == 64 && text.bytes().all(|byte| byte.is_ascii_hexdigit()) {
         return Ok(Some(text.to_ascii_lowercase()));
     }
-    Err(values.fault(&TABLE, "not a digest").into())
+    Err(values.fault(parameter, "not a digest").into())
 }
 
 /// Checks that a table is the pinned one.

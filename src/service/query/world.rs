@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use super::{
     Draft, Faults, Group, Parameter, groups,
-    parameters::{EXCEPT, FIELD, ONLY, TERRAIN, WORLD, WORLD_DIGEST},
-    read_body, unknown,
+    parameters::{EXCEPT, FIELD, ONLY, PERIODIC, TERRAIN, WORLD, WORLD_DIGEST},
+    read_body, table, unknown,
 };
 use crate::service::{
     Error, Fault,
@@ -19,11 +19,11 @@ impl Draft {
     /// [`Error::Invalid`] if there is none of that name, and [`Error::OtherWorld`] if it has another digest than
     /// the draft wants.
     pub fn filled(&self, worlds: &Worlds) -> Result<(Cow<'_, Self>, Option<Named>), Error> {
-        let pin = self.values.get::<String>(&WORLD_DIGEST);
-        let (Ok(named), Ok(pin)) = (self.values.get::<String>(&WORLD), pin) else {
+        let Ok(named) = self.values.get::<String>(&WORLD) else {
             // What could not be read is a fault of the draft.
             return Ok((Cow::Borrowed(self), None));
         };
+        let pin = table::digest(&self.values, &WORLD_DIGEST)?;
         let Some(name) = named else {
             return match pin {
                 Some(_) => {
@@ -36,7 +36,6 @@ impl Draft {
         let Some(world) = worlds.get(&name) else {
             return Err(self.no_world(worlds).into());
         };
-        let pin = pin.map(|pin| pin.to_lowercase());
         if let Some(pinned) = pin.as_ref().filter(|pin| **pin != world.digest) {
             return Err(Error::OtherWorld {
                 name,
@@ -44,13 +43,19 @@ impl Draft {
                 loaded: world.digest.clone(),
             });
         }
+        let whole = read_body(world.json.as_bytes(), groups::QUERY)?;
+        let has_periods = self.values.takes().any(|known| *known == PERIODIC);
+        if whole.values.has(&PERIODIC) && !has_periods {
+            let detail = "the world is a period, which has neither chunks nor neighbors";
+            return Err(Fault::new(WORLD.name, &name, detail, "a world without periodic").into());
+        }
         let used = Named {
             is_pinned: pin.is_some() && self.adds_nothing(),
             digest: world.digest.clone(),
             name,
         };
         let mut draft = self.clone();
-        draft.fill_from(&read_body(world.json.as_bytes(), groups::QUERY)?);
+        draft.fill_from(&whole);
         Ok((Cow::Owned(draft), Some(used)))
     }
 

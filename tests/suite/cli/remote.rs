@@ -167,15 +167,24 @@ fn an_answer_that_is_cut_leaves_no_file() {
         let (mut stream, _) = server.accept().expect("a client");
         let mut part = [0; 4096];
         let _ = stream.read(&mut part);
-        let head =
-            "HTTP/1.1 200 OK\r\ntransfer-encoding: chunked\r\n\r\n9\r\nid,x,y\n1:\r\n5\r\n2,3";
-        stream.write_all(head.as_bytes()).expect("writable");
+        let head = "HTTP/1.1 200 OK\r\nstrew-count: 9\r\ntransfer-encoding: chunked\r\n\r\n";
+        let body = "9\r\nid,x,y\n1:\r\n5\r\n2,3";
+        stream
+            .write_all(format!("{head}{body}").as_bytes())
+            .expect("writable");
+        // Another server than a daemon.
+        let (mut stream, _) = server.accept().expect("a client");
+        let _ = stream.read(&mut part);
+        let page = "HTTP/1.1 200 OK\r\ncontent-type: text/html\r\ncontent-length: 3\r\n\r\n<p>";
+        stream.write_all(page.as_bytes()).expect("writable");
     });
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("points.csv");
     let file = file.to_str().expect("Unicode");
     let error = refused(&[&QUERY[..], &["--url", &url, "-o", file]].concat(), 1);
     assert!(error.contains("the answer broke off"), "{error}");
+    let error = refused(&[&QUERY[..], &["--url", &url, "-o", file]].concat(), 1);
+    assert!(error.contains("no header strew-count"), "{error}");
     let left = fs::read_dir(folder.path()).expect("a folder").count();
     assert_eq!(left, 0);
     served.join().expect("served");

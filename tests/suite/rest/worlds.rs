@@ -282,3 +282,37 @@ fn worlds_are_listed_and_unknown_ones_refused() {
     let refused = daemon.get("/v1/points?bbox=0,0,9,9&world=forest&warp=off");
     assert_eq!(refused.json()["errors"][0]["field"], "warp");
 }
+
+#[test]
+fn what_a_world_leaves_out_stays_out() {
+    let daemon = Daemon::with_config(
+        "[except.felled]\nids = ['2:-1']\n[worlds.wood]\nspacing = 1\nexcept = ['felled']\n\
+         [worlds.tile]\nspacing = 1\nmap = 's'\nperiodic = 2000\n",
+    );
+    let ids = |more: &str| {
+        let answer = daemon.get(&format!("/v1/points?bbox=0,0,3,2&format=csv&{more}"));
+        assert_eq!(answer.status, 200, "{more}: {}", answer.text());
+        let id = |line: &str| line.split(',').next().unwrap_or_default().to_owned();
+        answer.text().lines().skip(1).map(id).collect::<Vec<_>>()
+    };
+    let all = ids("spacing=1");
+    let without = |gone: &[&str]| {
+        let left = all.iter().filter(|id| !gone.contains(&id.as_str()));
+        left.cloned().collect::<Vec<_>>()
+    };
+    assert!(all.contains(&"2:-1".into()) && all.contains(&"8:-1".into()));
+    assert_eq!(ids("world=wood"), without(&["2:-1"]));
+    // A request adds to what the world leaves out.
+    assert_eq!(ids("world=wood&except=8:-1"), without(&["2:-1", "8:-1"]));
+    // What the share leaves out anyway is allowed.
+    for id in &all {
+        ids(&format!("spacing=1&keep=0.3&except={id}"));
+    }
+    let refused = daemon.get("/v1/worlds/tile/chunks/8/0/0");
+    assert_eq!(refused.status, 400, "{}", refused.text());
+    assert_eq!(refused.json()["errors"][0]["field"], "world");
+    assert_eq!(daemon.get("/v1/count?world=tile").status, 200);
+    let wrong = daemon.get("/v1/count?bbox=0,0,1,1&world=wood&world_digest=zz");
+    assert_eq!(wrong.status, 400, "{}", wrong.text());
+    assert_eq!(wrong.json()["errors"][0]["detail"], "not a digest");
+}
