@@ -14,6 +14,7 @@ import io
 import json
 import math
 import sys
+import urllib.error
 import urllib.parse
 import urllib.request
 
@@ -57,6 +58,8 @@ def ask(options):
             columns = json.loads(answer.headers["strew-columns"])
     except urllib.error.HTTPError as error:
         sys.exit(f"{options.url}: {error.read().decode()}")
+    except urllib.error.URLError as error:
+        sys.exit(f"{options.url} does not answer ({error.reason}): start `strew serve`, or name a daemon by --url")
     return {column["name"]: (rows[:, i], column.get("names")) for i, column in enumerate(columns)}
 
 

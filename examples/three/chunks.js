@@ -1,4 +1,4 @@
-// Chunks around a place: asked for once, drawn by distance, forgotten when far.
+// Chunks around a place: requested once, drawn by distance, forgotten when far.
 import * as THREE from "three";
 
 const SIDE = 32; // meters, along each side of a chunk

@@ -1,3 +1,5 @@
+/// <reference lib="esnext.disposable" />
+
 /** Numbers: a list or a typed array. */
 export type Numbers = ArrayLike<number>;
 
@@ -20,7 +22,7 @@ export interface Query {
     /** No two points are nearer than this. */
     min_distance?: number;
     /** The number of points in the region, exactly. */
-    count?: number;
+    count?: number | bigint;
     /** Which set of points; 0 is the plain pattern. */
     seed?: number | bigint;
     profile?: string;
@@ -36,10 +38,18 @@ export interface Query {
     /** Further columns: angle, scale, variant, rank, u1 to u16. */
     attributes?: string | string[];
     variants?: Record<string, number>;
+    /** Where points stand: a name, or a field as JSON has it, whose share is a height between `heights`. */
+    terrain?: string | object;
+    /** The heights of the terrain where its field is 0 and where it is 1. */
+    heights?: Numbers;
+    /** Whether there are the columns nx, ny, nz. */
+    normals?: boolean;
+    /** How far things lean from the vertical (0) to the normal (1). Adds the columns qx, qy, qz, qw. */
+    align?: number;
     /** Several sets at once. */
     layers?: object[];
-    offset?: number;
-    limit?: number;
+    offset?: number | bigint;
+    limit?: number | bigint;
     cursor?: string;
     [member: string]: unknown;
 }
@@ -82,7 +92,7 @@ export class PointSet<Where extends "here" | "there" = "here"> implements Iterab
     readonly body: Record<string, unknown>;
     /** The exact number of points: a number, or a bigint from 2⁵³ on. */
     count(): Answer<Where, number | bigint>;
-    /** The query with everything filled in. */
+    /** The query with everything filled in. Integers from 2⁵³ on are bigints. */
     resolved(): Answer<Where, Record<string, unknown>>;
     /** x and y of each point, by turns. */
     xy(): Answer<Where, Float64Array>;
@@ -102,7 +112,7 @@ export class PointSet<Where extends "here" | "there" = "here"> implements Iterab
     within(shape: Pick<Query, "bbox" | "circle" | "polygon" | "chunk" | "region">): PointSet<Where>;
     /** The points of a square of the world grid. */
     chunk(size: number, x: number, y: number): PointSet<Where>;
-    /** The points in up to so many parts of the same size, give or take one. */
+    /** The points in at most `parts` parts of the same size, give or take one. */
     split(parts: number): Answer<Where, PointSet<Where>[]>;
     /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
     nearest(at: Numbers, limits?: { k?: number; radius?: number }): Answer<Where, Point[]>;
@@ -115,6 +125,10 @@ export class PointSet<Where extends "here" | "there" = "here"> implements Iterab
     ): Answer<Where, Uint8Array>;
     /** The points one by one; in process only. */
     [Symbol.iterator](): Iterator<Point>;
+    /** Releases the memory of the points at once. A set that is used afterwards makes them again. */
+    free(): void;
+    /** The same, for `using`, where the platform has `Symbol.dispose`. */
+    [Symbol.dispose](): void;
 }
 
 /** Where points come from. */

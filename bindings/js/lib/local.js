@@ -8,7 +8,7 @@ export const DEFAULT_TABLES = ["blue-5-sqrt3-over-2-m.strew"];
 
 /** This page or process. */
 export class Local extends Source {
-    checksAtOnce = true;
+    isLocal = true;
     #module;
     #library;
 
@@ -69,6 +69,12 @@ class Plan {
         module.held(this, plan);
     }
 
+    /** Frees the memory. The plan has no points afterwards. */
+    free() {
+        if (this.#plan) this.#module.free(this, this.#plan);
+        this.#plan = 0;
+    }
+
     count() {
         return this.#module.scoped((room) => {
             const out = room(8);
@@ -84,7 +90,7 @@ class Plan {
         return typeof count === "number" && count < 2 ** 28 ? count : 0;
     }
 
-    /** An array of so many numbers for each point. */
+    /** An array with `each` numbers per point. */
     #filled(kind, each, call, ...more) {
         const module = this.#module;
         const few = this.#few();
@@ -128,11 +134,11 @@ class Plan {
     }
 
     resolved() {
-        return this.#module.scoped((room) => this.#module.json("strew_plan_resolved", room, this.#plan));
+        return this.#module.scoped((room) => this.#module.exact("strew_plan_resolved", room, this.#plan));
     }
 
     split(parts) {
-        return this.#module.scoped((room) => this.#module.json("strew_plan_split", room, this.#plan, parts));
+        return this.#module.scoped((room) => this.#module.exact("strew_plan_split", room, this.#plan, parts));
     }
 
     document(options) {

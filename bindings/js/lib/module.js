@@ -1,11 +1,12 @@
 // The WebAssembly module: the C library of bindings/c, its calls and its memory.
 
 import { StrewError } from "./error.js";
+import { parsed } from "./query.js";
 
 const ENCODER = new TextEncoder();
 const DECODER = new TextDecoder();
 
-/** A compiled module with its memory. Pointers are numbers. */
+/** A compiled module with its memory. Pointers are numbers: `>>> 0` makes those above 2 GiB positive. */
 export class Module {
     #plans = new FinalizationRegistry((plan) => this.calls.strew_plan_free(plan));
 
@@ -17,7 +18,7 @@ export class Module {
     scoped(work) {
         const held = [];
         const room = (bytes) => {
-            const at = this.calls.strew_allocate(bytes);
+            const at = this.calls.strew_allocate(bytes) >>> 0;
             if (!at) throw new RangeError("there is not enough memory");
             held.push([at, bytes]);
             return at;
@@ -32,7 +33,7 @@ export class Module {
     /** Calls a function that returns a code. */
     call(name, ...values) {
         if (this.calls[name](...values) === 0) return;
-        const { kind, detail, errors } = JSON.parse(this.#text(this.calls.strew_error_document()));
+        const { kind, detail, errors } = JSON.parse(this.#text(this.calls.strew_error_document() >>> 0));
         throw new StrewError(detail, kind, errors);
     }
 
@@ -66,7 +67,8 @@ export class Module {
         const out = room(4);
         this.call(name, ...values, out);
         const made = this.pointer(out);
-        const [at, length] = [this.calls.strew_bytes_data(made), this.calls.strew_bytes_length(made)];
+        const at = this.calls.strew_bytes_data(made) >>> 0;
+        const length = this.calls.strew_bytes_length(made) >>> 0;
         const copy = new Uint8Array(this.memory, at, length).slice();
         this.calls.strew_bytes_free(made);
         return copy;
@@ -77,6 +79,11 @@ export class Module {
         return JSON.parse(DECODER.decode(this.bytes(name, room, ...values)));
     }
 
+    /** The same as JSON with integers of any size. */
+    exact(name, room, ...values) {
+        return parsed(DECODER.decode(this.bytes(name, room, ...values)));
+    }
+
     /** An array that a call fills. */
     filled(kind, length, room, fill) {
         const bytes = length * kind.BYTES_PER_ELEMENT;
@@ -85,8 +92,14 @@ export class Module {
         return new kind(this.memory.slice(at, at + bytes));
     }
 
-    /** A plan, freed after the object that holds it. */
+    /** Has a plan freed after the object that holds it, unless that frees it before. */
     held(owner, plan) {
-        this.#plans.register(owner, plan);
+        this.#plans.register(owner, plan, owner);
+    }
+
+    /** Frees a plan at once. */
+    free(owner, plan) {
+        this.#plans.unregister(owner);
+        this.calls.strew_plan_free(plan);
     }
 }

@@ -1,6 +1,6 @@
 // Sets of points, over any source: this page, or a daemon. A daemon's answers are promises.
 
-import { OF_ANSWERS, address, body, text } from "./query.js";
+import { OF_ANSWERS, address, body, isObject, text } from "./query.js";
 import { StrewError } from "./error.js";
 
 /** What comes of a value, now or when it is there. */
@@ -8,6 +8,9 @@ const after = (value, use) => (value instanceof Promise ? value.then(use) : use(
 
 /** Where points come from. */
 export class Source {
+    /** Whether points are made in this page or process: queries are checked at once, answers are no promises. */
+    isLocal = false;
+
     /** The points of a query by its keywords: `points({ bbox: [0, 0, 10, 10], spacing: 1, seed: 7 })`. */
     points(keywords) {
         return this.query(body(keywords));
@@ -16,7 +19,7 @@ export class Source {
     /** The points of a query in JSON, the body of `POST /v1/points:query`. */
     query(query) {
         const set = new PointSet(this, query);
-        if (this.checksAtOnce && "region" in query) set.plan();
+        if (this.isLocal && "region" in query) set.plan();
         return set;
     }
 }
@@ -42,6 +45,12 @@ export class PointSet {
     plan() {
         this.#plan ??= this.#source.plan(text(this.#body), this.#body);
         return this.#plan;
+    }
+
+    /** Releases the memory of the points. A set that is used afterwards makes them again. */
+    free() {
+        this.#plan?.free();
+        this.#plan = this.#columns = undefined;
     }
 
     /** The exact number of points: a number, or a bigint from 2⁵³ on. */
@@ -75,8 +84,16 @@ export class PointSet {
     }
 
     #all() {
-        this.#columns ??= this.plan().columns();
-        return this.#columns;
+        if (this.#columns) return this.#columns;
+        const columns = this.plan().columns();
+        this.#columns = columns;
+        // What failed is requested again by the next call.
+        if (columns instanceof Promise) {
+            columns.catch(() => {
+                if (this.#columns === columns) this.#columns = undefined;
+            });
+        }
+        return columns;
     }
 
     /** The names of the columns beside ids and coordinates. */
@@ -130,7 +147,7 @@ export class PointSet {
         return this.within({ chunk: [size, x, y] });
     }
 
-    /** The points in up to so many parts of the same size, give or take one. A part's `body` can go to a worker. */
+    /** The points in at most `parts` parts of the same size, give or take one. A part's `body` can go to a worker. */
     split(parts) {
         const made = ({ cursor, limit }) => this.#with({ cursor, limit, offset: undefined });
         return after(this.plan().split(parts), (places) => places.map(made));
@@ -139,21 +156,15 @@ export class PointSet {
     #set(more) {
         const values = { ...more, ...this.#body };
         for (const name of OF_ANSWERS) delete values[name];
-        const whole = () => address(values);
-        const field = values.field;
-        const spaced = () => {
-            if (!("count" in values && "region" in this.#body)) return whole();
-            delete values.count;
-            return after(this.resolved(), ({ spacing }) => {
-                values.spacing = spacing;
-                return whole();
-            });
-        };
-        if (field === null || typeof field !== "object") return spaced();
-        return after(this.#source.holdField(text(field)), (name) => {
-            values.field = name;
-            return spaced();
-        });
+        const isOfRegion = "count" in values && "region" in this.#body;
+        if (isOfRegion) delete values.count;
+        let ready = isOfRegion ? after(this.resolved(), ({ spacing }) => void (values.spacing = spacing)) : undefined;
+        // An address has no room for fields: it names them.
+        for (const name of ["field", "terrain"].filter((name) => isObject(values[name]))) {
+            const hold = () => this.#source.holdField(text(values[name]));
+            ready = after(after(ready, hold), (held) => void (values[name] = held));
+        }
+        return after(ready, () => address(values));
     }
 
     /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
@@ -173,8 +184,8 @@ export class PointSet {
 
     /** The points one by one, as objects with an id, x, y and attributes; in process only. */
     *[Symbol.iterator]() {
+        if (!this.#source.isLocal) throw new StrewError("a daemon's points come as columns: await points.xy()");
         const [ids, xy] = [this.ids(), this.xy()];
-        if (ids instanceof Promise) throw new StrewError("a daemon's points come as columns: await points.xy()");
         const columns = this.names().map((name) => [name, this.column(name)]);
         for (let i = 0; i < xy.length / 2; i++) {
             const point = { id: `${ids[2 * i]}:${ids[2 * i + 1]}`, x: xy[2 * i], y: xy[2 * i + 1] };
@@ -183,3 +194,6 @@ export class PointSet {
         }
     }
 }
+
+// For `using points = strew.points(…)`, where the platform has it.
+if (Symbol.dispose) PointSet.prototype[Symbol.dispose] = PointSet.prototype.free;

@@ -1,11 +1,13 @@
 // Queries: keywords as the body, and as the address, that REST takes.
 
 const SHAPES = ["bbox", "circle", "polygon", "chunk"];
+// Members of a query that are about the form of its answer.
+export const OF_DOCUMENTS = ["format", "decimals", "size", "summary", "crs"];
 // Members of a query that are not about its set of points.
-export const OF_ANSWERS = ["region", "offset", "limit", "cursor", "format", "decimals", "size", "summary", "crs"];
+export const OF_ANSWERS = ["region", "offset", "limit", "cursor", ...OF_DOCUMENTS];
 
 const isList = (value) => Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView));
-const isObject = (value) => value !== null && typeof value === "object" && !isList(value);
+export const isObject = (value) => value !== null && typeof value === "object" && !isList(value);
 
 function region(shape, value) {
     // What is not of this form is passed on, to be refused in the words of REST.
@@ -48,6 +50,16 @@ export function text(value) {
         return isList(part) ? Array.from(part) : part;
     };
     return JSON.stringify(value, plain).replace(/"\\u0001(-?\d+)\\u0001"/g, "$1");
+}
+
+const TOKEN = /"(?:[^"\\]|\\.)*"|-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?/g;
+
+/** JSON as a value. Integers that a number cannot hold exactly are bigints. */
+export function parsed(json) {
+    const isLarge = (token) => /^-?\d{16,}$/.test(token) && !Number.isSafeInteger(Number(token));
+    const marked = json.replace(TOKEN, (token) => (isLarge(token) ? `"\\u0001${token}"` : token));
+    const isMarked = (part) => typeof part === "string" && /^\u0001-?\d+$/.test(part);
+    return JSON.parse(marked, (_, part) => (isMarked(part) ? BigInt(part.slice(1)) : part));
 }
 
 function word(value) {

@@ -2,9 +2,9 @@
 
 import { StrewError } from "./error.js";
 import { Source } from "./points.js";
+import { OF_DOCUMENTS, parsed, text } from "./query.js";
 
 class Daemon extends Source {
-    checksAtOnce = false;
     #url;
     #headers;
 
@@ -20,21 +20,15 @@ class Daemon extends Source {
         const response = await fetch(this.#url + path, body === undefined ? { headers: this.#headers } : post);
         if (response.ok) return response;
         const content = await response.text();
-        let problem;
-        try {
-            problem = JSON.parse(content);
-        } catch {
-            throw new StrewError(`HTTP ${response.status}: ${content.slice(0, 200)}`, `http-${response.status}`);
-        }
-        throw new StrewError(problem.detail, problem.type.split(":").at(-1), problem.errors ?? []);
+        throw refusal(response.status, content);
     }
 
     async json(path, body) {
         return (await this.request(path, body)).json();
     }
 
-    plan(text) {
-        return new Asked(this, text);
+    plan(_, query) {
+        return new RemotePlan(this, query);
     }
 
     async nearest(address) {
@@ -50,89 +44,133 @@ class Daemon extends Source {
     }
 }
 
+/** What is wrong, from a problem document. Proxies answer with other content. */
+function refusal(status, content) {
+    let problem;
+    try {
+        problem = JSON.parse(content);
+    } catch {
+        // Not JSON.
+    }
+    if (typeof problem?.detail !== "string") {
+        return new StrewError(`HTTP ${status}: ${content.slice(0, 200)}`, `http-${status}`);
+    }
+    const kind = typeof problem.type === "string" ? problem.type.split(":").at(-1) : `http-${status}`;
+    return new StrewError(problem.detail, kind, Array.isArray(problem.errors) ? problem.errors : []);
+}
+
+/** The header `strew-origin`. */
+const originOf = (response) => response.headers.get("strew-origin")?.split(",").map(Number) ?? [0, 0];
+
 /** A query of a daemon. */
-class Asked {
+class RemotePlan {
     #daemon;
-    #text;
-    #whole;
+    #query;
+    #known;
 
-    constructor(daemon, text) {
+    constructor(daemon, query) {
         this.#daemon = daemon;
-        this.#text = text;
+        this.#query = { ...query };
+        for (const name of OF_DOCUMENTS) delete this.#query[name];
     }
 
-    /** The body with further members, which may not be there yet. */
-    #body(more) {
-        const members = JSON.stringify(more).slice(1, -1);
-        return this.#text === "{}" ? `{${members}}` : `${this.#text.slice(0, -1)},${members}}`;
+    /** Forgets what is known of the answer. */
+    free() {
+        this.#known = undefined;
     }
 
-    #query(more) {
-        return this.#daemon.request("/v1/points:query", this.#body(more));
+    #points(more) {
+        return this.#daemon.request("/v1/points:query", text({ ...this.#query, ...more }));
+    }
+
+    async #json(path, more = {}) {
+        return parsed(await (await this.#daemon.request(path, text({ ...this.#query, ...more }))).text());
     }
 
     async count() {
-        return (await this.#daemon.json("/v1/points:split?parts=1", this.#text)).count;
+        return (await this.#json("/v1/points:split?parts=1")).count;
     }
 
     async resolved() {
-        const { query } = await this.#document();
-        const { format, relative_to, ...rest } = query;
-        return rest;
+        const isWindow = ["offset", "limit", "cursor"].some((name) => name in this.#query);
+        if (!isWindow) return (await this.#json("/v1/count")).query;
+        // Windows are counted by `split`, which does not repeat the query: one point does.
+        const { query } = await this.#json("/v1/points:query", { format: "json", limit: 1 });
+        const { format, relative_to, limit, ...rest } = query;
+        return "limit" in this.#query ? { ...rest, limit: this.#query.limit } : rest;
     }
 
-    /** The whole answer in JSON, whose numbers read back to the same bits. */
-    #document() {
-        this.#whole ??= this.#query({ format: "json" }).then(async (response) => {
-            const origin = response.headers.get("strew-origin")?.split(",").map(Number) ?? [0, 0];
-            return { ...(await response.json()), origin };
+    /** The columns and the origin, from the headers of an answer with one point at most. */
+    async #requestHead() {
+        const response = await this.#points({ format: "f64", limit: 1 });
+        await response.arrayBuffer();
+        return { columns: JSON.parse(response.headers.get("strew-columns")), origin: originOf(response) };
+    }
+
+    #head() {
+        if (this.#known) return this.#known;
+        const head = this.#requestHead();
+        this.#known = head;
+        // What failed is requested again by the next call.
+        head.catch(() => {
+            if (this.#known === head) this.#known = undefined;
         });
-        return this.#whole;
+        return head;
     }
 
     async origin() {
-        return (await this.#document()).origin;
+        return (await this.#head()).origin;
+    }
+
+    /** The coordinates of an answer whose rows are numbers, x and y first. */
+    async #coordinates(format, kind) {
+        const response = await this.#points({ format });
+        const count = Number(response.headers.get("strew-count"));
+        const values = new kind(await response.arrayBuffer());
+        const each = values.length / count;
+        const pair = (_, i) => values[(i >> 1) * each + (i & 1)];
+        const xy = each === 2 || !count ? values : kind.from({ length: 2 * count }, pair);
+        return { xy, origin: originOf(response) };
     }
 
     async xy() {
-        return (await this.columns()).xy;
+        return (await this.#coordinates("f64", Float64Array)).xy;
     }
 
-    async xyF32() {
-        const response = await this.#query({ format: "f32" });
-        const count = Number(response.headers.get("strew-count"));
-        const origin = response.headers.get("strew-origin").split(",").map(Number);
-        const values = new Float32Array(await response.arrayBuffer());
-        const each = values.length / count;
-        if (each === 2 || !count) return { xy: values, origin };
-        return { xy: Float32Array.from({ length: 2 * count }, (_, i) => values[(i >> 1) * each + (i & 1)]), origin };
+    xyF32() {
+        return this.#coordinates("f32", Float32Array);
     }
 
     async columns() {
-        const { points } = await this.#document();
+        // The numbers of JSON read back to the same bits.
+        const [{ columns }, { points }] = await Promise.all([
+            this.#head(),
+            this.#points({ format: "json" }).then((response) => response.json()),
+        ]);
         const ids = BigInt64Array.from(points.flatMap(({ id }) => id.split(":").map(BigInt)));
         const xy = Float64Array.from(points.flatMap(({ x, y }) => [x, y]));
-        const names = new Set(points.flatMap((point) => Object.keys(point)));
-        for (const own of ["id", "x", "y"]) names.delete(own);
-        const further = [...names].map((name) => {
-            const values = points.map((point) => point[name] ?? null);
-            if (!values.some((value) => typeof value === "string")) {
-                return [name, { names: null, values: Float64Array.from(values, (value) => value ?? NaN) }];
-            }
-            const known = [...new Set(values.filter((value) => value !== null))];
-            return [name, { names: known, values: Int32Array.from(values, (value) => known.indexOf(value)) }];
-        });
+        const further = columns.slice(2).map((column) => [column.name, valuesOf(column, points)]);
         return { ids, xy, further: new Map(further) };
     }
 
     async split(parts) {
-        const answer = await this.#daemon.json(`/v1/points:split?parts=${encodeURIComponent(parts)}`, this.#text);
+        const answer = await this.#json(`/v1/points:split?parts=${encodeURIComponent(parts)}`);
         return answer.parts.map(({ query, count }) => ({ cursor: query.cursor, limit: count }));
     }
 
     async document(options) {
-        return new Uint8Array(await (await this.#query(options)).arrayBuffer());
+        return new Uint8Array(await (await this.#points(options)).arrayBuffer());
     }
+}
+
+/** The values of a column: numbers, or indices of names. */
+function valuesOf({ name, names, names_left_out }, points) {
+    const values = points.map((point) => point[name] ?? null);
+    if (!names && !names_left_out) return { names: null, values: Float64Array.from(values, (value) => value ?? NaN) };
+    // Headers have no room for very many names: those of the points are then in the order of their first points.
+    const known = names ?? [...new Set(values.filter((value) => value !== null))];
+    const places = new Map(known.map((text, place) => [text, place]));
+    return { names: known, values: Int32Array.from(values, (value) => places.get(value) ?? -1) };
 }
 
 /** A daemon, with the functions of what `open` returns; its answers are promises. */

@@ -83,6 +83,42 @@ test("wrong queries are refused with the same words", async (t) => {
     }
 });
 
+test("columns, their names and their order are those of the package", async (t) => {
+    if (!remote) return t.skip("the daemon is not built");
+    const variants = (names) => ({ attributes: ["variant", "angle"], variants: names });
+    const layers = [
+        { name: "trees", spacing: 2, seed: 1, ...variants({ oak: 1, birch: 1 }) },
+        { name: "rocks", spacing: 5, ...variants({ slate: 1, birch: 1 }) },
+        { name: "bare", spacing: 9 },
+    ];
+    const ramp = { ramp: { from: [0, 0], to: [9, 0] } };
+    for (const side of [20, 0.001]) {
+        const region = { bbox: [0, 0, side, side] };
+        const written = { format: "csv", decimals: 1 };
+        const terrain = { terrain: ramp, align: 0.5 };
+        for (const set of [{ layers }, { spacing: 1, ...terrain }, { spacing: 1, ...variants({ a: 1, b: 2 }) }]) {
+            const query = { region, ...set, ...written };
+            const [here, far] = [strew.query(query), connect(remote.url).query(query)];
+            assert.deepEqual(await far.names(), here.names());
+            assert.deepEqual(await far.xy(), here.xy());
+            assert.deepEqual(await far.resolved(), here.resolved());
+            for (const name of here.names()) assert.deepEqual(await far.column(name), here.column(name), name);
+            if (set.spacing) assert.deepEqual(await far.nearest([3, 3]), here.nearest([3, 3]));
+        }
+        for (const name of ["layer", "variant"]) {
+            const [here, far] = [strew, connect(remote.url)].map((source) => source.query({ region, layers }));
+            assert.deepEqual(await far.codes(name), here.codes(name), name);
+        }
+    }
+});
+
+test("counts of any size are exact", async (t) => {
+    if (!remote) return t.skip("the daemon is not built");
+    const points = connect(remote.url).points({ bbox: [-5e8, -5e8, 5e8, 5e8], spacing: 1 });
+    assert.equal(await points.count(), 1000000000097677487n);
+    assert.equal((await points.split(1))[0].body.limit, 1000000000097677487n);
+});
+
 test("a daemon has the functions of the package", async (t) => {
     if (!remote) return t.skip("the daemon is not built");
     const there = connect(remote.url);
@@ -93,6 +129,7 @@ test("a daemon has the functions of the package", async (t) => {
     for (const keywords of [query, { ...query, field: noise }, chunk, { ...query, limit: 9 }]) {
         const [here, far] = [strew.points(keywords), there.points(keywords)];
         assert.equal(await far.count(), here.count());
+        assert.deepEqual(await far.names(), here.names());
         assert.deepEqual(await far.xy(), here.xy());
         assert.deepEqual(await far.xyF32(), here.xyF32());
         assert.deepEqual(await far.ids(), here.ids());

@@ -3,6 +3,8 @@ import assert from "node:assert/strict";
 import { before, test } from "node:test";
 
 import { StrewError, open, raster } from "../lib/index.js";
+import { Module } from "../lib/module.js";
+import { parsed } from "../lib/query.js";
 
 let strew;
 before(async () => {
@@ -80,8 +82,79 @@ test("a module without the default table says what is loaded", async () => {
     await assert.rejects(open({ tables: [new Uint8Array(9)] }), StrewError);
 });
 
-test("plans are freed and memory does not grow", () => {
-    const count = () => strew.points({ bbox: [0, 0, 100, 100], spacing: 1, seed: 3 }).xy().length;
-    const first = count();
-    for (let i = 0; i < 200; i++) assert.equal(count(), first);
+test("terrains of JSON have neighbors and points by id", () => {
+    const ramp = { ramp: { from: [0, 0], to: [10, 0] } };
+    const points = strew.points({ bbox: [0, 0, 9, 9], count: 50, field: ramp, terrain: ramp, heights: [100, 200] });
+    const [near] = points.nearest([8, 4]);
+    assert.ok(Math.abs(near.z - (100 + 10 * near.x)) < 1e-9);
+    assert.equal(points.point(near.id).z, near.z);
+});
+
+test("integers of any size are exact", () => {
+    const points = strew.points({ bbox: [-5e8, -5e8, 5e8, 5e8], spacing: 1, seed: 2n ** 63n + 1n, warp: "off" });
+    assert.equal(points.resolved().seed, 2n ** 63n + 1n);
+    const parts = points.split(3);
+    assert.equal(parts.reduce((sum, { body }) => sum + BigInt(body.limit), 0n), points.count());
+    assert.deepEqual(parsed('{"a":"1:9007199254740993","b":[-9007199254740993,1.2345678901234567e3],"c":7}'), {
+        a: "1:9007199254740993",
+        b: [-9007199254740993n, 1234.5678901234567],
+        c: 7,
+    });
+});
+
+test("a set that is freed makes its points again", () => {
+    const points = strew.points({ bbox: [0, 0, 10, 10], spacing: 1, seed: 3, attributes: ["angle"] });
+    const [plan, xy, angles] = [points.plan(), points.xy(), points.column("angle")];
+    points.free();
+    points.free();
+    assert.throws(() => plan.count(), { kind: "invalid-argument" });
+    assert.deepEqual([points.xy(), points.column("angle")], [xy, angles]);
+    if (Symbol.dispose) points[Symbol.dispose]();
+});
+
+test("memory does not grow when sets are freed", async (t) => {
+    const instantiate = t.mock.method(WebAssembly, "instantiate");
+    const own = await open();
+    const { memory } = (await instantiate.mock.calls[0].result).exports;
+    // A megabyte of columns each.
+    const made = () => {
+        const points = own.points({ bbox: [0, 0, 200, 200], spacing: 1, seed: 3, attributes: ["angle"] });
+        points.column("angle");
+        return points;
+    };
+    const held = [made()];
+    held[0].free();
+    const before = memory.buffer.byteLength;
+    for (let i = 0; i < 50; i++) {
+        held.push(made());
+        held.at(-1).free();
+    }
+    assert.equal(memory.buffer.byteLength, before);
+});
+
+test("pointers above 2 GiB are read", () => {
+    const memory = new WebAssembly.Memory({ initial: 2 ** 15 + 1 });
+    const high = 2 ** 31 + 8;
+    const text = '{"kind":"invalid-query","detail":"no","errors":[]}';
+    new Uint8Array(memory.buffer, high + 64).set(new TextEncoder().encode(`${text}\0`));
+    // WebAssembly's i32 are signed in JavaScript.
+    const module = new Module({
+        exports: {
+            memory,
+            strew_allocate: () => high | 0,
+            strew_release: () => undefined,
+            strew_bytes_data: () => (high + 64) | 0,
+            strew_bytes_length: () => text.length,
+            strew_bytes_free: () => undefined,
+            strew_error_document: () => (high + 64) | 0,
+            good: () => 0,
+            bad: () => 1,
+        },
+    });
+    module.scoped((room) => {
+        assert.equal(module.text(room, "abc"), high);
+        assert.equal(module.json("good", room).detail, "no");
+        assert.equal(module.filled(Float64Array, 2, room, () => undefined).length, 2);
+        assert.throws(() => module.call("bad"), { kind: "invalid-query" });
+    });
 });

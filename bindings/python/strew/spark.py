@@ -4,11 +4,13 @@
     spark.dataSource.register(StrewDataSource)
     trees = spark.read.format("strew").options(bbox="0,0,1e5,1e5", spacing=1, seed=7).load()
 
-The options are the keywords of :func:`strew.points` with values as in REST's addresses, and:
+The options are the keywords of :func:`strew.points`, and ``except`` and ``periodic``, with values as in REST's
+addresses, and:
 
 - ``query``: a whole body of REST in JSON, such as one with layers, in place of the keywords;
 - ``url``: a daemon that makes the points; without it the tasks do, each in its own process;
-- ``partitions``: the number of tasks, which get equal numbers of points; by default one for each million points;
+- ``partitions``: the number of tasks, which get equal numbers of points; by default one for each million points, up to
+  10,000;
 - ``batch``: the most points in memory of a task at a time, 262,144 by default;
 - ``narrow``: ``on`` to narrow the box of a query by filters on ``x`` and ``y`` before it is split, so that no point
   outside is made. It needs ``spark.sql.python.filterPushdown.enabled``. Use such a DataFrame with one filter only:
@@ -16,7 +18,7 @@ The options are the keywords of :func:`strew.points` with values as in REST's ad
   A second ``load()`` is independent. It is ``off`` by default.
 
 A task is a query with a cursor, a few hundred bytes. One that is lost is made again with the same points, bit for bit.
-Spark has no way to say to a source written in Python which columns it needs: choose them by ``attributes``. A limit
+Spark cannot pass the needed columns to a source written in Python: choose them by ``attributes``. A limit
 stops a task after the batch that fills it.
 """
 
@@ -51,7 +53,11 @@ from ._source import Source
 
 #: What is an option and no part of a query.
 OWN = ("query", "url", "partitions", "batch", "narrow", "path")
+#: The members of a query: the keywords, one whose name is a word of Python, and one that takes the place of a region.
+MEMBERS = (*Query.__annotations__, "except", "periodic")
 TASK = 1_000_000
+#: The most tasks by default: the driver lists each with its cursor.
+MOST_TASKS = 10_000
 BATCH = 1 << 18
 
 
@@ -64,6 +70,10 @@ def _number(text: str) -> float:
 
 def _numbers(text: str) -> list[float]:
     return [_number(part) for part in text.split(",")]
+
+
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",")]
 
 
 def _pairs(text: str) -> list[list[float]]:
@@ -86,11 +96,11 @@ def _fields(text: str) -> dict[str, str]:
 
 
 READERS: dict[str, Callable[[str], Any]] = {
-    **dict.fromkeys(("bbox", "circle", "chunk", "scale_range"), _numbers),
-    **dict.fromkeys(("spacing", "density", "min_distance", "keep"), _number),
-    **dict.fromkeys(("count", "seed", "offset", "limit"), int),
+    **dict.fromkeys(("bbox", "circle", "chunk", "scale_range", "heights"), _numbers),
+    **dict.fromkeys(("spacing", "density", "min_distance", "keep", "align"), _number),
+    **dict.fromkeys(("count", "seed", "offset", "limit", "periodic"), int),
+    **dict.fromkeys(("attributes", "except"), _names),
     "polygon": _pairs,
-    "attributes": lambda text: [name.strip() for name in text.split(",")],
     "variants": _shares,
     "scale_ranges": _ranges,
     "variant_fields": _fields,
@@ -116,10 +126,9 @@ def _positive(options: Mapping[str, str], name: str, default: int) -> int:
 
 def points(options: Mapping[str, str]) -> PointSet:
     """The set of points that options describe."""
-    known = Query.__annotations__
     for name in options:
-        if name not in known and name not in OWN:
-            allowed = ", ".join(sorted([*known, *OWN]))
+        if name not in MEMBERS and name not in OWN:
+            allowed = ", ".join(sorted([*MEMBERS, *OWN]))
             raise ValueError(f"`{name}` = `{options[name]}`: unknown; allowed: {allowed}")
     source: Source = connect(options["url"]) if "url" in options else LOCAL
     keywords = {name: _read(name, text) for name, text in options.items() if name not in OWN}
@@ -160,7 +169,7 @@ class StrewReader(DataSourceReader):
 
     def partitions(self) -> list[Part]:  # type: ignore[override]
         count = 0 if self.is_empty else self.points.count()
-        tasks = min(self.tasks or -(-count // TASK), count)
+        tasks = min(self.tasks or min(-(-count // TASK), MOST_TASKS), count)
         # Spark wants one, even of no points.
         if tasks <= 1:
             return [Part(self.points, count)]
@@ -200,7 +209,7 @@ class NarrowedReader(StrewReader):
         if self.is_empty:
             return filters
         if "count" in body:
-            # The set of the whole box, not one with so many points in a part of it.
+            # The set of the whole box, not `count` points in the smaller box.
             self.points = self.points._with(count=None, spacing=self.points.query["spacing"])
         self.points = self.points.within(bbox=[*low, *high])
         return filters

@@ -22,7 +22,7 @@ pa = pytest.importorskip("pyarrow")
 from pyspark.errors import PySparkException  # noqa: E402
 from pyspark.sql import SparkSession  # noqa: E402
 
-from strew.spark import StrewDataSource  # noqa: E402
+from strew.spark import MOST_TASKS, StrewDataSource, StrewReader, points  # noqa: E402
 
 WOODS: dict[str, Any] = {"bbox": "0,0,300,200", "spacing": 1, "seed": 7, "attributes": "angle,variant", "variants": "oak:3,birch:1"}
 
@@ -82,6 +82,51 @@ def test_fields_and_layers(spark: SparkSession) -> None:
     assert_same(load(spark, query=json.dumps(query), partitions=5), strew.query(query))
 
 
+def test_options_are_members_of_the_body() -> None:
+    options = {
+        "bbox": "0,0,9,9",
+        "spacing": "1",
+        "terrain": '{"ramp": {"from": [0, 0], "to": [9, 0]}}',
+        "heights": "400,2600.5",
+        "normals": "on",
+        "align": "0.5",
+        "except": "2:-1, 8:-1",
+    }
+    members = {
+        "region": {"bbox": [0, 0, 9, 9]},
+        "spacing": 1,
+        "terrain": {"ramp": {"from": [0, 0], "to": [9, 0]}},
+        "heights": [400, 2600.5],
+        "normals": "on",
+        "align": 0.5,
+        "except": ["2:-1", "8:-1"],
+    }
+    # With a daemon, which is not called, names of its worlds are no errors.
+    daemon = {"url": "http://127.0.0.1:1"}
+    assert points({**options, **daemon}).body == members
+    period = points({"periodic": "5000", "map": "s", "spacing": "1", **daemon})
+    assert period.body == {"periodic": 5000, "map": "s", "spacing": 1}
+    world = {"world": "forest", "world_digest": "31936fdd"}
+    assert points({**world, **daemon}).body == world
+    assert len(points(options).plan().columns().names()) == 8
+
+
+def test_a_period_and_what_is_left_out(spark: SparkSession) -> None:
+    whole = strew.query({"periodic": 5000, "map": "s", "spacing": 1})
+    assert_same(load(spark, periodic=5000, map="s", spacing=1, partitions=3), whole)
+    first = ":".join(map(str, whole.ids[0]))
+    left = load(spark, bbox="0,0,71,71", map="s", spacing=1, **{"except": first})
+    assert left.where(f"id = '{first}'").count() == 0
+
+
+def test_the_default_number_of_tasks_is_limited() -> None:
+    schema = pa.schema([])
+    many = StrewReader({"bbox": "0,0,2e5,2e5", "spacing": "1"}, schema)
+    assert abs(len(many.partitions()) - MOST_TASKS) <= 1
+    few = StrewReader({"bbox": "0,0,2e3,1.2e3", "spacing": "1"}, schema)
+    assert len(few.partitions()) == 3
+
+
 def test_an_empty_region(spark: SparkSession) -> None:
     assert load(spark, bbox="0,0,0.001,0.001", spacing=1).count() == 0
 
@@ -101,7 +146,7 @@ def test_a_box_is_narrowed(spark: SparkSession) -> None:
     [
         ({"spacing": "-1"}, "`spacing` = `-1`: out of range"),
         ({"spacing": "wide"}, "`spacing`"),
-        ({"spacing": "1", "sed": "7"}, "`sed` = `7`: unknown; allowed: alpha"),
+        ({"spacing": "1", "sed": "7"}, "`sed` = `7`: unknown; allowed: align"),
         ({"spacing": "1", "partitions": "0"}, "`partitions` = `0`: not a whole number from 1"),
         ({"spacing": "1", "narrow": "yes"}, "`narrow` = `yes`: unknown; allowed: off, on"),
         ({"query": "{}", "spacing": "1"}, ": not beside `query`"),

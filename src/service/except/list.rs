@@ -230,7 +230,7 @@ mod tests {
     #[test]
     fn what_is_no_id_is_named() {
         for (text, expected) in [
-            ("[a]\nids = ['x']", "except.a.ids[0]: `x` is no id"),
+            ("[a]\nids = ['x']", "except.a.ids[0]: `x` is not an id"),
             ("[a]\nids = ['1:2', 'a b/1:2']", "except.a.ids[1]"),
             ("[a]\nids = 3", "invalid type"),
             ("[a]\nid = ['1:2']", "unknown field `id`"),
