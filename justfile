@@ -44,8 +44,19 @@ fuzz subject seconds="3600":
     cd fuzz && RUSTC_BOOTSTRAP=1 cargo fuzz run -O {{subject}} corpus/{{subject}} seeds/{{subject}} \
         -- -max_total_time={{seconds}} -timeout=20 -max_len=2048
 
+# The npm package: its WebAssembly, beside the real daemon in Node and in Chromium, and packed.
+js:
+    .ci/js
+
+# The sample for Blender, whose module of 370 MB comes from PyPI for one version of Python.
+blender:
+    python3 -m venv target/blender
+    target/blender/bin/pip install -q bpy
+    STREW_TEST_BLENDER=target/blender/bin/python cargo test --locked --test suite -- docs::samples
+
 # The tests of exported spans, which need the feature that images are built with.
 otlp:
+    cargo clippy --locked --features otlp -- -D warnings
     cargo test --locked --features otlp --test suite -- ops::spans
 
 # The library without the standard library.
