@@ -113,7 +113,7 @@ impl From<Error> for Failure {
 
 /// The texts of the last error of a thread.
 #[derive(Default)]
-struct Told {
+struct LastError {
     kind: CString,
     message: CString,
     field: CString,
@@ -121,7 +121,7 @@ struct Told {
 }
 
 thread_local! {
-    static LAST: RefCell<Told> = RefCell::default();
+    static LAST: RefCell<LastError> = RefCell::default();
 }
 
 /// Does something, and keeps the words if it fails or panics.
@@ -131,13 +131,13 @@ pub fn guarded(work: impl FnOnce() -> Result<(), Failure>) -> Code {
         Ok(()) => Code::Ok,
         Err(failure) => {
             // A thread that ends has no place for them any more.
-            let _ = LAST.try_with(|last| *last.borrow_mut() = told(&failure));
+            let _ = LAST.try_with(|last| *last.borrow_mut() = texts(&failure));
             failure.code
         }
     }
 }
 
-fn told(failure: &Failure) -> Told {
+fn texts(failure: &Failure) -> LastError {
     // The texts have no zero bytes, but for ones that a query brought along.
     let text = |text: &str| CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default();
     let document = json!({
@@ -146,7 +146,7 @@ fn told(failure: &Failure) -> Told {
         "errors": failure.faults,
     });
     let field = failure.faults.first().map_or("", |fault| &fault.field);
-    Told {
+    LastError {
         kind: text(failure.kind),
         message: text(&failure.message),
         field: text(field),
@@ -154,7 +154,7 @@ fn told(failure: &Failure) -> Told {
     }
 }
 
-fn last(part: impl FnOnce(&Told) -> &CString) -> *const c_char {
+fn last(part: impl FnOnce(&LastError) -> &CString) -> *const c_char {
     let text = LAST.try_with(|last| part(&last.borrow()).as_ptr());
     text.unwrap_or(c"".as_ptr())
 }
@@ -164,7 +164,7 @@ fn last(part: impl FnOnce(&Told) -> &CString) -> *const c_char {
 /// Valid until the next call in this thread that fails. Empty if none has failed.
 #[unsafe(no_mangle)]
 pub extern "C" fn strew_error_message() -> *const c_char {
-    last(|told| &told.message)
+    last(|texts| &texts.message)
 }
 
 /// The kind of the last error in the calling thread, as in the problem types of REST: `invalid-query`, ...
@@ -172,7 +172,7 @@ pub extern "C" fn strew_error_message() -> *const c_char {
 /// Valid as long as `strew_error_message`.
 #[unsafe(no_mangle)]
 pub extern "C" fn strew_error_kind() -> *const c_char {
-    last(|told| &told.kind)
+    last(|texts| &texts.kind)
 }
 
 /// The field of the query, or the argument, that is wrong; of several the first. Empty if the error has none.
@@ -180,7 +180,7 @@ pub extern "C" fn strew_error_kind() -> *const c_char {
 /// Valid as long as `strew_error_message`.
 #[unsafe(no_mangle)]
 pub extern "C" fn strew_error_field() -> *const c_char {
-    last(|told| &told.field)
+    last(|texts| &texts.field)
 }
 
 /// The last error in the calling thread as JSON: `kind`, `detail`, and `errors`, a list with the `field`, `value`,
@@ -189,5 +189,5 @@ pub extern "C" fn strew_error_field() -> *const c_char {
 /// Valid as long as `strew_error_message`.
 #[unsafe(no_mangle)]
 pub extern "C" fn strew_error_document() -> *const c_char {
-    last(|told| &told.document)
+    last(|texts| &texts.document)
 }

@@ -87,7 +87,7 @@ fn without_fields(mut document: Value) -> Value {
     document
 }
 
-/// Takes what only goes with a terrain out of bodies: the generator gives up on so many members.
+/// Takes what only goes with a terrain out of bodies: the generator fails on that many members.
 fn without_parts_of_terrains(value: &mut Value) {
     match value {
         Value::Object(members) => {
