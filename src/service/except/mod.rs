@@ -18,7 +18,7 @@ pub use list::{Lists, NamedList, split};
 
 /// The most ids of one query, besides those of lists.
 pub const MOST_GIVEN: usize = 10_000;
-/// The most points that one set of a query leaves out within its region.
+/// The most points that all sets of a query together leave out within its region.
 pub const MOST_HOLES: usize = 10_000;
 
 /// Sorted ids, each once, with their digest.
