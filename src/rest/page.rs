@@ -1,15 +1,11 @@
-//! `/`: the daemon's own page for people, a view of the plane. Its parts are embedded and served
-//! under `/page/`; it loads nothing from elsewhere and asks only what anybody can ask.
+//! The daemon's own pages for people: `/`, a view of the plane, and what it leads to. Their parts are embedded and
+//! served under `/page/`; they load nothing from elsewhere and ask only what anybody can ask.
 //!
 //! The list of parts stands in [`PARTS`]; tests/tidy.rs holds it against the folder.
 
 use std::sync::Arc;
 
-use axum::{
-    extract::{Path, State},
-    response::Response,
-    routing,
-};
+use axum::{extract::State, response::Response, routing};
 use bytes::Bytes;
 use http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
 
@@ -27,8 +23,11 @@ const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; w
                       connect-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'";
 
-/// The page itself.
-const PAGE: &str = include_str!("page/index.html");
+/// A page: its path, the name of its operation, what it is, and its text.
+type Page = (&'static str, &'static str, &'static str, &'static str);
+
+/// The pages. The parts of the first are in `page/`, those of each other one in a folder of its own in there.
+const PAGES: &[Page] = &[("/", "getPage", "The page", include_str!("page/index.html"))];
 
 macro_rules! parts {
     ($($name:literal),* $(,)?) => {
@@ -76,12 +75,12 @@ const PARTS: &[(&str, &str)] = parts![
     "theme.css",
     "theme.js",
     "understand.js",
-    "works.css",
-    "works.js",
-    "works_draw.js",
-    "works_modes.js",
-    "works_pattern.js",
-    "works_settings.js",
+    "works/works.css",
+    "works/works.js",
+    "works/draw.js",
+    "works/modes.js",
+    "works/pattern.js",
+    "works/settings.js",
 ];
 
 const HTML: &str = "text/html; charset=utf-8";
@@ -99,33 +98,61 @@ fn content_type(name: &str) -> &'static str {
     }
 }
 
-/// The page and its parts.
+/// The pages and their parts.
 pub(super) fn endpoints() -> Vec<Endpoint> {
-    let page = operation("getPage", "/", "The page", &[HTML], &[], vec![]);
-    let document = Fixed::new(HTML, Bytes::from_static(PAGE.as_bytes()));
-    let page_handler =
-        routing::get(
-            move |uri: Uri, headers: HeaderMap| async move { part(&document, &uri, &headers) },
-        );
-    let parts = operation(
-        "getPagePart",
-        "/page/main.js",
-        "A part of the page",
-        &[SCRIPT, STYLE, PICTURE],
-        &[&FILE],
-        vec![Kind::NoSuchPath],
-    );
-    let parts_handler = routing::get(one);
-    let all = PARTS.iter().map(|&(name, text)| {
+    let parts = PARTS.iter().map(|&(name, text)| {
         let content = Bytes::from_static(text.as_bytes());
         (name, Fixed::new(content_type(name), content))
     });
-    let all: Parts = Arc::new(all.collect());
-    vec![
-        Endpoint::new("/", (), vec![(page, page_handler)]).open(),
-        Endpoint::new("/page/{file}", all, vec![(parts, parts_handler)]).open(),
-    ]
+    let parts: Parts = Arc::new(parts.collect());
+    let mut all: Vec<_> = PAGES.iter().map(page).collect();
+    let of_the_first = ("/page/{file}", "getPagePart", "/page/main.js");
+    all.push(parts_at(of_the_first, &[&FILE], &parts));
+    let of_a_folder = (
+        "/page/{folder}/{file}",
+        "getPagePartIn",
+        "/page/works/works.js",
+    );
+    all.push(parts_at(of_a_folder, &[&FOLDER, &FILE], &parts));
+    all
 }
+
+/// A page.
+fn page(&(path, id, summary, text): &Page) -> Endpoint {
+    let operation = operation(id, path, summary, &[HTML], &[], vec![]);
+    let document = Fixed::new(HTML, Bytes::from_static(text.as_bytes()));
+    let handler =
+        routing::get(
+            move |uri: Uri, headers: HeaderMap| async move { part(&document, &uri, &headers) },
+        );
+    Endpoint::new(path, (), vec![(operation, handler)]).open()
+}
+
+/// Parts at a path, with the name of the operation and an example.
+fn parts_at(
+    (path, id, example): (&'static str, &'static str, &str),
+    parameters: &'static [&'static Parameter],
+    parts: &Parts,
+) -> Endpoint {
+    let operation = operation(
+        id,
+        example,
+        "A part of a page",
+        &[SCRIPT, STYLE, PICTURE],
+        parameters,
+        vec![Kind::NoSuchPath],
+    );
+    Endpoint::new(path, parts.clone(), vec![(operation, routing::get(one))]).open()
+}
+
+const FOLDER: Parameter = Parameter {
+    name: "folder",
+    about: "What the part belongs to.",
+    allowed: Some("the name of a folder of parts"),
+    example: "works",
+    is_required: true,
+    ..Parameter::PLAIN
+};
 
 const FILE: Parameter = Parameter {
     name: "file",
@@ -171,16 +198,12 @@ fn operation(
 /// The parts by their names, ready to send.
 type Parts = Arc<Vec<(&'static str, Fixed)>>;
 
-async fn one(
-    State(parts): State<Parts>,
-    Path(file): Path<String>,
-    uri: Uri,
-    headers: HeaderMap,
-) -> Result<Response, Error> {
-    let found = parts.iter().find(|(name, _)| *name == file);
+async fn one(State(parts): State<Parts>, uri: Uri, headers: HeaderMap) -> Result<Response, Error> {
+    let name = uri.path().trim_start_matches("/page/");
+    let found = parts.iter().find(|(part, _)| *part == name);
     let (_, document) = found.ok_or_else(|| Error::NoSuchPath {
         path: uri.path().into(),
-        available: "/ and the parts that it names".into(),
+        available: "the pages and the parts that they name".into(),
     })?;
     Ok(part(document, &uri, &headers))
 }
@@ -211,12 +234,14 @@ mod tests {
 
     #[test]
     fn nothing_is_inline_and_nothing_comes_from_elsewhere() {
-        let all = PARTS.iter().chain(&[("index.html", PAGE)]);
-        for (name, text) in all {
+        let pages = PAGES.iter().map(|&(path, .., text)| (path, text));
+        for (name, text) in PARTS.iter().copied().chain(pages) {
             for word in ["style=\"", "innerHTML", "eval(", "onclick=\"", "https://"] {
                 assert!(!text.contains(word), "{name} has {word}");
             }
         }
-        assert!(!PAGE.contains("<style") && !PAGE.contains("<script>"));
+        for (.., text) in PAGES {
+            assert!(!text.contains("<style") && !text.contains("<script>"));
+        }
     }
 }

@@ -16,7 +16,7 @@ import { LAYER, initial } from "./state.js";
 import { Take } from "./take.js";
 import { palette, watchTheme } from "./theme.js";
 import { Understand } from "./understand.js";
-import { Works } from "./works.js";
+import { Works } from "./works/works.js";
 
 const root = document.documentElement;
 const session = new Session();

@@ -1,9 +1,9 @@
 // What the tab How it works shows of a pattern, a mode for each: index, arrangement, clusters, map, displacement.
 
-import { make, spoken } from "./dom.js";
-import { shade } from "./works_draw.js";
-import { MOST, clustersOf, intervalOf, signedTurns, turns } from "./works_pattern.js";
-import { REACH, follow, pathOf, range } from "./works_settings.js";
+import { make, spoken } from "../dom.js";
+import { shade } from "./draw.js";
+import { MOST, clustersOf, intervalOf, signedTurns, turns } from "./pattern.js";
+import { REACH, follow, pathOf, range } from "./settings.js";
 
 /** The place of a point in index space. */
 const placeOf = (pattern, [x, y]) => pattern.index(x, y).map(turns);

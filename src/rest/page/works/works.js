@@ -1,12 +1,12 @@
 // The tab How it works: the pattern of an α, its index torus and its set region side by side, and what
 // follows from them. α and everything drawn is computed here; counts and displaced points are the server's.
 
-import { Gone, askJson } from "./api.js";
-import { byId, make, settled, spoken } from "./dom.js";
-import { Square, colors } from "./works_draw.js";
-import { KNOWN, Pattern } from "./works_pattern.js";
-import { MODES } from "./works_modes.js";
-import { REACH } from "./works_settings.js";
+import { Gone, askJson } from "../api.js";
+import { byId, make, settled, spoken } from "../dom.js";
+import { Square, colors } from "./draw.js";
+import { KNOWN, Pattern } from "./pattern.js";
+import { MODES } from "./modes.js";
+import { REACH } from "./settings.js";
 
 /** The words of each choice of what is looked at. */
 const WORDS = {

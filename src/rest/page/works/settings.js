@@ -1,7 +1,7 @@
 // What the modes of the tab How it works share: the window, sliders, addresses of requests.
 
-import { make } from "./dom.js";
-import { encoded } from "./state.js";
+import { make } from "../dom.js";
+import { encoded } from "../state.js";
 
 /** Half the side of the window of the plane, in grid units. */
 export const REACH = 24;

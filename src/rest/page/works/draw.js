@@ -1,6 +1,6 @@
 // The three drawings of the tab How it works: the plane, the index torus, the set region.
 
-import { themeColor } from "./theme.js";
+import { themeColor } from "../theme.js";
 
 /** A square drawing with coordinates of its own, y upward. */
 export class Square {
