@@ -27,7 +27,15 @@ const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; w
 type Page = (&'static str, &'static str, &'static str, &'static str);
 
 /// The pages. The parts of the first are in `page/`, those of each other one in a folder of its own in there.
-const PAGES: &[Page] = &[("/", "getPage", "The page", include_str!("page/index.html"))];
+const PAGES: &[Page] = &[
+    ("/", "getPage", "The page", include_str!("page/index.html")),
+    (
+        "/walk",
+        "getWalk",
+        "A walk through the plane, in three dimensions",
+        include_str!("page/walk/index.html"),
+    ),
+];
 
 macro_rules! parts {
     ($($name:literal),* $(,)?) => {
@@ -78,6 +86,18 @@ const PARTS: &[(&str, &str)] = parts![
     "theme.css",
     "theme.js",
     "understand.js",
+    "walk/camera.js",
+    "walk/ground.js",
+    "walk/land.js",
+    "walk/leaves.js",
+    "walk/map.js",
+    "walk/move.js",
+    "walk/scene.js",
+    "walk/shaders.js",
+    "walk/shapes.js",
+    "walk/walk.css",
+    "walk/walk.js",
+    "walk/world.js",
     "works/works.css",
     "works/works.js",
     "works/draw.js",

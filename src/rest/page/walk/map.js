@@ -2,7 +2,8 @@
 
 import { INSTANCE_FLOATS } from "./ground.js";
 
-const COLORS = ["#2f6b45", "#6f9a3c", "#8d8a84", "#5d7f35", "#a3ab57", "#d9b93c", "#a9b36a"];
+/** The colors of kinds; grass would hide the rest. */
+const COLORS = ["#2f6b45", "#6f9a3c", "#8d8a84", "#5d7f35", "#a3ab57", "#d9b93c"];
 /** Units from the middle to the nearer edge. */
 const REACH = 60;
 
@@ -25,6 +26,7 @@ export function mapOn(canvas) {
       for (const { leaf, clip, floats, runs } of look.things) {
         if (clip) continue;
         for (const { kind, first, ranks } of runs) {
+          if (!COLORS[kind]) continue;
           context.fillStyle = COLORS[kind];
           for (let i = first; i < first + ranks.length; i += 1) {
             const at = i * INSTANCE_FLOATS;

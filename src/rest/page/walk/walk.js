@@ -1,7 +1,7 @@
 // The walk: puts its parts together and draws, as finely as the machine can.
 
 import { Gone, askJson, hasKey, onPresence, useKey } from "../api.js";
-import { byId, bytes, icon, make, settled } from "../dom.js";
+import { byId, bytes, icon, make } from "../dom.js";
 import { formatPlace, parsePlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER, toHash } from "../state.js";
@@ -120,9 +120,11 @@ const meter = [];
 let told = 0;
 
 function tell(drawn, now) {
-  root.dataset.state = root.dataset.state === "failed" ? "failed" : world.isReady ? "ready" : "loading";
+  const state = root.dataset.state === "failed" ? "failed" : world.isReady ? "ready" : "loading";
+  const isNews = state !== root.dataset.state;
+  root.dataset.state = state;
   byId("fly").setAttribute("aria-pressed", String(walker.isFlying));
-  if (now - told < 500) return;
+  if (now - told < 500 && !isNews) return;
   told = now;
   const { loaded, chunks, wanted, received } = world.sums;
   meter.push([now, received]);
@@ -130,19 +132,21 @@ function tell(drawn, now) {
   const rate = (1000 * (received - meter[0][1])) / Math.max(1, now - meter[0][0]);
   const number = (value) => value.toLocaleString("en");
   Object.assign(root.dataset, { drawn, level });
-  byId("tally").textContent = `${number(drawn)} of ${number(loaded)} points drawn · ${number(chunks)} of ${number(wanted)} chunks · `
+  byId("tally").textContent = `${number(drawn)} of ${number(loaded)} points drawn · ${chunks === wanted ? number(chunks) : `${chunks} of ${wanted}`} chunks · `
     + `${bytes(Math.round(rate))}/s · at ${formatPlace(walker.x, 0)}, ${formatPlace(walker.y, 0)}`;
   remember();
 }
 
-/** Keeps the place in the address, once it has settled. */
-const remember = settled(700, () => {
+/** Keeps the place in the address. */
+function remember() {
   const turned = (angle) => String(Math.round((angle * 180) / Math.PI));
   const hash = `#at=${formatPlace(walker.x, 2)},${formatPlace(walker.y, 2)}&yaw=${turned(walker.yaw)}&pitch=${turned(walker.pitch)}`;
   const rest = [given.seed !== "7" && `seed=${given.seed}`, given.quality !== null && `quality=${given.quality}`, wantsMap && "map=1"];
-  history.replaceState(null, "", [hash, ...rest.filter(Boolean)].join("&"));
+  const address = [hash, ...rest.filter(Boolean)].join("&");
+  if (address === location.hash) return;
+  history.replaceState(null, "", address);
   byId("plane").href = `/${planeHash()}`;
-});
+}
 
 /** The plane with the same points around the walker. */
 function planeHash() {

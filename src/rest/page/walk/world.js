@@ -50,7 +50,7 @@ export class World {
     const isFar = !this.around || Math.hypot(distance(at.x, this.around.x), distance(at.y, this.around.y)) > STEP;
     if (isFar || quality !== this.quality) {
       if (quality.cells !== this.quality?.cells) this.forget();
-      Object.assign(this, { around: at, quality });
+      Object.assign(this, { around: { x: at.x, y: at.y }, quality });
       this.sets.forEach((set, i) => this.want(set, quality.sets[i], ahead));
       this.isStale = true;
     }
