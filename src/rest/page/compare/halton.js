@@ -2,12 +2,13 @@
 
 /** i in a base, its digits mirrored at the point: 6 = 110₂ becomes 0.011₂ = 3/8. */
 export function mirrored(i, base) {
-  let [value, share] = [0, 1];
+  // In integers, so that only the division rounds.
+  let [digits, all] = [0, 1];
   for (let rest = i; rest > 0; rest = Math.floor(rest / base)) {
-    share /= base;
-    value += (rest % base) * share;
+    digits = digits * base + (rest % base);
+    all *= base;
   }
-  return value;
+  return digits / all;
 }
 
 /** The first `count` points, from index 0 on, over a box of `width` × `height`. */
