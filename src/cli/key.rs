@@ -3,7 +3,10 @@
 use anyhow::{Context as _, anyhow};
 
 use super::{Failure, output};
-use crate::name::{ALLOWED, is_name};
+use crate::{
+    access,
+    name::{ALLOWED, is_name},
+};
 
 /// Commands about keys.
 #[derive(Debug, clap::Subcommand)]

@@ -232,7 +232,7 @@ impl Unbuilt {
     fn new(name: String, source: Source, document: Result<Document, String>, base: &Path) -> Self {
         let document = match is_name(&name) {
             true => document,
-            false => Err(format!("`{name}` is no name; allowed: {}", ALLOWED)),
+            false => Err(format!("`{name}` is no name; allowed: {ALLOWED}")),
         };
         Self {
             name,
