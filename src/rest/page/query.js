@@ -80,6 +80,11 @@ export function layerName(i) {
   return `layer${i + 1}`;
 }
 
+/** Asks with this body whether layers are right together. */
+export function togetherBody(layers) {
+  return json(bodyOf(layers, { bbox: [0, 0, 1e-300, 1e-300] }));
+}
+
 /** Several layers over a region, as the body of `POST /v1/points:query`. */
 export function bodyOf(layers, region, keep = 1, looks = {}) {
   const list = layers.map((layer, i) => {
