@@ -8,7 +8,6 @@ mod coding;
 mod context;
 mod cors;
 mod count;
-mod docs;
 mod document;
 mod except;
 mod fields;
@@ -103,7 +102,6 @@ impl Routes {
         gate: impl FnOnce(Router) -> Router,
     ) -> Self {
         endpoints.extend(page::endpoints());
-        endpoints.extend(docs::endpoints());
         endpoints.push(openapi::endpoint(&endpoints));
         let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
         let paths = paths.join(", ");

@@ -30,6 +30,12 @@ type Page = (&'static str, &'static str, &'static str, &'static str);
 const PAGES: &[Page] = &[
     ("/", "getPage", "The page", include_str!("page/index.html")),
     (
+        "/docs",
+        "getDocs",
+        "The API as a page",
+        include_str!("page/docs/index.html"),
+    ),
+    (
         "/compare",
         "getComparePage",
         "The page that compares ways to scatter points",
@@ -71,6 +77,11 @@ const PARTS: &[(&str, &str)] = parts![
     "compare/tile.js",
     "compare/worker.js",
     "controls.js",
+    "docs/attempt.js",
+    "docs/docs.css",
+    "docs/docs.js",
+    "docs/operation.js",
+    "docs/schema.js",
     "dom.js",
     "dots.js",
     "download.js",

@@ -3,7 +3,7 @@
 use schemars::SchemaGenerator;
 use serde_json::{Map, Value, json};
 
-use super::{Answer, Endpoint, Operation, Tag, rules, schemas, sets};
+use super::{Answer, Endpoint, Operation, Tag, examples, rules, schemas, sets};
 use crate::{
     error_map,
     rest::problem::Problem,
@@ -33,14 +33,16 @@ const AT_THE_GATE: [Kind; 2] = [Kind::Unauthenticated, Kind::TooFast];
 pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
     let mut generator = schemas::generator();
     let mut paths = Map::new();
+    let answers = examples::all();
     for endpoint in endpoints {
         let mut item = Map::new();
         for operation in endpoint.operations() {
             let method = operation.method.as_str().to_lowercase();
-            item.insert(
-                method,
-                described(operation, endpoint.is_open(), &mut generator),
-            );
+            let mut described = described(operation, endpoint.is_open(), &mut generator);
+            if let Some(example) = answers.get(operation.id) {
+                examples::put(example, &mut described["responses"]);
+            }
+            item.insert(method, described);
         }
         paths.insert(endpoint.path().into(), Value::Object(item));
     }

@@ -5,6 +5,7 @@
 //! [`rest::endpoints`](super::endpoints).
 
 mod document;
+mod examples;
 mod rules;
 pub mod schemas;
 mod sets;

@@ -36,7 +36,8 @@ export function hasKey() {
   return Boolean(sessionStorage.getItem(KEY));
 }
 
-function headersFor(body) {
+/** The headers of a request: its key, and the type of a body of JSON. */
+export function headersFor(body) {
   const headers = body === undefined ? {} : { "content-type": "application/json" };
   if (hasKey()) headers.authorization = `Bearer ${sessionStorage.getItem(KEY)}`;
   return headers;

@@ -32,7 +32,7 @@ fn rest_requires_a_key() {
         "/livez",
         "/readyz",
         "/docs",
-        "/docs/page.js",
+        "/page/docs/docs.js",
         "/openapi.json",
     ] {
         assert_eq!(daemon.get(path).status, 200, "{path}");

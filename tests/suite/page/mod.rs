@@ -1,11 +1,12 @@
 //! The page at `/` in headless Chromium: what it shows and how it moves (view), what can be set
 //! (controls, fields), what is wrong and how it is said (faults, links), the card of a point (card), the tab How it
 //! works (works), the requests and files it offers (export), and that everybody can use it (everyone); and the pages
-//! `/compare` and `/walk`. The tests are skipped where Chromium and ChromeDriver are not installed.
+//! `/compare`, `/docs` and `/walk`. The tests are skipped where Chromium and ChromeDriver are not installed.
 
 mod card;
 mod compare;
 mod controls;
+mod docs;
 mod everyone;
 mod export;
 mod faults;
