@@ -64,9 +64,11 @@ pub(super) fn run(path: &Path, all: bool, quiet: bool, config: &Config) -> Resul
         progress.reach((k * BATCH + batch.len()) as u64, "");
     }
     progress.finish();
-    let made = made_again(&mut tree, &manifest, all, quiet, config, &mut faults)?;
-    let total = manifest.total;
+    // What has changed needs no second look.
     faults.report(path)?;
+    let made = made_again(&mut tree, &manifest, all, quiet, config, &mut faults)?;
+    faults.report(path)?;
+    let total = manifest.total;
     if !quiet {
         eprintln!(
             "{} is whole: {} files, {} chunks, {} points; {made} chunks made again",
