@@ -75,6 +75,8 @@ const PARTS: &[(&str, &str)] = parts![
     "shade.js",
     "sheets.js",
     "spectrum.js",
+    "start.css",
+    "start.js",
     "state.js",
     "status.js",
     "take.js",

@@ -17,8 +17,8 @@ const COUNT = ACROSS ** 2;
 const VIEWS = [
   {
     id: "forest", name: "A forest with rocks and a road", words: "Two kinds that keep clear of each other, in a field.",
-    hash: "#at=25,10&span=130&layers=2&profile=blue&amount=3&seed=7&field=forest&color=3&dot=1.3&scale=1&range=0.6,1.3"
-      + "&2.profile=spaced&2.amount=9&2.seed=4&2.field=forest&2.shade=0&2.color=4&2.dot=1.2&2.variant=1&2.variants=rock:2,boulder:1&2.clear=2.2",
+    hash: "#at=-60,-5&span=100&layers=2&profile=blue&amount=3&seed=7&field=forest&color=3&dot=1.3&scale=1&range=0.6,1.3"
+      + "&2.profile=spaced&2.amount=7&2.seed=4&2.field=forest&2.shade=0&2.color=4&2.dot=1.2&2.variant=1&2.variants=rock:2,boulder:1&2.clear=2.2",
   },
   {
     id: "portrait", name: "A stippled portrait", words: "Dots as dense as a picture is dark. Drop your own on the plane.",
@@ -91,10 +91,13 @@ export class Start {
 
   view({ id, name, words, ...how }) {
     const canvas = make("canvas", { "aria-hidden": "true" });
-    const open = () => this.session.choose((state) => {
-      const { renderer, works } = state;
-      Object.assign(state, fromHash(how.hash), { renderer, works });
-    }, "layers", "view", "tab");
+    const open = () => {
+      this.session.choose((state) => {
+        const { renderer, works } = state;
+        Object.assign(state, fromHash(how.hash), { renderer, works });
+      }, "layers", "view", "tab");
+      byId(this.session.state.tab).focus({ preventScroll: true });
+    };
     const element = make("button", { type: "button", class: "view", id: `view-${id}`, onclick: open }, canvas, make("b", {}, name), make("small", {}, words));
     return { ...how, canvas, element };
   }
@@ -132,7 +135,7 @@ export class Start {
       const points = await Promise.resolve(KINDS[i][2](seed)).catch(() => null);
       if (!points || seed !== this.seed) return;
       one.points = points;
-      one.draw = () => dots(one.canvas, points, 1);
+      one.draw = () => dots(one.canvas, points);
       one.draw();
     }));
   }
@@ -208,8 +211,8 @@ function draw(view, chunk, across) {
 }
 
 /** Draws points of a unit square as dots. */
-function dots(canvas, points, aspect) {
-  const { context, width } = prepared(canvas, aspect);
+function dots(canvas, points) {
+  const { context, width } = prepared(canvas, 1);
   context.fillStyle = getComputedStyle(document.body).backgroundColor;
   context.fillRect(0, 0, width, width);
   context.fillStyle = getComputedStyle(document.body).color;
