@@ -30,7 +30,15 @@ const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; w
 type Page = (&'static str, &'static str, &'static str, &'static str);
 
 /// The pages. The parts of the first are in `page/`, those of each other one in a folder of its own in there.
-const PAGES: &[Page] = &[("/", "getPage", "The page", include_str!("page/index.html"))];
+const PAGES: &[Page] = &[
+    ("/", "getPage", "The page", include_str!("page/index.html")),
+    (
+        "/compare",
+        "getComparePage",
+        "The page that compares ways to scatter points",
+        include_str!("page/compare/index.html"),
+    ),
+];
 
 macro_rules! parts {
     ($($name:literal),* $(,)?) => {
@@ -45,6 +53,20 @@ const PARTS: &[(&str, &str)] = parts![
     "charts.js",
     "chunks.js",
     "commands.js",
+    "compare/bridson.js",
+    "compare/cells.js",
+    "compare/compare.css",
+    "compare/compare.js",
+    "compare/halton.js",
+    "compare/hash.js",
+    "compare/joint.js",
+    "compare/made.js",
+    "compare/methods.js",
+    "compare/panel.js",
+    "compare/sheet.js",
+    "compare/sources.js",
+    "compare/tile.js",
+    "compare/worker.js",
     "controls.js",
     "dom.js",
     "dots.js",
@@ -83,6 +105,7 @@ const PARTS: &[(&str, &str)] = parts![
     "theme.css",
     "theme.js",
     "understand.js",
+    "worker.js",
     "works/works.css",
     "works/works.js",
     "works/draw.js",
