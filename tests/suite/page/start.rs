@@ -155,7 +155,9 @@ fn axe_finds_nothing_to_complain_about() {
             "(document.documentElement.dataset.theme = '{theme}', 0)"
         ));
         browser.value(&format!("(new Function({}).call(window), 0)", json!(axe)));
-        for tab in ["start", "choose", "understand", "take", "gallery"] {
+        // The gallery measures in the meantime, so one size of it is enough.
+        let tabs = ["start", "choose", "take", "understand", "gallery"];
+        for tab in &tabs[..if width == 1440 { 5 } else { 4 }] {
             browser.click(&format!("#tab-{tab}"));
             browser.until(&format!("!document.querySelector('#{tab}').hidden"));
             let found = browser.value(
