@@ -38,6 +38,12 @@ const PAGES: &[Page] = &[
         "The page that compares ways to scatter points",
         include_str!("page/compare/index.html"),
     ),
+    (
+        "/walk",
+        "getWalk",
+        "A walk through the plane, in three dimensions",
+        include_str!("page/walk/index.html"),
+    ),
 ];
 
 macro_rules! parts {
@@ -106,6 +112,18 @@ const PARTS: &[(&str, &str)] = parts![
     "theme.js",
     "understand.js",
     "worker.js",
+    "walk/camera.js",
+    "walk/ground.js",
+    "walk/land.js",
+    "walk/leaves.js",
+    "walk/map.js",
+    "walk/move.js",
+    "walk/scene.js",
+    "walk/shaders.js",
+    "walk/shapes.js",
+    "walk/walk.css",
+    "walk/walk.js",
+    "walk/world.js",
     "works/works.css",
     "works/works.js",
     "works/draw.js",

@@ -25,6 +25,7 @@ use super::{
 use crate::{
     bounded_file,
     config::Fields as Settings,
+    name::{ALLOWED, is_name},
     raster::{Image, Limits, MOST_SIDE, Meaning, RasterError},
     service::named::{self, Changes, Refused, Source},
 };
@@ -236,9 +237,9 @@ struct Unbuilt {
 
 impl Unbuilt {
     fn new(name: String, source: Source, document: Result<Document, String>, base: &Path) -> Self {
-        let document = match named::is_name(&name) {
+        let document = match is_name(&name) {
             true => document,
-            false => Err(format!("`{name}` is no name; allowed: {}", named::NAME)),
+            false => Err(format!("`{name}` is no name; allowed: {ALLOWED}")),
         };
         Self {
             name,

@@ -1,7 +1,7 @@
 //! The pages in headless Chromium: what `/` shows and how it moves (view), the first screen (start), what can be set
 //! (controls, fields), what is wrong and how it is said (faults, links), the card of a point (card), the tab How it
-//! works (works), the requests and files it offers (export), and that everybody can use it (everyone); and the page
-//! `/compare`. The tests are skipped where Chromium and ChromeDriver are not installed.
+//! works (works), the requests and files it offers (export), and that everybody can use it (everyone); and the pages
+//! `/compare` and `/walk`. The tests are skipped where Chromium and ChromeDriver are not installed.
 
 mod card;
 mod compare;
@@ -13,4 +13,5 @@ mod fields;
 mod links;
 mod start;
 mod view;
+mod walk;
 mod works;
