@@ -54,6 +54,10 @@ blender:
     target/blender/bin/pip install -q bpy
     STREW_TEST_BLENDER=target/blender/bin/python cargo test --locked --test suite -- docs::samples
 
+# The contract with its fuzzer at length: 25 examples, and every edge of every schema (about ten minutes).
+contract:
+    STREW_TEST_WHOLE_CONTRACT=1 cargo test --locked --test suite -- docs::api_contract --nocapture
+
 # The tests of exported spans, which need the feature that images are built with.
 otlp:
     cargo clippy --locked --features otlp -- -D warnings
@@ -78,6 +82,14 @@ caches program *args:
 # The data source of Spark on a cluster of two workers, one of which is killed.
 spark *args:
     .ci/spark {{args}}
+
+# The data source of Ray on two workers, of which some are killed, and the example of Dask.
+ray *args:
+    .ci/ray {{args}}
+
+# The files of `deploy/` by helm, kubeconform, promtool, HAProxy and nginx.
+deploy-check:
+    .ci/deploy
 
 # Licenses, bans and sources of all dependencies; the advisories need a network.
 deny:

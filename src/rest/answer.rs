@@ -30,14 +30,15 @@ const COLUMNS: HeaderName = HeaderName::from_static("strew-columns");
 const KINDS: HeaderName = HeaderName::from_static("strew-kinds");
 const WARNING: HeaderName = HeaderName::from_static("strew-warning");
 const NEXT: HeaderName = HeaderName::from_static("strew-next");
+const CURSOR: HeaderName = HeaderName::from_static("strew-cursor");
 
 /// The headers of an answer with points, and what they say.
-const HEADERS: [(&str, &str); 10] = [
+const HEADERS: [(&str, &str); 11] = [
     ("strew-count", "Exactly how many points follow."),
     ("strew-table", "The digest of the table that answers."),
     (
         "strew-world",
-        "The digest of the world, if the query names one: of its document, tables and fields.",
+        "The digest of the world, if the query names one: of its document, tables, fields and lists.",
     ),
     (
         "strew-algorithm",
@@ -51,6 +52,11 @@ const HEADERS: [(&str, &str); 10] = [
     (
         "strew-next",
         "With a limit: the cursor of the points after these, if there are any.",
+    ),
+    (
+        "strew-cursor",
+        "The cursor of the first of these points, for answers that are streamed. One that breaks off continues with \
+         this cursor and the number of points that came as `offset`.",
     ),
     (
         "strew-columns",
@@ -258,6 +264,12 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
     headers.insert(TABLE, text(&digests.join(", "))?);
     if let Some(token) = planned.next() {
         headers.insert(NEXT, text(&token.to_string())?);
+    }
+    if !planned.query.is_small()
+        && !chosen.encoding.is_picture()
+        && let Some(token) = planned.beginning()
+    {
+        headers.insert(CURSOR, text(&token.to_string())?);
     }
     headers.insert(ALGORITHM, ALGORITHM_VERSION.into());
     if let Some(world) = &planned.query.world {

@@ -281,6 +281,14 @@ impl Planned {
         self.next
     }
 
+    /// Where the answer begins, if it has points.
+    #[must_use]
+    pub fn beginning(&self) -> Option<Token> {
+        let mut sets = self.sets.iter().enumerate();
+        let (i, cursor) = sets.find_map(|(i, set)| Some((i, set.plan.beginning()?)))?;
+        self.token(i, cursor)
+    }
+
     /// The first set's table: the only one's, without layers.
     #[must_use]
     pub fn entry(&self) -> &Entry {

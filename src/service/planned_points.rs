@@ -5,7 +5,7 @@
 
 use strew_core::{
     Attributes, Blocks, BoundAttributes, Cursor, Error, PeriodicBlocks, PeriodicPlan, Plan, Point,
-    Points, Region,
+    PointId, Points, Region,
     server::{self, Stop},
 };
 
@@ -85,6 +85,20 @@ impl PlannedPoints {
         match self {
             Self::Plane(plan) => plan.cursor(),
             Self::Period(plan) => plan.cursor(),
+        }
+    }
+
+    /// A cursor from which the same points come, if there are any. Finding it takes no time, unlike
+    /// [`cursor`](Self::cursor): from the beginning on no address is needed.
+    #[must_use]
+    pub fn beginning(&self) -> Option<Cursor> {
+        match self {
+            Self::Plane(plan) if plan.offset() == 0 => (plan.count() > 0).then(|| Cursor {
+                offset: 0,
+                total: plan.total(),
+                at: PointId { x: 0, y: 0 },
+            }),
+            _ => self.cursor(),
         }
     }
 

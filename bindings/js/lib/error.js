@@ -14,3 +14,8 @@ export class StrewError extends Error {
         this.faults = faults;
     }
 }
+
+/** A daemon that cannot be reached, or whose answers break off again and again. */
+export class Disconnected extends Error {
+    name = "Disconnected";
+}

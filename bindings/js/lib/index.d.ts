@@ -149,8 +149,24 @@ export function open(options?: {
     wasm?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
 }): Promise<Source<"here">>;
 
-/** A daemon, with the functions of what `open` returns; its answers are promises. */
-export function connect(url: string | URL, options?: { key?: string }): Source<"there">;
+/** A daemon that cannot be reached, or whose answers break off again and again. */
+export class Disconnected extends Error {}
+
+/**
+ * A daemon, with the functions of what `open` returns; its answers are promises. Several replicas are a list, or one
+ * text with commas. A request goes to the one with the fewest requests of this client; an address that fails is left out
+ * for a while, and an answer that breaks off continues at any of them, each point once.
+ */
+export function connect(
+    url: string | URL | (string | URL)[],
+    options?: {
+        key?: string;
+        /** How often each address may fail again in a row before a request ends: 3. */
+        retries?: number;
+        /** For how many seconds after the first failure a request is repeated: 30. */
+        patience?: number;
+    },
+): Source<"there">;
 
 /** Pixels as JSON has them: rows from the top, where y is greatest. */
 export function pixels(values: Numbers, width: number, height: number, where?: object): object;

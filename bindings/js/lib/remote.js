@@ -1,26 +1,64 @@
-// Points that a daemon makes, over HTTP. Everything is a promise.
+// Points that a daemon makes, or one of several, over HTTP. Everything is a promise.
 
 import { StrewError } from "./error.js";
 import { Source } from "./points.js";
 import { OF_DOCUMENTS, parsed, text } from "./query.js";
+import { Elsewhere, Later, Replicas, broken, retryAfter } from "./replicas.js";
+
+// The statuses after which a daemon wants to be called again.
+const LATER = [429, 502, 503, 504];
+// Refusals that depend on what a daemon holds: by their kind, or by the only members that are wrong.
+const HELD_KINDS = ["other-table", "other-world"];
+const HELD = ["cursor", "except", "field", "profile", "table", "terrain", "world"];
+
+function addresses(url) {
+    const texts = Array.isArray(url) ? url : String(url).split(",");
+    return [...new Set(texts.map((text) => String(text).trim().replace(/\/+$/, "")))];
+}
 
 class Daemon extends Source {
-    #url;
     #headers;
+    #replicas;
 
-    constructor(url, key) {
+    constructor(url, { key, retries = 3, patience = 30 }) {
         super();
-        this.#url = String(url).replace(/\/+$/, "");
         this.#headers = key ? { authorization: `Bearer ${key}` } : {};
+        this.#replicas = new Replicas(addresses(url), retries, patience);
     }
 
-    /** The response to a request, if it is a good one. */
-    async request(path, body) {
+    /** The response of a replica, if it is a good one. */
+    async #call(replica, path, body) {
         const post = { method: "POST", body, headers: { ...this.#headers, "content-type": "application/json" } };
-        const response = await fetch(this.#url + path, body === undefined ? { headers: this.#headers } : post);
-        if (response.ok) return response;
-        const content = await response.text();
-        throw refusal(response.status, content);
+        const options = body === undefined ? { headers: this.#headers } : post;
+        const lost = (error) => Promise.reject(broken(replica, error));
+        const response = await fetch(replica.url + path, options).catch(lost);
+        if (response.ok) {
+            replica.answered();
+            return response;
+        }
+        const error = refusal(response.status, await response.text().catch(lost));
+        if (LATER.includes(response.status)) throw new Later(error, retryAfter(response.headers.get("retry-after")));
+        replica.answered();
+        throw isAboutHeld(error) ? new Elsewhere(error) : error;
+    }
+
+    /** What `work(call, progress)` makes of a response, at any replica. A body that breaks is `call.broken(error)`. */
+    attempts(work, limits) {
+        const attempt = (replica, progress) => {
+            const call = (path, body) => this.#call(replica, path, body);
+            call.broken = (error) => broken(replica, error);
+            return work(call, progress);
+        };
+        return this.#replicas.attempts(attempt, limits);
+    }
+
+    /** The response to a request, with its whole content. */
+    request(path, body, limits) {
+        return this.attempts(async (call) => {
+            const response = await call(path, body);
+            const content = await response.arrayBuffer().catch((error) => Promise.reject(call.broken(error)));
+            return new Response(content, { headers: response.headers });
+        }, limits);
     }
 
     async json(path, body) {
@@ -39,10 +77,20 @@ class Daemon extends Source {
         return (await this.json(`/v1/points/${encodeURIComponent(id)}?${address}`)).point;
     }
 
+    /** Sends a field to all daemons that can be reached: its name is a digest, and any may be called next. */
     async holdField(body) {
-        return (await this.json("/v1/fields", body)).name;
+        const up = this.#replicas.all.length > 1 ? this.#replicas.up() : [];
+        const one = (replica) => this.request("/v1/fields", body, { only: [replica], retries: 0 });
+        const sent = await Promise.allSettled(up.map(one));
+        const held = sent.find(({ status }) => status === "fulfilled")?.value ?? (await this.request("/v1/fields", body));
+        return (await held.json()).name;
     }
 }
+
+const isAboutHeld = ({ kind, faults }) => {
+    const members = faults.map(({ field }) => String(field).split(".").at(-1));
+    return HELD_KINDS.includes(kind) || (members.length > 0 && members.every((member) => HELD.includes(member)));
+};
 
 /** What is wrong, from a problem document. Proxies answer with other content. */
 function refusal(status, content) {
@@ -124,13 +172,17 @@ class RemotePlan {
 
     /** The coordinates of an answer whose rows are numbers, x and y first. */
     async #coordinates(format, kind) {
-        const response = await this.#points({ format });
-        const count = Number(response.headers.get("strew-count"));
-        const values = new kind(await response.arrayBuffer());
-        const each = values.length / count;
-        const pair = (_, i) => values[(i >> 1) * each + (i & 1)];
-        const xy = each === 2 || !count ? values : kind.from({ length: 2 * count }, pair);
-        return { xy, origin: originOf(response) };
+        const each = ({ headers }) => JSON.parse(headers.get("strew-columns")).length * kind.BYTES_PER_ELEMENT;
+        const whole = (bytes, response) => {
+            const rows = Math.floor(bytes.length / each(response));
+            return { rows, length: rows * each(response) };
+        };
+        const { bytes, first } = await new Answer(this.#daemon, this.#query, { format }, whole).read();
+        const values = new kind(bytes.buffer);
+        const step = each(first) / kind.BYTES_PER_ELEMENT;
+        const pair = (_, i) => values[(i >> 1) * step + (i & 1)];
+        const xy = step === 2 ? values : kind.from({ length: (2 * values.length) / step }, pair);
+        return { xy, origin: originOf(first) };
     }
 
     async xy() {
@@ -143,10 +195,9 @@ class RemotePlan {
 
     async columns() {
         // The numbers of JSON read back to the same bits.
-        const [{ columns }, { points }] = await Promise.all([
-            this.#head(),
-            this.#points({ format: "json" }).then((response) => response.json()),
-        ]);
+        const lines = new Answer(this.#daemon, this.#query, { format: "ndjson", summary: false }, wholeLines);
+        const [{ columns }, { bytes }] = await Promise.all([this.#head(), lines.read()]);
+        const points = JSON.parse(`[${new TextDecoder().decode(bytes).trimEnd().replaceAll("\n", ",")}]`);
         const ids = BigInt64Array.from(points.flatMap(({ id }) => id.split(":").map(BigInt)));
         const xy = Float64Array.from(points.flatMap(({ x, y }) => [x, y]));
         const further = columns.slice(2).map((column) => [column.name, valuesOf(column, points)]);
@@ -163,6 +214,100 @@ class RemotePlan {
     }
 }
 
+/** The whole lines among the first bytes of an answer of lines. */
+function wholeLines(bytes) {
+    const newline = 10;
+    let rows = 0;
+    for (const byte of bytes) rows += byte === newline;
+    return { rows, length: bytes.lastIndexOf(newline) + 1 };
+}
+
+/** The bytes of a body, until it ends or breaks off, and what broke it. */
+async function received(response) {
+    const chunks = [];
+    let error;
+    try {
+        const reader = response.body.getReader();
+        for (let part; !(part = await reader.read()).done; ) chunks.push(part.value);
+    } catch (reason) {
+        error = reason;
+    }
+    return { bytes: joined(chunks), error };
+}
+
+function joined(chunks) {
+    const bytes = new Uint8Array(chunks.reduce((length, chunk) => length + chunk.length, 0));
+    let at = 0;
+    for (const chunk of chunks) {
+        bytes.set(chunk, at);
+        at += chunk.length;
+    }
+    return bytes;
+}
+
+/** The bytes of an answer of rows. One that breaks off goes on after the whole rows that came, at any replica. */
+class Answer {
+    #daemon;
+    #query;
+    #whole;
+    #parts = [];
+    #rows = 0;
+    #count;
+    #cursor = null;
+    #first;
+
+    /** `whole(bytes, response)` is how many whole `rows` bytes begin with, and their `length`. */
+    constructor(daemon, query, form, whole) {
+        this.#daemon = daemon;
+        this.#query = { ...query, ...form };
+        this.#whole = whole;
+    }
+
+    /** All bytes, and the first response for its headers. */
+    async read() {
+        try {
+            await this.#daemon.attempts((call, progress) => this.#attempt(call, progress));
+        } catch (error) {
+            if (!this.#rows || !(error instanceof StrewError)) throw error;
+            const came = `${this.#rows} of ${this.#count} points came, and no other daemon continues`;
+            throw new StrewError(`${came}: ${error.message}`, error.kind, error.faults);
+        }
+        return { bytes: joined(this.#parts), first: this.#first };
+    }
+
+    async #attempt(call, progress) {
+        if (this.#cursor === null) {
+            // Short answers have no cursor: they begin again.
+            this.#parts = [];
+            this.#rows = 0;
+        }
+        const response = await call("/v1/points:query", text(this.#rest()));
+        const count = Number(response.headers.get("strew-count"));
+        if (!this.#rows) {
+            this.#count = count;
+            this.#cursor = response.headers.get("strew-cursor");
+            this.#first = response;
+        } else if (this.#rows + count !== this.#count) {
+            throw new StrewError(`the answer goes on with ${count} points`, "other-answer");
+        }
+        const { bytes, error } = await received(response);
+        const { rows, length } = this.#whole(bytes, response);
+        this.#parts.push(bytes.subarray(0, length));
+        this.#rows += rows;
+        if (rows && this.#cursor !== null) progress();
+        if (this.#rows === this.#count) return;
+        throw call.broken(error ?? new Error(`${this.#rows} of ${this.#count} points came`));
+    }
+
+    /** The query of the rows that are left. The order is fixed, so they are known by their place. */
+    #rest() {
+        if (!this.#rows) return this.#query;
+        const rest = { ...this.#query, cursor: this.#cursor, offset: this.#rows };
+        if ("limit" in rest) rest.limit = Number(rest.limit) - this.#rows;
+        return rest;
+    }
+}
+
 /** The values of a column: numbers, or indices of names. */
 function valuesOf({ name, names, names_left_out }, points) {
     const values = points.map((point) => point[name] ?? null);
@@ -173,7 +318,7 @@ function valuesOf({ name, names, names_left_out }, points) {
     return { names: known, values: Int32Array.from(values, (value) => places.get(value) ?? -1) };
 }
 
-/** A daemon, with the functions of what `open` returns; its answers are promises. */
-export function connect(url, { key } = {}) {
-    return new Daemon(url, key);
+/** A daemon, or several with the same points, with the functions of what `open` returns; its answers are promises. */
+export function connect(url, options = {}) {
+    return new Daemon(url, options);
 }

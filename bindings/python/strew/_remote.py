@@ -1,86 +1,128 @@
-"""Points that a daemon makes, over HTTP."""
+"""Points that a daemon makes, or one of several, over HTTP."""
 
 from __future__ import annotations
 
+import functools
 import http.client
 import json
 import ssl
-import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
-from urllib.parse import quote, urlsplit
+from urllib.parse import SplitResult, quote, urlsplit
 
 import numpy as np
 
 from ._errors import Disconnected, StrewError
 from ._ipc import Batch, Column, Stream
 from ._query import Body, text
+from ._replicas import Attempts, Elsewhere, Later, Replica, Replicas, retry_after
 from ._source import Plan, Source
 from ._strew import Columns
 
-#: What breaks a connection: the same request is worth another try.
-BROKEN = (OSError, http.client.HTTPException, EOFError)
-#: The statuses after which a daemon wants to be asked again.
+#: The statuses after which a daemon wants to be called again.
 LATER = (429, 502, 503, 504)
+#: The seconds that a connection may take, where there is another address.
+CONNECTING = 5.0
+#: Refusals that depend on what a daemon holds: by their kind, or by the only members that are wrong.
+HELD_KINDS = ("other-table", "other-world")
+HELD = {"cursor", "except", "field", "profile", "table", "terrain", "world"}
+
+
+def _parts(url: str) -> SplitResult:
+    parts = urlsplit(url if "://" in url else f"http://{url}")
+    if parts.scheme not in ("http", "https") or not parts.hostname:
+        raise ValueError(f"{url!r} is no address of a daemon; allowed: http://host:port, https://host:port")
+    return parts
+
+
+def _addresses(url: str | Sequence[str]) -> list[str]:
+    """Addresses in their plain form, each once."""
+    texts = url.split(",") if isinstance(url, str) else list(url)
+    parts = [_parts(text.strip()) for text in texts]
+    if not parts:
+        raise ValueError("no address of a daemon; allowed: http://host:port, https://host:port, or several")
+    return list(dict.fromkeys(f"{part.scheme}://{part.netloc}{part.path.rstrip('/')}" for part in parts))
 
 
 class Daemon(Source):
-    """A daemon; see :func:`connect`."""
+    """A daemon, or several with the same points; see :func:`connect`."""
 
-    def __init__(self, url: str, key: str | None, timeout: float, retries: int, verify: str | bool) -> None:
-        parts = urlsplit(url if "://" in url else f"http://{url}")
-        if parts.scheme not in ("http", "https") or not parts.hostname:
-            raise ValueError(f"{url!r} is no address of a daemon; allowed: http://host:port, https://host:port")
-        self.url = f"{parts.scheme}://{parts.netloc}{parts.path.rstrip('/')}"
-        self._host, self._port, self._path = parts.hostname, parts.port, parts.path.rstrip("/")
-        self._key, self._timeout, self._retries, self._verify = key, timeout, retries, verify
+    def __init__(
+        self,
+        url: str | Sequence[str],
+        key: str | None,
+        timeout: float,
+        retries: int,
+        verify: str | bool,
+        patience: float = 30.0,
+    ) -> None:
+        urls = _addresses(url)
+        #: The address, or several with commas between them.
+        self.url = ",".join(urls)
+        self._key, self._timeout, self._verify = key, timeout, verify
+        self._replicas = Replicas([Replica(url) for url in urls], retries, patience)
 
     def __repr__(self) -> str:
         return self.url
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Daemon, (self.url, self._key, self._timeout, self._retries, self._verify)
+        replicas = self._replicas
+        return Daemon, (self.url, self._key, self._timeout, replicas.retries, self._verify, replicas.patience)
 
-    def _connection(self) -> http.client.HTTPConnection:
-        if self.url.startswith("http:"):
-            return http.client.HTTPConnection(self._host, self._port, timeout=self._timeout)
+    @functools.cached_property
+    def _context(self) -> ssl.SSLContext:
         context = ssl.create_default_context(cafile=self._verify if isinstance(self._verify, str) else None)
         if self._verify is False:
             context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
-        return http.client.HTTPSConnection(self._host, self._port, timeout=self._timeout, context=context)
+        return context
 
-    def open(self, method: str, path: str, body: str | None = None) -> http.client.HTTPResponse:
-        """The response to a request, once it is a good one. The connection closes with it."""
+    def _connection(self, parts: SplitResult) -> http.client.HTTPConnection:
+        is_alone = len(self._replicas.all) == 1
+        wait = self._timeout if is_alone else min(self._timeout, CONNECTING)
+        host = parts.hostname or ""
+        made: http.client.HTTPConnection
+        if parts.scheme == "http":
+            made = http.client.HTTPConnection(host, parts.port, timeout=wait)
+        else:
+            made = http.client.HTTPSConnection(host, parts.port, timeout=wait, context=self._context)
+        made.connect()
+        made.sock.settimeout(self._timeout)
+        return made
+
+    def open(self, replica: Replica, method: str, path: str, body: str | None = None) -> http.client.HTTPResponse:
+        """The response of a replica, once it is a good one. The connection closes with it."""
+        parts = urlsplit(replica.url)
         headers = {"connection": "close"}
         if body is not None:
             headers["content-type"] = "application/json"
         if self._key is not None:
             headers["authorization"] = f"Bearer {self._key}"
-        connection = self._connection()
-        connection.request(method, self._path + path, None if body is None else body.encode(), headers)
+        connection = self._connection(parts)
+        connection.request(method, parts.path + path, None if body is None else body.encode(), headers)
         response = connection.getresponse()
         if response.status == 200:
+            self._replicas.answered(replica)
             return response
         with response:
-            content = response.read()
-            if response.status in LATER:
-                wait = response.headers.get("retry-after", "")
-                raise _Later(float(wait) if wait.isdigit() else 0.0, _refusal(response, content))
-            raise _refusal(response, content)
+            refusal = _refusal(response, response.read())
+        if response.status in LATER:
+            raise Later(retry_after(response.headers.get("retry-after")), refusal)
+        self._replicas.answered(replica)
+        raise Elsewhere(refusal) if _is_about_held(refusal) else refusal
 
     def read(self, method: str, path: str, body: str | None = None) -> bytes:
         """The content of a response."""
-        for attempt in self.attempts():
-            with attempt, self.open(method, path, body) as response:
+        return self._read(self.attempts(), method, path, body)
+
+    def _read(self, attempts: Attempts, method: str, path: str, body: str | None) -> bytes:
+        for attempt in attempts:
+            with attempt as replica, self.open(replica, method, path, body) as response:
                 return response.read()
         raise AssertionError("the last attempt raises")
 
-    def attempts(self) -> Iterator[_Attempt]:
+    def attempts(self) -> Attempts:
         """Attempts with pauses between them; the last one raises what is wrong."""
-        for left in range(self._retries, -1, -1):
-            attempt = _Attempt(self.url, left, self._retries)
-            yield attempt
-            time.sleep(attempt.pause)
+        return self._replicas.attempts()
 
     def json(self, method: str, path: str, body: str | None = None) -> Any:
         return json.loads(self.read(method, path, body))
@@ -97,17 +139,36 @@ class Daemon(Source):
         return found
 
     def hold_field(self, field: Any) -> str:
-        name: str = self.json("POST", "/v1/fields", text(field))["name"]
-        return name
+        """Sends a field to all daemons that can be reached: its name is a digest, and any of them may be called next."""
+        body, name, error = text(field), "", None
+        if len(self._replicas.all) == 1:
+            return str(self.json("POST", "/v1/fields", body)["name"])
+        for replica in self._replicas.up():
+            try:
+                only = Attempts(self._replicas, [replica], retries=0)
+                name = json.loads(self._read(only, "POST", "/v1/fields", body))["name"]
+            except (Disconnected, StrewError) as refusal:
+                error = refusal
+        if name:
+            return name
+        if error is not None:
+            raise error
+        return str(self.json("POST", "/v1/fields", body)["name"])
 
 
 def connect(
-    url: str, *, key: str | None = None, timeout: float = 60.0, retries: int = 3, verify: str | bool = True
+    url: str | Sequence[str],
+    *,
+    key: str | None = None,
+    timeout: float = 60.0,
+    retries: int = 3,
+    verify: str | bool = True,
+    patience: float = 30.0,
 ) -> Daemon:
     """A daemon, with the functions of this module: ``points``, ``query``, ``stipple``.
 
-    An answer that breaks off is taken up where it ended. A request is repeated up to ``retries`` times while the daemon cannot be reached or says that it is busy. ``key`` is an API key, which is part
-    of pickles. ``verify`` may be the path of an authority's certificate, or ``False`` for none.
+    ``key`` is an API key, which is part of pickles. ``timeout`` is how many seconds an answer may pause. ``verify`` may be
+    the path of an authority's certificate, or ``False`` for none.
 
     Code moves from a laptop to a service by one line::
 
@@ -115,39 +176,24 @@ def connect(
         points = strew.connect("http://localhost:8080").points(bbox=(0, 0, 10, 10), spacing=1)
 
     The daemon is called when an answer is needed: :class:`StrewError` is raised then.
+
+    Several replicas are a list of addresses, or one text with commas: ``"http://a:7777,http://b:7777"``. A request goes to
+    the one with the fewest requests of this client. An address that refuses connections, breaks off or answers 429,
+    502, 503 or 504 is left out, for as long as its ``Retry-After`` says, else for 0.1 to 5 seconds, more with each
+    failure; afterwards one request tries it again.
+
+    An answer that breaks off continues where it ended, at any address, by its cursor: every point comes once. Only a
+    daemon with the same tables and fields takes that cursor. A request that fails is repeated until each address has
+    failed ``retries`` + 1 times in a row, but for at most ``patience`` seconds after the first failure. Refusals of a
+    query are raised at once. Those of what a daemon holds (a pinned table, a world, a named field) are raised once all
+    addresses refuse.
     """
-    return Daemon(url, key, timeout, retries, verify)
+    return Daemon(url, key, timeout, retries, verify, patience)
 
 
-class _Later(Exception):
-    """A refusal for now."""
-
-    def __init__(self, wait: float, error: StrewError) -> None:
-        super().__init__(str(error))
-        self.wait, self.error = wait, error
-
-
-class _Attempt:
-    """One attempt of several: passes over what another one may mend."""
-
-    def __init__(self, url: str, left: int, most: int) -> None:
-        self._url, self._left = url, left
-        self.pause = 0.1 * 2 ** (most - left)
-
-    def __enter__(self) -> _Attempt:
-        return self
-
-    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> bool:
-        if isinstance(error, _Later):
-            if not self._left:
-                raise error.error from None
-            self.pause = max(self.pause, error.wait)
-            return True
-        if isinstance(error, BROKEN):
-            if not self._left:
-                raise Disconnected(f"{self._url}: {error or type(error).__name__}") from error
-            return True
-        return False
+def _is_about_held(error: StrewError) -> bool:
+    members = {str(fault.get("field", "")).rsplit(".", 1)[-1] for fault in error.faults}
+    return error.kind in HELD_KINDS or (bool(members) and members <= HELD)
 
 
 def _refusal(response: http.client.HTTPResponse, content: bytes) -> StrewError:
@@ -196,8 +242,9 @@ class _Asked:
 
     def _first(self) -> tuple[str | None, list[str]]:
         if self._begun is None:
-            for attempt in self._daemon.attempts():
-                with attempt, self._daemon.open("POST", "/v1/points:query", self._body(format="f32")) as response:
+            daemon, body = self._daemon, self._body(format="f32")
+            for attempt in daemon.attempts():
+                with attempt as replica, daemon.open(replica, "POST", "/v1/points:query", body) as response:
                     self._begun = response.headers.get("strew-next"), _tables(response)
                     break
         assert self._begun is not None
@@ -225,8 +272,7 @@ class _Asked:
 
     def columns(self) -> Columns:
         answer = _Answer(self._daemon, self._query)
-        batches = list(answer)
-        columns = answer.columns
+        batches, columns = answer.batches, answer.columns
         ids, at = (_joined([getattr(batch, name) for batch in batches]) for name in ("ids", "at"))
         further = []
         for i, column in enumerate(columns):
@@ -246,35 +292,64 @@ def _joined(arrays: list[np.ndarray[Any, Any]]) -> bytes:
 class _Answer:
     """The batches of an answer. One that breaks off goes on after the rows that came."""
 
-    columns: list[Column]
-    origin: tuple[float, float] | None
-
     def __init__(self, daemon: Daemon, query: Body) -> None:
         self._daemon, self._query = daemon, query
-        self.columns, self.origin = [], None
+        self.columns: list[Column] = []
+        self.origin: tuple[float, float] | None = None
+        self.batches: list[Batch] = []
+        self._rows = 0
+        #: How many rows the answer has, and the cursor of its first point.
+        self._expected: int | None = None
+        self._cursor: str | None = None
+        self._read()
 
-    def __iter__(self) -> Iterator[Batch]:
-        rows, expected = 0, None
-        rest = dict(self._query, format="arrow")
-        for attempt in self._daemon.attempts():
-            with attempt, self._daemon.open("POST", "/v1/points:query", text(rest)) as response:
-                if expected is None:
-                    expected = int(response.headers["strew-count"])
+    def _read(self) -> None:
+        attempts = self._daemon.attempts()
+        try:
+            for attempt in attempts:
+                with attempt as replica:
+                    self._attempt(replica, attempts)
+                    return
+        except StrewError as error:
+            if not self._rows:
+                raise
+            came = f"{self._rows} of {self._expected} points came"
+            raise StrewError(f"{came}, and no other daemon continues: {error}", error.kind, error.faults) from None
+
+    def _attempt(self, replica: Replica, attempts: Attempts) -> None:
+        if self._cursor is None:
+            # Short answers have no cursor: they begin again.
+            self._rows, self._expected, self.batches = 0, None, []
+        with self._daemon.open(replica, "POST", "/v1/points:query", text(self._rest())) as response:
+            count = int(response.headers["strew-count"])
+            if self._expected is None:
+                self._expected, self._cursor = count, response.headers.get("strew-cursor")
                 self.origin = _origin(response)
-                stream = Stream(_exactly(response))
-                self.columns = stream.columns
-                for batch in stream:
-                    yield batch
-                    rows += len(batch.at)
-                if rows < expected:
-                    raise EOFError(f"{rows} of {expected} points came")
-            if expected is not None and rows >= expected:
-                return
-            if rows:
-                # The order is fixed, so the rest is known by its place.
-                rest["offset"] = self._query.get("offset", 0) + rows
-                if "limit" in self._query:
-                    rest["limit"] = self._query["limit"] - rows
+            stream = Stream(_exactly(response))
+            if self._rows:
+                self._check(count, stream.columns)
+            self.columns = stream.columns
+            for batch in stream:
+                self.batches.append(batch)
+                self._rows += len(batch.at)
+                if self._cursor is not None:
+                    attempts.progress()
+        if self._rows < self._expected:
+            raise EOFError(f"{self._rows} of {self._expected} points came")
+
+    def _rest(self) -> Body:
+        """The query of the rows that are left. The order is fixed, so they are known by their place."""
+        rest = {**self._query, "format": "arrow"}
+        if self._rows:
+            rest["cursor"], rest["offset"] = self._cursor, self._rows
+            if "limit" in self._query:
+                rest["limit"] = self._query["limit"] - self._rows
+        return rest
+
+    def _check(self, count: int, columns: list[Column]) -> None:
+        same = [column.name for column in columns] == [column.name for column in self.columns]
+        if self._rows + count != self._expected or not same:
+            raise StrewError(f"the answer has {count} points in other columns or of another number", "other-answer")
 
 
 def _origin(response: http.client.HTTPResponse) -> tuple[float, float] | None:

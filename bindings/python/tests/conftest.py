@@ -22,12 +22,12 @@ def program() -> str:
     return path
 
 
-def daemon(*settings: str) -> tuple[subprocess.Popen[str], str]:
-    """A daemon on a free port, and its address."""
+def daemon(*settings: str, listen: str = "127.0.0.1:0") -> tuple[subprocess.Popen[str], str]:
+    """A daemon, on a free port if none is named, and its address."""
     flags = [flag for setting in settings for flag in ("--set", setting)]
     environment = {name: value for name, value in os.environ.items() if not name.startswith("STREW_")}
     process = subprocess.Popen(
-        [program(), "serve", "--listen", "127.0.0.1:0", *flags],
+        [program(), "serve", "--listen", listen, *flags],
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         text=True,

@@ -191,7 +191,7 @@ class Breaking(BaseHTTPRequestHandler):
         with urllib.request.urlopen(urllib.request.Request(self.upstream + self.path, body)) as response:
             content = response.read()
             self.send_response(200)
-            for name in ("strew-count", "strew-next", "strew-table"):
+            for name in ("strew-count", "strew-cursor", "strew-next", "strew-table"):
                 if response.headers[name]:
                     self.send_header(name, response.headers[name])
         self.send_header("content-length", str(len(content)))
@@ -211,7 +211,7 @@ def test_an_answer_that_breaks_off_is_taken_up(url: str) -> None:
     same(whole, broken)
     server.shutdown()
     server.server_close()
-    offsets = [request["offset"] for request in Breaking.requests if "offset" in request]
+    offsets = [request["offset"] for request in Breaking.requests if "cursor" in request]
     assert len(offsets) == 1 and 0 < offsets[0] < len(whole)
 
 

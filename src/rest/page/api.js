@@ -2,10 +2,12 @@
 
 /** What the server refused, in its words. */
 export class Problem extends Error {
-  constructor(status, words, retryAfter = 0) {
+  constructor(status, words, retryAfter = 0, faults = []) {
     super(words);
     this.status = status;
     this.retryAfter = retryAfter;
+    /** What is wrong with which field: `[{ field, value, detail, allowed }]`. */
+    this.faults = faults;
   }
 
   /** Whether a key is needed, or another one. */
@@ -98,7 +100,9 @@ export async function ask(path, { body, signal, method } = {}) {
     throw new Gone("the server does not answer");
   }
   if (answer.ok) return answer;
-  throw new Problem(answer.status, await words(answer), Number(answer.headers.get("retry-after")) || 0);
+  const problem = await answer.json().catch(() => ({}));
+  const words = problem.detail ?? problem.title ?? `the server answered ${answer.status} ${answer.statusText}`.trim();
+  throw new Problem(answer.status, words, Number(answer.headers.get("retry-after")) || 0, problem.errors);
 }
 
 /** A JSON document. */
@@ -109,14 +113,5 @@ export async function askJson(path, options) {
   } catch (error) {
     if (error.name === "AbortError") throw error;
     throw brokeOff();
-  }
-}
-
-async function words(answer) {
-  try {
-    const problem = await answer.json();
-    return problem.detail ?? problem.title ?? `the server answered ${answer.status}`;
-  } catch {
-    return `the server answered ${answer.status} ${answer.statusText}`.trim();
   }
 }

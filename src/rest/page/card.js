@@ -10,6 +10,9 @@ import { themeColor } from "./theme.js";
 const HOVER = 14;
 const TAP = 48;
 const NEIGHBORS = 8;
+/** Around points is so much room for their rings, and around the card at the edge of the plane, in CSS pixels. */
+const RING = 14;
+const EDGE = 10;
 
 export class Card {
   constructor(session, plane) {
@@ -20,6 +23,12 @@ export class Card {
     this.point = null;
     this.isPinned = false;
     this.later = settled(120, (point) => this.tell(point));
+    addEventListener("keydown", (event) => {
+      if (event.key !== "Escape" || !this.point) return;
+      const hadFocus = this.element.contains(document.activeElement);
+      this.close();
+      if (hadFocus) plane.canvas.focus();
+    });
   }
 
   hovered(at) {
@@ -35,8 +44,12 @@ export class Card {
   }
 
   tapped(at) {
-    const point = this.plane.pointAt(at, TAP);
-    if (!point) return this.close();
+    const point = at && this.plane.pointAt(at, TAP);
+    if (!point) {
+      this.close();
+      if (at) this.say("No point is near here.");
+      return;
+    }
     this.isPinned = true;
     this.point = point;
     this.found = null;
@@ -56,6 +69,11 @@ export class Card {
 
   themed() {
     this.draw();
+  }
+
+  /** Says something to those who do not see the card. */
+  say(words) {
+    byId("said").textContent = words;
   }
 
   close() {
@@ -83,6 +101,7 @@ export class Card {
     } catch (error) {
       if (error.name === "AbortError") return;
       this.element.replaceChildren(make("p", { class: "bad" }, error.message));
+      this.say(error.message);
       this.place();
     }
     this.draw();
@@ -107,6 +126,9 @@ export class Card {
     );
     this.element.dataset.id = self.id;
     this.place();
+    if (!this.isPinned) return;
+    const nearest = near.length > 0 ? `, its nearest neighbor ${spoken(near[0].distance, 4)} away` : "";
+    this.say(`Point ${self.id} at ${spoken(self.x, 8)}, ${spoken(self.y, 8)}${nearest}. Escape closes.`);
   }
 
   /** Where a place of the world is on the canvas, in CSS pixels. */
@@ -115,18 +137,36 @@ export class Card {
     return [view.width / 2 + distance(x, view.x) / view.unit, view.height / 2 - distance(y, view.y) / view.unit];
   }
 
-  /** Puts the card beside its point, where there is room. */
+  /** The box around the point and its neighbors, in CSS pixels: `[left, top, right, bottom]`. */
+  surroundings() {
+    const all = [this.onCanvas(this.point.x, this.point.y)];
+    for (const { x, y } of this.found?.near ?? []) all.push(this.onCanvas(parsePlace(String(x)), parsePlace(String(y))));
+    const [xs, ys] = [all.map(([x]) => x), all.map(([, y]) => y)];
+    return [Math.min(...xs) - RING, Math.min(...ys) - RING, Math.max(...xs) + RING, Math.max(...ys) + RING];
+  }
+
+  /** Puts the card beside its point and neighbors, or, where nothing is free, where it covers least of them. */
   place() {
     const { element, point } = this;
     if (!point) return;
     element.hidden = false;
     const { width, height } = this.plane.view;
-    const [x, y] = this.onCanvas(point.x, point.y);
     const [w, h] = [element.offsetWidth, element.offsetHeight];
-    const left = x + 24 + w < width ? x + 24 : x - 24 - w;
-    const top = Math.max(12, Math.min(height - h - 60, y - 40));
-    element.style.left = `${Math.max(12, left)}px`;
-    element.style.top = `${top}px`;
+    const [left, top, right, bottom] = this.surroundings();
+    const [lastX, lastY] = [Math.max(EDGE, width - w - EDGE), Math.max(EDGE, height - h - EDGE)];
+    const [x, y] = [Math.min(lastX, Math.max(EDGE, (left + right - w) / 2)), Math.min(lastY, Math.max(EDGE, (top + bottom - h) / 2))];
+    const places = [[right, y], [left - w, y], [x, bottom], [x, top - h], [EDGE, EDGE], [lastX, EDGE], [EDGE, lastY], [lastX, lastY]]
+      .map(([px, py]) => [Math.min(lastX, Math.max(EDGE, px)), Math.min(lastY, Math.max(EDGE, py))]);
+    const at = this.onCanvas(point.x, point.y);
+    const cost = ([px, py]) => {
+      const across = Math.max(0, Math.min(px + w, right) - Math.max(px, left));
+      const down = Math.max(0, Math.min(py + h, bottom) - Math.max(py, top));
+      const isOver = at[0] > px - RING && at[0] < px + w + RING && at[1] > py - RING && at[1] < py + h + RING;
+      return across * down + (isOver ? 1e9 : 0);
+    };
+    const best = places.reduce((a, b) => (cost(b) < cost(a) ? b : a));
+    element.style.left = `${best[0]}px`;
+    element.style.top = `${best[1]}px`;
   }
 
   /** Draws a ring around the point, and lines to its neighbors. */

@@ -3,9 +3,9 @@
 
 import { ask } from "./api.js";
 import { lineChart, pointPicture, spectrumPicture, topOf } from "./charts.js";
-import { PROFILE_WORDS } from "./controls.js";
 import { byId, make, spoken } from "./dom.js";
 import { measure } from "./measure.js";
+import { PROFILE_WORDS, profileNames } from "./profiles.js";
 import { LAYER, encoded } from "./state.js";
 import { figureOf, recordedOf } from "./understand.js";
 
@@ -16,7 +16,7 @@ const DRAWN = 20;
 export class Gallery {
   constructor(session, profiles) {
     this.session = session;
-    this.names = [...new Set(profiles.map((table) => table.profile))];
+    this.names = profileNames(profiles);
     // The one to begin with first, the bare pattern last.
     const rank = (name) => ({ blue: -1, pattern: 1 })[name] ?? 0;
     this.names.sort((a, b) => rank(a) - rank(b));
@@ -56,7 +56,7 @@ export class Gallery {
     }, "layers", "tab");
     const element = make("article", {},
       make("header", {}, make("h3", {}, name), make("button", { type: "button", id: `open-${name}`, onclick: open }, "Open")),
-      make("div", { class: "pictures" }, points, spectrum), curve, about, figures);
+      make("div", { class: "pictures" }, points, make("div", { class: "awaited", "data-words": "measuring …" }, spectrum)), curve, about, figures);
     return { name, element, points, spectrum, curve, about, figures };
   }
 
@@ -66,19 +66,22 @@ export class Gallery {
       const set = `bbox=0,0,${MEASURED},${MEASURED}&spacing=1&seed=1&profile=${encoded(name)}&format=f32`;
       const [answer, recorded] = await Promise.all([ask(`/v1/points?${set}`), recordedOf({ profile: name })]);
       const packed = new Float32Array(await answer.arrayBuffer());
-      const measured = await measure(Float64Array.from(packed), MEASURED);
       const table = recorded.measured.radial.values.map(([nu, power]) => [nu, power]);
       figures.textContent = `δ min ${spoken(figureOf(recorded, "delta_min") ?? NaN, 3)} · low power ${spoken(figureOf(recorded, "low_power") ?? NaN, 3)}`;
       card.draw = () => {
         pointPicture(points, packed, DRAWN);
-        spectrumPicture(spectrum, measured.image, measured.cells);
+        if (card.measured) spectrumPicture(spectrum, card.measured.image, card.measured.cells);
         lineChart(curve, { series: [{ values: table, color: "accent" }], x: [0, 3], y: [0, topOf(table)], name: "ν", aspect: 0.36 });
       };
+      card.draw();
+      card.measured = await measure(Float64Array.from(packed), MEASURED);
+      spectrum.parentElement.classList.remove("awaited");
       card.draw();
       return true;
     } catch (error) {
       about.textContent = `Not shown: ${error.message}`;
       about.className = "bad";
+      spectrum.parentElement.classList.remove("awaited");
       return false;
     }
   }

@@ -6,7 +6,7 @@ const STEP = 0.15;
 const TAP = 5;
 
 /** Lets a canvas move its plane; `tapped(at)` and `hovered(at)` get CSS pixels, or `null` on leaving. */
-export function moveBy(canvas, plane, { tapped, hovered, settled }) {
+export function moveBy(canvas, plane, { tapped, hovered }) {
   const down = new Map();
   let travel = 0;
   const at = (event) => {
@@ -47,7 +47,6 @@ export function moveBy(canvas, plane, { tapped, hovered, settled }) {
     if (!down.delete(event.pointerId) || down.size > 0) return;
     canvas.classList.remove("held");
     if (event.type === "pointerup" && travel <= TAP) tapped(at(event));
-    else settled();
   };
   canvas.addEventListener("pointerup", up);
   canvas.addEventListener("pointercancel", up);
@@ -58,12 +57,12 @@ export function moveBy(canvas, plane, { tapped, hovered, settled }) {
     const lines = event.deltaMode === 1 ? 16 : event.deltaMode === 2 ? 400 : 1;
     const turn = Math.max(-240, Math.min(240, event.deltaY * lines));
     plane.zoom(Math.exp(-turn * (event.ctrlKey ? 0.01 : 0.0022)), at(event));
-    settled();
   }, { passive: false });
 
   canvas.addEventListener("dblclick", (event) => {
+    // The taps before meant the zoom, not a point.
+    tapped(null);
     plane.zoom(event.shiftKey ? 0.5 : 2, at(event));
-    settled();
   });
 
   canvas.addEventListener("keydown", (event) => {
@@ -76,6 +75,5 @@ export function moveBy(canvas, plane, { tapped, hovered, settled }) {
     else if (event.key === "Enter" || event.key === " ") tapped([plane.view.width / 2, plane.view.height / 2]);
     else return;
     event.preventDefault();
-    settled();
   });
 }

@@ -6,10 +6,12 @@ import { distance, place, toNumber } from "./place.js";
 export const MOST_POINTS = 1_000_000;
 /** About so many chunks are to lie in a view. */
 const CHUNKS = 20;
-/** No chunk is smaller than so many spacings: it would hardly hold a point. */
-const LEAST_SPACINGS = 4;
-/** The largest index of a chunk that the server takes. */
-const MOST_INDEX = 2 ** 52;
+/** No chunk is smaller than so many spacings: a thousand points take as long to come as ten. */
+const LEAST_SPACINGS = 32;
+/** Along each axis no view has more chunks than this. */
+const MOST_CHUNKS = 64;
+/** So many spacings from the origin doubles still tell points apart; the server refuses what is farther. */
+const REACH = 1.4e15;
 
 /** The side of chunks for a view, a power of two, so that corners are exact. */
 export function chunkSize(view, spacing) {
@@ -43,11 +45,12 @@ export function chunksOf(view, size) {
     const first = indexOf(at, size);
     const from = first + Math.floor((-reach - cornerFrom(first, size, at)) / size);
     const to = first + Math.floor((reach - cornerFrom(first, size, at)) / size);
-    const all = [];
-    for (let index = from; index <= to && all.length < 64; index += 1) {
-      if (Math.abs(index) <= MOST_INDEX) all.push({ index, offset: cornerFrom(index, size, at) });
-    }
-    return all;
+    // Steps are counted: far out, an index and the next one are the same double.
+    const steps = Math.min(MOST_CHUNKS, to - from + 1) || 0;
+    return Array.from({ length: Math.max(0, steps) }, (_, step) => {
+      const index = from + step;
+      return { index, offset: cornerFrom(index, size, at) };
+    });
   };
   const columns = axis(view.x, half.x);
   const rows = axis(view.y, half.y);
@@ -61,7 +64,11 @@ export function chunksOf(view, size) {
 }
 
 /** Whether a place is so far out that no doubles tell its points apart. */
-export function isTooFar(view, spacing) {
-  const reach = Math.max(Math.abs(toNumber(view.x)), Math.abs(toNumber(view.y)));
-  return reach > 1.4e15 * spacing;
+export function isTooFar({ x, y }, spacing) {
+  return Math.max(Math.abs(toNumber(x)), Math.abs(toNumber(y))) > farthest(spacing);
+}
+
+/** The largest coordinate that a view can have in its middle. */
+export function farthest(spacing) {
+  return REACH * spacing;
 }

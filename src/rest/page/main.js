@@ -3,16 +3,20 @@
 import { Gone, askJson, onPresence, useKey } from "./api.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
-import { byId, icon, make, settled } from "./dom.js";
+import { byId, icon, make, settled, spoken } from "./dom.js";
+import { faultsOf, faultsBefore } from "./faults.js";
 import { Gallery } from "./gallery.js";
 import { moveBy } from "./gestures.js";
-import { parsePlace, place } from "./place.js";
+import { farthest, isTooFar } from "./grid.js";
+import { parsePlace, place, toNumber } from "./place.js";
 import { sendPicture, takeDrops } from "./picture.js";
 import { Plane } from "./plane.js";
+import { profileNames } from "./profiles.js";
 import { Session } from "./session.js";
 import { Shade } from "./shade.js";
 import { Status } from "./status.js";
 import { LAYER, initial } from "./state.js";
+import { Start } from "./start.js";
 import { Take } from "./take.js";
 import { palette, watchTheme } from "./theme.js";
 import { Understand } from "./understand.js";
@@ -34,15 +38,18 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
   progress: (share) => {
     const bar = byId("progress");
     bar.hidden = share >= 1;
+    if (share > 0 && plane.chunks.wanted.length > 0) shownFirst();
     bar.setAttribute("aria-valuenow", String(Math.round(share * 100)));
     bar.firstElementChild.style.transform = `scaleX(${share})`;
     for (const part of parts) part.painted?.();
   },
   settled: () => {
-    if (root.dataset.state === "loading") root.dataset.state = "ready";
+    if (root.dataset.state === "loading" && isUnderstood) root.dataset.state = "ready";
     rested();
   },
   failed: (error) => {
+    // What is wrong with the query is said at its fields.
+    if (!isUnderstood) return;
     root.dataset.state = "failed";
     banner(error.message, [["Try again", () => {
       banner(null);
@@ -52,11 +59,27 @@ const plane = new Plane(byId("plane"), session.state.renderer, {
     }]]);
   },
 });
+
+/** Points are there: the plane, hidden until then, is seen. */
+function shownFirst() {
+  if ("shown" in root.dataset) return;
+  root.dataset.shown = "";
+  performance.mark("points");
+}
+
 const status = new Status(session, plane);
 root.dataset.renderer = plane.painter.name;
 const rested = settled(250, () => {
   for (const part of parts) part.rested?.();
+  if (session.state.layers.length > 1) controls?.counted(countsInView());
 });
+
+/** How many points of each layer are in view. */
+function countsInView() {
+  const counts = session.state.layers.map(() => 0);
+  plane.each((layer) => (counts[layer] += 1));
+  return counts;
+}
 
 /** Says something above the plane, with buttons; `null` takes it away. */
 function banner(words, buttons = []) {
@@ -70,39 +93,87 @@ onPresence((gone) => {
   if (gone) banner("The server does not answer. This page tries again by itself; what is drawn stays.");
   else {
     banner(null);
-    refresh();
+    if (controls) refresh();
     status.moved();
   }
 });
 
 let latest = 0;
+/** Whether the server has said what the layers are; before, they are shown as the page understands them. */
+let isUnderstood = false;
+/** What is to be said once the plane shows something: why it is not what was requested. */
+let notice = null;
 
-/** Has the server understand the layers, then shows them. */
-async function refresh() {
+/** What the server makes of each layer, or what is wrong with it. */
+async function notesOf(layers) {
+  const notes = await Promise.all(layers.map(async (layer, i) => {
+    try {
+      const faults = faultsBefore(layer, i);
+      if (Object.keys(faults).length > 0) return { faults };
+      return { understood: await session.understand(layer) };
+    } catch (error) {
+      return { faults: faultsOf(error), error };
+    }
+  }));
+  // Layers that are right one by one can still be wrong together.
+  if (notes.every((note) => note.understood)) {
+    const wrong = await session.understandTogether(layers);
+    if (wrong) notes[wrong.layer] = { faults: faultsOf(wrong.error), error: wrong.error };
+  }
+  return notes;
+}
+
+/** Has the server understand the layers, then shows them. `isChosen`: somebody changed them just now. */
+async function refresh(isChosen = false) {
   latest += 1;
   const mine = latest;
   const layers = session.state.layers.map((layer) => ({ ...layer }));
-  const notes = await Promise.all(layers.map(async (layer) => {
-    try {
-      return { understood: await session.understand(layer) };
-    } catch (error) {
-      return { error: error.message, isGone: error instanceof Gone };
-    }
-  }));
+  const notes = await notesOf(layers);
   if (mine !== latest) return;
   controls?.note(notes);
-  if (notes.some((note) => note.isGone)) return;
-  if (notes.some((note) => note.error)) {
+  const errors = notes.map((note) => note.error).filter(Boolean);
+  if (errors.some((error) => error instanceof Gone)) return;
+  const locked = errors.find((error) => error.isLocked);
+  if (locked) return askForKey();
+  if (notes.some((note) => note.faults)) {
+    isUnderstood = false;
     root.dataset.state = "failed";
+    const other = notes.map((note) => note.faults?.[""]).find(Boolean);
+    if (other) banner(other, [["Try again", () => refresh()]]);
     return;
   }
-  banner(null);
+  isUnderstood = true;
+  show(layers, notes.map((note) => note.understood), isChosen);
+}
+
+/** Shows layers that the server has understood. */
+function show(layers, understood, isChosen) {
+  const spacings = understood.map((one) => one.spacing);
+  const nearest = Math.min(...spacings);
+  const before = plane.look?.spacing ?? nearest;
+  if (isTooFar(session.state, nearest)) goBack(nearest);
+  banner(notice, notice ? [["Close", () => banner(null)]] : []);
+  notice = null;
   root.dataset.state = "loading";
-  root.dataset.shown = "";
-  plane.show({ layers, spacings: notes.map((note) => note.understood.spacing), ...palette() });
-  if (!plane.span) plane.lookAt(session.state.x, session.state.y, session.state.span);
-  status.moved();
-  for (const part of parts) part.shown?.(layers, notes.map((note) => note.understood));
+  shownFirst();
+  plane.show({ layers, spacings, ...palette() });
+  const across = session.state.span / nearest;
+  // A choice that leaves no point in view, or too many to tell apart, takes the view along.
+  if (isChosen && (across < 4 || across > 2000)) session.state.span *= nearest / before;
+  const { x, y, span } = session.state;
+  plane.lookAt(x, y, span);
+  plane.chunks.retry();
+  for (const part of parts) part.shown?.(layers, understood);
+}
+
+/** From where there are no points to the place that was looked at before, or to the origin. */
+function goBack(spacing) {
+  const { x, y } = session.state;
+  const words = `${spoken(toNumber(x), 4)}, ${spoken(toNumber(y), 4)}`;
+  const isOnPlane = plane.span && !isTooFar(plane.view, spacing);
+  const [to, name] = isOnPlane ? [plane.view, "the place before"] : [{ x: place(0), y: place(0) }, "the origin"];
+  session.correct((state) => Object.assign(state, { x: to.x, y: to.y }));
+  notice = `${words} is too far out: at this spacing numbers tell points apart up to ${spoken(farthest(spacing), 3)} from the origin. You see ${name}.`;
 }
 
 function jump(event) {
@@ -114,6 +185,12 @@ function jump(event) {
     banner(`“${field.value}” is no place: two numbers are needed, such as 1e12, -3.5.`, [["Close", () => banner(null)]]);
     return;
   }
+  if (plane.isTooFar({ x, y })) {
+    field.setAttribute("aria-invalid", "true");
+    const most = spoken(farthest(plane.look.spacing), 3);
+    banner(`“${field.value}” is too far out: at this spacing numbers tell points apart up to ${most} from the origin.`, [["Close", () => banner(null)]]);
+    return;
+  }
   banner(null);
   session.choose((state) => Object.assign(state, { x, y }), "view");
   byId("plane").focus();
@@ -123,6 +200,7 @@ const ICONS = {
   closer: "M12 5v14M5 12h14",
   farther: "M5 12h14",
   home: "M3 11.5 12 4l9 7.5M6 10v10h12V10",
+  share: "M10 14a4.5 4.5 0 0 0 6.4 0l3-3a4.5 4.5 0 0 0-6.4-6.4l-1 1M14 10a4.5 4.5 0 0 0-6.4 0l-3 3a4.5 4.5 0 0 0 6.4 6.4l1-1",
   theme: "M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z",
   fold: "M6 15l6-6 6 6",
 };
@@ -133,12 +211,15 @@ function tools() {
   byId("closer").addEventListener("click", () => plane.zoom(1.5));
   byId("farther").addEventListener("click", () => plane.zoom(1 / 1.5));
   byId("home").addEventListener("click", () => {
-    session.choose((state) => Object.assign(state, { x: place(0), y: place(0), span: 30 * plane.look.spacing }), "view");
+    byId("jump-at").value = "";
+    byId("jump-at").removeAttribute("aria-invalid");
+    session.choose((state) => Object.assign(state, { x: place(0), y: place(0), span: 30 * (plane.look?.spacing ?? 1) }), "view");
   });
   byId("brand").addEventListener("click", (event) => {
     event.preventDefault();
     session.choose((state) => Object.assign(state, initial()), "layers", "view", "tab");
   });
+  byId("share").addEventListener("click", share);
   byId("fold").addEventListener("click", () => fold(byId("fold").getAttribute("aria-expanded") === "true"));
   watchTheme(byId("theme"), () => {
     if (plane.look) plane.show({ ...plane.look, ...palette() });
@@ -146,12 +227,26 @@ function tools() {
   });
 }
 
+/** Copies the address of the view. */
+async function share() {
+  session.save();
+  let words = "The link is copied.";
+  try {
+    await navigator.clipboard.writeText(location.href);
+  } catch {
+    words = "The link is in the address bar of your browser: this page may not copy it.";
+  }
+  byId("said").textContent = words;
+  byId("share").title = words;
+  banner(words, [["Close", () => banner(null)]]);
+}
+
 function fold(isFolded) {
   byId("panel").classList.toggle("folded", isFolded);
   byId("fold").setAttribute("aria-expanded", String(!isFolded));
 }
 
-const TABS = ["choose", "understand", "take", "gallery", "works"];
+const TABS = ["start", "choose", "understand", "take", "gallery", "works"];
 
 function tabs() {
   const buttons = TABS.map((name) => byId(`tab-${name}`));
@@ -184,11 +279,15 @@ function showTab() {
 }
 
 let controls = null;
+/** The tables of the server. */
+let tables = [];
 
 const [understand, take] = [new Understand(session, plane), new Take(session, plane)];
 const shade = new Shade(plane);
 const works = new Works(session);
-parts.push(new Card(session, plane), understand, take, shade, works);
+const card = new Card(session, plane);
+const start = new Start(session);
+parts.push(start, card, understand, take, shade, works);
 tools();
 takeDrops(byId("stage"), stipple);
 tabs();
@@ -196,11 +295,11 @@ showTab();
 moveBy(byId("plane"), plane, {
   tapped: (at) => parts.forEach((part) => part.tapped?.(at)),
   hovered: (at) => parts.forEach((part) => part.hovered?.(at)),
-  settled: () => {},
 });
 session.on((changed) => {
-  if (changed.has("view")) plane.lookAt(session.state.x, session.state.y, session.state.span);
-  if (changed.has("layers")) refresh();
+  if (changed.has("layers")) settle(tables);
+  if (changed.has("layers")) refresh(!changed.has("view"));
+  else if (changed.has("view")) plane.lookAt(session.state.x, session.state.y, session.state.span);
   if (changed.has("tab")) showTab();
 });
 
@@ -217,42 +316,73 @@ async function stipple(file) {
   }
 }
 
-/** A server without the profile that everybody begins with shows its first one. */
+/** Profiles that this server does not have are replaced by the one to begin with, or by its first one. */
 function settle(profiles) {
-  const isLoaded = profiles.some((table) => table.profile === LAYER.profile);
-  if (isLoaded || location.hash.includes("profile=") || profiles.length === 0) return;
-  session.state.layers[0].profile = profiles[0].profile;
+  const names = profileNames(profiles);
+  if (names.length === 0) return;
+  const standard = names.includes(LAYER.profile) ? LAYER.profile : names[0];
+  const missing = [...new Set(session.state.layers.map((layer) => layer.profile).filter((name) => !names.includes(name)))];
+  if (missing.length === 0) return;
+  const wasChosen = missing.some((name) => name !== LAYER.profile);
+  if (wasChosen) notice = `This server has no profile “${missing.join("”, “")}”. You see “${standard}” in its place.`;
+  session.correct((state) => {
+    for (const layer of state.layers) {
+      if (missing.includes(layer.profile)) Object.assign(layer, { profile: standard, alpha: "", map: "" });
+    }
+  });
 }
 
 /** A server that wants keys is given one. */
-function askForKey(words) {
-  const field = make("input", { type: "password", id: "key", "aria-label": "Key", autocomplete: "off" });
-  banner(words, [["Use this key", () => {
+function askForKey() {
+  if (byId("key")) return;
+  const field = make("input", { type: "password", id: "key", "aria-label": "Key", autocomplete: "off", required: true });
+  const use = (event) => {
+    event.preventDefault();
     useKey(field.value);
-    begin();
-  }]]);
-  byId("banner").lastElementChild.prepend(field);
+    banner(null);
+    if (controls) refresh();
+    else begin();
+  };
+  banner("This server answers only those who have a key. It stays in this tab.");
+  byId("banner").lastElementChild.replaceWith(make("form", { onsubmit: use }, field, make("button", { type: "submit" }, "Use this key")));
   field.focus();
 }
 
-/** Begins as soon as the server has told which profiles it has. */
+/** Shows the layers before the server has said anything, where their spacings need no server. */
+function beginEarly() {
+  const { layers, x, y, span } = session.state;
+  const spacings = layers.map(spacingOf);
+  if (!spacings.every((spacing) => spacing > 1e-100 && spacing < 1e100) || isTooFar(session.state, Math.min(...spacings))) return;
+  plane.show({ layers: layers.map((layer) => ({ ...layer })), spacings, ...palette() });
+  plane.lookAt(x, y, span);
+  notesOf(layers).catch(() => {});
+}
+
+/** The mean spacing of a layer, as far as it follows from its own words. */
+function spacingOf({ by, amount }) {
+  return by === "spacing" ? Number(amount) : by === "density" ? Number(amount) ** -0.5 : NaN;
+}
+
+/** Begins: first with points, then with what the server has to choose from. */
 async function begin() {
   try {
+    if (!plane.span) beginEarly();
     const [{ profiles }, { fields }] = await Promise.all([askJson("/v1/profiles"), askJson("/v1/fields")]);
     settle(profiles);
+    tables = profiles;
     controls = new Controls(session, profiles, fields, stipple);
     const gallery = new Gallery(session, profiles);
+    Object.assign(globalThis.strew, { gallery, controls });
     parts.push(gallery);
     gallery.opened(session.state.tab);
-    banner(null);
     await refresh();
   } catch (error) {
-    if (error.isLocked) return askForKey(error.message);
+    if (error.isLocked) return askForKey();
     if (!(error instanceof Gone)) return banner(error.message, [["Try again", begin]]);
     onPresence((gone) => gone || controls || begin());
   }
 }
 
 // For the curious, and for tests.
-globalThis.strew = { plane, shade, stipple, session, status, understand, take, works };
+globalThis.strew = { plane, start, card, shade, stipple, session, status, understand, take, works };
 begin();

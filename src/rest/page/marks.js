@@ -1,9 +1,11 @@
 // How points look: the size of a dot at a zoom, and the shapes of marks. Both painters draw by these.
 
 /** Shapes by the number of a variant; beyond the last one they begin again. */
-export const SHAPES = ["circle", "triangle", "square", "diamond", "cross", "ring"];
+export const SHAPES = [
+  "circle", "triangle", "square", "diamond", "cross", "ring", "open triangle", "open square", "open diamond", "bar",
+];
 /** The characters that stand for the shapes in words. */
-export const SHAPE_SIGNS = ["●", "▲", "■", "◆", "✚", "○"];
+export const SHAPE_SIGNS = ["●", "▲", "■", "◆", "✚", "○", "△", "□", "◇", "▬"];
 /** The shape of a point with an angle and no variant. */
 export const ARROW = SHAPES.length;
 

@@ -14,6 +14,6 @@ addEventListener("message", ({ data: { id, points, side } }) => {
   const across = Math.sqrt(count);
   const { least, mean, rdf } = neighborsOf(scaled, across);
   const { image, cells, radial } = spectrumOf(scaled, across);
-  const figures = { count, spacing, deltaMin: least / HEXAGONAL, deltaAvg: mean / HEXAGONAL };
+  const figures = { count, spacing, least, mean, deltaMin: least / HEXAGONAL, deltaAvg: mean / HEXAGONAL };
   postMessage({ id, figures, rdf, radial, image, cells }, [image.buffer]);
 });

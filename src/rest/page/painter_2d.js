@@ -4,12 +4,18 @@
 import { masksOf, packed, setDots } from "./dots.js";
 import { ARROW, SHAPES, isMarked, slotsOf } from "./marks.js";
 
+const TRIANGLE = [[0.95, 0], [-0.5, 0.83], [-0.5, -0.83]];
+const SQUARE = [[0.62, 0.62], [-0.62, 0.62], [-0.62, -0.62], [0.62, -0.62]];
+const DIAMOND = [[0.92, 0], [0, 0.92], [-0.92, 0], [0, -0.92]];
+/** The size of the hole in an open shape. */
+const HOLE = 0.5;
+
 /** The outline of each shape around 0 with radius 1, direction to the right. */
 const PATHS = [
   (c) => c.arc(0, 0, 0.72, 0, 2 * Math.PI),
-  (c) => polygon(c, [[0.95, 0], [-0.5, 0.83], [-0.5, -0.83]]),
-  (c) => polygon(c, [[0.62, 0.62], [-0.62, 0.62], [-0.62, -0.62], [0.62, -0.62]]),
-  (c) => polygon(c, [[0.92, 0], [0, 0.92], [-0.92, 0], [0, -0.92]]),
+  (c) => polygon(c, TRIANGLE),
+  (c) => polygon(c, SQUARE),
+  (c) => polygon(c, DIAMOND),
   (c) => {
     c.rect(-0.82, -0.25, 1.64, 0.5);
     c.rect(-0.25, -0.82, 0.5, 1.64);
@@ -19,12 +25,22 @@ const PATHS = [
     c.moveTo(0.46, 0);
     c.arc(0, 0, 0.46, 0, 2 * Math.PI, true);
   },
+  (c) => open(c, TRIANGLE),
+  (c) => open(c, SQUARE),
+  (c) => open(c, DIAMOND),
+  (c) => c.rect(-0.9, -0.24, 1.8, 0.48),
   (c) => polygon(c, [[0.95, 0], [0.1, 0.46], [0.1, 0.1], [-0.95, 0.1], [-0.95, -0.1], [0.1, -0.1], [0.1, -0.46]]),
 ];
 
 function polygon(c, corners) {
   corners.forEach(([x, y], i) => (i === 0 ? c.moveTo(x, y) : c.lineTo(x, y)));
   c.closePath();
+}
+
+/** A polygon with a hole of its shape. */
+function open(c, corners) {
+  polygon(c, corners);
+  polygon(c, corners.map(([x, y]) => [x * HOLE, y * HOLE]).reverse());
 }
 
 /** A painter. */

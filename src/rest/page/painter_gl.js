@@ -45,17 +45,21 @@ void main() {
   at.y = -at.y;
   vec2 p = vec2(dot(at, turn), dot(at, vec2(-turn.y, turn.x))) / radius;
   float d;
-  if (shape < 0.5) d = length(p) - 0.72;
-  else if (shape < 1.5) d = max(-p.x - 0.5, abs(p.y) * 0.8660 + p.x * 0.5 - 0.46);
-  else if (shape < 2.5) d = box(p, vec2(0.62));
-  else if (shape < 3.5) d = (abs(p.x) + abs(p.y) - 0.92) * 0.7071;
-  else if (shape < 4.5) d = min(box(p, vec2(0.82, 0.25)), box(p, vec2(0.25, 0.82)));
-  else if (shape < 5.5) d = abs(length(p) - 0.62) - 0.16;
+  bool is_open = shape > 5.5 && shape < 8.5;
+  float kind = is_open ? shape - 5.0 : shape;
+  if (kind < 0.5) d = length(p) - 0.72;
+  else if (kind < 1.5) d = max(-p.x - 0.5, abs(p.y) * 0.8660 + p.x * 0.5 - 0.46);
+  else if (kind < 2.5) d = box(p, vec2(0.62));
+  else if (kind < 3.5) d = (abs(p.x) + abs(p.y) - 0.92) * 0.7071;
+  else if (kind < 4.5) d = min(box(p, vec2(0.82, 0.25)), box(p, vec2(0.25, 0.82)));
+  else if (kind < 5.5) d = abs(length(p) - 0.62) - 0.16;
+  else if (kind < 9.5) d = box(p, vec2(0.9, 0.24));
   else {
     float shaft = box(p + vec2(0.3, 0.0), vec2(0.65, 0.1));
     float head = max(0.1 - p.x, abs(p.y) * 0.88 + p.x * 0.47 - 0.44);
     d = min(shaft, head);
   }
+  if (is_open) d = max(d, -d - 0.25);
   float cover = clamp(0.5 - d * radius, 0.0, 1.0);
   result = vec4(color * cover, cover);
 }`;

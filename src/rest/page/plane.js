@@ -1,10 +1,10 @@
 // The view of the plane: where it is, how it moves, and the loop that paints it.
 
-import { chunkSize, cornerFrom, isTooFar } from "./grid.js";
+import { chunkSize, cornerFrom, farthest, isTooFar } from "./grid.js";
 import { Chunks, runsOf } from "./chunks.js";
 import { glPainter } from "./painter_gl.js";
 import { plainPainter } from "./painter_2d.js";
-import { moved, place } from "./place.js";
+import { moved, place, toNumber } from "./place.js";
 import { Sheets } from "./sheets.js";
 
 /** A view shows at least half a spacing, and at most so many: a hundred million points, thinned. */
@@ -27,7 +27,6 @@ export class Plane {
     this.sheets = new Sheets(this.painter, this.chunks);
     this.view = { x: place(0), y: place(0), unit: 1, width: 1, height: 1, ratio: 1, pixels: [1, 1] };
     this.look = null;
-    this.frames = [];
     this.isWaiting = false;
     this.zoomedAt = -Infinity;
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -75,10 +74,17 @@ export class Plane {
   /** Moves the view by CSS pixels, as a hand moves the plane. */
   drag(dx, dy) {
     const { view } = this;
-    view.x = moved(view.x, -dx * view.unit);
-    view.y = moved(view.y, dy * view.unit);
+    view.x = this.within(moved(view.x, -dx * view.unit));
+    view.y = this.within(moved(view.y, dy * view.unit));
     this.draw();
     this.events.moved();
+  }
+
+  /** A coordinate, or the last one that has points. */
+  within(at) {
+    if (!this.look) return at;
+    const most = farthest(this.look.spacing);
+    return Math.abs(toNumber(at)) > most ? place(Math.sign(toNumber(at)) * most) : at;
   }
 
   /** Enlarges by a factor about a place on the canvas, in CSS pixels. */
@@ -87,8 +93,8 @@ export class Plane {
     const span = this.bounded(this.span / factor);
     const grown = span / this.span;
     const [dx, dy] = [at[0] - view.width / 2, view.height / 2 - at[1]];
-    view.x = moved(view.x, dx * view.unit * (1 - grown));
-    view.y = moved(view.y, dy * view.unit * (1 - grown));
+    view.x = this.within(moved(view.x, dx * view.unit * (1 - grown)));
+    view.y = this.within(moved(view.y, dy * view.unit * (1 - grown)));
     this.span = span;
     view.unit *= grown;
     this.zoomedAt = performance.now();
@@ -119,9 +125,9 @@ export class Plane {
     if (this.sheets.front.isFull && !isZooming && this.sheets.front.unit === this.view.unit) this.events.settled();
   }
 
-  /** Whether coordinates here are too large for points to be told apart. */
-  get isTooFar() {
-    return this.look !== null && isTooFar(this.view, this.look.spacing);
+  /** Whether a place is too far out for points to be told apart. */
+  isTooFar(at) {
+    return this.look !== null && isTooFar(at, this.look.spacing);
   }
 
   /** The share of the points that is shown. */

@@ -5,7 +5,7 @@ import { decimalsFor, formatPlace, moved } from "./place.js";
 
 /** The attributes that a layer shows, in the order in which they are asked for. */
 export function attributesOf(layer) {
-  return ["angle", "scale", "variant"].filter((name) => layer[name]);
+  return ["angle", "scale", "variant", "rank"].filter((name) => layer[name]);
 }
 
 /** The names of a layer's variants. */
@@ -78,6 +78,11 @@ export function json(value, indent = 0) {
 /** What the layer of an index is called in requests. */
 export function layerName(i) {
   return `layer${i + 1}`;
+}
+
+/** Asks with this body whether layers are right together. */
+export function togetherBody(layers) {
+  return json(bodyOf(layers, { bbox: [0, 0, 1e-300, 1e-300] }));
 }
 
 /** Several layers over a region, as the body of `POST /v1/points:query`. */

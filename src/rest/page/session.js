@@ -1,7 +1,7 @@
 // What is chosen, kept in step with the address and with what the server makes of it.
 
 import { askJson } from "./api.js";
-import { joined, setOf } from "./query.js";
+import { joined, setOf, togetherBody } from "./query.js";
 import { fromHash, toHash } from "./state.js";
 import { settled } from "./dom.js";
 
@@ -13,6 +13,7 @@ export class Session {
     /** What the server makes of each layer, by its parameters. */
     this.understood = new Map();
     this.write = settled(250, () => this.put("replaceState"));
+    this.isHeld = false;
     addEventListener("popstate", () => {
       this.write.cancel();
       const { renderer } = this.state;
@@ -36,14 +37,43 @@ export class Session {
     if (hash !== location.hash) history[how](null, "", hash);
   }
 
+  /** Puts the choice into the address now. */
+  save() {
+    this.write.cancel();
+    this.put("replaceState");
+  }
+
   /** A choice that Back undoes. */
   choose(change, ...changed) {
     this.write.cancel();
+    this.isHeld = false;
     // What was only moved since is part of the entry before.
     this.put("replaceState");
     change(this.state);
     this.put("pushState");
     this.tell(...changed);
+  }
+
+  /** A choice that changes while a slider is held: one step for Back, which `choose` or `release` ends. */
+  hold(change, ...changed) {
+    if (!this.isHeld) this.choose(change, ...changed);
+    else {
+      change(this.state);
+      this.write();
+      this.tell(...changed);
+    }
+    this.isHeld = true;
+  }
+
+  release() {
+    this.isHeld = false;
+  }
+
+  /** A correction of what cannot be shown: no step of its own. */
+  correct(change) {
+    this.write.cancel();
+    change(this.state);
+    this.put("replaceState");
   }
 
   /** A move of the view: it is in the address, but no step of its own. */
@@ -52,16 +82,28 @@ export class Session {
     this.write();
   }
 
-  /** The server's understanding of a layer: `{ spacing, density, least_distance, … }`. */
-  async understand(layer) {
-    const query = joined(setOf(layer));
-    if (!this.understood.has(query)) {
-      // In a field there may be no point for long; a box of no size has none to count.
-      const path = layer.field ? "/v1/count?bbox=0,0,1e-300,1e-300" : "/v1/nearest?at=0,0&k=1";
-      const { query: understood } = await askJson(`${path}&${query}`);
-      if (this.understood.size > 200) this.understood.clear();
-      this.understood.set(query, understood);
+  /** What is wrong with layers together: `{ layer, error }`, or nothing. */
+  async understandTogether(layers) {
+    if (layers.length === 1 || layers.every((layer) => !layer.clear.trim())) return null;
+    try {
+      await askJson("/v1/count", { body: togetherBody(layers) });
+      return null;
+    } catch (error) {
+      const [, layer] = /^layers\[(\d+)\]/.exec(error.faults?.[0]?.field ?? "") ?? [];
+      return { layer: Number(layer ?? 0), error };
     }
-    return this.understood.get(query);
+  }
+
+  /** The server's understanding of a layer: `{ spacing, density, least_distance, … }`. */
+  understand(layer) {
+    const query = joined(setOf(layer));
+    const known = this.understood.get(query);
+    if (known) return known;
+    // A box of no size has no points to count.
+    const asked = askJson(`/v1/count?bbox=0,0,1e-300,1e-300&${query}`).then((answer) => answer.query);
+    if (this.understood.size > 200) this.understood.clear();
+    this.understood.set(query, asked);
+    asked.catch(() => this.understood.delete(query));
+    return asked;
   }
 }

@@ -48,6 +48,7 @@ export class Shade {
   }
 
   paint() {
+    if (!this.field) return;
     const { view } = this.plane;
     const [width, height] = view.pixels;
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });

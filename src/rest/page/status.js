@@ -70,9 +70,12 @@ export class Status {
         return `${counted(this.all)} in view, too many to draw: the ${counted(this.count)} of lowest rank `
           + `stand for them, one in ${Math.round(1 / keep).toLocaleString("en")}`;
       }
+      if (this.count === 0 && this.plane.span < 4 * this.plane.look.spacing) {
+        return `No points in view: they are about ${spoken(this.plane.look.spacing, 2)} apart, zoom out`;
+      }
       return `${counted(this.count)} in view`;
     };
-    byId("tally").textContent = words() + (this.plane.isTooFar ? ". Too far out: points cannot be told apart here" : "");
+    byId("tally").textContent = words();
     document.documentElement.dataset.count = error ? "" : String(this.count);
   }
 }

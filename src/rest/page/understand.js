@@ -1,6 +1,6 @@
 // The tab Understand: what the points in view measure, beside what the table was measured to be.
 
-import { askJson } from "./api.js";
+import { ask, askJson } from "./api.js";
 import { lineChart, spectrumPicture, topOf } from "./charts.js";
 import { byId, make, settled, spoken } from "./dom.js";
 import { measure } from "./measure.js";
@@ -9,6 +9,8 @@ import { joined } from "./query.js";
 /** So many points are measured at most, from the middle of the view, and no fewer than this. */
 const MOST = 14_400;
 const LEAST = 100;
+/** The side of the window that is the reference, in mean spacings. */
+const REFERENCE = 120;
 
 /** The middle of a view as a square, with the points of a layer in it. */
 function middleOf(plane, layer, count) {
@@ -21,6 +23,26 @@ function middleOf(plane, layer, count) {
     if (of === layer && Math.abs(x) < side / 2 && Math.abs(y) < side / 2) found.push(x + side / 2, y + side / 2);
   });
   return { points: Float64Array.from(found), side };
+}
+
+/** What a window of the layer's own kind measures, with its warp, as a reference: `{ deltaMin, deltaAvg }`. */
+const references = new Map();
+function referenceOf(layer) {
+  const pairs = [["alpha", layer.alpha], ["map", layer.map]].filter(([, value]) => value);
+  const query = joined([["profile", layer.profile], ...pairs, ["spacing", "1"], ["seed", "1"], ["warp", warpOf(layer)]]);
+  if (!references.has(query)) {
+    const asked = ask(`/v1/points?bbox=0,0,${REFERENCE},${REFERENCE}&${query}&format=f32`)
+      .then((answer) => answer.arrayBuffer())
+      .then((packed) => measure(Float64Array.from(new Float32Array(packed)), REFERENCE));
+    references.set(query, asked);
+    asked.catch(() => references.delete(query));
+  }
+  return references.get(query);
+}
+
+/** The warp of a layer: seed 0 alone has none unless it says so. */
+function warpOf({ warp, seed }) {
+  return warp || (/^0*$/.test(seed.trim()) ? "off" : "on");
 }
 
 /** What is recorded of a layer's table. */
@@ -112,9 +134,9 @@ export class Understand {
       return;
     }
     try {
-      const [measured, recorded] = await Promise.all([measure(points, side), recordedOf(layer)]);
+      const [measured, recorded, reference] = await Promise.all([measure(points, side), recordedOf(layer), referenceOf(layer)]);
       if (mine !== this.turn) return;
-      this.drawn = { measured, recorded, count, density: count / area, thinned: this.plane.keep < 1 };
+      this.drawn = { measured, recorded, reference: reference.figures, isWarped: warpOf(layer) !== "off", count, density: count / area, thinned: this.plane.keep < 1 };
       this.draw();
       document.documentElement.dataset.measured = String(measured.figures.count);
     } catch (error) {
@@ -127,17 +149,17 @@ export class Understand {
   }
 
   draw() {
-    const { measured, recorded, count, density, thinned } = this.drawn;
+    const { measured, recorded, reference, isWarped, count, density, thinned } = this.drawn;
     const { figures, radial, rdf, image, cells } = measured;
     this.charts.hidden = false;
-    const entry = (words, value, table) => make("div", {}, make("dt", {}, words), make("dd", {}, value, table === undefined ? "" : make("small", { class: "soft" }, ` table ${spoken(table, 3)}`)));
+    const entry = (words, value, table) => make("div", {}, make("dt", {}, words), make("dd", {}, value, table === undefined ? "" : make("small", { class: "soft" }, ` ${isWarped ? "table, warped" : "table"} ${spoken(table, 3)}`)));
     this.list.replaceChildren(
-      entry("Points in view", count.toLocaleString("en")),
-      entry("Density", spoken(density, 4)),
-      entry("δ min", spoken(figures.deltaMin, 3), figureOf(recorded, "delta_min")),
-      entry("δ average", spoken(figures.deltaAvg, 3), figureOf(recorded, "delta_avg")),
+      entry("Points measured", figures.count.toLocaleString("en")),
+      entry(thinned ? "Density of those drawn" : "Density", spoken(density, 4)),
+      entry("δ min", spoken(figures.deltaMin, 3), reference.deltaMin),
+      entry("δ average", spoken(figures.deltaAvg, 3), reference.deltaAvg),
     );
-    const part = figures.count < count ? `Measured on the ${figures.count.toLocaleString("en")} points in the middle. ` : "";
+    const part = figures.count < count ? "Measured in the middle of the view. " : "";
     const note = thinned ? "What is in view is thinned, so it is not what the table was made for. " : "";
     this.say(`${part}${note}δ is the distance to the nearest neighbor; 1 is that of the densest packing.`);
     const table = recorded.measured.radial.values.map(([nu, power]) => [nu, power]);

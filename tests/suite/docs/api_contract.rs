@@ -1,5 +1,7 @@
 //! The daemon against its OpenAPI document, by a fuzzer that reads it (schemathesis): no request
 //! gets a 5xx, and every answer is one that the document describes.
+//!
+//! `just contract` fuzzes for longer: more examples, and every edge of every schema one after the other.
 
 use std::time::Instant;
 
@@ -10,6 +12,9 @@ use crate::support::{clients, daemon::Daemon};
 /// A check that needs the hooks: without them queries name tables that are not loaded, and regions
 /// that hold too many points.
 const WITH_HOOKS: &str = "positive_data_acceptance";
+
+/// The variable with which the fuzzer takes its time.
+const WHOLE: &str = "STREW_TEST_WHOLE_CONTRACT";
 
 /// The folder of the hooks that make queries valid, so that answers with points are checked, too.
 const HOOKS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/suite/docs");
@@ -35,6 +40,11 @@ fn a_fuzzer_finds_no_breach_of_contract() {
     let document = without_fields(daemon.get("/openapi.json").json());
     std::fs::write(&file, document.to_string()).expect("writable");
     let start = Instant::now();
+    let (phases, examples) = if std::env::var_os(WHOLE).is_some() {
+        ("examples,coverage,fuzzing,stateful", "25")
+    } else {
+        ("examples,fuzzing,stateful", "12")
+    };
     for in_order in [false, true] {
         let mut command = fuzzer().expect("as above");
         if in_order {
@@ -48,7 +58,8 @@ fn a_fuzzer_finds_no_breach_of_contract() {
             .arg("run")
             .arg(&file)
             .args(["--url", &daemon.url("/"), "--no-color"])
-            .args(["--checks", "all", "--mode", mode, "--max-examples", "25"])
+            .args(["--checks", "all", "--mode", mode, "--phases", phases])
+            .args(["--max-examples", examples])
             .args(["--seed", "1", "--generation-deterministic"])
             .args(["--request-timeout", "60"])
             // It writes .schemathesis/ into the folder it runs in.

@@ -18,6 +18,7 @@ fn every_control_changes_the_points_and_the_url() {
         return;
     };
     browser.look(&daemon, "");
+    browser.click("#tab-choose");
     for (selector, value, part) in [
         ("#profile", "spaced", "profile=spaced"),
         ("#map", "m", "map=m"),
@@ -78,50 +79,13 @@ fn every_control_changes_the_points_and_the_url() {
 }
 
 #[test]
-fn refusals_of_the_server_are_shown_at_the_control() {
-    let Some((daemon, browser)) = looking(1280, 800) else {
-        return;
-    };
-    // On a page that starts with a refused query, the plane is hidden.
-    browser.go(&daemon.url("/#at=0,0&span=30&amount=-1"));
-    browser.until("!document.querySelector('#wrong')?.hidden && document.querySelector('#wrong')?.textContent");
-    assert_eq!(
-        browser.value("getComputedStyle(document.querySelector('#plane')).opacity"),
-        "0"
-    );
-    browser.look(&daemon, "");
-    browser.choose("#amount", "-1");
-    browser.until("!document.querySelector('#wrong').hidden");
-    let text = browser.text("#wrong");
-    assert!(
-        text.contains("spacing") && text.contains("out of range"),
-        "{text}"
-    );
-    assert_eq!(
-        browser.value("document.querySelector('#amount').getAttribute('aria-invalid')"),
-        "true"
-    );
-    browser.choose("#amount", "2");
-    browser.until("document.querySelector('#wrong').hidden");
-    browser.ready();
-    browser.choose("#profile", "pink");
-    browser.ready();
-    browser.choose("#by", "min_distance");
-    browser.until("!document.querySelector('#wrong').hidden");
-    assert!(browser.text("#wrong").contains("min_distance"));
-    browser.choose("#jump-at", "nowhere");
-    browser.click("#jump button");
-    assert!(browser.text("#banner").contains("is no place"));
-}
-
-#[test]
 fn everything_fits_on_a_phone() {
     let Some((daemon, browser)) = looking(390, 844) else {
         return;
     };
     browser.look(&daemon, "#at=0,0&span=20");
     let inside = "document.documentElement.scrollWidth <= 390 && [...document.querySelectorAll('button, input, select')].filter((e) => e.offsetParent).every((e) => { const b = e.getBoundingClientRect(); return b.left >= 0 && b.right <= 390; })";
-    for tab in ["understand", "take", "gallery", "choose"] {
+    for tab in ["start", "understand", "take", "gallery", "choose"] {
         browser.click(&format!("#tab-{tab}"));
         browser.until(&format!("!document.querySelector('#{tab}').hidden"));
         assert_eq!(browser.value(inside), true, "{tab}");

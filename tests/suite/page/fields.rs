@@ -37,7 +37,11 @@ fn a_field_thins_the_points_and_is_shaded_under_them() {
     browser.go("about:blank");
     browser.go(&daemon.url("/#at=0,0&span=100&field=nothing"));
     browser.until("document.documentElement.dataset.state === 'failed'");
-    assert!(browser.text("#wrong").contains("no such field is loaded"));
+    assert!(
+        browser
+            .text("#wrong-field")
+            .contains("no such field is loaded")
+    );
 }
 
 #[test]

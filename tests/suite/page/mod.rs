@@ -1,9 +1,17 @@
-//! The page at `/` in headless Chromium: what it shows and how it moves (view), what can be set
-//! (controls), the tab How it works (works), and the requests and files it offers (export). The tests are skipped where Chromium
-//! and ChromeDriver are not installed.
+//! The pages in headless Chromium: what `/` shows and how it moves (view), the first screen (start), what can be set
+//! (controls, fields), what is wrong and how it is said (faults, links), the card of a point (card), the tab How it
+//! works (works), the requests and files it offers (export), and that everybody can use it (everyone); and the pages
+//! `/compare` and `/walk`. The tests are skipped where Chromium and ChromeDriver are not installed.
 
+mod card;
+mod compare;
 mod controls;
+mod everyone;
 mod export;
+mod faults;
 mod fields;
+mod links;
+mod start;
 mod view;
+mod walk;
 mod works;

@@ -56,6 +56,52 @@ fn pages_by_limit_and_cursor_make_the_whole() {
 }
 
 #[test]
+fn a_broken_answer_continues_with_its_cursor_and_what_came() {
+    let daemon = Daemon::start(&[]);
+    let mut bodies = queries();
+    let tile = json!({ "periodic": 5000, "spacing": 1, "map": "s" });
+    bodies.push(tile);
+    for body in bodies {
+        let whole = Csv::post(&daemon, &body);
+        for (offset, limit) in [(0, 9999), (0, 100), (31, 200)] {
+            let window = [("offset", json!(offset)), ("limit", json!(limit))];
+            let asked = with(&body, &window);
+            let answer = Csv::post(&daemon, &asked);
+            let cursor = json!(answer.answer.header("strew-cursor"));
+            if cursor == json!("") {
+                assert!(whole.points.len() < 2048, "{body}");
+                continue;
+            }
+            for came in [0, 1, 77, answer.points.len() - 1] {
+                let rest = answer.points.len() - came;
+                let more = [
+                    ("cursor", cursor.clone()),
+                    ("offset", json!(came)),
+                    ("limit", json!(rest)),
+                ];
+                let rest = Csv::post(&daemon, &with(&body, &more));
+                assert_eq!(rest.points, answer.points[came..], "{asked}");
+                assert_eq!(
+                    rest.answer.header("strew-next"),
+                    answer.answer.header("strew-next")
+                );
+            }
+        }
+    }
+    let asked = json!({ "region": { "bbox": [0, 0, 100, 100] }, "spacing": 1 });
+    let cursor = daemon.post("/v1/points:query", &asked);
+    let cursor = json!(cursor.header("strew-cursor"));
+    let other = with(&asked, &[("cursor", cursor), ("profile", json!("pink"))]);
+    let refused = daemon.post("/v1/points:query", &other);
+    assert_eq!(refused.status, 400);
+    assert!(
+        refused.text().contains("another table"),
+        "{}",
+        refused.text()
+    );
+}
+
+#[test]
 fn an_offset_counts_from_the_beginning_or_from_the_cursor() {
     let daemon = Daemon::start(&[]);
     for body in queries() {

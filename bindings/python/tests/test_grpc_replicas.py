@@ -1,0 +1,56 @@
+"""The balancing of gRPC's own clients, as docs/operations.md shows it. Skipped without grpcio."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+import pytest
+from conftest import ROOT, daemon
+from test_daemon import asked
+
+grpc = pytest.importorskip("grpc", reason="grpcio is not installed")
+
+METHOD = "/strew.v1.PointService/ListProfiles"
+
+
+def channel(urls: list[str]) -> Any:
+    """The channel of the documentation, to these addresses."""
+    text = (ROOT / "docs/operations.md").read_text()
+    blocks = re.findall(r"```python\n(.*?)```", text, re.S)
+    [code] = [block for block in blocks if "insecure_channel" in block]
+    addresses = ",".join(url.removeprefix("http://") for url in urls)
+    names: dict[str, Any] = {"grpc": grpc, "json": json}
+    code = code.replace("dns:///strew-headless:8080", f"ipv4:{addresses}")
+    # A list of addresses is no authority, which a name would be.
+    exec(code.replace("options=[", 'options=[("grpc.default_authority", "strew"), '), names)
+    return names["channel"]
+
+
+def answered(url: str) -> int:
+    """How many calls a daemon has answered."""
+    lines = asked(url, "/metrics").decode().splitlines()
+    counts = [line.rsplit(" ", 1)[1] for line in lines if line.startswith("strew_requests_total") and "ListProfiles" in line]
+    return sum(map(int, counts))
+
+
+def test_calls_take_turns_and_none_fails_while_replicas_die_and_stop() -> None:
+    running = [daemon() for _ in range(3)]
+    urls = [url for _, url in running]
+    with channel(urls) as there:
+        call = there.unary_unary(METHOD, request_serializer=None, response_deserializer=None)
+        for _ in range(60):
+            assert len(call(b"", timeout=20, wait_for_ready=True)) > 100
+        counts = [answered(url) for url in urls]
+        assert sum(counts) == 60 and min(counts) >= 5, counts
+        running[0][0].kill()
+        for _ in range(30):
+            call(b"", timeout=20)
+        # One that stops reports to be no longer healthy before it closes.
+        running[1][0].terminate()
+        for _ in range(30):
+            call(b"", timeout=20)
+    for process, _ in running:
+        process.kill()
+        process.wait()

@@ -1,0 +1,208 @@
+// The page Compare: one view for all methods, and what each measures there.
+
+import { askJson, onPresence } from "../api.js";
+import { topOf } from "../charts.js";
+import { byId, icon, make, settled } from "../dom.js";
+import { moveBy } from "../gestures.js";
+import { parsePlace, place } from "../place.js";
+import { watchTheme } from "../theme.js";
+import { FARTHEST, Joint, fromHash, toHash } from "./joint.js";
+import { METHODS } from "./methods.js";
+import { Panel } from "./panel.js";
+
+const root = document.documentElement;
+const narrow = matchMedia("(max-width: 46rem)");
+let state = fromHash(location.hash, narrow.matches);
+
+const joint = new Joint(state, () => draw());
+const panels = METHODS.map((method) => new Panel(method, { changed: () => draw(), failed: (error) => say(error.message) }));
+const shown = () => panels.filter(({ method }) => state.shown.includes(method.id));
+
+/** Says something above the panels; `null` takes it away. */
+function say(words) {
+  byId("banner").hidden = words === null;
+  byId("banner").textContent = words ?? "";
+}
+
+let isWaiting = false;
+
+function draw() {
+  write();
+  if (isWaiting) return;
+  isWaiting = true;
+  requestAnimationFrame(() => {
+    isWaiting = false;
+    for (const panel of shown()) panel.draw(joint.view);
+    const { x, y } = joint.view;
+    const now = `${x.i + x.f},${y.i + y.f}`;
+    if (now !== root.dataset.at) again();
+    root.dataset.at = now;
+  });
+}
+
+const write = settled(250, () => {
+  const hash = toHash(state);
+  if (hash !== location.hash) history.replaceState(null, "", hash);
+});
+
+let turn = 0;
+
+/** Measures all that is shown, one after another, then how long points take. */
+async function measureAll() {
+  turn += 1;
+  const mine = turn;
+  const isLatest = () => mine === turn;
+  const at = { x: joint.view.x, y: joint.view.y };
+  const each = async (act) => {
+    let isWhole = true;
+    for (const panel of shown()) {
+      try {
+        if (isLatest()) await act(panel);
+      } catch (error) {
+        // The others do without the server.
+        isWhole = false;
+        if (isLatest()) say(error.message);
+      }
+    }
+    return isWhole && isLatest();
+  };
+  const isMeasured = await each(async (panel) => {
+    await panel.measure(at, isLatest);
+    if (isLatest()) chart();
+  });
+  if (isMeasured) root.dataset.measured = `${root.dataset.at} ${state.seed} ${state.shown.join()}`;
+  const isTimed = await each(async (panel) => {
+    if (!panel.isTimed) await panel.time();
+    panel.isTimed = true;
+  });
+  if (isTimed) root.dataset.timed = String(shown().length);
+}
+
+/** Draws what is measured by now, all curves to the same power. */
+function chart() {
+  const all = shown().filter(({ curve }) => curve !== undefined);
+  const top = topOf(...all.map(({ curve }) => curve));
+  for (const panel of all) panel.chart(top, panels[0].curve);
+}
+
+const again = settled(300, measureAll);
+
+/** Takes another choice of methods, seed or profile. */
+function choose(change) {
+  Object.assign(state, change);
+  show();
+}
+
+function show() {
+  root.dataset.measured = "";
+  for (const panel of panels) {
+    const isShown = state.shown.includes(panel.method.id);
+    panel.element.hidden = !isShown;
+    byId(`show-${panel.method.id}`).setAttribute("aria-pressed", String(isShown));
+    if (isShown) panel.use(state);
+  }
+  byId("methods").dataset.count = String(state.shown.length);
+  if (byId("seed").value !== String(state.seed)) byId("seed").value = String(state.seed);
+  byId("profile").value = state.profile;
+  resize();
+  again();
+}
+
+function resize() {
+  const { clientWidth, clientHeight } = shown()[0].plane;
+  if (clientWidth && clientHeight) joint.resize(clientWidth, clientHeight);
+}
+
+function pick(id) {
+  const without = state.shown.filter((one) => one !== id);
+  if (without.length === 0) return;
+  const isShown = without.length < state.shown.length;
+  choose({ shown: isShown ? without : METHODS.map((one) => one.id).filter((one) => one === id || without.includes(one)) });
+}
+
+function jump(event) {
+  event.preventDefault();
+  const field = byId("jump-at");
+  const [x, y] = field.value.split(/[,;]|\s+/).filter(Boolean).map(parsePlace);
+  const isPlace = x && y && Math.abs(x.i) <= FARTHEST && Math.abs(y.i) <= FARTHEST;
+  field.setAttribute("aria-invalid", String(!isPlace));
+  say(isPlace ? null : `“${field.value}” is no place here: two numbers from −1e12 to 1e12 are needed, such as 1e6, -3.5.`);
+  if (isPlace) joint.lookAt(x, y);
+}
+
+const ICONS = {
+  closer: "M12 5v14M5 12h14",
+  farther: "M5 12h14",
+  home: "M3 11.5 12 4l9 7.5M6 10v10h12V10",
+  theme: "M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z",
+};
+
+function tools() {
+  for (const [id, path] of Object.entries(ICONS)) byId(id).append(icon(path));
+  byId("closer").addEventListener("click", () => joint.zoom(1.5));
+  byId("farther").addEventListener("click", () => joint.zoom(1 / 1.5));
+  byId("home").addEventListener("click", () => {
+    byId("jump-at").value = "";
+    joint.lookAt(place(0), place(0));
+  });
+  byId("jump").addEventListener("submit", jump);
+  byId("seed").addEventListener("change", (event) => {
+    const seed = Number(event.target.value);
+    const isSeed = Number.isInteger(seed) && seed >= 0 && seed < 1e9;
+    event.target.setAttribute("aria-invalid", String(!isSeed));
+    say(isSeed ? null : "A seed here is an integer from 0 to 999999999.");
+    if (isSeed) reseed(seed);
+  });
+  byId("profile").addEventListener("change", (event) => choose({ profile: event.target.value }));
+  watchTheme(byId("theme"), () => {
+    for (const panel of shown()) panel.sheet.renew();
+    chart();
+    draw();
+  });
+}
+
+function reseed(seed) {
+  for (const panel of panels) panel.isTimed = false;
+  choose({ seed });
+}
+
+function build() {
+  byId("show").append(...METHODS.map(({ id, name }) => make("button", { type: "button", id: `show-${id}`, onclick: () => pick(id) }, name)));
+  byId("methods").append(...panels.map(({ element }) => element));
+  for (const { plane } of panels) {
+    moveBy(plane, joint, { tapped: () => {}, hovered: () => {} });
+    new ResizeObserver(resize).observe(plane);
+  }
+}
+
+onPresence((gone) => {
+  say(gone ? "The server does not answer. Strew's points wait for it; the others are made here." : null);
+  if (!gone) begin();
+});
+
+addEventListener("hashchange", () => {
+  state = Object.assign(joint.state, fromHash(location.hash, narrow.matches));
+  joint.lookAt(state.x, state.y, state.span);
+  show();
+});
+
+async function begin() {
+  try {
+    const { profiles } = await askJson("/v1/profiles");
+    const names = [...new Set(profiles.map(({ profile }) => profile))];
+    if (!names.includes(state.profile)) {
+      if (location.hash.includes("profile=")) say(`No profile “${state.profile}” is loaded here.`);
+      [state.profile] = names.includes("blue") ? ["blue"] : names;
+    }
+    byId("profile").replaceChildren(...names.map((name) => make("option", { value: name }, name)));
+  } catch (error) {
+    say(error.message);
+  }
+  show();
+}
+
+// For tests.
+globalThis.strew = { joint, panels };
+build();
+tools();
+begin();

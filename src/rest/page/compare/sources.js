@@ -1,0 +1,132 @@
+// Where the points of a panel come from: the server, chunk by chunk, or the worker, window by window.
+
+import { ask } from "../api.js";
+import { Chunks } from "../chunks.js";
+import { chunkSize, chunksOf, cornerFrom } from "../grid.js";
+import { decimalsFor, distance, formatPlace, moved, place } from "../place.js";
+import { joined, setOf } from "../query.js";
+import { LAYER } from "../state.js";
+import { callsOf } from "../worker.js";
+import { MEASURED } from "./methods.js";
+
+/** So much of the world is held around a view, in views. */
+const AHEAD = 2;
+/** The side of a large square that is timed: 250,000 points, 2 MB. */
+const LARGE = 500;
+/** It is asked for if the measured square takes fewer milliseconds than this. */
+const QUICK = 150;
+
+const make = callsOf("/page/compare/worker.js");
+
+/** A window of a size around a place. */
+function windowAround({ x, y }, width, height) {
+  return { x: moved(x, -width / 2), y: moved(y, -height / 2), width, height };
+}
+
+/** Points that the worker makes. */
+export class Made {
+  constructor(method, changed) {
+    Object.assign(this, { method, changed, window: null, points: new Float64Array(0), version: 0 });
+  }
+
+  use({ seed }) {
+    if (seed === this.seed) return;
+    this.seed = seed;
+    this.window = null;
+  }
+
+  /** Makes what a view needs, if it is not there. */
+  cover(view) {
+    this.view = view;
+    if (!this.isBusy && !this.covers(view)) this.fetch();
+  }
+
+  covers({ x, y, width, height, unit }) {
+    const { window } = this;
+    if (!window) return false;
+    const [w, h] = [width * unit, height * unit];
+    const [dx, dy] = [distance(x, window.x) - w / 2, distance(y, window.y) - h / 2];
+    return dx >= 0 && dy >= 0 && dx + w <= window.width && dy + h <= window.height && window.width < 4 * AHEAD * w;
+  }
+
+  async fetch() {
+    this.isBusy = true;
+    const { view, seed } = this;
+    const window = windowAround(view, AHEAD * view.width * view.unit, AHEAD * view.height * view.unit);
+    const { points } = await make({ method: this.method, seed, window });
+    this.isBusy = false;
+    if (seed === this.seed) Object.assign(this, { points, window, version: this.version + 1 });
+    this.changed();
+  }
+
+  /** Runs of points, with where each run's origin is from the middle of a view. */
+  runs({ x, y }) {
+    const { window, points } = this;
+    if (!window) return [];
+    return [{ points, count: points.length / 2, stride: 2, left: distance(window.x, x), low: distance(window.y, y) }];
+  }
+
+  /** The points of the measured square around a place, `null` if it is not all in the method's region. */
+  async square(at) {
+    const window = windowAround(at, MEASURED, MEASURED);
+    const { points, isWhole } = await make({ method: this.method, seed: this.seed, window });
+    return isWhole ? points : null;
+  }
+
+  /** What a point takes. */
+  time() {
+    return make({ method: this.method, seed: this.seed });
+  }
+}
+
+/** Points of the server. */
+export class Asked {
+  constructor(changed, failed) {
+    this.chunks = new Chunks(() => {
+      this.version += 1;
+      changed();
+    }, failed);
+    this.version = 0;
+    this.wanted = [];
+  }
+
+  use({ seed, profile }) {
+    this.layer = { ...LAYER, seed: String(seed), profile };
+    this.chunks.show([this.layer]);
+    this.size = 0;
+  }
+
+  cover(view) {
+    const wide = { ...view, width: 1.6 * view.width, height: 1.6 * view.height };
+    this.wanted = this.chunks.want(chunksOf(wide, chunkSize(view, 1)), 1);
+  }
+
+  runs(view) {
+    return this.wanted.map(({ data, count, stride, cx, cy, size }) => ({
+      points: data, count, stride, left: cornerFrom(cx, size, view.x), low: cornerFrom(cy, size, view.y),
+    }));
+  }
+
+  async answer(at, side) {
+    const low = [at.x, at.y].map((v) => moved(v, -side / 2));
+    const box = [...low, ...low.map((v) => moved(v, side))].map((v) => formatPlace(v, decimalsFor(1e-9)));
+    const began = performance.now();
+    const answer = await ask(`/v1/points?bbox=${box.join(",")}&${joined([...setOf(this.layer), ["format", "f32"]])}`);
+    const points = new Float32Array(await answer.arrayBuffer());
+    return { points, took: performance.now() - began };
+  }
+
+  async square(at) {
+    const { points } = await this.answer(at, MEASURED);
+    return Float64Array.from(points);
+  }
+
+  /** What a point takes over the wire: in a large answer where the connection is quick, else in a small one. */
+  async time() {
+    const origin = { x: place(0), y: place(0) };
+    let { points, took } = await this.answer(origin, MEASURED);
+    if (took < QUICK) ({ points, took } = await this.answer(origin, LARGE));
+    const count = points.length / 2;
+    return { nanoseconds: (took * 1e6) / count, answer: { milliseconds: took, count } };
+  }
+}

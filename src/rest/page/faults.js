@@ -1,0 +1,65 @@
+// What the server says about a query, in the words of the page and at its fields.
+
+/** The field of the page for each parameter. */
+const PLACES = {
+  spacing: "amount",
+  density: "amount",
+  min_distance: "amount",
+  seed: "seed",
+  warp: "warp",
+  alpha: "alpha",
+  map: "map",
+  profile: "profile",
+  field: "field",
+  scale_range: "range",
+  variants: "variants",
+  clear_of: "clear",
+};
+
+/** What each field takes. */
+const TAKES = {
+  spacing: "The mean spacing must be a number above 0, such as 1.5.",
+  density: "The density must be a number above 0, such as 0.25.",
+  min_distance: "The least distance must be a number above 0, such as 1.5.",
+  seed: "The seed must be a whole number from 0 to 18446744073709551615.",
+  warp: "The warp must be off, on or a number from 0 to 2.",
+  scale_range: "Two numbers are needed, the smaller first, such as 0.5,1.5.",
+  variants: "Names with weights are needed, such as oak:3,birch:1. A name has letters, digits, _, - or .",
+  clear_of: "The distance must be empty, 0, or a number up to 16 mean spacings of the layers before.",
+};
+
+/** What is wrong with which field of the page: `{ id: words }`; `""` holds what belongs to none. */
+export function faultsOf(error) {
+  const found = {};
+  for (const fault of error.faults ?? []) {
+    const name = fault.field.replace(/^layers\[\d+\]\./, "").replace(/[.[].*$/, "");
+    found[PLACES[name] ?? ""] = wordsFor(name, fault);
+  }
+  if (Object.keys(found).length === 0) found[""] = error.message;
+  return found;
+}
+
+function wordsFor(name, { value, detail, allowed }) {
+  if (name === "min_distance" && detail.includes("no least distance")) {
+    return "Points of this profile may lie as near as they like. Choose a spacing or a density.";
+  }
+  if (name === "min_distance" && detail.includes("field")) {
+    return "In a field no least distance is kept. Choose a spacing or a density.";
+  }
+  if (name === "profile") return `This server has no profile “${value}”.`;
+  if (name === "field") {
+    const isSent = /^[0-9a-f]{64}$/.test(value);
+    return isSent
+      ? "The server does not hold this picture any more. Send it again, or choose another field."
+      : `This server has no field “${value}”: no such field is loaded.`;
+  }
+  if (TAKES[name]) return `“${value}” does not work. ${TAKES[name]}`;
+  return `“${value}” does not work: ${detail}. Allowed: ${allowed}.`;
+}
+
+/** What is wrong with a layer, as far as the page itself knows. */
+export function faultsBefore(layer, i) {
+  const text = layer.clear.trim();
+  const isDistance = text === "" || (Number.isFinite(Number(text)) && Number(text) >= 0);
+  return i === 0 || isDistance ? {} : { clear: `“${text}” does not work. ${TAKES.clear_of}` };
+}

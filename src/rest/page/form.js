@@ -1,0 +1,45 @@
+// Fields of a form that stay where they are: they are made once, and set again when the choice changes.
+
+import { make } from "./dom.js";
+
+/** A control with its label, further lines, and a line for what is wrong with its value. */
+export function field(words, id, control, ...more) {
+  const wrong = make("p", { class: "note bad", id: `wrong-${id}`, role: "alert", hidden: true });
+  return make("div", { class: "field" }, make("label", { for: id }, words), control, ...more, wrong);
+}
+
+/** A list to choose from; `changed(value)` hears what is chosen. */
+export function select(id, changed, attributes = {}) {
+  return make("select", { id, ...attributes, onchange: (event) => changed(event.target.value) });
+}
+
+/** Sets what a list offers, as keys or as pairs of a key and its words, and what is chosen. */
+export function setOptions(list, options, value) {
+  const pairs = options.map((option) => (Array.isArray(option) ? option : [option, option]));
+  const text = JSON.stringify(pairs);
+  if (list.dataset.options !== text) {
+    list.replaceChildren(...pairs.map(([key, words]) => make("option", { value: key }, words)));
+    list.dataset.options = text;
+  }
+  list.value = value;
+}
+
+/** A box to check; `changed(isChecked)` hears of it. */
+export function check(id, words, changed) {
+  const box = make("input", { type: "checkbox", id, onchange: (event) => changed(event.target.checked) });
+  return make("label", { class: "check" }, box, words);
+}
+
+/** Says what is wrong with the value of a field, at the field; no words if nothing is. */
+export function fault(root, id, words) {
+  const control = root.querySelector(`#${id}`);
+  const line = root.querySelector(`#wrong-${id}`);
+  if (!control || !line) return;
+  if (line.textContent !== (words ?? "")) line.textContent = words ?? "";
+  line.hidden = !words;
+  control.setAttribute("aria-invalid", String(Boolean(words)));
+  control.dataset.about ??= control.getAttribute("aria-describedby") ?? "";
+  const about = [control.dataset.about, words && line.id].filter(Boolean).join(" ");
+  if (about) control.setAttribute("aria-describedby", about);
+  else control.removeAttribute("aria-describedby");
+}

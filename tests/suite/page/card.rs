@@ -1,0 +1,68 @@
+//! The card of a point: beside the point and its neighbors, announced, and closed by Escape.
+
+use crate::support::browser::{Browser, looking};
+
+/// How much of the surroundings of the point the card covers, as a share of the card, and whether it covers the
+/// point itself.
+const COVERED: &str = "(() => { const card = strew.card; const b = card.element; \
+    const [l, t, r, d] = card.surroundings(); const [x, y] = card.onCanvas(card.point.x, card.point.y); \
+    const across = Math.max(0, Math.min(b.offsetLeft + b.offsetWidth, r) - Math.max(b.offsetLeft, l)); \
+    const down = Math.max(0, Math.min(b.offsetTop + b.offsetHeight, d) - Math.max(b.offsetTop, t)); \
+    const isOver = x > b.offsetLeft && x < b.offsetLeft + b.offsetWidth && y > b.offsetTop && y < b.offsetTop + b.offsetHeight; \
+    return [across * down / (b.offsetWidth * b.offsetHeight), isOver]; })()";
+
+fn pinned(browser: &Browser) -> String {
+    let id = browser.until("strew.card.isPinned && !document.querySelector('#card').hidden && document.querySelector('#card h2')?.textContent");
+    id.as_str().expect("an id").into()
+}
+
+#[test]
+fn the_card_is_beside_its_point_and_escape_closes_it() {
+    let Some((daemon, browser)) = looking(1280, 800) else {
+        return;
+    };
+    browser.look(&daemon, "#at=0,0&span=20");
+    for at in [[816, 400], [400, 60], [1240, 640], [380, 780]] {
+        browser.tap(at);
+        let id = pinned(&browser);
+        let covered = browser.value(COVERED);
+        // Offsets are whole pixels.
+        assert!(
+            covered[0].as_f64().expect("a share") < 0.01,
+            "{at:?}: {covered}"
+        );
+        assert_eq!(covered[1], false);
+        browser.until(&format!(
+            "document.querySelector('#said').textContent.includes('Point {id} at')"
+        ));
+        browser.keys(&["\u{E00C}"]);
+        browser.until("document.querySelector('#card').hidden");
+    }
+    // By keys alone; where no point is near, that is said.
+    browser.value("(document.querySelector('#plane').focus(), 0)");
+    browser.keys(&["\u{E007}"]);
+    pinned(&browser);
+    browser.keys(&["\u{E00C}"]);
+    browser
+        .until("document.querySelector('#card').hidden && document.activeElement.id === 'plane'");
+    browser.look(&daemon, "#at=0.45,0.55&span=0.6");
+    browser.value("(document.querySelector('#plane').focus(), 0)");
+    browser.keys(&["\u{E007}"]);
+    browser.until("document.querySelector('#said').textContent === 'No point is near here.' || strew.card.isPinned");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn on_a_phone_the_card_leaves_the_point_free() {
+    let Some((daemon, browser)) = looking(390, 844) else {
+        return;
+    };
+    browser.look(&daemon, "#at=0,0&span=20");
+    for at in [[195, 210], [60, 380], [340, 130]] {
+        browser.tap(at);
+        pinned(&browser);
+        assert_eq!(browser.value(COVERED)[1], false, "{at:?}");
+        browser.keys(&["\u{E00C}"]);
+        browser.until("document.querySelector('#card').hidden");
+    }
+}

@@ -1,0 +1,73 @@
+//! Links and choices that cannot be shown: the page says why and shows what it can.
+
+use crate::support::browser::looking;
+
+#[test]
+fn places_without_points_are_said_and_left() {
+    let Some((daemon, browser)) = looking(1280, 800) else {
+        return;
+    };
+    for at in ["1e18,0", "0,-1e22", "1e300,1e300"] {
+        browser.look(&daemon, &format!("#at={at}&span=30"));
+        assert!(browser.ready() > 500, "{at}");
+        assert!(browser.text("#banner").contains("too far out"), "{at}");
+        browser.until("location.hash.includes('at=0,0')");
+    }
+    // A jump is refused at its field, and the view stays.
+    browser.look(&daemon, "#at=100,200&span=30");
+    browser.choose("#jump-at", "1e18, 0");
+    browser.click("#jump button");
+    assert!(browser.text("#banner").contains("too far out"));
+    assert_eq!(
+        browser.value("document.querySelector('#jump-at').getAttribute('aria-invalid')"),
+        "true"
+    );
+    assert_eq!(browser.value("strew.plane.view.x.i"), 100);
+    browser.choose("#jump-at", "nowhere");
+    browser.click("#jump button");
+    assert!(browser.text("#banner").contains("is no place"));
+    // As far out as doubles reach there are points.
+    browser.choose("#jump-at", "1e15, -1e15");
+    browser.click("#jump button");
+    browser.until("strew.plane.view.x.i === 1e15");
+    assert!(browser.ready() > 500);
+    // Home forgets what was typed.
+    browser.click("#home");
+    browser.until("strew.plane.view.x.i === 0");
+    assert_eq!(
+        browser.value("document.querySelector('#jump-at').value"),
+        ""
+    );
+}
+
+#[test]
+fn a_profile_that_is_not_loaded_is_said_and_replaced() {
+    let Some((daemon, browser)) = looking(1280, 800) else {
+        return;
+    };
+    browser.look(&daemon, "#at=0,0&span=30&profile=nope");
+    assert!(browser.ready() > 500);
+    assert!(browser.text("#banner").contains("no profile “nope”"));
+    browser.until("location.hash.includes('profile=blue')");
+    assert_eq!(
+        browser.value("document.querySelector('#profile').value"),
+        "blue"
+    );
+}
+
+#[test]
+fn the_view_follows_a_spacing_that_would_leave_it_empty() {
+    let Some((daemon, browser)) = looking(1280, 800) else {
+        return;
+    };
+    browser.look(&daemon, "#at=0,0&span=30");
+    browser.choose("#amount", "1000");
+    browser.until("strew.plane.span === 30000");
+    assert!(browser.ready() > 500);
+    browser.value("history.back()");
+    browser.until("strew.plane.span === 30");
+    assert!(browser.ready() > 500);
+    // A link to an empty view is shown as it is, with a word.
+    browser.look(&daemon, "#at=300,300&span=600&amount=1000");
+    assert!(browser.text("#tally").contains("zoom out") || browser.ready() > 0);
+}
