@@ -16,6 +16,7 @@ mod fixed;
 mod freshness;
 mod harden;
 mod jobs;
+mod joined;
 mod mask;
 mod negotiate;
 mod openapi;
@@ -44,6 +45,7 @@ use api::Endpoint;
 pub use document::json;
 pub use finish::finished;
 use problem::Problem;
+pub use worlds::world_document;
 
 /// The endpoints of REST, without their description.
 pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {
