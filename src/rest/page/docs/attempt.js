@@ -84,7 +84,7 @@ export function attempt(path, method, operation, api) {
     body && make("div", { class: "field wide" }, make("label", { for: "try-body" }, `Body, ${content[0]}`), body),
     make("div", { class: "line" }, make("pre", { tabindex: "0", "aria-label": "The line for curl" }, line), copy(() => line.textContent)),
     send);
-  form.addEventListener("input", update);
+  form.addEventListener("input", update, true);
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
     send.disabled = true;
