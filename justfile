@@ -75,9 +75,21 @@ targets:
 release folder="dist":
     deploy/release {{folder}}
 
+# The walks of 1,000 players through a world, with nginx as a cache and without: `just caches target/release/strew`.
+caches program *args:
+    benches/caches.py {{program}} {{args}}
+
 # The data source of Spark on a cluster of two workers, one of which is killed.
 spark *args:
     .ci/spark {{args}}
+
+# The data source of Ray on two workers, of which some are killed, and the example of Dask.
+ray *args:
+    .ci/ray {{args}}
+
+# The files of `deploy/` by helm, kubeconform, promtool, HAProxy and nginx.
+deploy-check:
+    .ci/deploy
 
 # Licenses, bans and sources of all dependencies; the advisories need a network.
 deny:
