@@ -1,5 +1,5 @@
 //! The page at `/` in headless Chromium: what it shows and how it moves (view), what can be set
-//! (controls, fields), what is wrong and how it is said (faults, links), the card of a point (card), the tab How it
+//! (controls, fields, paint), what is wrong and how it is said (faults, links), the card of a point (card), the tab How it
 //! works (works), the requests and files it offers (export), and that everybody can use it (everyone); and the page
 //! `/compare`. The tests are skipped where Chromium and ChromeDriver are not installed.
 
@@ -11,5 +11,6 @@ mod export;
 mod faults;
 mod fields;
 mod links;
+mod paint;
 mod view;
 mod works;
