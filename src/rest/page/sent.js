@@ -6,6 +6,7 @@ import { askJson, onRefused } from "./api.js";
 const held = new Map();
 /** What an address describes: sent if the server turns out not to hold it. */
 const expected = [];
+let catchingUp = Promise.resolve();
 const sending = new Map();
 
 /** The name of a field that was sent: its digest. */
@@ -43,7 +44,12 @@ export function expect(document) {
 onRefused(async (problem, path, body) => {
   if (problem.status !== 404 && !/no such field/.test(problem.message)) return false;
   const named = [...new Set(`${path} ${body ?? ""}`.match(/\b[0-9a-f]{64}\b/g))];
-  if (named.some((digest) => !held.has(digest))) await Promise.all(expected.splice(0).map(send));
+  if (named.some((digest) => !held.has(digest))) {
+    // Several requests are refused at once: all of them wait for the same.
+    const all = [catchingUp, ...expected.splice(0).map((document) => send(document))];
+    catchingUp = Promise.all(all).catch(() => {});
+    await catchingUp;
+  }
   const known = named.filter((digest) => held.has(digest));
   await Promise.all(known.map((digest) => send(held.get(digest))));
   return known.length > 0;

@@ -112,7 +112,7 @@ fn a_world_file_holds_what_is_painted() {
     let hash = "#at=0,0&span=40&layers=2&seed=18446744073709551615&2.amount=2&2.seed=4&2.clear=0.6\
                 &paint=r(4:-9,-9/9,9)e(8,0.7:-10,8/10,8)";
     browser.look(&daemon, hash);
-    // The address has no digest: the stroke that is added sends the field.
+    // The address has no digest, so the page sends the field first.
     browser.click("#paint-open");
     let [x, y] = middle(&browser);
     let count = changed(&browser, || browser.drag([x - 90, y - 150], [60, 0]));

@@ -1,7 +1,7 @@
 // Fields by hand: a bar of tools on the plane, what was painted with them, and the field that it is.
 
 import { byId, icon, make } from "../dom.js";
-import { documentOf, expect, send } from "../sent.js";
+import { documentOf, expect, isSent, send } from "../sent.js";
 import { MOST_PAINT } from "../state.js";
 import { Brush } from "./brush.js";
 import { blank, fieldOf, read, simplified, written } from "./strokes.js";
@@ -30,7 +30,6 @@ export class Paint {
       left: () => this.use(null),
       say: (words) => this.say(words),
     });
-    for (const layer of session.state.layers) if (layer.paint) expect(fieldOf(read(layer.paint)));
     session.on((changed) => changed.has("layers") && this.read());
     this.read();
   }
@@ -41,7 +40,9 @@ export class Paint {
       type: "range", id: `paint-${id}`, min: "0", max: "1", step: "0.01", value: String(value),
       oninput: (event) => changed(Number(event.target.value)),
     }));
-    this.toggle = button("open", [icon(BRUSH), "Paint"], () => this.use(this.tool ? null : "paint"), { "aria-expanded": "false" });
+    this.toggle = button("open", [icon(BRUSH), make("span", {}, "Paint")], () => this.use(this.tool ? null : "paint"), {
+      "aria-expanded": "false", "aria-label": "Paint density and roads", title: "Paint density and roads",
+    });
     this.tools = TOOLS.map(([tool, words, title]) => button(`tool-${tool}`, words, () => this.use(tool), { title, "aria-pressed": "false" }));
     this.size = slide("size", "Size", Math.sqrt(this.width), (value) => {
       this.width = Math.max(0.004, value ** 2);
@@ -58,14 +59,15 @@ export class Paint {
       this.file.value = "";
     } });
     this.said = make("span", { id: "paint-said", role: "status" });
-    this.inside = [...this.tools, this.size, this.strong, make("label", {}, "Elsewhere", this.elsewhere), this.undoButton, this.clearButton,
+    this.inside = [button("done", "Done", () => this.use(null)), ...this.tools, this.size, this.strong, make("label", {}, "Elsewhere", this.elsewhere), this.undoButton, this.clearButton,
       button("save", "Save", () => this.save(), { title: "The world as a file" }), button("load", "Open", () => this.file.click(), { title: "A world from a file" }),
       this.said];
-    this.bar = make("div", { id: "paint", role: "toolbar", "aria-label": "Paint density" }, this.toggle, ...this.inside, this.file);
+    this.bar = make("div", { id: "paint", role: "group", "aria-label": "Paint", hidden: true }, ...this.inside, this.file);
     this.canvas = make("canvas", {
       id: "brush", tabindex: "0", role: "application", hidden: true,
       "aria-label": "Paint on the plane. Arrow keys move the brush, Space puts the pen down and lifts it, plus and minus zoom, Escape leaves.",
     });
+    byId("tools").prepend(this.toggle);
     byId("stage").append(this.canvas, this.bar);
     addEventListener("keydown", (event) => {
       if (!this.tool) return;
@@ -93,16 +95,13 @@ export class Paint {
 
   render() {
     const { tool } = this;
-    this.bar.classList.toggle("open", Boolean(tool));
+    this.bar.hidden = this.canvas.hidden = !tool;
     this.toggle.setAttribute("aria-expanded", String(Boolean(tool)));
-    this.toggle.lastChild.textContent = tool ? "Done" : "Paint";
-    this.canvas.hidden = !tool;
-    for (const part of this.inside) part.hidden = !tool;
     this.tools.forEach((button, i) => button.setAttribute("aria-pressed", String(TOOLS[i][0] === tool)));
-    this.strong.hidden = !tool || tool === "road";
+    this.strong.hidden = tool === "road";
     this.undoButton.disabled = this.clearButton.disabled = this.work.strokes.length === 0;
     this.elsewhere.value = String(this.work.ground);
-    this.elsewhere.parentElement.hidden = !tool || Boolean(this.work.base);
+    this.elsewhere.parentElement.hidden = Boolean(this.work.base);
   }
 
   /** The size of a brush in world units: a part of what is in view. */
@@ -131,17 +130,41 @@ export class Paint {
     return this.session.state.layers[this.picked()] ?? this.session.state.layers[0];
   }
 
-  /** Takes what is painted from the layer, where it has changed. */
+  /** Takes what is painted from the layers, where it has changed. */
   read() {
+    for (const layer of this.session.state.layers) if (layer.paint) this.known(layer);
     const { layer } = this;
-    const known = this.texts.get(layer.field);
-    // A field that was chosen since is another one.
-    const isOther = layer.paint && known === undefined && [...this.texts.values()].includes(layer.paint);
-    if (isOther) this.session.correct(() => (layer.paint = ""));
-    const text = layer.paint || known || "";
-    if (text !== written(this.work)) this.work = text ? read(text) : blank(layer.field);
-    else if (!text) this.work = blank(layer.field);
+    const text = layer.paint || this.texts.get(layer.field) || "";
+    if (!text) this.work = blank(layer.field);
+    else if (text !== written(this.work)) this.work = read(text);
     this.render();
+  }
+
+  /** Sees that what a layer's text says is its field. */
+  known(layer) {
+    const text = this.texts.get(layer.field);
+    if (text === layer.paint) return;
+    const work = read(layer.paint);
+    if (!layer.field) this.restore(layer, work);
+    // A field that was chosen since is another one.
+    else if (text !== undefined || !isSent(layer.field) || [...this.texts.values()].includes(layer.paint)) {
+      this.session.correct(() => (layer.paint = ""));
+    } else {
+      this.texts.set(layer.field, layer.paint);
+      expect(fieldOf(work));
+    }
+  }
+
+  /** Sends what an address describes without the field's digest. */
+  async restore(layer, work) {
+    try {
+      const field = await send(fieldOf(work), fieldOf(work, whole));
+      this.texts.set(field, layer.paint);
+      this.session.correct(() => (layer.field = field));
+      this.session.tell("layers");
+    } catch (error) {
+      this.fail(error.message);
+    }
   }
 
   drawn(line) {

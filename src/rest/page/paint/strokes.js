@@ -48,7 +48,7 @@ function shapeOf(kind, { size, strength }, lines) {
   const half = size / 2;
   // A road is empty up to its edge; brushes are soft from a half of their radius on.
   const distances = kind === "road" ? [half, half * 1.5] : [half / 2, half];
-  const shares = { paint: [strength, 0], erase: [1 - strength, 1], road: [0, 1] }[kind];
+  const shares = { paint: [strength, 0], erase: [Number((1 - strength).toFixed(4)), 1], road: [0, 1] }[kind];
   return { distance: { lines, distances, shares } };
 }
 
