@@ -79,6 +79,14 @@ release folder="dist":
 spark *args:
     .ci/spark {{args}}
 
+# The data source of Ray on two workers, of which some are killed, and the example of Dask.
+ray *args:
+    .ci/ray {{args}}
+
+# The files of `deploy/` by helm, kubeconform, promtool, HAProxy and nginx.
+deploy-check:
+    .ci/deploy
+
 # Licenses, bans and sources of all dependencies; the advisories need a network.
 deny:
     cargo deny --locked --offline check licenses bans sources

@@ -26,6 +26,7 @@ pub mod config;
 pub mod error_map;
 #[cfg(feature = "daemon")]
 pub mod grpc;
+mod name;
 #[cfg(feature = "daemon")]
 pub mod ops;
 pub mod raster;

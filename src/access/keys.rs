@@ -27,7 +27,7 @@ use super::{
     caller::{Caller, Places},
     secret::Hashed,
 };
-use crate::bounded_file;
+use crate::{bounded_file, name::is_name};
 
 /// Why keys are not taken.
 #[derive(Debug, thiserror::Error)]
@@ -249,13 +249,6 @@ const FROM_ONE: &str = "an integer from 1 on";
 const RATE: &str = "a number from 0.001 to 1e15";
 const BURST: &str = "a number from 1 to 1e15";
 const WITH_RATE: &str = "only beside points_per_second";
-
-/// Whether a key may be called so.
-#[must_use]
-pub fn is_name(text: &str) -> bool {
-    let fine = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
-    (1..=64).contains(&text.len()) && text.chars().all(fine)
-}
 
 struct Fault {
     name: String,

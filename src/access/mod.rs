@@ -21,7 +21,7 @@ use crate::config::{self, Access as Settings, AddressLimits, Networks};
 pub use bucket::{Level, Rate, Short};
 pub use caller::{Caller, Place};
 pub use denied::Denied;
-pub use keys::{KeysError, is_name};
+pub use keys::KeysError;
 pub use secret::{Hashed, new_key};
 pub use usage::{InUse, Quota, Usage};
 

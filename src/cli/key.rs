@@ -3,7 +3,10 @@
 use anyhow::{Context as _, anyhow};
 
 use super::{Failure, output};
-use crate::access;
+use crate::{
+    access,
+    name::{ALLOWED, is_name},
+};
 
 /// Commands about keys.
 #[derive(Debug, clap::Subcommand)]
@@ -36,10 +39,11 @@ pub(super) struct New {
 /// Runs a command.
 pub(super) fn run(command: &Command) -> Result<(), Failure> {
     let Command::New(new) = command;
-    if !access::is_name(&new.name) {
+    if !is_name(&new.name) {
         return Err(Failure::Usage(anyhow!(
-            "NAME is {:?}; allowed: 1 to 64 ASCII letters, digits, _, - and .",
-            new.name
+            "NAME is {:?}; allowed: {}",
+            new.name,
+            ALLOWED
         )));
     }
     if let Some(value) = new.points_per_second

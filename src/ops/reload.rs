@@ -283,7 +283,7 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
             cause,
             source = refusal.source,
             serving = refusal.serving,
-            "refused; the loaded one stays in use: {}",
+            "refused; the loaded one stays in use as far as what it names is still there: {}",
             refusal.detail
         );
     }

@@ -38,7 +38,7 @@ const HEADERS: [(&str, &str); 11] = [
     ("strew-table", "The digest of the table that answers."),
     (
         "strew-world",
-        "The digest of the world, if the query names one: of its document, tables and fields.",
+        "The digest of the world, if the query names one: of its document, tables, fields and lists.",
     ),
     (
         "strew-algorithm",

@@ -17,6 +17,7 @@ mod fixed;
 mod freshness;
 mod harden;
 mod jobs;
+mod joined;
 mod mask;
 mod negotiate;
 mod openapi;

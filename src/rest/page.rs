@@ -1,7 +1,9 @@
 //! The daemon's own pages for people: `/`, a view of the plane, and what it leads to. Their parts are embedded and
 //! served under `/page/`; they load nothing from elsewhere and ask only what anybody can ask.
 //!
-//! The list of parts stands in [`PARTS`]; tests/tidy.rs holds it against the folder.
+//! The list of parts stands in [`PARTS`]; tests/tidy.rs holds it against the folder. The modules and the styles of a
+//! page are joined at the start, because each request takes a round trip; the parts are served as well, for workers
+//! and other pages.
 
 use std::sync::Arc;
 
@@ -12,6 +14,7 @@ use http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
     fixed::Fixed,
+    joined::joined,
 };
 use crate::service::{
     Error, Kind,
@@ -34,6 +37,12 @@ const PAGES: &[Page] = &[
         "getComparePage",
         "The page that compares ways to scatter points",
         include_str!("page/compare/index.html"),
+    ),
+    (
+        "/walk",
+        "getWalk",
+        "A walk through the plane, in three dimensions",
+        include_str!("page/walk/index.html"),
     ),
 ];
 
@@ -101,6 +110,8 @@ const PARTS: &[(&str, &str)] = parts![
     "shade.js",
     "sheets.js",
     "spectrum.js",
+    "start.css",
+    "start.js",
     "state.js",
     "status.js",
     "take.js",
@@ -108,6 +119,18 @@ const PARTS: &[(&str, &str)] = parts![
     "theme.js",
     "understand.js",
     "worker.js",
+    "walk/camera.js",
+    "walk/ground.js",
+    "walk/land.js",
+    "walk/leaves.js",
+    "walk/map.js",
+    "walk/move.js",
+    "walk/scene.js",
+    "walk/shaders.js",
+    "walk/shapes.js",
+    "walk/walk.css",
+    "walk/walk.js",
+    "walk/world.js",
     "works/works.css",
     "works/works.js",
     "works/draw.js",
@@ -135,10 +158,11 @@ fn content_type(name: &str) -> &'static str {
 pub(super) fn endpoints() -> Vec<Endpoint> {
     let parts = PARTS.iter().map(|&(name, text)| {
         let content = Bytes::from_static(text.as_bytes());
-        (name, Fixed::new(content_type(name), content))
+        (name.to_owned(), Fixed::new(content_type(name), content))
     });
-    let parts: Parts = Arc::new(parts.collect());
-    let mut all: Vec<_> = PAGES.iter().map(page).collect();
+    let mut parts: Vec<(String, Fixed)> = parts.collect();
+    let mut all: Vec<_> = PAGES.iter().map(|one| page(one, &mut parts)).collect();
+    let parts: Parts = Arc::new(parts);
     let of_the_first = ("/page/{file}", "getPagePart", "/page/main.js");
     all.push(parts_at(of_the_first, &[&FILE], &parts));
     let of_a_folder = (
@@ -150,10 +174,34 @@ pub(super) fn endpoints() -> Vec<Endpoint> {
     all
 }
 
-/// A page.
-fn page(&(path, id, summary, text): &Page) -> Endpoint {
+/// The name of the joined parts of a page.
+fn name_of(path: &str) -> &str {
+    match path.trim_matches('/') {
+        "" => "page",
+        name => name,
+    }
+}
+
+/// A page, whose joined parts are added to the others.
+fn page(&(path, id, summary, text): &Page, parts: &mut Vec<(String, Fixed)>) -> Endpoint {
     let operation = operation(id, path, summary, &[HTML], &[], vec![]);
-    let document = Fixed::new(HTML, Bytes::from_static(text.as_bytes()));
+    let mut html = text.to_owned();
+    // A test joins every page; one that could not be joined would work as it is.
+    if let Ok(joined) = joined(name_of(path), text, PARTS) {
+        html = joined.html;
+        for (ending, text) in [("js", joined.script), ("css", joined.style)] {
+            let name = format!("joined/{}.{ending}", name_of(path));
+            let document = Fixed::new(content_type(&name), text.into());
+            parts.push((name, document));
+        }
+    }
+    let version = concat!(
+        "<span id=\"version\">",
+        env!("CARGO_PKG_VERSION"),
+        "</span>"
+    );
+    let html = html.replace("<span id=\"version\"></span>", version);
+    let document = Fixed::new(HTML, html.into());
     let handler =
         routing::get(
             move |uri: Uri, headers: HeaderMap| async move { part(&document, &uri, &headers) },
@@ -229,11 +277,11 @@ fn operation(
 }
 
 /// The parts by their names, ready to send.
-type Parts = Arc<Vec<(&'static str, Fixed)>>;
+type Parts = Arc<Vec<(String, Fixed)>>;
 
 async fn one(State(parts): State<Parts>, uri: Uri, headers: HeaderMap) -> Result<Response, Error> {
     let name = uri.path().trim_start_matches("/page/");
-    let found = parts.iter().find(|(part, _)| *part == name);
+    let found = parts.iter().find(|(part, _)| part == name);
     let (_, document) = found.ok_or_else(|| Error::NoSuchPath {
         path: uri.path().into(),
         available: "the pages and the parts that they name".into(),
@@ -266,9 +314,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn every_page_is_joined() {
+        for &(path, .., text) in PAGES {
+            let joined = joined(name_of(path), text, PARTS).expect("known forms");
+            assert_eq!(joined.html.matches("/page/joined/").count(), 2, "{path}");
+            for form in ["\nimport {", "\nexport ", "import(\"."] {
+                assert!(!joined.script.contains(form), "{path} has {form}");
+            }
+        }
+    }
+
+    #[test]
     fn nothing_is_inline_and_nothing_comes_from_elsewhere() {
         let pages = PAGES.iter().map(|&(path, .., text)| (path, text));
         for (name, text) in PARTS.iter().copied().chain(pages) {
+            // Links that people follow load nothing.
+            let text = text.replace("<a href=\"https://", "<a href=\"");
             for word in ["style=\"", "innerHTML", "eval(", "onclick=\"", "https://"] {
                 assert!(!text.contains(word), "{name} has {word}");
             }

@@ -10,17 +10,10 @@ use std::{
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::bounded_file;
-
-/// What names may be.
-pub const NAME: &str = "1 to 64 ASCII letters, digits, _, - and .";
-
-/// Whether a text may be a name.
-#[must_use]
-pub fn is_name(text: &str) -> bool {
-    let is_allowed = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
-    (1..=64).contains(&text.len()) && text.chars().all(is_allowed)
-}
+use crate::{
+    bounded_file,
+    name::{ALLOWED, is_name},
+};
 
 /// Where a document comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -183,7 +176,7 @@ impl Places<'_> {
                     first.source, found.name
                 )),
                 _ if !is_name(&found.name) => {
-                    Err(format!("`{}` is no name; allowed: {NAME}", found.name))
+                    Err(format!("`{}` is no name; allowed: {ALLOWED}", found.name))
                 }
                 (None, Ok(text)) => check(&found, text),
                 (None, Err(detail)) => Err(detail.clone()),

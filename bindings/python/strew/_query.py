@@ -72,6 +72,8 @@ class Query(TypedDict, total=False):
     normals: bool
     #: How far things lean from the vertical (0) to the normal (1). Adds the columns qx, qy, qz, qw.
     align: float
+    #: Ids of points that are left out, and names of lists: ``except`` without the underscore is a word of Python.
+    except_: str | Sequence[str]
     world: str
     world_digest: str
     #: Several sets at once: a list of dicts with a ``name`` each.
@@ -106,6 +108,8 @@ def body(keywords: Mapping[str, Any]) -> Body:
     for name, value in keywords.items():
         if value is None:
             continue
+        if name == "except_":
+            name = "except"
         if name in SHAPES:
             # Several shapes are refused together, with all their names.
             made.setdefault("region", {})

@@ -50,15 +50,12 @@ from ._points import PointSet
 from ._query import Query, body
 from ._remote import connect
 from ._source import Source
+from ._tasks import BATCH, batches, schema, split
 
 #: What is an option and no part of a query.
 OWN = ("query", "url", "partitions", "batch", "narrow", "path")
 #: The members of a query: the keywords, one whose name is a word of Python, and one that takes the place of a region.
 MEMBERS = (*Query.__annotations__, "except", "periodic")
-TASK = 1_000_000
-#: The most tasks by default: the driver lists each with its cursor.
-MOST_TASKS = 10_000
-BATCH = 1 << 18
 
 
 def _number(text: str) -> float:
@@ -139,15 +136,6 @@ def points(options: Mapping[str, str]) -> PointSet:
     return source.query(json.loads(options["query"]))
 
 
-def _plain(schema: pa.Schema) -> pa.Schema:
-    """The schema with names as text, which Spark's columns are."""
-    columns = (
-        pa.field(column.name, pa.string() if pa.types.is_dictionary(column.type) else column.type, column.nullable)
-        for column in schema
-    )
-    return pa.schema(list(columns))
-
-
 @dataclass
 class Part(InputPartition):
     """The points of a task."""
@@ -168,21 +156,12 @@ class StrewReader(DataSourceReader):
         self.is_empty = False
 
     def partitions(self) -> list[Part]:  # type: ignore[override]
-        count = 0 if self.is_empty else self.points.count()
-        tasks = min(self.tasks or min(-(-count // TASK), MOST_TASKS), count)
-        # Spark wants one, even of no points.
-        if tasks <= 1:
-            return [Part(self.points, count)]
-        return [Part(part, part.body["limit"]) for part in self.points.split(tasks)]
+        # Spark wants one task, even of no points.
+        parts = [(self.points, 0)] if self.is_empty else split(self.points, self.tasks)
+        return [Part(part, count) for part, count in parts]
 
     def read(self, partition: Part) -> Iterator[pa.RecordBatch]:  # type: ignore[override]
-        part, left = partition.points, partition.number
-        while left > 0:
-            some = part._with(limit=min(left, self.batch))
-            yield from pa.table(some).cast(self.schema).to_batches()
-            left -= self.batch
-            if left > 0:
-                part = part._with(cursor=some.next, offset=None)
+        return batches(partition.points, partition.number, self.schema, self.batch)
 
 
 class NarrowedReader(StrewReader):
@@ -231,7 +210,7 @@ class StrewDataSource(DataSource):
         return "strew"
 
     def _arrow(self) -> pa.Schema:
-        return _plain(pa.table(points(self.options)._with(limit=1)).schema)
+        return schema(points(self.options))
 
     def schema(self) -> StructType:
         return from_arrow_schema(self._arrow())

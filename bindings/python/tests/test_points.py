@@ -179,6 +179,29 @@ def test_measuring() -> None:
         strew.measure(points.xy)
 
 
+def test_points_stand_on_a_terrain() -> None:
+    ramp = {"ramp": {"from": [0, 0], "to": [40, 0]}}
+    on_it = strew.points(
+        bbox=(0, 0, 40, 40), spacing=1, terrain=ramp, heights=(100, 500), normals=True, align=1
+    )
+    assert np.allclose(on_it["z"], 100 + 10 * on_it.x, atol=1e-3)
+    # A slope of 10 to 1 toward x: the normal leans back.
+    normal = np.stack([on_it["nx"], on_it["ny"], on_it["nz"]], axis=1)
+    assert np.allclose(normal, np.array([-10, 0, 1]) / np.sqrt(101), atol=1e-5)
+    turn = np.stack([on_it[name] for name in ("qx", "qy", "qz", "qw")], axis=1)
+    assert np.allclose(np.linalg.norm(turn, axis=1), 1, atol=1e-5)
+
+
+def test_points_are_left_out_by_their_ids() -> None:
+    whole = strew.points(bbox=(0, 0, 20, 20), spacing=1)
+    gone = [":".join(map(str, id)) for id in whole.ids[[3, 50]]]
+    left = strew.points(bbox=(0, 0, 20, 20), spacing=1, except_=gone)
+    assert len(left) == len(whole) - 2
+    assert set(map(tuple, whole.ids)) - set(map(tuple, left.ids)) == {tuple(id) for id in whole.ids[[3, 50]]}
+    with pytest.raises(strew.StrewError, match="except"):
+        len(strew.points(bbox=(0, 0, 20, 20), spacing=1, except_=["seven"]))
+
+
 def test_documents_and_iteration(tmp_path: Path) -> None:
     points = strew.points(**LAYERS)
     points.write(tmp_path / "points.geojson")

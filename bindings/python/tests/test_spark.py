@@ -22,7 +22,8 @@ pa = pytest.importorskip("pyarrow")
 from pyspark.errors import PySparkException  # noqa: E402
 from pyspark.sql import SparkSession  # noqa: E402
 
-from strew.spark import MOST_TASKS, StrewDataSource, StrewReader, points  # noqa: E402
+from strew._tasks import MOST_TASKS  # noqa: E402
+from strew.spark import StrewDataSource, StrewReader, points  # noqa: E402
 
 WOODS: dict[str, Any] = {"bbox": "0,0,300,200", "spacing": 1, "seed": 7, "attributes": "angle,variant", "variants": "oak:3,birch:1"}
 

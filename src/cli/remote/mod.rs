@@ -7,6 +7,7 @@ mod http;
 
 use std::{
     io::{ErrorKind, Read as _},
+    net::IpAddr,
     path::PathBuf,
     time::{Duration, Instant},
 };
@@ -63,6 +64,9 @@ impl RemoteArgs {
         };
         let trust = trust.map_err(usage)?;
         let key = self.key().map_err(usage)?;
+        if key.is_some() && !is_tls && !is_here(&host) {
+            eprintln!("warning: {url}: the key is sent unencrypted; allowed: https, with --ca");
+        }
         let text = Value::Object(body.clone()).to_string();
         let response = connect(&host, Instant::now() + PATIENCE).and_then(|stream| {
             stream.set_read_timeout(Some(PATIENCE))?;
@@ -107,6 +111,13 @@ impl RemoteArgs {
         }
         Ok(Some(key.into()))
     }
+}
+
+/// Whether a host, with its port, is this machine by its name.
+fn is_here(host: &str) -> bool {
+    let name = host.rsplit_once(':').map_or(host, |(name, _)| name);
+    let address = name.trim_matches(['[', ']']).parse::<IpAddr>();
+    name == "localhost" || address.is_ok_and(|address| address.is_loopback())
 }
 
 /// The text of a refusal.

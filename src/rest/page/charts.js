@@ -3,7 +3,7 @@
 import { themeColor } from "./theme.js";
 
 /** Makes a canvas as fine as the screen; gives its context in CSS pixels with its size. */
-function prepared(canvas, aspect) {
+export function prepared(canvas, aspect) {
   const width = canvas.clientWidth || 280;
   const height = Math.round(width * aspect);
   const ratio = Math.min(2, globalThis.devicePixelRatio || 1);

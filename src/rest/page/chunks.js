@@ -14,9 +14,10 @@ const ROOM = (navigator.deviceMemory ?? 8) >= 4 ? 256e6 : 96e6;
  * with what the server refuses.
  */
 export class Chunks {
-  constructor(changed, failed) {
-    this.changed = changed;
-    this.failed = failed;
+  constructor(changed, failed, { parallel = PARALLEL, room = ROOM } = {}) {
+    Object.assign(this, { changed, failed, parallel, room });
+    /** Bytes that have come so far. */
+    this.received = 0;
     this.all = new Map();
     this.wanted = [];
     this.running = 0;
@@ -49,11 +50,11 @@ export class Chunks {
     return `${this.identity} ${keep} ${address.size}/${address.cx}/${address.cy}`;
   }
 
-  /** Says which chunks are looked at; gives these, whatever they hold by now. */
+  /** Says which chunks are looked at; gives these, whatever they hold by now. An address may have its own `keep`. */
   want(addresses, keep) {
     this.clock += 1;
     this.wanted = addresses.map((address) => {
-      const key = this.key(address, keep);
+      const key = this.key(address, address.keep ?? keep);
       let chunk = this.all.get(key);
       if (!chunk) {
         chunk = {
@@ -85,10 +86,10 @@ export class Chunks {
 
   /** Drops what was not looked at for longest, until the rest has room. */
   tidy() {
-    if (this.bytes <= ROOM) return;
+    if (this.bytes <= this.room) return;
     const old = [...this.all.values()].filter((chunk) => chunk.state === "done" && chunk.used < this.clock);
     for (const chunk of old.sort((a, b) => a.used - b.used)) {
-      if (this.bytes <= ROOM) break;
+      if (this.bytes <= this.room) break;
       this.bytes -= chunk.data.byteLength;
       this.all.delete(chunk.key);
       chunk.dropped?.();
@@ -96,7 +97,7 @@ export class Chunks {
   }
 
   pump() {
-    while (this.running < PARALLEL && !this.refused && !isAway()) {
+    while (this.running < this.parallel && !this.refused && !isAway()) {
       const next = this.wanted.find((chunk) => chunk.state === "waiting");
       if (!next) return;
       this.load(next);
@@ -137,6 +138,7 @@ export class Chunks {
       if (piece.done) break;
       bytes.set(piece.value.subarray(0, bytes.length - filled), filled);
       filled += piece.value.length;
+      this.received += piece.value.length;
       chunk.count = Math.min(chunk.total, Math.floor(filled / record));
       this.changed();
     }

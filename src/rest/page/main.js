@@ -16,6 +16,7 @@ import { Session } from "./session.js";
 import { Shade } from "./shade.js";
 import { Status } from "./status.js";
 import { LAYER, initial } from "./state.js";
+import { Start } from "./start.js";
 import { Take } from "./take.js";
 import { Paint } from "./paint/paint.js";
 import { palette, watchTheme } from "./theme.js";
@@ -200,6 +201,7 @@ const ICONS = {
   closer: "M12 5v14M5 12h14",
   farther: "M5 12h14",
   home: "M3 11.5 12 4l9 7.5M6 10v10h12V10",
+  share: "M10 14a4.5 4.5 0 0 0 6.4 0l3-3a4.5 4.5 0 0 0-6.4-6.4l-1 1M14 10a4.5 4.5 0 0 0-6.4 0l-3 3a4.5 4.5 0 0 0 6.4 6.4l1-1",
   theme: "M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z",
   fold: "M6 15l6-6 6 6",
 };
@@ -218,6 +220,7 @@ function tools() {
     event.preventDefault();
     session.choose((state) => Object.assign(state, initial()), "layers", "view", "tab");
   });
+  byId("share").addEventListener("click", share);
   byId("fold").addEventListener("click", () => fold(byId("fold").getAttribute("aria-expanded") === "true"));
   watchTheme(byId("theme"), () => {
     if (plane.look) plane.show({ ...plane.look, ...palette() });
@@ -225,12 +228,26 @@ function tools() {
   });
 }
 
+/** Copies the address of the view. */
+async function share() {
+  session.save();
+  let words = "The link is copied.";
+  try {
+    await navigator.clipboard.writeText(location.href);
+  } catch {
+    words = "The link is in the address bar of your browser: this page may not copy it.";
+  }
+  byId("said").textContent = words;
+  byId("share").title = words;
+  banner(words, [["Close", () => banner(null)]]);
+}
+
 function fold(isFolded) {
   byId("panel").classList.toggle("folded", isFolded);
   byId("fold").setAttribute("aria-expanded", String(!isFolded));
 }
 
-const TABS = ["choose", "understand", "take", "gallery", "works"];
+const TABS = ["start", "choose", "understand", "take", "gallery", "works"];
 
 function tabs() {
   const buttons = TABS.map((name) => byId(`tab-${name}`));
@@ -274,7 +291,8 @@ const paint = new Paint(session, plane, {
   picked: () => controls?.picked ?? 0,
   say: (words) => banner(words, [["Close", () => banner(null)]]),
 });
-parts.push(card, understand, take, shade, works, paint);
+const start = new Start(session);
+parts.push(start, card, understand, take, shade, works, paint);
 tools();
 takeDrops(byId("stage"), stipple);
 tabs();
@@ -372,5 +390,5 @@ async function begin() {
 }
 
 // For the curious, and for tests.
-globalThis.strew = { plane, card, shade, stipple, session, status, understand, take, works, paint };
+globalThis.strew = { plane, start, card, shade, stipple, session, status, understand, take, works, paint };
 begin();

@@ -6,7 +6,7 @@ import { documentOf } from "./sent.js";
 
 /** The attributes that a layer shows, in the order in which they are asked for. */
 export function attributesOf(layer) {
-  return ["angle", "scale", "variant"].filter((name) => layer[name]);
+  return ["angle", "scale", "variant", "rank"].filter((name) => layer[name]);
 }
 
 /** The names of a layer's variants. */

@@ -37,6 +37,12 @@ export class Session {
     if (hash !== location.hash) history[how](null, "", hash);
   }
 
+  /** Puts the choice into the address now. */
+  save() {
+    this.write.cancel();
+    this.put("replaceState");
+  }
+
   /** A choice that Back undoes. */
   choose(change, ...changed) {
     this.write.cancel();

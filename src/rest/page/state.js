@@ -78,7 +78,7 @@ export function initial() {
     y: place(0),
     span: 30,
     layers: [{ ...LAYER }],
-    tab: "choose",
+    tab: "start",
     works: { ...WORKS },
     renderer: "",
   };
@@ -92,7 +92,8 @@ export function fromHash(hash) {
   if (x && y) Object.assign(state, { x, y });
   const span = Number(given.get("span"));
   if (Number.isFinite(span) && span > 0) state.span = span;
-  if (["choose", "understand", "take", "gallery", "works"].includes(given.get("tab"))) state.tab = given.get("tab");
+  if (given.size > 0) state.tab = "choose";
+  if (["start", "choose", "understand", "take", "gallery", "works"].includes(given.get("tab"))) state.tab = given.get("tab");
   if (["2d", "webgl2"].includes(given.get("renderer"))) state.renderer = given.get("renderer");
   state.works = worksFrom(given);
   const layers = Math.min(MOST_LAYERS, Math.max(1, Number(given.get("layers")) || 1));

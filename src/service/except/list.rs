@@ -10,6 +10,7 @@ use strew_core::PointId;
 use super::Ids;
 use crate::{
     config::Except as Settings,
+    name::is_name,
     service::named::{self, Changes, Found, NamedError, Places, Refused, Source},
 };
 
@@ -178,7 +179,7 @@ impl NamedList {
 #[must_use]
 pub fn split(item: &str) -> Option<(Option<&str>, PointId)> {
     let (layer, id) = match item.rsplit_once('/') {
-        Some((layer, id)) if named::is_name(layer) => (Some(layer), id),
+        Some((layer, id)) if is_name(layer) => (Some(layer), id),
         Some(_) => return None,
         None => (None, item),
     };

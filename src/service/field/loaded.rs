@@ -25,6 +25,7 @@ use super::{
 use crate::{
     bounded_file,
     config::Fields as Settings,
+    name::{ALLOWED, is_name},
     raster::{Image, Limits, MOST_SIDE, Meaning, RasterError},
     service::named::{self, Changes, Refused, Source},
 };
@@ -32,8 +33,14 @@ use crate::{
 /// The longest document.
 const DOCUMENT_BYTES: u64 = 4 << 20;
 
-/// The field that is built into the program: its name and its document.
-const EMBEDDED: (&str, &str) = ("forest", include_str!("../../../config/fields/forest.toml"));
+/// The fields that are built into the program: their names and their documents.
+const EMBEDDED: &[(&str, &str)] = &[
+    ("forest", include_str!("../../../config/fields/forest.toml")),
+    (
+        "portrait",
+        include_str!("../../../config/fields/portrait.toml"),
+    ),
+];
 
 /// Why fields cannot be loaded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -159,15 +166,16 @@ impl Fields {
         (after, refused)
     }
 
-    /// Adds the built-in field. A test builds it.
+    /// Adds the built-in fields. A test builds them.
     fn insert_embedded(&mut self) {
-        let (name, text) = EMBEDDED;
-        let table = text.parse::<toml::Table>().ok();
-        let document = table.and_then(|table| read::read_toml("field", &table).ok());
-        let document = document.ok_or_else(|| "the built-in field does not read".into());
-        let field = Unbuilt::new(name.into(), Source::Embedded, document, Path::new(""));
-        if let Ok(field) = field.build(self, 0, Stamp::default()) {
-            self.insert(field);
+        for &(name, text) in EMBEDDED {
+            let table = text.parse::<toml::Table>().ok();
+            let document = table.and_then(|table| read::read_toml("field", &table).ok());
+            let document = document.ok_or_else(|| "the built-in field does not read".into());
+            let field = Unbuilt::new(name.into(), Source::Embedded, document, Path::new(""));
+            if let Ok(field) = field.build(self, 0, Stamp::default()) {
+                self.insert(field);
+            }
         }
     }
 
@@ -229,9 +237,9 @@ struct Unbuilt {
 
 impl Unbuilt {
     fn new(name: String, source: Source, document: Result<Document, String>, base: &Path) -> Self {
-        let document = match named::is_name(&name) {
+        let document = match is_name(&name) {
             true => document,
-            false => Err(format!("`{name}` is no name; allowed: {}", named::NAME)),
+            false => Err(format!("`{name}` is no name; allowed: {ALLOWED}")),
         };
         Self {
             name,

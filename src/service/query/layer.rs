@@ -12,7 +12,7 @@ use super::{
     number,
     parameters::{COUNT, SEED},
 };
-use crate::service::{Fault, named::is_name};
+use crate::{name::is_name, service::Fault};
 
 /// A layer as it was read.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,16 +9,15 @@ use crate::{
         Catalog, Draft, Error, Fault,
         named::{Changes, Checked, Found, NamedError, Places, Refused},
         query::{
-            Query, groups,
-            parameters::{WORLD, WORLD_DIGEST},
+            Parameter, Query, groups,
+            parameters::{COUNT, CURSOR, OFFSET, WORLD, WORLD_DIGEST},
             read_body,
         },
     },
 };
 
 /// What a world may be.
-const ALLOWED: &str =
-    "members of a query: layers or a set of points, seed, limit and the form of answers";
+const ALLOWED: &str = "members of a query but region, count, offset and cursor: layers or a set of points, seed, limit and the form of answers";
 
 /// Where worlds are described.
 fn places(settings: &Settings) -> Places<'_> {
@@ -130,10 +129,15 @@ impl World {
         most_vertices: usize,
     ) -> Result<Self, Error> {
         let draft = read_body(json.as_bytes(), groups::QUERY)?;
+        let given = |parameter: &Parameter| (parameter.name, draft.values.has(parameter));
         for (member, is_given) in [
             ("region", !matches!(draft.region, Ok(None))),
-            (WORLD.name, draft.values.has(&WORLD)),
-            (WORLD_DIGEST.name, draft.values.has(&WORLD_DIGEST)),
+            given(&WORLD),
+            given(&WORLD_DIGEST),
+            // Chunks with these would not join.
+            given(&OFFSET),
+            given(&CURSOR),
+            given(&COUNT),
         ] {
             if is_given {
                 let detail = "not allowed in a world";
@@ -142,6 +146,19 @@ impl World {
                 let value = value.unwrap_or_default();
                 return Err(Fault::new(member, value, detail, ALLOWED).into());
             }
+        }
+        let counted = (draft.layers.iter().flatten())
+            .find(|layer| layer.values.has(&COUNT) && matches!(layer.region, Ok(None)));
+        if let Some(layer) = counted {
+            let field = format!("{}{}", layer.values.path(), COUNT.name);
+            let detail = "in a world only with a region of the layer: chunks would not join";
+            let fault = Fault::new(
+                &field,
+                layer.values.text(&COUNT),
+                detail,
+                "density or spacing",
+            );
+            return Err(by_layer(fault.into(), &draft));
         }
         let checked = draft.try_out(catalog, most_vertices);
         let query = checked.map_err(|error| by_layer(error, &draft))?;

@@ -130,6 +130,15 @@ fn broken_worlds_are_refused_at_the_start() {
         ),
         ("[forest]\nworld = 'a'", "`worlds.forest.world`"),
         (
+            "[forest]\ncount = 300",
+            "`worlds.forest.count` = `300`: not allowed in a world",
+        ),
+        ("[forest]\noffset = 3", "`worlds.forest.offset` = `3`"),
+        (
+            "[[forest.layers]]\nname = 'oak'\ncount = 300",
+            "`worlds.forest.layers.oak.count` = `300`: in a world only with",
+        ),
+        (
             "[forest]\nprofile = 'plaid'",
             "`worlds.forest.profile` = `plaid`",
         ),

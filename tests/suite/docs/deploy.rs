@@ -143,16 +143,24 @@ fn every_value_of_the_chart_is_documented_and_checked() {
 }
 
 #[test]
-fn the_dashboard_uses_metrics_that_exist() {
-    let text = text("deploy/grafana/strew.json");
-    let dashboard: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+fn the_dashboard_alerts_and_autoscaling_use_metrics_that_exist() {
+    let dashboard = text("deploy/grafana/strew.json");
+    let dashboard: serde_json::Value = serde_json::from_str(&dashboard).expect("JSON");
     let panels = dashboard["panels"].as_array().expect("panels");
-    let asked: Vec<&str> = panels
+    let mut asked: Vec<&str> = panels
         .iter()
         .flat_map(|panel| panel["targets"].as_array().into_iter().flatten())
         .map(|target| target["expr"].as_str().expect("an expression"))
         .collect();
-    assert!(asked.len() > 10);
+    let alerts = text("deploy/prometheus/alerts.yml");
+    asked.extend(
+        alerts
+            .lines()
+            .filter_map(|line| line.split_once("expr: ").map(|(_, e)| e)),
+    );
+    let scaling = text("deploy/helm/strew/templates/hpa.yaml");
+    asked.extend(scaling.lines().filter(|line| line.contains("metric:")));
+    assert!(asked.len() > 25);
     let daemon = Daemon::start(&[]);
     daemon.get("/v1/points?bbox=0,0,20,20&density=1&profile=test&format=csv");
     let samples = samples(&daemon);

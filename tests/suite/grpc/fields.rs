@@ -123,10 +123,10 @@ async fn fields_are_listed_and_their_faults_have_paths() {
         .await
         .expect("a list")
         .into_inner();
-    assert_eq!(list.fields.len(), 1);
+    let found = list.fields.iter().map(|one| (&*one.name, &*one.shape));
     assert_eq!(
-        (&*list.fields[0].name, &*list.fields[0].shape),
-        ("forest", "multiply")
+        found.collect::<Vec<_>>(),
+        [("forest", "multiply"), ("portrait", "max")]
     );
     let noise = of(Shape::Noise(FieldNoise {
         wavelength: -1.0,

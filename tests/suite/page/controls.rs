@@ -18,6 +18,7 @@ fn every_control_changes_the_points_and_the_url() {
         return;
     };
     browser.look(&daemon, "");
+    browser.click("#tab-choose");
     for (selector, value, part) in [
         ("#profile", "spaced", "profile=spaced"),
         ("#map", "m", "map=m"),
@@ -84,7 +85,7 @@ fn everything_fits_on_a_phone() {
     };
     browser.look(&daemon, "#at=0,0&span=20");
     let inside = "document.documentElement.scrollWidth <= 390 && [...document.querySelectorAll('button, input, select')].filter((e) => e.offsetParent).every((e) => { const b = e.getBoundingClientRect(); return b.left >= 0 && b.right <= 390; })";
-    for tab in ["understand", "take", "gallery", "choose"] {
+    for tab in ["start", "understand", "take", "gallery", "choose"] {
         browser.click(&format!("#tab-{tab}"));
         browser.until(&format!("!document.querySelector('#{tab}').hidden"));
         assert_eq!(browser.value(inside), true, "{tab}");

@@ -1,7 +1,7 @@
-//! The page at `/` in headless Chromium: what it shows and how it moves (view), what can be set
+//! The pages in headless Chromium: what `/` shows and how it moves (view), the first screen (start), what can be set
 //! (controls, fields, paint), what is wrong and how it is said (faults, links), the card of a point (card), the tab How it
-//! works (works), the requests and files it offers (export), and that everybody can use it (everyone); and the page
-//! `/compare`. The tests are skipped where Chromium and ChromeDriver are not installed.
+//! works (works), the requests and files it offers (export), and that everybody can use it (everyone); and the pages
+//! `/compare` and `/walk`. The tests are skipped where Chromium and ChromeDriver are not installed.
 
 mod card;
 mod compare;
@@ -12,5 +12,7 @@ mod faults;
 mod fields;
 mod links;
 mod paint;
+mod start;
 mod view;
+mod walk;
 mod works;

@@ -27,7 +27,7 @@ fn fields_are_listed_with_their_digests_descriptions_and_pictures() {
         .iter()
         .map(|f| &f["name"])
         .collect();
-    assert_eq!(names, ["forest", "left", "ramp"]);
+    assert_eq!(names, ["forest", "left", "portrait", "ramp"]);
     assert_eq!(list["fields"][1]["shape"], "raster");
     assert_eq!(list["fields"][1]["bbox"], json!([0.0, 0.0, 40.0, 40.0]));
     let one = daemon.get("/v1/fields/left").json();
@@ -36,7 +36,7 @@ fn fields_are_listed_with_their_digests_descriptions_and_pictures() {
     let none = daemon.get("/v1/fields/right");
     assert_eq!(none.status, 404);
     assert!(
-        none.text().contains("forest, left, ramp"),
+        none.text().contains("forest, left, portrait, ramp"),
         "{}",
         none.text()
     );
@@ -220,7 +220,7 @@ fn faults_of_fields_name_their_paths() {
         &daemon.get(path),
         path,
         "field",
-        &["no such field", "forest, left, ramp"],
+        &["no such field", "forest, left, portrait, ramp"],
     );
     let path = "/v1/points?bbox=0,0,9,9&min_distance=1&field=ramp";
     assert_fault(
@@ -335,7 +335,7 @@ fn a_field_is_sent_once_and_named_by_its_digest() {
     let picture = daemon.get(&format!("/v1/fields/{name}/chunks/32/0/0"));
     assert_eq!(picture.status, 200);
     let list = daemon.get("/v1/fields").json();
-    assert_eq!(list["fields"].as_array().expect("a list").len(), 1);
+    assert_eq!(list["fields"].as_array().expect("a list").len(), 2);
     // Others make it go; what does not fit is refused.
     for x in 0..8 {
         let other = json!({ "radial": { "center": [x, 0], "radii": [1, 2] } });

@@ -170,7 +170,7 @@ function build() {
   byId("show").append(...METHODS.map(({ id, name }) => make("button", { type: "button", id: `show-${id}`, onclick: () => pick(id) }, name)));
   byId("methods").append(...panels.map(({ element }) => element));
   for (const { plane } of panels) {
-    moveBy(plane, joint, { tapped: () => {}, hovered: () => {}, settled: () => {} });
+    moveBy(plane, joint, { tapped: () => {}, hovered: () => {} });
     new ResizeObserver(resize).observe(plane);
   }
 }

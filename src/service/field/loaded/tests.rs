@@ -62,7 +62,7 @@ fn rasters_documents_and_sections_are_fields() {
 }
 
 #[test]
-fn the_built_in_field_is_a_forest_beside_a_road_unless_another_has_its_name() {
+fn the_built_in_fields_are_a_forest_and_a_portrait_unless_others_have_their_names() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut settings = settings(folder.path());
     settings.embedded = true;
@@ -72,6 +72,10 @@ fn the_built_in_field_is_a_forest_beside_a_road_unless_another_has_its_name() {
     let places = (0..400).map(|i| [f64::from(i % 20) * 20.0, 100.0 + f64::from(i / 20) * 20.0]);
     let sum: f64 = places.map(|at| forest(&fields, at)).sum();
     assert!((0.3..0.7).contains(&(sum / 400.0)), "{sum}");
+    // The other one has dark hair, a light forehead, and nothing around it.
+    let portrait = |at| fields.get("portrait").expect("loaded").spec.share(at);
+    assert!(portrait([25.0, 70.0]) > 0.5 && portrait([45.0, 82.0]) < 0.2);
+    assert_eq!(portrait([-10.0, 50.0]), 0.0);
     write(folder.path(), "forest.toml", "constant = 0.25");
     let (fields, changes, _) = fields.reload(&settings);
     assert_eq!(changes.loaded, ["forest"]);

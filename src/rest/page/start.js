@@ -1,0 +1,227 @@
+// The tab Start: what this is, three kinds of points side by side, and views to begin with.
+
+import { ask } from "./api.js";
+import { prepared, spectrumPicture } from "./charts.js";
+import { runsOf } from "./chunks.js";
+import { byId, make } from "./dom.js";
+import { measure } from "./measure.js";
+import { bodyOf, columnsOf, joined, json, setOf } from "./query.js";
+import { fromHash } from "./state.js";
+import { palette } from "./theme.js";
+
+/** The points of each kind, and how many of them lie along a side. */
+const ACROSS = 14;
+const COUNT = ACROSS ** 2;
+
+/** Views to begin with: a name, words, the address, and how the picture differs from points in a box. */
+const VIEWS = [
+  {
+    id: "forest", name: "A forest with rocks and a road", words: "Two kinds that keep clear of each other, in a field.",
+    hash: "#at=-60,-5&span=100&layers=2&profile=blue&amount=3&seed=7&field=forest&color=3&dot=1.3&scale=1&range=0.6,1.3"
+      + "&2.profile=spaced&2.amount=7&2.seed=4&2.field=forest&2.shade=0&2.color=4&2.dot=1.2&2.variant=1&2.variants=rock:2,boulder:1&2.clear=2.2",
+  },
+  {
+    id: "portrait", name: "A stippled portrait", words: "Dots as dense as a picture is dark. Drop your own on the plane.",
+    hash: "#at=50,56&span=118&profile=blue&amount=0.42&seed=1&field=portrait&shade=0",
+  },
+  {
+    id: "sampling", name: "A sampling pattern", words: "With its spectrum: nothing at low frequencies, no direction.",
+    hash: "#at=0,0&span=64&profile=blue&amount=1&seed=3&tab=understand", hasSpectrum: true,
+  },
+  {
+    id: "detail", name: "Level of detail", words: "Zoom out: the points of lowest rank stand for all of them.",
+    hash: "#at=0,0&span=1600&profile=blue&amount=1&seed=1", bands: [1, 0.25, 0.0625],
+  },
+  {
+    id: "kinds", name: "Kinds of a wood", words: "Each kind is a shape of its own, turned as it stands.",
+    hash: "#at=0,0&span=26&profile=blue&amount=1&seed=5&color=1&angle=1&variant=1&variants=oak:3,birch:2,pine:2,fir:1",
+  },
+];
+
+/** Random numbers from 0 to 1 that a seed makes. */
+function random(seed) {
+  let state = seed >>> 0;
+  return () => {
+    state = (state + 0x6d2b79f5) >>> 0;
+    let v = Math.imul(state ^ (state >>> 15), 1 | state);
+    v = (v + Math.imul(v ^ (v >>> 7), 61 | v)) ^ v;
+    return ((v ^ (v >>> 14)) >>> 0) / 2 ** 32;
+  };
+}
+
+function whiteNoise(seed) {
+  const next = random(seed);
+  return Float64Array.from({ length: 2 * COUNT }, next);
+}
+
+function jitteredGrid(seed) {
+  const next = random(seed);
+  return Float64Array.from({ length: 2 * COUNT }, (_, i) => {
+    const cell = i >> 1;
+    return ((i % 2 === 0 ? cell % ACROSS : Math.floor(cell / ACROSS)) + next()) / ACROSS;
+  });
+}
+
+/** As many points of the server: the lowest of a box a little higher than needed. */
+async function strewn(seed) {
+  const answer = await ask(`/v1/points?bbox=0,0,${ACROSS},${ACROSS + 3}&spacing=1&seed=${seed}&format=f32`);
+  const packed = new Float32Array(await answer.arrayBuffer());
+  const points = Array.from({ length: packed.length / 2 }, (_, k) => [packed[2 * k], packed[2 * k + 1]]);
+  points.sort((a, b) => a[1] - b[1]);
+  const height = points[COUNT][1];
+  return Float64Array.from(points.slice(0, COUNT).flatMap(([x, y]) => [x / ACROSS, y / height]));
+}
+
+const KINDS = [["white", "White noise", whiteNoise], ["jitter", "Jittered grid", jitteredGrid], ["strew", "Strew", strewn]];
+
+export class Start {
+  constructor(session) {
+    this.session = session;
+    this.seed = 1;
+    this.isFilled = false;
+    this.trio = KINDS.map(([id, name]) => ({ id, name, canvas: make("canvas", { id: `kind-${id}`, role: "img", "aria-label": `${COUNT} points of ${name}` }) }));
+    this.views = VIEWS.map((view) => this.view(view));
+    byId("kinds").replaceChildren(...this.trio.map(({ name, canvas }) => make("figure", {}, canvas, make("figcaption", {}, name))));
+    byId("kinds-again").addEventListener("click", () => {
+      this.seed += 1;
+      this.compare();
+    });
+    byId("views").replaceChildren(...this.views.map((view) => view.element));
+  }
+
+  view({ id, name, words, ...how }) {
+    const canvas = make("canvas", { "aria-hidden": "true" });
+    const open = () => {
+      this.session.choose((state) => {
+        const { renderer, works } = state;
+        Object.assign(state, fromHash(how.hash), { renderer, works });
+      }, "layers", "view", "tab");
+      byId(this.session.state.tab).focus({ preventScroll: true });
+    };
+    const element = make("button", { type: "button", class: "view", id: `view-${id}`, onclick: open }, canvas, make("b", {}, name), make("small", {}, words));
+    return { ...how, canvas, element };
+  }
+
+  get isOpen() {
+    return this.session.state.tab === "start";
+  }
+
+  /** When the plane has its points, there is time for pictures. */
+  rested() {
+    if (!this.isOpen || this.isFilled) return;
+    this.isFilled = true;
+    this.fill();
+  }
+
+  opened() {
+    if (document.documentElement.dataset.state === "ready") this.rested();
+    else if (this.isFilled) this.themed();
+  }
+
+  themed() {
+    if (!this.isFilled || !this.isOpen) return;
+    for (const one of [...this.trio, ...this.views]) one.draw?.();
+  }
+
+  async fill() {
+    await this.compare();
+    for (const view of this.views) await this.picture(view).catch(() => {});
+    document.documentElement.dataset.start = "ready";
+  }
+
+  async compare() {
+    const { seed } = this;
+    await Promise.all(this.trio.map(async (one, i) => {
+      const points = await Promise.resolve(KINDS[i][2](seed)).catch(() => null);
+      if (!points || seed !== this.seed) return;
+      one.points = points;
+      one.draw = () => dots(one.canvas, points);
+      one.draw();
+    }));
+  }
+
+  /** Draws what a view opens, from the server's points. */
+  async picture(view) {
+    const { layers, x, y, span } = fromHash(view.hash);
+    const across = view.bands ? 60 : view.hasSpectrum ? 24 : span * SHOWN;
+    const half = [across / 2, across / 2 / ASPECT];
+    const box = [x.i - half[0], y.i - half[1], x.i + half[0], y.i + half[1]];
+    const look = view.bands ? layers.map((layer) => ({ ...layer, rank: true })) : layers;
+    const answer = await pointsOf(look, box);
+    const columns = view.bands ? ["rank"] : columnsOf(layers);
+    const stride = 2 + columns.length;
+    const data = new Float32Array(await answer.arrayBuffer());
+    const chunk = { data, stride, columns, layers, count: data.length / stride };
+    if (view.hasSpectrum) view.measured = await spectrumFor(layers[0]);
+    view.draw = () => draw(view, chunk, across);
+    view.draw();
+  }
+}
+
+/** Pictures are this much wider than high; they show this share of the span of their view. */
+const ASPECT = 1.5;
+const SHOWN = 0.8;
+/** The side of the window that the spectrum of a picture is made from, in mean spacings. */
+const WINDOW = 40;
+
+async function spectrumFor(layer) {
+  const answer = await ask(`/v1/points?bbox=0,0,${WINDOW},${WINDOW}&${joined(setOf(layer))}&format=f32`);
+  return measure(Float64Array.from(new Float32Array(await answer.arrayBuffer())), WINDOW);
+}
+
+/** The points of layers in a box, packed, with x and y from its lower corner. */
+function pointsOf(layers, box) {
+  if (layers.length > 1) return ask("/v1/points:query", { body: json(bodyOf(layers, { bbox: box }, 1, { format: "f32" })) });
+  const [layer] = layers;
+  const more = layer.rank ? "&attributes=rank" : "";
+  return ask(`/v1/points?bbox=${box.join(",")}&${joined(setOf(layer))}${more}&format=f32`);
+}
+
+/** Draws a view's points: each layer in its color, dots as large as they are far apart. */
+function draw(view, chunk, across) {
+  const { context, width, height } = prepared(view.canvas, 1 / ASPECT);
+  const { ground, colors } = palette();
+  const css = (rgb) => `rgb(${rgb.map((v) => Math.round(v * 255)).join(" ")})`;
+  context.fillStyle = css(ground);
+  context.fillRect(0, 0, width, height);
+  const pixel = width / across;
+  const { data, stride, columns } = chunk;
+  const scale = 2 + columns.indexOf("scale");
+  for (const { layer: index, first, count } of runsOf(chunk)) {
+    const layer = chunk.layers[index];
+    context.fillStyle = css(colors[layer.color]);
+    const gap = Number(layer.amount) * pixel;
+    context.beginPath();
+    for (let k = first; k < first + count; k += 1) {
+      const [x, y] = [data[k * stride] * pixel, height - data[k * stride + 1] * pixel];
+      const band = view.bands && Math.min(view.bands.length - 1, Math.floor((x / width) * view.bands.length));
+      if (view.bands && data[k * stride + 2] >= view.bands[band]) continue;
+      const grow = view.bands ? view.bands[band] ** -0.5 : layer.scale ? data[k * stride + scale] : 1;
+      const radius = Math.max(0.5, Math.min(4, gap * 0.2 * grow * layer.dot));
+      context.moveTo(x + radius, y);
+      context.arc(x, y, radius, 0, 2 * Math.PI);
+    }
+    context.fill();
+  }
+  if (view.measured) {
+    const spectrum = document.createElement("canvas");
+    spectrumPicture(spectrum, view.measured.image, view.measured.cells);
+    context.drawImage(spectrum, width - height, 0, height, height);
+  }
+}
+
+/** Draws points of a unit square as dots. */
+function dots(canvas, points) {
+  const { context, width } = prepared(canvas, 1);
+  context.fillStyle = getComputedStyle(document.body).backgroundColor;
+  context.fillRect(0, 0, width, width);
+  context.fillStyle = getComputedStyle(document.body).color;
+  context.beginPath();
+  const radius = (width / ACROSS) * 0.17;
+  for (let p = 0; p < points.length; p += 2) {
+    const [x, y] = [points[p] * width, width - points[p + 1] * width];
+    context.moveTo(x + radius, y);
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+  }
+  context.fill();
+}

@@ -1,0 +1,245 @@
+// The walk: puts its parts together and draws, as finely as the machine can.
+
+import { Gone, askJson, hasKey, onPresence, useKey } from "../api.js";
+import { byId, bytes, icon, make } from "../dom.js";
+import { formatPlace, parsePlace, place } from "../place.js";
+import { joined, setOf } from "../query.js";
+import { LAYER, toHash } from "../state.js";
+import { watchTheme } from "../theme.js";
+import { cameraOf } from "./camera.js";
+import { mapOn } from "./map.js";
+import { Walker } from "./move.js";
+import { sceneOn } from "./scene.js";
+import { World, layersOf } from "./world.js";
+
+/**
+ * How finely the picture is drawn: pixels for each CSS pixel; for each set how far all of its points are drawn and how
+ * far any; how fine the ground is; whether there are shadows and detail.
+ */
+const QUALITIES = [
+  { ratio: 0.5, sets: [{ near: 24, reach: 420 }, { near: 4, reach: 12 }], cells: 16, isFine: false },
+  { ratio: 0.75, sets: [{ near: 40, reach: 640 }, { near: 6, reach: 24 }], cells: 16, isFine: false },
+  { ratio: 1, sets: [{ near: 64, reach: 1000 }, { near: 9, reach: 44 }], cells: 32, isFine: true },
+  { ratio: 2, sets: [{ near: 96, reach: 1500 }, { near: 13, reach: 64 }], cells: 32, isFine: true },
+];
+/** A frame that takes longer (in milliseconds) is too slow; one that takes less leaves room for more. */
+const SLOW = 45;
+const QUICK = 18;
+/** Frames that decide about it. */
+const FRAMES = 30;
+
+const root = document.documentElement;
+const canvas = byId("view");
+const FAR = [place(1e9), place(1e9)];
+
+function fromHash() {
+  const given = new URLSearchParams(location.hash.slice(1));
+  const [x, y] = (given.get("at") ?? "").split(",").map(parsePlace);
+  const isNear = x && y && Math.max(Math.abs(x.i), Math.abs(y.i)) <= 1e14;
+  const degrees = (name, otherwise) => {
+    const value = given.has(name) ? Number(given.get(name)) : NaN;
+    return ((Number.isFinite(value) ? value : otherwise) * Math.PI) / 180;
+  };
+  if (x && y && !isNear) banner("This walk ends at 1e14 in every direction. It begins at the origin instead.");
+  return {
+    x: isNear ? x : place(START.x), y: isNear ? y : place(START.y), yaw: degrees("yaw", START.yaw), pitch: degrees("pitch", -5),
+    seed: /^\d{1,20}$/.test(given.get("seed") ?? "") ? given.get("seed") : "7",
+    quality: QUALITIES[given.get("quality")] ? Number(given.get("quality")) : null,
+    isFlying: given.get("fly") !== "0" && !given.has("at"),
+  };
+}
+
+/** Where a walk begins: on the trail. */
+const START = { x: -126, y: 0, yaw: 20 };
+
+/** Says something above the picture, with buttons; `null` takes it away. */
+function banner(words, ...more) {
+  byId("banner").hidden = words === null;
+  byId("banner").replaceChildren(words ?? "", make("div", {}, more));
+}
+
+let given = fromHash();
+const wantsMap = location.hash.includes("map=1");
+const scene = (!wantsMap && sceneOn(canvas)) || mapOn(canvas);
+root.dataset.renderer = scene.isMap ? "map" : "webgl2";
+if (scene.isMap) banner("This browser draws nothing in three dimensions (WebGL2 is missing), so here is the map. Keys and buttons walk as ever.");
+
+function failed(error) {
+  root.dataset.state = "failed";
+  if (!error.isLocked) return banner(error.message);
+  const field = make("input", { type: "password", id: "key", "aria-label": "Key", autocomplete: "off" });
+  const send = make("button", { type: "button", onclick: () => {
+    useKey(field.value);
+    banner(null);
+    for (const { chunks } of world.sets) chunks.retry();
+  } }, "Use this key");
+  banner(hasKey() ? error.message : "This server wants a key.", field, send);
+}
+onPresence((gone) => banner(gone ? "The server does not answer. This page tries again by itself; what is drawn stays." : null));
+
+let world = new World(scene, given.seed, failed);
+const walker = new Walker(canvas, given, (at) => pick(at));
+let level = given.quality ?? (scene.isSlow ? 0 : 2);
+let best = QUALITIES.length - 1;
+let frames = [];
+let look = null;
+let before = performance.now();
+
+/** Draws coarser if frames take long, finer if there is room; what was too fine once is not tried again. */
+function adapt(took) {
+  if (given.quality !== null || document.hidden) return;
+  frames.push(took);
+  if (frames.length < FRAMES) return;
+  const median = frames.sort((a, b) => a - b)[FRAMES / 2];
+  frames = [];
+  if (median > SLOW && level > 0) best = level -= 1;
+  else if (median < QUICK && level < Math.min(best, scene.isSlow ? 1 : best)) level += 1;
+}
+
+function frame(now) {
+  const seconds = Math.min(0.1, (now - before) / 1000);
+  adapt(now - before);
+  const last = before;
+  before = now;
+  const quality = QUALITIES[level];
+  const { sets } = quality;
+  scene.resize(Math.min(quality.ratio, devicePixelRatio * Math.min(1, quality.ratio)));
+  world.move(walker, [Math.sin(walker.yaw), Math.cos(walker.yaw)], quality);
+  walker.step(seconds, (at) => world.heightAt(at));
+  const camera = cameraOf(walker, canvas.clientWidth / Math.max(1, canvas.clientHeight), 1.5 * sets[0].reach);
+  const lift = walker.height - world.heightAt(walker);
+  look = { ...world.look(walker, now - last), camera, height: walker.height, lift, reach: sets[0].reach, isFine: quality.isFine,
+    time: walker.mayFly ? now / 1000 : 0 };
+  const drawn = scene.draw(look);
+  tell(drawn, now);
+  requestAnimationFrame(frame);
+}
+
+/** Bytes received, seen twice a second over the last two. */
+const meter = [];
+let told = 0;
+
+function tell(drawn, now) {
+  const state = root.dataset.state === "failed" ? "failed" : world.isReady ? "ready" : "loading";
+  const isNews = state !== root.dataset.state;
+  root.dataset.state = state;
+  byId("fly").setAttribute("aria-pressed", String(walker.isFlying));
+  if (now - told < 500 && !isNews) return;
+  told = now;
+  const { loaded, chunks, wanted, received } = world.sums;
+  meter.push([now, received]);
+  if (meter.length > 5) meter.shift();
+  const rate = (1000 * (received - meter[0][1])) / Math.max(1, now - meter[0][0]);
+  const number = (value) => value.toLocaleString("en");
+  Object.assign(root.dataset, { drawn, level });
+  byId("tally").textContent = `${number(drawn)} of ${number(loaded)} points drawn · ${chunks === wanted ? number(chunks) : `${chunks} of ${wanted}`} chunks · `
+    + `${bytes(Math.round(rate))}/s · at ${formatPlace(walker.x, 0)}, ${formatPlace(walker.y, 0)}`;
+  remember();
+}
+
+/** Keeps the place in the address. */
+function remember() {
+  const turned = (angle) => String(Math.round((angle * 180) / Math.PI));
+  const hash = `#at=${formatPlace(walker.x, 2)},${formatPlace(walker.y, 2)}&yaw=${turned(walker.yaw)}&pitch=${turned(walker.pitch)}`;
+  const rest = [given.seed !== "7" && `seed=${given.seed}`, given.quality !== null && `quality=${given.quality}`, wantsMap && "map=1"];
+  const address = [hash, ...rest.filter(Boolean)].join("&");
+  if (address === location.hash) return;
+  history.replaceState(null, "", address);
+  byId("plane").href = `/${planeHash()}`;
+}
+
+/** The plane with the same points around the walker. */
+function planeHash() {
+  const { rank, ...layer } = layersOf(given.seed)[0];
+  return toHash({ ...walker, span: 80, tab: "choose", layers: [{ ...LAYER, ...layer, color: 3 }], works: {}, renderer: "" });
+}
+
+let asked = 0;
+
+/** Shows what stands at a place of the window, or nearest ahead. */
+async function pick(at) {
+  if (!look) return;
+  asked += 1;
+  const mine = asked;
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  const place = at ? [(2 * at[0]) / width - 1, 1 - (2 * at[1]) / height] : [0, -0.1];
+  const found = world.pick(look, place, width / height, at ? 0.05 : 0.6);
+  if (!found) return close();
+  const set = joined(setOf(world.layers[0]));
+  const where = [found.x, found.y].map((v) => formatPlace(v, 9)).join(",");
+  try {
+    const { neighbors } = await askJson(`/v1/nearest?at=${where}&k=1&${set}`);
+    if (mine === asked) show(found, neighbors[0], set);
+  } catch (error) {
+    if (!(error instanceof Gone)) failed(error);
+  }
+}
+
+const NAMES = { conifer: "Conifer", broad: "Broad-leaved tree", rock: "Rock", bush: "Bush", tuft: "Grass", flower: "Flowers" };
+
+function show(found, point, set) {
+  const card = byId("card");
+  const rows = [["id", point.id], ["x", String(point.x)], ["y", String(point.y)], ["size", `${found.size.toFixed(2)} units`]];
+  const { size, cx, cy } = found.leaf;
+  card.dataset.id = point.id;
+  card.replaceChildren(
+    make("header", {}, make("h2", {}, NAMES[found.kind]), make("button", { type: "button", "aria-label": "Close", onclick: close }, "✕")),
+    make("dl", {}, rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
+    make("p", {}, make("a", { href: `/v1/points/${point.id}?${set}` }, "This point by its id"),
+      make("a", { href: `/v1/chunks/${size}/${cx}/${cy}?${set}&format=json` }, "Its chunk")),
+  );
+  card.hidden = false;
+}
+
+function close() {
+  asked += 1;
+  byId("card").hidden = true;
+  delete byId("card").dataset.id;
+  canvas.focus();
+}
+
+let home = null;
+
+/** Goes to where doubles have seven digits fewer left, and back to the same trees. */
+function jump() {
+  const here = { x: walker.x, y: walker.y, yaw: walker.yaw, pitch: walker.pitch };
+  Object.assign(walker, home ?? { x: FAR[0], y: FAR[1] }, { height: null });
+  home = home ? null : here;
+  walker.take();
+  byId("jump").textContent = home ? "Jump back" : "Jump far away";
+  if (!byId("card").hidden) close();
+}
+
+const ICONS = {
+  theme: "M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z", "pad-left": "M15 5l-7 7 7 7", "pad-right": "M9 5l7 7-7 7",
+  "pad-forth": "M5 15l7-7 7 7", "pad-back": "M5 9l7 7 7-7",
+};
+for (const [id, path] of Object.entries(ICONS)) byId(id).append(icon(path));
+for (const [id, move] of [["left", "turnLeft"], ["right", "turnRight"], ["forth", "forth"], ["back", "back"]]) {
+  walker.button(byId(`pad-${id}`), move);
+}
+byId("jump").addEventListener("click", jump);
+byId("fly").disabled = !walker.mayFly;
+byId("fly").addEventListener("click", () => {
+  const isFlying = !walker.isFlying;
+  walker.take();
+  walker.isFlying = isFlying;
+});
+addEventListener("keydown", (event) => event.key === "Escape" && close());
+canvas.addEventListener("webglcontextlost", () => location.reload());
+watchTheme(byId("theme"), () => {
+  const isDark = getComputedStyle(document.body).colorScheme.includes("dark") && byId("theme").getAttribute("aria-pressed") === "true";
+  scene.mode = isDark ? "dusk" : "day";
+});
+addEventListener("hashchange", () => {
+  given = fromHash();
+  Object.assign(walker, given, { height: null });
+  if (given.seed !== world.seed) {
+    world.forget();
+    world = new World(scene, given.seed, failed);
+  }
+});
+
+// For the curious, and for tests.
+globalThis.strew = { walker, scene, get world() { return world; }, get look() { return look; }, QUALITIES };
+requestAnimationFrame(frame);

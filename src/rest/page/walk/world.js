@@ -1,0 +1,200 @@
+// What is around the walker: chunks of two sets, of trees and of grass, each in leaves; the ground below them; and what
+// of it is ready to be drawn.
+
+import { Chunks } from "../chunks.js";
+import { parsePlace, moved, distance } from "../place.js";
+import { LAYER } from "../state.js";
+import { projected } from "./camera.js";
+import { INSTANCE_FLOATS, VARIANTS, groundOf, standing } from "./ground.js";
+import { STEP, leavesAround, nameOf, standIns } from "./leaves.js";
+import { KINDS } from "./shapes.js";
+
+/** The time for making leaves ready in a frame, in milliseconds, and as a share of what the last frame took. */
+const BUILDING = 8;
+const SHARE = 0.3;
+/** Nets of the ground that are kept beside those in use. */
+const NETS = 160;
+/** Room for the chunks of each set in bytes. */
+const ROOM = 40e6;
+
+const SETS = [
+  { amount: "2", variant: true, range: "0.75,1.3", base: 64, parallel: 4 },
+  { amount: "0.7", variant: false, range: "0.6,1.3", base: 16, parallel: 2 },
+];
+
+/** The layers that the sets are for a seed, as the plane shows them and requests name them. */
+export function layersOf(seed) {
+  const variants = Object.entries(VARIANTS).map(([name, weight]) => `${name}:${weight}`).join(",");
+  return SETS.map(({ amount, variant, range }) => ({
+    ...LAYER, amount, seed, angle: true, scale: true, range, variant, rank: true, ...(variant ? { variants } : {}),
+  }));
+}
+
+export class World {
+  constructor(scene, seed, failed) {
+    Object.assign(this, { scene, seed });
+    this.nets = new Map();
+    this.layers = layersOf(seed);
+    this.sets = SETS.map((set, i) => {
+      const changed = () => (this.isStale = true);
+      const chunks = new Chunks(changed, failed, { parallel: set.parallel, room: ROOM });
+      chunks.show([this.layers[i]]);
+      return { ...set, chunks, leaves: [], built: new Map() };
+    });
+    this.around = null;
+    this.isStale = true;
+  }
+
+  /** Says where the walker is, in which direction leaves come first, and how much is drawn. */
+  move(at, ahead, quality) {
+    const isFar = !this.around || Math.hypot(distance(at.x, this.around.x), distance(at.y, this.around.y)) > STEP;
+    if (isFar || quality !== this.quality) {
+      if (quality.cells !== this.quality?.cells) this.forget();
+      Object.assign(this, { around: { x: at.x, y: at.y }, quality });
+      this.sets.forEach((set, i) => this.want(set, quality.sets[i], ahead));
+      this.isStale = true;
+    }
+  }
+
+  want(set, { near, reach }, ahead) {
+    set.near = near;
+    set.leaves = reach > 0 ? leavesAround(this.around, { base: set.base, near, reach }) : [];
+    // What lies behind may come later.
+    const turned = ({ from, size, away }) => {
+      const forth = (from[0] + size / 2) * ahead[0] + (from[1] + size / 2) * ahead[1];
+      return forth > -size ? away : 2 * away + size;
+    };
+    const order = [...set.leaves].sort((a, b) => turned(a) - turned(b));
+    set.chunks.want(order.map(({ size, cx, cy, keep, away }) => ({ size, cx, cy, keep, away })), 1);
+  }
+
+  /** The ground of a leaf of trees, made if it is not there. */
+  net(leaf) {
+    const name = nameOf(leaf);
+    let net = this.nets.get(name);
+    if (!net) {
+      const ground = groundOf(leaf, this.quality.cells);
+      net = { ground, buffer: this.scene.buffer(ground.floats) };
+    }
+    // Those used last are last.
+    this.nets.delete(name);
+    this.nets.set(name, net);
+    return net;
+  }
+
+  /** The chunk of a leaf made ready, if it has arrived; a few in a frame. */
+  thing(set, leaf) {
+    const name = nameOf(leaf);
+    const known = set.built.get(name);
+    if (known) return known;
+    const chunk = set.chunks.all.get(set.chunks.key(leaf, leaf.keep));
+    if (chunk?.state !== "done") return null;
+    if (performance.now() > this.until) {
+      this.isStale = true;
+      return null;
+    }
+    const cells = Math.max(2, (this.quality.cells * leaf.size) / 64);
+    const ground = set === this.sets[0] ? this.net(leaf).ground : groundOf(leaf, cells);
+    const { floats, runs } = standing(chunk, ground);
+    const thing = { floats, runs, count: chunk.count, buffer: this.scene.buffer(floats) };
+    set.built.set(name, thing);
+    chunk.dropped = () => this.drop(set, name);
+    return thing;
+  }
+
+  drop(set, name) {
+    const thing = set.built.get(name);
+    if (thing) this.scene.free(thing.buffer);
+    set.built.delete(name);
+  }
+
+  forget() {
+    for (const set of this.sets) for (const name of [...set.built.keys()]) this.drop(set, name);
+    for (const { buffer } of this.nets.values()) this.scene.free(buffer);
+    this.nets.clear();
+  }
+
+  /** What is to be drawn from a place: `{ grounds, things }`, with leaves placed as seen from there; a frame took so long. */
+  look(at, took) {
+    if (this.isStale) this.compose(took);
+    const by = [distance(this.around.x, at.x), distance(this.around.y, at.y)];
+    const seen = ({ leaf, clip, ...rest }) => {
+      const from = [leaf.from[0] + by[0], leaf.from[1] + by[1]];
+      return { ...rest, leaf: { ...leaf, from }, clip: clip && [clip[0] + by[0], clip[1] + by[1], clip[2]] };
+    };
+    return { grounds: this.grounds.map(seen), things: this.things.map(seen) };
+  }
+
+  compose(took) {
+    this.grounds = this.sets[0].leaves.map((leaf) => ({ leaf, ...this.net(leaf) }));
+    // What cannot be made ready in this frame comes in the next ones.
+    this.isStale = false;
+    this.until = performance.now() + Math.max(BUILDING, SHARE * took);
+    this.things = this.sets.flatMap((set) => set.leaves.flatMap((leaf) => (
+      standIns(leaf, (one) => this.thing(set, one)).map(({ leaf: shown, clip }) => {
+        const away = Math.max(0, leaf.away - 2 * STEP);
+        return { ...this.thing(set, shown), leaf: { ...shown, away }, clip, near: set.near, set };
+      })
+    )));
+    for (const [name, { buffer }] of this.nets) {
+      if (this.nets.size <= this.sets[0].leaves.length + NETS) break;
+      this.scene.free(buffer);
+      this.nets.delete(name);
+    }
+  }
+
+  /** Whether all that is wanted is there and ready. */
+  get isReady() {
+    return !this.isStale && this.sets.every((set) => set.leaves.every((leaf) => set.built.has(nameOf(leaf))));
+  }
+
+  /** Numbers for the line below: points that are loaded, chunks, bytes received so far. */
+  get sums() {
+    const wanted = this.sets.flatMap(({ chunks }) => chunks.wanted);
+    return {
+      loaded: wanted.reduce((sum, chunk) => sum + chunk.count, 0),
+      chunks: wanted.filter((chunk) => chunk.state === "done").length,
+      wanted: wanted.length,
+      received: this.sets.reduce((sum, { chunks }) => sum + chunks.received, 0),
+    };
+  }
+
+  /** The height of the ground at a place. */
+  heightAt(at) {
+    const size = 64;
+    const [cx, cy] = [Math.floor(at.x.i / size), Math.floor(at.y.i / size)];
+    const net = this.net({ level: 0, size, cx, cy });
+    return net.ground.height(at.x.i - cx * size + at.x.f, at.y.i - cy * size + at.y.f);
+  }
+
+  /**
+   * The point whose picture is at a place of the window (from −1 to 1), or nearest to it within `miss`: its kind, its
+   * coordinates and its size. `null` if there is none.
+   */
+  pick(look, [x, y], aspect, miss) {
+    let best = null;
+    for (const { leaf, clip, runs, floats, set } of look.things) {
+      if (set !== this.sets[0] || clip || leaf.away > 2 * set.near) continue;
+      for (const { kind, first, ranks } of runs) {
+        for (let i = first; i < first + ranks.length; i += 1) {
+          const at = floats.subarray(i * INSTANCE_FLOATS, i * INSTANCE_FLOATS + 4);
+          const foot = [leaf.from[0] + at[0], leaf.from[1] + at[1], at[2] - look.height];
+          const middle = projected(look.camera, [foot[0], foot[1], foot[2] + at[3] / 2]);
+          if (!middle) continue;
+          const half = at[3] / 2 / (middle.depth * look.camera.tall);
+          const [dx, dy] = [Math.abs(middle.x - x) * aspect, Math.abs(middle.y - y)];
+          const off = Math.hypot(Math.max(0, dx - 0.45 * half), Math.max(0, dy - half));
+          if (off > miss) continue;
+          // What is in front hides what is behind it.
+          const cost = middle.depth * (1 + (20 * off) / miss);
+          if (!best || cost < best.cost) best = { cost, kind: KINDS[kind], leaf, offset: [at[0], at[1]], size: at[3], foot };
+        }
+      }
+    }
+    if (!best) return null;
+    const [px, py] = [best.leaf.cx, best.leaf.cy].map((index, axis) => (
+      moved(parsePlace(String(BigInt(index) * BigInt(best.leaf.size))), best.offset[axis])
+    ));
+    return { ...best, x: px, y: py };
+  }
+}
