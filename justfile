@@ -75,6 +75,10 @@ targets:
 release folder="dist":
     deploy/release {{folder}}
 
+# The walks of 1,000 players through a world, with nginx as a cache and without: `just caches target/release/strew`.
+caches program *args:
+    benches/caches.py {{program}} {{args}}
+
 # The data source of Spark on a cluster of two workers, one of which is killed.
 spark *args:
     .ci/spark {{args}}

@@ -2,7 +2,7 @@
 
 use std::{
     ffi::OsStr,
-    io::{self, Write},
+    io::{self, Read as _, Write},
     path::Path,
 };
 
@@ -27,6 +27,40 @@ impl Compression {
         };
         let stem = path.file_stem()?;
         Some((compression, Path::new(stem)))
+    }
+}
+
+impl Compression {
+    /// What names of compressed files end with.
+    pub(super) const fn ending(self) -> &'static str {
+        match self {
+            Self::Gzip => "gz",
+            Self::Zstd => "zst",
+        }
+    }
+
+    /// Compresses a whole file.
+    pub(super) fn pack(self, bytes: &[u8]) -> io::Result<Vec<u8>> {
+        match self {
+            Self::Gzip => {
+                let mut encoder = GzEncoder::new(vec![], flate2::Compression::default());
+                encoder.write_all(bytes)?;
+                encoder.finish()
+            }
+            Self::Zstd => zstd::stream::encode_all(bytes, 0),
+        }
+    }
+
+    /// Reverses [`pack`](Self::pack).
+    pub(super) fn unpack(self, bytes: &[u8]) -> io::Result<Vec<u8>> {
+        match self {
+            Self::Gzip => {
+                let mut plain = vec![];
+                flate2::read::GzDecoder::new(bytes).read_to_end(&mut plain)?;
+                Ok(plain)
+            }
+            Self::Zstd => zstd::stream::decode_all(bytes),
+        }
     }
 }
 

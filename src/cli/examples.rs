@@ -12,6 +12,11 @@ Examples:
   strew sample --chunk 64/3/-2 --world forest --config strew.toml -o chunk.arrow
   strew sample --bbox 0,0,100,100 --spacing 2 --url http://127.0.0.1:8080 -o trees.arrows
   strew sample --bbox 0,0,512,512 --spacing 3 --raster forest.png --raster-bbox 0,0,512,512 -o forest.svg";
+pub(super) const EXPORT: &str = "\
+Examples:
+  strew export --world forest --config strew.toml --bbox 0,0,4096,4096 --chunk 64 --format f32 -o world
+  strew export --spacing 2 --seed 7 --bbox 0,0,4096,4096 --chunk 64 --levels 4 --archive world.zip
+  strew export --check world --config strew.toml";
 pub(super) const STIPPLE: &str = "\
 Examples:
   strew stipple portrait.jpg --points 50000 -o portrait.svg";

@@ -45,6 +45,9 @@ pub(super) struct Tabled;
 /// A set and a place, as for `GET /v1/nearest`.
 #[derive(Debug)]
 pub(super) struct Near;
+/// A set of points, or a world, in the chunks of a box.
+#[derive(Debug)]
+pub(super) struct Exported;
 /// A box and a set; its table is named by another flag.
 #[derive(Debug)]
 pub(super) struct Measured;
@@ -90,6 +93,26 @@ impl Takes for Tabled {
 
 impl Takes for Near {
     const GROUPS: &'static [Group] = groups::NEAREST;
+}
+
+impl Takes for Exported {
+    const GROUPS: &'static [Group] = &[
+        Group::Region,
+        Group::Amount,
+        Group::World,
+        Group::WorldPin,
+        Group::Profile,
+        Group::Table,
+        Group::Points,
+        Group::Except,
+        Group::Attributes,
+        Group::Output,
+    ];
+
+    fn takes(parameter: &Parameter) -> bool {
+        let is_box = *parameter == parameters::BBOX;
+        Self::GROUPS.contains(&parameter.group) && (is_box || parameter.group != Group::Region)
+    }
 }
 
 impl Takes for Measured {
@@ -142,6 +165,13 @@ impl<T> Flags<T> {
     /// Those that are given.
     pub(super) fn given(&self) -> impl Iterator<Item = &'static Parameter> {
         self.given.iter().map(|(parameter, _)| *parameter)
+    }
+
+    /// Those that are given, with their text.
+    pub(super) fn texts(&self) -> impl Iterator<Item = (&'static Parameter, &str)> {
+        self.given
+            .iter()
+            .map(|(parameter, text)| (*parameter, text.as_str()))
     }
 
     /// Whether one is given.

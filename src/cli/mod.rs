@@ -6,6 +6,7 @@ mod compression;
 mod config;
 mod count;
 mod examples;
+mod export;
 mod fields;
 mod figure;
 mod flags;
@@ -52,6 +53,9 @@ enum Command {
     /// Write the points of a region to a file or standard output, without a server.
     #[command(after_long_help = examples::SAMPLE)]
     Sample(sample::Args),
+    /// Write a world of chunks as files that any static server answers with, or as one archive.
+    #[command(after_long_help = examples::EXPORT)]
+    Export(export::Args),
     /// Turn a picture into dots.
     #[command(after_long_help = examples::STIPPLE)]
     Stipple(stipple::Args),
@@ -141,6 +145,7 @@ pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Serve(args) => serve::run(&args),
         Command::Sample(args) => sample::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Stipple(args) => stipple::run(&args),
         Command::Count(args) => count::run(&args),
         Command::Point(args) => point::point(&args),

@@ -11,10 +11,15 @@ pub(super) const JSON: &str = "application/json";
 
 /// A document as an answer.
 pub fn json(document: &impl Serialize) -> Result<Response, Error> {
+    Ok(file(written(document)?, JSON))
+}
+
+/// The bytes of a document: one line.
+pub(super) fn written(document: &impl Serialize) -> Result<Vec<u8>, Error> {
     let mut body = serde_json::to_vec(document)
         .map_err(|_| Error::Internal("a document cannot be written"))?;
     body.push(b'\n');
-    Ok(file(body, JSON))
+    Ok(body)
 }
 
 /// A file as an answer.

@@ -46,6 +46,7 @@ use api::Endpoint;
 pub use document::json;
 pub use finish::finished;
 use problem::Problem;
+pub use worlds::world_document;
 
 /// The endpoints of REST, without their description.
 pub fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {

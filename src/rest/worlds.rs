@@ -163,14 +163,28 @@ async fn one(
 ) -> Result<Response, Error> {
     context.values(groups::NONE).read()?;
     let world = named(&service, &name, &context)?;
-    let unreadable = |_| Error::Internal("a world is no JSON");
-    let described = Described {
-        summary: Summary::new(&world),
-        query: serde_json::from_str(&world.json).map_err(unreadable)?,
-    };
+    let described = Described::new(&world)?;
     let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &described);
     let make = async { document::json(&described) };
     freshness.answer(&context.headers, make).await
+}
+
+impl<'a> Described<'a> {
+    fn new(world: &'a World) -> Result<Self, Error> {
+        let unreadable = |_| Error::Internal("a world is no JSON");
+        Ok(Self {
+            summary: Summary::new(world),
+            query: serde_json::from_str(&world.json).map_err(unreadable)?,
+        })
+    }
+}
+
+/// The body of the answer to `/v1/worlds/{name}`.
+///
+/// # Errors
+/// [`Error::Internal`] never: worlds were read before.
+pub fn world_document(world: &World) -> Result<Vec<u8>, Error> {
+    document::written(&Described::new(world)?)
 }
 
 async fn chunk(

@@ -185,6 +185,16 @@ impl Planned {
     /// # Errors
     /// As [`new`](Self::new), or [`Error::Internal`] if a table cannot be read any more.
     pub fn at_once(query: Query, limits: &Limits) -> Result<Self, Error> {
+        let tables = Self::tables(&query)?;
+        Self::new(query, &tables, limits)
+    }
+
+    /// The tables of a query's sets, read or made in the calling thread.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if a table cannot be read any more; [`Error::Invalid`] if it has too few blocks for its
+    /// kinds.
+    pub fn tables(query: &Query) -> Result<Vec<Ready>, Error> {
         let ready = |set: &Set| -> Result<Ready, Error> {
             let ready = Ready::load(&set.entry)?;
             match &set.kinds {
@@ -198,8 +208,7 @@ impl Planned {
                 _ => Ok(ready),
             }
         };
-        let tables: Vec<Ready> = query.sets.iter().map(ready).collect::<Result<_, _>>()?;
-        Self::new(query, &tables, limits)
+        query.sets.iter().map(ready).collect()
     }
 
     /// Narrows the sets' plans to the query's window.

@@ -103,7 +103,8 @@ impl<'a> Planner<'a> {
             Some(kinds) => self.kind_counts(kinds, &selection, &plan)?,
             None => vec![],
         };
-        let layer = selection.set.placed(plan.placement());
+        let whole = plan.placement().with_keep(set.whole);
+        let layer = selection.set.placed(whole);
         self.layers.push(match &set.region {
             Some(own) => layer.limited_to(own.area.clone()),
             None => layer,

@@ -82,8 +82,8 @@ class Daemon extends Source {
         const up = this.#replicas.all.length > 1 ? this.#replicas.up() : [];
         const one = (replica) => this.request("/v1/fields", body, { only: [replica], retries: 0 });
         const sent = await Promise.allSettled(up.map(one));
-        const held = sent.find(({ status }) => status === "fulfilled")?.value ?? (await this.request("/v1/fields", body));
-        return (await held.json()).name;
+        const held = sent.find(({ status }) => status === "fulfilled")?.value;
+        return (await (held ?? (await this.request("/v1/fields", body))).json()).name;
     }
 }
 

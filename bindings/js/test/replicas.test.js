@@ -86,8 +86,8 @@ test("what may succeed elsewhere is tried there, and a busy daemon rests", async
 });
 
 test("refusals of a query are not repeated, and attempts are bounded", async () => {
-    const problem = JSON.stringify({ type: "urn:strew:problem:invalid-query", detail: "no", errors: [{ field: "spacing" }] });
-    const wrong = await refusing(400, problem);
+    const problem = { type: "urn:strew:problem:invalid-query", detail: "no", errors: [{ field: "spacing" }] };
+    const wrong = await refusing(400, JSON.stringify(problem));
     await assert.rejects(count([wrong.url, `${wrong.url}/x`]), { message: "no" });
     assert.equal(wrong.calls.number, 1);
     const down = await refusing(502, "");

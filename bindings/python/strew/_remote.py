@@ -139,7 +139,7 @@ class Daemon(Source):
         return found
 
     def hold_field(self, field: Any) -> str:
-        """Sends a field to all daemons that can be reached: its name is a digest, and any of them may be called next."""
+        """Sends a field to all daemons that can be reached, because any may be called next. Its name is a digest."""
         body, name, error = text(field), "", None
         if len(self._replicas.all) == 1:
             return str(self.json("POST", "/v1/fields", body)["name"])
@@ -167,8 +167,8 @@ def connect(
 ) -> Daemon:
     """A daemon, with the functions of this module: ``points``, ``query``, ``stipple``.
 
-    ``key`` is an API key, which is part of pickles. ``timeout`` is how many seconds an answer may pause. ``verify`` may be
-    the path of an authority's certificate, or ``False`` for none.
+    ``key`` is an API key, which is part of pickles. ``timeout`` is how many seconds an answer may pause. ``verify`` may
+    be the path of an authority's certificate, or ``False`` for none.
 
     Code moves from a laptop to a service by one line::
 
@@ -177,8 +177,8 @@ def connect(
 
     The daemon is called when an answer is needed: :class:`StrewError` is raised then.
 
-    Several replicas are a list of addresses, or one text with commas: ``"http://a:7777,http://b:7777"``. A request goes to
-    the one with the fewest requests of this client. An address that refuses connections, breaks off or answers 429,
+    Several replicas are a list of addresses, or one text with commas: ``"http://a:7777,http://b:7777"``. A request goes
+    to the one with the fewest requests of this client. An address that refuses connections, breaks off or answers 429,
     502, 503 or 504 is left out, for as long as its ``Retry-After`` says, else for 0.1 to 5 seconds, more with each
     failure; afterwards one request tries it again.
 

@@ -119,7 +119,7 @@ class Replicas:
             replica.failures, replica.until = 0, 0.0
 
     def failed(self, replica: Replica, wait: float = 0.0) -> None:
-        """A replica refused or broke off; it asks for this many seconds of rest."""
+        """A replica refused or broke off, and is to be left out for at least this many seconds."""
         with self._lock:
             replica.leave_out(time.monotonic(), wait)
 

@@ -29,7 +29,7 @@ def schema(points: PointSet) -> pa.Schema:
 
 
 def split(points: PointSet, tasks: int | None = None, least: int = 1) -> list[tuple[PointSet, int]]:
-    """The parts of a set, each with its number of points. Without ``tasks`` one for each million points, but ``least``."""
+    """The parts of a set with their numbers of points; by default one for each million points, and ``least`` parts."""
     count = points.count()
     tasks = min(tasks or max(least, min(-(-count // TASK), MOST_TASKS)), count)
     if tasks <= 1:

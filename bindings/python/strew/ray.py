@@ -31,7 +31,7 @@ def _tables(part: PointSet, number: int, columns: pa.Schema, size: int) -> Itera
 
 
 class StrewDatasource(Datasource):
-    """What :func:`read` gives to ``ray.data.read_datasource``."""
+    """What :func:`read` passes to ``ray.data.read_datasource``."""
 
     def __init__(self, points: PointSet, tasks: int | None = None, batch: int = BATCH) -> None:
         super().__init__()  # type: ignore[no-untyped-call]

@@ -1,4 +1,4 @@
-"""The data source of Ray, on two local workers, of which one is killed. Skipped without ray. Dask, as the README has it."""
+"""The data source of Ray, on two local workers, of which some are killed, and Dask. Skipped where these are missing."""
 
 from __future__ import annotations
 
@@ -80,8 +80,8 @@ def test_empty_sets_limits_and_wrong_numbers(source: Any) -> None:
 
 def readers() -> list[int]:
     """The workers below this process that read."""
-    lines = subprocess.run(["ps", "-eo", "pid=,ppid=,args="], capture_output=True, text=True, check=True).stdout.splitlines()
-    rows = [line.split(None, 2) for line in lines]
+    listed = subprocess.run(["ps", "-eo", "pid=,ppid=,args="], capture_output=True, text=True, check=True)
+    rows = [line.split(None, 2) for line in listed.stdout.splitlines()]
     parents = {int(pid): int(parent) for pid, parent, _ in rows}
 
     def is_ours(pid: int) -> bool:

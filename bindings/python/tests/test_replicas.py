@@ -266,7 +266,8 @@ def test_fields_of_arrays_are_known_to_every_replica(url: str) -> None:
     with daemons((), ()) as urls:
         there = strew.connect(urls)
         for _ in range(6):
-            assert there.points(spacing=1, field=noise).nearest((3, 4)) == strew.points(spacing=1, field=noise).nearest((3, 4))
+            here = strew.points(spacing=1, field=noise)
+            assert there.points(spacing=1, field=noise).nearest((3, 4)) == here.nearest((3, 4))
 
 
 def test_addresses_are_a_list_or_a_text() -> None:

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 use super::{document::schema, rules, schemas::reference};
 use crate::service::query::{
     Group, MOST_LAYERS, Parameter, groups, of,
-    parameters::{COUNT, EXCEPT, ONLY, PARAMETERS, PERIODIC, SEED, WORLD},
+    parameters::{COUNT, EXCEPT, KEEP, ONLY, PARAMETERS, PERIODIC, SEED, WORLD},
 };
 
 /// The names of layers and variants.
@@ -76,8 +76,8 @@ fn query(groups: &'static [Group], about: &str) -> Value {
         "description": "Several sets of points, one after another, instead of one.",
     });
     properties.insert("layers".into(), layers);
-    // The common seed, and the one layer that is wanted.
-    let is_common = |parameter: &Parameter| [&SEED, &ONLY, &EXCEPT].contains(&parameter);
+    // The common seed and share, and the one layer that is wanted.
+    let is_common = |parameter: &Parameter| [&SEED, &ONLY, &EXCEPT, &KEEP].contains(&parameter);
     let of_set = of(groups::SET).filter(|parameter| !is_common(parameter));
     let of_set = of_set.map(|parameter| (parameter.name.to_owned(), nothing()));
     let mut of_set: Map<String, Value> = of_set.collect();

@@ -13,7 +13,11 @@ import { palette } from "./theme.js";
 const ACROSS = 14;
 const COUNT = ACROSS ** 2;
 
-/** Views to begin with: a name, words, the address, and how the picture differs from points in a box. */
+/** A set that repeats. */
+const TILE = "periodic=5041&profile=blue&map=s&spacing=1&seed=7";
+
+/** Views to begin with: a name, words, the address, and how the picture differs from
+ * points in a box. One with a `file` is a picture to save. */
 const VIEWS = [
   {
     id: "forest", name: "A forest with rocks and a road", words: "Two kinds that keep clear of each other, in a field.",
@@ -22,19 +26,20 @@ const VIEWS = [
   },
   {
     id: "portrait", name: "A stippled portrait", words: "Dots as dense as a picture is dark. Drop your own on the plane.",
-    hash: "#at=50,56&span=118&profile=blue&amount=0.42&seed=1&field=portrait&shade=0",
+    hash: "#at=50,56&span=118&profile=blue&amount=0.42&seed=1&field=portrait&shade=0&dot=2",
   },
   {
     id: "sampling", name: "A sampling pattern", words: "With its spectrum: nothing at low frequencies, no direction.",
     hash: "#at=0,0&span=64&profile=blue&amount=1&seed=3&tab=understand", hasSpectrum: true,
   },
   {
-    id: "detail", name: "Level of detail", words: "Zoom out: the points of lowest rank stand for all of them.",
-    hash: "#at=0,0&span=1600&profile=blue&amount=1&seed=1", bands: [1, 0.25, 0.0625],
+    id: "tile", name: "A tileable texture", words: "5,041 points that repeat without a seam: a picture to save.",
+    hash: "#at=0,0&span=24&profile=blue&amount=1&map=s&seed=7&color=1",
+    file: `/v1/points?${TILE}&format=png&size=1024`,
   },
   {
-    id: "kinds", name: "Kinds of a wood", words: "Each kind is a shape of its own, turned as it stands.",
-    hash: "#at=0,0&span=26&profile=blue&amount=1&seed=5&color=1&angle=1&variant=1&variants=oak:3,birch:2,pine:2,fir:1",
+    id: "detail", name: "Level of detail", words: "Zoom out: the points of lowest rank stand for all of them.",
+    hash: "#at=0,0&span=1600&profile=blue&amount=1&seed=1", bands: [1, 0.25, 0.0625],
   },
 ];
 
@@ -98,7 +103,11 @@ export class Start {
       }, "layers", "view", "tab");
       byId(this.session.state.tab).focus({ preventScroll: true });
     };
-    const element = make("button", { type: "button", class: "view", id: `view-${id}`, onclick: open }, canvas, make("b", {}, name), make("small", {}, words));
+    const inside = [canvas, make("b", {}, name), make("small", {}, words)];
+    const attributes = { class: "view", id: `view-${id}` };
+    const element = how.file
+      ? make("a", { ...attributes, href: how.file, download: "tile.png" }, inside)
+      : make("button", { ...attributes, type: "button", onclick: open }, inside);
     return { ...how, canvas, element };
   }
 
@@ -146,16 +155,36 @@ export class Start {
     const across = view.bands ? 60 : view.hasSpectrum ? 24 : span * SHOWN;
     const half = [across / 2, across / 2 / ASPECT];
     const box = [x.i - half[0], y.i - half[1], x.i + half[0], y.i + half[1]];
+    if (view.file) {
+      const chunk = { data: await aroundCorner(across), stride: 2, columns: [], layers };
+      chunk.count = chunk.data.length / 2;
+      view.draw = () => draw(view, chunk, across);
+      return view.draw();
+    }
     const look = view.bands ? layers.map((layer) => ({ ...layer, rank: true })) : layers;
     const answer = await pointsOf(look, box);
-    const columns = view.bands ? ["rank"] : columnsOf(layers);
+    const columns = columnsOf(look);
     const stride = 2 + columns.length;
     const data = new Float32Array(await answer.arrayBuffer());
     const chunk = { data, stride, columns, layers, count: data.length / stride };
     if (view.hasSpectrum) view.measured = await spectrumFor(layers[0]);
     view.draw = () => draw(view, chunk, across);
-    view.draw();
+    return view.draw();
   }
+}
+
+/** The points around a corner where four tiles meet, from the lower corner of the picture. */
+async function aroundCorner(across) {
+  const answer = await ask(`/v1/points?${TILE}&format=f32`);
+  const packed = new Float32Array(await answer.arrayBuffer());
+  const side = Math.sqrt(packed.length / 2);
+  const half = [across / 2, across / 2 / ASPECT];
+  const found = [];
+  for (let k = 0; k < packed.length; k += 2) {
+    const [x, y] = [0, 1].map((i) => packed[k + i] - (packed[k + i] > side / 2 ? side : 0) + half[i]);
+    if (x >= 0 && y >= 0 && x < across && y < across / ASPECT) found.push(x, y);
+  }
+  return Float32Array.from(found);
 }
 
 /** Pictures are this much wider than high; they show this share of the span of their view. */
@@ -172,9 +201,7 @@ async function spectrumFor(layer) {
 /** The points of layers in a box, packed, with x and y from its lower corner. */
 function pointsOf(layers, box) {
   if (layers.length > 1) return ask("/v1/points:query", { body: json(bodyOf(layers, { bbox: box }, 1, { format: "f32" })) });
-  const [layer] = layers;
-  const more = layer.rank ? "&attributes=rank" : "";
-  return ask(`/v1/points?bbox=${box.join(",")}&${joined(setOf(layer))}${more}&format=f32`);
+  return ask(`/v1/points?bbox=${box.join(",")}&${joined(setOf(layers[0]))}&format=f32`);
 }
 
 /** Draws a view's points: each layer in its color, dots as large as they are far apart. */
@@ -202,6 +229,12 @@ function draw(view, chunk, across) {
       context.arc(x, y, radius, 0, 2 * Math.PI);
     }
     context.fill();
+  }
+  if (view.file) {
+    context.strokeStyle = css(colors[2]);
+    context.setLineDash([4, 4]);
+    context.strokeRect(width / 2, -1, width, height / 2 + 1);
+    context.strokeRect(-1, height / 2, width / 2 + 1, height);
   }
   if (view.measured) {
     const spectrum = document.createElement("canvas");

@@ -233,7 +233,7 @@ impl Draft {
         }
         let is_of_set = |parameter: &Parameter| {
             let is_one = groups::SET.contains(&parameter.group) || parameter.group == Group::Period;
-            is_one && ![&SEED, &ONLY, &EXCEPT].contains(&parameter)
+            is_one && ![&SEED, &ONLY, &EXCEPT, &KEEP].contains(&parameter)
         };
         let own = self
             .values
@@ -252,7 +252,13 @@ impl Draft {
             Some(seed) => layer.seeded(seed).check(&layers[..i], loaded),
             None => layer.check(&layers[..i], loaded),
         });
-        let (_, mut sets, _, _) = (all(beside), all(sets), seed, self.only()).together()?;
+        let (beside, only, common) = (all(beside), self.only(), keep(&self.values));
+        let (_, mut sets, _, _, common) = (beside, all(sets), seed, only, common).together()?;
+        if let Some(common) = common {
+            for set in &mut sets {
+                set.thin_out(common);
+            }
+        }
         let values: Vec<&Values> = layers.iter().map(|layer| &layer.values).collect();
         except::of_layers(&self.values, &values, &mut sets, loaded.catalog)?;
         Ok(sets)
@@ -358,6 +364,7 @@ impl Set {
             seed,
             warp: warp.unwrap_or_else(|| Placement::default_warp(seed)),
             keep: keep.unwrap_or(Keep::ALL),
+            whole: keep.unwrap_or(Keep::ALL),
             attributes,
             kinds,
             period,

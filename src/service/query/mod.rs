@@ -121,6 +121,9 @@ pub struct Set {
     pub warp: Warp,
     /// Which share of the points is kept.
     pub keep: Keep,
+    /// The share that later layers keep clear of: the set's own, without the common one of a query with layers. So
+    /// a smaller common share has a part of the points of a larger one.
+    pub whole: Keep,
     /// The field that the set is in.
     pub field: Option<SetField>,
     /// The further values of points.
@@ -230,6 +233,12 @@ impl Set {
             Some(field) => points.in_field(field.spec.clone()),
             None => points,
         }
+    }
+
+    /// Keeps a share of its points, while other layers keep clear of all of them.
+    pub(super) fn thin_out(&mut self, share: Keep) {
+        let product = (self.whole.get() * share.get()).max(Keep::MIN);
+        self.keep = Keep::new(product).unwrap_or(share);
     }
 
     /// All points that the table has for it, whatever its share, its kinds and its fields leave out.

@@ -123,7 +123,10 @@ impl RegionDraft {
     }
 
     /// Checks it and everything in it.
-    pub(super) fn check(&self) -> Checked<QueryRegion> {
+    ///
+    /// # Errors
+    /// Every fault.
+    pub fn check(&self) -> Checked<QueryRegion> {
         let area = self.area()?;
         let bounds = area.bounds().filter(|bounds| !bounds.is_empty());
         let bounds = bounds.ok_or_else(|| {

@@ -259,16 +259,28 @@ fn the_page_on_fields_shows_what_its_examples_print_and_draw() {
     compare(folder.path(), "fields", &names);
 }
 
-#[test]
-fn the_page_on_worlds_shows_what_its_examples_print() {
+/// A daemon with the worlds and lists of the pages.
+fn with_worlds() -> Daemon {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let settings = ["worlds", "except"].map(|name| {
         let folder = root.join("docs").join(name);
         format!("{name}.folder={}", folder.display())
     });
-    let daemon = Daemon::with_tables(no_tables(), &settings.each_ref().map(String::as_str));
+    Daemon::with_tables(no_tables(), &settings.each_ref().map(String::as_str))
+}
+
+#[test]
+fn the_page_on_worlds_shows_what_its_examples_print() {
     let folder = tempfile::tempdir().expect("a folder");
-    check_in("docs/worlds.md", folder.path(), &daemon);
+    check_in("docs/worlds.md", folder.path(), &with_worlds());
+}
+
+#[test]
+fn the_page_on_exports_shows_what_its_examples_print() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    std::os::unix::fs::symlink(docs, folder.path().join("docs")).expect("writable");
+    check_in("docs/export.md", folder.path(), &with_worlds());
 }
 
 #[test]

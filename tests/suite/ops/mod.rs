@@ -5,6 +5,7 @@
 mod admin;
 mod attacks;
 mod bad_calls;
+mod caches;
 mod connections;
 mod fairness;
 mod files;

@@ -4,11 +4,7 @@
 //! The proxies are HAProxy and nginx, which `.ci/run` installs; a missing one is skipped with a
 //! message.
 
-use std::{
-    net::{SocketAddr, TcpListener, TcpStream},
-    path::Path,
-    process::{Child, Command, Stdio},
-};
+use std::{net::SocketAddr, path::Path};
 
 use strew::service::{
     Answer, Catalog, Encoding, Output, Planned,
@@ -19,21 +15,8 @@ use strew_testkit::{http1, wait::until};
 use crate::support::{
     clients,
     daemon::{Daemon, PROFILE, tables},
+    proxy::{self, Proxy},
 };
-
-/// A running proxy; killed when dropped.
-struct Proxy {
-    child: Child,
-    address: SocketAddr,
-    _folder: tempfile::TempDir,
-}
-
-impl Drop for Proxy {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
 
 fn haproxy(address: SocketAddr, replicas: &[SocketAddr]) -> String {
     let servers: String = replicas
@@ -55,44 +38,20 @@ fn nginx(address: SocketAddr, replicas: &[SocketAddr], folder: &Path) -> String 
         .iter()
         .map(|replica| format!("server {replica} max_fails=1 fail_timeout=1s; "))
         .collect();
-    let folder = folder.display();
-    format!(
-        "daemon off; master_process off; pid {folder}/pid; error_log {folder}/error.log;\n\
-         events {{ worker_connections 100; }}\n\
-         http {{ access_log off; client_body_temp_path {folder}/b; proxy_temp_path {folder}/p;\n\
-         fastcgi_temp_path {folder}/f; uwsgi_temp_path {folder}/u; scgi_temp_path {folder}/s;\n\
-         upstream strew {{ {servers} }}\n\
+    let http = format!(
+        "upstream strew {{ {servers} }}\n\
          server {{ listen {address}; location / {{ proxy_pass http://strew; proxy_http_version 1.1;\n\
-         proxy_next_upstream error timeout http_503 non_idempotent; proxy_buffering off; }} }} }}\n"
-    )
+         proxy_next_upstream error timeout http_503 non_idempotent; proxy_buffering off; }} }}"
+    );
+    proxy::nginx(folder, &http)
 }
 
 /// Starts a proxy over replicas.
 fn proxy(program: &str, replicas: &[SocketAddr]) -> Proxy {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let free = TcpListener::bind("127.0.0.1:0").expect("a port");
-    let address = free.local_addr().expect("bound");
-    drop(free);
-    let file = folder.path().join("proxy.conf");
-    let mut command = Command::new(program);
-    let settings = if program == "haproxy" {
-        command.args(["-db", "-q", "-f"]).arg(&file);
-        haproxy(address, replicas)
-    } else {
-        command.arg("-p").arg(folder.path()).arg("-c").arg(&file);
-        nginx(address, replicas, folder.path())
-    };
-    std::fs::write(&file, settings).expect("writable");
-    let child = command
-        .stdout(Stdio::null())
-        .spawn()
-        .expect("the proxy runs");
-    until("the proxy listens", || TcpStream::connect(address).ok());
-    Proxy {
-        child,
-        address,
-        _folder: folder,
-    }
+    Proxy::start(program, |address, folder| match program {
+        "haproxy" => haproxy(address, replicas),
+        _ => nginx(address, replicas, folder),
+    })
 }
 
 const QUERY: &str = "bbox=-200,-200,200,200&spacing=1&seed=5&profile=test&format=csv";

@@ -13,4 +13,5 @@ pub mod keys;
 pub mod library;
 pub mod metrics;
 pub mod problem;
+pub mod proxy;
 pub mod queries;

@@ -1,0 +1,285 @@
+//! One file with all chunks: a zip whose members have the names of a folder's files. It is written from its beginning
+//! to its end, so what a killed run leaves is a whole number of members and a broken one, which is written again.
+
+use std::{
+    collections::HashMap,
+    fs::{self, File},
+    io::{self, BufWriter, Seek as _, SeekFrom, Write as _},
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context as _, anyhow};
+
+use super::{
+    chunks::{Chunk, Maker},
+    record::{MANIFEST, Manifest, Record},
+    spec::{DEFLATE, Spec},
+    zip::{self, Content, Member},
+};
+use crate::cli::Failure;
+
+/// The options, the first member: a run that goes on compares them.
+pub(super) const SPEC: &str = "export.json";
+/// For each chunk in order: where its bytes begin (8 bytes), how many they are (4), how many points it has (4).
+pub(super) const INDEX: &str = "index.bin";
+
+/// An archive that is being written.
+#[derive(Debug)]
+pub(super) struct Archive {
+    path: PathBuf,
+    partial: PathBuf,
+    file: BufWriter<File>,
+    /// The length so far.
+    at: u64,
+    spec: Member,
+    chunks: Vec<Member>,
+    is_deflated: bool,
+}
+
+/// An archive as it is found.
+#[derive(Debug)]
+pub(super) enum Found {
+    /// Everything is there.
+    Complete,
+    /// Nothing is there, or the first chunks.
+    Open(Box<Archive>, Vec<Record>),
+}
+
+impl Archive {
+    /// Opens an archive for an export; refuses one that holds anything else.
+    pub(super) fn open(path: &Path, spec: &Spec, maker: &Maker) -> Result<Found, Failure> {
+        let other = |path: &Path| {
+            Failure::Usage(anyhow!(
+                "--archive {}: the file is no export with these options: choose another name",
+                path.display()
+            ))
+        };
+        let unwritable = || format!("cannot write {}", path.display());
+        if path.exists() {
+            let manifest = Reader::open(path).and_then(|mut archive| archive.read(MANIFEST));
+            let manifest = manifest.and_then(|bytes| Manifest::read(&bytes));
+            let is_same = manifest.is_ok_and(|manifest| manifest.export == *spec);
+            return if is_same {
+                Ok(Found::Complete)
+            } else {
+                Err(other(path))
+            };
+        }
+        let mut partial = path.as_os_str().to_owned();
+        partial.push(".partial");
+        let partial = PathBuf::from(partial);
+        let options = File::options()
+            .create(true)
+            .truncate(false)
+            .read(true)
+            .write(true)
+            .clone();
+        let mut file = options.open(&partial).with_context(unwritable)?;
+        if file.try_lock().is_err() {
+            return Err(Failure::Usage(anyhow!(
+                "--archive {}: another process writes this file",
+                path.display()
+            )));
+        }
+        let is_deflated = spec.archive.as_deref() == Some(DEFLATE);
+        let ours = serde_json::to_vec(spec).context("the options cannot be written")?;
+        let first = zip::next(&mut file, 0).with_context(unwritable)?;
+        let is_new = file.metadata().with_context(unwritable)?.len() < ours.len() as u64;
+        let first = match first {
+            Some((name, member, said)) if name == SPEC && said == ours => Some(member),
+            None if is_new => None,
+            _ => return Err(other(&partial)),
+        };
+        let mut archive = Self {
+            path: path.into(),
+            partial,
+            at: 0,
+            spec: Member::default(),
+            chunks: vec![],
+            is_deflated,
+            file: BufWriter::with_capacity(1 << 20, file),
+        };
+        let records = match first {
+            None => {
+                archive.file.get_ref().set_len(0).with_context(unwritable)?;
+                archive
+                    .file
+                    .seek(SeekFrom::Start(0))
+                    .with_context(unwritable)?;
+                archive.spec = archive.add(SPEC, ours)?;
+                vec![]
+            }
+            Some(member) => {
+                archive.spec = member;
+                archive.at = zip::end(&member, SPEC);
+                archive.recover(maker).with_context(unwritable)?
+            }
+        };
+        Ok(Found::Open(Box::new(archive), records))
+    }
+
+    /// The chunks that are there, as far as they are whole; what follows is cut off.
+    fn recover(&mut self, maker: &Maker) -> io::Result<Vec<Record>> {
+        let mut records = vec![];
+        for i in 0..maker.grid.chunks() {
+            let expected = maker.grid.name(maker.grid.place(i));
+            let next = zip::next(self.file.get_mut(), self.at)?;
+            let Some((_, member, bytes)) = next.filter(|(name, ..)| *name == expected) else {
+                break;
+            };
+            self.at = zip::end(&member, &expected);
+            self.chunks.push(member);
+            records.push(Record {
+                points: member.points.into(),
+                files: vec![(blake3::hash(&bytes), bytes.len() as u64)],
+            });
+        }
+        self.file.get_ref().set_len(self.at)?;
+        self.file.seek(SeekFrom::Start(self.at))?;
+        Ok(records)
+    }
+
+    /// Whether members are deflated.
+    pub(super) const fn is_deflated(&self) -> bool {
+        self.is_deflated
+    }
+
+    fn add(&mut self, name: &str, bytes: Vec<u8>) -> anyhow::Result<Member> {
+        let is_deflated = self.is_deflated;
+        let content = Content::new(bytes, is_deflated, 0).with_context(|| self.unwritable())?;
+        self.write(name, &content)
+    }
+
+    fn write(&mut self, name: &str, content: &Content) -> anyhow::Result<Member> {
+        let written = zip::write(&mut self.file, self.at, name, content);
+        let member = written.with_context(|| self.unwritable())?;
+        self.at = zip::end(&member, name);
+        Ok(member)
+    }
+
+    fn unwritable(&self) -> String {
+        format!("cannot write {}", self.partial.display())
+    }
+
+    /// Makes what is written of a chunk, on any thread.
+    pub(super) fn pack(chunk: Chunk, is_deflated: bool) -> anyhow::Result<(Record, Content)> {
+        let record = Record {
+            points: chunk.points,
+            files: vec![(blake3::hash(&chunk.bytes), chunk.bytes.len() as u64)],
+        };
+        let content = Content::new(chunk.bytes, is_deflated, chunk.points);
+        Ok((
+            record,
+            content.context("a chunk is too large for an archive")?,
+        ))
+    }
+
+    /// Writes the next chunk.
+    pub(super) fn put(&mut self, name: &str, content: &Content) -> anyhow::Result<()> {
+        let member = self.write(name, content)?;
+        self.chunks.push(member);
+        Ok(())
+    }
+
+    /// Hands everything to the system: a run that is interrupted goes on after it.
+    pub(super) fn flush(&mut self) -> anyhow::Result<()> {
+        self.file.flush().with_context(|| self.unwritable())
+    }
+
+    /// The files of an archive beside the chunks and those of every export.
+    pub(super) fn extra(
+        &self,
+        spec: &Spec,
+        maker: &Maker,
+    ) -> anyhow::Result<Vec<(String, Vec<u8>)>> {
+        let mut index = vec![];
+        for (i, member) in self.chunks.iter().enumerate() {
+            let data = member.data(&maker.grid.name(maker.grid.place(i)));
+            index.extend(data.to_le_bytes());
+            index.extend(member.packed.to_le_bytes());
+            index.extend(member.points.to_le_bytes());
+        }
+        let spec = serde_json::to_vec(spec).context("the options cannot be written")?;
+        Ok(vec![(SPEC.into(), spec), (INDEX.into(), index)])
+    }
+
+    /// Writes the documents and the central directory, which begins with the manifest and the index, and gives the
+    /// file its name.
+    pub(super) fn finish(
+        mut self,
+        documents: Vec<(String, Vec<u8>)>,
+        maker: &Maker,
+    ) -> anyhow::Result<()> {
+        let mut members = vec![];
+        for (name, bytes) in documents {
+            let member = match &*name {
+                SPEC => self.spec,
+                // Read by ranges.
+                INDEX | MANIFEST => {
+                    let content =
+                        Content::new(bytes, false, 0).with_context(|| self.unwritable())?;
+                    self.write(&name, &content)?
+                }
+                _ => self.add(&name, bytes)?,
+            };
+            members.push((name, member));
+        }
+        let rank = |name: &str| {
+            [MANIFEST, INDEX]
+                .iter()
+                .position(|first| *first == name)
+                .unwrap_or(2)
+        };
+        members.sort_by_key(|(name, _)| rank(name));
+        let chunks = self.chunks.iter().enumerate();
+        let chunks = chunks.map(|(i, member)| (maker.grid.name(maker.grid.place(i)), member));
+        let members = members.iter().map(|(name, member)| (name.clone(), member));
+        let written = zip::finish(&mut self.file, self.at, members.chain(chunks));
+        let named = written
+            .and_then(|()| self.file.flush())
+            .and_then(|()| self.file.get_ref().sync_all())
+            .and_then(|()| fs::rename(&self.partial, &self.path));
+        named.with_context(|| format!("cannot write {}", self.path.display()))
+    }
+}
+
+/// An archive that is read.
+#[derive(Debug)]
+pub(super) struct Reader {
+    file: File,
+    /// Where members begin, by name.
+    members: HashMap<String, u64>,
+    path: PathBuf,
+}
+
+impl Reader {
+    pub(super) fn open(path: &Path) -> anyhow::Result<Self> {
+        let unreadable = || format!("cannot read {}", path.display());
+        let mut file = File::open(path).with_context(unreadable)?;
+        let members = zip::members(&mut file).with_context(unreadable)?;
+        let members =
+            members.with_context(|| format!("{} is no archive of an export", path.display()))?;
+        let places = members
+            .into_iter()
+            .map(|(name, member)| (name, member.offset));
+        Ok(Self {
+            file,
+            members: places.collect(),
+            path: path.into(),
+        })
+    }
+
+    /// The names of its members.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.members.keys().map(String::as_str)
+    }
+
+    /// The content of a member.
+    pub(super) fn read(&mut self, name: &str) -> anyhow::Result<Vec<u8>> {
+        let broken = || format!("{name} of {} is missing or damaged", self.path.display());
+        let offset = *self.members.get(name).with_context(broken)?;
+        let next = zip::next(&mut self.file, offset).with_context(broken)?;
+        let content = next.filter(|(known, ..)| known == name);
+        content.map(|(_, _, content)| content).with_context(broken)
+    }
+}

@@ -1,0 +1,258 @@
+//! Checks an export: every file's digest, that none is missing and none is foreign, and that points are what is made
+//! today.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context as _, anyhow};
+use rayon::prelude::*;
+
+use super::{
+    archive::Reader,
+    chunks::Maker,
+    folder::WORK,
+    record::{DIGESTS, MANIFEST, Manifest},
+};
+use crate::{
+    cli::{Failure, compression::Compression, progress::Progress},
+    config::Config,
+};
+
+/// How many chunks are made again, unless all are.
+const SAMPLE: usize = 100;
+/// How many faults are named.
+const NAMED: usize = 20;
+/// How many files are looked at between two lines of progress.
+const BATCH: usize = 256;
+
+/// What is checked.
+enum Tree {
+    Folder(PathBuf),
+    Archive(Reader),
+}
+
+/// What is wrong, by the names of files.
+#[derive(Default)]
+struct Faults(BTreeMap<String, &'static str>);
+
+/// Checks a folder or an archive; `all` makes every chunk again.
+pub(super) fn run(path: &Path, all: bool, quiet: bool, config: &Config) -> Result<(), Failure> {
+    let mut tree = Tree::open(path)?;
+    let manifest = tree.read(MANIFEST).with_context(|| {
+        format!(
+            "{} has no {MANIFEST}: it is no export, or not complete",
+            path.display()
+        )
+    });
+    let manifest = Manifest::read(&manifest?)?;
+    let mut faults = Faults::default();
+    let digests = tree.digests(&manifest)?;
+    tree.compare_names(&digests, &mut faults)?;
+    let mut progress = Progress::new("files", digests.len() as u64, quiet);
+    let names: Vec<&String> = digests.keys().collect();
+    for (k, batch) in names.chunks(BATCH).enumerate() {
+        for (name, digest) in tree.hash(batch) {
+            match digest {
+                None => faults.add(&name, "missing or unreadable"),
+                Some(digest) if digest != digests[&name] => faults.add(&name, "changed"),
+                Some(_) => {}
+            }
+        }
+        progress.reach((k * BATCH + batch.len()) as u64, "");
+    }
+    progress.finish();
+    // What has changed needs no second look.
+    faults.report(path)?;
+    let made = made_again(&mut tree, &manifest, all, quiet, config, &mut faults)?;
+    faults.report(path)?;
+    let total = manifest.total;
+    if !quiet {
+        eprintln!(
+            "{} is whole: {} files, {} chunks, {} points; {made} chunks made again",
+            path.display(),
+            digests.len() + 2,
+            total.chunks,
+            total.points
+        );
+    }
+    Ok(())
+}
+
+/// Makes chunks again and compares them, also what is compressed; returns how many.
+fn made_again(
+    tree: &mut Tree,
+    manifest: &Manifest,
+    all: bool,
+    quiet: bool,
+    config: &Config,
+    faults: &mut Faults,
+) -> Result<usize, Failure> {
+    let spec = &manifest.export;
+    let maker = Maker::new(spec, &super::spec::catalog(config)?, config)?;
+    let chunks = maker.grid.chunks();
+    let number = if all { chunks } else { SAMPLE.min(chunks) };
+    let picked = |k: usize| (2 * k + 1) * chunks / (2 * number);
+    let mut progress = Progress::new("chunks", number as u64, quiet);
+    for first in (0..number).step_by(BATCH) {
+        let batch: Vec<usize> = (first..number.min(first + BATCH)).map(picked).collect();
+        let made = batch.par_iter().map(|&i| Ok((i, maker.make(i)?)));
+        for (i, chunk) in made.collect::<Result<Vec<_>, Failure>>()? {
+            let name = maker.grid.name(maker.grid.place(i));
+            let plain = [(name.clone(), None)];
+            let packed = spec.compressions().into_iter();
+            let packed = packed.map(|packed| (format!("{name}.{}", packed.ending()), Some(packed)));
+            for (name, packed) in plain.into_iter().chain(packed) {
+                // What cannot be read is known already.
+                if let Ok(bytes) = tree.read(&name)
+                    && unpacked(&bytes, packed).as_ref() != Some(&chunk.bytes)
+                {
+                    faults.add(&name, "has other points than are made now");
+                }
+            }
+        }
+        progress.reach((first + batch.len()) as u64, "");
+    }
+    progress.finish();
+    Ok(number)
+}
+
+fn unpacked(bytes: &[u8], packed: Option<Compression>) -> Option<Vec<u8>> {
+    match packed {
+        None => Some(bytes.to_vec()),
+        Some(packed) => packed.unpack(bytes).ok(),
+    }
+}
+
+impl Tree {
+    fn open(path: &Path) -> Result<Self, Failure> {
+        if path.is_dir() {
+            return Ok(Self::Folder(path.into()));
+        }
+        Ok(Self::Archive(Reader::open(path)?))
+    }
+
+    fn read(&mut self, name: &str) -> anyhow::Result<Vec<u8>> {
+        match self {
+            Self::Folder(root) => {
+                let path = root.join(name);
+                fs::read(&path).with_context(|| format!("cannot read {}", path.display()))
+            }
+            Self::Archive(archive) => archive.read(name),
+        }
+    }
+
+    /// The digests of all files but the list of them and the manifest.
+    fn digests(&mut self, manifest: &Manifest) -> anyhow::Result<BTreeMap<String, blake3::Hash>> {
+        let list = self.read(DIGESTS)?;
+        if blake3::hash(&list).to_hex().as_str() != manifest.files {
+            return Err(anyhow!(
+                "{DIGESTS} has changed: its digest is not that of {MANIFEST}"
+            ));
+        }
+        let list = String::from_utf8(list).context("the list of digests is no text")?;
+        let line = |line: &str| {
+            let (digest, name) = line.split_once("  ")?;
+            Some((name.to_owned(), blake3::Hash::from_hex(digest).ok()?))
+        };
+        let lines = list.lines().map(line).collect::<Option<_>>();
+        lines.with_context(|| format!("{DIGESTS} is no list of digests"))
+    }
+
+    /// Notes files that are not in the list.
+    fn compare_names(
+        &self,
+        digests: &BTreeMap<String, blake3::Hash>,
+        faults: &mut Faults,
+    ) -> anyhow::Result<()> {
+        let names: BTreeSet<String> = match self {
+            Self::Folder(root) => below(root)?,
+            Self::Archive(archive) => archive.names().map(Into::into).collect(),
+        };
+        let is_known = |name: &String| {
+            digests.contains_key(name) || [MANIFEST, DIGESTS].contains(&name.as_str())
+        };
+        for name in names.iter().filter(|name| !is_known(name)) {
+            faults.add(name, "foreign: the export has no such file");
+        }
+        Ok(())
+    }
+
+    /// The digests of some files; none for one that cannot be read.
+    fn hash(&mut self, names: &[&String]) -> Vec<(String, Option<blake3::Hash>)> {
+        match self {
+            Self::Folder(root) => {
+                let hash = |name: &&String| {
+                    let bytes = fs::read(root.join(name)).ok();
+                    ((*name).clone(), bytes.map(|bytes| blake3::hash(&bytes)))
+                };
+                names.par_iter().map(hash).collect()
+            }
+            Self::Archive(archive) => {
+                let mut hash = |name: &&String| {
+                    let bytes = archive.read(name).ok();
+                    ((*name).clone(), bytes.map(|bytes| blake3::hash(&bytes)))
+                };
+                names.iter().map(&mut hash).collect()
+            }
+        }
+    }
+}
+
+/// The names of all files below a folder.
+fn below(root: &Path) -> anyhow::Result<BTreeSet<String>> {
+    let mut open = vec![root.to_owned()];
+    let mut names = BTreeSet::new();
+    while let Some(folder) = open.pop() {
+        let unreadable = || format!("cannot read {}", folder.display());
+        for entry in fs::read_dir(&folder).with_context(unreadable)? {
+            let entry = entry.with_context(unreadable)?;
+            let path = entry.path();
+            if entry.file_type().with_context(unreadable)?.is_dir() {
+                open.push(path);
+                continue;
+            }
+            let name = path.strip_prefix(root).unwrap_or(&path);
+            names.insert(name.to_string_lossy().replace('\\', "/"));
+        }
+    }
+    if names
+        .iter()
+        .any(|name| name.starts_with(&format!("{WORK}/")))
+    {
+        return Err(anyhow!(
+            "{} is not complete: run the export again",
+            root.display()
+        ));
+    }
+    Ok(names)
+}
+
+impl Faults {
+    fn add(&mut self, name: &str, what: &'static str) {
+        self.0.entry(name.into()).or_insert(what);
+    }
+
+    fn report(&self, path: &Path) -> Result<(), Failure> {
+        if self.0.is_empty() {
+            return Ok(());
+        }
+        let named = self
+            .0
+            .iter()
+            .take(NAMED)
+            .map(|(name, what)| format!("\n  {name}: {what}"));
+        let more = match self.0.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            more => format!("\n  and {more} more"),
+        };
+        Err(Failure::Other(anyhow!(
+            "{} differs from what was written in {} files:{}{more}",
+            path.display(),
+            self.0.len(),
+            named.collect::<String>()
+        )))
+    }
+}

@@ -1,0 +1,149 @@
+//! Makes the bytes of chunks: those of the daemon's answers.
+
+use anyhow::{Context as _, anyhow};
+use rayon::prelude::*;
+
+use super::{
+    grid::{Grid, Place},
+    spec::{Checked, Spec, chunk},
+};
+use crate::{
+    cli::{Failure, compression::Compression, refusal::Source},
+    config::Config,
+    service::{Answer, Catalog, Error, Output, Planned, Query, Ready},
+};
+
+/// Makes chunks.
+#[derive(Debug)]
+pub(super) struct Maker {
+    pub(super) grid: Grid,
+    levels: Vec<Checked>,
+    tables: Vec<Ready>,
+    config: Config,
+}
+
+/// A chunk as it is written.
+#[derive(Clone, Debug)]
+pub(super) struct Chunk {
+    pub(super) points: u64,
+    pub(super) bytes: Vec<u8>,
+}
+
+impl Maker {
+    pub(super) fn new(spec: &Spec, catalog: &Catalog, config: &Config) -> Result<Self, Failure> {
+        let (levels, tables) = spec.checked(catalog, config)?;
+        if !spec.is_of(&levels[0].query) {
+            return Err(Failure::Usage(anyhow!(
+                "the export was made with another version, world, table, field or list: use those, or export anew"
+            )));
+        }
+        Ok(Self {
+            grid: spec.grid()?,
+            levels,
+            tables,
+            config: config.clone(),
+        })
+    }
+
+    /// The query of the finest level.
+    pub(super) fn query(&self) -> &Query {
+        &self.levels[0].query
+    }
+
+    /// Makes chunk number `i`.
+    pub(super) fn make(&self, i: usize) -> Result<Chunk, Failure> {
+        let place = self.grid.place(i);
+        self.answer(place)
+            .and_then(|(points, answer)| {
+                let mut bytes = Vec::with_capacity(answer.size().unwrap_or(0) as usize);
+                for block in answer {
+                    bytes.extend_from_slice(&block?);
+                }
+                Ok(Chunk { points, bytes })
+            })
+            .map_err(|error| self.refused(place, error))
+    }
+
+    fn refused(&self, place: Place, error: Error) -> Failure {
+        let name = self.grid.name(place);
+        match Source::Flags.refused(error) {
+            Failure::Usage(error) => Failure::Usage(error.context(name)),
+            Failure::Other(error) => Failure::Other(error.context(name)),
+            interrupted => interrupted,
+        }
+    }
+
+    fn answer(&self, place: Place) -> Result<(u64, Answer), Error> {
+        let Checked { query, output } = &self.levels[place.level];
+        let size = self.grid.levels[place.level].size;
+        let region = chunk(size, place.at).check()?;
+        let output = Output {
+            relative_to: region.corner,
+            ..output.clone()
+        };
+        let query = Query {
+            region,
+            ..query.clone()
+        };
+        let limits = &self.config.limits;
+        let planned = Planned::new(query, &self.tables, limits)?;
+        let (count, limit) = (planned.count(), limits.max_points);
+        let points = u64::try_from(count).ok().filter(|few| *few <= limit);
+        let points = points.ok_or(Error::TooManyPoints { count, limit })?;
+        Ok((points, Answer::new(&planned, &output, limits.block_bytes)?))
+    }
+
+    /// The columns of files without names in them, as the header `strew-columns` has them.
+    pub(super) fn legend(&self) -> Result<Option<String>, Failure> {
+        let place = self.grid.place(0);
+        let answer = self
+            .answer(place)
+            .map_err(|error| self.refused(place, error))?;
+        Ok(answer.1.legend().map(Into::into))
+    }
+
+    /// How many points all chunks have, where that is known by counting boxes.
+    pub(super) fn count(&self) -> Option<u128> {
+        let is_plain = |checked: &Checked| {
+            let window = &checked.query.window;
+            let sets = &mut checked.query.sets.iter();
+            window.limit.is_none()
+                && sets.all(|set| {
+                    set.field.is_none() && set.clear_of.is_empty() && set.kinds.is_none()
+                })
+        };
+        if !self.levels.iter().all(is_plain) {
+            return None;
+        }
+        let counts = self
+            .levels
+            .iter()
+            .zip(&self.grid.levels)
+            .map(|(checked, level)| {
+                let region = crate::service::query::RegionDraft {
+                    path: "bbox".into(),
+                    shape: crate::service::query::ShapeDraft::Box(level.bbox()),
+                };
+                let query = Query {
+                    region: region.check().ok()?,
+                    ..checked.query.clone()
+                };
+                let planned = Planned::new(query, &self.tables, &self.config.limits).ok()?;
+                Some(planned.count())
+            });
+        counts.sum()
+    }
+}
+
+/// A file compressed in some ways, each with its ending; the plain one first.
+pub(super) fn variants(
+    bytes: Vec<u8>,
+    compressions: &[Compression],
+) -> anyhow::Result<Vec<(String, Vec<u8>)>> {
+    let packed = compressions.par_iter().map(|compression| {
+        let packed = compression.pack(&bytes).context("cannot compress a file")?;
+        Ok((format!(".{}", compression.ending()), packed))
+    });
+    let packed: Vec<(String, Vec<u8>)> = packed.collect::<anyhow::Result<_>>()?;
+    Ok([(String::new(), bytes)].into_iter().chain(packed).collect())
+}

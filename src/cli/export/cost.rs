@@ -1,0 +1,176 @@
+//! What an export costs, said before it begins: chunks, points, bytes and time, from a short trial; and whether the
+//! disk has room.
+
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use anyhow::anyhow;
+use indicatif::{HumanBytes, HumanDuration};
+use rayon::prelude::*;
+
+use super::{
+    chunks::{Maker, variants},
+    spec::{DEFLATE, Spec},
+};
+use crate::cli::{Failure, compression::Compression};
+
+/// How many chunks are tried at most, evenly spread over all of them.
+const TRIED: usize = 32;
+/// Of few chunks no more than one of so many is tried.
+const SHARE: usize = 8;
+/// No chunk is begun after this time.
+const TRIAL: Duration = Duration::from_secs(2);
+/// What a file takes on a disk is a multiple of this.
+const BLOCK: u64 = 4096;
+
+/// What is expected.
+#[derive(Clone, Debug)]
+pub(super) struct Cost {
+    chunks: usize,
+    points: f64,
+    /// Whether the number of points was counted, not estimated.
+    is_counted: bool,
+    bytes: f64,
+    /// What is still to be written, on the disk.
+    disk: f64,
+    files: f64,
+    time: Duration,
+}
+
+/// A chunk of the trial.
+struct Tried {
+    points: f64,
+    bytes: f64,
+    disk: f64,
+    seconds: f64,
+}
+
+impl Cost {
+    /// Tries some chunks, and counts points where that is quick. `done` chunks are there already; in an archive
+    /// files lie side by side.
+    pub(super) fn of(maker: &Maker, spec: &Spec, done: usize) -> Result<Self, Failure> {
+        let is_archive = spec.archive.is_some();
+        let compressions = match spec.archive.as_deref() {
+            Some(DEFLATE) => vec![Compression::Gzip],
+            _ => spec.compressions(),
+        };
+        let chunks = maker.grid.chunks();
+        let began = Instant::now();
+        let number = chunks.div_ceil(SHARE).min(TRIED);
+        let tried = (0..number).into_par_iter().map(|k| {
+            if k > 0 && began.elapsed() > TRIAL {
+                return Ok(None);
+            }
+            // The middle of each of as many parts.
+            let i = (2 * k + 1) * chunks / (2 * number);
+            try_out(maker, &compressions, i, is_archive).map(Some)
+        });
+        let tried: Vec<Option<Tried>> = tried.collect::<Result<_, Failure>>()?;
+        let tried: Vec<Tried> = tried.into_iter().flatten().collect();
+        let mean =
+            |of: fn(&Tried) -> f64| tried.iter().map(of).sum::<f64>() / tried.len().max(1) as f64;
+        let counted = maker.count().map(|count| count as f64);
+        let all = chunks as f64;
+        let points = counted.unwrap_or_else(|| all * mean(|t| t.points));
+        // Chunks of more points than those of the trial are larger, too.
+        let scale = match mean(|t| t.points) {
+            few if few > 0.0 => points / (all * few),
+            _ => 1.0,
+        };
+        let left = (chunks - done) as f64;
+        let seconds = left * mean(|t| t.seconds) * scale / rayon::current_num_threads() as f64;
+        Ok(Self {
+            chunks,
+            points,
+            is_counted: counted.is_some(),
+            bytes: all * mean(|t| t.bytes) * scale,
+            disk: left * mean(|t| t.disk) * scale,
+            files: left * (1 + compressions.len()) as f64,
+            time: Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX),
+        })
+    }
+
+    /// One line.
+    pub(super) fn line(&self) -> String {
+        let about = if self.is_counted { "" } else { "about " };
+        format!(
+            "{} chunks, {about}{:.0} points, about {}, {} on the disk; about {} on {} threads",
+            self.chunks,
+            self.points,
+            HumanBytes(self.bytes as u64),
+            HumanBytes(self.disk as u64),
+            HumanDuration(self.time),
+            rayon::current_num_threads(),
+        )
+    }
+
+    /// Refuses what does not fit the disk of a folder.
+    pub(super) fn check(&self, folder: &Path, is_archive: bool) -> Result<(), Failure> {
+        let Some((bytes, files)) = free(folder) else {
+            return Ok(());
+        };
+        if self.disk > bytes as f64 {
+            return Err(Failure::Other(anyhow!(
+                "the export takes about {}, and the disk of {} has {} free: choose a smaller box, another format, fewer \
+                 points or another disk",
+                HumanBytes(self.disk as u64),
+                folder.display(),
+                HumanBytes(bytes)
+            )));
+        }
+        // Some file systems do not count files.
+        if !is_archive && files > 0 && self.files > files as f64 {
+            return Err(Failure::Other(anyhow!(
+                "the export takes {:.0} files, and the disk of {} has room for {files}: choose larger chunks, or \
+                 --archive",
+                self.files,
+                folder.display()
+            )));
+        }
+        Ok(())
+    }
+}
+
+fn try_out(
+    maker: &Maker,
+    compressions: &[Compression],
+    i: usize,
+    is_archive: bool,
+) -> Result<Tried, Failure> {
+    let began = Instant::now();
+    let chunk = maker.make(i)?;
+    let points = chunk.points as f64;
+    let files = variants(chunk.bytes, compressions)?;
+    let sizes: Vec<u64> = files.iter().map(|(_, bytes)| bytes.len() as u64).collect();
+    let (bytes, disk) = match is_archive {
+        // One of them is stored; the rest is heads and indices.
+        true => {
+            let stored = sizes.last().copied().unwrap_or(0);
+            (stored, stored + 512)
+        }
+        false => {
+            let on_disk = sizes.iter().map(|size| size.next_multiple_of(BLOCK));
+            (sizes.iter().sum(), on_disk.sum())
+        }
+    };
+    Ok(Tried {
+        points,
+        bytes: bytes as f64,
+        disk: disk as f64,
+        seconds: began.elapsed().as_secs_f64(),
+    })
+}
+
+/// The bytes and the files that the disk of a folder has room for, where that is known.
+#[cfg(unix)]
+fn free(folder: &Path) -> Option<(u64, u64)> {
+    let disk = rustix::fs::statvfs(folder).ok()?;
+    Some((disk.f_bavail.saturating_mul(disk.f_frsize), disk.f_favail))
+}
+
+#[cfg(not(unix))]
+fn free(_: &Path) -> Option<(u64, u64)> {
+    None
+}

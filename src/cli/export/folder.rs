@@ -1,0 +1,223 @@
+//! A folder of chunks: each written under a temporary name and renamed, and noted in a journal, so that a run that
+//! was killed goes on where it was.
+
+use std::{
+    collections::HashMap,
+    fs::{self, File},
+    io::{self, BufRead as _, BufReader, Write as _},
+    path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+};
+
+use anyhow::{Context as _, anyhow};
+
+use super::{
+    chunks::{Chunk, Maker, variants},
+    record::{MANIFEST, Manifest, Record},
+    spec::Spec,
+};
+use crate::cli::{Failure, compression::Compression};
+
+/// What is not complete: the spec, the journal, files under temporary names.
+pub(super) const WORK: &str = ".partial";
+
+/// A folder that is being written.
+#[derive(Debug)]
+pub(super) struct Folder {
+    root: PathBuf,
+    work: PathBuf,
+    journal: Mutex<File>,
+    compressions: Vec<Compression>,
+    /// Held while this process writes.
+    _lock: File,
+}
+
+/// A folder as it is found.
+#[derive(Debug)]
+pub(super) enum Found {
+    /// Everything is there.
+    Complete,
+    /// Nothing is there, or what an earlier run has made.
+    Open(Folder, HashMap<usize, Record>),
+}
+
+impl Folder {
+    /// Opens a folder for an export; refuses one that holds anything else.
+    pub(super) fn open(root: &Path, spec: &Spec, maker: &Maker) -> Result<Found, Failure> {
+        let other = || {
+            Failure::Usage(anyhow!(
+                "--output {}: the folder holds an export with other options, or of another world: choose another folder",
+                root.display()
+            ))
+        };
+        let unwritable = || format!("cannot write {}", root.display());
+        fs::create_dir_all(root).with_context(unwritable)?;
+        if let Ok(bytes) = fs::read(root.join(MANIFEST)) {
+            let is_same = Manifest::read(&bytes).is_ok_and(|manifest| manifest.export == *spec);
+            return if is_same {
+                Ok(Found::Complete)
+            } else {
+                Err(other())
+            };
+        }
+        let work = root.join(WORK);
+        if !work.exists()
+            && fs::read_dir(root)
+                .with_context(unwritable)?
+                .next()
+                .is_some()
+        {
+            return Err(Failure::Usage(anyhow!(
+                "--output {}: the folder is not empty; allowed: a new folder, or one whose export was interrupted",
+                root.display()
+            )));
+        }
+        fs::create_dir_all(&work).with_context(unwritable)?;
+        let file = work.join("spec.json");
+        let lock = File::options()
+            .create(true)
+            .append(true)
+            .open(&file)
+            .with_context(unwritable)?;
+        if lock.try_lock().is_err() {
+            return Err(Failure::Usage(anyhow!(
+                "--output {}: another process writes this folder",
+                root.display()
+            )));
+        }
+        let said = fs::read(&file).with_context(unwritable)?;
+        let ours = serde_json::to_vec(spec).context("the options cannot be written")?;
+        match said.is_empty() {
+            true => (&lock).write_all(&ours).with_context(unwritable)?,
+            false if said == ours => {}
+            false => return Err(other()),
+        }
+        let path = work.join("journal");
+        let mut folder = Self {
+            root: root.into(),
+            journal: Mutex::new(
+                File::options()
+                    .create(true)
+                    .append(true)
+                    .open(&path)
+                    .with_context(unwritable)?,
+            ),
+            work,
+            compressions: spec.compressions(),
+            _lock: lock,
+        };
+        let done = folder.done(&path, maker).with_context(unwritable)?;
+        // Without the line that is broken off, and with each chunk once.
+        let mut lines = String::new();
+        for (i, record) in &done {
+            lines += &record.line(*i);
+        }
+        let fresh = folder.work.join("journal.new");
+        fs::write(&fresh, lines)
+            .and_then(|()| fs::rename(&fresh, &path))
+            .with_context(unwritable)?;
+        let journal = File::options()
+            .append(true)
+            .open(&path)
+            .with_context(unwritable)?;
+        folder.journal = Mutex::new(journal);
+        Ok(Found::Open(folder, done))
+    }
+
+    /// The chunks of the journal whose files are there with the length that they had.
+    fn done(&self, journal: &Path, maker: &Maker) -> io::Result<HashMap<usize, Record>> {
+        let mut done = HashMap::new();
+        let mut lines = BufReader::new(File::open(journal)?);
+        let (chunks, files) = (maker.grid.chunks(), 1 + self.compressions.len());
+        let mut line = String::new();
+        while lines.read_line(&mut line)? > 0 {
+            let known = Record::read(&line)
+                .filter(|(i, record)| *i < chunks && record.files.len() == files);
+            if let Some((i, record)) = known {
+                let name = maker.grid.name(maker.grid.place(i));
+                let is_there = self
+                    .names(&name)
+                    .zip(&record.files)
+                    .all(|(name, (_, length))| {
+                        fs::metadata(self.root.join(name)).is_ok_and(|file| file.len() == *length)
+                    });
+                if is_there {
+                    done.insert(i, record);
+                }
+            }
+            line.clear();
+        }
+        Ok(done)
+    }
+
+    /// The names of a chunk's files.
+    fn names(&self, name: &str) -> impl Iterator<Item = String> {
+        let packed = self.compressions.iter();
+        let packed: Vec<String> = packed
+            .map(|packed| format!("{name}.{}", packed.ending()))
+            .collect();
+        [name.to_owned()].into_iter().chain(packed)
+    }
+
+    /// Writes a chunk.
+    pub(super) fn put(&self, i: usize, name: &str, chunk: Chunk) -> anyhow::Result<Record> {
+        let mut record = Record {
+            points: chunk.points,
+            files: vec![],
+        };
+        for (ending, bytes) in variants(chunk.bytes, &self.compressions)? {
+            record
+                .files
+                .push((blake3::hash(&bytes), bytes.len() as u64));
+            self.file(&format!("{name}{ending}"), &bytes)?;
+        }
+        let mut journal = self.journal.lock().unwrap_or_else(PoisonError::into_inner);
+        let noted = journal.write_all(record.line(i).as_bytes());
+        noted.with_context(|| format!("cannot write {}", self.work.display()))?;
+        Ok(record)
+    }
+
+    /// Writes a file, which has its name only when it is whole.
+    pub(super) fn file(&self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
+        let thread = rayon::current_thread_index().unwrap_or(usize::MAX);
+        let (fresh, path) = (self.work.join(format!("{thread}")), self.root.join(name));
+        let write = || -> io::Result<()> {
+            fs::write(&fresh, bytes)?;
+            match fs::rename(&fresh, &path) {
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                    fs::create_dir_all(path.parent().unwrap_or(&self.root))?;
+                    fs::rename(&fresh, &path)
+                }
+                renamed => renamed,
+            }
+        };
+        write().with_context(|| format!("cannot write {}", path.display()))
+    }
+
+    /// Everything is written but these documents, the last of which says that it is complete.
+    pub(super) fn finish(self, documents: &[(String, Vec<u8>)]) -> anyhow::Result<()> {
+        let Some((last, others)) = documents.split_last() else {
+            return Ok(());
+        };
+        for (name, bytes) in others {
+            self.file(name, bytes)?;
+        }
+        self.sync()?;
+        self.file(&last.0, &last.1)?;
+        self.sync()?;
+        fs::remove_dir_all(&self.work)
+            .with_context(|| format!("cannot remove {}", self.work.display()))
+    }
+
+    /// Waits until the disk has what was written.
+    #[cfg(target_os = "linux")]
+    fn sync(&self) -> anyhow::Result<()> {
+        let all = File::open(&self.root).and_then(|root| Ok(rustix::fs::syncfs(root)?));
+        all.with_context(|| format!("cannot write {}", self.root.display()))
+    }
+
+    #[cfg(not(target_os = "linux"))]
+    fn sync(&self) -> anyhow::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,186 @@
+//! Which chunks an export has: levels of detail, each a rectangle of the world grid, and the addresses of chunks.
+
+use std::ops::Range;
+
+use anyhow::anyhow;
+use serde::{Deserialize, Serialize};
+
+use crate::cli::Failure;
+
+/// The most levels of detail: the coarsest has a billionth of the points.
+pub(super) const MOST_LEVELS: u32 = 16;
+
+/// A level of detail: chunks that are 2ᵏ times as wide, with the share 4⁻ᵏ of the points.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Level {
+    /// The side of its chunks.
+    pub(super) size: f64,
+    /// The share of the points.
+    pub(super) keep: f64,
+    /// What addresses have after `?`, without which the daemon's answer may be another one.
+    pub(super) query: String,
+    /// The columns of its chunks.
+    pub(super) columns: [i64; 2],
+    /// The rows of its chunks.
+    pub(super) rows: [i64; 2],
+}
+
+/// A chunk: its level, column and row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) level: usize,
+    pub(super) at: [i64; 2],
+}
+
+/// All chunks, in the order of levels, columns and rows.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Grid {
+    /// What paths begin with.
+    path: String,
+    pub(super) levels: Vec<Level>,
+}
+
+impl Level {
+    /// The chunks that a box touches.
+    pub(super) fn new(
+        size: f64,
+        keep: f64,
+        query: String,
+        bbox: [f64; 4],
+    ) -> Result<Self, Failure> {
+        let [min_x, min_y, max_x, max_y] = bbox;
+        let between = |min: f64, max: f64| {
+            let (first, end) = ((min / size).floor(), (max / size).ceil());
+            let is_near = [first, end].iter().all(|v| v.abs() <= FARTHEST);
+            let range = [first as i64, (end as i64).max(first as i64 + 1)];
+            is_near.then_some(range).ok_or_else(|| {
+                Failure::Usage(anyhow!(
+                    "--bbox {min_x},{min_y},{max_x},{max_y} reaches too far for --chunk {size}; allowed: columns and \
+                     rows of chunks within ±{FARTHEST}"
+                ))
+            })
+        };
+        Ok(Self {
+            size,
+            keep,
+            query,
+            columns: between(min_x, max_x)?,
+            rows: between(min_y, max_y)?,
+        })
+    }
+
+    fn ranges(&self) -> [Range<i64>; 2] {
+        [self.columns, self.rows].map(|[first, end]| first..end)
+    }
+
+    /// How many chunks there are.
+    pub(super) fn chunks(&self) -> u128 {
+        let [columns, rows] = self.ranges().map(|range| range.end.abs_diff(range.start));
+        u128::from(columns) * u128::from(rows)
+    }
+
+    /// The box of all chunks.
+    pub(super) fn bbox(&self) -> [f64; 4] {
+        let at = |cell: i64| cell as f64 * self.size;
+        [
+            at(self.columns[0]),
+            at(self.rows[0]),
+            at(self.columns[1]),
+            at(self.rows[1]),
+        ]
+    }
+}
+
+/// How far from the origin chunks are counted.
+const FARTHEST: f64 = (1u64 << 52) as f64;
+
+impl Grid {
+    /// The chunks of some levels, in a world or without one.
+    pub(super) fn new(world: Option<&str>, levels: Vec<Level>) -> Result<Self, Failure> {
+        let grid = Self {
+            path: match world {
+                Some(name) => format!("v1/worlds/{name}/chunks"),
+                None => "v1/chunks".into(),
+            },
+            levels,
+        };
+        let chunks: u128 = grid.levels.iter().map(Level::chunks).sum();
+        match usize::try_from(chunks) {
+            Ok(few) if few < u32::MAX as usize => Ok(grid),
+            _ => Err(Failure::Usage(anyhow!(
+                "--bbox has {chunks} chunks; allowed: at most {}: choose a smaller box or larger chunks",
+                u32::MAX - 1
+            ))),
+        }
+    }
+
+    /// How many chunks there are.
+    pub(super) fn chunks(&self) -> usize {
+        self.levels
+            .iter()
+            .map(|level| level.chunks() as usize)
+            .sum()
+    }
+
+    /// Chunk number `i`.
+    pub(super) fn place(&self, mut i: usize) -> Place {
+        for (number, level) in self.levels.iter().enumerate() {
+            let chunks = level.chunks() as usize;
+            if i < chunks {
+                let [columns, rows] = level.ranges();
+                let height = (rows.end - rows.start) as usize;
+                let [column, row] = [i / height, i % height].map(|k| k as i64);
+                return Place {
+                    level: number,
+                    at: [columns.start + column, rows.start + row],
+                };
+            }
+            i -= chunks;
+        }
+        unreachable!("chunks are counted")
+    }
+
+    /// What paths of chunks begin with, without the first slash.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The folder of a level's chunks.
+    pub(super) fn folder(&self, level: &Level) -> String {
+        format!("{}/{}", self.path, level.size)
+    }
+
+    /// The path of a chunk below the daemon's address, without the first slash.
+    pub(super) fn name(&self, place: Place) -> String {
+        let [x, y] = place.at;
+        format!("{}/{x}/{y}", self.folder(&self.levels[place.level]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chunks_are_numbered_by_level_column_and_row() {
+        let level = |size, bbox| Level::new(size, 1.0, String::new(), bbox).expect("near");
+        let bbox = [-65.0, 0.0, 64.0, 128.5];
+        let levels = vec![level(64.0, bbox), level(128.0, bbox)];
+        let grid = Grid::new(Some("forest"), levels).expect("few");
+        assert_eq!(grid.chunks(), 9 + 4);
+        let names: Vec<String> = (0..13).map(|i| grid.name(grid.place(i))).collect();
+        assert_eq!(names[0], "v1/worlds/forest/chunks/64/-2/0");
+        assert_eq!(names[8], "v1/worlds/forest/chunks/64/0/2");
+        assert_eq!(names[9], "v1/worlds/forest/chunks/128/-1/0");
+        assert_eq!(names[12], "v1/worlds/forest/chunks/128/0/1");
+        assert_eq!(grid.levels[1].bbox(), [-128.0, 0.0, 128.0, 256.0]);
+    }
+
+    #[test]
+    fn too_many_chunks_are_refused() {
+        let far = Level::new(1e-12, 1.0, String::new(), [0.0, 0.0, 1e6, 1.0]);
+        assert!(far.is_err());
+        let many = Level::new(1.0, 1.0, String::new(), [0.0, 0.0, 1e6, 1e6]).expect("near");
+        assert!(Grid::new(None, vec![many]).is_err());
+    }
+}

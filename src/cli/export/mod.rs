@@ -1,0 +1,326 @@
+//! `strew export`: a world of chunks as files, under the daemon's own paths, in a folder or one archive.
+
+mod archive;
+mod check;
+mod chunks;
+mod cost;
+mod folder;
+mod grid;
+mod record;
+mod servers;
+mod spec;
+mod zip;
+
+use std::{
+    path::{Path, PathBuf},
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+    },
+};
+
+use anyhow::anyhow;
+use rayon::prelude::*;
+
+use self::{
+    archive::Archive,
+    chunks::Maker,
+    cost::Cost,
+    folder::Folder,
+    record::{Record, documents},
+    spec::{Shape, Spec},
+};
+use super::{
+    Failure,
+    compression::Compression,
+    config,
+    flags::{Exported, Flags, WHERE},
+    progress::Progress,
+    signals::stop_flag,
+};
+use crate::{config::Config, service::Catalog};
+
+/// Flags of `strew export`: a query, how it is cut into chunks, and where to write.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// The folder to write: a new one, or one whose export was interrupted.
+    #[arg(long, short, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// One file instead of a folder: a zip, read by ranges.
+    #[arg(long, value_name = "FILE", conflicts_with = "output")]
+    archive: Option<PathBuf>,
+    /// Check an export instead: digests, names, and points that are made again.
+    #[arg(long, value_name = "DIR|FILE", conflicts_with_all = ["output", "archive", "chunk", "levels", "compress"])]
+    check: Option<PathBuf>,
+    /// With --check: make all chunks again, not 100 of them.
+    #[arg(long, requires = "check")]
+    all: bool,
+    /// The side of a chunk.
+    #[arg(long, value_name = "SIDE", help_heading = WHERE)]
+    chunk: Option<f64>,
+    /// Levels of detail: level k has chunks that are 2ᵏ times as wide, with the share 4⁻ᵏ of the points.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, help_heading = WHERE,
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(grid::MOST_LEVELS)))]
+    levels: u32,
+    /// Compressed files beside the plain ones: gz, zst, both or none [default: gz for formats of text, else none]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    compress: Option<Vec<Packing>>,
+    /// The number of threads [default: one for each core]
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    threads: Option<u32>,
+    /// Say what it costs, and write nothing.
+    #[arg(long)]
+    dry_run: bool,
+    /// Say nothing on standard error but errors.
+    #[arg(long, short)]
+    quiet: bool,
+    #[command(flatten)]
+    flags: Flags<Exported>,
+    #[command(flatten)]
+    settings: config::Args,
+}
+
+/// How files are compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Packing {
+    /// Not at all.
+    None,
+    /// By gzip.
+    Gz,
+    /// By zstd.
+    Zst,
+}
+
+/// What an export is made with.
+struct Job<'a> {
+    spec: Spec,
+    maker: Maker,
+    catalog: Catalog,
+    args: &'a Args,
+}
+
+/// Exports, or checks an export.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let config = args.settings.merged()?;
+    let threads = args
+        .threads
+        .map_or(config.workers.threads, |threads| threads as usize);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Failure::Other(error.into()))?;
+    pool.install(|| match &args.check {
+        Some(path) => check::run(path, args.all, args.quiet, &config),
+        None => export(args, &config),
+    })
+}
+
+fn export(args: &Args, config: &Config) -> Result<(), Failure> {
+    let Some(size) = args.chunk else {
+        return Err(Failure::Usage(anyhow!(
+            "the side of a chunk is missing: give --chunk, such as --chunk 64"
+        )));
+    };
+    if !(size.is_finite() && size > 0.0) {
+        return Err(Failure::Usage(anyhow!(
+            "--chunk {size}: out of range; allowed: a finite number above 0"
+        )));
+    }
+    if args.output.is_none() && args.archive.is_none() && !args.dry_run {
+        return Err(Failure::Usage(anyhow!(
+            "a place to write is missing: give --output DIR or --archive FILE, or --dry-run"
+        )));
+    }
+    let catalog = spec::catalog(config)?;
+    let shape = Shape {
+        size,
+        levels: args.levels,
+        compressed: args.compress.as_deref().map(Packing::all).transpose()?,
+        is_archive: args.archive.is_some(),
+    };
+    let spec = Spec::new(&args.flags, &shape, &catalog, config)?;
+    let job = Job {
+        maker: Maker::new(&spec, &catalog, config)?,
+        spec,
+        catalog,
+        args,
+    };
+    match (&args.output, &args.archive) {
+        _ if args.dry_run => job.cost(0, None),
+        (Some(root), _) => job.to_folder(root),
+        (_, Some(path)) => job.to_archive(path),
+        (None, None) => Ok(()),
+    }
+}
+
+impl Job<'_> {
+    /// Says what is to come, unless the disk has no room for it.
+    fn cost(&self, done: usize, place: Option<&Path>) -> Result<(), Failure> {
+        let is_archive = self.args.archive.is_some();
+        let cost = Cost::of(&self.maker, &self.spec, done)?;
+        if !self.args.quiet {
+            eprintln!("{}", cost.line());
+            if done > 0 {
+                eprintln!("{done} chunks are there already");
+            }
+        }
+        place.map_or(Ok(()), |place| cost.check(place, is_archive))
+    }
+
+    fn progress(&self, done: usize) -> Progress {
+        let chunks = self.maker.grid.chunks() as u64;
+        Progress::new("chunks", chunks, self.args.quiet).going_on_at(done as u64)
+    }
+
+    fn name(&self, i: usize) -> String {
+        self.maker.grid.name(self.maker.grid.place(i))
+    }
+
+    fn to_folder(&self, root: &Path) -> Result<(), Failure> {
+        let (folder, mut done) = match Folder::open(root, &self.spec, &self.maker)? {
+            folder::Found::Complete => return self.nothing_to_do(root),
+            folder::Found::Open(folder, done) => (folder, done),
+        };
+        self.cost(done.len(), Some(root))?;
+        let stop = stop_flag();
+        let chunks = self.maker.grid.chunks();
+        let (progress, count) = (
+            Mutex::new(self.progress(done.len())),
+            AtomicUsize::new(done.len()),
+        );
+        let made = (0..chunks)
+            .into_par_iter()
+            .filter(|i| !done.contains_key(i))
+            .map(|i| {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(stopped(count.load(Ordering::Relaxed), chunks));
+                }
+                let record = folder.put(i, &self.name(i), self.maker.make(i)?)?;
+                let reached = count.fetch_add(1, Ordering::Relaxed) + 1;
+                if let Ok(mut progress) = progress.try_lock() {
+                    progress.reach(reached as u64, "");
+                }
+                Ok((i, record))
+            });
+        let made: Result<Vec<(usize, Record)>, Failure> = made.collect();
+        progress
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner)
+            .finish();
+        done.extend(made?);
+        let mut records: Vec<(usize, Record)> = done.into_iter().collect();
+        records.sort_unstable_by_key(|(i, _)| *i);
+        let records: Vec<Record> = records.into_iter().map(|(_, record)| record).collect();
+        let documents = documents(&self.spec, &self.maker, &self.catalog, &records, vec![])?;
+        folder.finish(&documents)?;
+        self.said(root, &records);
+        Ok(())
+    }
+
+    fn to_archive(&self, path: &Path) -> Result<(), Failure> {
+        let (mut archive, mut records) = match Archive::open(path, &self.spec, &self.maker)? {
+            archive::Found::Complete => return self.nothing_to_do(path),
+            archive::Found::Open(archive, records) => (archive, records),
+        };
+        let folder = path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        self.cost(records.len(), Some(folder.unwrap_or(Path::new("."))))?;
+        let mut progress = self.progress(records.len());
+        let written = self.in_order(&mut archive, &mut records, &mut progress, &stop_flag());
+        progress.finish();
+        archive.flush()?;
+        written?;
+        let extra = archive.extra(&self.spec, &self.maker)?;
+        let documents = documents(&self.spec, &self.maker, &self.catalog, &records, extra)?;
+        archive.finish(documents, &self.maker)?;
+        self.said(path, &records);
+        Ok(())
+    }
+
+    /// Writes the chunks after those that are there, a batch while the next one is being made.
+    fn in_order(
+        &self,
+        archive: &mut Archive,
+        records: &mut Vec<Record>,
+        progress: &mut Progress,
+        stop: &AtomicBool,
+    ) -> Result<(), Failure> {
+        let (chunks, size) = (self.maker.grid.chunks(), 32 * rayon::current_num_threads());
+        let is_deflated = archive.is_deflated();
+        let make = |first: usize| {
+            let batch = (first..chunks.min(first + size)).into_par_iter();
+            let packed = batch.map(|i| Ok(Archive::pack(self.maker.make(i)?, is_deflated)?));
+            packed.collect::<Result<Vec<_>, Failure>>()
+        };
+        let mut ready = make(records.len())?;
+        while !ready.is_empty() {
+            let first = records.len();
+            let (written, next) = rayon::join(
+                || {
+                    for (k, (_, content)) in ready.iter().enumerate() {
+                        archive.put(&self.name(first + k), content)?;
+                    }
+                    archive.flush()
+                },
+                || make(first + ready.len()),
+            );
+            written?;
+            records.extend(ready.into_iter().map(|(record, _)| record));
+            progress.reach(records.len() as u64, "");
+            if stop.load(Ordering::Relaxed) {
+                return Err(stopped(records.len(), chunks));
+            }
+            ready = next?;
+        }
+        Ok(())
+    }
+
+    fn nothing_to_do(&self, place: &Path) -> Result<(), Failure> {
+        if !self.args.quiet {
+            eprintln!("{} is complete: nothing to do", place.display());
+        }
+        Ok(())
+    }
+
+    fn said(&self, place: &Path, records: &[Record]) {
+        if self.args.quiet {
+            return;
+        }
+        let points: u64 = records.iter().map(|record| record.points).sum();
+        let bytes: u64 = records
+            .iter()
+            .flat_map(|record| &record.files)
+            .map(|(_, length)| length)
+            .sum();
+        eprintln!(
+            "{}: {} chunks, {points} points, {bytes} bytes",
+            place.display(),
+            records.len()
+        );
+    }
+}
+
+fn stopped(done: usize, chunks: usize) -> Failure {
+    Failure::Interrupted(anyhow!(
+        "interrupted after {done} of {chunks} chunks; the same command goes on there"
+    ))
+}
+
+impl Packing {
+    /// The compressions of some names; none may not stand beside others.
+    fn all(names: &[Self]) -> Result<Vec<Compression>, Failure> {
+        if names.len() > 1 && names.contains(&Self::None) {
+            return Err(Failure::Usage(anyhow!(
+                "--compress none stands alone; allowed: none, gz, zst, gz,zst"
+            )));
+        }
+        let all = [
+            (Self::Gz, Compression::Gzip),
+            (Self::Zst, Compression::Zstd),
+        ];
+        Ok(all
+            .into_iter()
+            .filter(|(name, _)| names.contains(name))
+            .map(|(_, packed)| packed)
+            .collect())
+    }
+}

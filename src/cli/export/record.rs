@@ -1,0 +1,192 @@
+//! What is known of files that are written, and the documents that close an export.
+
+use std::fmt::Write as _;
+
+use anyhow::{Context as _, anyhow};
+use serde::{Deserialize, Serialize};
+
+use super::{chunks::Maker, servers, spec::Spec};
+use crate::{
+    cli::Failure,
+    rest::world_document,
+    service::{Catalog, World},
+};
+
+/// The manifest, which comes last: an export without it is not complete.
+pub(super) const MANIFEST: &str = "manifest.json";
+/// The digests of all other files, as `b3sum` writes them.
+pub(super) const DIGESTS: &str = "files.b3";
+
+/// A chunk that is written.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Record {
+    pub(super) points: u64,
+    /// The digest and the length of the plain file, then those of the compressed ones.
+    pub(super) files: Vec<(blake3::Hash, u64)>,
+}
+
+impl Record {
+    /// A line of a journal.
+    pub(super) fn line(&self, i: usize) -> String {
+        let mut line = format!("{i} {}", self.points);
+        for (digest, length) in &self.files {
+            let _ = write!(line, " {digest}:{length}");
+        }
+        line.push('\n');
+        line
+    }
+
+    /// Reads a line of a journal; none if it is broken off.
+    pub(super) fn read(line: &str) -> Option<(usize, Self)> {
+        let mut words = line.strip_suffix('\n')?.split(' ');
+        let (i, points) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
+        let file = |word: &str| {
+            let (digest, length) = word.split_once(':')?;
+            Some((blake3::Hash::from_hex(digest).ok()?, length.parse().ok()?))
+        };
+        let files = words.map(file).collect::<Option<_>>()?;
+        Some((i, Self { points, files }))
+    }
+}
+
+/// What an export is and has.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Manifest {
+    /// The options that decide its bytes.
+    pub(super) export: Spec,
+    /// The path of a chunk, as the daemon has it.
+    pub(super) path: String,
+    /// For formats without names in them: the columns.
+    pub(super) columns: Option<serde_json::Value>,
+    /// What each level has.
+    pub(super) levels: Vec<Total>,
+    /// What all of them have.
+    pub(super) total: Total,
+    /// The digest of the list of digests.
+    pub(super) files: String,
+}
+
+/// Sums over chunks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Total {
+    pub(super) chunks: u64,
+    pub(super) points: u64,
+    /// The bytes of plain files.
+    pub(super) bytes: u64,
+}
+
+impl Total {
+    fn add(&mut self, record: &Record) {
+        self.chunks += 1;
+        self.points += record.points;
+        self.bytes += record.files[0].1;
+    }
+}
+
+/// The documents beside the chunks, in the order in which they are written; `extra` are files of the kind of export.
+pub(super) fn documents(
+    spec: &Spec,
+    maker: &Maker,
+    catalog: &Catalog,
+    records: &[Record],
+    extra: Vec<(String, Vec<u8>)>,
+) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let legend = maker.legend()?;
+    let mut files = extra;
+    let world = spec
+        .world
+        .as_ref()
+        .and_then(|world| catalog.worlds().get(&world.name));
+    if let Some(world) = world {
+        files.push((
+            world_path(world),
+            world_document(world).context("a world cannot be written")?,
+        ));
+    }
+    let tables: Vec<&str> = maker
+        .query()
+        .sets
+        .iter()
+        .map(|set| set.entry.digest.as_str())
+        .collect();
+    let served = servers::Served {
+        spec,
+        grid: &maker.grid,
+        tables: tables.join(", "),
+        columns: legend.as_deref(),
+    };
+    files.push((servers::NGINX.into(), served.nginx().into()));
+    files.push((servers::HEADERS.into(), served.headers().into()));
+    let digests = digests(spec, maker, records, &files);
+    let columns = legend.as_deref().map(serde_json::from_str).transpose();
+    let mut levels = vec![Total::default(); spec.levels.len()];
+    let mut total = Total::default();
+    for (i, record) in records.iter().enumerate() {
+        levels[maker.grid.place(i).level].add(record);
+        total.add(record);
+    }
+    let manifest = Manifest {
+        export: spec.clone(),
+        path: format!("/{}/{{size}}/{{cx}}/{{cy}}", maker.grid.path()),
+        columns: columns.context("the columns are no JSON")?,
+        levels,
+        total,
+        files: blake3::hash(digests.as_bytes()).to_hex().to_string(),
+    };
+    let mut written =
+        serde_json::to_vec_pretty(&manifest).context("a manifest cannot be written")?;
+    written.push(b'\n');
+    files.push((DIGESTS.into(), digests.into()));
+    files.push((MANIFEST.into(), written));
+    Ok(files)
+}
+
+/// The file of a world's description: a server answers with it to the path of its folder.
+pub(super) fn world_path(world: &World) -> String {
+    format!("v1/worlds/{}/index.json", world.name)
+}
+
+fn digests(spec: &Spec, maker: &Maker, records: &[Record], files: &[(String, Vec<u8>)]) -> String {
+    let mut text = String::new();
+    let endings = spec.compressions();
+    for (i, record) in records.iter().enumerate() {
+        let name = maker.grid.name(maker.grid.place(i));
+        let names = endings
+            .iter()
+            .map(|ending| format!("{name}.{}", ending.ending()));
+        let names = [name.clone()].into_iter().chain(names);
+        for ((digest, _), name) in record.files.iter().zip(names) {
+            let _ = writeln!(text, "{digest}  {name}");
+        }
+    }
+    for (name, bytes) in files {
+        let _ = writeln!(text, "{}  {name}", blake3::hash(bytes));
+    }
+    text
+}
+
+impl Manifest {
+    /// Reads a manifest.
+    pub(super) fn read(bytes: &[u8]) -> anyhow::Result<Self> {
+        serde_json::from_slice(bytes)
+            .map_err(|error| anyhow!("{MANIFEST} is no manifest of an export: {error}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_that_is_broken_off_is_none() {
+        let record = Record {
+            points: 12,
+            files: vec![(blake3::hash(b"a"), 96), (blake3::hash(b"b"), 80)],
+        };
+        let line = record.line(7);
+        assert_eq!(Record::read(&line), Some((7, record)));
+        for end in 0..line.len() {
+            assert_eq!(Record::read(&line[..end]), None);
+        }
+    }
+}

@@ -1,0 +1,499 @@
+//! `strew export`: a world as files. A static server answers with the daemon's bytes, killed exports go on, and what
+//! differs is found.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::Read as _,
+    net::SocketAddr,
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+
+use strew_testkit::{
+    http1::{self, Answer},
+    wait::until,
+};
+
+use crate::support::{
+    clients,
+    command::{errors, run},
+    daemon::{Daemon, strew},
+    proxy::{Proxy, nginx},
+};
+
+const WORLDS: &str = "\
+[[worlds.forest.layers]]
+name = 'oak'
+spacing = 4
+seed = 7
+attributes = ['angle']
+[[worlds.forest.layers]]
+name = 'rock'
+spacing = 2
+clear_of = { oak = 1 }
+";
+
+/// A folder with the settings of a world, and the path of the settings.
+fn settings() -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("strew.toml");
+    fs::write(&file, WORLDS).expect("writable");
+    let file = file.display().to_string();
+    (folder, file)
+}
+
+fn export(arguments: &[&str]) -> Output {
+    run(&[&["export", "-q"], arguments].concat(), "")
+}
+
+fn exported(arguments: &[&str]) {
+    let output = export(arguments);
+    assert!(
+        output.status.success(),
+        "{arguments:?}: {}",
+        errors(&output)
+    );
+}
+
+/// All files below a folder.
+fn tree(root: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut open = vec![root.to_owned()];
+    let mut files = BTreeMap::new();
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let name = path
+                    .strip_prefix(root)
+                    .expect("inside")
+                    .display()
+                    .to_string();
+                files.insert(name, fs::read(path).expect("readable"));
+            }
+        }
+    }
+    files
+}
+
+/// nginx over a folder of files, with the settings that the export wrote.
+fn serve(root: &Path) -> Option<Proxy> {
+    clients::find("nginx")?;
+    let server = |address: SocketAddr, folder: &Path| {
+        let root = root.display();
+        let conf = Path::new(&root.to_string()).join("strew.nginx.conf");
+        let include = match conf.exists() {
+            true => format!("include {};", conf.display()),
+            false => String::new(),
+        };
+        nginx(
+            folder,
+            &format!("server {{ listen {address}; root {root}; {include} }}"),
+        )
+    };
+    Some(Proxy::start("nginx", server))
+}
+
+fn assert_alike(one: &Answer, other: &Answer, path: &str) {
+    assert_eq!((one.status, other.status), (200, 200), "{path}");
+    assert!(one.body == other.body, "{path}: other bytes");
+    for name in ["content-type", "strew-table", "strew-algorithm"] {
+        assert_eq!(one.header(name), other.header(name), "{path}: {name}");
+    }
+    let optional = |answer: &Answer, name: &str| answer.headers.get(name).cloned();
+    for name in ["strew-world", "strew-columns"] {
+        assert_eq!(optional(one, name), optional(other, name), "{path}: {name}");
+    }
+}
+
+#[test]
+fn a_static_server_answers_as_the_daemon() {
+    let (folder, file) = settings();
+    let daemon = Daemon::with_config(WORLDS);
+    let world = folder.path().join("world");
+    let out = world.display().to_string();
+    let flags = [
+        "--config",
+        &file,
+        "--world",
+        "forest",
+        "--bbox=-16,0,32,32",
+        "--chunk=16",
+        "--levels=2",
+    ];
+    exported(&[&flags[..], &["--format", "json", "-o", &out]].concat());
+    let Some(nginx) = serve(&world) else { return };
+    let get = |address, path: &str| http1::get(address, path, &[]);
+    let chunks = [
+        ("16/-1/0", ""),
+        ("16/1/1", ""),
+        ("32/-1/0", "&keep=0.25"),
+        ("32/0/0", "&keep=0.25"),
+    ];
+    for (chunk, keep) in chunks {
+        let path = format!("/v1/worlds/forest/chunks/{chunk}?format=json{keep}");
+        let (there, here) = (get(daemon.address(), &path), get(nginx.address, &path));
+        assert_alike(&there, &here, &path);
+        assert!(here.text().contains("\"rock\""), "{}", here.text());
+        let packed = http1::get(nginx.address, &path, &[("accept-encoding", "gzip")]);
+        assert_eq!(packed.header("content-encoding"), "gzip");
+        let mut plain = vec![];
+        flate2::read::GzDecoder::new(&*packed.body)
+            .read_to_end(&mut plain)
+            .expect("gzip");
+        assert!(plain == there.body, "{path}");
+    }
+    let document = |address| get(address, "/v1/worlds/forest");
+    assert!(document(nginx.address).body == document(daemon.address()).body);
+    let digest = document(nginx.address).json()["digest"]
+        .as_str()
+        .expect("text")
+        .to_owned();
+    let pinned = format!("/v1/worlds/forest/chunks/16/0/0?world_digest={digest}&format=json");
+    let (there, here) = (get(daemon.address(), &pinned), get(nginx.address, &pinned));
+    assert_alike(&there, &here, &pinned);
+    assert_eq!(here.header("cache-control"), there.header("cache-control"));
+    // What would have another answer has none.
+    for other in [
+        "16/0/0?format=json&seed=8",
+        "16/0/0?format=csv",
+        "32/0/0?format=json",
+        "16/7/7?format=json",
+    ] {
+        let path = format!("/v1/worlds/forest/chunks/{other}");
+        assert_eq!(get(nginx.address, &path).status, 404, "{path}");
+    }
+}
+
+#[test]
+fn sets_without_a_world_are_served_under_their_parameters() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let world = folder.path().join("world");
+    let out = world.display().to_string();
+    let daemon = Daemon::built_in();
+    let set = [
+        "--spacing=1.5",
+        "--seed=7",
+        "--attributes=angle,variant",
+        "--variants=oak:3,birch:1",
+    ];
+    let flags = [
+        "--bbox=0,0,32,16",
+        "--chunk=16",
+        "--levels=2",
+        "--format=f32",
+        "-o",
+        &out,
+    ];
+    exported(&[&set[..], &flags].concat());
+    let Some(nginx) = serve(&world) else { return };
+    let query = "spacing=1.5&seed=7&attributes=angle,variant&variants=oak:3,birch:1&format=f32";
+    let manifest = fs::read(world.join("manifest.json")).expect("written");
+    let manifest: serde_json::Value = serde_json::from_slice(&manifest).expect("JSON");
+    for (level, chunk) in [(0, "16/1/0"), (1, "32/0/0")] {
+        let query = manifest["export"]["levels"][level]["query"]
+            .as_str()
+            .expect("text");
+        let path = format!("/v1/chunks/{chunk}?{query}");
+        let there = http1::get(daemon.address(), &path, &[]);
+        assert_alike(&there, &http1::get(nginx.address, &path, &[]), &path);
+        assert!(there.body.len() > 12 * 8);
+    }
+    let mut words: Vec<&str> = query.split('&').collect();
+    let said = manifest["export"]["levels"][0]["query"]
+        .as_str()
+        .expect("text");
+    let mut ours: Vec<&str> = said.split('&').collect();
+    (words.sort_unstable(), ours.sort_unstable());
+    assert_eq!(ours, words);
+}
+
+#[test]
+fn a_coarser_level_has_a_part_of_the_points_of_a_finer_one() {
+    let (_folder, file) = settings();
+    let of = |keep: &str| {
+        let chunk = [
+            "sample",
+            "-q",
+            "--chunk=64/0/0",
+            "--format=csv",
+            "--world=forest",
+            "--config",
+            &file,
+        ];
+        let output = run(&[&chunk[..], &["--keep", keep]].concat(), "");
+        assert!(output.status.success(), "{}", errors(&output));
+        let text = String::from_utf8(output.stdout).expect("UTF-8");
+        text.lines()
+            .skip(1)
+            .map(Into::into)
+            .collect::<Vec<String>>()
+    };
+    let (all, quarter) = (of("1"), of("0.25"));
+    assert!(quarter.iter().all(|point| all.contains(point)));
+    let share = quarter.len() as f64 / all.len() as f64;
+    assert!((0.2..0.3).contains(&share), "{share}");
+}
+
+/// Starts an export and kills it, with SIGKILL, once a path is there.
+fn kill_when(arguments: &[&str], what: &str, there: impl Fn() -> bool) {
+    let mut command = strew();
+    command
+        .args(["export", "-q", "--threads=1"])
+        .args(arguments);
+    let mut child = command
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program runs");
+    until(what, || there().then_some(()));
+    let _ = child.kill();
+    let _ = child.wait();
+}
+
+const LARGE: [&str; 5] = [
+    "--spacing=0.5",
+    "--seed=3",
+    "--bbox=0,0,1024,1024",
+    "--chunk=32",
+    "--format=f32",
+];
+
+#[test]
+fn a_killed_export_goes_on_to_the_same_tree() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name);
+    let text = |name: &str| path(name).display().to_string();
+    let to = |name: &str| [&LARGE.map(String::from)[..], &["-o".into(), text(name)]].concat();
+    let flags = to("whole");
+    exported(&flags.iter().map(String::as_str).collect::<Vec<_>>());
+    let flags = to("broken");
+    let flags: Vec<&str> = flags.iter().map(String::as_str).collect();
+    let journal = path("broken/.partial/journal");
+    kill_when(&flags, "some chunks are there", || {
+        fs::metadata(&journal).is_ok_and(|file| file.len() > 3000)
+    });
+    assert!(
+        !path("broken/manifest.json").exists(),
+        "it was quicker than the kill"
+    );
+    let check = export(&["--check", &text("broken")]);
+    assert_eq!(check.status.code(), Some(1));
+    // Other options neither go on there nor touch it.
+    let other = export(&[&flags[..], &["--warp=off"]].concat());
+    assert_eq!(other.status.code(), Some(2), "{}", errors(&other));
+    let before = fs::metadata(path("broken/v1/chunks/32/0/0"))
+        .ok()
+        .and_then(|file| file.modified().ok());
+    exported(&flags);
+    let after = fs::metadata(path("broken/v1/chunks/32/0/0"))
+        .ok()
+        .and_then(|file| file.modified().ok());
+    assert_eq!(after, before.or(after), "a chunk was made twice");
+    let (whole, broken) = (tree(&path("whole")), tree(&path("broken")));
+    assert!(whole.keys().eq(broken.keys()) && whole == broken);
+    exported(&["--check", &text("broken"), "--all"]);
+
+    // A changed byte, a missing and a foreign file.
+    let chunk = path("broken/v1/chunks/32/3/5");
+    let mut bytes = fs::read(&chunk).expect("written");
+    bytes[9] ^= 1;
+    fs::write(&chunk, bytes).expect("writable");
+    fs::remove_file(path("broken/v1/chunks/32/4/4")).expect("there");
+    fs::write(path("broken/v1/chunks/32/4/99"), "x").expect("writable");
+    let check = export(&["--check", &text("broken")]);
+    assert_eq!(check.status.code(), Some(1));
+    let said = errors(&check);
+    for fault in [
+        "32/3/5: changed",
+        "32/4/4: missing",
+        "32/4/99: foreign",
+        "in 3 files",
+    ] {
+        assert!(said.contains(fault), "{said}");
+    }
+}
+
+/// A little-endian number of some bytes.
+fn number(bytes: &[u8]) -> u64 {
+    bytes
+        .iter()
+        .rev()
+        .fold(0, |all, byte| all << 8 | u64::from(*byte))
+}
+
+/// Reads a range, as browsers do.
+fn range(address: SocketAddr, first: u64, length: u64) -> Vec<u8> {
+    let range = format!("bytes={first}-{}", first + length - 1);
+    let answer = http1::get(address, "/world.zip", &[("range", &range)]);
+    assert_eq!(answer.status, 206);
+    answer.body
+}
+
+/// The place and the length of the content of the first members of the central directory.
+fn first_members(address: SocketAddr, length: u64) -> Vec<(String, u64, u64)> {
+    let end = range(address, length - 22, 22);
+    assert!(end.starts_with(b"PK\x05\x06"));
+    let directory = range(
+        address,
+        number(&end[16..20]),
+        number(&end[12..16]).min(4096),
+    );
+    let (mut at, mut members) = (0, vec![]);
+    for _ in 0..2 {
+        let head = &directory[at..];
+        let (name, extra) = (number(&head[28..30]), number(&head[30..32]));
+        let text = String::from_utf8(head[46..46 + name as usize].to_vec()).expect("UTF-8");
+        members.push((
+            text,
+            number(&head[42..46]) + 30 + name + 8,
+            number(&head[20..24]),
+        ));
+        at += 46 + (name + extra) as usize;
+    }
+    members
+}
+
+#[test]
+fn an_archive_is_read_by_ranges_and_goes_on_after_a_kill() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (whole, broken) = (path("world.zip"), path("broken.zip"));
+    exported(&[&LARGE[..], &["--archive", &whole]].concat());
+    let partial = path("broken.zip.partial");
+    kill_when(
+        &[&LARGE[..], &["--archive", &broken]].concat(),
+        "some chunks are there",
+        || fs::metadata(&partial).is_ok_and(|file| file.len() > 1 << 20),
+    );
+    assert!(
+        fs::metadata(&broken).is_err(),
+        "it was quicker than the kill"
+    );
+    exported(&[&LARGE[..], &["--archive", &broken]].concat());
+    let bytes = fs::read(&whole).expect("written");
+    assert!(fs::read(&broken).expect("written") == bytes);
+    exported(&["--check", &whole]);
+
+    if let Some(nginx) = serve(folder.path()) {
+        let members = first_members(nginx.address, bytes.len() as u64);
+        let names: Vec<&str> = members.iter().map(|(name, ..)| name.as_str()).collect();
+        assert_eq!(names, ["manifest.json", "index.bin"]);
+        let manifest = range(nginx.address, members[0].1, members[0].2);
+        let manifest: serde_json::Value = serde_json::from_slice(&manifest).expect("JSON");
+        let level = &manifest["export"]["levels"][0];
+        assert_eq!(
+            (&level["columns"], &level["rows"]),
+            (&serde_json::json!([0, 32]), &serde_json::json!([0, 32]))
+        );
+        // The chunk in column 3 and row 5.
+        let entry = range(nginx.address, members[1].1 + 16 * (3 * 32 + 5), 16);
+        let chunk = range(nginx.address, number(&entry[..8]), number(&entry[8..12]));
+        let sample = run(
+            &[
+                &["sample", "-q", "--chunk=32/3/5"],
+                &LARGE[..2],
+                &LARGE[4..],
+            ]
+            .concat(),
+            "",
+        );
+        assert!(chunk == sample.stdout);
+        assert_eq!(number(&entry[12..]), chunk.len() as u64 / 8);
+    }
+    if let Some(mut python) = clients::python("the standard library") {
+        let read = "import sys, zipfile; z = zipfile.ZipFile(sys.argv[1]); assert z.testzip() is None; print(len(z.namelist()))";
+        let output = python.args(["-c", read, &whole]).output().expect("it runs");
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(
+            output.status.success() && said.trim().parse::<u32>().is_ok_and(|n| n > 1024),
+            "{said}"
+        );
+    }
+
+    let mut bytes = bytes;
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(&broken, bytes).expect("writable");
+    let check = export(&["--check", &broken]);
+    assert_eq!(check.status.code(), Some(1));
+    assert!(
+        errors(&check).contains("missing or unreadable"),
+        "{}",
+        errors(&check)
+    );
+}
+
+#[test]
+fn an_interrupt_ends_it_in_good_order() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("world");
+    let mut command = strew();
+    command
+        .args(["export", "-q", "--threads=1", "-o"])
+        .arg(&out)
+        .args(LARGE);
+    let child = command
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    let journal = out.join(".partial/journal");
+    until("some chunks are there", || {
+        fs::metadata(&journal)
+            .is_ok_and(|file| file.len() > 3000)
+            .then_some(())
+    });
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(sent.is_ok_and(|status| status.success()));
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(130));
+    assert!(
+        errors(&output).contains("goes on there"),
+        "{}",
+        errors(&output)
+    );
+}
+
+#[test]
+fn wrong_flags_are_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("mine.txt"), "x").expect("writable");
+    let full = folder.path().display().to_string();
+    let set = ["--spacing=1", "--bbox=0,0,64,64"];
+    for (flags, said) in [
+        (&["-o", "w"][..], "give --chunk"),
+        (&["--chunk=0", "-o", "w"], "--chunk 0: out of range"),
+        (&["--chunk=16"], "give --output DIR or --archive FILE"),
+        (&["--chunk=16", "-o", &full], "the folder is not empty"),
+        (
+            &["--chunk=16", "--format=parquet", "-o", "w"],
+            "--format parquet",
+        ),
+        (
+            &["--chunk=16", "--compress=none,gz", "-o", "w"],
+            "--compress none stands alone",
+        ),
+        (
+            &["--chunk=16", "--compress=zst", "--archive", "w"],
+            "--compress zst",
+        ),
+        (&["--chunk=1e-9", "-o", "w"], "chunks; allowed"),
+    ] {
+        let output = export(&[&set[..], flags].concat());
+        assert_eq!(
+            output.status.code(),
+            Some(2),
+            "{flags:?}: {}",
+            errors(&output)
+        );
+        assert!(
+            errors(&output).contains(said),
+            "{flags:?}: {}",
+            errors(&output)
+        );
+    }
+    assert!(!Path::new("w").exists());
+}
