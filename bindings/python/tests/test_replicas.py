@@ -28,7 +28,14 @@ QUERY: dict[str, Any] = {"bbox": (0, 0, 150, 150), "spacing": 1, "attributes": [
 def daemons(*settings: tuple[str, ...]) -> Iterator[list[str]]:
     """A daemon for each list of settings, and their addresses."""
     running = [daemon(*one) for one in settings]
-    yield [url for _, url in running]
+    try:
+        yield [url for _, url in running]
+    finally:
+        end(running)
+
+
+def end(running: list[Any]) -> None:
+    """Kills daemons."""
     for process, _ in running:
         process.kill()
         process.wait()
@@ -73,20 +80,20 @@ def test_readers_of_killed_replicas_get_every_point_once(monkeypatch: pytest.Mon
     readers = [threading.Thread(target=read, args=(number,)) for number in range(READERS)]
     for reader in readers:
         reader.start()
-    for kill in range(KILLS):
-        # Each daemon dies with answers half sent, and is back before the next one dies.
-        before, victim = sum(answers), kill % 3
-        until(lambda: sum(answers) > before + 3 or failures or not any(r.is_alive() for r in readers))
-        process, url = running[victim]
-        process.kill()
-        process.wait()
-        running[victim] = daemon(listen=url.removeprefix("http://"))
-    is_over.set()
-    for reader in readers:
-        reader.join()
-    for process, _ in running:
-        process.kill()
-        process.wait()
+    try:
+        for kill in range(KILLS):
+            # Each daemon dies with answers half sent, and is back before the next one dies.
+            before, victim = sum(answers), kill % 3
+            until(lambda: sum(answers) > before + 3 or failures or not any(r.is_alive() for r in readers))
+            process, url = running[victim]
+            process.kill()
+            process.wait()
+            running[victim] = daemon(listen=url.removeprefix("http://"))
+    finally:
+        is_over.set()
+        for reader in readers:
+            reader.join()
+        end(running)
     assert failures == []
     assert min(answers) >= 1
     assert continued and max(continued) > 0

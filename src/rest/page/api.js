@@ -80,13 +80,20 @@ export function brokeOff() {
   return new Gone("the connection broke off");
 }
 
+let remedy = async () => false;
+
+/** Has `mend(problem, path, body)` called where the server refuses a request; if it says true, the request is repeated. */
+export function onRefused(mend) {
+  remedy = mend;
+}
+
 /**
  * The answer to a request; a body makes it a `POST`.
  *
  * Throws `Problem` for what the server refuses, `Gone` if it is not there, and an `AbortError` where
  * `signal` says so.
  */
-export async function ask(path, { body, signal, method } = {}) {
+export async function ask(path, { body, signal, method, isAgain } = {}) {
   let answer;
   try {
     answer = await fetch(path, {
@@ -103,7 +110,9 @@ export async function ask(path, { body, signal, method } = {}) {
   if (answer.ok) return answer;
   const problem = await answer.json().catch(() => ({}));
   const words = problem.detail ?? problem.title ?? `the server answered ${answer.status} ${answer.statusText}`.trim();
-  throw new Problem(answer.status, words, Number(answer.headers.get("retry-after")) || 0, problem.errors);
+  const refused = new Problem(answer.status, words, Number(answer.headers.get("retry-after")) || 0, problem.errors);
+  if (!isAgain && await remedy(refused, path, body)) return ask(path, { body, signal, method, isAgain: true });
+  throw refused;
 }
 
 /** A JSON document. */

@@ -1,5 +1,7 @@
 // What to paste elsewhere to get the points in view: the address, curl, grpcurl, Python.
 
+import { messageOf } from "./paint/message.js";
+import { documentOf } from "./sent.js";
 import { Digits, bodyOf, joined, json, memberOf, setOf } from "./query.js";
 
 /** The formats of answers: name, ending of a file, what it is for. A test holds them against the server. */
@@ -18,6 +20,9 @@ export const FORMATS = [
   ["png", "png", "a picture"],
 ];
 
+/** A field is written out in a request up to so many characters: shells take words of 131,071 bytes. */
+const MOST_FIELD = 60_000;
+
 /** The parameter that pictures take beside. */
 function looksOf(format) {
   return format === "png" || format === "svg" ? { size: 2048 } : {};
@@ -26,13 +31,23 @@ function looksOf(format) {
 /** The request for the points in a box of four decimals: `{ path }`, with a `body` for layers. */
 export function requestOf(layers, box, keep, format) {
   const looks = looksOf(format);
-  if (layers.length === 1) {
+  const isWhole = isShort(layers);
+  if (layers.length === 1 && !isWhole) {
     const pairs = [["bbox", box.join(",")], ...setOf(layers[0], keep), ["format", format]];
     pairs.push(...Object.entries(looks).map(([name, value]) => [name, String(value)]));
     return { path: `/v1/points?${joined(pairs)}` };
   }
   const region = { bbox: box.map((side) => new Digits(side)) };
-  return { path: "/v1/points:query", body: json(bodyOf(layers, region, keep, { format, ...looks }), 2) };
+  const set = layers.length === 1
+    ? { region, ...memberOf(layers[0], keep, isWhole), format, ...looks }
+    : bodyOf(layers, region, keep, { format, ...looks }, isWhole);
+  return { path: "/v1/points:query", body: json(set, 2) };
+}
+
+/** Whether the page has sent a field of these layers that a line can hold in full. */
+function isShort(layers) {
+  const documents = layers.map((layer) => documentOf(layer.field)).filter(Boolean);
+  return documents.length > 0 && JSON.stringify(documents).length < MOST_FIELD;
 }
 
 /** A word of a shell. */
@@ -50,8 +65,9 @@ export function curl(origin, { path, body }, file) {
 export function grpcurl(host, layers, box, keep) {
   const [minX, minY, maxX, maxY] = box.map((side) => new Digits(side));
   const region = { bbox: { min_x: minX, min_y: minY, max_x: maxX, max_y: maxY } };
-  const list = bodyOf(layers, region, keep).layers.map(typed);
-  const message = layers.length === 1 ? { region, ...typed(memberOf(layers[0], keep)) } : { region, layers: list };
+  const isWhole = isShort(layers);
+  const list = bodyOf(layers, region, keep, {}, isWhole).layers.map(typed);
+  const message = layers.length === 1 ? { region, ...typed(memberOf(layers[0], keep, isWhole)) } : { region, layers: list };
   const plain = location.protocol === "https:" ? "" : " -plaintext";
   return `grpcurl${plain} -d ${quoted(json(message, 2))} \\\n  ${host} strew.v1.PointService/StreamPoints`;
 }
@@ -60,6 +76,7 @@ export function grpcurl(host, layers, box, keep) {
 function typed({ name, region, clear_of, ...set }) {
   const message = { ...set };
   if (set.warp === "off" || set.warp === "on") message.warp = set.warp === "on" ? 1 : 0;
+  if (set.field) message.field = messageOf(set.field);
   if (set.scale_range) message.scale_range = { min: set.scale_range[0], max: set.scale_range[1] };
   if (set.variants) {
     const weights = set.variants.split(",").map((one) => one.split(":"));

@@ -4,7 +4,7 @@
 import { byId, icon, make, settled, spoken } from "./dom.js";
 import { faultsBefore } from "./faults.js";
 import { check, fault, field, select, setOptions } from "./form.js";
-import { isSent } from "./picture.js";
+import { isSent } from "./sent.js";
 import { MAP_WORDS, PROFILE_WORDS, choicesOf, including, nice, profileNames } from "./profiles.js";
 import { COLOR_NAMES, LAYER, MOST_LAYERS } from "./state.js";
 import { SHAPES, SHAPE_SIGNS } from "./marks.js";
@@ -251,7 +251,7 @@ export class Controls {
     const { layer } = this;
     const names = isSent(layer.field) || !layer.field ? this.fields : including(this.fields, layer.field);
     const choices = [["", "Everywhere"], ...names.map((name) => [name, name])];
-    if (isSent(layer.field)) choices.push([layer.field, "A picture that was sent"]);
+    if (isSent(layer.field)) choices.push([layer.field, layer.paint ? "Painted by hand" : "A field that was sent"]);
     return choices;
   }
 

@@ -18,6 +18,7 @@ import { Status } from "./status.js";
 import { LAYER, initial } from "./state.js";
 import { Start } from "./start.js";
 import { Take } from "./take.js";
+import { Paint } from "./paint/paint.js";
 import { palette, watchTheme } from "./theme.js";
 import { Understand } from "./understand.js";
 import { Works } from "./works/works.js";
@@ -286,8 +287,12 @@ const [understand, take] = [new Understand(session, plane), new Take(session, pl
 const shade = new Shade(plane);
 const works = new Works(session);
 const card = new Card(session, plane);
+const paint = new Paint(session, plane, {
+  picked: () => controls?.picked ?? 0,
+  say: (words) => banner(words, [["Close", () => banner(null)]]),
+});
 const start = new Start(session);
-parts.push(start, card, understand, take, shade, works);
+parts.push(start, card, understand, take, shade, works, paint);
 tools();
 takeDrops(byId("stage"), stipple);
 tabs();
@@ -306,6 +311,7 @@ session.on((changed) => {
 /** Stipples a picture with the layer that is picked. */
 async function stipple(file) {
   if (!controls) return;
+  if (file.name.endsWith(".json")) return paint.open(file);
   try {
     banner(`Sending “${file.name}” …`);
     const members = await sendPicture(file, plane.view);
@@ -384,5 +390,5 @@ async function begin() {
 }
 
 // For the curious, and for tests.
-globalThis.strew = { plane, start, card, shade, stipple, session, status, understand, take, works };
+globalThis.strew = { plane, start, card, shade, stipple, session, status, understand, take, works, paint };
 begin();

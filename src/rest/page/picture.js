@@ -1,17 +1,12 @@
 // A picture that becomes dots: it is sent once, and then named by its digest, chunk by chunk.
 
-import { askJson } from "./api.js";
 import { toNumber } from "./place.js";
+import { send } from "./sent.js";
 
 /** The server takes a million pixels at most. */
 const MOST_PIXELS = 1_000_000;
 /** About so many dots come where the whole picture is dark. */
 const DOTS = 60_000;
-
-/** The name of a field that was sent: its digest. */
-export function isSent(field) {
-  return /^[0-9a-f]{64}$/.test(field);
-}
 
 /**
  * Sends a picture, laid over the middle of a view. Gives what the layer becomes: its field, how many points,
@@ -25,9 +20,9 @@ export async function sendPicture(file, view) {
   const bbox = [x - halfX, y - halfY, x + halfX, y + halfY];
   // Dark where the picture is dark, on white paper.
   const document = { raster: { png, bbox, low: 1, high: 0 } };
-  const held = await askJson("/v1/fields", { body: JSON.stringify(document) });
+  const field = await send(document);
   const spacing = Math.sqrt((4 * halfX * halfY) / DOTS);
-  return { field: held.name, by: "spacing", amount: String(Number(spacing.toPrecision(4))), dot: 1.2 };
+  return { field, paint: "", by: "spacing", amount: String(Number(spacing.toPrecision(4))), dot: 1.2 };
 }
 
 /** The picture as a PNG in base64, smaller if it is too large. */

@@ -2,6 +2,7 @@
 
 import { encoded } from "./state.js";
 import { decimalsFor, formatPlace, moved } from "./place.js";
+import { documentOf } from "./sent.js";
 
 /** The attributes that a layer shows, in the order in which they are asked for. */
 export function attributesOf(layer) {
@@ -36,9 +37,10 @@ export function joined(pairs) {
 
 /**
  * The same as members of a JSON object: numbers as numbers, as far as they are some. A seed above
- * 2⁵³ keeps its digits through `raw`, as JSON allows and JavaScript does not.
+ * 2⁵³ keeps its digits through `raw`, as JSON allows and JavaScript does not. With `isWhole`, a field that
+ * this page has sent is described in full, so that no server has to hold it.
  */
-export function memberOf(layer, keep = 1) {
+export function memberOf(layer, keep = 1, isWhole = false) {
   const members = {};
   for (const [name, value] of setOf(layer, keep)) {
     if (["spacing", "density", "min_distance", "keep"].includes(name)) members[name] = numberOr(value);
@@ -46,6 +48,7 @@ export function memberOf(layer, keep = 1) {
     else if (name === "seed") members[name] = new Digits(value);
     else if (name === "attributes") members[name] = value.split(",");
     else if (name === "scale_range") members[name] = value.split(",").map(numberOr);
+    else if (name === "field") members[name] = (isWhole && documentOf(value)) || value;
     else members[name] = value;
   }
   return members;
@@ -86,9 +89,9 @@ export function togetherBody(layers) {
 }
 
 /** Several layers over a region, as the body of `POST /v1/points:query`. */
-export function bodyOf(layers, region, keep = 1, looks = {}) {
+export function bodyOf(layers, region, keep = 1, looks = {}, isWhole = false) {
   const list = layers.map((layer, i) => {
-    const members = { name: layerName(i), ...memberOf(layer, keep) };
+    const members = { name: layerName(i), ...memberOf(layer, keep, isWhole) };
     const clear = Number(layer.clear);
     if (i > 0 && clear > 0) {
       members.clear_of = Object.fromEntries(layers.slice(0, i).map((_, j) => [layerName(j), clear]));

@@ -19,6 +19,7 @@ export const LAYER = Object.freeze({
   seed: "1",
   warp: "",
   field: "",
+  paint: "",
   shade: true,
   color: 0,
   dot: 1,
@@ -52,6 +53,7 @@ const KEYS = {
   seed: "seed",
   warp: "warp",
   field: "field",
+  paint: "paint",
   shade: "shade",
   color: "color",
   dot: "dot",
@@ -62,6 +64,9 @@ const KEYS = {
   variants: "variants",
   clear: "clear",
 };
+
+/** What is painted stands in the address up to so many characters; more goes into a file. */
+export const MOST_PAINT = 4000;
 
 /** The most layers that the page offers. */
 export const MOST_LAYERS = 6;
@@ -151,6 +156,7 @@ export function toHash(state) {
       const standard = member === "color" ? i : LAYER[member];
       const must = member === "profile" || member === "amount" || member === "seed";
       if (!must && layer[member] === standard) continue;
+      if (member === "paint" && layer.paint.length > MOST_PAINT) continue;
       const value = typeof layer[member] === "boolean" ? (layer[member] ? "1" : "0") : String(layer[member]);
       said.push([named(key, i), value]);
     }

@@ -11,7 +11,7 @@ use crate::support::{
 };
 
 /// The request that the copy button puts into the clipboard; `way` is its language.
-fn copied(browser: &Browser, way: &str) -> String {
+pub(super) fn copied(browser: &Browser, way: &str) -> String {
     browser.click(&format!("#way-{way}"));
     browser.click("#copy");
     browser.until("document.querySelector('#copy').textContent === 'Copied'");
@@ -19,13 +19,13 @@ fn copied(browser: &Browser, way: &str) -> String {
     text.as_str().expect("text").into()
 }
 
-fn allow_clipboard(browser: &Browser) {
+pub(super) fn allow_clipboard(browser: &Browser) {
     let names = json!({ "permissions": ["clipboardReadWrite", "clipboardSanitizedWrite"] });
     browser.cdp("Browser.grantPermissions", &names);
 }
 
 /// Fails unless these points are those in view.
-fn assert_same(browser: &Browser, found: &[[f64; 2]]) {
+pub(super) fn assert_same(browser: &Browser, found: &[[f64; 2]]) {
     let middle = browser.value("[strew.plane.view.x, strew.plane.view.y].map(({ i, f }) => i + f)");
     let middle = [0, 1].map(|i| middle[i].as_f64().expect("a number"));
     let mut found: Vec<[f64; 2]> = found
@@ -42,7 +42,7 @@ fn assert_same(browser: &Browser, found: &[[f64; 2]]) {
     }
 }
 
-fn rows(csv: &str) -> Vec<[f64; 2]> {
+pub(super) fn rows(csv: &str) -> Vec<[f64; 2]> {
     let header = csv.lines().next().expect("a header");
     let columns: Vec<&str> = header.split(',').collect();
     let [x, y] = ["x", "y"].map(|name| columns.iter().position(|c| *c == name).expect("a column"));
@@ -95,7 +95,7 @@ fn a_copied_request_returns_the_points_in_view() {
 
 /// Runs a shell command that writes points.csv, in a folder of its own, and passes the file to
 /// `look`.
-fn run(line: &str, needs: &str, look: impl Fn(&str)) {
+pub(super) fn run(line: &str, needs: &str, look: impl Fn(&str)) {
     if clients::find(needs).is_none() {
         return;
     }

@@ -1,0 +1,236 @@
+// Fields by hand: a bar of tools on the plane, what was painted with them, and the field that it is.
+
+import { byId, icon, make } from "../dom.js";
+import { documentOf, expect, isSent, send } from "../sent.js";
+import { MOST_PAINT } from "../state.js";
+import { Brush } from "./brush.js";
+import { blank, fieldOf, read, simplified, written } from "./strokes.js";
+import { layersOf, worldOf } from "./world.js";
+
+const TOOLS = [["paint", "Brush", "More points"], ["road", "Road", "A line that keeps points away"], ["erase", "Erase", "Fewer points"]];
+/** Shares of the points outside of what is painted. */
+const GROUNDS = [[1, "all"], [0.1, "a tenth"], [0, "none"]];
+/** A line is kept to this part of the brush's size. */
+const FINENESS = 1 / 24;
+const BRUSH = "M14 6l4 4M4 20c3 0 5-1 5-4a3 3 0 0 0-3-3c-2 0-2 2-2 3s0 3-2 4c1 0 1 0 2 0zM9 14l8.5-9.5a2 2 0 0 1 3 3L11 16";
+
+/** The field below what is painted, described in full. */
+const whole = (name) => documentOf(name) ?? { name };
+
+export class Paint {
+  /** `picked()` is the index of the layer that is painted on; `say(words)` shows what went wrong. */
+  constructor(session, plane, { picked, say }) {
+    Object.assign(this, { session, plane, picked, fail: say, tool: null, width: 0.12, strength: 1, turn: 0 });
+    this.work = blank();
+    /** Texts of what was painted by the fields that they are, for those that the address does not hold. */
+    this.texts = new Map();
+    this.build();
+    this.brush = new Brush(this.canvas, plane, {
+      drawn: (line) => this.drawn(line),
+      left: () => this.use(null),
+      say: (words) => this.say(words),
+    });
+    session.on((changed) => changed.has("layers") && this.read());
+    this.read();
+  }
+
+  build() {
+    const button = (id, words, onclick, attributes = {}) => make("button", { type: "button", id: `paint-${id}`, onclick, ...attributes }, words);
+    const slide = (id, words, value, changed) => make("label", {}, words, make("input", {
+      type: "range", id: `paint-${id}`, min: "0", max: "1", step: "0.01", value: String(value),
+      oninput: (event) => changed(Number(event.target.value)),
+    }));
+    this.toggle = button("open", [icon(BRUSH), make("span", {}, "Paint")], () => this.use(this.tool ? null : "paint"), {
+      "aria-expanded": "false", "aria-label": "Paint density and roads", title: "Paint density and roads",
+    });
+    this.tools = TOOLS.map(([tool, words, title]) => button(`tool-${tool}`, words, () => this.use(tool), { title, "aria-pressed": "false" }));
+    this.size = slide("size", "Size", Math.sqrt(this.width), (value) => {
+      this.width = Math.max(0.004, value ** 2);
+      this.fit();
+    });
+    this.strong = slide("strength", "Strength", this.strength, (value) => (this.strength = Math.max(0.05, value)));
+    this.elsewhere = make("select", { id: "paint-ground", onchange: (event) => this.change({ ground: Number(event.target.value) }) },
+      GROUNDS.map(([share, words]) => make("option", { value: String(share) }, words)));
+    this.undoButton = button("undo", "Undo", () => this.undo());
+    this.clearButton = button("clear", "Clear", () => this.change({ strokes: [] }, "Cleared"));
+    this.file = make("input", { type: "file", id: "paint-file", accept: ".json,application/json", hidden: true, "aria-label": "A world file", onchange: () => {
+      const [file] = this.file.files;
+      if (file) this.open(file);
+      this.file.value = "";
+    } });
+    this.said = make("span", { id: "paint-said", role: "status" });
+    this.inside = [button("done", "Done", () => this.use(null)), ...this.tools, this.size, this.strong, make("label", {}, "Elsewhere", this.elsewhere), this.undoButton, this.clearButton,
+      button("save", "Save", () => this.save(), { title: "The world as a file" }), button("load", "Open", () => this.file.click(), { title: "A world from a file" }),
+      this.said];
+    this.bar = make("div", { id: "paint", role: "group", "aria-label": "Paint", hidden: true }, ...this.inside, this.file);
+    this.canvas = make("canvas", {
+      id: "brush", tabindex: "0", role: "application", hidden: true,
+      "aria-label": "Paint on the plane. Arrow keys move the brush, Space puts the pen down and lifts it, plus and minus zoom, Escape leaves.",
+    });
+    byId("tools").prepend(this.toggle);
+    byId("stage").append(this.canvas, this.bar);
+    addEventListener("keydown", (event) => {
+      if (!this.tool) return;
+      if (event.key === "z" && (event.ctrlKey || event.metaKey) && !event.target.matches("input:not([type=range]), textarea")) {
+        event.preventDefault();
+        this.undo();
+      } else if (event.key === "Escape" && event.target !== this.canvas) this.use(null);
+    });
+    this.render();
+  }
+
+  /** Takes a tool into the hand, or puts it down. */
+  use(tool) {
+    const had = this.tool;
+    this.tool = tool;
+    this.brush.kind = tool ?? "paint";
+    this.brush.line = null;
+    this.render();
+    this.fit();
+    if (tool) {
+      this.canvas.focus({ preventScroll: true });
+      if (!had) this.say("Draw on the plane. Two fingers or the wheel move it, Escape leaves.");
+    } else if (had) this.toggle.focus({ preventScroll: true });
+  }
+
+  render() {
+    const { tool } = this;
+    this.bar.hidden = this.canvas.hidden = !tool;
+    this.toggle.setAttribute("aria-expanded", String(Boolean(tool)));
+    this.tools.forEach((button, i) => button.setAttribute("aria-pressed", String(TOOLS[i][0] === tool)));
+    this.strong.hidden = tool === "road";
+    this.undoButton.disabled = this.clearButton.disabled = this.work.strokes.length === 0;
+    this.elsewhere.value = String(this.work.ground);
+    this.elsewhere.parentElement.hidden = Boolean(this.work.base);
+  }
+
+  /** The size of a brush in world units: a part of what is in view. */
+  get brushSize() {
+    return this.width * (this.plane.span || 1) * (this.tool === "road" ? 0.5 : 1);
+  }
+
+  fit() {
+    this.brush.size = this.brushSize;
+    if (this.tool) this.brush.draw();
+  }
+
+  moved() {
+    if (this.tool) this.fit();
+  }
+
+  themed() {
+    this.moved();
+  }
+
+  say(words) {
+    this.said.textContent = words;
+  }
+
+  get layer() {
+    return this.session.state.layers[this.picked()] ?? this.session.state.layers[0];
+  }
+
+  /** Takes what is painted from the layers, where it has changed. */
+  read() {
+    for (const layer of this.session.state.layers) if (layer.paint) this.known(layer);
+    const { layer } = this;
+    const text = layer.paint || this.texts.get(layer.field) || "";
+    if (!text) this.work = blank(layer.field);
+    else if (text !== written(this.work)) this.work = read(text);
+    this.render();
+  }
+
+  /** Sees that what a layer's text says is its field. */
+  known(layer) {
+    const text = this.texts.get(layer.field);
+    if (text === layer.paint) return;
+    const work = read(layer.paint);
+    if (!layer.field) this.restore(layer, work);
+    // A field that was chosen since is another one.
+    else if (text !== undefined || !isSent(layer.field) || [...this.texts.values()].includes(layer.paint)) {
+      this.session.correct(() => (layer.paint = ""));
+    } else {
+      this.texts.set(layer.field, layer.paint);
+      expect(fieldOf(work));
+    }
+  }
+
+  /** Sends what an address describes without the field's digest. */
+  async restore(layer, work) {
+    try {
+      const field = await send(fieldOf(work), fieldOf(work, whole));
+      this.texts.set(field, layer.paint);
+      this.session.correct(() => (layer.field = field));
+      this.session.tell("layers");
+    } catch (error) {
+      this.fail(error.message);
+    }
+  }
+
+  drawn(line) {
+    const { tool, brushSize: size, strength, work } = this;
+    const stroke = { kind: tool, size, strength: tool === "road" ? 1 : strength, line: simplified(line, size * FINENESS) };
+    // Who begins with a brush wants to see what it does.
+    const isFirst = work.strokes.length === 0 && !work.base && work.ground === 1 && tool === "paint";
+    this.change({ strokes: [...work.strokes, stroke], ...(isFirst ? { ground: 0.1 } : {}) });
+  }
+
+  undo() {
+    if (this.work.strokes.length > 0) this.change({ strokes: this.work.strokes.slice(0, -1) }, "Undone");
+  }
+
+  /** Sends what is painted after a change, and shows it. */
+  async change(members, words = "") {
+    const before = this.work;
+    this.work = read(written({ ...before, ...members }));
+    if (this.work.strokes.length === 0) this.work = blank(before.base);
+    this.render();
+    this.turn += 1;
+    const mine = this.turn;
+    const { work, layer } = this;
+    const text = written(work);
+    try {
+      const field = text ? await send(fieldOf(work), fieldOf(work, whole)) : work.base;
+      if (mine !== this.turn) return;
+      if (text) this.texts.set(field, text);
+      const amount = layer.by === "min_distance" ? { by: "spacing", amount: await this.spacing(layer) } : {};
+      this.session.choose(() => Object.assign(layer, { field, paint: text, ...amount }), "layers");
+      const count = work.strokes.length;
+      const where = text.length > MOST_PAINT ? ", too much for the address: save it as a file" : "";
+      this.say(`${words ? `${words}: ` : ""}${count} ${count === 1 ? "stroke" : "strokes"}${where}`);
+    } catch (error) {
+      if (mine !== this.turn) return;
+      this.work = before;
+      this.render();
+      this.fail(error.message);
+    }
+  }
+
+  /** In a field no least distance is kept, so a layer that has one goes on with the spacing that it had. */
+  async spacing(layer) {
+    const { spacing } = await this.session.understand({ ...layer, field: "" });
+    return String(Number(spacing.toPrecision(6)));
+  }
+
+  /** Saves the layers as a world, which the page, the daemon and the command line read. */
+  save() {
+    const url = URL.createObjectURL(new Blob([worldOf(this.session.state.layers)], { type: "application/json" }));
+    const link = make("a", { href: url, download: "world.json" });
+    document.body.append(link);
+    link.click();
+    link.remove();
+    setTimeout(() => URL.revokeObjectURL(url), 60_000);
+    this.say("world.json is with your browser's downloads. A folder of worlds takes it, too.");
+  }
+
+  /** Opens a world from a file. */
+  async open(file) {
+    try {
+      const layers = await layersOf(await file.text(), file.name);
+      this.session.choose((state) => (state.layers = layers), "layers");
+      this.say(`“${file.name}” is open`);
+    } catch (error) {
+      this.fail(error.message);
+    }
+  }
+}

@@ -1,0 +1,183 @@
+//! Fields by hand: what is painted by mouse, keys and touch is what the server's points follow, and it comes back from
+//! the address and from a file.
+
+use serde_json::{Value, json};
+
+use super::export::{allow_clipboard, assert_same, copied, rows, run};
+use crate::support::{
+    browser::{Browser, looking},
+    daemon::Daemon,
+};
+
+/// Does something that changes the points, and waits until they are there. Returns how many.
+fn changed(browser: &Browser, act: impl FnOnce()) -> u64 {
+    let before = browser.value("strew.plane.chunks.identity");
+    act();
+    browser.until(&format!("strew.plane.chunks.identity !== {before}"));
+    browser.ready()
+}
+
+/// The stroke of an index, as a line with its size.
+fn stroke(browser: &Browser, index: usize) -> (Vec<[f64; 2]>, f64) {
+    let stroke = browser.value(&format!("strew.paint.work.strokes[{index}]"));
+    let line = serde_json::from_value(stroke["line"].clone()).expect("a line");
+    (line, stroke["size"].as_f64().expect("a size"))
+}
+
+fn distance(line: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+    let to = |pair: &[[f64; 2]]| {
+        let ([ax, ay], [bx, by]) = (pair[0], pair[1]);
+        let (dx, dy) = (bx - ax, by - ay);
+        let share = ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy);
+        let share = share.clamp(0.0, 1.0);
+        (ax + share * dx - x).hypot(ay + share * dy - y)
+    };
+    line.windows(2).map(to).fold(f64::INFINITY, f64::min)
+}
+
+/// The middle of the canvas that is painted on.
+fn middle(browser: &Browser) -> [i32; 2] {
+    let place = browser.value(
+        "(() => { const box = document.querySelector('#brush').getBoundingClientRect(); \
+         return [box.left + box.width / 2, box.top + box.height / 2].map(Math.round); })()",
+    );
+    serde_json::from_value(place).expect("a place")
+}
+
+#[test]
+fn what_is_painted_is_followed_and_comes_back() {
+    let Some((daemon, browser)) = looking(1280, 900) else {
+        return;
+    };
+    browser.look(&daemon, "#at=5,5&span=60&seed=3");
+    let all = browser.ready();
+    browser.click("#paint-open");
+    let [x, y] = middle(&browser);
+    let painted = changed(&browser, || browser.drag([x - 200, y - 100], [400, 0]));
+    assert!(painted < all / 3, "{painted} of {all}: a tenth elsewhere");
+    let (line, size) = stroke(&browser, 0);
+    let near = |line: &[[f64; 2]], reach: f64| {
+        let points = browser.in_view().into_iter();
+        points
+            .map(|[u, v]| [u + 5.0, v + 5.0])
+            .filter(|&at| distance(line, at) < reach)
+            .count()
+    };
+    // Where the brush was fully, the points are as dense as without a field: one a unit area.
+    let length = (line[1][0] - line[0][0]).abs();
+    let area = length * size / 2.0 + std::f64::consts::PI * (size / 4.0).powi(2);
+    let found = near(&line, size / 4.0) as f64;
+    assert!((found / area - 1.0).abs() < 0.1, "{found} points on {area}");
+    browser.click("#paint-tool-road");
+    changed(&browser, || browser.drag([x, y - 250], [30, 450]));
+    let (road, width) = stroke(&browser, 1);
+    assert_eq!(near(&road, width / 2.0), 0, "the road is free");
+    // The request to paste has the field in it, and needs nothing that this server holds.
+    browser.click("#tab-take");
+    browser.until("document.documentElement.dataset.weighed");
+    allow_clipboard(&browser);
+    let line = copied(&browser, "curl");
+    let (body, other) = (
+        line.split("-d '").nth(1).expect("a body"),
+        Daemon::built_in(),
+    );
+    let body: Value = serde_json::from_str(body.trim_end_matches('\'')).expect("JSON");
+    let answer = other.post("/v1/points:query", &body);
+    assert_eq!(answer.status, 200, "{}", answer.text());
+    assert_same(&browser, &rows(answer.text()));
+    run(&line, "curl", |text| assert_same(&browser, &rows(text)));
+    // The address brings it back from a server that never saw the field, by one request more.
+    let (hash, count) = (browser.hash(), browser.ready());
+    browser.look(&other, &hash);
+    assert_eq!((browser.hash(), browser.ready()), (hash, count));
+    assert_eq!(browser.value("strew.paint.work.strokes.length"), 2);
+    // What is undone is gone, and Back brings it again.
+    browser.click("#paint-open");
+    let without = changed(&browser, || browser.click("#paint-undo"));
+    assert!(without > count);
+    assert_eq!(
+        changed(&browser, || drop(browser.value("history.back()"))),
+        count
+    );
+    // Clear and choose another field: nothing painted is left.
+    assert_eq!(changed(&browser, || browser.click("#paint-clear")), all);
+    assert!(!browser.hash().contains("paint="));
+}
+
+#[test]
+fn a_world_file_holds_what_is_painted() {
+    let Some((daemon, browser)) = looking(1280, 900) else {
+        return;
+    };
+    let hash = "#at=0,0&span=40&layers=2&seed=18446744073709551615&2.amount=2&2.seed=4&2.clear=0.6\
+                &paint=r(4:-9,-9/9,9)e(8,0.7:-10,8/10,8)";
+    browser.look(&daemon, hash);
+    // The address has no digest, so the page sends the field first.
+    browser.click("#paint-open");
+    let [x, y] = middle(&browser);
+    let count = changed(&browser, || browser.drag([x - 90, y - 150], [60, 0]));
+    browser.click("#paint-save");
+    let path = browser.downloads().join("world.json");
+    let text = strew_testkit::wait::until("the file is there", || {
+        std::fs::read_to_string(&path)
+            .ok()
+            .filter(|text| text.ends_with("}\n"))
+    });
+    let world: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(world["layers"][0]["seed"], u64::MAX);
+    // A daemon has it as a world.
+    let folder = path.parent().expect("a folder").display();
+    let other = Daemon::start(&["tables.embedded=true", &format!("worlds.folder={folder}")]);
+    let view = browser.value("strew.take.request.body");
+    let view: Value = serde_json::from_str(view.as_str().expect("text")).expect("JSON");
+    let asked = json!({ "world": "world", "region": view["region"] });
+    assert_eq!(other.post("/v1/count", &asked).json()["count"], count);
+    // And a fresh page opens it.
+    browser.look(&daemon, "#at=0,0&span=40");
+    let open = format!(
+        "(strew.paint.open(new File([{}], 'world.json')), 0)",
+        json!(text)
+    );
+    assert_eq!(changed(&browser, || drop(browser.value(&open))), count);
+    assert_eq!(
+        browser.value("strew.session.state.layers[0].seed"),
+        "18446744073709551615"
+    );
+    browser.value("(strew.paint.open(new File(['{\"only\": 3}'], 'other.json')), 0)");
+    browser.until("document.querySelector('#banner').textContent.includes('does not know `only`')");
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn keys_and_fingers_paint_too() {
+    let Some((daemon, browser)) = looking(390, 844) else {
+        return;
+    };
+    browser.look(&daemon, "#at=0,0&span=40");
+    browser.value("document.querySelector('#paint-open').focus()");
+    browser.keys(&["\u{E007}"]);
+    browser.until("document.activeElement.id === 'brush'");
+    let right = "\u{E014}";
+    changed(&browser, || {
+        browser.keys(&[" ", right, right, right, right, right, " "]);
+    });
+    let (line, size) = stroke(&browser, 0);
+    assert!(
+        (line[1][0] - line[0][0] - 2.5 * size).abs() < 0.1 && line[1][1].abs() < 0.1,
+        "{line:?}"
+    );
+    // A line that is given up leaves nothing.
+    browser.keys(&[" ", right, "\u{E00C}"]);
+    assert_eq!(browser.value("strew.paint.work.strokes.length"), 1);
+    let [x, y] = middle(&browser);
+    changed(&browser, || browser.tap([x, y - 100]));
+    assert_eq!(browser.value("strew.paint.work.strokes.length"), 2);
+    let sizes = "[...document.querySelectorAll('#paint button')].filter((one) => one.offsetWidth > 0) \
+         .filter((one) => one.offsetHeight < 44 || one.offsetWidth < 44).map((one) => one.textContent)";
+    assert_eq!(browser.value(sizes), json!([]));
+    browser.keys(&["\u{E00C}"]);
+    browser.until(
+        "document.querySelector('#brush').hidden && document.activeElement.id === 'paint-open'",
+    );
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
