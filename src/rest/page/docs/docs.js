@@ -5,7 +5,7 @@ import { watchTheme } from "../theme.js";
 import { operationView } from "./operation.js";
 
 /** The parts of pages need no telling. */
-const isTold = (path) => !path.startsWith("/page/");
+const isTold = (path) => path.split("/")[1] !== "page";
 
 let api = null;
 let all = [];
