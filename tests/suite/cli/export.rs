@@ -206,7 +206,8 @@ fn sets_without_a_world_are_served_under_their_parameters() {
         .as_str()
         .expect("text");
     let mut ours: Vec<&str> = said.split('&').collect();
-    (words.sort_unstable(), ours.sort_unstable());
+    words.sort_unstable();
+    ours.sort_unstable();
     assert_eq!(ours, words);
 }
 
