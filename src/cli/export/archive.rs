@@ -4,7 +4,7 @@
 use std::{
     collections::HashMap,
     fs::{self, File},
-    io::{self, BufWriter, Seek as _, SeekFrom, Write as _},
+    io::{self, BufWriter, Read as _, Seek as _, SeekFrom, Write as _},
     path::{Path, PathBuf},
 };
 
@@ -12,6 +12,7 @@ use anyhow::{Context as _, anyhow};
 
 use super::{
     chunks::{Chunk, Maker},
+    lock::lock,
     record::{MANIFEST, Manifest, Record},
     spec::{DEFLATE, Spec},
     zip::{self, Content, Member},
@@ -36,6 +37,45 @@ pub(super) struct Archive {
     is_deflated: bool,
 }
 
+fn other(path: &Path) -> Failure {
+    Failure::Usage(anyhow!(
+        "--archive {}: the file is no export with these options (for --format arrow limits.block_bytes is one of \
+         them): choose another name",
+        path.display()
+    ))
+}
+
+/// A complete archive, if it is of this export.
+fn is_complete(path: &Path, spec: &Spec) -> Result<Found, Failure> {
+    let manifest = Reader::open(path).and_then(|mut archive| archive.read(MANIFEST));
+    let manifest = manifest.and_then(|bytes| Manifest::read(&bytes));
+    match manifest.is_ok_and(|manifest| manifest.export == *spec) {
+        true => Ok(Found::Complete),
+        false => Err(other(path)),
+    }
+}
+
+/// Whether a file has no more than the beginning of a first member: a run was killed before it had written one.
+fn is_torn(file: &mut File) -> io::Result<bool> {
+    // Options are far shorter.
+    const MOST: u64 = 1 << 20;
+    if file.metadata()?.len() > MOST {
+        return Ok(false);
+    }
+    let mut bytes = vec![];
+    file.seek(SeekFrom::Start(0))?;
+    file.read_to_end(&mut bytes)?;
+    let begins = bytes
+        .iter()
+        .zip(zip::MEMBER)
+        .all(|(byte, known)| byte == known);
+    let has_second = bytes
+        .windows(zip::MEMBER.len())
+        .skip(1)
+        .any(|window| window == zip::MEMBER);
+    Ok(begins && !has_second)
+}
+
 /// An archive as it is found.
 #[derive(Debug)]
 pub(super) enum Found {
@@ -48,46 +88,32 @@ pub(super) enum Found {
 impl Archive {
     /// Opens an archive for an export; refuses one that holds anything else.
     pub(super) fn open(path: &Path, spec: &Spec, maker: &Maker) -> Result<Found, Failure> {
-        let other = |path: &Path| {
-            Failure::Usage(anyhow!(
-                "--archive {}: the file is no export with these options: choose another name",
-                path.display()
-            ))
-        };
         let unwritable = || format!("cannot write {}", path.display());
         if path.exists() {
-            let manifest = Reader::open(path).and_then(|mut archive| archive.read(MANIFEST));
-            let manifest = manifest.and_then(|bytes| Manifest::read(&bytes));
-            let is_same = manifest.is_ok_and(|manifest| manifest.export == *spec);
-            return if is_same {
-                Ok(Found::Complete)
-            } else {
-                Err(other(path))
-            };
+            return is_complete(path, spec);
         }
         let mut partial = path.as_os_str().to_owned();
         partial.push(".partial");
         let partial = PathBuf::from(partial);
-        let options = File::options()
-            .create(true)
-            .truncate(false)
-            .read(true)
-            .write(true)
-            .clone();
-        let mut file = options.open(&partial).with_context(unwritable)?;
-        if file.try_lock().is_err() {
+        let Some(mut file) = lock(&partial).with_context(unwritable)? else {
             return Err(Failure::Usage(anyhow!(
                 "--archive {}: another process writes this file",
                 path.display()
             )));
+        };
+        // Another process may have ended meanwhile; then the locked file is a new one, without content.
+        if path.exists() {
+            if file.metadata().with_context(unwritable)?.len() == 0 {
+                fs::remove_file(&partial).with_context(unwritable)?;
+            }
+            return is_complete(path, spec);
         }
         let is_deflated = spec.archive.as_deref() == Some(DEFLATE);
         let ours = serde_json::to_vec(spec).context("the options cannot be written")?;
         let first = zip::next(&mut file, 0).with_context(unwritable)?;
-        let is_new = file.metadata().with_context(unwritable)?.len() < ours.len() as u64;
         let first = match first {
-            Some((name, member, said)) if name == SPEC && said == ours => Some(member),
-            None if is_new => None,
+            Some((name, member, theirs)) if name == SPEC && theirs == ours => Some(member),
+            None if is_torn(&mut file).with_context(unwritable)? => None,
             _ => return Err(other(&partial)),
         };
         let mut archive = Self {
@@ -203,8 +229,8 @@ impl Archive {
         Ok(vec![(SPEC.into(), spec), (INDEX.into(), index)])
     }
 
-    /// Writes the documents and the central directory, which begins with the manifest and the index, and gives the
-    /// file its name.
+    /// Writes the documents and the central directory, which begins with the manifest and the index, and renames
+    /// the file.
     pub(super) fn finish(
         mut self,
         documents: Vec<(String, Vec<u8>)>,

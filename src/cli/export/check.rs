@@ -5,6 +5,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
     path::{Path, PathBuf},
+    sync::{Mutex, MutexGuard, PoisonError},
 };
 
 use anyhow::{Context as _, anyhow};
@@ -31,7 +32,8 @@ const BATCH: usize = 256;
 /// What is checked.
 enum Tree {
     Folder(PathBuf),
-    Archive(Reader),
+    /// Its file has one place at which it is read.
+    Archive(Mutex<Reader>),
 }
 
 /// What is wrong, by the names of files.
@@ -40,7 +42,7 @@ struct Faults(BTreeMap<String, &'static str>);
 
 /// Checks a folder or an archive; `all` makes every chunk again.
 pub(super) fn run(path: &Path, all: bool, quiet: bool, config: &Config) -> Result<(), Failure> {
-    let mut tree = Tree::open(path)?;
+    let tree = Tree::open(path)?;
     let manifest = tree.read(MANIFEST).with_context(|| {
         format!(
             "{} has no {MANIFEST}: it is no export, or not complete",
@@ -66,7 +68,7 @@ pub(super) fn run(path: &Path, all: bool, quiet: bool, config: &Config) -> Resul
     progress.finish();
     // What has changed needs no second look.
     faults.report(path)?;
-    let made = made_again(&mut tree, &manifest, all, quiet, config, &mut faults)?;
+    let made = made_again(&tree, &manifest, all, quiet, config, &mut faults)?;
     faults.report(path)?;
     let total = manifest.total;
     if !quiet {
@@ -83,7 +85,7 @@ pub(super) fn run(path: &Path, all: bool, quiet: bool, config: &Config) -> Resul
 
 /// Makes chunks again and compares them, also what is compressed; returns how many.
 fn made_again(
-    tree: &mut Tree,
+    tree: &Tree,
     manifest: &Manifest,
     all: bool,
     quiet: bool,
@@ -92,26 +94,32 @@ fn made_again(
 ) -> Result<usize, Failure> {
     let spec = &manifest.export;
     let maker = Maker::new(spec, &super::spec::catalog(config)?, config)?;
-    let chunks = maker.grid.chunks();
+    let (chunks, compressions) = (maker.grid.chunks(), spec.compressions());
     let number = if all { chunks } else { SAMPLE.min(chunks) };
     let picked = |k: usize| (2 * k + 1) * chunks / (2 * number);
     let mut progress = Progress::new("chunks", number as u64, quiet);
     for first in (0..number).step_by(BATCH) {
         let batch: Vec<usize> = (first..number.min(first + BATCH)).map(picked).collect();
-        let made = batch.par_iter().map(|&i| Ok((i, maker.make(i)?)));
-        for (i, chunk) in made.collect::<Result<Vec<_>, Failure>>()? {
-            let name = maker.grid.name(maker.grid.place(i));
-            let plain = [(name.clone(), None)];
-            let packed = spec.compressions().into_iter();
-            let packed = packed.map(|packed| (format!("{name}.{}", packed.ending()), Some(packed)));
-            for (name, packed) in plain.into_iter().chain(packed) {
-                // What cannot be read is known already.
-                if let Ok(bytes) = tree.read(&name)
-                    && unpacked(&bytes, packed).as_ref() != Some(&chunk.bytes)
-                {
-                    faults.add(&name, "has other points than are made now");
-                }
-            }
+        // Chunks are dropped as they are compared: as many are in memory as there are threads.
+        let differ = batch.par_iter().map(|&i| {
+            let chunk = maker.make(i)?;
+            let plain = maker.grid.name(maker.grid.place(i));
+            let packed = compressions.iter();
+            let packed =
+                packed.map(|packed| (format!("{plain}.{}", packed.ending()), Some(*packed)));
+            let names = [(plain.clone(), None)].into_iter().chain(packed);
+            // What cannot be read is known already.
+            let differs = |(name, packed): &(String, _)| {
+                let read = tree.read(name);
+                read.is_ok_and(|bytes| unpacked(bytes, *packed).as_ref() != Some(&chunk.bytes))
+            };
+            Ok(names
+                .filter(differs)
+                .map(|(name, _)| name)
+                .collect::<Vec<_>>())
+        });
+        for name in differ.collect::<Result<Vec<_>, Failure>>()?.concat() {
+            faults.add(&name, "has other points than are made now");
         }
         progress.reach((first + batch.len()) as u64, "");
     }
@@ -119,10 +127,10 @@ fn made_again(
     Ok(number)
 }
 
-fn unpacked(bytes: &[u8], packed: Option<Compression>) -> Option<Vec<u8>> {
+fn unpacked(bytes: Vec<u8>, packed: Option<Compression>) -> Option<Vec<u8>> {
     match packed {
-        None => Some(bytes.to_vec()),
-        Some(packed) => packed.unpack(bytes).ok(),
+        None => Some(bytes),
+        Some(packed) => packed.unpack(&bytes).ok(),
     }
 }
 
@@ -131,21 +139,21 @@ impl Tree {
         if path.is_dir() {
             return Ok(Self::Folder(path.into()));
         }
-        Ok(Self::Archive(Reader::open(path)?))
+        Ok(Self::Archive(Mutex::new(Reader::open(path)?)))
     }
 
-    fn read(&mut self, name: &str) -> anyhow::Result<Vec<u8>> {
+    fn read(&self, name: &str) -> anyhow::Result<Vec<u8>> {
         match self {
             Self::Folder(root) => {
                 let path = root.join(name);
                 fs::read(&path).with_context(|| format!("cannot read {}", path.display()))
             }
-            Self::Archive(archive) => archive.read(name),
+            Self::Archive(archive) => open(archive).read(name),
         }
     }
 
     /// The digests of all files but the list of them and the manifest.
-    fn digests(&mut self, manifest: &Manifest) -> anyhow::Result<BTreeMap<String, blake3::Hash>> {
+    fn digests(&self, manifest: &Manifest) -> anyhow::Result<BTreeMap<String, blake3::Hash>> {
         let list = self.read(DIGESTS)?;
         if blake3::hash(&list).to_hex().as_str() != manifest.files {
             return Err(anyhow!(
@@ -169,7 +177,7 @@ impl Tree {
     ) -> anyhow::Result<()> {
         let names: BTreeSet<String> = match self {
             Self::Folder(root) => below(root)?,
-            Self::Archive(archive) => archive.names().map(Into::into).collect(),
+            Self::Archive(archive) => open(archive).names().map(Into::into).collect(),
         };
         let is_known = |name: &String| {
             digests.contains_key(name) || [MANIFEST, DIGESTS].contains(&name.as_str())
@@ -181,24 +189,17 @@ impl Tree {
     }
 
     /// The digests of some files; none for one that cannot be read.
-    fn hash(&mut self, names: &[&String]) -> Vec<(String, Option<blake3::Hash>)> {
-        match self {
-            Self::Folder(root) => {
-                let hash = |name: &&String| {
-                    let bytes = fs::read(root.join(name)).ok();
-                    ((*name).clone(), bytes.map(|bytes| blake3::hash(&bytes)))
-                };
-                names.par_iter().map(hash).collect()
-            }
-            Self::Archive(archive) => {
-                let mut hash = |name: &&String| {
-                    let bytes = archive.read(name).ok();
-                    ((*name).clone(), bytes.map(|bytes| blake3::hash(&bytes)))
-                };
-                names.iter().map(&mut hash).collect()
-            }
-        }
+    fn hash(&self, names: &[&String]) -> Vec<(String, Option<blake3::Hash>)> {
+        let hash = |name: &&String| {
+            let bytes = self.read(name).ok();
+            ((*name).clone(), bytes.map(|bytes| blake3::hash(&bytes)))
+        };
+        names.par_iter().map(hash).collect()
     }
+}
+
+fn open(archive: &Mutex<Reader>) -> MutexGuard<'_, Reader> {
+    archive.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The names of all files below a folder.

@@ -1,4 +1,4 @@
-//! What an export costs, said before it begins: chunks, points, bytes and time, from a short trial; and whether the
+//! What an export costs, reported before it begins: chunks, points, bytes and time, from a short trial; and whether the
 //! disk has room.
 
 use std::{
@@ -18,7 +18,7 @@ use crate::cli::{Failure, compression::Compression};
 
 /// How many chunks are tried at most, evenly spread over all of them.
 const TRIED: usize = 32;
-/// Of few chunks no more than one of so many is tried.
+/// Of few chunks one in this number is tried.
 const SHARE: usize = 8;
 /// No chunk is begun after this time.
 const TRIAL: Duration = Duration::from_secs(2);

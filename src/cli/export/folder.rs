@@ -13,6 +13,7 @@ use anyhow::{Context as _, anyhow};
 
 use super::{
     chunks::{Chunk, Maker, variants},
+    lock::lock,
     record::{MANIFEST, Manifest, Record},
     spec::Spec,
 };
@@ -32,6 +33,28 @@ pub(super) struct Folder {
     _lock: File,
 }
 
+/// Whether the folder has all of the export.
+///
+/// # Errors
+/// It has all of another one.
+fn is_complete(root: &Path, spec: &Spec) -> Result<bool, Failure> {
+    let Ok(bytes) = fs::read(root.join(MANIFEST)) else {
+        return Ok(false);
+    };
+    match Manifest::read(&bytes).is_ok_and(|manifest| manifest.export == *spec) {
+        true => Ok(true),
+        false => Err(other(root)),
+    }
+}
+
+fn other(root: &Path) -> Failure {
+    Failure::Usage(anyhow!(
+        "--output {}: the folder holds an export with other options, of another world, or for --format arrow with \
+         another limits.block_bytes: choose another folder",
+        root.display()
+    ))
+}
+
 /// A folder as it is found.
 #[derive(Debug)]
 pub(super) enum Found {
@@ -44,53 +67,44 @@ pub(super) enum Found {
 impl Folder {
     /// Opens a folder for an export; refuses one that holds anything else.
     pub(super) fn open(root: &Path, spec: &Spec, maker: &Maker) -> Result<Found, Failure> {
-        let other = || {
-            Failure::Usage(anyhow!(
-                "--output {}: the folder holds an export with other options, or of another world: choose another folder",
-                root.display()
-            ))
-        };
         let unwritable = || format!("cannot write {}", root.display());
         fs::create_dir_all(root).with_context(unwritable)?;
-        if let Ok(bytes) = fs::read(root.join(MANIFEST)) {
-            let is_same = Manifest::read(&bytes).is_ok_and(|manifest| manifest.export == *spec);
-            return if is_same {
-                Ok(Found::Complete)
-            } else {
-                Err(other())
-            };
-        }
         let work = root.join(WORK);
-        if !work.exists()
-            && fs::read_dir(root)
-                .with_context(unwritable)?
-                .next()
-                .is_some()
-        {
+        if is_complete(root, spec)? && !work.exists() {
+            return Ok(Found::Complete);
+        }
+        let is_empty = || -> io::Result<bool> { Ok(fs::read_dir(root)?.next().is_none()) };
+        if !work.exists() && !is_empty().with_context(unwritable)? {
             return Err(Failure::Usage(anyhow!(
                 "--output {}: the folder is not empty; allowed: a new folder, or one whose export was interrupted",
                 root.display()
             )));
         }
         fs::create_dir_all(&work).with_context(unwritable)?;
-        let file = work.join("spec.json");
-        let lock = File::options()
-            .create(true)
-            .append(true)
-            .open(&file)
-            .with_context(unwritable)?;
-        if lock.try_lock().is_err() {
+        let Some(lock) = lock(&work.join("lock")).with_context(unwritable)? else {
             return Err(Failure::Usage(anyhow!(
                 "--output {}: another process writes this folder",
                 root.display()
             )));
+        };
+        // Another process may have ended meanwhile, or was killed after it had written the manifest.
+        if is_complete(root, spec)? {
+            fs::remove_dir_all(&work)
+                .with_context(|| format!("cannot remove {}", work.display()))?;
+            return Ok(Found::Complete);
         }
-        let said = fs::read(&file).with_context(unwritable)?;
         let ours = serde_json::to_vec(spec).context("the options cannot be written")?;
-        match said.is_empty() {
-            true => (&lock).write_all(&ours).with_context(unwritable)?,
-            false if said == ours => {}
-            false => return Err(other()),
+        let file = work.join("spec.json");
+        match fs::read(&file) {
+            Ok(theirs) if theirs == ours => {}
+            Ok(_) => return Err(other(root)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                let fresh = work.join("spec.json.new");
+                fs::write(&fresh, &ours)
+                    .and_then(|()| fs::rename(&fresh, &file))
+                    .with_context(unwritable)?;
+            }
+            Err(error) => return Err(Failure::Other(anyhow!(error).context(unwritable()))),
         }
         let path = work.join("journal");
         let mut folder = Self {

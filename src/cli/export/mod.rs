@@ -6,6 +6,7 @@ mod chunks;
 mod cost;
 mod folder;
 mod grid;
+mod lock;
 mod record;
 mod servers;
 mod spec;
@@ -79,6 +80,10 @@ pub(super) struct Args {
     #[command(flatten)]
     settings: config::Args,
 }
+
+/// About how many bytes of chunks of an archive wait to be written in order: as many chunks as have this size if all
+/// are as large as the largest so far, but one for each thread.
+const BATCH: u64 = 64 << 20;
 
 /// How files are compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -211,7 +216,7 @@ impl Job<'_> {
         let records: Vec<Record> = records.into_iter().map(|(_, record)| record).collect();
         let documents = documents(&self.spec, &self.maker, &self.catalog, &records, vec![])?;
         folder.finish(&documents)?;
-        self.said(root, &records);
+        self.report(root, &records);
         Ok(())
     }
 
@@ -232,7 +237,7 @@ impl Job<'_> {
         let extra = archive.extra(&self.spec, &self.maker)?;
         let documents = documents(&self.spec, &self.maker, &self.catalog, &records, extra)?;
         archive.finish(documents, &self.maker)?;
-        self.said(path, &records);
+        self.report(path, &records);
         Ok(())
     }
 
@@ -244,16 +249,21 @@ impl Job<'_> {
         progress: &mut Progress,
         stop: &AtomicBool,
     ) -> Result<(), Failure> {
-        let (chunks, size) = (self.maker.grid.chunks(), 32 * rayon::current_num_threads());
+        let (chunks, threads) = (self.maker.grid.chunks(), rayon::current_num_threads());
         let is_deflated = archive.is_deflated();
-        let make = |first: usize| {
+        let make = |first: usize, size: usize| {
             let batch = (first..chunks.min(first + size)).into_par_iter();
             let packed = batch.map(|i| Ok(Archive::pack(self.maker.make(i)?, is_deflated)?));
             packed.collect::<Result<Vec<_>, Failure>>()
         };
-        let mut ready = make(records.len())?;
+        let mut largest = 1;
+        let mut ready = make(records.len(), threads)?;
         while !ready.is_empty() {
             let first = records.len();
+            let lengths = ready.iter().map(|(record, _)| record.files[0].1);
+            largest = lengths.max().unwrap_or(0).max(largest);
+            let few = usize::try_from(BATCH / largest).unwrap_or(usize::MAX);
+            let size = few.clamp(threads, 32 * threads);
             let (written, next) = rayon::join(
                 || {
                     for (k, (_, content)) in ready.iter().enumerate() {
@@ -261,7 +271,7 @@ impl Job<'_> {
                     }
                     archive.flush()
                 },
-                || make(first + ready.len()),
+                || make(first + ready.len(), size),
             );
             written?;
             records.extend(ready.into_iter().map(|(record, _)| record));
@@ -281,7 +291,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    fn said(&self, place: &Path, records: &[Record]) {
+    fn report(&self, place: &Path, records: &[Record]) {
         if self.args.quiet {
             return;
         }

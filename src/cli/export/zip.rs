@@ -32,6 +32,8 @@ pub(super) struct Content {
 
 /// The length of a head without the name: with our field.
 const HEAD: u64 = 30 + 8;
+/// What a member begins with.
+pub(super) const MEMBER: &[u8] = b"PK\x03\x04";
 /// Our field, `SP`: the number of points.
 const POINTS: u16 = 0x5053;
 
@@ -123,10 +125,7 @@ pub(super) fn write(
         offset,
         ..content.head
     };
-    let fields = Fields(b"PK\x03\x04".to_vec())
-        .u16(20)
-        .member(&member, name)
-        .u16(8);
+    let fields = Fields(MEMBER.to_vec()).u16(20).member(&member, name).u16(8);
     file.write_all(&fields.0)?;
     file.write_all(name.as_bytes())?;
     file.write_all(&Fields(vec![]).points(&member).0)?;
@@ -224,7 +223,7 @@ pub(super) fn next(file: &mut File, offset: u64) -> io::Result<Option<(String, M
         return Ok(None);
     };
     let head = Head(&bytes);
-    if !bytes.starts_with(b"PK\x03\x04") || head.u16(28) != 8 {
+    if !bytes.starts_with(MEMBER) || head.u16(28) != 8 {
         return Ok(None);
     }
     let mut member = head.member(6, offset);

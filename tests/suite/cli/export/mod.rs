@@ -189,6 +189,65 @@ fn a_killed_export_goes_on_to_the_same_tree() {
     }
 }
 
+const SMALL: [&str; 4] = [
+    "--spacing=2",
+    "--bbox=0,0,64,64",
+    "--chunk=32",
+    "--format=arrow",
+];
+
+#[test]
+fn a_folder_that_was_killed_after_its_manifest_is_mended() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("world");
+    let text = out.display().to_string();
+    let flags = [&SMALL[..], &["-o", &text]].concat();
+    exported(&flags);
+    let (whole, work) = (tree(&out), out.join(".partial"));
+    fs::create_dir(&work).expect("writable");
+    fs::write(work.join("journal"), "").expect("writable");
+    let lock = fs::File::create(work.join("lock")).expect("writable");
+    lock.try_lock().expect("free");
+    let output = export(&flags);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(errors(&output).contains("another process"));
+    drop(lock);
+    exported(&flags);
+    assert!(!work.exists() && tree(&out) == whole);
+    exported(&["--check", &text, "--all"]);
+
+    // The bytes of columns depend on a setting, which is named.
+    let other = ["--set", "limits.block_bytes=4096"];
+    for flags in [&flags[..], &["--check", &text]] {
+        let output = export(&[flags, &other].concat());
+        assert_eq!(output.status.code(), Some(2));
+        let errors = errors(&output);
+        assert!(errors.contains("limits.block_bytes"), "{errors}");
+    }
+}
+
+#[test]
+fn an_archive_that_was_killed_in_its_first_member_begins_anew() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (whole, torn) = (path("whole.zip"), path("torn.zip"));
+    exported(&[&SMALL[..], &["--archive", &whole]].concat());
+    exported(&["--check", &whole, "--all"]);
+    let bytes = fs::read(&whole).expect("written");
+    // The options are longer than the last of these.
+    for length in [0, 3, 60, 400] {
+        fs::write(path("torn.zip.partial"), &bytes[..length]).expect("writable");
+        exported(&[&SMALL[..], &["--archive", &torn]].concat());
+        assert!(fs::read(&torn).expect("written") == bytes, "{length}");
+        fs::remove_file(&torn).expect("there");
+    }
+    // What is no export is not touched.
+    fs::write(path("torn.zip.partial"), "mine").expect("writable");
+    let output = export(&[&SMALL[..], &["--archive", &torn]].concat());
+    assert_eq!(output.status.code(), Some(2), "{}", errors(&output));
+    assert_eq!(fs::read(path("torn.zip.partial")).expect("there"), b"mine");
+}
+
 /// A little-endian number of some bytes.
 fn number(bytes: &[u8]) -> u64 {
     bytes
