@@ -80,6 +80,7 @@ const PARTS: &[(&str, &str)] = parts![
     "compare/tile.js",
     "compare/worker.js",
     "controls.js",
+    "digits.js",
     "docs/attempt.js",
     "docs/docs.css",
     "docs/docs.js",

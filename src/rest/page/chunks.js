@@ -26,7 +26,7 @@ export class Chunks {
     this.refused = null;
     this.layers = [];
     this.identity = "";
-    onPresence((gone) => gone || this.pump());
+    this.unsubscribe = onPresence((gone) => gone || this.pump());
   }
 
   /** Says what the points are; what was asked for other points is given up. */
@@ -37,6 +37,12 @@ export class Chunks {
     this.layers = layers.map((layer) => ({ ...layer }));
     this.columns = columnsOf(layers);
     this.refused = null;
+    this.want([], 1);
+  }
+
+  /** Ends: what is being loaded is given up. */
+  stop() {
+    this.unsubscribe();
     this.want([], 1);
   }
 

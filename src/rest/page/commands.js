@@ -1,8 +1,9 @@
 // What to paste elsewhere to get the points in view: the address, curl, grpcurl, Python.
 
 import { messageOf } from "./paint/message.js";
+import { Digits, json } from "./digits.js";
 import { documentOf } from "./sent.js";
-import { Digits, bodyOf, joined, json, memberOf, setOf } from "./query.js";
+import { bodyOf, joined, memberOf, setOf } from "./query.js";
 
 /** The formats of answers: name, ending of a file, what it is for. A test holds them against the server. */
 export const FORMATS = [

@@ -3,7 +3,7 @@
 import { Gone, askJson, onPresence, useKey } from "./api.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
-import { byId, icon, make, settled, spoken } from "./dom.js";
+import { byId, icon, make, settled, skipLinks, spoken } from "./dom.js";
 import { faultsOf, faultsBefore } from "./faults.js";
 import { Gallery } from "./gallery.js";
 import { moveBy } from "./gestures.js";
@@ -294,6 +294,7 @@ const paint = new Paint(session, plane, {
 const start = new Start(session);
 parts.push(start, card, understand, take, shade, works, paint);
 tools();
+skipLinks();
 takeDrops(byId("stage"), stipple);
 tabs();
 showTab();

@@ -2,7 +2,7 @@
 
 import { askJson, onPresence } from "../api.js";
 import { topOf } from "../charts.js";
-import { byId, icon, make, settled } from "../dom.js";
+import { byId, icon, make, settled, skipLinks } from "../dom.js";
 import { moveBy } from "../gestures.js";
 import { parsePlace, place } from "../place.js";
 import { watchTheme } from "../theme.js";
@@ -205,4 +205,5 @@ async function begin() {
 globalThis.strew = { joint, panels };
 build();
 tools();
+skipLinks();
 begin();

@@ -4,11 +4,11 @@ import { Gone, askJson, hasKey, onPresence, useKey } from "../api.js";
 import { byId, bytes, icon, make } from "../dom.js";
 import { formatPlace, parsePlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
-import { LAYER, toHash } from "../state.js";
+import { LAYER, WORKS, toHash } from "../state.js";
 import { watchTheme } from "../theme.js";
 import { cameraOf } from "./camera.js";
 import { mapOn } from "./map.js";
-import { Walker } from "./move.js";
+import { STEEPEST, Walker } from "./move.js";
 import { sceneOn } from "./scene.js";
 import { World, layersOf } from "./world.js";
 
@@ -38,13 +38,15 @@ function fromHash() {
   const isNear = x && y && Math.max(Math.abs(x.i), Math.abs(y.i)) <= 1e14;
   const degrees = (name, otherwise) => {
     const value = given.has(name) ? Number(given.get(name)) : NaN;
-    return ((Number.isFinite(value) ? value : otherwise) * Math.PI) / 180;
+    return ((Number.isFinite(value) ? value % 360 : otherwise) * Math.PI) / 180;
   };
+  const pitch = Math.max(-STEEPEST, Math.min(STEEPEST, degrees("pitch", -5)));
+  const quality = given.get("quality") ?? "";
   if (x && y && !isNear) banner("This walk ends at 1e14 in every direction. It begins at the origin instead.");
   return {
-    x: isNear ? x : place(START.x), y: isNear ? y : place(START.y), yaw: degrees("yaw", START.yaw), pitch: degrees("pitch", -5),
+    x: isNear ? x : place(START.x), y: isNear ? y : place(START.y), yaw: degrees("yaw", START.yaw), pitch,
     seed: /^\d{1,20}$/.test(given.get("seed") ?? "") ? given.get("seed") : "7",
-    quality: QUALITIES[given.get("quality")] ? Number(given.get("quality")) : null,
+    quality: /^\d$/.test(quality) && QUALITIES[quality] ? Number(quality) : null,
     isFlying: given.get("fly") !== "0" && !given.has("at"),
   };
 }
@@ -151,7 +153,7 @@ function remember() {
 /** The plane with the same points around the walker. */
 function planeHash() {
   const { rank, ...layer } = layersOf(given.seed)[0];
-  return toHash({ ...walker, span: 80, tab: "choose", layers: [{ ...LAYER, ...layer, color: 3 }], works: {}, renderer: "" });
+  return toHash({ ...walker, span: 80, tab: "choose", layers: [{ ...LAYER, ...layer, color: 3 }], works: WORKS, renderer: "" });
 }
 
 let asked = 0;
@@ -193,6 +195,7 @@ function show(found, point, set) {
 
 function close() {
   asked += 1;
+  if (byId("card").hidden) return;
   byId("card").hidden = true;
   delete byId("card").dataset.id;
   canvas.focus();
@@ -207,7 +210,7 @@ function jump() {
   home = home ? null : here;
   walker.take();
   byId("jump").textContent = home ? "Jump back" : "Jump far away";
-  if (!byId("card").hidden) close();
+  close();
 }
 
 const ICONS = {
@@ -233,9 +236,11 @@ watchTheme(byId("theme"), () => {
 });
 addEventListener("hashchange", () => {
   given = fromHash();
-  Object.assign(walker, given, { height: null });
+  const { x, y, yaw, pitch, isFlying } = given;
+  Object.assign(walker, { x, y, yaw, pitch, isFlying: isFlying && walker.mayFly, height: null });
+  level = given.quality ?? level;
   if (given.seed !== world.seed) {
-    world.forget();
+    world.stop();
     world = new World(scene, given.seed, failed);
   }
 });
