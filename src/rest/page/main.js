@@ -1,10 +1,11 @@
 // The page: puts its parts together.
 
-import { Gone, askJson, onPresence, useKey } from "./api.js";
+import { Gone, askJson, onPresence } from "./api.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
 import { byId, icon, make, settled, skipLinks, spoken } from "./dom.js";
 import { faultsOf, faultsBefore } from "./faults.js";
+import { keyForm } from "./form.js";
 import { Gallery } from "./gallery.js";
 import { moveBy } from "./gestures.js";
 import { farthest, isTooFar } from "./grid.js";
@@ -342,17 +343,13 @@ function settle(profiles) {
 /** A server that wants keys is given one. */
 function askForKey() {
   if (byId("key")) return;
-  const field = make("input", { type: "password", id: "key", "aria-label": "Key", autocomplete: "off", required: true });
-  const use = (event) => {
-    event.preventDefault();
-    useKey(field.value);
+  banner("This server answers only those who have a key. It stays in this tab.");
+  byId("banner").lastElementChild.replaceWith(keyForm(() => {
     banner(null);
     if (controls) refresh();
     else begin();
-  };
-  banner("This server answers only those who have a key. It stays in this tab.");
-  byId("banner").lastElementChild.replaceWith(make("form", { onsubmit: use }, field, make("button", { type: "submit" }, "Use this key")));
-  field.focus();
+  }));
+  byId("key").focus();
 }
 
 /** Shows the layers before the server has said anything, where their spacings need no server. */

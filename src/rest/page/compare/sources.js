@@ -25,8 +25,8 @@ function windowAround({ x, y }, width, height) {
 
 /** Points that the worker makes. */
 export class Made {
-  constructor(method, changed) {
-    Object.assign(this, { method, changed, window: null, points: new Float64Array(0), version: 0 });
+  constructor(method, changed, failed) {
+    Object.assign(this, { method, changed, failed, window: null, points: new Float64Array(0), version: 0 });
   }
 
   use({ seed }) {
@@ -53,8 +53,14 @@ export class Made {
     this.isBusy = true;
     const { view, seed } = this;
     const window = windowAround(view, AHEAD * view.width * view.unit, AHEAD * view.height * view.unit);
-    const { points } = await make({ method: this.method, seed, window });
-    this.isBusy = false;
+    let points;
+    try {
+      ({ points } = await make({ method: this.method, seed, window }));
+    } catch (error) {
+      return this.failed(error);
+    } finally {
+      this.isBusy = false;
+    }
     if (seed === this.seed) Object.assign(this, { points, window, version: this.version + 1 });
     this.changed();
   }

@@ -1,7 +1,8 @@
 // The walk: puts its parts together and draws, as finely as the machine can.
 
-import { Gone, askJson, hasKey, onPresence, useKey } from "../api.js";
+import { Gone, askJson, hasKey, onPresence } from "../api.js";
 import { byId, bytes, icon, make } from "../dom.js";
+import { keyForm } from "../form.js";
 import { formatPlace, parsePlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER, WORKS, toHash } from "../state.js";
@@ -32,8 +33,8 @@ const root = document.documentElement;
 const canvas = byId("view");
 const FAR = [place(1e9), place(1e9)];
 
-function fromHash() {
-  const given = new URLSearchParams(location.hash.slice(1));
+function fromHash(hash) {
+  const given = new URLSearchParams(hash.slice(1));
   const [x, y] = (given.get("at") ?? "").split(",").map(parsePlace);
   const isNear = x && y && Math.max(Math.abs(x.i), Math.abs(y.i)) <= 1e14;
   const degrees = (name, otherwise) => {
@@ -60,7 +61,7 @@ function banner(words, ...more) {
   byId("banner").replaceChildren(words ?? "", make("div", {}, more));
 }
 
-let given = fromHash();
+let given = fromHash(location.hash);
 const wantsMap = location.hash.includes("map=1");
 const scene = (!wantsMap && sceneOn(canvas)) || mapOn(canvas);
 root.dataset.renderer = scene.isMap ? "map" : "webgl2";
@@ -69,13 +70,12 @@ if (scene.isMap) banner("This browser draws nothing in three dimensions (WebGL2 
 function failed(error) {
   root.dataset.state = "failed";
   if (!error.isLocked) return banner(error.message);
-  const field = make("input", { type: "password", id: "key", "aria-label": "Key", autocomplete: "off" });
-  const send = make("button", { type: "button", onclick: () => {
-    useKey(field.value);
+  if (byId("key")) return;
+  banner(hasKey() ? error.message : "This server needs a key.", keyForm(() => {
     banner(null);
+    root.dataset.state = "loading";
     for (const { chunks } of world.sets) chunks.retry();
-  } }, "Use this key");
-  banner(hasKey() ? error.message : "This server wants a key.", field, send);
+  }));
 }
 onPresence((gone) => banner(gone ? "The server does not answer. This page tries again by itself; what is drawn stays." : null));
 
@@ -234,8 +234,9 @@ watchTheme(byId("theme"), () => {
   const isDark = getComputedStyle(document.body).colorScheme.includes("dark") && byId("theme").getAttribute("aria-pressed") === "true";
   scene.mode = isDark ? "dusk" : "day";
 });
-addEventListener("hashchange", () => {
-  given = fromHash();
+addEventListener("hashchange", ({ newURL }) => {
+  // The place may have been written into the address since.
+  given = fromHash(new URL(newURL).hash);
   const { x, y, yaw, pitch, isFlying } = given;
   Object.assign(walker, { x, y, yaw, pitch, isFlying: isFlying && walker.mayFly, height: null });
   level = given.quality ?? level;
