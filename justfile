@@ -87,7 +87,7 @@ spark *args:
 ray *args:
     .ci/ray {{args}}
 
-# The files of `deploy/` by helm, kubeconform, promtool, HAProxy and nginx.
+# The files of `deploy/` by helm, kubeconform, promtool and HAProxy.
 deploy-check:
     .ci/deploy
 

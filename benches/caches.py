@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Replays the walks of players through a world of chunks, with nginx as a cache before the daemon and without.
 
-    benches/caches.py target/release/strew [--players 1000] [--steps 40] [--rounds 1]
+    benches/caches.py target/release/strew [--players 1000] [--steps 40] [--seed 1] [--connections 8]
 
 Needs Linux, Python and nginx (its settings are deploy/nginx/cache.conf). A player starts near one of a few towns, walks
 on with small turns, and requests each chunk that comes into view, 5 x 5 around the player, once: clients keep what
@@ -94,10 +94,17 @@ def start(program, folder):
 
 def replay(port, requests, path, connections):
     """Requests everything on some connections: seconds, bytes, answers by the cache's status, a digest of each body."""
-    done, lock = {}, threading.Lock()
+    done, lock, faults = {}, threading.Lock(), []
     tally, size = collections.Counter(), collections.Counter()
 
     def work(mine):
+        try:
+            request(mine)
+        except Exception as fault:
+            with lock:
+                faults.append(fault)
+
+    def request(mine):
         client = http.client.HTTPConnection("127.0.0.1", port)
         known, counted, length = {}, collections.Counter(), 0
         for cx, cy in mine:
@@ -122,6 +129,8 @@ def replay(port, requests, path, connections):
         thread.start()
     for thread in threads:
         thread.join()
+    if faults:
+        raise faults[0]
     return time.monotonic() - began, size["bytes"], tally, done
 
 

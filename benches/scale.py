@@ -5,7 +5,7 @@
 
 Needs Python alone; the result is the same on every machine. Players walk at 4 m/s from towns of unequal size, see 5 x 5
 chunks, and keep what they have seen. Each is near one of the edges of the CDN; an edge keeps the chunks that were
-requested last, the shield those that edges requested. What nobody keeps, a daemon makes. Chunks never change. The
+requested last, the shield those that edges requested. A daemon makes what no cache has. Chunks never change. The
 figures for a second are means over the second half, when caches are warm.
 """
 

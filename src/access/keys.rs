@@ -242,7 +242,8 @@ impl Keys {
     }
 }
 
-const NAME: &str = "1 to 64 ASCII letters, digits, _, - and ., another name for each key";
+const NAME: &str =
+    "1 to 64 ASCII letters, digits, _, - and ., not dots alone, another name for each key";
 const HASH: &str = "64 hexadecimal digits, as `strew key new NAME` prints them";
 const OTHER_HASH: &str = "another hash for each key";
 const FROM_ONE: &str = "an integer from 1 on";

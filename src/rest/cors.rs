@@ -28,7 +28,7 @@ impl Origins {
         Self::Some(origins.by_ref().collect())
     }
 
-    /// What a page of an origin is told: the origins that may read the answer.
+    /// The origins that may read the answer to a page of an origin.
     fn allowed(&self, origin: &HeaderValue) -> Option<HeaderValue> {
         match self {
             Self::All => Some(HeaderValue::from_static("*")),
@@ -73,12 +73,16 @@ pub(super) fn preflight(
     Some(response)
 }
 
-/// Lets the pages that may read an answer do so, with all its headers.
+/// Lets the pages that may read an answer do so, with all its headers. Where all may, every answer says so: a cache
+/// may keep the answer to a request without an origin for pages.
 pub(super) fn allow(origins: &Origins, origin: Option<&HeaderValue>, answer: &mut HeaderMap) {
-    if *origins != Origins::All {
+    let allowed = if *origins == Origins::All {
+        Some(HeaderValue::from_static("*"))
+    } else {
         vary::on(answer, "origin");
-    }
-    let Some(allowed) = origin.and_then(|origin| origins.allowed(origin)) else {
+        origin.and_then(|origin| origins.allowed(origin))
+    };
+    let Some(allowed) = allowed else {
         return;
     };
     answer.insert(header::ACCESS_CONTROL_ALLOW_ORIGIN, allowed);

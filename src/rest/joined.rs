@@ -1,4 +1,4 @@
-//! The modules and styles of a page as one script and one style: a browser asks for two files instead of forty.
+//! The modules and styles of a page as one script and one style: a browser requests two files instead of forty.
 //!
 //! Each module becomes a function that returns what it exports, in the order in which modules need each other.
 //! It knows the few forms of imports and exports that the pages use, and refuses others. Modules below `vendor/`

@@ -317,9 +317,9 @@ class _Answer:
             raise StrewError(f"{came}, and no other daemon continues: {error}", error.kind, error.faults) from None
 
     def _attempt(self, replica: Replica, attempts: Attempts) -> None:
-        if self._cursor is None:
-            # Short answers have no cursor: they begin again.
-            self._rows, self._expected, self.batches = 0, None, []
+        if self._cursor is None or not self._rows:
+            # Short answers have no cursor: they begin again. So does one of which nothing came.
+            self._rows, self._expected, self._cursor, self.batches = 0, None, None, []
         with self._daemon.open(replica, "POST", "/v1/points:query", text(self._rest())) as response:
             count = int(response.headers["strew-count"])
             if self._expected is None:
@@ -334,6 +334,8 @@ class _Answer:
                 self._rows += len(batch.at)
                 if self._cursor is not None:
                     attempts.progress()
+        if self._rows > self._expected:
+            raise StrewError(f"{self._rows} points came, {self._expected} were announced", "other-answer")
         if self._rows < self._expected:
             raise EOFError(f"{self._rows} of {self._expected} points came")
 

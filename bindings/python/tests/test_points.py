@@ -180,10 +180,9 @@ def test_measuring() -> None:
 
 
 def test_points_stand_on_a_terrain() -> None:
-    ramp = {"ramp": {"from": [0, 0], "to": [40, 0]}}
-    on_it = strew.points(
-        bbox=(0, 0, 40, 40), spacing=1, terrain=ramp, heights=(100, 500), normals=True, align=1
-    )
+    # The slope goes on beyond the points: normals follow from heights beside them.
+    ramp = {"ramp": {"from": [-5, 0], "to": [45, 0]}}
+    on_it = strew.points(bbox=(0, 0, 40, 40), spacing=1, terrain=ramp, heights=(50, 550), normals=True, align=1)
     assert np.allclose(on_it["z"], 100 + 10 * on_it.x, atol=1e-3)
     # A slope of 10 to 1 toward x: the normal leans back.
     normal = np.stack([on_it["nx"], on_it["ny"], on_it["nz"]], axis=1)

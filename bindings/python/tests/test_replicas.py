@@ -135,8 +135,8 @@ def refusing(status: int, content: str = "{}", **headers: str) -> Callable[[Any,
     return answer
 
 
-def breaking(upstream: str) -> Callable[[Any, bytes], None]:
-    """Answers once with two thirds of a daemon's answer; later connections break at once."""
+def breaking(upstream: str, share: float = 2 / 3) -> Callable[[Any, bytes], None]:
+    """Answers once with a share of a daemon's answer; later connections break at once."""
     import urllib.request
 
     answered: list[bytes] = []
@@ -152,7 +152,7 @@ def breaking(upstream: str) -> Callable[[Any, bytes], None]:
                 handler.send_header(name, response.headers[name])
         handler.send_header("content-length", str(len(content)))
         handler.end_headers()
-        handler.wfile.write(content[: len(content) * 2 // 3])
+        handler.wfile.write(content[: int(len(content) * share)])
 
     return answer
 
@@ -163,9 +163,11 @@ def serving(answer: Callable[[Any, bytes], None]) -> Iterator[tuple[str, list[An
     server = ThreadingHTTPServer(("127.0.0.1", 0), Answering)
     server.requests, server.answer = [], answer  # type: ignore[attr-defined]
     threading.Thread(target=server.serve_forever, args=(0.01,), daemon=True).start()
-    yield f"http://127.0.0.1:{server.server_port}", server.requests  # type: ignore[attr-defined]
-    server.shutdown()
-    server.server_close()
+    try:
+        yield f"http://127.0.0.1:{server.server_port}", server.requests  # type: ignore[attr-defined]
+    finally:
+        server.shutdown()
+        server.server_close()
 
 
 def count(there: strew.Daemon, **more: Any) -> int:
@@ -248,6 +250,9 @@ def test_an_answer_continues_only_where_its_fields_are(tmp_path: Path, monkeypat
         with serving(breaking(first)) as (broken, _):
             same(whole, strew.connect([broken, other, third]).points(**query))
         assert len(continued) >= 3 and min(continued) > 0
+        # Of an answer that breaks off before any point nothing is kept.
+        with serving(breaking(first, share=0)) as (broken, _):
+            same(strew.connect(other).points(**query), strew.connect([broken, other]).points(**query))
         # The other one has other points.
         assert strew.connect(other).points(**query).xy.tobytes() != whole.xy.tobytes()
 

@@ -74,7 +74,7 @@ impl Maker {
     }
 
     fn answer(&self, place: Place) -> Result<(u64, Answer), Error> {
-        let Checked { query, output } = &self.levels[place.level];
+        let Checked { query, output, .. } = &self.levels[place.level];
         let size = self.grid.levels[place.level].size;
         let region = chunk(size, place.at).check()?;
         let output = Output {

@@ -4,11 +4,14 @@ use std::ops::Range;
 
 use anyhow::anyhow;
 use serde::{Deserialize, Serialize};
+use strew_core::Keep;
 
 use crate::cli::Failure;
 
-/// The most levels of detail: the coarsest has a billionth of the points.
-pub(super) const MOST_LEVELS: u32 = 16;
+/// The most levels of detail: an eleventh would have the share 4⁻¹⁰ of the points, less than the smallest, 10⁻⁶.
+pub(super) const MOST_LEVELS: u32 = 10;
+/// The most chunks: digests and lengths of all files stay in memory until the end, a few hundred bytes for a chunk.
+const MOST_CHUNKS: usize = 10_000_000;
 
 /// A level of detail: chunks that are 2ᵏ times as wide, with the share 4⁻ᵏ of the points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -69,6 +72,34 @@ impl Level {
         })
     }
 
+    /// Whether it can be a level: what is read may be damaged.
+    ///
+    /// # Errors
+    /// The member that cannot be, its value and what is allowed.
+    pub(super) fn validate(&self) -> anyhow::Result<()> {
+        let Self { size, keep, .. } = self;
+        if !(size.is_finite() && *size > 0.0) {
+            return Err(anyhow!("size: {size}; allowed: a finite number above 0"));
+        }
+        if !(Keep::MIN..=1.0).contains(keep) {
+            return Err(anyhow!(
+                "keep: {keep}; allowed: a number from {:e} to 1",
+                Keep::MIN
+            ));
+        }
+        for (name, [first, end]) in [("columns", self.columns), ("rows", self.rows)] {
+            let is_near = [first, end]
+                .iter()
+                .all(|cell| cell.unsigned_abs() <= FARTHEST as u64);
+            if !is_near || first >= end {
+                return Err(anyhow!(
+                    "{name}: [{first}, {end}]; allowed: the first and the end after it, within ±{FARTHEST}"
+                ));
+            }
+        }
+        Ok(())
+    }
+
     fn ranges(&self) -> [Range<i64>; 2] {
         [self.columns, self.rows].map(|[first, end]| first..end)
     }
@@ -106,10 +137,9 @@ impl Grid {
         };
         let chunks: u128 = grid.levels.iter().map(Level::chunks).sum();
         match usize::try_from(chunks) {
-            Ok(few) if few < u32::MAX as usize => Ok(grid),
+            Ok(few) if few <= MOST_CHUNKS => Ok(grid),
             _ => Err(Failure::Usage(anyhow!(
-                "--bbox has {chunks} chunks; allowed: at most {}: choose a smaller box or larger chunks",
-                u32::MAX - 1
+                "--bbox has {chunks} chunks; allowed: at most {MOST_CHUNKS}: choose a smaller box or larger chunks"
             ))),
         }
     }
@@ -181,6 +211,16 @@ mod tests {
         let far = Level::new(1e-12, 1.0, String::new(), [0.0, 0.0, 1e6, 1.0]);
         assert!(far.is_err());
         let many = Level::new(1.0, 1.0, String::new(), [0.0, 0.0, 1e6, 1e6]).expect("near");
-        assert!(Grid::new(None, vec![many]).is_err());
+        assert!(Grid::new(None, vec![many.clone()]).is_err());
+        let most = Level {
+            rows: [0, 10],
+            ..many
+        };
+        assert!(Grid::new(None, vec![most.clone()]).is_ok());
+        let more = Level {
+            rows: [0, 11],
+            ..most
+        };
+        assert!(Grid::new(None, vec![more]).is_err());
     }
 }

@@ -5,7 +5,12 @@ use std::fmt::Write as _;
 use anyhow::{Context as _, anyhow};
 use serde::{Deserialize, Serialize};
 
-use super::{chunks::Maker, servers, spec::Spec};
+use super::{
+    chunks::Maker,
+    grid::{Level, MOST_LEVELS},
+    servers,
+    spec::Spec,
+};
 use crate::{
     cli::Failure,
     rest::world_document,
@@ -167,15 +172,78 @@ fn digests(spec: &Spec, maker: &Maker, records: &[Record], files: &[(String, Vec
 
 impl Manifest {
     /// Reads a manifest.
+    ///
+    /// # Errors
+    /// The member that cannot be: files may be damaged.
     pub(super) fn read(bytes: &[u8]) -> anyhow::Result<Self> {
-        serde_json::from_slice(bytes)
-            .map_err(|error| anyhow!("{MANIFEST} is no manifest of an export: {error}"))
+        let manifest: Self = serde_json::from_slice(bytes)
+            .map_err(|error| anyhow!("{MANIFEST} is no manifest of an export: {error}"))?;
+        let levels = &manifest.export.levels;
+        if !(1..=MOST_LEVELS as usize).contains(&levels.len()) {
+            return Err(anyhow!(
+                "{MANIFEST}: export.levels: {} levels; allowed: 1 to {MOST_LEVELS}",
+                levels.len()
+            ));
+        }
+        for (k, level) in levels.iter().enumerate() {
+            level
+                .validate()
+                .map_err(|fault| anyhow!("{MANIFEST}: export.levels[{k}].{fault}"))?;
+        }
+        let chunks: u128 = levels.iter().map(Level::chunks).sum();
+        if u128::from(manifest.total.chunks) != chunks {
+            return Err(anyhow!(
+                "{MANIFEST}: total.chunks: {}; allowed: {chunks}, the chunks of export.levels",
+                manifest.total.chunks
+            ));
+        }
+        Ok(manifest)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn damaged_members_of_a_manifest_are_named() {
+        let level = r#"{"size": 16, "keep": 1, "query": "", "columns": [0, 2], "rows": [0, 2]}"#;
+        let manifest = format!(
+            r#"{{"export": {{"strew": "1", "algorithm": 2, "world": null, "digests": [], "query": "", "format": "f32",
+            "content_type": "", "bbox": [0, 0, 1, 1], "compressed": [], "archive": null, "levels": [{level}]}},
+            "path": "", "columns": null, "levels": [], "total": {{"chunks": 4, "points": 0, "bytes": 0}}, "files": ""}}"#
+        );
+        let read = |text: &str| Manifest::read(text.as_bytes()).map_err(|error| error.to_string());
+        assert!(read(&manifest).is_ok());
+        let columns = "\"columns\": [0, 2]";
+        for (old, new, fault) in [
+            (level, "", "export.levels: 0 levels"),
+            (
+                "\"size\": 16",
+                "\"size\": -16",
+                "export.levels[0].size: -16",
+            ),
+            ("\"keep\": 1", "\"keep\": 0", "export.levels[0].keep: 0"),
+            (
+                columns,
+                "\"columns\": [2, 0]",
+                "export.levels[0].columns: [2, 0]",
+            ),
+            (
+                "\"rows\": [0, 2]",
+                "\"rows\": [0, 9223372036854775807]",
+                "export.levels[0].rows: [0, ",
+            ),
+            (
+                columns,
+                "\"columns\": [0, 3]",
+                "total.chunks: 4; allowed: 6",
+            ),
+        ] {
+            let error = read(&manifest.replace(old, new)).expect_err(fault);
+            assert!(error.contains(fault), "{error}");
+        }
+    }
 
     #[test]
     fn a_line_that_is_broken_off_is_none() {

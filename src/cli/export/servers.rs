@@ -8,11 +8,18 @@ use super::{
     grid::{Grid, Level},
     spec::Spec,
 };
+use crate::service::query::parameters::FORMAT;
 
 /// Settings for nginx, to be included in a server whose root is the export.
 pub(super) const NGINX: &str = "strew.nginx.conf";
 /// Headers for hosts of static pages (Netlify, Cloudflare Pages).
 pub(super) const HEADERS: &str = "_headers";
+
+/// Pages of all origins may read answers and their headers, as those of the daemon with its default settings.
+const ORIGINS: [(&str, &str); 2] = [
+    ("access-control-allow-origin", "*"),
+    ("access-control-expose-headers", "*"),
+];
 
 /// An export that is to be served.
 #[derive(Clone, Debug)]
@@ -26,10 +33,13 @@ pub(super) struct Served<'a> {
 impl Served<'_> {
     /// The headers that are the same for all chunks.
     fn constant(&self) -> Vec<(&'static str, String)> {
-        let mut headers = vec![
+        let mut headers = ORIGINS
+            .map(|(name, value)| (name, value.to_owned()))
+            .to_vec();
+        headers.extend([
             ("strew-table", self.tables.clone()),
             ("strew-algorithm", ALGORITHM_VERSION.to_string()),
-        ];
+        ]);
         let world = self.spec.world.iter();
         headers.extend(world.map(|world| ("strew-world", world.digest.clone())));
         headers.extend(
@@ -52,14 +62,23 @@ impl Served<'_> {
             let _ = write!(
                 text,
                 "location = /v1/worlds/{} {{\n    types {{ }}\n    default_type application/json;\n    \
-                 try_files /v1/worlds/{}/index.json =404;\n}}\n",
+                 try_files /v1/worlds/{}/index.json =404;\n",
                 world.name, world.name
             );
+            for (name, value) in ORIGINS {
+                let _ = writeln!(text, "    add_header {name} '{value}';");
+            }
+            text += "}\n";
         }
         for level in &self.grid.levels {
             self.location(level, &mut text);
         }
         text
+    }
+
+    /// Whether addresses may leave a parameter out: the format of a world's files, because points do not depend on it.
+    fn may_lack(&self, name: &str) -> bool {
+        self.spec.world.is_some() && name == FORMAT.name
     }
 
     fn location(&self, level: &Level, text: &mut String) {
@@ -74,9 +93,16 @@ impl Served<'_> {
             "    if ($args !~ \"^(?:(?:{})(?:&|$))*$\") {{ return 404; }}",
             pairs.join("|")
         );
-        if level.query.contains("keep=") {
-            let keep = level.query.rsplit("keep=").next().unwrap_or_default();
-            let _ = writeln!(text, "    if ($arg_keep != \"{keep}\") {{ return 404; }}");
+        // Values are compared as addresses have them, encoded as in the level's query.
+        let given = level
+            .query
+            .split('&')
+            .filter_map(|pair| pair.split_once('='));
+        for (name, value) in given.filter(|(name, _)| !self.may_lack(name)) {
+            let _ = writeln!(
+                text,
+                "    if ($arg_{name} != \"{value}\") {{ return 404; }}"
+            );
         }
         let _ = writeln!(
             text,

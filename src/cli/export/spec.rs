@@ -3,7 +3,7 @@
 use anyhow::anyhow;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::{Deserialize, Serialize};
-use strew_core::ALGORITHM_VERSION;
+use strew_core::{ALGORITHM_VERSION, Keep};
 
 use super::grid::{Grid, Level};
 use crate::{
@@ -49,6 +49,9 @@ pub(super) struct Spec {
     pub(super) compressed: Vec<String>,
     /// How members of an archive are packed; none for a folder.
     pub(super) archive: Option<String>,
+    /// The setting `limits.block_bytes`, in formats whose bytes depend on it; else none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) block_bytes: Option<usize>,
     /// Levels of detail.
     pub(super) levels: Vec<Level>,
 }
@@ -65,6 +68,8 @@ pub(super) struct WorldName {
 #[derive(Clone, Debug)]
 pub(super) struct Checked {
     pub(super) query: Query,
+    /// The share of its points, or the common one beside layers.
+    keep: f64,
     pub(super) output: Output,
 }
 
@@ -165,16 +170,21 @@ impl Spec {
             )));
         }
         let (compressed, archive) = shape.packing(encoding)?;
-        let share = match first.query.is_layered {
-            true => 1.0,
-            false => first.query.sets[0].keep.get(),
-        };
+        let share = first.keep;
         let mut levels = vec![Level {
             keep: share,
             ..finest
         }];
         for k in 1..shape.levels {
             let keep = share * 0.25_f64.powi(k as i32);
+            if keep < Keep::MIN {
+                return Err(Failure::Usage(anyhow!(
+                    "--levels {}: level {k} has the share {keep:e} of the points; allowed with keep = {share}: at most \
+                     {k} levels, because the smallest share is {:e}",
+                    shape.levels,
+                    Keep::MIN
+                )));
+            }
             let size = shape.size * f64::from(k).exp2();
             levels.push(Level::new(
                 size,
@@ -197,6 +207,7 @@ impl Spec {
             bbox,
             compressed,
             archive,
+            block_bytes: blocks(encoding, config),
             levels,
         })
     }
@@ -235,6 +246,17 @@ impl Spec {
             )
         });
         let levels: Vec<Checked> = levels.collect::<Result<_, _>>()?;
+        let now = blocks(levels[0].output.encoding, config);
+        if self.block_bytes != now {
+            let shown =
+                |bytes: Option<usize>| bytes.map_or("none".into(), |bytes| bytes.to_string());
+            return Err(Failure::Usage(anyhow!(
+                "limits.block_bytes {}: the export was made with {}, and the bytes of --format {} depend on it",
+                shown(now),
+                shown(self.block_bytes),
+                self.format
+            )));
+        }
         let query = &levels[0].query;
         let tables = Planned::tables(query).map_err(|error| Source::Flags.refused(error))?;
         Ok((levels, tables))
@@ -248,6 +270,11 @@ impl Spec {
             && self.world.as_ref().map(|world| &world.digest) == world
             && self.digests.iter().map(String::as_str).eq(first.digests())
     }
+}
+
+/// The setting on which the bytes of columnar formats depend: the rows of a record batch.
+fn blocks(encoding: Encoding, config: &Config) -> Option<usize> {
+    (encoding == Encoding::Arrow).then_some(config.limits.block_bytes)
 }
 
 /// The box of the flags.
@@ -277,11 +304,17 @@ fn check(
     }
     let draft = Draft::new(values).within(Ok(chunk(level.size, at)));
     let checked = draft.check(catalog, config.limits.max_vertices);
+    // Flags or the world's document have it.
+    let keep = || -> Result<f64, Error> {
+        let (whole, _) = draft.filled(catalog.worlds())?;
+        Ok(whole.values.get(&KEEP)?.unwrap_or(1.0))
+    };
     let looks = |(query, options): (Query, Options)| -> Result<Checked, Error> {
         let encoding = options.encoding.unwrap_or(Encoding::Json);
         Ok(Checked {
             output: options.output(encoding)?,
             query,
+            keep: keep()?,
         })
     };
     checked

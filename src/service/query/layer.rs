@@ -29,7 +29,7 @@ pub struct LayerDraft {
 
 /// What layers may be called.
 pub(super) const NAME: &str =
-    "1 to 64 ASCII letters, digits, _, - and ., another name for each layer";
+    "1 to 64 ASCII letters, digits, _, - and ., not dots alone, another name for each layer";
 /// What clear_of may be.
 const CLEAR_OF: &str = "names of layers before this one, each with a finite distance above 0";
 

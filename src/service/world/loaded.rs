@@ -147,11 +147,10 @@ impl World {
                 return Err(Fault::new(member, value, detail, ALLOWED).into());
             }
         }
-        let counted = (draft.layers.iter().flatten())
-            .find(|layer| layer.values.has(&COUNT) && matches!(layer.region, Ok(None)));
+        let counted = (draft.layers.iter().flatten()).find(|layer| layer.values.has(&COUNT));
         if let Some(layer) = counted {
             let field = format!("{}{}", layer.values.path(), COUNT.name);
-            let detail = "in a world only with a region of the layer: chunks would not join";
+            let detail = "not allowed in a world: each chunk would have as many points";
             let fault = Fault::new(
                 &field,
                 layer.values.text(&COUNT),

@@ -136,7 +136,7 @@ fn broken_worlds_are_refused_at_the_start() {
         ("[forest]\noffset = 3", "`worlds.forest.offset` = `3`"),
         (
             "[[forest.layers]]\nname = 'oak'\ncount = 300",
-            "`worlds.forest.layers.oak.count` = `300`: in a world only with",
+            "`worlds.forest.layers.oak.count` = `300`: not allowed in a world",
         ),
         (
             "[forest]\nprofile = 'plaid'",

@@ -47,6 +47,11 @@ fn a_pinned_answer_is_made_once_and_its_tag_is_enough() {
     let known = get(&path, &[("if-none-match", first.header("etag"))]);
     assert_eq!((known.status, status(&known).as_str()), (304, "HIT"));
     assert!(known.body.is_empty());
+    // What a program got first, pages of other origins may read.
+    let page = get(&path, &[("origin", "https://page.example")]);
+    for answer in [&first, &page] {
+        assert_eq!(answer.header("access-control-allow-origin"), "*");
+    }
 
     // Codings and formats have entries of their own; the words in which a coding is accepted have none.
     let gzip = |words: &str| get(&path, &[("accept-encoding", words)]);

@@ -13,7 +13,7 @@ use crate::support::{
 const POINTS: &str = "/v1/points?bbox=0,0,10,10&density=1&profile=test";
 
 /// Paths whose answers may be cached.
-const CACHEABLE: [&str; 8] = [
+const CACHEABLE: [&str; 7] = [
     POINTS,
     "/v1/points?bbox=0,0,10,10&density=1&profile=test&format=csv",
     "/v1/points?bbox=0,0,10,10&density=1&profile=test&format=f32",
@@ -21,7 +21,6 @@ const CACHEABLE: [&str; 8] = [
     "/v1/profiles/test",
     "/v1/profiles/test/spectrum.svg",
     "/openapi.json",
-    "/docs",
 ];
 
 fn with(daemon: &Daemon, path: &str, headers: &[(&str, &str)]) -> http1::Answer {

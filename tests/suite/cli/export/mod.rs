@@ -1,24 +1,23 @@
 //! `strew export`: a world as files. A static server answers with the daemon's bytes, killed exports go on, and what
 //! differs is found.
 
+mod served;
+
 use std::{
     collections::BTreeMap,
     fs,
-    io::Read as _,
     net::SocketAddr,
     path::Path,
     process::{Command, Output, Stdio},
+    time::SystemTime,
 };
 
-use strew_testkit::{
-    http1::{self, Answer},
-    wait::until,
-};
+use strew_testkit::{http1, wait::until};
 
 use crate::support::{
     clients,
     command::{errors, run},
-    daemon::{Daemon, strew},
+    daemon::strew,
     proxy::{Proxy, nginx},
 };
 
@@ -96,148 +95,6 @@ fn serve(root: &Path) -> Option<Proxy> {
     Some(Proxy::start("nginx", server))
 }
 
-fn assert_alike(one: &Answer, other: &Answer, path: &str) {
-    assert_eq!((one.status, other.status), (200, 200), "{path}");
-    assert!(one.body == other.body, "{path}: other bytes");
-    for name in ["content-type", "strew-table", "strew-algorithm"] {
-        assert_eq!(one.header(name), other.header(name), "{path}: {name}");
-    }
-    let optional = |answer: &Answer, name: &str| answer.headers.get(name).cloned();
-    for name in ["strew-world", "strew-columns"] {
-        assert_eq!(optional(one, name), optional(other, name), "{path}: {name}");
-    }
-}
-
-#[test]
-fn a_static_server_answers_as_the_daemon() {
-    let (folder, file) = settings();
-    let daemon = Daemon::with_config(WORLDS);
-    let world = folder.path().join("world");
-    let out = world.display().to_string();
-    let flags = [
-        "--config",
-        &file,
-        "--world",
-        "forest",
-        "--bbox=-16,0,32,32",
-        "--chunk=16",
-        "--levels=2",
-    ];
-    exported(&[&flags[..], &["--format", "json", "-o", &out]].concat());
-    let Some(nginx) = serve(&world) else { return };
-    let get = |address, path: &str| http1::get(address, path, &[]);
-    let chunks = [
-        ("16/-1/0", ""),
-        ("16/1/1", ""),
-        ("32/-1/0", "&keep=0.25"),
-        ("32/0/0", "&keep=0.25"),
-    ];
-    for (chunk, keep) in chunks {
-        let path = format!("/v1/worlds/forest/chunks/{chunk}?format=json{keep}");
-        let (there, here) = (get(daemon.address(), &path), get(nginx.address, &path));
-        assert_alike(&there, &here, &path);
-        assert!(here.text().contains("\"rock\""), "{}", here.text());
-        let packed = http1::get(nginx.address, &path, &[("accept-encoding", "gzip")]);
-        assert_eq!(packed.header("content-encoding"), "gzip");
-        let mut plain = vec![];
-        flate2::read::GzDecoder::new(&*packed.body)
-            .read_to_end(&mut plain)
-            .expect("gzip");
-        assert!(plain == there.body, "{path}");
-    }
-    let document = |address| get(address, "/v1/worlds/forest");
-    assert!(document(nginx.address).body == document(daemon.address()).body);
-    let digest = document(nginx.address).json()["digest"]
-        .as_str()
-        .expect("text")
-        .to_owned();
-    let pinned = format!("/v1/worlds/forest/chunks/16/0/0?world_digest={digest}&format=json");
-    let (there, here) = (get(daemon.address(), &pinned), get(nginx.address, &pinned));
-    assert_alike(&there, &here, &pinned);
-    assert_eq!(here.header("cache-control"), there.header("cache-control"));
-    // What would have another answer has none.
-    for other in [
-        "16/0/0?format=json&seed=8",
-        "16/0/0?format=csv",
-        "32/0/0?format=json",
-        "16/7/7?format=json",
-    ] {
-        let path = format!("/v1/worlds/forest/chunks/{other}");
-        assert_eq!(get(nginx.address, &path).status, 404, "{path}");
-    }
-}
-
-#[test]
-fn sets_without_a_world_are_served_under_their_parameters() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let world = folder.path().join("world");
-    let out = world.display().to_string();
-    let daemon = Daemon::built_in();
-    let set = [
-        "--spacing=1.5",
-        "--seed=7",
-        "--attributes=angle,variant",
-        "--variants=oak:3,birch:1",
-    ];
-    let flags = [
-        "--bbox=0,0,32,16",
-        "--chunk=16",
-        "--levels=2",
-        "--format=f32",
-        "-o",
-        &out,
-    ];
-    exported(&[&set[..], &flags].concat());
-    let Some(nginx) = serve(&world) else { return };
-    let query = "spacing=1.5&seed=7&attributes=angle,variant&variants=oak:3,birch:1&format=f32";
-    let manifest = fs::read(world.join("manifest.json")).expect("written");
-    let manifest: serde_json::Value = serde_json::from_slice(&manifest).expect("JSON");
-    for (level, chunk) in [(0, "16/1/0"), (1, "32/0/0")] {
-        let query = manifest["export"]["levels"][level]["query"]
-            .as_str()
-            .expect("text");
-        let path = format!("/v1/chunks/{chunk}?{query}");
-        let there = http1::get(daemon.address(), &path, &[]);
-        assert_alike(&there, &http1::get(nginx.address, &path, &[]), &path);
-        assert!(there.body.len() > 12 * 8);
-    }
-    let mut words: Vec<&str> = query.split('&').collect();
-    let said = manifest["export"]["levels"][0]["query"]
-        .as_str()
-        .expect("text");
-    let mut ours: Vec<&str> = said.split('&').collect();
-    words.sort_unstable();
-    ours.sort_unstable();
-    assert_eq!(ours, words);
-}
-
-#[test]
-fn a_coarser_level_has_a_part_of_the_points_of_a_finer_one() {
-    let (_folder, file) = settings();
-    let of = |keep: &str| {
-        let chunk = [
-            "sample",
-            "-q",
-            "--chunk=64/0/0",
-            "--format=csv",
-            "--world=forest",
-            "--config",
-            &file,
-        ];
-        let output = run(&[&chunk[..], &["--keep", keep]].concat(), "");
-        assert!(output.status.success(), "{}", errors(&output));
-        let text = String::from_utf8(output.stdout).expect("UTF-8");
-        text.lines()
-            .skip(1)
-            .map(Into::into)
-            .collect::<Vec<String>>()
-    };
-    let (all, quarter) = (of("1"), of("0.25"));
-    assert!(quarter.iter().all(|point| all.contains(point)));
-    let share = quarter.len() as f64 / all.len() as f64;
-    assert!((0.2..0.3).contains(&share), "{share}");
-}
-
 /// Starts an export and kills it, with SIGKILL, once a path is there.
 fn kill_when(arguments: &[&str], what: &str, there: impl Fn() -> bool) {
     let mut command = strew();
@@ -251,6 +108,16 @@ fn kill_when(arguments: &[&str], what: &str, there: impl Fn() -> bool) {
     until(what, || there().then_some(()));
     let _ = child.kill();
     let _ = child.wait();
+}
+
+/// The numbers of the chunks that a journal has.
+fn finished(journal: &Path) -> Vec<usize> {
+    let text = fs::read_to_string(journal).expect("readable");
+    let lines = text
+        .split_inclusive('\n')
+        .filter(|line| line.ends_with('\n'));
+    let number = |line: &str| line.split(' ').next()?.parse().ok();
+    lines.map(|line| number(line).expect("a number")).collect()
 }
 
 const LARGE: [&str; 5] = [
@@ -284,14 +151,20 @@ fn a_killed_export_goes_on_to_the_same_tree() {
     // Other options neither go on there nor touch it.
     let other = export(&[&flags[..], &["--warp=off"]].concat());
     assert_eq!(other.status.code(), Some(2), "{}", errors(&other));
-    let before = fs::metadata(path("broken/v1/chunks/32/0/0"))
-        .ok()
-        .and_then(|file| file.modified().ok());
+    let finished = finished(&journal);
+    assert!(!finished.is_empty());
+    let times = || -> Vec<SystemTime> {
+        let chunks = finished.iter().map(|i| {
+            let chunk = path(&format!("broken/v1/chunks/32/{}/{}", i / 32, i % 32));
+            fs::metadata(chunk)
+                .and_then(|file| file.modified())
+                .expect("there")
+        });
+        chunks.collect()
+    };
+    let before = times();
     exported(&flags);
-    let after = fs::metadata(path("broken/v1/chunks/32/0/0"))
-        .ok()
-        .and_then(|file| file.modified().ok());
-    assert_eq!(after, before.or(after), "a chunk was made twice");
+    assert_eq!(times(), before, "a chunk was made twice");
     let (whole, broken) = (tree(&path("whole")), tree(&path("broken")));
     assert!(whole.keys().eq(broken.keys()) && whole == broken);
     exported(&["--check", &text("broken"), "--all"]);
@@ -430,11 +303,14 @@ fn an_archive_is_read_by_ranges_and_goes_on_after_a_kill() {
 fn an_interrupt_ends_it_in_good_order() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let out = folder.path().join("world");
+    // It goes on far longer than the signal takes.
+    let mut large = LARGE;
+    large[2] = "--bbox=0,0,4096,4096";
     let mut command = strew();
     command
         .args(["export", "-q", "--threads=1", "-o"])
         .arg(&out)
-        .args(LARGE);
+        .args(large);
     let child = command
         .stderr(Stdio::piped())
         .spawn()
@@ -482,6 +358,15 @@ fn wrong_flags_are_refused() {
             "--compress zst",
         ),
         (&["--chunk=1e-9", "-o", "w"], "chunks; allowed"),
+        (
+            &["--chunk=0.01", "-o", "w"],
+            "chunks; allowed: at most 10000000",
+        ),
+        (&["--chunk=16", "--levels=11", "-o", "w"], "--levels"),
+        (
+            &["--chunk=16", "--levels=9", "--keep=0.01", "-o", "w"],
+            "--levels 9: level 7",
+        ),
     ] {
         let output = export(&[&set[..], flags].concat());
         assert_eq!(
