@@ -1,5 +1,5 @@
 //! The daemon's own pages for people: `/`, a view of the plane, and what it leads to. Their parts are embedded and
-//! served under `/page/`; they load nothing from elsewhere and ask only what anybody can ask.
+//! served under `/page/`; they load nothing from elsewhere and use only the public API.
 //!
 //! The list of parts stands in [`PARTS`]; tests/tidy.rs holds it against the folder. The modules and the styles of a
 //! page are joined at the start, because each request takes a round trip; the parts are served as well, for workers

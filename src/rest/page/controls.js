@@ -1,5 +1,5 @@
 // The tab Choose: layers, and for the one that is picked everything that makes its points. Its fields are made
-// once; a choice sets their values, so nobody loses a place in the panel.
+// once; a choice sets their values, so the panel keeps its focus and scroll position.
 
 import { byId, icon, make, settled, spoken } from "./dom.js";
 import { faultsBefore } from "./faults.js";

@@ -55,7 +55,7 @@ export function settled(wait, call) {
   return later;
 }
 
-/** A number with at most so many significant digits, groups of three set apart. */
+/** A number with at most `digits` significant digits, groups of three set apart. */
 export function spoken(value, digits = 4) {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);

@@ -125,7 +125,7 @@ async function notesOf(layers) {
   return notes;
 }
 
-/** Has the server understand the layers, then shows them. `isChosen`: somebody changed them just now. */
+/** Has the server understand the layers, then shows them. `isChosen`: the visitor changed them just now. */
 async function refresh(isChosen = false) {
   latest += 1;
   const mine = latest;

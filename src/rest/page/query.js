@@ -5,7 +5,7 @@ import { encoded } from "./state.js";
 import { decimalsFor, formatPlace, moved } from "./place.js";
 import { documentOf } from "./sent.js";
 
-/** The attributes that a layer shows, in the order in which they are asked for. */
+/** The attributes that a layer shows, in the order in which they are requested. */
 export function attributesOf(layer) {
   return ["angle", "scale", "variant", "rank"].filter((name) => layer[name]);
 }

@@ -9,11 +9,11 @@ import { LAYER } from "../state.js";
 import { callsOf } from "../worker.js";
 import { MEASURED } from "./methods.js";
 
-/** So much of the world is held around a view, in views. */
+/** The part of the world that is held around a view, in views. */
 const AHEAD = 2;
 /** The side of a large square that is timed: 250,000 points, 2 MB. */
 const LARGE = 500;
-/** It is asked for if the measured square takes fewer milliseconds than this. */
+/** It is requested if the measured square takes fewer milliseconds than this. */
 const QUICK = 150;
 
 const make = callsOf("/page/compare/worker.js");

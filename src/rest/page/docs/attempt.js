@@ -4,7 +4,7 @@ import { hasKey, headersFor, useKey } from "../api.js";
 import { bytes, make } from "../dom.js";
 import { resolved } from "./schema.js";
 
-/** So much of an answer is shown. */
+/** The most bytes of an answer that are shown. */
 const SHOWN = 20_000;
 
 /** The address of an operation's example, and whether it has a body: from the line for curl. */

@@ -4,15 +4,15 @@ import { byId, counted, icon, make, skipLinks } from "../dom.js";
 import { watchTheme } from "../theme.js";
 import { operationView } from "./operation.js";
 
-/** The parts of pages need no telling. */
-const isTold = (path) => path.split("/")[1] !== "page";
+/** Whether a path is listed: the parts of pages are not. */
+const isListed = (path) => path.split("/")[1] !== "page";
 
 let api = null;
 let all = [];
 
 /** The operations in the order of their tags. */
 function operationsOf(document) {
-  const found = Object.entries(document.paths).filter(([path]) => isTold(path)).flatMap(([path, item]) => (
+  const found = Object.entries(document.paths).filter(([path]) => isListed(path)).flatMap(([path, item]) => (
     Object.entries(item).filter(([, one]) => one.operationId).map(([name, operation]) => ({
       path, operation, method: name.toUpperCase(), tag: operation.tags?.[0] ?? "other", id: operation.operationId,
     }))

@@ -119,15 +119,15 @@ function frame(now) {
 
 /** Bytes received, seen twice a second over the last two. */
 const meter = [];
-let told = 0;
+let updated = 0;
 
 function tell(drawn, now) {
   const state = root.dataset.state === "failed" ? "failed" : world.isReady ? "ready" : "loading";
   const isNews = state !== root.dataset.state;
   root.dataset.state = state;
   byId("fly").setAttribute("aria-pressed", String(walker.isFlying));
-  if (now - told < 500 && !isNews) return;
-  told = now;
+  if (now - updated < 500 && !isNews) return;
+  updated = now;
   const { loaded, chunks, wanted, received } = world.sums;
   meter.push([now, received]);
   if (meter.length > 5) meter.shift();

@@ -120,7 +120,7 @@ export class World {
     this.forget();
   }
 
-  /** What is to be drawn from a place: `{ grounds, things }`, with leaves placed as seen from there; a frame took so long. */
+  /** What is to be drawn from a place: `{ grounds, things }`, with leaves placed as seen from there; `took` is the time of the last frame. */
   look(at, took) {
     if (this.isStale) this.compose(took);
     const by = [distance(this.around.x, at.x), distance(this.around.y, at.y)];
