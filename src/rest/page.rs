@@ -1,5 +1,5 @@
 //! The daemon's own pages for people: `/`, a view of the plane, and what it leads to. Their parts are embedded and
-//! served under `/page/`; they load nothing from elsewhere and ask only what anybody can ask.
+//! served under `/page/`; they load nothing from elsewhere and use only the public API.
 //!
 //! The list of parts stands in [`PARTS`]; tests/tidy.rs holds it against the folder. The modules and the styles of a
 //! page are joined at the start, because each request takes a round trip; the parts are served as well, for workers
@@ -26,28 +26,46 @@ const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; w
                       connect-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'";
 
-/// A page: its path, the name of its operation, what it is, and its text.
-type Page = (&'static str, &'static str, &'static str, &'static str);
+/// A page: its path, the name of its operation, a summary and a description of it, and its text.
+type Page = (
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static str,
+);
 
 /// The pages. The parts of the first are in `page/`, those of each other one in a folder of its own in there.
 const PAGES: &[Page] = &[
-    ("/", "getPage", "The page", include_str!("page/index.html")),
+    (
+        "/",
+        "getPage",
+        "The page",
+        "For people: a view of the plane, with controls for its points and the requests for them. Loads nothing from \
+         elsewhere.",
+        include_str!("page/index.html"),
+    ),
     (
         "/docs",
         "getDocs",
         "The API as a page",
+        "For people: every operation with its parameters and answers, and a form to try it. Loads nothing from \
+         elsewhere.",
         include_str!("page/docs/index.html"),
     ),
     (
         "/compare",
         "getComparePage",
         "The page that compares ways to scatter points",
+        "For people: six ways to scatter points side by side, with spectra, distances and times. Loads nothing from \
+         elsewhere.",
         include_str!("page/compare/index.html"),
     ),
     (
         "/walk",
         "getWalk",
         "A walk through the plane, in three dimensions",
+        "For people: a forest whose trees are points of the plane, streamed by chunk. Loads nothing from elsewhere.",
         include_str!("page/walk/index.html"),
     ),
 ];
@@ -80,6 +98,7 @@ const PARTS: &[(&str, &str)] = parts![
     "compare/tile.js",
     "compare/worker.js",
     "controls.js",
+    "digits.js",
     "docs/attempt.js",
     "docs/docs.css",
     "docs/docs.js",
@@ -194,8 +213,8 @@ fn name_of(path: &str) -> &str {
 }
 
 /// A page, whose joined parts are added to the others.
-fn page(&(path, id, summary, text): &Page, parts: &mut Vec<(String, Fixed)>) -> Endpoint {
-    let operation = operation(id, path, summary, &[HTML], &[], vec![]);
+fn page(&(path, id, summary, about, text): &Page, parts: &mut Vec<(String, Fixed)>) -> Endpoint {
+    let operation = operation((id, path, summary, about), &[HTML], &[], vec![]);
     let mut html = text.to_owned();
     // A test joins every page; one that could not be joined would work as it is.
     if let Ok(joined) = joined(name_of(path), text, PARTS) {
@@ -227,9 +246,12 @@ fn parts_at(
     parts: &Parts,
 ) -> Endpoint {
     let operation = operation(
-        id,
-        example,
-        "A part of a page",
+        (
+            id,
+            example,
+            "A part of a page",
+            "A script, a style or a picture that the pages load.",
+        ),
         &[SCRIPT, STYLE, PICTURE],
         parameters,
         vec![Kind::NoSuchPath],
@@ -256,9 +278,7 @@ const FILE: Parameter = Parameter {
 };
 
 fn operation(
-    id: &'static str,
-    example: &str,
-    summary: &'static str,
+    (id, example, summary, about): (&'static str, &str, &'static str, &'static str),
     content_types: &[&'static str],
     path_parameters: &'static [&'static Parameter],
     problems: Vec<Kind>,
@@ -268,7 +288,7 @@ fn operation(
         method: Method::GET,
         id,
         summary,
-        about: "For people: a view of the plane. Loads nothing from elsewhere.",
+        about,
         tag: Tag::About,
         path_parameters,
         parameters: groups::NONE,

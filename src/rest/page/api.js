@@ -46,9 +46,10 @@ export function headersFor(body) {
 const listeners = new Set();
 let isGone = false;
 
-/** Tells `listener(isGone)` whenever the server goes or comes back. */
+/** Calls `listener(isGone)` whenever the server goes or comes back. Returns what ends that. */
 export function onPresence(listener) {
   listeners.add(listener);
+  return () => listeners.delete(listener);
 }
 
 /** Whether the server is away, as far as we know. */

@@ -10,7 +10,7 @@ import { themeColor } from "./theme.js";
 const HOVER = 14;
 const TAP = 48;
 const NEIGHBORS = 8;
-/** Around points is so much room for their rings, and around the card at the edge of the plane, in CSS pixels. */
+/** The room around points for their rings, and around the card at the edge of the plane, in CSS pixels. */
 const RING = 14;
 const EDGE = 10;
 

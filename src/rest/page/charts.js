@@ -2,7 +2,7 @@
 
 import { themeColor } from "./theme.js";
 
-/** Makes a canvas as fine as the screen; gives its context in CSS pixels with its size. */
+/** Makes a canvas as fine as the screen; returns its context in CSS pixels with its size. */
 export function prepared(canvas, aspect) {
   const width = canvas.clientWidth || 280;
   const height = Math.round(width * aspect);

@@ -1,5 +1,5 @@
-// The chunks that are there, under way, or wanted: asked for nearest first and a few at a time, given
-// up when nobody looks at them any more, kept as long as there is room.
+// The chunks that are there, loading, or wanted: requested nearest first and a few at a time, aborted when
+// they leave the view, kept while there is room.
 
 import { Gone, Problem, ask, brokeOff, isAway, onPresence } from "./api.js";
 import { chunkRequest, columnsOf } from "./query.js";
@@ -26,10 +26,10 @@ export class Chunks {
     this.refused = null;
     this.layers = [];
     this.identity = "";
-    onPresence((gone) => gone || this.pump());
+    this.unsubscribe = onPresence((gone) => gone || this.pump());
   }
 
-  /** Says what the points are; what was asked for other points is given up. */
+  /** Says what the points are; requests for other points are aborted. */
   show(layers) {
     const identity = chunkRequestIdentity(layers);
     if (identity === this.identity) return;
@@ -37,6 +37,12 @@ export class Chunks {
     this.layers = layers.map((layer) => ({ ...layer }));
     this.columns = columnsOf(layers);
     this.refused = null;
+    this.want([], 1);
+  }
+
+  /** Ends: what is being loaded is aborted. */
+  stop() {
+    this.unsubscribe();
     this.want([], 1);
   }
 
@@ -50,7 +56,7 @@ export class Chunks {
     return `${this.identity} ${keep} ${address.size}/${address.cx}/${address.cy}`;
   }
 
-  /** Says which chunks are looked at; gives these, whatever they hold by now. An address may have its own `keep`. */
+  /** Says which chunks are looked at; returns these, whatever they hold by now. An address may have its own `keep`. */
   want(addresses, keep) {
     this.clock += 1;
     this.wanted = addresses.map((address) => {
@@ -145,7 +151,7 @@ export class Chunks {
     if (filled !== bytes.length) throw brokeOff();
   }
 
-  /** What did not come is wanted again, unless it was given up or refused for good. */
+  /** What did not come is wanted again, unless it was aborted or refused for good. */
   lost(chunk, error) {
     chunk.state = "waiting";
     chunk.count = 0;
@@ -153,7 +159,7 @@ export class Chunks {
     if (error.name === "AbortError") {
       if (!this.wanted.includes(chunk)) this.all.delete(chunk.key);
     } else if (error instanceof Gone) {
-      // It is asked for again when the server is back.
+      // It is requested again when the server is back.
     } else if (error instanceof Problem && error.isPassing && chunk.tries < 8) {
       chunk.state = "later";
       chunk.tries += 1;

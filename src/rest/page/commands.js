@@ -1,8 +1,9 @@
 // What to paste elsewhere to get the points in view: the address, curl, grpcurl, Python.
 
 import { messageOf } from "./paint/message.js";
+import { Digits, json } from "./digits.js";
 import { documentOf } from "./sent.js";
-import { Digits, bodyOf, joined, json, memberOf, setOf } from "./query.js";
+import { bodyOf, joined, memberOf, setOf } from "./query.js";
 
 /** The formats of answers: name, ending of a file, what it is for. A test holds them against the server. */
 export const FORMATS = [
@@ -20,7 +21,7 @@ export const FORMATS = [
   ["png", "png", "a picture"],
 ];
 
-/** A field is written out in a request up to so many characters: shells take words of 131,071 bytes. */
+/** A field is written out in a request up to this number of characters: shells take words of 131,071 bytes. */
 const MOST_FIELD = 60_000;
 
 /** The parameter that pictures take beside. */
@@ -61,7 +62,7 @@ export function curl(origin, { path, body }, file) {
   return `curl -f ${quoted(origin + path)} -o ${file}${data}`;
 }
 
-/** The line for grpcurl: what is asked for is the same, the answer is messages. */
+/** The line for grpcurl: the request is the same, the answer consists of messages. */
 export function grpcurl(host, layers, box, keep) {
   const [minX, minY, maxX, maxY] = box.map((side) => new Digits(side));
   const region = { bbox: { min_x: minX, min_y: minY, max_x: maxX, max_y: maxY } };

@@ -1,5 +1,5 @@
 // The tab Choose: layers, and for the one that is picked everything that makes its points. Its fields are made
-// once; a choice sets their values, so nobody loses a place in the panel.
+// once; a choice sets their values, so the panel keeps its focus and scroll position.
 
 import { byId, icon, make, settled, spoken } from "./dom.js";
 import { faultsBefore } from "./faults.js";
@@ -131,7 +131,7 @@ export class Controls {
     });
     this.shade = check("shade-field", "Show it under the points", (shade) => this.change({ shade }));
     return make("div", { class: "group", role: "group", "aria-label": "Where" },
-      field("Field", "field", select("field", (value) => this.change({ field: value }))),
+      field("Field", "field", select("field", (value) => this.change({ field: value, paint: "" }))),
       this.shade, file,
       make("button", { type: "button", id: "choose-picture", onclick: () => file.click() }, "Stipple a picture …"),
       make("p", { class: "note" }, "Or drop one on the plane: dots lie where it is dark."));
@@ -200,6 +200,7 @@ export class Controls {
           this.picked = i;
           this.stopTyping();
           this.update();
+          this.session.tell("picked");
         },
       }, make("i"), make("span")));
       const add = make("button", { type: "button", id: "add-layer", onclick: () => this.addLayer() }, "+ Add a layer");

@@ -34,6 +34,16 @@ export function icon(path, label) {
   return svg;
 }
 
+/** Has links that skip parts of the page focus their targets: the address says what is shown, and stays. */
+export function skipLinks() {
+  for (const link of document.querySelectorAll(".skip")) {
+    link.addEventListener("click", (event) => {
+      event.preventDefault();
+      byId(link.hash.slice(1)).focus();
+    });
+  }
+}
+
 /** Calls a function once things have been quiet for some milliseconds. */
 export function settled(wait, call) {
   let timer = 0;
@@ -45,7 +55,7 @@ export function settled(wait, call) {
   return later;
 }
 
-/** A number with at most so many significant digits, groups of three set apart. */
+/** A number with at most `digits` significant digits, groups of three set apart. */
 export function spoken(value, digits = 4) {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);

@@ -1,7 +1,7 @@
 // Dots set straight into pixels. Without graphics hardware this is several times as fast as asking a
 // canvas for so many small shapes.
 
-/** Places within a pixel that are told apart, along each axis. */
+/** The places within a pixel that are kept apart, along each axis. */
 const STEPS = 4;
 /** Samples a pixel's side for how much of it a dot covers. */
 const SAMPLES = 5;

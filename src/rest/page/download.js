@@ -2,7 +2,7 @@
 
 import { ask, brokeOff, hasKey } from "./api.js";
 
-/** So many points are fetched to estimate what text will weigh. */
+/** The number of points that are fetched to estimate the size of text. */
 const SAMPLE = 2000;
 /** What needs a body is held in memory until it is whole: no more than this. */
 export const MOST_HELD = 1e9;
@@ -34,7 +34,7 @@ export async function sizeOf({ path, body }, format, count, signal) {
   return { bytes: Math.round((byteLength * count) / part), isExact };
 }
 
-/** Saves an answer under a name; `progress(bytes)` hears how much has come where that can be told. */
+/** Saves an answer under a name; `progress(bytes)` hears how much has come, where that is known. */
 export async function save({ path, body }, name, progress, signal) {
   // A link cannot carry a key.
   if (!body && !hasKey()) return click(path, name);

@@ -1,5 +1,6 @@
 // Fields of a form that stay where they are: they are made once, and set again when the choice changes.
 
+import { useKey } from "./api.js";
 import { make } from "./dom.js";
 
 /** A control with its label, further lines, and a line for what is wrong with its value. */
@@ -42,4 +43,15 @@ export function fault(root, id, words) {
   const about = [control.dataset.about, words && line.id].filter(Boolean).join(" ");
   if (about) control.setAttribute("aria-describedby", about);
   else control.removeAttribute("aria-describedby");
+}
+
+/** A form for a key, which stays in this tab; `used()` is called once there is one. */
+export function keyForm(used) {
+  const key = make("input", { type: "password", id: "key", "aria-label": "Key", autocomplete: "off", required: true });
+  const use = (event) => {
+    event.preventDefault();
+    useKey(key.value);
+    used();
+  };
+  return make("form", { onsubmit: use }, key, make("button", { type: "submit" }, "Use this key"));
 }

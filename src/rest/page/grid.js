@@ -4,13 +4,13 @@ import { distance, place, toNumber } from "./place.js";
 
 /** More points than this are not drawn at once: beyond, the points of lowest rank stand for all. */
 export const MOST_POINTS = 1_000_000;
-/** About so many chunks are to lie in a view. */
+/** The number of chunks in a view, about. */
 const CHUNKS = 20;
-/** No chunk is smaller than so many spacings: a thousand points take as long to come as ten. */
+/** No chunk is smaller than this number of spacings: a thousand points take as long to come as ten. */
 const LEAST_SPACINGS = 32;
 /** Along each axis no view has more chunks than this. */
 const MOST_CHUNKS = 64;
-/** So many spacings from the origin doubles still tell points apart; the server refuses what is farther. */
+/** The distance from the origin, in spacings, up to which doubles tell points apart; the server refuses what is farther. */
 const REACH = 1.4e15;
 
 /** The side of chunks for a view, a power of two, so that corners are exact. */

@@ -1,10 +1,11 @@
 // The page: puts its parts together.
 
-import { Gone, askJson, onPresence, useKey } from "./api.js";
+import { Gone, askJson, onPresence } from "./api.js";
 import { Card } from "./card.js";
 import { Controls } from "./controls.js";
-import { byId, icon, make, settled, spoken } from "./dom.js";
+import { byId, icon, make, settled, skipLinks, spoken } from "./dom.js";
 import { faultsOf, faultsBefore } from "./faults.js";
+import { keyForm } from "./form.js";
 import { Gallery } from "./gallery.js";
 import { moveBy } from "./gestures.js";
 import { farthest, isTooFar } from "./grid.js";
@@ -124,7 +125,7 @@ async function notesOf(layers) {
   return notes;
 }
 
-/** Has the server understand the layers, then shows them. `isChosen`: somebody changed them just now. */
+/** Has the server understand the layers, then shows them. `isChosen`: the visitor changed them just now. */
 async function refresh(isChosen = false) {
   latest += 1;
   const mine = latest;
@@ -294,6 +295,7 @@ const paint = new Paint(session, plane, {
 const start = new Start(session);
 parts.push(start, card, understand, take, shade, works, paint);
 tools();
+skipLinks();
 takeDrops(byId("stage"), stipple);
 tabs();
 showTab();
@@ -341,17 +343,13 @@ function settle(profiles) {
 /** A server that wants keys is given one. */
 function askForKey() {
   if (byId("key")) return;
-  const field = make("input", { type: "password", id: "key", "aria-label": "Key", autocomplete: "off", required: true });
-  const use = (event) => {
-    event.preventDefault();
-    useKey(field.value);
+  banner("This server answers only those who have a key. It stays in this tab.");
+  byId("banner").lastElementChild.replaceWith(keyForm(() => {
     banner(null);
     if (controls) refresh();
     else begin();
-  };
-  banner("This server answers only those who have a key. It stays in this tab.");
-  byId("banner").lastElementChild.replaceWith(make("form", { onsubmit: use }, field, make("button", { type: "submit" }, "Use this key")));
-  field.focus();
+  }));
+  byId("key").focus();
 }
 
 /** Shows the layers before the server has said anything, where their spacings need no server. */

@@ -9,12 +9,12 @@ export const SHAPE_SIGNS = ["●", "▲", "■", "◆", "✚", "○", "△", "�
 /** The shape of a point with an angle and no variant. */
 export const ARROW = SHAPES.length;
 
-/** The diameter of a dot in CSS pixels, where neighbors are so many pixels apart. */
+/** The diameter of a dot in CSS pixels, where neighbors are a number of pixels apart. */
 export function dotSize(gap, factor) {
   return Math.min(14, Math.max(1.1, gap * 0.3)) * factor;
 }
 
-/** The diameter of a mark that has a direction or a shape: larger, so that it can be told. */
+/** The diameter of a mark that has a direction or a shape: larger, so that it can be recognized. */
 export function markSize(gap, factor) {
   return Math.min(36, Math.max(2.5, gap * 0.62)) * factor;
 }

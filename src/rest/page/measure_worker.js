@@ -3,7 +3,7 @@
 import { neighborsOf } from "./neighbors.js";
 import { spectrumOf } from "./spectrum.js";
 
-/** Nearest-neighbor distances are told in those of the densest packing. */
+/** Nearest-neighbor distances are in units of that of the densest packing. */
 const HEXAGONAL = Math.sqrt(2 / Math.sqrt(3));
 
 // `points` are x, y within a square of `side` world units.

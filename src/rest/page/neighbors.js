@@ -1,6 +1,6 @@
 // Distances between points of a window: nearest neighbors, and how often each distance occurs.
 
-/** Distances are counted up to so many mean spacings, in bins of this width. */
+/** Distances are counted up to this number of mean spacings, in bins of this width. */
 const REACH = 5;
 const BIN = 0.04;
 

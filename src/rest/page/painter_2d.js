@@ -74,7 +74,7 @@ class PlainPainter {
   }
 
   drop(sheet) {
-    // Browsers give the memory back at once if nothing is left of it.
+    // Browsers return the memory at once if nothing is left of it.
     Object.assign(sheet.canvas, { width: 0, height: 0 });
   }
 

@@ -72,8 +72,8 @@ const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 function isFast() {
   const gl = document.createElement("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
   if (!gl) return false;
-  const told = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
   gl.getExtension("WEBGL_lose_context")?.loseContext();
   return !SOFTWARE.test(String(name));
 }
@@ -122,7 +122,7 @@ class GlPainter {
     return { program, uniforms };
   }
 
-  /** An empty sheet of so many device pixels. */
+  /** An empty sheet of a size in device pixels. */
   sheet(width, height) {
     const { gl } = this;
     const texture = gl.createTexture();

@@ -5,11 +5,11 @@ import { send } from "./sent.js";
 
 /** The server takes a million pixels at most. */
 const MOST_PIXELS = 1_000_000;
-/** About so many dots come where the whole picture is dark. */
+/** The number of dots, about, of a picture that is dark all over. */
 const DOTS = 60_000;
 
 /**
- * Sends a picture, laid over the middle of a view. Gives what the layer becomes: its field, how many points,
+ * Sends a picture, laid over the middle of a view. Returns what the layer becomes: its field, how many points,
  * and what they look like.
  */
 export async function sendPicture(file, view) {

@@ -43,7 +43,7 @@ export function parsePlace(text) {
   return sign === "-" ? place(-i, -f) : place(i, f);
 }
 
-/** Writes a coordinate with at most so many decimals, without a loss before the point. */
+/** Writes a coordinate with at most `decimals` decimals, without a loss before the point. */
 export function formatPlace(at, decimals = 12) {
   if (Math.abs(at.i) > Number.MAX_SAFE_INTEGER) return String(toNumber(at));
   const isNegative = at.i < 0;

@@ -7,10 +7,10 @@ import { plainPainter } from "./painter_2d.js";
 import { moved, place, toNumber } from "./place.js";
 import { Sheets } from "./sheets.js";
 
-/** A view shows at least half a spacing, and at most so many: a hundred million points, thinned. */
+/** A view shows at least half a spacing, and at most this number of spacings: a hundred million points, thinned. */
 const LEAST_SPAN = 0.5;
 const MOST_SPAN = 2e4;
-/** A zoom counts as over after so many milliseconds. */
+/** A zoom counts as over after this time, in milliseconds. */
 const REST = 140;
 
 /**
@@ -125,7 +125,7 @@ export class Plane {
     if (this.sheets.front.isFull && !isZooming && this.sheets.front.unit === this.view.unit) this.events.settled();
   }
 
-  /** Whether a place is too far out for points to be told apart. */
+  /** Whether a place is too far out for numbers to tell points apart. */
   isTooFar(at) {
     return this.look !== null && isTooFar(at, this.look.spacing);
   }
@@ -157,7 +157,7 @@ export class Plane {
     }
   }
 
-  /** The point nearest to a place on the canvas, if it is within so many CSS pixels. */
+  /** The point nearest to a place on the canvas, if it is within a distance in CSS pixels. */
   pointAt([px, py], within) {
     const { view, sheets } = this;
     const [x, y] = [(px - view.width / 2) * view.unit, (view.height / 2 - py) * view.unit];

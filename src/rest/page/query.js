@@ -1,10 +1,11 @@
 // From what is chosen to what is asked: parameters of an address for one layer, a body for several.
 
+import { Digits, json } from "./digits.js";
 import { encoded } from "./state.js";
 import { decimalsFor, formatPlace, moved } from "./place.js";
 import { documentOf } from "./sent.js";
 
-/** The attributes that a layer shows, in the order in which they are asked for. */
+/** The attributes that a layer shows, in the order in which they are requested. */
 export function attributesOf(layer) {
   return ["angle", "scale", "variant", "rank"].filter((name) => layer[name]);
 }
@@ -57,25 +58,6 @@ export function memberOf(layer, keep = 1, isWhole = false) {
 function numberOr(text) {
   const number = Number(text);
   return text !== "" && Number.isFinite(number) ? number : text;
-}
-
-/** A number that is written as it was typed. */
-export class Digits {
-  constructor(text) {
-    const isNumber = /^-?\d+(\.\d+)?(e[+-]?\d+)?$/i.test(text);
-    this.text = isNumber ? text.replace(/^(-?)0+(?=\d)/, "$1") : JSON.stringify(text);
-  }
-}
-
-/** Writes JSON, with `Digits` as they are; `indent` as of `JSON.stringify`. */
-export function json(value, indent = 0) {
-  const marks = [];
-  const text = JSON.stringify(value, (_, member) => {
-    if (!(member instanceof Digits)) return member;
-    marks.push(member.text);
-    return `\u0000${marks.length - 1}\u0000`;
-  }, indent);
-  return text.replace(/"\\u0000(\d+)\\u0000"/g, (_, i) => marks[Number(i)]);
 }
 
 /** What the layer of an index is called in requests. */

@@ -5,7 +5,7 @@ import { joined, setOf, togetherBody } from "./query.js";
 import { fromHash, toHash } from "./state.js";
 import { settled } from "./dom.js";
 
-/** One choice at a time; `listeners` hear what has changed: `layers`, `view`, `tab`, `works`. */
+/** One choice at a time; `listeners` hear what has changed: `layers`, `picked`, `view`, `tab`, `works`. */
 export class Session {
   constructor() {
     this.state = fromHash(location.hash);

@@ -5,9 +5,9 @@ import { byId } from "./dom.js";
 import { chunksOf, cornerFrom } from "./grid.js";
 import { themeColor } from "./theme.js";
 
-/** A tile is about so many CSS pixels wide. */
+/** The width of a tile in CSS pixels, about. */
 const SIDE = 360;
-/** So many tiles are kept. */
+/** The most tiles that are kept. */
 const MOST = 200;
 /** How dark the ground becomes where the field is 1. */
 const STRENGTH = 0.28;

@@ -8,7 +8,7 @@ import { distance } from "./place.js";
 
 /** How much larger than the canvas a sheet is, on each side, as a share of the canvas. */
 const MARGIN = 0.2;
-/** Painting points may take so many milliseconds of a frame. */
+/** The time that painting points may take of a frame, in milliseconds. */
 const PATIENCE = 6;
 /** How far a zoom may stretch a sheet while it goes on. */
 const STRETCH = 1.6;
@@ -28,7 +28,7 @@ export class Sheets {
     if (!keepsBack) this.blank = true;
   }
 
-  /** Paints what has come, and shows it; gives whether there is more to do in the next frame. */
+  /** Paints what has come, and shows it; returns whether there is more to do in the next frame. */
   frame(view, look, isZooming) {
     const { painter } = this;
     if (!this.fits(view, isZooming)) this.begin(view, look);
@@ -93,7 +93,7 @@ export class Sheets {
     };
   }
 
-  /** Paints arrived points, up to a frame's budget; gives the parts that are not whole. */
+  /** Paints arrived points, up to a frame's budget; returns the parts that are not whole. */
   fill(look) {
     const { front, painter } = this;
     const end = performance.now() + PATIENCE;

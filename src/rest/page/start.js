@@ -5,7 +5,8 @@ import { prepared, spectrumPicture } from "./charts.js";
 import { runsOf } from "./chunks.js";
 import { byId, make } from "./dom.js";
 import { measure } from "./measure.js";
-import { bodyOf, columnsOf, joined, json, setOf } from "./query.js";
+import { json } from "./digits.js";
+import { bodyOf, columnsOf, joined, setOf } from "./query.js";
 import { fromHash } from "./state.js";
 import { palette } from "./theme.js";
 

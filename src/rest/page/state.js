@@ -65,13 +65,13 @@ const KEYS = {
   clear: "clear",
 };
 
-/** What is painted stands in the address up to so many characters; more goes into a file. */
+/** What is painted stands in the address up to this number of characters; more goes into a file. */
 export const MOST_PAINT = 4000;
 
 /** The most layers that the page offers. */
 export const MOST_LAYERS = 6;
 
-/** The view of somebody who comes without a link: some 900 points. */
+/** The view of a visitor who comes without a link: some 900 points. */
 export function initial() {
   return {
     x: place(0),

@@ -3,7 +3,8 @@
 import { askJson } from "./api.js";
 import { byId, counted, settled, spoken } from "./dom.js";
 import { decimalsFor, formatPlace } from "./place.js";
-import { bodyOf, boxOf, joined, json, setOf, Digits } from "./query.js";
+import { Digits, json } from "./digits.js";
+import { bodyOf, boxOf, joined, setOf } from "./query.js";
 
 /** The exact number of points in a box of four decimals; `keep` thins it. */
 export async function countIn(layers, box, keep, signal) {

@@ -6,7 +6,7 @@ import { byId, make, settled, spoken } from "./dom.js";
 import { measure } from "./measure.js";
 import { joined } from "./query.js";
 
-/** So many points are measured at most, from the middle of the view, and no fewer than this. */
+/** The most points that are measured, from the middle of the view, and no fewer than this. */
 const MOST = 14_400;
 const LEAST = 100;
 /** The side of the window that is the reference, in mean spacings. */

@@ -1,8 +1,9 @@
 // The page Compare: one view for all methods, and what each measures there.
 
-import { askJson, onPresence } from "../api.js";
+import { askJson, hasKey, onPresence } from "../api.js";
 import { topOf } from "../charts.js";
-import { byId, icon, make, settled } from "../dom.js";
+import { byId, icon, make, settled, skipLinks } from "../dom.js";
+import { keyForm } from "../form.js";
 import { moveBy } from "../gestures.js";
 import { parsePlace, place } from "../place.js";
 import { watchTheme } from "../theme.js";
@@ -15,13 +16,25 @@ const narrow = matchMedia("(max-width: 46rem)");
 let state = fromHash(location.hash, narrow.matches);
 
 const joint = new Joint(state, () => draw());
-const panels = METHODS.map((method) => new Panel(method, { changed: () => draw(), failed: (error) => say(error.message) }));
+const panels = METHODS.map((method) => new Panel(method, { changed: () => draw(), failed: (error) => refused(error) }));
 const shown = () => panels.filter(({ method }) => state.shown.includes(method.id));
 
 /** Says something above the panels; `null` takes it away. */
 function say(words) {
   byId("banner").hidden = words === null;
   byId("banner").textContent = words ?? "";
+}
+
+/** Says what went wrong, and takes a key where that is what the server needs. */
+function refused(error) {
+  if (!error.isLocked) return say(error.message);
+  if (byId("key")) return;
+  say(hasKey() ? error.message : "This server needs a key.");
+  byId("banner").append(keyForm(() => {
+    say(null);
+    for (const { source } of panels) source.chunks?.retry();
+    begin();
+  }));
 }
 
 let isWaiting = false;
@@ -61,7 +74,7 @@ async function measureAll() {
       } catch (error) {
         // The others do without the server.
         isWhole = false;
-        if (isLatest()) say(error.message);
+        if (isLatest()) refused(error);
       }
     }
     return isWhole && isLatest();
@@ -82,7 +95,9 @@ async function measureAll() {
 function chart() {
   const all = shown().filter(({ curve }) => curve !== undefined);
   const top = topOf(...all.map(({ curve }) => curve));
-  for (const panel of all) panel.chart(top, panels[0].curve);
+  // Strew's curve is there to compare with while Strew is shown; otherwise it may be that of another place.
+  const reference = all.includes(panels[0]) ? panels[0].curve : undefined;
+  for (const panel of all) panel.chart(top, reference);
 }
 
 const again = settled(300, measureAll);
@@ -196,7 +211,7 @@ async function begin() {
     }
     byId("profile").replaceChildren(...names.map((name) => make("option", { value: name }, name)));
   } catch (error) {
-    say(error.message);
+    refused(error);
   }
   show();
 }
@@ -205,4 +220,5 @@ async function begin() {
 globalThis.strew = { joint, panels };
 build();
 tools();
+skipLinks();
 begin();

@@ -3,13 +3,13 @@
 import { decimalsFor, formatPlace, moved, parsePlace, place, toNumber } from "../place.js";
 import { METHODS, methodOf } from "./methods.js";
 
-/** The shorter side of a panel shows between so many mean spacings. */
+/** The fewest and the most mean spacings along the shorter side of a panel. */
 const LEAST_SPAN = 4;
 const MOST_SPAN = 150;
 const SPAN = 36;
 /** Farther out, doubles do not tell places within a spacing apart. */
 export const FARTHEST = 1e12;
-/** Phones begin with so many methods. */
+/** The number of methods that phones begin with. */
 const FEW = 2;
 
 /** What is shown, before anything is chosen: `isNarrow` on phones. */

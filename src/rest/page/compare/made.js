@@ -6,7 +6,7 @@ import { halton } from "./halton.js";
 import { MEASURED, TILE, methodOf } from "./methods.js";
 import { tileOf } from "./tile.js";
 
-/** A run that is timed takes at least so many milliseconds, and so many runs are made. */
+/** The least time of a run that is timed, in milliseconds, and the number of runs. */
 const LEAST_RUN = 12;
 const RUNS = 3;
 

@@ -19,7 +19,7 @@ export class Panel {
   constructor(method, { changed, failed }) {
     this.method = method;
     const { id, name, far, words, source } = method;
-    this.source = id === "strew" ? new Asked(changed, failed) : new Made(id, changed);
+    this.source = id === "strew" ? new Asked(changed, failed) : new Made(id, changed, failed);
     const canvas = (label, attributes = {}) => make("canvas", { role: "img", "aria-label": `${label} of ${name}`, ...attributes });
     this.plane = canvas("Points", {
       id: `plane-${id}`, class: "plane", tabindex: "0", role: "application", "aria-describedby": "plane-help",

@@ -9,11 +9,11 @@ import { LAYER } from "../state.js";
 import { callsOf } from "../worker.js";
 import { MEASURED } from "./methods.js";
 
-/** So much of the world is held around a view, in views. */
+/** The part of the world that is held around a view, in views. */
 const AHEAD = 2;
 /** The side of a large square that is timed: 250,000 points, 2 MB. */
 const LARGE = 500;
-/** It is asked for if the measured square takes fewer milliseconds than this. */
+/** It is requested if the measured square takes fewer milliseconds than this. */
 const QUICK = 150;
 
 const make = callsOf("/page/compare/worker.js");
@@ -25,8 +25,8 @@ function windowAround({ x, y }, width, height) {
 
 /** Points that the worker makes. */
 export class Made {
-  constructor(method, changed) {
-    Object.assign(this, { method, changed, window: null, points: new Float64Array(0), version: 0 });
+  constructor(method, changed, failed) {
+    Object.assign(this, { method, changed, failed, window: null, points: new Float64Array(0), version: 0 });
   }
 
   use({ seed }) {
@@ -53,8 +53,14 @@ export class Made {
     this.isBusy = true;
     const { view, seed } = this;
     const window = windowAround(view, AHEAD * view.width * view.unit, AHEAD * view.height * view.unit);
-    const { points } = await make({ method: this.method, seed, window });
-    this.isBusy = false;
+    let points;
+    try {
+      ({ points } = await make({ method: this.method, seed, window }));
+    } catch (error) {
+      return this.failed(error);
+    } finally {
+      this.isBusy = false;
+    }
     if (seed === this.seed) Object.assign(this, { points, window, version: this.version + 1 });
     this.changed();
   }

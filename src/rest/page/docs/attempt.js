@@ -4,7 +4,7 @@ import { hasKey, headersFor, useKey } from "../api.js";
 import { bytes, make } from "../dom.js";
 import { resolved } from "./schema.js";
 
-/** So much of an answer is shown. */
+/** The most bytes of an answer that are shown. */
 const SHOWN = 20_000;
 
 /** The address of an operation's example, and whether it has a body: from the line for curl. */
@@ -128,7 +128,7 @@ async function sent({ address, headers, text }, method, type, update) {
         ` · ${took} ms · ${isWhole ? "" : "more than "}${bytes(received)}`),
       answer.status === 401 && keyField(update),
       make("details", {}, make("summary", {}, `${rows.length / 2} headers`), make("dl", { class: "headers" }, rows)),
-      await seen(blob, kind, isWhole, address),
+      await seen(blob, kind, isWhole),
     ].filter(Boolean);
   } catch (error) {
     return [make("p", { class: "status bad" }, `The server does not answer: ${error.message}`)];
@@ -153,22 +153,47 @@ async function beginning(body) {
   return { parts, received, isWhole: true };
 }
 
-async function seen(blob, kind, isWhole, address) {
+async function seen(blob, kind, isWhole) {
   if (blob.size === 0) return make("p", { class: "note" }, "No body.");
-  if (kind.startsWith("image/") && isWhole) return make("img", { src: address, alt: "What was answered" });
+  if (kind.startsWith("image/") && isWhole) return picture(blob);
   if (!/json|text|csv|xml|toml/.test(kind)) return make("p", { class: "note" }, `Binary, ${kind || "without a type"}.`);
   let text = await blob.slice(0, SHOWN).text();
   if (kind.includes("json") && isWhole && blob.size <= SHOWN) text = pretty(text);
   return make("pre", { id: "body", tabindex: "0", "aria-label": "The body" }, text, blob.size > SHOWN && "\n…");
 }
 
-/** JSON with a member a line; what is no single document stays as it is. */
+/** The picture of an answer, drawn from its bytes: another request would lack the body and the key. */
+async function picture(blob) {
+  try {
+    const bitmap = await createImageBitmap(blob);
+    const canvas = make("canvas", { role: "img", "aria-label": "The picture of the answer" });
+    Object.assign(canvas, { width: bitmap.width, height: bitmap.height });
+    canvas.getContext("2d").drawImage(bitmap, 0, 0);
+    return canvas;
+  } catch {
+    return make("pre", { id: "body", tabindex: "0", "aria-label": "The body" }, await blob.slice(0, SHOWN).text());
+  }
+}
+
+/** The parts of JSON: empty lists and objects, strings, marks, numbers and words. */
+const TOKENS = /\{\s*\}|\[\s*\]|"(?:[^"\\]|\\.)*"|[{}[\],:]|[^\s"{}[\],:]+/g;
+
+/** JSON with a member a line, its numbers as they came; what is no single document stays as it is. */
 function pretty(text) {
   try {
-    return JSON.stringify(JSON.parse(text), null, 2);
+    JSON.parse(text);
   } catch {
     return text;
   }
+  let margin = "\n";
+  return text.match(TOKENS).map((token) => {
+    if (token === ":") return ": ";
+    if (token === ",") return `,${margin}`;
+    if (token === "{" || token === "[") margin += "  ";
+    else if (token === "}" || token === "]") margin = margin.slice(0, -2);
+    else return /^[{[]/.test(token) ? token[0] + token.at(-1) : token;
+    return token === "{" || token === "[" ? token + margin : margin + token;
+  }).join("");
 }
 
 function keyField(update) {

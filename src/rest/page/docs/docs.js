@@ -1,18 +1,18 @@
 // The API as a page: shows /openapi.json, an operation at a time. Everything is put in as text, never as markup.
 
-import { byId, counted, icon, make } from "../dom.js";
+import { byId, counted, icon, make, skipLinks } from "../dom.js";
 import { watchTheme } from "../theme.js";
 import { operationView } from "./operation.js";
 
-/** The parts of pages need no telling. */
-const isTold = (path) => path.split("/")[1] !== "page";
+/** Whether a path is listed: the parts of pages are not. */
+const isListed = (path) => path.split("/")[1] !== "page";
 
 let api = null;
 let all = [];
 
 /** The operations in the order of their tags. */
 function operationsOf(document) {
-  const found = Object.entries(document.paths).filter(([path]) => isTold(path)).flatMap(([path, item]) => (
+  const found = Object.entries(document.paths).filter(([path]) => isListed(path)).flatMap(([path, item]) => (
     Object.entries(item).filter(([, one]) => one.operationId).map(([name, operation]) => ({
       path, operation, method: name.toUpperCase(), tag: operation.tags?.[0] ?? "other", id: operation.operationId,
     }))
@@ -76,9 +76,18 @@ function overview() {
   ];
 }
 
+/** What an address names; as it stands if its escapes are wrong. */
+function named(hash) {
+  try {
+    return decodeURIComponent(hash);
+  } catch {
+    return hash;
+  }
+}
+
 /** Shows what the address names. */
 function route(hasMoved) {
-  const id = decodeURIComponent(location.hash.slice(1));
+  const id = named(location.hash.slice(1));
   const one = all.find((operation) => operation.id === id);
   byId("main").replaceChildren(...(one ? operationView(one, api) : overview()));
   document.title = one ? `${one.operation.summary} – Strew API` : "Strew API";
@@ -128,4 +137,5 @@ addEventListener("keydown", (event) => {
   byId("side").classList.add("open");
   byId("search").focus();
 });
+skipLinks();
 begin();

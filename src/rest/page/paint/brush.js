@@ -126,7 +126,7 @@ export class Brush {
     } else this.left();
   }
 
-  /** Draws the line that is under way, and the size of the brush around the cursor. */
+  /** Draws the line that is being drawn, and the size of the brush around the cursor. */
   draw() {
     const { canvas, plane, cursor, line } = this;
     const { view } = plane;

@@ -1,10 +1,10 @@
 // Fields by hand: a bar of tools on the plane, what was painted with them, and the field that it is.
 
 import { byId, icon, make } from "../dom.js";
-import { documentOf, expect, isSent, send } from "../sent.js";
+import { describe, documentOf, isSent, send } from "../sent.js";
 import { MOST_PAINT } from "../state.js";
 import { Brush } from "./brush.js";
-import { blank, fieldOf, read, simplified, written } from "./strokes.js";
+import { blank, excess, fieldOf, read, simplified, written } from "./strokes.js";
 import { layersOf, worldOf } from "./world.js";
 
 const TOOLS = [["paint", "Brush", "More points"], ["road", "Road", "A line that keeps points away"], ["erase", "Erase", "Fewer points"]];
@@ -21,7 +21,9 @@ export class Paint {
   /** `picked()` is the index of the layer that is painted on; `say(words)` shows what went wrong. */
   constructor(session, plane, { picked, say }) {
     Object.assign(this, { session, plane, picked, fail: say, tool: null, width: 0.12, strength: 1, turn: 0 });
+    /** What is painted on a layer, and that layer. */
     this.work = blank();
+    this.owner = null;
     /** Texts of what was painted by the fields that they are, for those that the address does not hold. */
     this.texts = new Map();
     this.build();
@@ -30,7 +32,7 @@ export class Paint {
       left: () => this.use(null),
       say: (words) => this.say(words),
     });
-    session.on((changed) => changed.has("layers") && this.read());
+    session.on((changed) => (changed.has("layers") || changed.has("picked")) && this.read());
     this.read();
   }
 
@@ -82,6 +84,7 @@ export class Paint {
   /** Takes a tool into the hand, or puts it down. */
   use(tool) {
     const had = this.tool;
+    this.follow();
     this.tool = tool;
     this.brush.kind = tool ?? "paint";
     this.brush.line = null;
@@ -127,13 +130,20 @@ export class Paint {
   }
 
   get layer() {
-    return this.session.state.layers[this.picked()] ?? this.session.state.layers[0];
+    const { layers } = this.session.state;
+    return layers[Math.min(this.picked(), layers.length - 1)];
+  }
+
+  /** Takes what is painted on the layer that is picked, if that was another one before. */
+  follow() {
+    if (this.layer !== this.owner) this.read();
   }
 
   /** Takes what is painted from the layers, where it has changed. */
   read() {
     for (const layer of this.session.state.layers) if (layer.paint) this.known(layer);
     const { layer } = this;
+    this.owner = layer;
     const text = layer.paint || this.texts.get(layer.field) || "";
     if (!text) this.work = blank(layer.field);
     else if (text !== written(this.work)) this.work = read(text);
@@ -151,7 +161,7 @@ export class Paint {
       this.session.correct(() => (layer.paint = ""));
     } else {
       this.texts.set(layer.field, layer.paint);
-      expect(fieldOf(work));
+      describe(layer.field, fieldOf(work, whole));
     }
   }
 
@@ -168,6 +178,7 @@ export class Paint {
   }
 
   drawn(line) {
+    this.follow();
     const { tool, brushSize: size, strength, work } = this;
     const stroke = { kind: tool, size, strength: tool === "road" ? 1 : strength, line: simplified(line, size * FINENESS) };
     // Who begins with a brush wants to see what it does.
@@ -176,12 +187,19 @@ export class Paint {
   }
 
   undo() {
+    this.follow();
     if (this.work.strokes.length > 0) this.change({ strokes: this.work.strokes.slice(0, -1) }, "Undone");
   }
 
   /** Sends what is painted after a change, and shows it. */
   async change(members, words = "") {
+    this.follow();
     const before = this.work;
+    const tooMuch = excess({ ...before, ...members }, whole);
+    if (tooMuch) {
+      this.render();
+      return this.fail(tooMuch);
+    }
     this.work = read(written({ ...before, ...members }));
     if (this.work.strokes.length === 0) this.work = blank(before.base);
     this.render();
@@ -200,7 +218,7 @@ export class Paint {
       this.say(`${words ? `${words}: ` : ""}${count} ${count === 1 ? "stroke" : "strokes"}${where}`);
     } catch (error) {
       if (mine !== this.turn) return;
-      this.work = before;
+      if (this.owner === layer) this.work = before;
       this.render();
       this.fail(error.message);
     }

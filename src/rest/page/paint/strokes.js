@@ -3,6 +3,12 @@
 /** The letters of the kinds in the text. */
 const KINDS = { p: "paint", e: "erase", r: "road" };
 const LETTERS = { paint: "p", erase: "e", road: "r" };
+/** The limits of fields on the server: shapes, their depth within each other, and vertices of lines. */
+const MOST_PARTS = 64;
+const MOST_DEPTH = 16;
+const MOST_VERTICES = 10_000;
+/** Every stroke has two vertices at least. */
+const MOST_STROKES = MOST_VERTICES / 2;
 
 /** Nothing painted yet, over a field that a layer has already. */
 export function blank(base = "") {
@@ -10,7 +16,8 @@ export function blank(base = "") {
 }
 
 /**
- * Reads the text of `written`: `g(0.1)p(8,0.7:1,2/3,4)r(4:0,0/10,10)`. What is no part of it is left out.
+ * Reads the text of `written`: `g(0.1)p(8,0.7:1,2/3,4)r(4:0,0/10,10)`. What is no part of it is left out,
+ * and so are strokes that no field has room for.
  * Each stroke is `{ kind, size, strength, line }`; sizes are in world units.
  */
 export function read(text) {
@@ -23,21 +30,23 @@ export function read(text) {
       const [size, strength = 1] = how.split(",").map(Number);
       const line = places.split("/").map((one) => one.split(",").map(Number));
       const isLine = line.length > 1 && line.every((at) => at.length === 2 && at.every(Number.isFinite));
+      if (work.strokes.length === MOST_STROKES) break;
       if (KINDS[letter] && size > 0 && strength >= 0 && strength <= 1 && isLine) work.strokes.push({ kind: KINDS[letter], size, strength, line });
     }
   }
   return work;
 }
 
-const short = (value, digits) => String(Number(value.toFixed(Math.min(12, Math.max(0, digits)))));
+const short = (value, digits) => String(Number(value.toFixed(Math.min(100, Math.max(0, digits)))));
 
 /** The text of what is painted, with places to a 50th of a stroke's size; empty if nothing is. */
 export function written({ base, ground, strokes }) {
   if (strokes.length === 0) return "";
-  const parts = strokes.map(({ kind, size, strength, line }) => {
+  const parts = strokes.map(({ kind, size: exact, strength, line }) => {
+    const size = Number(exact.toPrecision(3));
     const digits = Math.ceil(-Math.log10(size / 50));
     const places = line.map((at) => at.map((v) => short(v, digits)).join(",")).join("/");
-    const how = kind === "road" ? short(size, digits) : `${short(size, digits)},${short(strength, 2)}`;
+    const how = kind === "road" ? String(size) : `${size},${short(strength, 2)}`;
     return `${LETTERS[kind]}(${how}:${places})`;
   });
   return `${base ? `b(${base})` : `g(${short(ground, 2)})`}${parts.join("")}`;
@@ -81,6 +90,28 @@ export function fieldOf({ base, ground, strokes }, ofBase = (name) => ({ name })
   }
   for (const shape of shapesOf(strokes.filter(({ kind }) => kind === "road"))) join("multiply", shapeOf("road", shape, shape.lines));
   return field;
+}
+
+/** The shapes of a field, how deep they lie within each other, and the vertices of their lines. */
+function extentOf(field) {
+  const [[shape, value]] = Object.entries(field);
+  const inner = Array.isArray(value) ? value : shape === "invert" ? [value] : shape === "curve" ? [value.of] : [];
+  const all = inner.map(extentOf);
+  const sum = (name, own) => all.reduce((total, one) => total + one[name], own);
+  return {
+    parts: sum("parts", 1),
+    depth: 1 + Math.max(0, ...all.map(({ depth }) => depth)),
+    vertices: sum("vertices", shape === "distance" ? (value.lines ?? []).flat().length : 0),
+  };
+}
+
+/** Says what makes a painting too large for a field; nothing if it fits. */
+export function excess(work, ofBase) {
+  const { parts, depth, vertices } = extentOf(fieldOf(work, ofBase));
+  if (depth > MOST_DEPTH) return "The brush and the eraser have taken turns too often for one painting. Undo the last strokes, or group those of one kind.";
+  if (parts > MOST_PARTS) return `One painting holds ${MOST_PARTS} shapes. Strokes of the same tool, size and strength in a row count as one.`;
+  if (vertices > MOST_VERTICES) return `The lines of one painting have ${MOST_VERTICES.toLocaleString("en")} points at most. Undo the last stroke.`;
+  return "";
 }
 
 /** A line without the points that lie within a distance of the rest (Douglas and Peucker). */

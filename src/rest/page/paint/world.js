@@ -1,6 +1,7 @@
 // Worlds as files: what the page shows, as the server reads it from a folder of worlds, and back.
 
-import { bodyOf, json, memberOf } from "../query.js";
+import { Digits, json } from "../digits.js";
+import { bodyOf, memberOf } from "../query.js";
 import { send } from "../sent.js";
 import { AMOUNTS, LAYER, MOST_LAYERS } from "../state.js";
 
@@ -16,12 +17,27 @@ const MEMBERS = [
   "clear_of",
 ];
 
+/** The values of each point that a layer shows. */
+const ATTRIBUTES = ["angle", "scale", "variant"];
+
+/** Reads JSON whose seeds keep their digits, above 2⁵³ too: they become `Digits`. */
+function parsed(text) {
+  const marked = text.replace(/("seed"\s*:\s*)(-?\d+)(?![\d.eE])/g, '$1"\\u0000$2"');
+  const isMarked = (key, value) => key === "seed" && typeof value === "string" && value.startsWith("\u0000");
+  return JSON.parse(marked, (key, value) => (isMarked(key, value) ? new Digits(value.slice(1)) : value));
+}
+
+/** Refuses members of a file that this page would lose. */
+function known(object, members, name) {
+  const unknown = Object.keys(object).find((member) => !members.includes(member));
+  if (unknown) throw new Error(`“${name}” is no world that this page shows: it does not know \`${unknown}\`.`);
+}
+
 /** The layers of a world's text. Fields that it describes are sent. */
 export async function layersOf(text, name) {
   let world;
   try {
-    // A seed above 2⁵³ keeps its digits as text.
-    world = JSON.parse(text.replace(/("seed"\s*:\s*)(\d+)/g, '$1"$2"'));
+    world = parsed(text);
   } catch (error) {
     throw new Error(`“${name}” is no JSON: ${error.message}`);
   }
@@ -29,26 +45,48 @@ export async function layersOf(text, name) {
   if (!Array.isArray(list) || list.length < 1 || list.length > MOST_LAYERS) {
     throw new Error(`“${name}” has no layers that this page shows: from 1 to ${MOST_LAYERS} are possible.`);
   }
-  return Promise.all(list.map((set, i) => layerOf(set, i, name)));
+  for (const set of list) {
+    if (!set || typeof set !== "object") throw new Error(`“${name}” is no world that this page shows: a layer is no object.`);
+    known(set, MEMBERS, name);
+  }
+  if (world.layers) known(world, ["layers", "seed"], name);
+  if (world.layers && "seed" in world && !list.every((set) => "seed" in set)) {
+    throw new Error(`“${name}” has layers whose seeds come from a common one: this page needs a \`seed\` in each layer.`);
+  }
+  const clears = list.map((set, i) => clearOf(set, list.slice(0, i), name));
+  return Promise.all(list.map((set, i) => layerOf(set, i, name, clears[i])));
 }
 
-async function layerOf(set, i, name) {
-  const unknown = Object.keys(set ?? {}).find((member) => !MEMBERS.includes(member));
-  if (!set || typeof set !== "object" || unknown) {
-    throw new Error(`“${name}” is no world that this page shows: ${unknown ? `it does not know \`${unknown}\`` : "a layer is no object"}.`);
+/** The one distance that a layer keeps from all layers before it, as text. */
+function clearOf({ clear_of: distances }, before, name) {
+  if (distances === undefined) return "";
+  const [distance, ...others] = before.map((set) => distances?.[set.name]);
+  const isOne = typeof distance === "number" && others.every((other) => other === distance);
+  if (!isOne || Object.keys(distances).length !== before.length) {
+    throw new Error(`“${name}” has a layer whose \`clear_of\` this page cannot show: it keeps one distance from all layers before.`);
   }
+  return String(distance);
+}
+
+async function layerOf(set, i, name, clear) {
   const by = AMOUNTS.find((amount) => amount in set);
   if (!by) throw new Error(`“${name}” has a layer without ${AMOUNTS.join(", ")}: one of them is needed.`);
-  const layer = { ...LAYER, color: i, by, amount: String(set[by]), seed: String(set.seed ?? 0) };
+  const layer = { ...LAYER, color: i, by, amount: String(set[by]), seed: textOf(set.seed ?? 0), clear };
   for (const member of ["profile", "alpha", "map", "warp"]) if (member in set) layer[member] = String(set[member]);
   if (set.field) layer.field = typeof set.field === "string" ? set.field : await send(set.field);
-  for (const attribute of [set.attributes ?? []].flat()) if (attribute in LAYER) layer[attribute] = true;
+  for (const attribute of [set.attributes ?? []].flat()) {
+    if (!ATTRIBUTES.includes(attribute)) throw new Error(`“${name}” has an attribute that this page does not show: \`${attribute}\`.`);
+    layer[attribute] = true;
+  }
   if (set.scale_range) layer.range = [set.scale_range].flat().join(",");
   if (set.variants) {
     const { variants } = set;
     layer.variants = typeof variants === "string" ? variants : Object.entries(variants).map((pair) => pair.join(":")).join(",");
   }
-  const [clear] = Object.values(set.clear_of ?? {});
-  if (clear) layer.clear = String(clear);
   return layer;
+}
+
+/** A seed as the field for it has it. */
+function textOf(seed) {
+  return seed instanceof Digits ? seed.text : String(seed);
 }

@@ -1,5 +1,5 @@
-// How the walker moves: keys, mouse, fingers, buttons that are held; and a slow flight along the trail while nobody
-// does anything.
+// How the walker moves: keys, mouse, fingers, buttons that are held; and a slow flight along the trail until the visitor
+// takes over.
 
 import { moved } from "../place.js";
 import { landFrom } from "./land.js";
@@ -15,8 +15,8 @@ const TURN = 1.3;
 const DRAG = 0.0034;
 /** A pointer that moves less than this many pixels taps. */
 const TAP = 6;
-/** After so many seconds without a hand on it, the flight goes on. */
-const IDLE = 45;
+/** The steepest look up or down, in radians. */
+export const STEEPEST = 1.3;
 
 const KEYS = {
   w: "forth", arrowup: "forth", s: "back", arrowdown: "back", a: "left", d: "right", arrowleft: "turnLeft",
@@ -28,7 +28,6 @@ export class Walker {
     Object.assign(this, { x, y, yaw, pitch, isFlying, tapped, canvas });
     this.held = new Set();
     this.height = null;
-    this.idle = 0;
     this.mayFly = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.isFlying &&= this.mayFly;
     this.listen();
@@ -101,15 +100,14 @@ export class Walker {
     this.held.add(move);
   }
 
-  /** Somebody takes over. */
+  /** The visitor takes over: the flight ends until its button is pressed. */
   take() {
     this.isFlying = false;
-    this.idle = 0;
   }
 
   turn(yaw, pitch) {
     this.yaw = (this.yaw + yaw) % (2 * Math.PI);
-    this.pitch = Math.max(-1.3, Math.min(1.3, this.pitch + pitch));
+    this.pitch = Math.max(-STEEPEST, Math.min(STEEPEST, this.pitch + pitch));
   }
 
   /** Goes to the right and forth. */
@@ -121,8 +119,6 @@ export class Walker {
 
   /** Moves by some seconds; `heightAt` says where the ground is. */
   step(seconds, heightAt) {
-    this.idle = this.held.size > 0 ? 0 : this.idle + seconds;
-    if (this.idle > IDLE && this.mayFly && !this.isHeld) this.isFlying = true;
     if (this.isFlying) this.fly(seconds);
     const way = (one, other) => (this.held.has(one) ? 1 : 0) - (this.held.has(other) ? 1 : 0);
     const pace = (this.isFast ? RUN : PACE) * seconds;

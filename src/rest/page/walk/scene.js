@@ -10,7 +10,7 @@ import { KINDS, VERTEX_FLOATS, allShapes } from "./shapes.js";
 const SWAY = [0.04, 0.035, 0, 0.02, 0.06, 0.06, 0.05];
 const CAST = [[0.17, 0.8], [0.3, 0.85], [0.6, 0.5], [0.6, 0.6]];
 
-/** Within so many units leaves are drawn with all of their triangles. */
+/** Within this distance, in units, leaves are drawn with all of their triangles. */
 const DETAIL = 70;
 
 const LIGHTS = {
@@ -37,8 +37,8 @@ export function sceneOn(canvas) {
 class Scene {
   constructor(gl, canvas) {
     Object.assign(this, { gl, canvas });
-    const told = gl.getExtension("WEBGL_debug_renderer_info");
-    this.isSlow = SOFTWARE.test(String(gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
+    const names = gl.getExtension("WEBGL_debug_renderer_info");
+    this.isSlow = SOFTWARE.test(String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
     this.programs = Object.fromEntries(
       Object.entries({ SKY, GROUND, THINGS, SHADOWS }).map(([name, source]) => [name, this.program(source)]),
     );
@@ -85,7 +85,7 @@ class Scene {
     this.gl.deleteBuffer(buffer);
   }
 
-  /** The triangles of nets with so many cells. */
+  /** The triangles of nets with a number of cells along a side. */
   net(cells) {
     if (!this.nets.has(cells)) {
       const { gl } = this;
@@ -97,7 +97,7 @@ class Scene {
     return this.nets.get(cells);
   }
 
-  /** Makes the picture as large as its canvas on the screen, with so many pixels to a CSS pixel. */
+  /** Makes the picture as large as its canvas on the screen, with `ratio` pixels to a CSS pixel. */
   resize(ratio) {
     const { canvas } = this;
     const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((v) => Math.max(1, Math.round(v * ratio)));

@@ -80,7 +80,7 @@ const OCTAHEDRON = solid(
   ["0 2 4", "2 1 4", "1 3 4", "3 0 4", "2 0 5", "1 2 5", "3 1 5", "0 3 5"],
 );
 
-/** Faces of a ball, each split in four so many times. */
+/** Faces of a ball, each split in four a number of times. */
 function split(faces, splits) {
   let all = faces;
   for (let n = 0; n < splits; n += 1) {

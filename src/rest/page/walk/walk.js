@@ -1,14 +1,15 @@
 // The walk: puts its parts together and draws, as finely as the machine can.
 
-import { Gone, askJson, hasKey, onPresence, useKey } from "../api.js";
+import { Gone, askJson, hasKey, onPresence } from "../api.js";
 import { byId, bytes, icon, make } from "../dom.js";
+import { keyForm } from "../form.js";
 import { formatPlace, parsePlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
-import { LAYER, toHash } from "../state.js";
+import { LAYER, WORKS, toHash } from "../state.js";
 import { watchTheme } from "../theme.js";
 import { cameraOf } from "./camera.js";
 import { mapOn } from "./map.js";
-import { Walker } from "./move.js";
+import { STEEPEST, Walker } from "./move.js";
 import { sceneOn } from "./scene.js";
 import { World, layersOf } from "./world.js";
 
@@ -32,19 +33,21 @@ const root = document.documentElement;
 const canvas = byId("view");
 const FAR = [place(1e9), place(1e9)];
 
-function fromHash() {
-  const given = new URLSearchParams(location.hash.slice(1));
+function fromHash(hash) {
+  const given = new URLSearchParams(hash.slice(1));
   const [x, y] = (given.get("at") ?? "").split(",").map(parsePlace);
   const isNear = x && y && Math.max(Math.abs(x.i), Math.abs(y.i)) <= 1e14;
   const degrees = (name, otherwise) => {
     const value = given.has(name) ? Number(given.get(name)) : NaN;
-    return ((Number.isFinite(value) ? value : otherwise) * Math.PI) / 180;
+    return ((Number.isFinite(value) ? value % 360 : otherwise) * Math.PI) / 180;
   };
+  const pitch = Math.max(-STEEPEST, Math.min(STEEPEST, degrees("pitch", -5)));
+  const quality = given.get("quality") ?? "";
   if (x && y && !isNear) banner("This walk ends at 1e14 in every direction. It begins at the origin instead.");
   return {
-    x: isNear ? x : place(START.x), y: isNear ? y : place(START.y), yaw: degrees("yaw", START.yaw), pitch: degrees("pitch", -5),
+    x: isNear ? x : place(START.x), y: isNear ? y : place(START.y), yaw: degrees("yaw", START.yaw), pitch,
     seed: /^\d{1,20}$/.test(given.get("seed") ?? "") ? given.get("seed") : "7",
-    quality: QUALITIES[given.get("quality")] ? Number(given.get("quality")) : null,
+    quality: /^\d$/.test(quality) && QUALITIES[quality] ? Number(quality) : null,
     isFlying: given.get("fly") !== "0" && !given.has("at"),
   };
 }
@@ -58,7 +61,7 @@ function banner(words, ...more) {
   byId("banner").replaceChildren(words ?? "", make("div", {}, more));
 }
 
-let given = fromHash();
+let given = fromHash(location.hash);
 const wantsMap = location.hash.includes("map=1");
 const scene = (!wantsMap && sceneOn(canvas)) || mapOn(canvas);
 root.dataset.renderer = scene.isMap ? "map" : "webgl2";
@@ -67,13 +70,12 @@ if (scene.isMap) banner("This browser draws nothing in three dimensions (WebGL2 
 function failed(error) {
   root.dataset.state = "failed";
   if (!error.isLocked) return banner(error.message);
-  const field = make("input", { type: "password", id: "key", "aria-label": "Key", autocomplete: "off" });
-  const send = make("button", { type: "button", onclick: () => {
-    useKey(field.value);
+  if (byId("key")) return;
+  banner(hasKey() ? error.message : "This server needs a key.", keyForm(() => {
     banner(null);
+    root.dataset.state = "loading";
     for (const { chunks } of world.sets) chunks.retry();
-  } }, "Use this key");
-  banner(hasKey() ? error.message : "This server wants a key.", field, send);
+  }));
 }
 onPresence((gone) => banner(gone ? "The server does not answer. This page tries again by itself; what is drawn stays." : null));
 
@@ -117,15 +119,15 @@ function frame(now) {
 
 /** Bytes received, seen twice a second over the last two. */
 const meter = [];
-let told = 0;
+let updated = 0;
 
 function tell(drawn, now) {
   const state = root.dataset.state === "failed" ? "failed" : world.isReady ? "ready" : "loading";
   const isNews = state !== root.dataset.state;
   root.dataset.state = state;
   byId("fly").setAttribute("aria-pressed", String(walker.isFlying));
-  if (now - told < 500 && !isNews) return;
-  told = now;
+  if (now - updated < 500 && !isNews) return;
+  updated = now;
   const { loaded, chunks, wanted, received } = world.sums;
   meter.push([now, received]);
   if (meter.length > 5) meter.shift();
@@ -151,7 +153,7 @@ function remember() {
 /** The plane with the same points around the walker. */
 function planeHash() {
   const { rank, ...layer } = layersOf(given.seed)[0];
-  return toHash({ ...walker, span: 80, tab: "choose", layers: [{ ...LAYER, ...layer, color: 3 }], works: {}, renderer: "" });
+  return toHash({ ...walker, span: 80, tab: "choose", layers: [{ ...LAYER, ...layer, color: 3 }], works: WORKS, renderer: "" });
 }
 
 let asked = 0;
@@ -193,6 +195,7 @@ function show(found, point, set) {
 
 function close() {
   asked += 1;
+  if (byId("card").hidden) return;
   byId("card").hidden = true;
   delete byId("card").dataset.id;
   canvas.focus();
@@ -207,7 +210,7 @@ function jump() {
   home = home ? null : here;
   walker.take();
   byId("jump").textContent = home ? "Jump back" : "Jump far away";
-  if (!byId("card").hidden) close();
+  close();
 }
 
 const ICONS = {
@@ -231,11 +234,14 @@ watchTheme(byId("theme"), () => {
   const isDark = getComputedStyle(document.body).colorScheme.includes("dark") && byId("theme").getAttribute("aria-pressed") === "true";
   scene.mode = isDark ? "dusk" : "day";
 });
-addEventListener("hashchange", () => {
-  given = fromHash();
-  Object.assign(walker, given, { height: null });
+addEventListener("hashchange", ({ newURL }) => {
+  // The place may have been written into the address since.
+  given = fromHash(new URL(newURL).hash);
+  const { x, y, yaw, pitch, isFlying } = given;
+  Object.assign(walker, { x, y, yaw, pitch, isFlying: isFlying && walker.mayFly, height: null });
+  level = given.quality ?? level;
   if (given.seed !== world.seed) {
-    world.forget();
+    world.stop();
     world = new World(scene, given.seed, failed);
   }
 });

@@ -114,7 +114,13 @@ export class World {
     this.nets.clear();
   }
 
-  /** What is to be drawn from a place: `{ grounds, things }`, with leaves placed as seen from there; a frame took so long. */
+  /** Ends: nothing more is requested or kept. */
+  stop() {
+    for (const { chunks } of this.sets) chunks.stop();
+    this.forget();
+  }
+
+  /** What is to be drawn from a place: `{ grounds, things }`, with leaves placed as seen from there; `took` is the time of the last frame. */
   look(at, took) {
     if (this.isStale) this.compose(took);
     const by = [distance(this.around.x, at.x), distance(this.around.y, at.y)];
@@ -126,10 +132,14 @@ export class World {
   }
 
   compose(took) {
-    this.grounds = this.sets[0].leaves.map((leaf) => ({ leaf, ...this.net(leaf) }));
     // What cannot be made ready in this frame comes in the next ones.
     this.isStale = false;
     this.until = performance.now() + Math.max(BUILDING, SHARE * took);
+    this.grounds = this.sets[0].leaves.flatMap((leaf) => {
+      if (this.nets.has(nameOf(leaf)) || performance.now() < this.until) return [{ leaf, ...this.net(leaf) }];
+      this.isStale = true;
+      return [];
+    });
     this.things = this.sets.flatMap((set) => set.leaves.flatMap((leaf) => (
       standIns(leaf, (one) => this.thing(set, one)).map(({ leaf: shown, clip }) => {
         const away = Math.max(0, leaf.away - 2 * STEP);

@@ -140,7 +140,7 @@ export function intervalOf(starts, index) {
   return low;
 }
 
-/** The most points of a cluster that is told apart. */
+/** The most points of a cluster that is recognized. */
 export const MOST = 24;
 
 /**
