@@ -82,7 +82,7 @@ fn keys_walk_and_pick_and_the_same_trees_stand_there_on_the_way_back() {
     let here = picked(&browser);
     let path = format!("/v1/points/{here}?spacing=2&seed=7");
     assert_eq!(daemon.get(&path).status, 200, "{path}");
-    // Far away all is as it is here, and it is told where that is.
+    // Far away all is as it is here; the address says where that is.
     jump(&browser, 1e9);
     let there = picked(&browser);
     assert_ne!(there, here);

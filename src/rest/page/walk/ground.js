@@ -76,7 +76,7 @@ const NAMES = Object.keys(VARIANTS);
 const KIND = Object.fromEntries(KINDS.map((name, i) => [name, i]));
 
 /**
- * What stands at a point, as `[kind, size]`. Trees are the points of lowest rank: so many as the land has there, and
+ * What stands at a point, as `[kind, size]`. Trees are the points of lowest rank: as many as the land has there, and
  * the lower the rank, the taller. All others are what grows between them.
  */
 function thingAt(land, x, y, variant, rank, scale, random) {

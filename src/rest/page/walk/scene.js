@@ -1,5 +1,5 @@
 // The picture by WebGL2: sky, ground, shadows, and everything that stands, a draw for each kind and leaf. Instances go
-// to the graphics processor once; which of them are drawn is the first so many of each run, as these are sorted by rank.
+// to the graphics processor once; which of them are drawn is a beginning of each run, as these are sorted by rank.
 
 import { sees } from "./camera.js";
 import { GROUND_FLOATS, INSTANCE_FLOATS, below, netOf } from "./ground.js";
