@@ -22,7 +22,7 @@ pub(super) struct Maker {
     config: Config,
 }
 
-/// A chunk as it is written.
+/// The content of a chunk's file.
 #[derive(Clone, Debug)]
 pub(super) struct Chunk {
     pub(super) points: u64,
