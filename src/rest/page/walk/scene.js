@@ -10,8 +10,8 @@ import { KINDS, VERTEX_FLOATS, allShapes } from "./shapes.js";
 const SWAY = [0.04, 0.035, 0, 0.02, 0.06, 0.06, 0.05];
 const CAST = [[0.17, 0.8], [0.3, 0.85], [0.6, 0.5], [0.6, 0.6]];
 
-/** Within this distance, in units, leaves are drawn with all of their triangles. */
-const DETAIL = 70;
+/** Within this distance, in units, things cast shadows. */
+const SHADED = 140;
 
 const LIGHTS = {
   day: {
@@ -106,7 +106,8 @@ class Scene {
 
   /**
    * Draws what `look` has: the camera, `lift` (its height), `grounds` and `things` as `{ leaf, clip, ... }`, `reach`,
-   * `time`. Returns how many instances were drawn.
+   * `time`, and `detail`, the distances within which leaves have all of their triangles and some of them. Returns how
+   * many instances were drawn.
    */
   draw(look) {
     const { gl } = this;
@@ -205,7 +206,7 @@ class Scene {
     gl.polygonOffset(-2, -4);
     for (let slot = 0; slot < 3; slot += 1) gl.disableVertexAttribArray(slot);
     this.runs(look, CAST.length, (thing, run, count) => {
-      if (thing.leaf.away > 2 * DETAIL) return;
+      if (thing.leaf.away > SHADED) return;
       this.place(uniforms, look, thing);
       gl.uniform1f(uniforms.wide, CAST[run.kind][0]);
       gl.uniform1f(uniforms.tall, CAST[run.kind][1]);
@@ -228,7 +229,9 @@ class Scene {
       this.place(uniforms, look, thing);
       gl.uniform1f(uniforms.sway, SWAY[run.kind]);
       gl.uniform1f(uniforms.kind, run.kind);
-      const shapes = thing.leaf.away < (look.isFine ? DETAIL : DETAIL / 4) ? this.shapes.near : this.shapes.far;
+      const [full, some] = look.detail;
+      const { near, far, plain } = this.shapes;
+      const shapes = thing.leaf.away < full ? near : thing.leaf.away < some ? far : plain;
       this.slots(thing.buffer, INSTANCE_FLOATS, 4 * INSTANCE_FLOATS * run.first, [[3, 4], [4, 4]], 1);
       gl.drawArraysInstanced(gl.TRIANGLES, ...shapes[run.kind], count);
       drawn += count;
