@@ -1,4 +1,4 @@
-//! Real proxies and web servers with settings of their own: HAProxy, nginx.
+//! Real proxies, caches and web servers with settings of their own: HAProxy, nginx, Varnish.
 
 use std::{
     fs,
@@ -35,6 +35,13 @@ impl Proxy {
         let mut command = Command::new(program);
         match program {
             "haproxy" => command.args(["-db", "-q", "-f"]).arg(&file),
+            "varnishd" => command
+                .args(["-F", "-j", "none", "-s", "malloc,64m", "-a"])
+                .arg(address.to_string())
+                .args(["-p", "http_gzip_support=off", "-f"])
+                .arg(&file)
+                .arg("-n")
+                .arg(folder.path()),
             _ => command.arg("-p").arg(folder.path()).arg("-c").arg(&file),
         };
         let child = command
