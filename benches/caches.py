@@ -5,9 +5,9 @@
 
 Needs Linux, Python, and nginx (deploy/nginx/cache.conf) or Varnish (deploy/varnish/strew.vcl). A player starts near one
 of a few towns, walks on with small turns, and requests each chunk that comes into view, 5 x 5 around the player, once:
-clients keep what they have seen. Addresses hold the world's digest, so answers never change and nothing is purged. Both runs replay the
-same requests in the same order and compare all bodies. Load is processor time, which other work on the machine
-changes little.
+clients keep what they have seen. Addresses hold the world's digest, so answers never change and nothing is purged. Both
+runs replay the same requests in the same order and compare all bodies. Load is processor time, which other work on the
+machine changes little.
 """
 
 import argparse
