@@ -62,6 +62,14 @@ const PAGES: &[Page] = &[
         include_str!("page/compare/index.html"),
     ),
     (
+        "/tile",
+        "getTilePage",
+        "The page of a tile",
+        "For people: a texture of points or a mask for dithering that repeats without a seam, to look at and to save. \
+         Loads nothing from elsewhere.",
+        include_str!("page/tile/index.html"),
+    ),
+    (
         "/walk",
         "getWalk",
         "A walk through the plane, in three dimensions",
@@ -79,6 +87,8 @@ macro_rules! parts {
 /// The parts of the page by their names.
 const PARTS: &[(&str, &str)] = parts![
     "api.js",
+    "bar.css",
+    "bar.js",
     "card.js",
     "charts.js",
     "chunks.js",
@@ -147,6 +157,11 @@ const PARTS: &[(&str, &str)] = parts![
     "take.js",
     "theme.css",
     "theme.js",
+    "tile/mask.js",
+    "tile/period.js",
+    "tile/state.js",
+    "tile/tile.css",
+    "tile/tile.js",
     "understand.js",
     "worker.js",
     "walk/camera.js",

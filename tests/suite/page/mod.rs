@@ -14,6 +14,7 @@ mod fields;
 mod links;
 mod paint;
 mod start;
+mod tile;
 mod view;
 mod walk;
 mod works;

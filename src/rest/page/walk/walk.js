@@ -1,8 +1,8 @@
 // The walk: puts its parts together and draws, as finely as the machine can.
 
-import { Gone, askJson, hasKey, onPresence } from "../api.js";
+import { Gone, askJson, onPresence } from "../api.js";
 import { byId, bytes, icon, make } from "../dom.js";
-import { keyForm } from "../form.js";
+import { refusal } from "../form.js";
 import { formatPlace, parsePlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER, WORKS, toHash } from "../state.js";
@@ -70,13 +70,10 @@ if (scene.isMap) banner("This browser draws nothing in three dimensions (WebGL2 
 
 function failed(error) {
   root.dataset.state = "failed";
-  if (!error.isLocked) return banner(error.message);
-  if (byId("key")) return;
-  banner(hasKey() ? error.message : "This server needs a key.", keyForm(() => {
-    banner(null);
+  refusal(byId("banner"), error, () => {
     root.dataset.state = "loading";
     for (const { chunks } of world.sets) chunks.retry();
-  }));
+  });
 }
 onPresence((gone) => banner(gone ? "The server does not answer. This page tries again by itself; what is drawn stays." : null));
 
