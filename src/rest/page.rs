@@ -144,6 +144,7 @@ const PARTS: &[(&str, &str)] = parts![
     "place.js",
     "plane.js",
     "profiles.js",
+    "program.js",
     "query.js",
     "sent.js",
     "session.js",

@@ -70,5 +70,5 @@ export function keyForm(used) {
     useKey(key.value);
     used();
   };
-  return make("form", { onsubmit: use }, key, make("button", { type: "submit" }, "Use this key"));
+  return make("form", { class: "line", onsubmit: use }, key, make("button", { type: "submit" }, "Use this key"));
 }

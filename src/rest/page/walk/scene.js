@@ -1,6 +1,7 @@
 // The picture by WebGL2: sky, ground, shadows, and everything that stands, a draw for each kind and leaf. Instances go
 // to the graphics processor once; which of them are drawn is a beginning of each run, as these are sorted by rank.
 
+import { programOf } from "../program.js";
 import { sees } from "./camera.js";
 import { GROUND_FLOATS, INSTANCE_FLOATS, below, netOf } from "./ground.js";
 import { GROUND, SHADOWS, SKY, THINGS } from "./shaders.js";
@@ -40,7 +41,7 @@ class Scene {
     const names = gl.getExtension("WEBGL_debug_renderer_info");
     this.isSlow = SOFTWARE.test(String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
     this.programs = Object.fromEntries(
-      Object.entries({ SKY, GROUND, THINGS, SHADOWS }).map(([name, source]) => [name, this.program(source)]),
+      Object.entries({ SKY, GROUND, THINGS, SHADOWS }).map(([name, source]) => [name, programOf(gl, source)]),
     );
     this.shapes = allShapes();
     this.vertices = this.buffer(this.shapes.floats);
@@ -49,27 +50,6 @@ class Scene {
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-  }
-
-  program([vertex, fragment]) {
-    const { gl } = this;
-    const program = gl.createProgram();
-    for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
-      const shader = gl.createShader(type);
-      gl.shaderSource(shader, source);
-      gl.compileShader(shader);
-      gl.attachShader(program, shader);
-    }
-    gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
-      throw new Error(gl.getAttachedShaders(program).map((shader) => gl.getShaderInfoLog(shader)).join("") || "no program");
-    }
-    const uniforms = {};
-    for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i += 1) {
-      const { name } = gl.getActiveUniform(program, i);
-      uniforms[name] = gl.getUniformLocation(program, name);
-    }
-    return { program, uniforms };
   }
 
   /** A buffer with these contents. */
