@@ -140,6 +140,7 @@ async function refresh(isChosen = false) {
   if (notes.some((note) => note.faults)) {
     isUnderstood = false;
     root.dataset.state = "failed";
+    status.refused();
     const other = notes.map((note) => note.faults?.[""]).find(Boolean);
     if (other) banner(other, [["Try again", () => refresh()]]);
     return;
@@ -275,6 +276,8 @@ function showTab() {
     byId(`tab-${name}`).tabIndex = isOpen ? 0 : -1;
     byId(name).hidden = !isOpen;
   }
+  if (root.dataset.tab !== tab) byId("panel-body").scrollTop = 0;
+  root.dataset.tab = tab;
   byId("gallery-help").hidden = tab !== "gallery";
   byId("works-help").hidden = tab !== "works";
   for (const part of parts) part.opened?.(tab);
