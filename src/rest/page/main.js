@@ -249,6 +249,8 @@ function fold(isFolded) {
   byId("fold").setAttribute("aria-expanded", String(!isFolded));
 }
 
+/** Tabs whose contents lie over the plane. */
+const COVERS = ["gallery", "works"];
 const TABS = ["start", "choose", "understand", "take", "gallery", "works"];
 
 function tabs() {
@@ -259,6 +261,11 @@ function tabs() {
       if (session.state.tab !== TABS[i]) session.choose((state) => (state.tab = TABS[i]), "tab");
     });
     button.addEventListener("keydown", (event) => {
+      // What lies over the plane comes before the tabs in the page, but after them for keys.
+      if (event.key === "Tab" && !event.shiftKey && COVERS.includes(TABS[i])) {
+        event.preventDefault();
+        return byId(TABS[i]).focus({ preventScroll: true });
+      }
       const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
       if (!step) return;
       const next = buttons[(i + step + buttons.length) % buttons.length];
@@ -278,6 +285,10 @@ function showTab() {
   }
   if (root.dataset.tab !== tab) byId("panel-body").scrollTop = 0;
   root.dataset.tab = tab;
+  // Nothing that is covered can have the focus.
+  for (const part of byId("stage").children) {
+    if (part.role !== "alert" && part.role !== "status") part.inert = COVERS.includes(tab) && part.id !== tab;
+  }
   byId("gallery-help").hidden = tab !== "gallery";
   byId("works-help").hidden = tab !== "works";
   for (const part of parts) part.opened?.(tab);
