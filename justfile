@@ -79,7 +79,7 @@ targets:
 release folder="dist":
     deploy/release {{folder}}
 
-# The walks of 1,000 players through a world, with nginx as a cache and without: `just caches target/release/strew`.
+# The walks of 1,000 players through a world, with a cache and without: `just caches target/release/strew [--cache varnish]`.
 caches program *args:
     benches/caches.py {{program}} {{args}}
 
@@ -91,7 +91,7 @@ spark *args:
 ray *args:
     .ci/ray {{args}}
 
-# The files of `deploy/` by helm, kubeconform, promtool and HAProxy.
+# The files of `deploy/` by helm, kubeconform, promtool, HAProxy, nginx and Varnish.
 deploy-check:
     .ci/deploy
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Replays the walks of players through a world of chunks, with nginx as a cache before the daemon and without.
+"""Replays the walks of players through a world of chunks, with a cache before the daemon and without.
 
-    benches/caches.py target/release/strew [--players 1000] [--steps 40] [--seed 1] [--connections 8]
+    benches/caches.py target/release/strew [--cache nginx] [--players 1000] [--steps 40] [--seed 1] [--connections 8]
 
-Needs Linux, Python and nginx (its settings are deploy/nginx/cache.conf). A player starts near one of a few towns, walks
-on with small turns, and requests each chunk that comes into view, 5 x 5 around the player, once: clients keep what
-they have seen. Addresses hold the world's digest, so answers never change and nothing is purged. Both runs replay the
-same requests in the same order and compare all bodies. Load is processor time, which other work on the machine
-changes little.
+Needs Linux, Python, and nginx (deploy/nginx/cache.conf) or Varnish (deploy/varnish/strew.vcl). A player starts near one
+of a few towns, walks on with small turns, and requests each chunk that comes into view, 5 x 5 around the player, once:
+clients keep what they have seen. Addresses hold the world's digest, so answers never change and nothing is purged. Both
+runs replay the same requests in the same order and compare all bodies. Load is processor time, which other work on the
+machine changes little.
 """
 
 import argparse
@@ -57,8 +57,10 @@ def walks(players, steps, seed):
 
 
 def cpu(pid):
+    """Seconds of processor time of a process and its children; Varnish works in one."""
     fields = open(f"/proc/{pid}/stat").read().rsplit(")", 1)[1].split()
-    return sum(int(ticks) for ticks in fields[11:13]) / os.sysconf("SC_CLK_TCK")
+    own = sum(int(ticks) for ticks in fields[11:13]) / os.sysconf("SC_CLK_TCK")
+    return own + sum(map(cpu, open(f"/proc/{pid}/task/{pid}/children").read().split()))
 
 
 def wait_for(port):
@@ -69,7 +71,32 @@ def wait_for(port):
             time.sleep(0.02)
 
 
-def start(program, folder):
+def nginx(folder, port, cache_port):
+    """The command of nginx as a cache before a port."""
+    conf = (ROOT / "deploy/nginx/cache.conf").read_text()
+    conf = conf.replace("/var/cache/nginx", str(folder)).replace("strew:8080", f"127.0.0.1:{port}")
+    conf = conf.replace("listen 80;", f"listen 127.0.0.1:{cache_port};")
+    paths = " ".join(f"{name}_temp_path {folder}/{name};" for name in ["client_body", "proxy", "fastcgi", "uwsgi", "scgi"])
+    (folder / "nginx.conf").write_text(
+        f"daemon off; master_process off; pid {folder}/pid; error_log {folder}/error.log;\n"
+        f"events {{ worker_connections 512; }}\nhttp {{ access_log off; keepalive_requests 1000000; {paths}\n{conf} }}\n"
+    )
+    return ["nginx", "-p", folder, "-c", folder / "nginx.conf"]
+
+
+def varnish(folder, port, cache_port):
+    """The command of Varnish as a cache before a port."""
+    conf = (ROOT / "deploy/varnish/strew.vcl").read_text()
+    conf = conf.replace('"strew"', '"127.0.0.1"').replace('"8080"', f'"{port}"')
+    (folder / "strew.vcl").write_text(conf)
+    command = ["varnishd", "-F", "-j", "none", "-n", folder / "varnish", "-a", f"127.0.0.1:{cache_port}"]
+    return command + ["-f", folder / "strew.vcl", "-s", "malloc,2g", "-p", "http_gzip_support=off"]
+
+
+CACHES = {"nginx": nginx, "varnish": varnish}
+
+
+def start(program, cache, folder):
     """The daemon and the cache: processes and ports."""
     (folder / "strew.toml").write_text(WORLD)
     command = [program, "serve", "--listen", "127.0.0.1:0", "--config", folder / "strew.toml"]
@@ -79,17 +106,9 @@ def start(program, folder):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         cache_port = free.getsockname()[1]
-    conf = (ROOT / "deploy/nginx/cache.conf").read_text()
-    conf = conf.replace("/var/cache/nginx", str(folder)).replace("strew:8080", f"127.0.0.1:{port}")
-    conf = conf.replace("listen 80;", f"listen 127.0.0.1:{cache_port};")
-    paths = " ".join(f"{name}_temp_path {folder}/{name};" for name in ["client_body", "proxy", "fastcgi", "uwsgi", "scgi"])
-    (folder / "nginx.conf").write_text(
-        f"daemon off; master_process off; pid {folder}/pid; error_log {folder}/error.log;\n"
-        f"events {{ worker_connections 512; }}\nhttp {{ access_log off; keepalive_requests 1000000; {paths}\n{conf} }}\n"
-    )
-    cache = subprocess.Popen(["nginx", "-p", folder, "-c", folder / "nginx.conf"])
+    process = subprocess.Popen(CACHES[cache](folder, port, cache_port))
     wait_for(cache_port)
-    return (daemon, port), (cache, cache_port)
+    return (daemon, port), (process, cache_port)
 
 
 def replay(port, requests, path, connections):
@@ -137,6 +156,7 @@ def replay(port, requests, path, connections):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program")
+    parser.add_argument("--cache", choices=CACHES, default="nginx")
     parser.add_argument("--players", type=int, default=1000)
     parser.add_argument("--steps", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)
@@ -147,13 +167,13 @@ def main():
     print(f"{args.players} players, {args.steps} steps: {len(requests)} requests for {distinct} chunks; "
           f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
     with tempfile.TemporaryDirectory() as folder:
-        (daemon, port), (cache, cache_port) = start(args.program, pathlib.Path(folder))
+        (daemon, port), (cache, cache_port) = start(args.program, args.cache, pathlib.Path(folder))
         try:
             client = http.client.HTTPConnection("127.0.0.1", port)
             client.request("GET", "/v1/worlds/walk")
             digest = json.loads(client.getresponse().read())["digest"]
             path = f"/v1/worlds/walk/chunks/{SIDE}/{{cx}}/{{cy}}?format=f32&world_digest={digest}"
-            print("| | requests to the daemon | daemon, CPU s | nginx, CPU s | hit ratio | points/s |\n|---|---|---|---|---|---|")
+            print(f"| | requests to the daemon | daemon, CPU s | {args.cache}, CPU s | hit ratio | points/s |\n|---|---|---|---|---|---|")
             bodies = []
             for name, to in [("daemon alone", port), ("behind the cache", cache_port), ("again, cache warm", cache_port)]:
                 before = cpu(daemon.pid), cpu(cache.pid)

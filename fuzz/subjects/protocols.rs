@@ -44,7 +44,8 @@ static PROTOCOLS: LazyLock<Protocols> = LazyLock::new(|| {
         .expect("built rightly");
     // There is no gate: everyone is let in.
     let open = |router: Router| router.layer(Extension(Caller::default()));
-    let rest::Routes { router, paths } = rest::Routes::new(rest::endpoints(&service), open, open);
+    let rest::Routes { router, paths } =
+        rest::Routes::new(rest::endpoints(&service), "", open, open);
     Protocols {
         rest: router.fallback(async move |request| rest::not_found(&request, &paths)),
         grpc: open(grpc.into_axum_router()),

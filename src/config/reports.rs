@@ -15,6 +15,8 @@ pub struct Http {
     pub cors_origins: String,
     /// How long an answer may be kept that a restart with other tables could change, in seconds.
     pub cache_seconds: u32,
+    /// Where the pages are seen from outside, such as `https://points.example`; empty if that is not known.
+    pub public_url: String,
 }
 
 impl Http {
@@ -32,6 +34,14 @@ impl Http {
             faults.push(format!(
                 "http.cors_origins = {origins:?}: {origin:?} is not an origin; allowed: * or origins \
                  such as https://a.example and http://localhost:3000, with spaces or commas between them"
+            ));
+        }
+        let url = &self.public_url;
+        let is_web = url.starts_with("http://") || url.starts_with("https://");
+        if !url.is_empty() && !(is_web && is_origin(url)) {
+            faults.push(format!(
+                "http.public_url = {url:?} is not allowed; allowed: \"\" or an address such as \
+                 https://points.example or http://points.example:8080, without a path"
             ));
         }
         faults

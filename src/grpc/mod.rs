@@ -38,7 +38,7 @@ use proto::point_service_server::PointServiceServer;
 const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
 
 /// The methods of the contract, by their paths.
-pub const METHODS: [&str; 14] = [
+pub const METHODS: [&str; 15] = [
     "/strew.v1.PointService/StreamPoints",
     "/strew.v1.PointService/CountPoints",
     "/strew.v1.PointService/SplitPoints",
@@ -48,6 +48,7 @@ pub const METHODS: [&str; 14] = [
     "/strew.v1.PointService/ListPeriods",
     "/strew.v1.PointService/GetMask",
     "/strew.v1.PointService/ListFields",
+    "/strew.v1.PointService/ListWorlds",
     "/strew.v1.PointService/ForgeTable",
     "/strew.v1.PointService/GetArrangement",
     "/strew.v1.PointService/ListOccurrences",

@@ -19,9 +19,9 @@ use super::{
         CountPointsResponse, Encoding, FindNearestRequest, FindNearestResponse, ForgeTableRequest,
         ForgeTableResponse, GetMaskRequest, GetMaskResponse, GetPointRequest, GetPointResponse,
         ListFieldsRequest, ListFieldsResponse, ListPeriodsRequest, ListPeriodsResponse,
-        ListProfilesRequest, ListProfilesResponse, MapRequest, MapResponse, SplitPointsRequest,
-        SplitPointsResponse, StreamPointsRequest, StreamPointsResponse,
-        point_service_server::PointService,
+        ListProfilesRequest, ListProfilesResponse, ListWorldsRequest, ListWorldsResponse,
+        LoadedWorld, MapRequest, MapResponse, SplitPointsRequest, SplitPointsResponse,
+        StreamPointsRequest, StreamPointsResponse, point_service_server::PointService,
     },
     query, resolved, set, single, split, status,
 };
@@ -313,6 +313,22 @@ impl PointService for Points {
         let fields = catalog.fields().iter().map(|loaded| field::loaded(loaded));
         Ok(Response::new(ListFieldsResponse {
             fields: fields.collect(),
+        }))
+    }
+
+    async fn list_worlds(
+        &self,
+        _request: Request<ListWorldsRequest>,
+    ) -> Result<Response<ListWorldsResponse>, Status> {
+        let catalog = self.service.catalog();
+        let worlds = catalog.worlds().iter().map(|world| LoadedWorld {
+            name: world.name.clone(),
+            digest: world.digest.clone(),
+            layers: world.layers.clone(),
+            query: world.json.to_string(),
+        });
+        Ok(Response::new(ListWorldsResponse {
+            worlds: worlds.collect(),
         }))
     }
 }

@@ -292,7 +292,8 @@ impl App {
         };
         let bounds = intake.clone();
         let open = move |router: Router| bounds.before(router);
-        let rest::Routes { router, paths } = rest::Routes::new(endpoints, open, behind_gate);
+        let rest::Routes { router, paths } =
+            rest::Routes::new(endpoints, &self.config.http.public_url, open, behind_gate);
         let calls = grpc.into_axum_router().reset_fallback();
         let others = Router::new().fallback(move |request| nothing_here(request, paths));
         let router = router
@@ -311,7 +312,12 @@ impl App {
             endpoints.push(self.metrics_endpoint());
         }
         let of_admins = |router: Router| router.layer(middleware::from_fn(gate::of_admins));
-        let rest::Routes { router, paths } = rest::Routes::new(endpoints, |open| open, of_admins);
+        let rest::Routes { router, paths } = rest::Routes::new(
+            endpoints,
+            &self.config.http.public_url,
+            |open| open,
+            of_admins,
+        );
         self.finished(router.fallback(move |request| nothing_here(request, paths)))
     }
 

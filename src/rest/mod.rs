@@ -95,15 +95,16 @@ pub struct Routes {
 }
 
 impl Routes {
-    /// The routes of these endpoints and of their description. Those that are open go through `open`,
-    /// all others through `gate`.
+    /// The routes of these endpoints, of their description and of the pages, which name `public_url` as their own
+    /// address if it is not empty. Those that are open go through `open`, all others through `gate`.
     #[must_use]
     pub fn new(
         mut endpoints: Vec<Endpoint>,
+        public_url: &str,
         open: impl FnOnce(Router) -> Router,
         gate: impl FnOnce(Router) -> Router,
     ) -> Self {
-        endpoints.extend(page::endpoints());
+        endpoints.extend(page::endpoints(public_url));
         endpoints.push(openapi::endpoint(&endpoints));
         let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
         let paths = paths.join(", ");

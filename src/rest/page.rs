@@ -62,6 +62,14 @@ const PAGES: &[Page] = &[
         include_str!("page/compare/index.html"),
     ),
     (
+        "/tile",
+        "getTilePage",
+        "The page of a tile",
+        "For people: a texture of points or a mask for dithering that repeats without a seam, to look at and to save. \
+         Loads nothing from elsewhere.",
+        include_str!("page/tile/index.html"),
+    ),
+    (
         "/walk",
         "getWalk",
         "A walk through the plane, in three dimensions",
@@ -79,6 +87,8 @@ macro_rules! parts {
 /// The parts of the page by their names.
 const PARTS: &[(&str, &str)] = parts![
     "api.js",
+    "bar.css",
+    "bar.js",
     "card.js",
     "charts.js",
     "chunks.js",
@@ -134,6 +144,7 @@ const PARTS: &[(&str, &str)] = parts![
     "place.js",
     "plane.js",
     "profiles.js",
+    "program.js",
     "query.js",
     "sent.js",
     "session.js",
@@ -147,6 +158,11 @@ const PARTS: &[(&str, &str)] = parts![
     "take.js",
     "theme.css",
     "theme.js",
+    "tile/mask.js",
+    "tile/period.js",
+    "tile/state.js",
+    "tile/tile.css",
+    "tile/tile.js",
     "understand.js",
     "worker.js",
     "walk/camera.js",
@@ -169,6 +185,9 @@ const PARTS: &[(&str, &str)] = parts![
     "works/settings.js",
 ];
 
+/// What is before the address of the picture that a passed-on link to a page shows.
+const PREVIEW: &str = "<meta property=\"og:image\" content=\"";
+
 const HTML: &str = "text/html; charset=utf-8";
 const SCRIPT: &str = "text/javascript";
 const STYLE: &str = "text/css";
@@ -184,14 +203,17 @@ fn content_type(name: &str) -> &'static str {
     }
 }
 
-/// The pages and their parts.
-pub(super) fn endpoints() -> Vec<Endpoint> {
+/// The pages and their parts. `public_url` is where they are seen from outside, or empty.
+pub(super) fn endpoints(public_url: &str) -> Vec<Endpoint> {
     let parts = PARTS.iter().map(|&(name, text)| {
         let content = Bytes::from_static(text.as_bytes());
         (name.to_owned(), Fixed::new(content_type(name), content))
     });
     let mut parts: Vec<(String, Fixed)> = parts.collect();
-    let mut all: Vec<_> = PAGES.iter().map(|one| page(one, &mut parts)).collect();
+    let mut all: Vec<_> = PAGES
+        .iter()
+        .map(|one| page(one, public_url, &mut parts))
+        .collect();
     let parts: Parts = Arc::new(parts);
     let of_the_first = ("/page/{file}", "getPagePart", "/page/main.js");
     all.push(parts_at(of_the_first, &[&FILE], &parts));
@@ -213,7 +235,11 @@ fn name_of(path: &str) -> &str {
 }
 
 /// A page, whose joined parts are added to the others.
-fn page(&(path, id, summary, about, text): &Page, parts: &mut Vec<(String, Fixed)>) -> Endpoint {
+fn page(
+    &(path, id, summary, about, text): &Page,
+    public_url: &str,
+    parts: &mut Vec<(String, Fixed)>,
+) -> Endpoint {
     let operation = operation((id, path, summary, about), &[HTML], &[], vec![]);
     let mut html = text.to_owned();
     // A test joins every page; one that could not be joined would work as it is.
@@ -231,6 +257,7 @@ fn page(&(path, id, summary, about, text): &Page, parts: &mut Vec<(String, Fixed
         "</span>"
     );
     let html = html.replace("<span id=\"version\"></span>", version);
+    let html = html.replace(PREVIEW, &format!("{PREVIEW}{public_url}"));
     let document = Fixed::new(HTML, html.into());
     let handler =
         routing::get(

@@ -13,8 +13,8 @@ use strew_core::server::Stop;
 
 use super::{
     Answer, BlockStream, Budget, Catalog, Draft, Entry, Error, Found, Held, Interrupted, Lane,
-    Limits, Nearest, Neighbors, Options, Permit, Placed, Planned, Portrait, Query, Ready, Record,
-    Reload, Set, Streams, Token, Workers,
+    Limits, Nearest, Neighbors, Options, Permit, Placed, Planned, PointsInFlight, Portrait, Query,
+    Ready, Record, Reload, Set, Streams, Token, Workers,
     cache::{CacheState, Samplers},
     considered, effort,
     field::{self, Document, NamedField},
@@ -37,6 +37,7 @@ pub struct Service {
     mixes: Mixes,
     portraits: Portraits,
     streams: Arc<Streams>,
+    points_in_flight: PointsInFlight,
     budget: Budget,
     pub(super) workers: Workers,
 }
@@ -52,6 +53,7 @@ impl Service {
             samplers,
             portraits: Portraits::new(),
             streams: Arc::new(Streams::new(limits.max_streams)),
+            points_in_flight: PointsInFlight::default(),
             budget,
             catalog: Arc::new(ArcSwap::from_pointee(catalog)),
             forging: Forging::default(),
@@ -129,6 +131,12 @@ impl Service {
         &self.streams
     }
 
+    /// The points that answers in progress still have to make.
+    #[must_use]
+    pub const fn points_in_flight(&self) -> &PointsInFlight {
+        &self.points_in_flight
+    }
+
     /// The byte budget of all requests and answers.
     #[must_use]
     pub const fn budget(&self) -> &Budget {
@@ -166,6 +174,9 @@ impl Service {
         let (planned, charged) = self.charged(caller, query).await?;
         self.check_points(caller, &planned)?;
         caller.charge(considered(&planned), charged)?;
+        // No more than the limit, which has 64 bits.
+        let points = u64::try_from(planned.count()).unwrap_or(u64::MAX);
+        Record::promise(&self.points_in_flight, points);
         Ok((permit, planned))
     }
 

@@ -39,6 +39,8 @@ mod planned_set;
 mod planner;
 #[cfg(feature = "daemon")]
 mod portrait;
+#[cfg(feature = "daemon")]
+mod promise;
 pub mod query;
 mod ready;
 #[cfg(feature = "daemon")]
@@ -74,6 +76,7 @@ pub use {
     budget::{Budget, Held},
     daemon::Service,
     portrait::Portrait,
+    promise::PointsInFlight,
     record::Record,
     stream::{BlockStream, Interrupted, Permit, Streams},
     workers::Workers,

@@ -9,7 +9,7 @@ use std::sync::{
     atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
 };
 
-use super::{Answer, Budget, Kind, Lane, encode::EncodeError};
+use super::{Answer, Budget, Kind, Lane, PointsInFlight, encode::EncodeError, promise::Promise};
 
 tokio::task_local! {
     static CURRENT: Arc<Record>;
@@ -23,6 +23,7 @@ pub struct Record {
     format: OnceLock<&'static str>,
     refused: OnceLock<Kind>,
     points: AtomicU64,
+    promise: OnceLock<Promise>,
     is_long: AtomicBool,
     code: AtomicU32,
 }
@@ -40,6 +41,7 @@ impl Record {
             format: OnceLock::new(),
             refused: OnceLock::new(),
             points: AtomicU64::new(0),
+            promise: OnceLock::new(),
             is_long: AtomicBool::new(false),
             code: AtomicU32::new(NONE),
         })
@@ -99,6 +101,15 @@ impl Record {
     /// Notes that more points were made.
     pub fn made(&self, points: u64) {
         self.points.fetch_add(points, Ordering::Relaxed);
+        if let Some(promise) = self.promise.get() {
+            promise.keep(points);
+        }
+    }
+
+    /// Notes that the request is going to be answered with this many points, which are in flight until they are
+    /// made or the request is over.
+    pub(super) fn promise(all: &PointsInFlight, points: u64) {
+        let _ = CURRENT.try_with(|record| record.promise.set(all.promise(points)));
     }
 
     /// The lane in which the blocks of the answer are made.

@@ -1,10 +1,13 @@
 //! Certificates made for a test.
 
-use std::path::Path;
+use std::{
+    path::Path,
+    sync::atomic::{AtomicUsize, Ordering},
+};
 
 use rcgen::{
-    BasicConstraints, CertificateParams, CertifiedIssuer, ExtendedKeyUsagePurpose, IsCa, KeyPair,
-    date_time_ymd,
+    BasicConstraints, CertificateParams, CertifiedIssuer, DnType, ExtendedKeyUsagePurpose, IsCa,
+    KeyPair, date_time_ymd,
 };
 
 /// A certificate authority of its own.
@@ -13,10 +16,14 @@ pub struct Authority {
 }
 
 impl Authority {
-    /// An authority that nothing trusts yet.
+    /// An authority that nothing trusts yet, with a name of its own.
     #[expect(clippy::new_without_default, reason = "each one has another key")]
     pub fn new() -> Self {
+        static NUMBER: AtomicUsize = AtomicUsize::new(1);
         let mut params = CertificateParams::default();
+        // OpenSSL finds issuers by their names.
+        let name = format!("authority {}", NUMBER.fetch_add(1, Ordering::Relaxed));
+        params.distinguished_name.push(DnType::CommonName, name);
         params.is_ca = IsCa::Ca(BasicConstraints::Unconstrained);
         let key = KeyPair::generate().expect("a key");
         let issuer = CertifiedIssuer::self_signed(params, key).expect("signed");

@@ -374,6 +374,7 @@ const TABLE_LOADS: &str = "strew_table_loads_total";
 const FORGE_ENDED: &str = "strew_forge_jobs_ended_total";
 const FORGE_JOBS: &str = "strew_forge_jobs";
 const IN_FLIGHT: &str = "strew_requests_in_flight";
+const POINTS_IN_FLIGHT: &str = "strew_points_in_flight";
 const STREAMS: &str = "strew_streams_in_flight";
 const MOST_STREAMS: &str = "strew_streams_limit";
 const CACHE_BYTES: &str = "strew_sampler_cache_bytes";
@@ -415,9 +416,13 @@ const COUNTERS: [(&str, &str); 14] = [
         "Requested tables whose files were read for the request: those beyond tables.preload_bytes",
     ),
 ];
-const GAUGES: [(&str, &str); 9] = [
+const GAUGES: [(&str, &str); 10] = [
     (FORGE_JOBS, "Jobs of the forge that wait or run"),
     (IN_FLIGHT, "Requests that are being answered"),
+    (
+        POINTS_IN_FLIGHT,
+        "Points that current answers have announced and not made yet",
+    ),
     (STREAMS, "Current answers with points"),
     (MOST_STREAMS, "The most answers with points at once"),
     (CACHE_BYTES, "Memory of the tables that are ready"),

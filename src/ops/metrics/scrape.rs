@@ -7,7 +7,7 @@ use http::{HeaderValue, Method, header};
 
 use super::{
     CACHE_BYTES, CACHE_HITS, CACHE_MISSES, FORGE_ENDED, FORGE_JOBS, MEMORY, MOST_STREAMS, Metrics,
-    OPEN_FILES, STARTED, STREAMS, TABLE_LOADS, THREADS, labels, process::Process,
+    OPEN_FILES, POINTS_IN_FLIGHT, STARTED, STREAMS, TABLE_LOADS, THREADS, labels, process::Process,
 };
 use crate::{
     rest::api::{Answer, Endpoint, Operation, Tag, schemas},
@@ -75,6 +75,8 @@ impl Metrics {
             self.counter(FORGE_ENDED, labels).absolute(ended);
         }
         gauge(STREAMS, Some(service.streams().open() as f64));
+        let points = service.points_in_flight().get();
+        gauge(POINTS_IN_FLIGHT, Some(points as f64));
         gauge(MOST_STREAMS, Some(service.limits().max_streams as f64));
         let process = Process::now();
         gauge(MEMORY, process.memory.map(|bytes| bytes as f64));

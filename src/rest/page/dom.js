@@ -44,6 +44,18 @@ export function skipLinks() {
   }
 }
 
+/** Copies the text of an element; the button says how that went. */
+export async function copy(element, button) {
+  try {
+    await navigator.clipboard.writeText(element.textContent);
+    button.textContent = "Copied";
+  } catch {
+    // Without the permission the text is at least marked.
+    getSelection().selectAllChildren(element);
+    button.textContent = "Marked: copy it with Ctrl+C";
+  }
+}
+
 /** Calls a function once things have been quiet for some milliseconds. */
 export function settled(wait, call) {
   let timer = 0;

@@ -2,6 +2,10 @@
 // textures, so that a frame of a drag is a copy and not another drawing of all points.
 
 import { ARROW, SHAPES, isMarked, slotsOf } from "./marks.js";
+import { programOf } from "./program.js";
+
+/** The attributes by their slots. */
+const SLOTS = ["place", "angle", "scale", "variant"];
 
 const VERTEX = `#version 300 es
 in vec2 place;
@@ -96,30 +100,11 @@ class GlPainter {
     /** Points painted in a frame at most: what a renderer without graphics hardware can do. */
     this.budget = 200_000;
     this.slice = 50_000;
-    this.dots = this.program(VERTEX, DOT);
-    this.marks = this.program(VERTEX, MARK);
+    this.dots = programOf(gl, [VERTEX, DOT], SLOTS);
+    this.marks = programOf(gl, [VERTEX, MARK], SLOTS);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     this.most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
-  }
-
-  program(vertex, fragment) {
-    const { gl } = this;
-    const program = gl.createProgram();
-    for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
-      const shader = gl.createShader(type);
-      gl.shaderSource(shader, source);
-      gl.compileShader(shader);
-      gl.attachShader(program, shader);
-    }
-    ["place", "angle", "scale", "variant"].forEach((name, slot) => gl.bindAttribLocation(program, slot, name));
-    gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program) ?? "");
-    const uniforms = {};
-    for (const name of ["corner", "half_size", "zoom", "size", "shapes", "color"]) {
-      uniforms[name] = gl.getUniformLocation(program, name);
-    }
-    return { program, uniforms };
   }
 
   /** An empty sheet of a size in device pixels. */

@@ -18,7 +18,7 @@ const COUNT = ACROSS ** 2;
 const TILE = "periodic=5041&profile=blue&map=s&spacing=1&seed=7";
 
 /** Views to begin with: a name, words, the address, and how the picture differs from
- * points in a box. One with a `file` is a picture to save. */
+ * points in a box. One with a `page` opens that instead of the plane. */
 const VIEWS = [
   {
     id: "forest", name: "A forest with rocks and a road", words: "Two kinds that keep clear of each other, in a field.",
@@ -34,9 +34,9 @@ const VIEWS = [
     hash: "#at=0,0&span=64&profile=blue&amount=1&seed=3&tab=understand", hasSpectrum: true,
   },
   {
-    id: "tile", name: "A tileable texture", words: "5,041 points that repeat without a seam: a picture to save.",
+    id: "tile", name: "A tileable texture", words: "5,041 points that repeat without a seam; and masks for dithering.",
     hash: "#at=0,0&span=24&profile=blue&amount=1&map=s&seed=7&color=1",
-    file: `/v1/points?${TILE}&format=png&size=1024`,
+    page: "/tile",
   },
   {
     id: "detail", name: "Level of detail", words: "Zoom out: the points of lowest rank stand for all of them.",
@@ -106,8 +106,8 @@ export class Start {
     };
     const inside = [canvas, make("b", {}, name), make("small", {}, words)];
     const attributes = { class: "view", id: `view-${id}` };
-    const element = how.file
-      ? make("a", { ...attributes, href: how.file, download: "tile.png" }, inside)
+    const element = how.page
+      ? make("a", { ...attributes, href: how.page }, inside)
       : make("button", { ...attributes, type: "button", onclick: open }, inside);
     return { ...how, canvas, element };
   }
@@ -156,7 +156,7 @@ export class Start {
     const across = view.bands ? 60 : view.hasSpectrum ? 24 : span * SHOWN;
     const half = [across / 2, across / 2 / ASPECT];
     const box = [x.i - half[0], y.i - half[1], x.i + half[0], y.i + half[1]];
-    if (view.file) {
+    if (view.page) {
       const chunk = { data: await aroundCorner(across), stride: 2, columns: [], layers };
       chunk.count = chunk.data.length / 2;
       view.draw = () => draw(view, chunk, across);
@@ -231,7 +231,7 @@ function draw(view, chunk, across) {
     }
     context.fill();
   }
-  if (view.file) {
+  if (view.page) {
     context.strokeStyle = css(colors[2]);
     context.setLineDash([4, 4]);
     context.strokeRect(width / 2, -1, width, height / 2 + 1);

@@ -2,7 +2,7 @@
 
 import { hasKey } from "./api.js";
 import { FORMATS, curl, grpcurl, python, requestOf } from "./commands.js";
-import { byId, bytes, counted, make, settled } from "./dom.js";
+import { byId, bytes, copy, counted, make, settled } from "./dom.js";
 import { MOST_HELD, save, sizeOf } from "./download.js";
 import { worldOf } from "./paint/world.js";
 import { boxOf } from "./query.js";
@@ -33,7 +33,7 @@ export class Take {
       },
     }, words)));
     this.text = make("code", { id: "command" });
-    this.copyButton = make("button", { type: "button", id: "copy", class: "main", onclick: () => this.copy() }, "Copy");
+    this.copyButton = make("button", { type: "button", id: "copy", class: "main", onclick: () => copy(this.text, this.copyButton) }, "Copy");
     this.amount = make("p", { class: "big", id: "take-count", role: "status" });
     this.size = make("p", { class: "note", id: "take-size", role: "status" });
     this.button = make("button", { type: "button", id: "download", class: "main", onclick: () => this.download() }, "Download");
@@ -104,17 +104,6 @@ export class Take {
     }[this.way];
     if (hasKey()) this.what.textContent += " Add your key, as the header “Authorization: Bearer …”.";
     this.copyButton.textContent = "Copy";
-  }
-
-  async copy() {
-    try {
-      await navigator.clipboard.writeText(this.text.textContent);
-      this.copyButton.textContent = "Copied";
-    } catch {
-      // Without the permission the text is at least marked.
-      getSelection().selectAllChildren(this.text);
-      this.copyButton.textContent = "Marked: copy it with Ctrl+C";
-    }
   }
 
   /** Says how many points and bytes the view is. */

@@ -278,6 +278,8 @@ impl Service {
         let listing = Listing::new(query, placed, most)?;
         let points = u128::from(listing.count) * listing.each() as u128;
         caller.charge(points, 0)?;
+        let points = u64::try_from(points).unwrap_or(u64::MAX);
+        Record::promise(self.points_in_flight(), points);
         Ok((permit, listing))
     }
 }

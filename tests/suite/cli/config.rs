@@ -123,6 +123,13 @@ fn errors_name_the_setting_and_its_source() {
             "[http]\ncors_origins = \"https://a.example/page\"",
             &["\"https://a.example/page\" is not an origin"],
         ),
+        (
+            "[http]\npublic_url = \"https://a.example/strew/\"",
+            &[
+                "http.public_url = \"https://a.example/strew/\"",
+                "without a path",
+            ],
+        ),
         ("[log]\nfilter = \"info,=x=\"", &["log.filter"]),
         (
             "[shutdown]\ndrain_seconds = nan",

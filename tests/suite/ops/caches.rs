@@ -1,4 +1,4 @@
-//! Behind a real cache, nginx with the settings of `deploy/nginx`: what is pinned is made once.
+//! Behind real caches, nginx and Varnish with the settings of `deploy/`: what is pinned is made once.
 
 use strew_testkit::http1::{self, Answer};
 
@@ -6,27 +6,46 @@ use crate::support::{
     clients,
     daemon::Daemon,
     proxy::{Proxy, nginx},
+    queries::long,
 };
 
-const SETTINGS: &str = include_str!("../../../deploy/nginx/cache.conf");
+const NGINX: &str = include_str!("../../../deploy/nginx/cache.conf");
+const VARNISH: &str = include_str!("../../../deploy/varnish/strew.vcl");
 const WORLD: &str = "[worlds.heath]\nspacing = 2\nseed = 3\nprofile = 'test'\n";
 
-/// nginx as a cache before a daemon.
-fn cache(daemon: &Daemon) -> Option<Proxy> {
-    clients::find("nginx")?;
-    Some(Proxy::start("nginx", |address, folder| {
-        let settings = SETTINGS
-            .replace("/var/cache/nginx", &folder.display().to_string())
-            .replace("server strew:8080", &format!("server {}", daemon.address()))
-            .replace("listen 80", &format!("listen {address}"));
-        nginx(folder, &settings)
+/// A program as a cache before a daemon.
+fn cache(program: &str, daemon: &Daemon) -> Option<Proxy> {
+    clients::find(program)?;
+    let replica = daemon.address();
+    Some(Proxy::start(program, |address, folder| match program {
+        "varnishd" => VARNISH
+            .replace("\"strew\"", &format!("\"{}\"", replica.ip()))
+            .replace("\"8080\"", &format!("\"{}\"", replica.port())),
+        _ => {
+            let settings = NGINX
+                .replace("/var/cache/nginx", &folder.display().to_string())
+                .replace("server strew:8080", &format!("server {replica}"))
+                .replace("listen 80", &format!("listen {address}"));
+            nginx(folder, &settings)
+        }
     }))
 }
 
 #[test]
-fn a_pinned_answer_is_made_once_and_its_tag_is_enough() {
+fn behind_nginx_a_pinned_answer_is_made_once_and_its_tag_is_enough() {
+    a_pinned_answer_is_made_once_and_its_tag_is_enough("nginx");
+}
+
+#[test]
+fn behind_varnish_a_pinned_answer_is_made_once_and_its_tag_is_enough() {
+    a_pinned_answer_is_made_once_and_its_tag_is_enough("varnishd");
+}
+
+fn a_pinned_answer_is_made_once_and_its_tag_is_enough(program: &str) {
     let daemon = Daemon::with_config(WORLD);
-    let Some(cache) = cache(&daemon) else { return };
+    let Some(cache) = cache(program, &daemon) else {
+        return;
+    };
     let get = |path: &str, headers: &[(&str, &str)]| http1::get(cache.address, path, headers);
     let status = |answer: &Answer| answer.header("x-cache-status").to_owned();
     let world = get("/v1/worlds/heath", &[]);
@@ -69,4 +88,14 @@ fn a_pinned_answer_is_made_once_and_its_tag_is_enough() {
         let refused = get(&other, &[]);
         assert_eq!((refused.status, status(&refused).as_str()), (409, "MISS"));
     }
+    // The number of points of a region is known without its points.
+    let head = http1::request(cache.address, "HEAD", &long("f32"), &[]);
+    assert!(head.status == 200 && head.header("strew-count").len() > 8);
+    assert_eq!(daemon.streams(), 0);
+    // A long answer passes, and ends with its reader.
+    let mut reader = http1::open(cache.address, "GET", &long("f32"), &[]);
+    assert!(reader.skip(1 << 20).expect("bytes") > 0);
+    drop(reader);
+    daemon.until_no_streams();
+    assert_eq!(get("/metrics", &[]).status, 404);
 }

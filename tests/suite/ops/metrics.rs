@@ -6,8 +6,9 @@ use strew_testkit::{http1, wait::until};
 
 use crate::support::{
     daemon::Daemon,
-    grpc::{collect, square},
+    grpc::{LONG, collect, square},
     metrics::{samples, sum},
+    queries::long,
 };
 
 const POINTS: &str = "/v1/points?bbox=0,0,20,20&density=1&profile=test&format=";
@@ -137,6 +138,58 @@ fn broken_answers_are_counted_apart() {
     // The points made until then are counted, and no more.
     let points = sum(&samples, "strew_points_total", &["format=\"f32\""]);
     assert!(points > 0.0 && points < 3e8, "{points}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn points_in_flight_rise_with_answers_and_return_to_zero() {
+    let daemon = Daemon::start(&[]);
+    let now = || sum(&samples(&daemon), "strew_points_in_flight", &[]);
+    let until_none = |what: &str| until(what, || (now() == 0.0).then_some(()));
+    let path = long("f32");
+    // A head has no points.
+    let head = http1::request(daemon.address(), "HEAD", &path, &[]);
+    let count: f64 = head.header("strew-count").parse().expect("a number");
+    assert_eq!((head.status, now()), (200, 0.0));
+
+    let read_a_byte = || {
+        let mut reader = http1::open(daemon.address(), "GET", &path, &[]);
+        assert!(reader.skip(1).expect("a byte") > 0);
+        reader
+    };
+    // Sockets hold a few megabytes, so nearly all points are still to be made.
+    let first = read_a_byte();
+    assert!(
+        (0.95 * count..count).contains(&now()),
+        "{} of {count}",
+        now()
+    );
+    let second = read_a_byte();
+    assert!((1.9 * count..2.0 * count).contains(&now()), "{}", now());
+    drop(first);
+    until("one reader is gone", || (now() < count).then_some(()));
+    assert!(now() > 0.95 * count, "{} of {count}", now());
+    drop(second);
+    until_none("both readers are gone");
+
+    let mut client = PointServiceClient::new(daemon.channel().await);
+    let call = client.stream_points(square(LONG)).await;
+    let mut stream = call.expect("a stream").into_inner();
+    assert!(stream.message().await.expect("whole").is_some());
+    assert!(
+        (0.95 * count..=count).contains(&now()),
+        "{} of {count}",
+        now()
+    );
+    drop(stream);
+    until_none("the call is canceled");
+
+    // What is read to its end leaves nothing either; nor do answers that are made at once, or refused.
+    collect(&mut client, square(300.0)).await;
+    daemon.get(&format!("{POINTS}csv"));
+    daemon.get("/v1/points?bbox=0,0,300,300&density=1&profile=test&format=png");
+    daemon.get("/v1/points?bbox=0,0,1e6,1e6&density=1&profile=test&format=csv");
+    daemon.get("/v1/pattern/arrangements?offsets=1,0&bbox=0,0,300,300");
+    until_none("all answers are read");
 }
 
 #[test]

@@ -19,6 +19,7 @@ mod panics;
 mod rates;
 mod reload;
 mod replicas;
+mod rollout;
 mod shutdown;
 #[cfg(feature = "otlp")]
 mod spans;

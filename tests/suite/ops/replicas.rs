@@ -4,7 +4,7 @@
 //! The proxies are HAProxy and nginx, which `.ci/run` installs; a missing one is skipped with a
 //! message.
 
-use std::{net::SocketAddr, path::Path};
+use std::net::SocketAddr;
 
 use strew::service::{
     Answer, Catalog, Encoding, Output, Planned,
@@ -15,44 +15,8 @@ use strew_testkit::{http1, wait::until};
 use crate::support::{
     clients,
     daemon::{Daemon, PROFILE, tables},
-    proxy::{self, Proxy},
+    proxy::Proxy,
 };
-
-fn haproxy(address: SocketAddr, replicas: &[SocketAddr]) -> String {
-    let servers: String = replicas
-        .iter()
-        .enumerate()
-        .map(|(i, replica)| format!("    server r{i} {replica} check inter 100ms fall 1 rise 1\n"))
-        .collect();
-    format!(
-        "global\n    maxconn 100\ndefaults\n    mode http\n    timeout connect 2s\n    \
-         timeout client 20s\n    timeout server 20s\n    retries 3\n    option redispatch 1\n    \
-         retry-on conn-failure empty-response 503\nfrontend in\n    bind {address}\n    \
-         default_backend strew\nbackend strew\n    balance roundrobin\n    \
-         option httpchk GET /readyz\n{servers}"
-    )
-}
-
-fn nginx(address: SocketAddr, replicas: &[SocketAddr], folder: &Path) -> String {
-    let servers: String = replicas
-        .iter()
-        .map(|replica| format!("server {replica} max_fails=1 fail_timeout=1s; "))
-        .collect();
-    let http = format!(
-        "upstream strew {{ {servers} }}\n\
-         server {{ listen {address}; location / {{ proxy_pass http://strew; proxy_http_version 1.1;\n\
-         proxy_next_upstream error timeout http_503 non_idempotent; proxy_buffering off; }} }}"
-    );
-    proxy::nginx(folder, &http)
-}
-
-/// Starts a proxy over replicas.
-fn proxy(program: &str, replicas: &[SocketAddr]) -> Proxy {
-    Proxy::start(program, |address, folder| match program {
-        "haproxy" => haproxy(address, replicas),
-        _ => nginx(address, replicas, folder),
-    })
-}
 
 const QUERY: &str = "bbox=-200,-200,200,200&spacing=1&seed=5&profile=test&format=csv";
 
@@ -78,7 +42,7 @@ fn a_replica_may_fail_and_return(program: &str) {
     let expected = expected();
     let mut replicas: Vec<Option<Daemon>> = (0..3).map(|_| Some(Daemon::start(&[]))).collect();
     let addresses: Vec<SocketAddr> = replicas.iter().flatten().map(|r| r.address()).collect();
-    let proxy = proxy(program, &addresses);
+    let proxy = Proxy::balancer(program, &addresses, None);
     until("the proxy has found a replica", || {
         let opened = http1::open(proxy.address, "GET", "/readyz", &[]);
         (opened.status == 200).then_some(())

@@ -79,6 +79,7 @@ fn axe_finds_nothing_on_the_other_pages() {
             "document.documentElement.dataset.measured",
         ),
         ("/walk#fly=0&quality=0", READY),
+        ("/tile", READY),
         ("/docs", READY),
         ("/docs#getCount", READY),
     ] {

@@ -58,6 +58,7 @@ fn the_first_key_leads_past_what_repeats() {
     for (path, target) in [
         ("/", "panel-body"),
         ("/compare", "methods"),
+        ("/tile", "choices"),
         ("/docs#getPoints", "main"),
     ] {
         browser.go("about:blank");

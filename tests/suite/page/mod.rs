@@ -16,6 +16,7 @@ mod fields;
 mod links;
 mod paint;
 mod start;
+mod tile;
 mod view;
 mod visit;
 mod walk;

@@ -41,6 +41,30 @@ fn every_answer_has_security_headers() {
 }
 
 #[test]
+fn pages_name_a_picture_for_those_who_pass_on_a_link() {
+    let unknown = Daemon::start(&[]);
+    let known = Daemon::start(&["http.public_url=https://points.example"]);
+    for path in ["/", "/compare", "/tile", "/walk"] {
+        let picture = |daemon: &Daemon| {
+            let page = daemon.get(path);
+            let (_, rest) = page
+                .text()
+                .split_once("og:image\" content=\"")
+                .expect("a picture");
+            let (address, _) = rest.split_once('"').expect("an end");
+            address.replace("&amp;", "&")
+        };
+        let relative = picture(&unknown);
+        assert_eq!(picture(&known), format!("https://points.example{relative}"));
+        let image = unknown.get(&relative);
+        assert_eq!(image.status, 200, "{relative}");
+        assert_eq!(image.header("content-type"), "image/png", "{relative}");
+        let size = [1200_u32, 630].map(u32::to_be_bytes).concat();
+        assert_eq!(image.body[16..24], size, "{relative}");
+    }
+}
+
+#[test]
 fn any_origin_may_send_requests_and_read_all_headers() {
     let daemon = Daemon::start(&[]);
     let origin = ("origin", "https://page.example");

@@ -1,9 +1,9 @@
 //! Worlds: queries that are described once, in the configuration or a folder.
 
-use serde_json::json;
-
 use std::fs;
 
+use serde_json::{Value, json};
+use strew::grpc::proto::{ListWorldsRequest, point_service_client::PointServiceClient};
 use strew_testkit::wait::until;
 
 use crate::support::{csv::Csv, daemon::Daemon};
@@ -259,6 +259,22 @@ fn settings_decide_so_caches_ask_again() {
     assert!(!pinned.header("cache-control").contains("immutable"));
     let other = Daemon::with_config(&WORLDS.replace("1.5", "1.6"));
     assert_ne!(other.get(address).header("etag"), answer.header("etag"));
+}
+
+#[tokio::test]
+async fn worlds_are_listed_by_grpc_too() {
+    let daemon = Daemon::with_config(WORLDS);
+    let mut client = PointServiceClient::new(daemon.channel().await);
+    let list = client.list_worlds(ListWorldsRequest {}).await;
+    let worlds = list.expect("a list").into_inner().worlds;
+    assert_eq!(worlds.len(), 2);
+    for world in worlds {
+        let one = daemon.get(&format!("/v1/worlds/{}", world.name)).json();
+        assert_eq!(one["digest"], world.digest);
+        assert_eq!(one["layers"], json!(world.layers));
+        let query: Value = serde_json::from_str(&world.query).expect("JSON");
+        assert_eq!(one["query"], query);
+    }
 }
 
 #[test]

@@ -16,3 +16,4 @@ pub mod metrics;
 pub mod problem;
 pub mod proxy;
 pub mod queries;
+pub mod tls;

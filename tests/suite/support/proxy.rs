@@ -1,4 +1,4 @@
-//! Real proxies and web servers with settings of their own: HAProxy, nginx.
+//! Real proxies, caches and web servers with settings of their own: HAProxy, nginx, Varnish.
 
 use std::{
     fs,
@@ -35,6 +35,13 @@ impl Proxy {
         let mut command = Command::new(program);
         match program {
             "haproxy" => command.args(["-db", "-q", "-f"]).arg(&file),
+            "varnishd" => command
+                .args(["-F", "-j", "none", "-s", "malloc,64m", "-a"])
+                .arg(address.to_string())
+                .args(["-p", "http_gzip_support=off", "-f"])
+                .arg(&file)
+                .arg("-n")
+                .arg(folder.path()),
             _ => command.arg("-p").arg(folder.path()).arg("-c").arg(&file),
         };
         let child = command
@@ -48,6 +55,64 @@ impl Proxy {
             _folder: folder,
         }
     }
+}
+
+impl Proxy {
+    /// Starts HAProxy or nginx over replicas. With a file of trusted authorities it speaks TLS to them, verifies their
+    /// certificates for `localhost`, and shakes hands in full for each request.
+    pub fn balancer(program: &str, replicas: &[SocketAddr], trusted: Option<&Path>) -> Self {
+        Self::start(program, |address, folder| match program {
+            "haproxy" => haproxy(address, replicas, trusted),
+            _ => nginx_balancer(address, replicas, trusted, folder),
+        })
+    }
+}
+
+fn haproxy(address: SocketAddr, replicas: &[SocketAddr], trusted: Option<&Path>) -> String {
+    let tls = trusted.map_or(String::new(), |file| {
+        let file = file.display();
+        format!(" ssl verify required ca-file {file} verifyhost localhost no-ssl-reuse")
+    });
+    let servers: String = replicas
+        .iter()
+        .enumerate()
+        .map(|(i, replica)| {
+            format!("    server r{i} {replica} check inter 100ms fall 1 rise 1{tls}\n")
+        })
+        .collect();
+    format!(
+        "global\n    maxconn 100\ndefaults\n    mode http\n    timeout connect 2s\n    \
+         timeout client 20s\n    timeout server 20s\n    retries 3\n    option redispatch 1\n    \
+         http-reuse never\n    retry-on conn-failure empty-response 503\nfrontend in\n    bind {address}\n    \
+         default_backend strew\nbackend strew\n    balance roundrobin\n    \
+         option httpchk GET /readyz\n{servers}"
+    )
+}
+
+fn nginx_balancer(
+    address: SocketAddr,
+    replicas: &[SocketAddr],
+    trusted: Option<&Path>,
+    folder: &Path,
+) -> String {
+    let servers: String = replicas
+        .iter()
+        .map(|replica| format!("server {replica} max_fails=1 fail_timeout=1s; "))
+        .collect();
+    let (scheme, tls) = trusted.map_or(("http", String::new()), |file| {
+        let file = file.display();
+        let tls = format!(
+            "proxy_ssl_verify on; proxy_ssl_trusted_certificate {file}; proxy_ssl_name localhost;\n\
+             proxy_ssl_session_reuse off; "
+        );
+        ("https", tls)
+    });
+    let http = format!(
+        "upstream strew {{ {servers} }}\n\
+         server {{ listen {address}; location / {{ proxy_pass {scheme}://strew; proxy_http_version 1.1;\n\
+         {tls}proxy_next_upstream error timeout http_503 non_idempotent; proxy_buffering off; }} }}"
+    );
+    nginx(folder, &http)
 }
 
 /// Settings of nginx around those of `http`, with all that it writes in a folder.

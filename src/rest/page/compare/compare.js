@@ -1,12 +1,12 @@
 // The page Compare: one view for all methods, and what each measures there.
 
-import { askJson, hasKey, onPresence } from "../api.js";
+import { askJson, onPresence } from "../api.js";
+import { tools } from "../bar.js";
 import { topOf } from "../charts.js";
-import { byId, icon, make, settled, skipLinks } from "../dom.js";
-import { keyForm } from "../form.js";
+import { byId, make, settled, skipLinks } from "../dom.js";
+import { refusal } from "../form.js";
 import { moveBy } from "../gestures.js";
 import { parsePlace, place } from "../place.js";
-import { watchTheme } from "../theme.js";
 import { FARTHEST, Joint, fromHash, toHash } from "./joint.js";
 import { METHODS } from "./methods.js";
 import { Panel } from "./panel.js";
@@ -27,14 +27,10 @@ function say(words) {
 
 /** Says what went wrong, and takes a key where that is what the server needs. */
 function refused(error) {
-  if (!error.isLocked) return say(error.message);
-  if (byId("key")) return;
-  say(hasKey() ? error.message : "This server needs a key.");
-  byId("banner").append(keyForm(() => {
-    say(null);
+  refusal(byId("banner"), error, () => {
     for (const { source } of panels) source.chunks?.retry();
     begin();
-  }));
+  });
 }
 
 let isWaiting = false;
@@ -145,20 +141,16 @@ function jump(event) {
   if (isPlace) joint.lookAt(x, y);
 }
 
-const ICONS = {
-  closer: "M12 5v14M5 12h14",
-  farther: "M5 12h14",
-  home: "M3 11.5 12 4l9 7.5M6 10v10h12V10",
-  theme: "M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z",
-};
+function home() {
+  byId("jump-at").value = "";
+  joint.lookAt(place(0), place(0));
+}
 
-function tools() {
-  for (const [id, path] of Object.entries(ICONS)) byId(id).append(icon(path));
-  byId("closer").addEventListener("click", () => joint.zoom(1.5));
-  byId("farther").addEventListener("click", () => joint.zoom(1 / 1.5));
-  byId("home").addEventListener("click", () => {
-    byId("jump-at").value = "";
-    joint.lookAt(place(0), place(0));
+function listen() {
+  tools(joint, home, () => {
+    for (const panel of shown()) panel.sheet.renew();
+    chart();
+    draw();
   });
   byId("jump").addEventListener("submit", jump);
   byId("seed").addEventListener("change", (event) => {
@@ -169,11 +161,6 @@ function tools() {
     if (isSeed) reseed(seed);
   });
   byId("profile").addEventListener("change", (event) => choose({ profile: event.target.value }));
-  watchTheme(byId("theme"), () => {
-    for (const panel of shown()) panel.sheet.renew();
-    chart();
-    draw();
-  });
 }
 
 function reseed(seed) {
@@ -219,6 +206,6 @@ async function begin() {
 // For tests.
 globalThis.strew = { joint, panels };
 build();
-tools();
+listen();
 skipLinks();
 begin();

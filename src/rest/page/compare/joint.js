@@ -49,7 +49,9 @@ export function toHash(state) {
 
 /** One view for all panels; `changed()` hears of every move. */
 export class Joint {
-  constructor(state, changed) {
+  /** `least` and `most` bound the span. */
+  constructor(state, changed, [least, most] = [LEAST_SPAN, MOST_SPAN]) {
+    this.bounded = (span) => Math.min(most, Math.max(least, span));
     this.state = state;
     this.changed = changed;
     this.view = { x: state.x, y: state.y, unit: 1, width: 1, height: 1, ratio: 1, pixels: [1, 1] };
@@ -66,7 +68,7 @@ export class Joint {
   lookAt(x, y, span = this.state.span) {
     const { view, state } = this;
     if (isNear(x) && isNear(y)) Object.assign(view, { x, y });
-    state.span = bounded(span);
+    state.span = this.bounded(span);
     view.unit = state.span / Math.min(view.width, view.height);
     Object.assign(state, { x: view.x, y: view.y });
     this.changed();
@@ -81,7 +83,7 @@ export class Joint {
   /** Enlarges by a factor about a place on a panel, in CSS pixels. */
   zoom(factor, at = [this.view.width / 2, this.view.height / 2]) {
     const { view, state } = this;
-    const span = bounded(state.span / factor);
+    const span = this.bounded(state.span / factor);
     const grown = view.unit * (1 - span / state.span);
     const [dx, dy] = [at[0] - view.width / 2, view.height / 2 - at[1]];
     this.lookAt(moved(view.x, dx * grown), moved(view.y, dy * grown), span);

@@ -1,7 +1,8 @@
 // Trying an operation: a form with its parameters, the curl line of what the form says, and what the server answers.
 
-import { hasKey, headersFor, useKey } from "../api.js";
+import { hasKey, headersFor } from "../api.js";
 import { bytes, make } from "../dom.js";
+import { keyForm } from "../form.js";
 import { resolved } from "./schema.js";
 
 /** The most bytes of an answer that are shown. */
@@ -126,7 +127,7 @@ async function sent({ address, headers, text }, method, type, update) {
     return [
       make("p", { class: answer.ok ? "status" : "status bad" }, make("b", { id: "status" }, `${answer.status} ${answer.statusText}`.trim()),
         ` · ${took} ms · ${isWhole ? "" : "more than "}${bytes(received)}`),
-      answer.status === 401 && keyField(update),
+      answer.status === 401 && keyForm(update),
       make("details", {}, make("summary", {}, `${rows.length / 2} headers`), make("dl", { class: "headers" }, rows)),
       await seen(blob, kind, isWhole),
     ].filter(Boolean);
@@ -194,12 +195,4 @@ function pretty(text) {
     else return /^[{[]/.test(token) ? token[0] + token.at(-1) : token;
     return token === "{" || token === "[" ? token + margin : margin + token;
   }).join("");
-}
-
-function keyField(update) {
-  const field = make("input", { type: "password", "aria-label": "Key", autocomplete: "off" });
-  return make("div", { class: "line" }, field, make("button", { type: "button", onclick: () => {
-    useKey(field.value);
-    update();
-  } }, "Use this key"));
 }

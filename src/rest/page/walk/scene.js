@@ -1,6 +1,7 @@
 // The picture by WebGL2: sky, ground, shadows, and everything that stands, a draw for each kind and leaf. Instances go
 // to the graphics processor once; which of them are drawn is a beginning of each run, as these are sorted by rank.
 
+import { programOf } from "../program.js";
 import { sees } from "./camera.js";
 import { GROUND_FLOATS, INSTANCE_FLOATS, below, netOf } from "./ground.js";
 import { GROUND, SHADOWS, SKY, THINGS } from "./shaders.js";
@@ -10,8 +11,8 @@ import { KINDS, VERTEX_FLOATS, allShapes } from "./shapes.js";
 const SWAY = [0.04, 0.035, 0, 0.02, 0.06, 0.06, 0.05];
 const CAST = [[0.17, 0.8], [0.3, 0.85], [0.6, 0.5], [0.6, 0.6]];
 
-/** Within this distance, in units, leaves are drawn with all of their triangles. */
-const DETAIL = 70;
+/** Within this distance, in units, things cast shadows. */
+const SHADED = 140;
 
 const LIGHTS = {
   day: {
@@ -40,7 +41,7 @@ class Scene {
     const names = gl.getExtension("WEBGL_debug_renderer_info");
     this.isSlow = SOFTWARE.test(String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
     this.programs = Object.fromEntries(
-      Object.entries({ SKY, GROUND, THINGS, SHADOWS }).map(([name, source]) => [name, this.program(source)]),
+      Object.entries({ SKY, GROUND, THINGS, SHADOWS }).map(([name, source]) => [name, programOf(gl, source)]),
     );
     this.shapes = allShapes();
     this.vertices = this.buffer(this.shapes.floats);
@@ -49,27 +50,6 @@ class Scene {
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-  }
-
-  program([vertex, fragment]) {
-    const { gl } = this;
-    const program = gl.createProgram();
-    for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
-      const shader = gl.createShader(type);
-      gl.shaderSource(shader, source);
-      gl.compileShader(shader);
-      gl.attachShader(program, shader);
-    }
-    gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
-      throw new Error(gl.getAttachedShaders(program).map((shader) => gl.getShaderInfoLog(shader)).join("") || "no program");
-    }
-    const uniforms = {};
-    for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i += 1) {
-      const { name } = gl.getActiveUniform(program, i);
-      uniforms[name] = gl.getUniformLocation(program, name);
-    }
-    return { program, uniforms };
   }
 
   /** A buffer with these contents. */
@@ -106,7 +86,8 @@ class Scene {
 
   /**
    * Draws what `look` has: the camera, `lift` (its height), `grounds` and `things` as `{ leaf, clip, ... }`, `reach`,
-   * `time`. Returns how many instances were drawn.
+   * `time`, and `detail`, the distances within which leaves have all of their triangles and some of them. Returns how
+   * many instances were drawn.
    */
   draw(look) {
     const { gl } = this;
@@ -205,7 +186,7 @@ class Scene {
     gl.polygonOffset(-2, -4);
     for (let slot = 0; slot < 3; slot += 1) gl.disableVertexAttribArray(slot);
     this.runs(look, CAST.length, (thing, run, count) => {
-      if (thing.leaf.away > 2 * DETAIL) return;
+      if (thing.leaf.away > SHADED) return;
       this.place(uniforms, look, thing);
       gl.uniform1f(uniforms.wide, CAST[run.kind][0]);
       gl.uniform1f(uniforms.tall, CAST[run.kind][1]);
@@ -228,7 +209,9 @@ class Scene {
       this.place(uniforms, look, thing);
       gl.uniform1f(uniforms.sway, SWAY[run.kind]);
       gl.uniform1f(uniforms.kind, run.kind);
-      const shapes = thing.leaf.away < (look.isFine ? DETAIL : DETAIL / 4) ? this.shapes.near : this.shapes.far;
+      const [full, some] = look.detail;
+      const { near, far, plain } = this.shapes;
+      const shapes = thing.leaf.away < full ? near : thing.leaf.away < some ? far : plain;
       this.slots(thing.buffer, INSTANCE_FLOATS, 4 * INSTANCE_FLOATS * run.first, [[3, 4], [4, 4]], 1);
       gl.drawArraysInstanced(gl.TRIANGLES, ...shapes[run.kind], count);
       drawn += count;

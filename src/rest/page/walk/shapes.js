@@ -162,7 +162,33 @@ export const KINDS = ["conifer", "broad", "rock", "bush", "tuft", "flower", "bla
 
 const MAKERS = [conifer, broad, rock, bush, tuft, (isFar) => tuft(isFar, [0.86, 0.78, 0.34]), (isFar) => tuft(isFar)];
 
-/** All shapes in one array: `{ floats, near, far }` with the runs `[first, count]` of each kind's vertices. */
+/** A cone with four sides. */
+function spike(low, below, high, color) {
+  const shape = new Shape();
+  shape.cone(4, [low, below], [high, 0], color);
+  return shape;
+}
+
+/** A single blade. */
+function sprout(color) {
+  const shape = new Shape();
+  shape.face([[-0.2, 0, 0], [0.2, 0.1, 0], [0.05, 0.1, 0.9]], color);
+  return shape;
+}
+
+function crown() {
+  const shape = new Shape();
+  shape.ball([0, 0, 0.56], [0.33, 0.33, 0.42], LEAVES, { seed: 5, faces: OCTAHEDRON });
+  return shape;
+}
+
+/** The same kinds with as few triangles as can be, for processors that draw without graphics hardware. */
+const PLAIN = [
+  () => spike(0.04, 0.2, 1, NEEDLES), crown, () => spike(0, 0.7, 0.62, STONE), () => spike(0, 0.66, 0.85, BUSH),
+  () => sprout(BLADE), () => sprout(fade(BLADE(0), [0.86, 0.78, 0.34], 0.3, 0.9)), () => sprout(BLADE),
+];
+
+/** All shapes in one array: `{ floats, near, far, plain }` with the runs `[first, count]` of each kind's vertices. */
 export function allShapes() {
   const floats = [];
   const run = (shape) => {
@@ -172,5 +198,6 @@ export function allShapes() {
   };
   const near = MAKERS.map((maker) => run(maker(false)));
   const far = MAKERS.map((maker) => run(maker(true)));
-  return { floats: new Float32Array(floats), near, far };
+  const plain = PLAIN.map((maker) => run(maker()));
+  return { floats: new Float32Array(floats), near, far, plain };
 }

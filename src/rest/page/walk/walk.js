@@ -1,8 +1,8 @@
 // The walk: puts its parts together and draws, as finely as the machine can.
 
-import { Gone, askJson, hasKey, onPresence } from "../api.js";
+import { Gone, askJson, onPresence } from "../api.js";
 import { byId, bytes, icon, make } from "../dom.js";
-import { keyForm } from "../form.js";
+import { refusal } from "../form.js";
 import { formatPlace, parsePlace, place } from "../place.js";
 import { joined, setOf } from "../query.js";
 import { LAYER, WORKS, toHash } from "../state.js";
@@ -15,13 +15,14 @@ import { World, layersOf } from "./world.js";
 
 /**
  * How finely the picture is drawn: pixels for each CSS pixel; for each set how far all of its points are drawn and how
- * far any; how fine the ground is; whether there are shadows and detail.
+ * far any; how fine the ground is; within which distances things have all of their triangles and some of them; whether
+ * there are shadows and a finer ground.
  */
 const QUALITIES = [
-  { ratio: 0.5, sets: [{ near: 24, reach: 420 }, { near: 4, reach: 12 }], cells: 16, isFine: false },
-  { ratio: 0.75, sets: [{ near: 40, reach: 640 }, { near: 6, reach: 24 }], cells: 16, isFine: false },
-  { ratio: 1, sets: [{ near: 64, reach: 1000 }, { near: 9, reach: 44 }], cells: 32, isFine: true },
-  { ratio: 2, sets: [{ near: 96, reach: 1500 }, { near: 13, reach: 64 }], cells: 32, isFine: true },
+  { ratio: 0.5, sets: [{ near: 24, reach: 420 }, { near: 4, reach: 12 }], cells: 16, detail: [0, 1], isFine: false },
+  { ratio: 0.75, sets: [{ near: 40, reach: 640 }, { near: 6, reach: 24 }], cells: 16, detail: [1, 70], isFine: false },
+  { ratio: 1, sets: [{ near: 64, reach: 1000 }, { near: 9, reach: 44 }], cells: 32, detail: [70, Infinity], isFine: true },
+  { ratio: 2, sets: [{ near: 96, reach: 1500 }, { near: 13, reach: 64 }], cells: 32, detail: [70, Infinity], isFine: true },
 ];
 /** A frame that takes longer (in milliseconds) is too slow; one that takes less leaves room for more. */
 const SLOW = 45;
@@ -69,13 +70,10 @@ if (scene.isMap) banner("This browser draws nothing in three dimensions (WebGL2 
 
 function failed(error) {
   root.dataset.state = "failed";
-  if (!error.isLocked) return banner(error.message);
-  if (byId("key")) return;
-  banner(hasKey() ? error.message : "This server needs a key.", keyForm(() => {
-    banner(null);
+  refusal(byId("banner"), error, () => {
     root.dataset.state = "loading";
     for (const { chunks } of world.sets) chunks.retry();
-  }));
+  });
 }
 onPresence((gone) => banner(gone ? "The server does not answer. This page tries again by itself; what is drawn stays." : null));
 
@@ -98,22 +96,34 @@ function adapt(took) {
   else if (median < QUICK && level < Math.min(best, scene.isSlow ? 1 : best)) level += 1;
 }
 
+/** What the last picture was drawn from. */
+let pictured = "";
+let drawn = 0;
+
 function frame(now) {
   const seconds = Math.min(0.1, (now - before) / 1000);
-  adapt(now - before);
   const last = before;
   before = now;
   const quality = QUALITIES[level];
+  // Wind means that every frame is another picture: too much without graphics hardware.
+  const hasWind = walker.mayFly && !scene.isSlow;
   const { sets } = quality;
   scene.resize(Math.min(quality.ratio, devicePixelRatio * Math.min(1, quality.ratio)));
   world.move(walker, [Math.sin(walker.yaw), Math.cos(walker.yaw)], quality);
   walker.step(seconds, (at) => world.heightAt(at));
   const camera = cameraOf(walker, canvas.clientWidth / Math.max(1, canvas.clientHeight), 1.5 * sets[0].reach);
   const lift = walker.height - world.heightAt(walker);
-  look = { ...world.look(walker, now - last), camera, height: walker.height, lift, reach: sets[0].reach, isFine: quality.isFine,
-    time: walker.mayFly ? now / 1000 : 0 };
-  const drawn = scene.draw(look);
-  tell(drawn, now);
+  look = { ...world.look(walker, now - last), camera, height: walker.height, lift, reach: sets[0].reach, isFine: quality.isFine, detail: quality.detail,
+    time: hasWind ? now / 1000 : 0 };
+  const { x, y, yaw, pitch, height } = walker;
+  const same = [x.i, x.f, y.i, y.f, yaw, pitch, height, canvas.width, canvas.height, scene.mode, level, world.seed, world.composed].join();
+  // A still picture is drawn once.
+  if (hasWind || same !== pictured) {
+    adapt(now - last);
+    drawn = scene.draw(look);
+    pictured = same;
+  }
+  tell(now);
   requestAnimationFrame(frame);
 }
 
@@ -121,7 +131,7 @@ function frame(now) {
 const meter = [];
 let updated = 0;
 
-function tell(drawn, now) {
+function tell(now) {
   const state = root.dataset.state === "failed" ? "failed" : world.isReady ? "ready" : "loading";
   const isNews = state !== root.dataset.state;
   root.dataset.state = state;

@@ -43,6 +43,8 @@ export class World {
     });
     this.around = null;
     this.isStale = true;
+    /** How often it was said what is to be drawn. */
+    this.composed = 0;
   }
 
   /** Says where the walker is, in which direction leaves come first, and how much is drawn. */
@@ -134,6 +136,7 @@ export class World {
   compose(took) {
     // What cannot be made ready in this frame comes in the next ones.
     this.isStale = false;
+    this.composed += 1;
     this.until = performance.now() + Math.max(BUILDING, SHARE * took);
     this.grounds = this.sets[0].leaves.flatMap((leaf) => {
       if (this.nets.has(nameOf(leaf)) || performance.now() < this.until) return [{ leaf, ...this.net(leaf) }];

@@ -1,0 +1,71 @@
+// A threshold mask, repeated, and a ramp that it dithers.
+
+import { ask } from "../api.js";
+import { distance } from "../place.js";
+import { joined } from "../query.js";
+
+/** The ramp, in pixels. */
+const RAMP = { width: 320, height: 110 };
+
+/** The parameters that say which mask. */
+export function pairsOf({ profile, map, size, seed, bits }) {
+  const pairs = [["size", String(size)], ["seed", seed], ["profile", profile], ["map", map]];
+  return bits === "8" ? pairs : [...pairs, ["bits", bits]];
+}
+
+export class Mask {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.side = 1;
+  }
+
+  /** Takes what is chosen; returns what there is to say about it. */
+  async use(state) {
+    const { size } = state;
+    const answer = await ask(`/v1/mask.png?${joined(pairsOf({ ...state, bits: "8" }))}`);
+    const bitmap = await createImageBitmap(await answer.blob());
+    const canvas = document.createElement("canvas");
+    Object.assign(canvas, { width: size, height: size });
+    const context = canvas.getContext("2d", { willReadFrequently: true });
+    context.drawImage(bitmap, 0, 0);
+    Object.assign(this, { side: size, tile: canvas, thresholds: context.getImageData(0, 0, size, size).data });
+    return `${size} × ${size} pixels with ${state.bits === "8" ? "256" : "65,536"} thresholds. A pixel of a picture becomes white `
+      + "where its gray is above the threshold.";
+  }
+
+  renew() {}
+
+  draw(view) {
+    const { canvas, side, tile } = this;
+    const [width, height] = view.pixels;
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    if (!tile) return;
+    const context = canvas.getContext("2d");
+    const scale = view.ratio / view.unit;
+    const [x, y] = [view.x, view.y].map((at) => distance({ i: 0, f: 0 }, at) % side);
+    const pattern = context.createPattern(tile, "repeat");
+    pattern.setTransform(new DOMMatrix([scale, 0, 0, scale, width / 2 + x * scale, height / 2 - y * scale]));
+    context.imageSmoothingEnabled = false;
+    context.fillStyle = pattern;
+    context.fillRect(0, 0, width, height);
+  }
+
+  /** Draws a ramp in black and white; returns what it is. */
+  picture(canvas) {
+    const { side, thresholds } = this;
+    if (!thresholds) return "";
+    const { width, height } = RAMP;
+    Object.assign(canvas, RAMP);
+    const context = canvas.getContext("2d");
+    const pixels = context.createImageData(width, height);
+    for (let y = 0; y < height; y += 1) {
+      for (let x = 0; x < width; x += 1) {
+        const gray = (256 * x) / (width - 1);
+        const white = gray > thresholds[4 * ((y % side) * side + (x % side))] ? 255 : 0;
+        pixels.data.set([white, white, white, 255], 4 * (y * width + x));
+      }
+    }
+    context.putImageData(pixels, 0, 0);
+    return "A ramp from black to white that it dithers: black and white pixels only.";
+  }
+}

@@ -1,0 +1,64 @@
+// One period of a point set, and the picture of its copies.
+
+import { ask, askJson } from "../api.js";
+import { spectrumPicture } from "../charts.js";
+import { Sheet } from "../compare/sheet.js";
+import { counted } from "../dom.js";
+import { measure } from "../measure.js";
+import { distance } from "../place.js";
+import { joined } from "../query.js";
+
+/** The parameters that say which period. */
+export function pairsOf({ profile, map, points, share, seed }) {
+  const pairs = [["periodic", String(points)], ["profile", profile], ["map", map], ["spacing", "1"], ["seed", seed]];
+  return share < 1 ? [...pairs, ["keep", String(share)]] : pairs;
+}
+
+export class Period {
+  constructor(canvas) {
+    this.sheet = new Sheet(canvas);
+    this.version = 0;
+    this.points = new Float32Array(0);
+    this.side = 1;
+  }
+
+  /** Takes what is chosen; returns what there is to say about it. */
+  async use(state) {
+    const set = joined(pairsOf(state));
+    const [{ count, query }, answer] = await Promise.all([askJson(`/v1/count?${set}`), ask(`/v1/points?${set}&format=f32`)]);
+    const points = new Float32Array(await answer.arrayBuffer());
+    Object.assign(this, { points, side: query.period.side, version: this.version + 1 });
+    this.measured = await measure(Float64Array.from(points), this.side);
+    const { side } = query.period;
+    const apart = query.least_distance > 0 ? `, any two at least ${query.least_distance.toFixed(2)} apart, across the seam too` : "";
+    return `${counted(count)} on a square of ${side} × ${side} mean spacings${apart}.`;
+  }
+
+  renew() {
+    this.sheet.renew();
+  }
+
+  draw(view) {
+    this.sheet.draw(view, this);
+  }
+
+  /** The copies in and around a view, as the sheet takes them: where each one's corner is from the middle. */
+  runs(view) {
+    const { points, side } = this;
+    const half = [view.width, view.height].map((v) => 0.85 * v * view.unit);
+    const from = [view.x, view.y].map((at) => distance({ i: 0, f: 0 }, at));
+    const corners = from.map((at, axis) => {
+      const first = Math.floor((-half[axis] - at) / side);
+      const last = Math.floor((half[axis] - at) / side);
+      return Array.from({ length: last - first + 1 }, (_, k) => at + (first + k) * side);
+    });
+    return corners[1].flatMap((low) => corners[0].map((left) => ({ points, count: points.length / 2, stride: 2, left, low })));
+  }
+
+  /** Draws the spectrum; returns what it is. */
+  picture(canvas) {
+    if (!this.measured) return "";
+    spectrumPicture(canvas, this.measured.image, this.measured.cells);
+    return "Its spectrum: frequency 0 in the middle, up to ν = 2.5. Empty there means even spreading.";
+  }
+}

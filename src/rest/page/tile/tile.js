@@ -1,0 +1,267 @@
+// The page of a tile: what repeats, how it looks next to its copies, and the files of it.
+
+import { askJson, onPresence } from "../api.js";
+import { tools } from "../bar.js";
+import { curl } from "../commands.js";
+import { Joint } from "../compare/joint.js";
+import { byId, copy, make, settled, skipLinks } from "../dom.js";
+import { save } from "../download.js";
+import { check, fault, field, refusal, select, setOptions } from "../form.js";
+import { moveBy } from "../gestures.js";
+import { distance, place } from "../place.js";
+import { choicesOf, profileNames } from "../profiles.js";
+import { joined } from "../query.js";
+import { themeColor } from "../theme.js";
+import { Mask, pairsOf as maskPairs } from "./mask.js";
+import { Period, pairsOf as periodPairs } from "./period.js";
+import { LEAST_SHARE, SIZES, fromHash, spanOf, toHash } from "./state.js";
+
+const root = document.documentElement;
+const canvas = byId("view");
+/** The fewest and the most units along the shorter side: mean spacings, or pixels of a mask. */
+const SPANS = [6, 200];
+/** Periods of more points are not offered here: a page that shows copies of them is slow. */
+const MOST_POINTS = 60_000;
+const FILES = ["png", "svg", "csv", "json", "f32", "npy"];
+const SIDES = ["512", "1024", "2048", "4096"];
+
+let state = fromHash(location.hash);
+let tables = [];
+const kinds = { points: new Period(canvas), mask: new Mask(canvas) };
+const joint = new Joint(state, () => draw(), SPANS);
+const shown = () => kinds[state.what];
+const file = { format: "png", side: "1024" };
+
+let isWaiting = false;
+
+function draw() {
+  if (isWaiting) return;
+  isWaiting = true;
+  requestAnimationFrame(() => {
+    isWaiting = false;
+    shown().draw(joint.view);
+    if (state.seams) seams(joint.view, shown().side);
+  });
+}
+
+/** Lines where copies meet. */
+function seams({ x, y, unit, ratio, pixels: [width, height] }, side) {
+  const context = canvas.getContext("2d");
+  const scale = ratio / unit;
+  const lines = (at, size, line) => {
+    const from = size / 2 + at * scale;
+    for (let v = from - Math.floor(from / (side * scale)) * side * scale; v < size; v += side * scale) line(Math.round(v) + 0.5);
+  };
+  context.strokeStyle = themeColor("accent");
+  context.lineWidth = 1.5 * ratio;
+  context.setLineDash([6 * ratio, 5 * ratio]);
+  context.beginPath();
+  lines(distance(place(0), x), width, (v) => {
+    context.moveTo(v, 0);
+    context.lineTo(v, height);
+  });
+  lines(-distance(place(0), y), height, (v) => {
+    context.moveTo(0, v);
+    context.lineTo(width, v);
+  });
+  context.stroke();
+  context.setLineDash([]);
+}
+
+let turn = 0;
+
+/** Takes what is chosen to the server, and shows what comes back. */
+async function show() {
+  turn += 1;
+  const mine = turn;
+  root.dataset.state = "loading";
+  const hash = toHash(state);
+  if (hash !== location.hash) history.replaceState(null, "", hash);
+  update();
+  try {
+    const words = await shown().use({ ...state, map: mapOf(state.profile) });
+    if (mine !== turn) return;
+    byId("about").textContent = words;
+    fault(byId("choices"), "seed", "");
+    byId("banner").hidden = true;
+    root.dataset.state = "ready";
+  } catch (error) {
+    if (mine !== turn) return;
+    const about = error.faults?.find((one) => one.field === "seed");
+    if (about) fault(byId("choices"), "seed", error.message);
+    else refusal(byId("banner"), error, begin);
+    root.dataset.state = "failed";
+  }
+  picture();
+  draw();
+}
+
+function picture() {
+  byId("caption").textContent = shown().picture(byId("picture"));
+  byId("picture").setAttribute("aria-label", state.what === "mask" ? "A dithered ramp" : "The spectrum");
+}
+
+const soon = settled(250, show);
+
+function choose(change) {
+  const isOther = change.what && change.what !== state.what;
+  Object.assign(state, change);
+  if (isOther) joint.lookAt(place(0), place(0), spanOf(state));
+  show();
+}
+
+/** The smallest map of a profile's tables: it has the shortest periods. */
+function mapOf(profile) {
+  const { maps } = choicesOf(tables, { profile, alpha: "", map: "" });
+  return maps[0];
+}
+
+function build() {
+  const buttons = [["points", "Points"], ["mask", "Mask"]].map(([what, words]) => make("button", {
+    type: "button", id: `what-${what}`, onclick: () => choose({ what }),
+  }, words));
+  byId("what").append(...buttons);
+  const seed = make("input", {
+    id: "seed", inputmode: "numeric", autocomplete: "off", spellcheck: "false",
+    oninput: (event) => {
+      state.seed = event.target.value.trim();
+      soon();
+    },
+  });
+  const share = make("input", {
+    type: "range", id: "share", min: String(LEAST_SHARE), max: "1", step: "0.01", oninput: (event) => {
+      state.share = Number(event.target.value);
+      soon();
+    },
+  });
+  byId("fields").append(
+    field("Profile", "profile", select("profile", (profile) => {
+      Object.assign(state, { profile, points: 1 });
+      begin();
+    })),
+    make("div", { class: "pair", id: "of-points" },
+      field("Points", "points", select("points", (points) => choose({ points: Number(points) }))),
+      field("Share of them", "share", share)),
+    make("div", { class: "pair", id: "of-mask" },
+      field("Pixels a side", "size", select("size", (size) => choose({ size: Number(size) }))),
+      field("Bits", "bits", select("bits", (bits) => choose({ bits })))),
+    field("Seed", "seed", seed),
+    check("seams", "Show the seams", (seams) => {
+      state.seams = seams;
+      history.replaceState(null, "", toHash(state));
+      draw();
+    }),
+  );
+  const format = select("format", (value) => {
+    file.format = value;
+    line();
+  }, { "aria-label": "Format" });
+  const side = select("side", (value) => {
+    file.side = value;
+    line();
+  }, { "aria-label": "Pixels a side of the picture" });
+  setOptions(format, FILES, file.format);
+  setOptions(side, SIDES.map((v) => [v, `${v} pixels`]), file.side);
+  byId("save").append(
+    make("div", { class: "pair", id: "how" }, format, side),
+    make("button", { type: "button", id: "download", class: "main", onclick: () => save({ path: pathOf() }, nameOf(), () => {})
+      .catch((error) => refusal(byId("banner"), error, begin)) }, "Save"),
+    make("pre", { tabindex: "0", "aria-label": "The request" }, make("code", { id: "command" })),
+    make("button", { type: "button", id: "copy", onclick: (event) => copy(byId("command"), event.currentTarget) }, "Copy"),
+    make("p", { class: "note", id: "help" }),
+  );
+}
+
+/** Sets every field to what is chosen. */
+function update() {
+  const isMask = state.what === "mask";
+  for (const what of Object.keys(kinds)) byId(`what-${what}`).setAttribute("aria-pressed", String(what === state.what));
+  byId("of-points").hidden = isMask;
+  byId("of-mask").hidden = !isMask;
+  byId("how").hidden = isMask;
+  setOptions(byId("size"), SIZES.map(String), String(state.size));
+  setOptions(byId("bits"), [["8", "8"], ["16", "16"]], state.bits);
+  if (byId("seed").value.trim() !== state.seed) byId("seed").value = state.seed;
+  byId("share").value = String(state.share);
+  byId("share").setAttribute("aria-valuetext", `${Math.round(100 * state.share)} %`);
+  byId("seams").checked = state.seams;
+  line();
+}
+
+function pathOf() {
+  const whole = { ...state, map: mapOf(state.profile) };
+  if (state.what === "mask") return `/v1/mask.png?${joined(maskPairs(whole))}`;
+  const size = isPicture() ? [["size", file.side]] : [];
+  return `/v1/points?${joined([...periodPairs(whole), ["format", file.format], ...size])}`;
+}
+
+const isPicture = () => ["png", "svg"].includes(file.format);
+const nameOf = () => (state.what === "mask" ? "mask.png" : `tile.${file.format}`);
+
+/** The line to paste, and what to do with the file. */
+function line() {
+  byId("side").disabled = !isPicture();
+  byId("copy").textContent = "Copy";
+  byId("command").textContent = curl(location.origin, { path: pathOf() }, nameOf());
+  byId("help").textContent = state.what === "mask"
+    ? "Repeat it over a picture, a pixel of the mask for a pixel of the picture."
+    : "Pictures repeat as they are. Coordinates lie in [0, L)², L being the side in mean spacings.";
+}
+
+async function begin() {
+  try {
+    ({ profiles: tables } = await askJson("/v1/profiles"));
+    const names = profileNames(tables);
+    if (!names.includes(state.profile)) {
+      byId("banner").hidden = false;
+      byId("banner").textContent = `No profile “${state.profile}” is loaded here.`;
+      [state.profile] = names.includes("blue") ? ["blue"] : names;
+    }
+    setOptions(byId("profile"), names, state.profile);
+    await sizes();
+  } catch (error) {
+    refusal(byId("banner"), error, begin);
+    root.dataset.state = "failed";
+    return;
+  }
+  const said = byId("banner").hidden ? "" : byId("banner").textContent;
+  await show();
+  if (said && root.dataset.state === "ready") Object.assign(byId("banner"), { hidden: false, textContent: said });
+}
+
+/** Offers the periods that the profile has. */
+async function sizes() {
+  const { periods } = await askJson(`/v1/periods?${joined([["profile", state.profile], ["map", mapOf(state.profile)], ["most", "12"]])}`);
+  const counts = periods.map(({ points }) => points).filter((points, i) => i === 0 || points <= MOST_POINTS);
+  state.points = counts.find((points) => points >= state.points) ?? counts.at(-1);
+  setOptions(byId("points"), counts.map((points) => [String(points), points.toLocaleString("en")]), String(state.points));
+}
+
+function resize() {
+  const { clientWidth, clientHeight } = canvas;
+  if (clientWidth && clientHeight) joint.resize(clientWidth, clientHeight);
+}
+
+onPresence((gone) => {
+  Object.assign(byId("banner"), { hidden: !gone, textContent: gone ? "The server does not answer. This page tries again by itself." : "" });
+  if (!gone) begin();
+});
+
+addEventListener("hashchange", () => {
+  state = Object.assign(joint.state, fromHash(location.hash));
+  joint.lookAt(state.x, state.y, state.span);
+  begin();
+});
+
+// For tests.
+globalThis.strew = { joint, kinds };
+build();
+tools(joint, () => joint.lookAt(place(0), place(0), spanOf(state)), () => {
+  kinds.points.renew();
+  picture();
+  draw();
+});
+moveBy(canvas, joint, { tapped: () => {}, hovered: () => {} });
+new ResizeObserver(resize).observe(canvas);
+skipLinks();
+begin();
