@@ -38,6 +38,12 @@ class Recent:
         return False
 
 
+def around(cx, cy):
+    """The chunks that are seen from one, each as a number."""
+    first = (cx - VIEW << 32) + cy - VIEW
+    return [first + (i << 32) + j for i in range(2 * VIEW + 1) for j in range(2 * VIEW + 1)]
+
+
 def simulate(players, side, world, edges, gigabytes, minutes, seed):
     """Requests for a chunk at the edges, the shield and the daemons, in a second."""
     rng = random.Random(seed)
@@ -47,7 +53,8 @@ def simulate(players, side, world, edges, gigabytes, minutes, seed):
     states = []
     for _ in range(players):
         x, y = rng.choices(towns, weights)[0]
-        states.append([rng.gauss(x, 300), rng.gauss(y, 300), rng.uniform(0, 2 * math.pi), set(), rng.randrange(edges)])
+        start = [rng.gauss(x, 300), rng.gauss(y, 300), rng.uniform(0, 2 * math.pi)]
+        states.append([*start, set(), rng.randrange(edges), None])
     caches = [Recent(int(gigabytes * 1e9 / size)) for _ in range(edges)]
     shield = Recent(int(4 * gigabytes * 1e9 / size))
     counts = [0, 0, 0]
@@ -56,11 +63,12 @@ def simulate(players, side, world, edges, gigabytes, minutes, seed):
         if step == steps // 2:
             counts = [0, 0, 0]
         for state in states:
-            x, y, way, seen, edge = state
-            cx, cy = math.floor(x / side), math.floor(y / side)
-            for i in range(-VIEW, VIEW + 1):
-                for j in range(-VIEW, VIEW + 1):
-                    chunk = (cx + i, cy + j)
+            x, y, way, seen, edge, before = state
+            center = math.floor(x / side), math.floor(y / side)
+            # All that a player sees in a chunk was seen when the player came there.
+            if center != before:
+                state[5] = center
+                for chunk in around(*center):
                     if chunk in seen:
                         continue
                     seen.add(chunk)

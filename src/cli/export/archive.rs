@@ -212,6 +212,12 @@ impl Archive {
         self.file.flush().with_context(|| self.unwritable())
     }
 
+    /// Takes back the beginning of an export that does not go on, so that another one may.
+    pub(super) fn abandon(self) {
+        // What is left otherwise is an export without chunks.
+        let _ = fs::remove_file(&self.partial);
+    }
+
     /// The files of an archive beside the chunks and those of every export.
     pub(super) fn extra(
         &self,

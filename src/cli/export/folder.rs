@@ -208,6 +208,12 @@ impl Folder {
         write().with_context(|| format!("cannot write {}", path.display()))
     }
 
+    /// Takes back what holds the place of an export that does not begin, so that another one may.
+    pub(super) fn abandon(self) {
+        // What is left otherwise is an export without chunks.
+        let _ = fs::remove_dir_all(&self.work);
+    }
+
     /// Everything is written but these documents, the last of which says that it is complete.
     pub(super) fn finish(self, documents: &[(String, Vec<u8>)]) -> anyhow::Result<()> {
         let Some((last, others)) = documents.split_last() else {

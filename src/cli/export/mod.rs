@@ -13,6 +13,7 @@ mod spec;
 mod zip;
 
 use std::{
+    io,
     path::{Path, PathBuf},
     sync::{
         Mutex, PoisonError,
@@ -184,7 +185,12 @@ impl Job<'_> {
             folder::Found::Complete => return self.nothing_to_do(root),
             folder::Found::Open(folder, done) => (folder, done),
         };
-        self.cost(done.len(), Some(root))?;
+        if let Err(failure) = self.cost(done.len(), Some(root)) {
+            if done.is_empty() {
+                folder.abandon();
+            }
+            return Err(failure);
+        }
         let stop = stop_flag();
         let chunks = self.maker.grid.chunks();
         let (progress, count) = (
@@ -210,12 +216,14 @@ impl Job<'_> {
             .into_inner()
             .unwrap_or_else(PoisonError::into_inner)
             .finish();
-        done.extend(made?);
+        let count = count.into_inner();
+        done.extend(made.map_err(|failure| no_room(failure, count, chunks))?);
         let mut records: Vec<(usize, Record)> = done.into_iter().collect();
         records.sort_unstable_by_key(|(i, _)| *i);
         let records: Vec<Record> = records.into_iter().map(|(_, record)| record).collect();
         let documents = documents(&self.spec, &self.maker, &self.catalog, &records, vec![])?;
-        folder.finish(&documents)?;
+        let finished = folder.finish(&documents);
+        finished.map_err(|failure| no_room(failure.into(), count, chunks))?;
         self.report(root, &records);
         Ok(())
     }
@@ -228,15 +236,24 @@ impl Job<'_> {
         let folder = path
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
-        self.cost(records.len(), Some(folder.unwrap_or(Path::new("."))))?;
+        if let Err(failure) = self.cost(records.len(), Some(folder.unwrap_or(Path::new(".")))) {
+            if records.is_empty() {
+                archive.abandon();
+            }
+            return Err(failure);
+        }
         let mut progress = self.progress(records.len());
         let written = self.in_order(&mut archive, &mut records, &mut progress, &stop_flag());
         progress.finish();
-        archive.flush()?;
-        written?;
+        let (count, chunks) = (records.len(), self.maker.grid.chunks());
+        let no_room = |failure| no_room(failure, count, chunks);
+        // What was made is written also where the run ends early.
+        let flushed = archive.flush().map_err(Failure::from);
+        written.and(flushed).map_err(no_room)?;
         let extra = archive.extra(&self.spec, &self.maker)?;
         let documents = documents(&self.spec, &self.maker, &self.catalog, &records, extra)?;
-        archive.finish(documents, &self.maker)?;
+        let finished = archive.finish(documents, &self.maker);
+        finished.map_err(|failure| no_room(failure.into()))?;
         self.report(path, &records);
         Ok(())
     }
@@ -312,6 +329,23 @@ impl Job<'_> {
 fn stopped(done: usize, chunks: usize) -> Failure {
     Failure::Interrupted(anyhow!(
         "interrupted after {done} of {chunks} chunks; the same command goes on there"
+    ))
+}
+
+/// What to do where the disk is full, or a quota or a limit of files is reached.
+fn no_room(failure: Failure, done: usize, chunks: usize) -> Failure {
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    let Failure::Other(error) = failure else {
+        return failure;
+    };
+    let mut causes = error.chain().filter_map(|cause| cause.downcast_ref());
+    let is_room =
+        |cause: &io::Error| matches!(cause.kind(), StorageFull | QuotaExceeded | FileTooLarge);
+    if !causes.any(is_room) {
+        return Failure::Other(error);
+    }
+    Failure::Other(anyhow!(
+        "{error:#}; {done} of {chunks} chunks are there: make room, and the same command goes on there"
     ))
 }
 

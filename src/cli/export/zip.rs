@@ -49,7 +49,7 @@ impl Content {
     pub(super) fn new(bytes: Vec<u8>, is_deflated: bool, points: u64) -> io::Result<Self> {
         let large = || {
             io::Error::new(
-                io::ErrorKind::FileTooLarge,
+                io::ErrorKind::InvalidInput,
                 "a file of an archive has less than 4 GiB",
             )
         };
@@ -332,4 +332,112 @@ pub(super) fn members(file: &mut File) -> io::Result<Option<Vec<(String, Member)
         at += 46 + name + extra;
     }
     Ok(Some(members))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::process::Command;
+
+    use super::*;
+
+    /// Stored content, with a number of points.
+    fn content(text: &str, points: u64) -> Content {
+        Content::new(text.into(), false, points).expect("short")
+    }
+
+    /// Some bytes at a place of a file.
+    fn range(file: &mut File, first: u64, length: u64) -> Vec<u8> {
+        file.seek(SeekFrom::Start(first)).expect("a place");
+        let bytes = exactly(file, length).expect("readable");
+        bytes.expect("long enough")
+    }
+
+    /// The number of members, the directory's length and its place, as docs/export.md says how to find them.
+    fn directory(file: &mut File) -> [u64; 3] {
+        let length = file.metadata().expect("there").len();
+        let end = range(file, length - 22, 22);
+        assert_eq!(&end[..4], b"PK\x05\x06");
+        // One of the short fields at least does not suffice.
+        let short = Head(&end);
+        assert!(short.u16(10) == u16::MAX || short.u32(16) == u32::MAX);
+        let wide = range(file, length - 22 - 76, 76);
+        assert_eq!(
+            (&wide[..4], &wide[56..60]),
+            (&b"PK\x06\x06"[..], &b"PK\x06\x07"[..])
+        );
+        let wide = Head(&wide);
+        assert_eq!(wide.u64(64), length - 22 - 76);
+        [wide.u64(32), wide.u64(40), wide.u64(48)]
+    }
+
+    /// What Python's `zipfile` reads: the number of members, and the last one with its content.
+    fn python(path: &std::path::Path) -> Option<String> {
+        let Some(python) = std::env::var_os("STREW_TEST_PYTHON") else {
+            eprintln!("skipped: STREW_TEST_PYTHON names no Python");
+            return None;
+        };
+        let read = "import sys, zipfile; z = zipfile.ZipFile(sys.argv[1]); n = z.namelist(); \
+                    print(len(n), n[-1], z.read(n[-1]).decode())";
+        let output = Command::new(python).args(["-c", read]).arg(path).output();
+        let output = output.expect("Python runs");
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        Some(String::from_utf8_lossy(&output.stdout).trim().into())
+    }
+
+    #[test]
+    fn more_members_than_16_bits_count_are_all_found() {
+        const MEMBERS: u64 = 70_000;
+        let mut archive = tempfile::NamedTempFile::new().expect("a file");
+        let (mut at, mut all) = (0, vec![]);
+        let mut bytes = vec![];
+        for i in 0..MEMBERS {
+            let name = format!("v1/{i}");
+            let content = content(&format!("chunk {i}"), i);
+            let member = write(&mut bytes, at, &name, &content).expect("memory");
+            at = end(&member, &name);
+            all.push((name, member));
+        }
+        let members = all.iter().map(|(name, member)| (name.clone(), member));
+        finish(&mut bytes, at, members).expect("memory");
+        archive.write_all(&bytes).expect("writable");
+        let file = archive.as_file_mut();
+        let [count, _, offset] = directory(file);
+        assert_eq!((count, offset), (MEMBERS, at));
+        assert!(members_of(file) == all);
+        if let Some(said) = python(archive.path()) {
+            assert_eq!(said, "70000 v1/69999 chunk 69999");
+        }
+    }
+
+    fn members_of(file: &mut File) -> Vec<(String, Member)> {
+        let found = super::members(file).expect("readable");
+        found.expect("a directory")
+    }
+
+    #[test]
+    fn members_beyond_4_gib_are_found() {
+        // What is left out takes no room on the disk.
+        const FAR: u64 = (4 << 30) + 12_345;
+        let mut archive = tempfile::NamedTempFile::new().expect("a file");
+        let file = archive.as_file_mut();
+        let near = write(file, 0, "near", &content("first", 1)).expect("writable");
+        file.seek(SeekFrom::Start(FAR)).expect("a place");
+        let far = write(file, FAR, "far", &content("last", 2)).expect("writable");
+        let at = end(&far, "far");
+        let all = [("near".to_owned(), near), ("far".to_owned(), far)];
+        let members = all.iter().map(|(name, member)| (name.clone(), member));
+        finish(file, at, members).expect("writable");
+        let [count, _, offset] = directory(file);
+        assert_eq!((count, offset), (2, at));
+        assert!(members_of(file) == all);
+        let (name, member, bytes) = next(file, FAR).expect("readable").expect("whole");
+        assert_eq!((&*name, member, &*bytes), ("far", far, &b"last"[..]));
+        if let Some(said) = python(archive.path()) {
+            assert_eq!(said, "2 far last");
+        }
+    }
 }

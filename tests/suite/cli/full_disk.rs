@@ -1,65 +1,9 @@
 //! Full disks: the error, the exit code, and no broken file left behind. Tests that mount a small
 //! file system are skipped where that is not permitted.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    process::{Command, Output, Stdio},
-};
+use std::{fs, path::Path, process::Output};
 
-use crate::support::{command::errors, daemon::strew};
-
-/// A small disk.
-struct SmallDisk {
-    folder: tempfile::TempDir,
-}
-
-impl SmallDisk {
-    /// Mounts a file system of 1 MiB, if this process may.
-    fn mount() -> Option<Self> {
-        let folder = tempfile::tempdir().expect("a folder");
-        let mounted = Command::new("mount")
-            .args(["-t", "tmpfs", "-o", "size=1m", "strew-test"])
-            .arg(folder.path())
-            .stderr(Stdio::null())
-            .status();
-        mounted
-            .is_ok_and(|status| status.success())
-            .then_some(Self { folder })
-    }
-
-    fn path(&self) -> &Path {
-        self.folder.path()
-    }
-
-    /// Fills the disk to the last byte.
-    fn fill(&self) {
-        let mut piece = 1 << 20;
-        let mut filler = vec![];
-        while piece > 0 {
-            filler.resize(filler.len() + piece, 0);
-            if fs::write(self.path().join("filler"), &filler).is_err() {
-                filler.truncate(filler.len() - piece);
-                piece /= 2;
-            }
-        }
-    }
-
-    /// The names of all files except the filler.
-    fn names(&self) -> Vec<PathBuf> {
-        let entries = fs::read_dir(self.path()).expect("a folder");
-        let names = entries.map(|entry| entry.expect("an entry").file_name().into());
-        names
-            .filter(|name: &PathBuf| name != Path::new("filler"))
-            .collect()
-    }
-}
-
-impl Drop for SmallDisk {
-    fn drop(&mut self) {
-        let _ = Command::new("umount").arg(self.path()).status();
-    }
-}
+use crate::support::{command::errors, daemon::strew, disk::SmallDisk};
 
 fn sample(output: &Path) -> Output {
     strew()
@@ -112,8 +56,7 @@ fn a_full_device_is_reported_as_a_failure() {
 
 #[test]
 fn points_that_do_not_fit_leave_no_file() {
-    let Some(disk) = SmallDisk::mount() else {
-        println!("skipped: this process may not mount a small file system");
+    let Some(disk) = SmallDisk::mount("1m") else {
         return;
     };
     let output = sample(&disk.path().join("points.f32"));
@@ -128,8 +71,7 @@ fn points_that_do_not_fit_leave_no_file() {
 
 #[test]
 fn tables_that_do_not_fit_leave_the_old_ones() {
-    let Some(disk) = SmallDisk::mount() else {
-        println!("skipped: this process may not mount a small file system");
+    let Some(disk) = SmallDisk::mount("1m") else {
         return;
     };
     let forge = |flags: &[&str]| {

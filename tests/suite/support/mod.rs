@@ -7,6 +7,7 @@ pub mod clients;
 pub mod command;
 pub mod csv;
 pub mod daemon;
+pub mod disk;
 pub mod engine;
 pub mod fields;
 pub mod grpc;

@@ -1,6 +1,8 @@
 //! `strew export`: a world as files. A static server answers with the daemon's bytes, killed exports go on, and what
 //! differs is found.
 
+mod levels;
+mod room;
 mod served;
 
 use std::{

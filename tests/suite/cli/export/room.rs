@@ -1,0 +1,95 @@
+//! Exports without room: refused before they begin, or ended while they write, with what is missing and how to go on.
+
+use std::{
+    fs,
+    process::{Command, Output, Stdio},
+};
+
+use strew_testkit::wait::until;
+
+use super::{LARGE, SMALL, export, exported, tree};
+use crate::support::{
+    command::errors,
+    daemon::{PROGRAM, strew},
+    disk::SmallDisk,
+};
+
+/// Whether an error names the cause, how far it came, and what to do.
+fn assert_no_room(output: &Output, cause: &str) {
+    let said = errors(output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    for words in [
+        cause,
+        "of 1024 chunks are there",
+        "the same command goes on there",
+    ] {
+        assert!(said.contains(words), "no `{words}`: {said}");
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused_before_it_begins() {
+    let Some(disk) = SmallDisk::mount("1m") else {
+        return;
+    };
+    let out = disk.path().join("world").display().to_string();
+    for to in ["-o", "--archive"] {
+        let refused = export(&[&LARGE[..], &[to, &out]].concat());
+        let said = errors(&refused);
+        assert_eq!(refused.status.code(), Some(1), "{said}");
+        assert!(said.contains("the export takes about 3"), "{said}");
+        assert!(said.contains("free: choose a smaller box"), "{said}");
+        // Nothing is left that would keep a smaller export out.
+        exported(&[&SMALL[..], &[to, &out]].concat());
+        exported(&["--check", &out]);
+        let _ = fs::remove_dir_all(&out);
+    }
+}
+
+#[test]
+fn a_folder_goes_on_once_there_is_room() {
+    let Some(disk) = SmallDisk::mount("64m") else {
+        return;
+    };
+    let out = disk.path().join("world");
+    let text = out.display().to_string();
+    let flags = [&LARGE[..], &["-o", &text]].concat();
+    let mut command = strew();
+    command.args(["export", "-q", "--threads=1"]).args(&flags);
+    let child = command.stderr(Stdio::piped()).spawn();
+    let child = child.expect("the program runs");
+    let journal = out.join(".partial/journal");
+    until("some chunks are there", || {
+        let length = fs::metadata(&journal).ok()?.len();
+        (length > 3000).then_some(())
+    });
+    // A quarter of all.
+    disk.resize("10m");
+    assert_no_room(
+        &child.wait_with_output().expect("it ends"),
+        "No space left on device",
+    );
+    assert!(!out.join("manifest.json").exists());
+    let before = tree(&out).len();
+    assert!(before > 35, "{before}");
+    disk.resize("64m");
+    exported(&flags);
+    exported(&["--check", &text]);
+}
+
+#[test]
+fn an_archive_goes_on_once_its_file_may_be_longer() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("world.zip").display().to_string();
+    let flags = [&LARGE[..], &["--archive", &path]].concat();
+    // At most 1 or 2 MiB, depending on the shell; a write beyond that fails, as on a full disk.
+    let limited = "trap '' XFSZ; ulimit -f 2048; exec \"$@\"";
+    let output = Command::new("sh")
+        .args(["-c", limited, "sh", PROGRAM, "export", "-q"])
+        .args(&flags)
+        .output()
+        .expect("a shell");
+    assert_no_room(&output, "File too large");
+    exported(&flags);
+    exported(&["--check", &path]);
+}
