@@ -48,6 +48,10 @@ fuzz subject seconds="3600":
 js:
     .ci/js
 
+# The tests of the pages in Firefox (firefox-esr and geckodriver) instead of Chromium.
+firefox:
+    STREW_TEST_BROWSER=firefox cargo test --locked --test suite -- page:: --test-threads 1
+
 # The sample for Blender, whose module of 370 MB comes from PyPI for one version of Python.
 blender:
     python3 -m venv target/blender

@@ -140,6 +140,7 @@ async function refresh(isChosen = false) {
   if (notes.some((note) => note.faults)) {
     isUnderstood = false;
     root.dataset.state = "failed";
+    status.refused();
     const other = notes.map((note) => note.faults?.[""]).find(Boolean);
     if (other) banner(other, [["Try again", () => refresh()]]);
     return;
@@ -248,6 +249,8 @@ function fold(isFolded) {
   byId("fold").setAttribute("aria-expanded", String(!isFolded));
 }
 
+/** Tabs whose contents lie over the plane. */
+const COVERS = ["gallery", "works"];
 const TABS = ["start", "choose", "understand", "take", "gallery", "works"];
 
 function tabs() {
@@ -258,6 +261,11 @@ function tabs() {
       if (session.state.tab !== TABS[i]) session.choose((state) => (state.tab = TABS[i]), "tab");
     });
     button.addEventListener("keydown", (event) => {
+      // What lies over the plane comes before the tabs in the page, but after them for keys.
+      if (event.key === "Tab" && !event.shiftKey && COVERS.includes(TABS[i])) {
+        event.preventDefault();
+        return byId(TABS[i]).focus({ preventScroll: true });
+      }
       const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
       if (!step) return;
       const next = buttons[(i + step + buttons.length) % buttons.length];
@@ -274,6 +282,12 @@ function showTab() {
     byId(`tab-${name}`).setAttribute("aria-selected", String(isOpen));
     byId(`tab-${name}`).tabIndex = isOpen ? 0 : -1;
     byId(name).hidden = !isOpen;
+  }
+  if (root.dataset.tab !== tab) byId("panel-body").scrollTop = 0;
+  root.dataset.tab = tab;
+  // Nothing that is covered can have the focus.
+  for (const part of byId("stage").children) {
+    if (part.role !== "alert" && part.role !== "status") part.inert = COVERS.includes(tab) && part.id !== tab;
   }
   byId("gallery-help").hidden = tab !== "gallery";
   byId("works-help").hidden = tab !== "works";

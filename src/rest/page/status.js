@@ -45,6 +45,11 @@ export class Status {
     byId("ruler").lastElementChild.textContent = spoken(length, 1);
   }
 
+  /** Something that was chosen cannot be shown. */
+  refused() {
+    byId("tally").textContent = "A field under Choose needs another value";
+  }
+
   async tally() {
     const { plane, session } = this;
     if (!plane.look) return;

@@ -64,6 +64,7 @@ export function palette() {
 /** A color of the theme as CSS, for drawing on canvases. */
 export function themeColor(name) {
   const probe = document.createElement("i");
+  probe.className = "probe";
   probe.style.color = `var(--${name})`;
   document.body.append(probe);
   const { color } = getComputedStyle(probe);

@@ -97,15 +97,7 @@ fn everything_fits_on_a_phone() {
     assert!(browser.ready() > 0 && small > 0);
     assert_eq!(browser.value(inside), true);
     // A tap with a finger.
-    let at = [serde_json::json!({ "x": 195, "y": 300 })];
-    browser.cdp(
-        "Input.dispatchTouchEvent",
-        &serde_json::json!({ "type": "touchStart", "touchPoints": at }),
-    );
-    browser.cdp(
-        "Input.dispatchTouchEvent",
-        &serde_json::json!({ "type": "touchEnd", "touchPoints": [] }),
-    );
+    browser.tap([195, 300]);
     browser.until("!document.querySelector('#card').hidden && document.querySelector('#card h2')?.textContent");
     assert_eq!(browser.errors(), Vec::<String>::new());
 }

@@ -1,6 +1,9 @@
-//! What everybody needs of the page: contrast, names, and pictures that come at once.
+//! What everybody needs of the pages: contrast, pictures that come at once, links that skip parts, no motion of its own.
 
-use crate::support::browser::looking;
+use crate::support::browser::{
+    key::{ENTER, TAB},
+    looking,
+};
 
 /// The least contrast of pairs of colors of the theme: of edges and dots with their grounds, and of text with its.
 const CONTRAST: &str = "(() => { \
@@ -45,4 +48,85 @@ fn the_gallery_shows_points_before_it_has_measured_them() {
         browser.value("document.querySelectorAll('#gallery .awaited').length"),
         0
     );
+}
+
+#[test]
+fn the_first_key_leads_past_what_repeats() {
+    let Some((daemon, browser)) = looking(1280, 900) else {
+        return;
+    };
+    for (path, target) in [
+        ("/", "panel-body"),
+        ("/compare", "methods"),
+        ("/tile", "choices"),
+        ("/docs#getPoints", "main"),
+    ] {
+        browser.go("about:blank");
+        browser.go(&daemon.url(path));
+        browser.until("document.querySelector('h1, h2')");
+        browser.until("document.documentElement.dataset.state === 'ready' || document.querySelector('article canvas')");
+        let hash = browser.hash();
+        browser.keys(&[TAB]);
+        assert_eq!(
+            browser.value("document.activeElement.className"),
+            "skip",
+            "{path}"
+        );
+        let top = browser.value("document.activeElement.getBoundingClientRect().top");
+        assert!(
+            top.as_f64().expect("pixels") >= 0.0,
+            "it is seen on {path}: {top}"
+        );
+        browser.keys(&[ENTER]);
+        assert_eq!(browser.value("document.activeElement.id"), target, "{path}");
+        if !hash.is_empty() {
+            assert_eq!(browser.hash(), hash, "the address stays");
+        }
+    }
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn what_lies_under_another_tab_takes_no_focus() {
+    let Some((daemon, browser)) = looking(1280, 900) else {
+        return;
+    };
+    browser.look(&daemon, "#at=0,0&span=30&tab=works");
+    let covered = "['plane', 'jump-at', 'theme', 'works-slider'].map((id) => Boolean(document.getElementById(id).closest('[inert]')))";
+    assert_eq!(
+        browser.value(covered),
+        serde_json::json!([true, true, true, false])
+    );
+    browser.click("#tab-choose");
+    assert_eq!(
+        browser.value(covered),
+        serde_json::json!([false, false, false, false])
+    );
+}
+
+#[test]
+fn nothing_moves_by_itself_where_less_motion_is_wanted() {
+    let Some((daemon, browser)) = looking(640, 420) else {
+        return;
+    };
+    let walk = |hash: &str| {
+        browser.go("about:blank");
+        browser.go(&daemon.url(&format!("/walk#quality=0{hash}")));
+        browser.until("document.documentElement.dataset.state === 'ready'");
+    };
+    walk("");
+    assert_eq!(browser.value("strew.walker.isFlying"), true);
+    let fold = "(document.querySelector('#fold').click(), document.getAnimations().length)";
+    browser.look(&daemon, "#at=0,0&span=30");
+    assert_eq!(browser.value(fold), 1);
+    browser.reduce_motion();
+    browser.look(&daemon, "#at=0,0&span=30");
+    assert_eq!(browser.value(fold), 0);
+    walk("");
+    let state = "[strew.walker.isFlying, strew.look.time]";
+    assert_eq!(browser.value(state), serde_json::json!([false, 0]));
+    // Who presses the button flies all the same.
+    browser.click("#fly");
+    browser.until("strew.walker.isFlying && document.querySelector('#fly').getAttribute('aria-pressed') === 'true'");
+    assert_eq!(browser.errors(), Vec::<String>::new());
 }

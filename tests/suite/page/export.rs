@@ -19,11 +19,6 @@ pub(super) fn copied(browser: &Browser, way: &str) -> String {
     text.as_str().expect("text").into()
 }
 
-pub(super) fn allow_clipboard(browser: &Browser) {
-    let names = json!({ "permissions": ["clipboardReadWrite", "clipboardSanitizedWrite"] });
-    browser.cdp("Browser.grantPermissions", &names);
-}
-
 /// Fails unless these points are those in view.
 pub(super) fn assert_same(browser: &Browser, found: &[[f64; 2]]) {
     let middle = browser.value("[strew.plane.view.x, strew.plane.view.y].map(({ i, f }) => i + f)");
@@ -62,7 +57,7 @@ fn a_copied_request_returns_the_points_in_view() {
         &daemon,
         "#at=1000.5,-20&span=35&seed=3&profile=spaced&warp=1.5&angle=1&tab=take",
     );
-    allow_clipboard(&browser);
+    browser.allow_clipboard();
     browser.until("document.documentElement.dataset.weighed");
     let url = copied(&browser, "url");
     let path = url
@@ -120,7 +115,7 @@ fn a_copied_request_for_layers_returns_the_points_in_view() {
     };
     let hash = "#at=-5,7&span=25&layers=2&seed=18446744073709551615&2.amount=2&2.seed=4&2.variant=1&2.scale=1&2.clear=0.6&tab=take";
     browser.look(&daemon, hash);
-    allow_clipboard(&browser);
+    browser.allow_clipboard();
     browser.until("document.documentElement.dataset.weighed");
     let line = copied(&browser, "curl");
     let body = line

@@ -71,3 +71,62 @@ fn the_view_follows_a_spacing_that_would_leave_it_empty() {
     browser.look(&daemon, "#at=300,300&span=600&amount=1000");
     browser.until("document.querySelector('#tally').textContent.includes('zoom out')");
 }
+
+#[test]
+fn malformed_links_show_what_they_can() {
+    let Some((daemon, browser)) = looking(640, 420) else {
+        return;
+    };
+    // Strokes of no length, too many, or with nothing between the brackets.
+    let strokes = "p(1:0,0/1,1)".repeat(6000);
+    for hash in [
+        "#%E0%A4%A&at=,&span=-1&tab=nope&dot=NaN&color=99&layers=1e9&renderer=no",
+        "#span=Infinity&at=NaN,NaN&how.alpha=7&works=nope",
+        "#at=0,0&span=30&paint=((((&2.paint=r(1:",
+        &format!("#at=0,0&span=30&paint={strokes}"),
+    ] {
+        browser.look(&daemon, hash);
+        assert!(browser.ready() > 100, "{}", &hash[..40]);
+    }
+    let open = |path: &str, ready: &str| {
+        browser.go("about:blank");
+        browser.go(&daemon.url(path));
+        browser.until(ready);
+    };
+    let ready = "document.documentElement.dataset.state === 'ready'";
+    for hash in [
+        "#at=1e300,0&yaw=Infinity&pitch=NaN&quality=77&seed=-1&map=1",
+        "#%E0%A4%A&at=nowhere&seed=99999999999999999999999999&map=1",
+    ] {
+        open(&format!("/walk{hash}"), ready);
+        assert_eq!(browser.value("strew.walker.x.i"), -126, "{hash}");
+    }
+    for hash in ["#%", "#%E0%A4%A", "#nothing"] {
+        open(&format!("/docs{hash}"), ready);
+        assert_eq!(browser.text("main h2"), "The API", "{hash}");
+    }
+    for hash in [
+        "#show=nothing&span=0&seed=1e99&at=1e300,0&profile=%2F..%2F",
+        "#%E0%A4%A&show=white&span=NaN",
+    ] {
+        open(
+            &format!("/compare{hash}"),
+            "document.documentElement.dataset.measured",
+        );
+    }
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn another_link_takes_the_walk_there() {
+    let Some((daemon, browser)) = looking(640, 420) else {
+        return;
+    };
+    let ready = "document.documentElement.dataset.state === 'ready'";
+    browser.go(&daemon.url("/walk#at=-126,0&map=1"));
+    browser.until(ready);
+    browser.value("(location.hash = '#at=500,500&seed=8', 0)");
+    browser.until("strew.world.seed === '8' && strew.walker.x.i === 500");
+    browser.until(ready);
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}

@@ -3,14 +3,14 @@
 
 use serde_json::{Value, json};
 
-use super::export::{allow_clipboard, assert_same, copied, rows, run};
+use super::export::{assert_same, copied, rows, run};
 use crate::support::{
     browser::{Browser, looking},
     daemon::Daemon,
 };
 
 /// Does something that changes the points, and waits until they are there. Returns how many.
-fn changed(browser: &Browser, act: impl FnOnce()) -> u64 {
+pub(super) fn changed(browser: &Browser, act: impl FnOnce()) -> u64 {
     let before = browser.value("strew.plane.chunks.identity");
     act();
     browser.until(&format!("strew.plane.chunks.identity !== {before}"));
@@ -35,15 +35,6 @@ fn distance(line: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
     line.windows(2).map(to).fold(f64::INFINITY, f64::min)
 }
 
-/// The middle of the canvas that is painted on.
-fn middle(browser: &Browser) -> [i32; 2] {
-    let place = browser.value(
-        "(() => { const box = document.querySelector('#brush').getBoundingClientRect(); \
-         return [box.left + box.width / 2, box.top + box.height / 2].map(Math.round); })()",
-    );
-    serde_json::from_value(place).expect("a place")
-}
-
 #[test]
 fn what_is_painted_is_followed_and_comes_back() {
     let Some((daemon, browser)) = looking(1280, 900) else {
@@ -52,7 +43,7 @@ fn what_is_painted_is_followed_and_comes_back() {
     browser.look(&daemon, "#at=5,5&span=60&seed=3");
     let all = browser.ready();
     browser.click("#paint-open");
-    let [x, y] = middle(&browser);
+    let [x, y] = browser.middle("#brush");
     let painted = changed(&browser, || browser.drag([x - 200, y - 100], [400, 0]));
     assert!(painted < all / 3, "{painted} of {all}: a tenth elsewhere");
     let (line, size) = stroke(&browser, 0);
@@ -75,7 +66,7 @@ fn what_is_painted_is_followed_and_comes_back() {
     // The request to paste has the field in it, and needs nothing that this server holds.
     browser.click("#tab-take");
     browser.until("document.documentElement.dataset.weighed");
-    allow_clipboard(&browser);
+    browser.allow_clipboard();
     let line = copied(&browser, "curl");
     let (body, other) = (
         line.split("-d '").nth(1).expect("a body"),
@@ -114,7 +105,7 @@ fn a_world_file_holds_what_is_painted() {
     browser.look(&daemon, hash);
     // The address has no digest, so the page sends the field first.
     browser.click("#paint-open");
-    let [x, y] = middle(&browser);
+    let [x, y] = browser.middle("#brush");
     let count = changed(&browser, || browser.drag([x - 90, y - 150], [60, 0]));
     browser.click("#paint-save");
     let path = browser.downloads().join("world.json");
@@ -169,7 +160,7 @@ fn keys_and_fingers_paint_too() {
     // A line that is given up leaves nothing.
     browser.keys(&[" ", right, "\u{E00C}"]);
     assert_eq!(browser.value("strew.paint.work.strokes.length"), 1);
-    let [x, y] = middle(&browser);
+    let [x, y] = browser.middle("#brush");
     changed(&browser, || browser.tap([x, y - 100]));
     assert_eq!(browser.value("strew.paint.work.strokes.length"), 2);
     let sizes = "[...document.querySelectorAll('#paint button')].filter((one) => one.offsetWidth > 0) \
@@ -179,5 +170,40 @@ fn keys_and_fingers_paint_too() {
     browser.until(
         "document.querySelector('#brush').hidden && document.activeElement.id === 'paint-open'",
     );
+    assert_eq!(browser.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn paint_goes_to_the_layer_that_is_picked() {
+    let Some((daemon, browser)) = looking(1280, 900) else {
+        return;
+    };
+    browser.look(
+        &daemon,
+        "#at=0,0&span=60&layers=2&2.seed=2&2.color=3&tab=choose",
+    );
+    browser.click("#paint-open");
+    browser.click("#paint-tool-road");
+    let [x, y] = browser.middle("#brush");
+    let strokes = |layer: usize| {
+        browser.value(&format!(
+            "(strew.session.state.layers[{layer}].paint.match(/r\\(/g) ?? []).length"
+        ))
+    };
+    changed(&browser, || browser.drag([x - 200, y - 120], [400, 0]));
+    assert_eq!([strokes(0), strokes(1)], [1, 0]);
+    // The pen is down on the other layer before the server knows of the first stroke's field.
+    browser.drag([x - 200, y - 60], [400, 0]);
+    browser.click("#layer-1");
+    browser.drag([x - 200, y], [400, 0]);
+    browser.until("strew.session.state.layers[1].paint");
+    browser.drag([x - 200, y + 60], [400, 0]);
+    browser.until("strew.session.state.layers[1].paint.match(/r\\(/g).length === 2");
+    assert_eq!([strokes(0), strokes(1)], [2, 2]);
+    browser.click("#layer-0");
+    assert_eq!(browser.value("strew.paint.work.strokes.length"), 2);
+    changed(&browser, || browser.click("#paint-undo"));
+    assert_eq!([strokes(0), strokes(1)], [1, 2]);
+    browser.ready();
     assert_eq!(browser.errors(), Vec::<String>::new());
 }

@@ -1,48 +1,44 @@
-//! A real browser: headless Chromium, driven through ChromeDriver by the W3C WebDriver protocol,
-//! which is JSON over HTTP.
+//! A real browser without a window: Chromium, or another [`Engine`], driven by the W3C WebDriver protocol, which is
+//! JSON over HTTP.
 
 use std::{
-    io::{BufRead as _, BufReader},
     net::SocketAddr,
     path::{Path, PathBuf},
-    process::{Child, Command, Stdio},
+    process::{Child, Command},
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
 use serde_json::{Value, json};
 use strew_testkit::{http1, wait::until};
 
-use super::{clients, daemon::Daemon};
+use super::{
+    daemon::Daemon,
+    engine::{Engine, logged_errors},
+};
 
 /// Held while a browser runs: one at a time, because nothing else that tests start is as heavy.
 static ALONE: Mutex<()> = Mutex::new(());
 
+/// Keys by their names.
+pub mod key {
+    pub const TAB: &str = "\u{E004}";
+    pub const ENTER: &str = "\u{E007}";
+    pub const PAGE_DOWN: &str = "\u{E00F}";
+    pub const ESCAPE: &str = "\u{E00C}";
+    pub const LEFT: &str = "\u{E012}";
+    pub const RIGHT: &str = "\u{E014}";
+}
+
 /// A browser with one window; closed when dropped.
 pub struct Browser {
+    engine: Engine,
     driver: Child,
     address: SocketAddr,
     session: String,
-    profile: tempfile::TempDir,
+    /// The process of the browser, which does not end with its driver.
+    process: Option<u64>,
+    folder: tempfile::TempDir,
     _alone: MutexGuard<'static, ()>,
-}
-
-/// Starts a driver. Returns it with its port, or `None` if it ends at once.
-fn listening(program: &Path) -> Option<(Child, u16)> {
-    let mut driver = Command::new(program)
-        .arg("--port=0")
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("chromedriver runs");
-    let output = BufReader::new(driver.stdout.take().expect("piped"));
-    let port = output.lines().map_while(Result::ok).find_map(|line| {
-        let (_, port) = line.split_once("successfully on port ")?;
-        port.trim_end_matches('.').parse().ok()
-    });
-    if port.is_none() {
-        let _ = driver.wait();
-    }
-    Some((driver, port?))
 }
 
 /// A daemon with the built-in tables, and a browser. `None`, with a message, where no browser is
@@ -54,54 +50,44 @@ pub fn looking(width: u32, height: u32) -> Option<(Daemon, Browser)> {
 
 impl Browser {
     fn start(width: u32, height: u32) -> Option<Self> {
-        let (driver, chromium) = (clients::find("chromedriver")?, clients::find("chromium")?);
+        let engine = Engine::chosen();
+        let (driver, program) = engine.programs()?;
         let alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-        // A driver ends if its port is taken before it listens; then another one is started.
-        let (driver, port) = until("chromedriver listens", || listening(&driver));
-        let profile = tempfile::tempdir().expect("a temporary folder");
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        std::fs::create_dir_all(folder.path().join("downloads")).expect("a folder");
+        let (driver, port) = engine.driver(&driver, &folder.path().join("log"));
         let mut browser = Self {
+            engine,
             driver,
             address: ([127, 0, 0, 1], port).into(),
             session: String::new(),
-            profile,
+            process: None,
+            folder,
             _alone: alone,
         };
-        browser.open(&chromium, width, height);
+        browser.open(&program, width, height);
         Some(browser)
     }
 
-    fn open(&mut self, chromium: &Path, width: u32, height: u32) {
-        let folder = |name: &str| self.profile.path().join(name).display().to_string();
-        let arguments = [
-            "--headless".into(),
-            "--no-sandbox".into(),
-            "--disable-gpu".into(),
-            "--use-angle=swiftshader".into(),
-            "--disable-quic".into(),
-            "--no-first-run".into(),
-            "--disable-background-networking".into(),
-            "--disable-component-update".into(),
-            "--disable-sync".into(),
-            format!("--user-data-dir={}", folder("profile")),
-        ];
-        let options = json!({ "binary": chromium, "args": arguments });
-        let wanted = json!({ "capabilities": { "alwaysMatch": {
-            "goog:chromeOptions": options,
-            "goog:loggingPrefs": { "browser": "ALL" },
-        } } });
+    fn open(&mut self, program: &Path, width: u32, height: u32) {
+        let capabilities = self.engine.capabilities(program, self.folder.path());
+        let wanted = json!({ "capabilities": { "alwaysMatch": capabilities } });
         let answer = self.send("POST", "/session", &wanted);
         self.session = answer["sessionId"].as_str().expect("a session").into();
+        let process = |name: &str| answer["capabilities"][name].as_u64();
+        self.process = process("moz:processID").or_else(|| process("goog:processID"));
         self.resize(width, height);
-        self.cdp(
-            "Browser.setDownloadBehavior",
-            &json!({ "behavior": "allow", "downloadPath": folder("downloads") }),
-        );
-        std::fs::create_dir_all(folder("downloads")).expect("a folder");
+        if self.engine == Engine::Chromium {
+            self.cdp(
+                "Browser.setDownloadBehavior",
+                &json!({ "behavior": "allow", "downloadPath": self.downloads() }),
+            );
+        }
     }
 
     /// The folder of downloads.
     pub fn downloads(&self) -> PathBuf {
-        self.profile.path().join("downloads")
+        self.folder.path().join("downloads")
     }
 
     fn send(&self, method: &str, path: &str, body: &Value) -> Value {
@@ -122,18 +108,74 @@ impl Browser {
     }
 
     /// Sends a command of the Chrome DevTools Protocol.
-    pub fn cdp(&self, name: &str, parameters: &Value) -> Value {
+    fn cdp(&self, name: &str, parameters: &Value) -> Value {
         self.call(
             "goog/cdp/execute",
             &json!({ "cmd": name, "params": parameters }),
         )
     }
 
+    /// Sets a preference of Firefox.
+    fn prefer(&self, name: &str, value: u32) {
+        let context = |name: &str| self.call("moz/context", &json!({ "context": name }));
+        context("chrome");
+        self.value(&format!("Services.prefs.setIntPref({name:?}, {value})"));
+        context("content");
+    }
+
     /// Sets the inner size of the window, in CSS pixels.
     pub fn resize(&self, width: u32, height: u32) {
-        let size =
-            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
-        self.cdp("Emulation.setDeviceMetricsOverride", &size);
+        if self.engine == Engine::Chromium {
+            let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+            self.cdp("Emulation.setDeviceMetricsOverride", &size);
+            return;
+        }
+        let outer = |width: u32, height: u32| {
+            self.call("window/rect", &json!({ "width": width, "height": height }))
+        };
+        outer(width, height);
+        let frame = self.value("[outerWidth - innerWidth, outerHeight - innerHeight]");
+        let frame = |i: usize| frame[i].as_u64().expect("pixels") as u32;
+        outer(width + frame(0), height + frame(1));
+        self.until(&format!(
+            "innerWidth === {width} && innerHeight === {height}"
+        ));
+    }
+
+    /// Says that the visitor wants less motion.
+    pub fn reduce_motion(&self) {
+        match self.engine {
+            Engine::Chromium => {
+                let feature = json!({ "name": "prefers-reduced-motion", "value": "reduce" });
+                self.cdp(
+                    "Emulation.setEmulatedMedia",
+                    &json!({ "features": [feature] }),
+                );
+            }
+            Engine::Firefox => self.prefer("ui.prefersReducedMotion", 1),
+        }
+        self.until("matchMedia('(prefers-reduced-motion: reduce)').matches");
+    }
+
+    /// Says that the visitor uses fingers.
+    pub fn use_touch(&self) {
+        match self.engine {
+            Engine::Chromium => {
+                self.cdp(
+                    "Emulation.setTouchEmulationEnabled",
+                    &json!({ "enabled": true }),
+                );
+            }
+            Engine::Firefox => self.prefer("ui.primaryPointerCapabilities", 1),
+        }
+    }
+
+    /// Lets pages read the clipboard.
+    pub fn allow_clipboard(&self) {
+        if self.engine == Engine::Chromium {
+            let names = json!({ "permissions": ["clipboardReadWrite", "clipboardSanitizedWrite"] });
+            self.cdp("Browser.grantPermissions", &names);
+        }
     }
 
     /// Loads a URL.
@@ -206,6 +248,8 @@ impl Browser {
 
     /// Clicks an element with the mouse.
     pub fn click(&self, selector: &str) {
+        // Drivers scroll only to what cannot be seen at all.
+        self.middle(selector);
         let element = self.element(selector);
         let id = element.as_object().expect("an element").values().next();
         let id = id.and_then(Value::as_str).expect("an element");
@@ -232,8 +276,19 @@ impl Browser {
         self.call("actions", &json!({ "actions": [source] }));
     }
 
-    /// Drags with the mouse, in steps.
-    pub fn drag(&self, from: [i32; 2], by: [i32; 2]) {
+    /// Presses Tab until the element of an id has the focus.
+    pub fn tab_to(&self, id: &str) {
+        for _ in 0..80 {
+            if self.value("document.activeElement.id") == id {
+                return;
+            }
+            self.keys(&[key::TAB]);
+        }
+        panic!("no way by Tab to {id}");
+    }
+
+    /// Presses, moves in steps and lifts; `kind` is `mouse` or `touch`.
+    fn stroke(&self, kind: &str, from: [i32; 2], by: [i32; 2]) {
         let to =
             |[x, y]: [i32; 2]| json!({ "type": "pointerMove", "x": x, "y": y, "duration": 30 });
         let mut actions = vec![to(from), json!({ "type": "pointerDown", "button": 0 })];
@@ -244,10 +299,34 @@ impl Browser {
         self.call(
             "actions",
             &json!({ "actions": [{
-                "type": "pointer", "id": "mouse", "parameters": { "pointerType": "mouse" },
+                "type": "pointer", "id": kind, "parameters": { "pointerType": kind },
                 "actions": actions,
             }] }),
         );
+    }
+
+    /// Drags with the mouse, in steps.
+    pub fn drag(&self, from: [i32; 2], by: [i32; 2]) {
+        self.stroke("mouse", from, by);
+    }
+
+    /// Drags with a finger, in steps.
+    pub fn swipe(&self, from: [i32; 2], by: [i32; 2]) {
+        self.stroke("touch", from, by);
+    }
+
+    /// The middle of an element, which is scrolled into view.
+    pub fn middle(&self, selector: &str) -> [i32; 2] {
+        let place = self.value(&format!(
+            "(() => {{ const e = document.querySelector({selector:?}); e.scrollIntoView({{ block: 'nearest' }}); \
+             const b = e.getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2].map(Math.round); }})()"
+        ));
+        serde_json::from_value(place).expect("a place")
+    }
+
+    /// Taps an element with a finger.
+    pub fn touch(&self, selector: &str) {
+        self.tap(self.middle(selector));
     }
 
     /// Taps with a finger.
@@ -275,8 +354,11 @@ impl Browser {
         );
     }
 
-    /// The errors in the page's console.
+    /// The errors in the page's console; of Firefox, those of scripts.
     pub fn errors(&self) -> Vec<String> {
+        if self.engine == Engine::Firefox {
+            return logged_errors(&self.folder.path().join("log"));
+        }
         let log = self.call("se/log", &json!({ "type": "browser" }));
         let entries = log.as_array().expect("a list").iter();
         entries
@@ -290,6 +372,8 @@ impl Drop for Browser {
     fn drop(&mut self) {
         if !self.session.is_empty() && !std::thread::panicking() {
             self.send("DELETE", &format!("/session/{}", self.session), &json!({}));
+        } else if let Some(process) = self.process {
+            let _ = Command::new("kill").arg(process.to_string()).status();
         }
         let _ = self.driver.kill();
         let _ = self.driver.wait();

@@ -8,6 +8,7 @@ pub mod command;
 pub mod csv;
 pub mod daemon;
 pub mod disk;
+pub mod engine;
 pub mod fields;
 pub mod grpc;
 pub mod keys;

@@ -6,7 +6,8 @@ import { METHODS, methodOf } from "./methods.js";
 /** The fewest and the most mean spacings along the shorter side of a panel. */
 const LEAST_SPAN = 4;
 const MOST_SPAN = 150;
-const SPAN = 36;
+const SPAN = 32;
+const NARROW_SPAN = 20;
 /** Farther out, doubles do not tell places within a spacing apart. */
 export const FARTHEST = 1e12;
 /** The number of methods that phones begin with. */
@@ -15,7 +16,7 @@ const FEW = 2;
 /** What is shown, before anything is chosen: `isNarrow` on phones. */
 function initial(isNarrow) {
   const all = METHODS.map(({ id }) => id);
-  return { x: place(0), y: place(0), span: SPAN, seed: 1, profile: "blue", shown: isNarrow ? all.slice(0, FEW) : all };
+  return { x: place(0), y: place(0), span: isNarrow ? NARROW_SPAN : SPAN, seed: 1, profile: "blue", shown: isNarrow ? all.slice(0, FEW) : all };
 }
 
 const bounded = (span) => Math.min(MOST_SPAN, Math.max(LEAST_SPAN, span));

@@ -62,7 +62,7 @@ export class Sheet {
     Object.assign(this.sheet, { width, height });
     const context = this.sheet.getContext("2d");
     this.ground = themeColor("sunken");
-    const dot = dotOf(dotSize(1 / unit, 1) * ratio, themeColor("ink"));
+    const dot = dotOf(dotSize(1 / unit, 1.25) * ratio, themeColor("ink"));
     const half = dot.width / 2;
     for (const { points, count, stride, left, low } of source.runs(view)) {
       const [fromX, fromY] = [width / 2 + left / pixel - half, height / 2 - low / pixel - half];

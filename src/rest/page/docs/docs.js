@@ -70,8 +70,9 @@ function overview() {
     make("p", {}, "The same by gRPC on this port, with reflection: ", make("code", {}, "strew.v1.PointService"), ". This page shows ",
       make("a", { href: "/openapi.json" }, "/openapi.json"), ", from which clients can be generated."),
     make("ul", { class: "tags" }, (api.tags ?? []).map(({ name, description }) => {
-      const first = all.find(({ tag }) => tag === name);
-      return first && make("li", {}, make("a", { href: `#${first.id}` }, name), ` ${description}`);
+      const members = all.filter(({ tag }) => tag === name);
+      return members.length > 0 && make("li", {}, make("a", { href: `#${members[0].id}` },
+        make("b", {}, name), make("span", {}, description), make("small", {}, counted(members.length, "operation"))));
     })),
   ];
 }

@@ -61,10 +61,13 @@ export class Paint {
       this.file.value = "";
     } });
     this.said = make("span", { id: "paint-said", role: "status" });
-    this.inside = [button("done", "Done", () => this.use(null)), ...this.tools, this.size, this.strong, make("label", {}, "Elsewhere", this.elsewhere), this.undoButton, this.clearButton,
-      button("save", "Save", () => this.save(), { title: "The world as a file" }), button("load", "Open", () => this.file.click(), { title: "A world from a file" }),
-      this.said];
-    this.bar = make("div", { id: "paint", role: "group", "aria-label": "Paint", hidden: true }, ...this.inside, this.file);
+    const rows = [
+      [...this.tools, this.undoButton, button("done", "Done", () => this.use(null), { class: "main" })],
+      [this.size, this.strong],
+      [make("label", {}, "Elsewhere", this.elsewhere), this.clearButton, button("save", "Save", () => this.save(), { title: "The world as a file" }),
+        button("load", "Open", () => this.file.click(), { title: "A world from a file" })],
+    ];
+    this.bar = make("div", { id: "paint", role: "group", "aria-label": "Paint", hidden: true }, ...rows.map((row) => make("div", {}, row)), this.said, this.file);
     this.canvas = make("canvas", {
       id: "brush", tabindex: "0", role: "application", hidden: true,
       "aria-label": "Paint on the plane. Arrow keys move the brush, Space puts the pen down and lifts it, plus and minus zoom, Escape leaves.",

@@ -232,7 +232,6 @@ for (const [id, move] of [["left", "turnLeft"], ["right", "turnRight"], ["forth"
   walker.button(byId(`pad-${id}`), move);
 }
 byId("jump").addEventListener("click", jump);
-byId("fly").disabled = !walker.mayFly;
 byId("fly").addEventListener("click", () => {
   const isFlying = !walker.isFlying;
   walker.take();

@@ -84,7 +84,8 @@ function lightUp(works, pattern, chosen, palette) {
     starts,
     point,
     said: `The point ${words(point)} has the index dX = ${dx}, dY = ${dy}. Of the ${n} × ${n} blocks for R = ${chosen.radius} it is in `
-      + `block ${block.join(", ")}, with ${same.length === 1 ? "no other point" : `${same.length - 1} others`} of this window: all have the same neighbors up to ${chosen.radius} grid units.`,
+      + `block ${block.join(", ")}, ${same.length === 1 ? "which no other point of this window is in" : `with ${same.length - 1} others of this window`}: `
+      + `points of one block have the same neighbors up to ${chosen.radius} grid units.`,
   };
 }
 

@@ -1,0 +1,95 @@
+//! axe-core finds nothing on any page, at three sizes, in light and dark. Skipped where NODE_PATH does not lead to it.
+
+use serde_json::json;
+
+use super::start::first_visit;
+use crate::support::browser::{Browser, looking};
+
+const SIZES: [(u32, u32); 3] = [(1440, 900), (1024, 700), (390, 844)];
+
+const READY: &str = "document.documentElement.dataset.state === 'ready'";
+
+fn axe() -> Option<String> {
+    let path = std::env::var("NODE_PATH").unwrap_or_default();
+    let axe = std::fs::read_to_string(format!("{path}/axe-core/axe.min.js")).ok();
+    if axe.is_none() {
+        eprintln!("skipped: axe-core is not installed");
+    }
+    axe
+}
+
+/// Adds axe to the page that is open.
+fn add(browser: &Browser, axe: &str) {
+    browser.value(&format!("(new Function({}).call(window), 0)", json!(axe)));
+}
+
+fn assert_clean(browser: &Browser, what: &str) {
+    let found = browser.value(
+        "axe.run().then(({ violations }) => violations.map((v) => \
+         `${v.id}: ${v.nodes.map((n) => `${n.html} ${n.failureSummary}`).join(' ')}`))",
+    );
+    assert_eq!(found, json!([]), "{what}");
+}
+
+/// Looks at what is open in both themes.
+fn assert_clean_in_both(browser: &Browser, what: &str) {
+    for theme in ["light", "dark"] {
+        browser.value(&format!(
+            "(document.documentElement.dataset.theme = '{theme}', 0)"
+        ));
+        assert_clean(browser, &format!("{what}, {theme}"));
+    }
+}
+
+#[test]
+fn axe_finds_nothing_in_the_tabs() {
+    let Some(axe) = axe() else { return };
+    let Some((daemon, browser)) = looking(1440, 900) else {
+        return;
+    };
+    first_visit(&browser, &daemon);
+    add(&browser, &axe);
+    // One size of what measures for long is enough.
+    let tabs = ["start", "choose", "take", "understand", "works", "gallery"];
+    for (i, (width, height)) in SIZES.into_iter().enumerate() {
+        browser.resize(width, height);
+        let theme = ["light", "dark", "light"][i];
+        browser.value(&format!(
+            "(document.documentElement.dataset.theme = '{theme}', 0)"
+        ));
+        for tab in &tabs[..if i == 0 { 6 } else { 4 }] {
+            browser.click(&format!("#tab-{tab}"));
+            browser.until(&format!("!document.querySelector('#{tab}').hidden"));
+            assert_clean(&browser, &format!("{tab} at {width} × {height}"));
+        }
+    }
+    browser.click("#paint-open");
+    assert_clean_in_both(&browser, "painting");
+}
+
+#[test]
+fn axe_finds_nothing_on_the_other_pages() {
+    let Some(axe) = axe() else { return };
+    let Some((daemon, browser)) = looking(1440, 900) else {
+        return;
+    };
+    for (path, ready) in [
+        (
+            "/compare#show=strew,white",
+            "document.documentElement.dataset.measured",
+        ),
+        ("/walk#fly=0&quality=0", READY),
+        ("/tile", READY),
+        ("/docs", READY),
+        ("/docs#getCount", READY),
+    ] {
+        browser.go("about:blank");
+        browser.go(&daemon.url(path));
+        browser.until(ready);
+        add(&browser, &axe);
+        for (width, height) in SIZES {
+            browser.resize(width, height);
+            assert_clean_in_both(&browser, &format!("{path} at {width} × {height}"));
+        }
+    }
+}
