@@ -82,6 +82,9 @@ fn a_pinned_answer_is_made_once_and_its_tag_is_enough(program: &str) {
     let (csv, json) = (by_type("text/csv"), by_type("application/json"));
     assert_eq!([status(&csv), status(&json)], ["MISS", "MISS"]);
     assert!(csv.body != json.body);
+    // Clients that send a cookie, as browsers do for other programs of a host, share the entries.
+    let visitor = get(&path, &[("cookie", "visits=3")]);
+    assert_eq!(status(&visitor), "HIT");
     // A digest that is not the world's is refused, and the refusal is not kept.
     let other = format!("{chunk}?world_digest={}", "0".repeat(64));
     for _ in 0..2 {
@@ -98,4 +101,114 @@ fn a_pinned_answer_is_made_once_and_its_tag_is_enough(program: &str) {
     drop(reader);
     daemon.until_no_streams();
     assert_eq!(get("/metrics", &[]).status, 404);
+}
+
+#[test]
+fn behind_nginx_large_answers_are_not_kept_and_their_slow_readers_hold_up_none() {
+    large_answers_are_not_kept_and_their_slow_readers_hold_up_none("nginx", "MISS");
+}
+
+#[test]
+fn behind_varnish_large_answers_are_not_kept_and_their_slow_readers_hold_up_none() {
+    // They go straight through.
+    large_answers_are_not_kept_and_their_slow_readers_hold_up_none("varnishd", "");
+}
+
+fn large_answers_are_not_kept_and_their_slow_readers_hold_up_none(program: &str, status: &str) {
+    let daemon = Daemon::with_config(WORLD);
+    let Some(cache) = cache(program, &daemon) else {
+        return;
+    };
+    // 17 million points, many times as long as what the cache may hold of answers that it does not keep.
+    let address = |column: i32| format!("/v1/worlds/heath/chunks/8192/{column}/0?format=f32");
+    let slow = (0..2).map(|k| http1::open(cache.address, "GET", &address(k), &[]));
+    let mut slow: Vec<http1::Response> = slow.collect();
+    for reader in &mut slow {
+        assert_eq!(reader.status, 200);
+        assert!(reader.skip(1 << 20).expect("bytes") > 0);
+    }
+    // A little over a million points, and 65,000.
+    for side in [2048, 512] {
+        let path = format!("/v1/worlds/heath/chunks/{side}/1/1?format=f32");
+        let direct = http1::get(daemon.address(), &path, &[]);
+        assert_eq!(
+            direct.header("strew-count").len(),
+            if side == 2048 { 7 } else { 5 }
+        );
+        let keyed = http1::get(cache.address, &path, &[("x-api-key", "any")]);
+        assert!(keyed.body == direct.body, "side {side}");
+        if side == 2048 {
+            for _ in 0..2 {
+                let answer = http1::get(cache.address, &path, &[]);
+                assert_eq!(answer.header("x-cache-status"), status);
+                assert!(answer.body == direct.body);
+                assert_eq!(answer.header("etag"), direct.header("etag"));
+            }
+            let tag = direct.header("etag");
+            let known = http1::get(cache.address, &path, &[("if-none-match", tag)]);
+            assert_eq!(known.status, 304);
+        }
+    }
+    // What was read slowly goes on, and ends with its reader.
+    for reader in &mut slow {
+        let mut left = 24 << 20;
+        while left > 0 {
+            let read = reader.skip(left).expect("the answer goes on");
+            assert!(read > 0);
+            left -= read;
+        }
+    }
+    drop(slow);
+    daemon.until_no_streams();
+}
+
+#[test]
+fn behind_nginx_whatever_the_daemon_takes_passes() {
+    whatever_the_daemon_takes_passes("nginx");
+}
+
+#[test]
+fn behind_varnish_whatever_the_daemon_takes_passes() {
+    whatever_the_daemon_takes_passes("varnishd");
+}
+
+fn whatever_the_daemon_takes_passes(program: &str) {
+    let daemon = Daemon::with_config(WORLD);
+    let Some(cache) = cache(program, &daemon) else {
+        return;
+    };
+    // Addresses of 3 to 60 kB: polygons with many corners.
+    for corners in [200, 1100, 4000] {
+        let corner = |k: i32| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(corners);
+            format!("{:.3},{:.3}", 100.0 * angle.cos(), 100.0 * angle.sin())
+        };
+        let polygon = (0..corners).map(corner).collect::<Vec<_>>().join(",");
+        let path = format!("/v1/count?spacing=9&profile=test&polygon={polygon}");
+        for expected in ["MISS", "HIT"] {
+            let counted = http1::get(cache.address, &path, &[]);
+            assert_eq!(counted.status, 200, "{corners}: {}", counted.text());
+            assert_eq!(counted.header("x-cache-status"), expected);
+        }
+    }
+    // A body almost as long as the daemon takes, and an answer whose head has more than 4 kB.
+    let json = [("content-type", "application/json")];
+    let layer = |k: i32| {
+        let kinds = (0..16).map(|j| format!(r#""a-kind-of-plant-{k}-{j}": 1"#));
+        let kinds = kinds.collect::<Vec<_>>().join(",");
+        format!(
+            r#"{{"name": "l{k}", "spacing": 4, "profile": "test", "variants": {{{kinds}}}, "attributes": ["variant"]}}"#
+        )
+    };
+    let layers = (0..8).map(layer).collect::<Vec<_>>().join(",");
+    let mut body =
+        format!(r#"{{"region": {{"bbox": [0, 0, 9, 9]}}, "format": "npy", "layers": [{layers}]}}"#);
+    body += &" ".repeat((4 << 20) - body.len() - 1);
+    let [direct, passed] = [daemon.address(), cache.address]
+        .map(|to| http1::post(to, "/v1/points:query", &json, body.as_bytes()));
+    assert_eq!(direct.status, 200, "{}", direct.text());
+    let head: usize = direct.headers.iter().map(|(n, v)| n.len() + v.len()).sum();
+    assert!(head > 4096, "{head}");
+    assert_eq!(passed.status, 200);
+    assert!(passed.body == direct.body);
 }

@@ -36,12 +36,14 @@ impl Proxy {
         match program {
             "haproxy" => command.args(["-db", "-q", "-f"]).arg(&file),
             "varnishd" => command
-                .args(["-F", "-j", "none", "-s", "malloc,64m", "-a"])
+                .args(["-F", "-j", "none", "-n"])
+                .arg(folder.path())
+                .arg("-a")
                 .arg(address.to_string())
-                .args(["-p", "http_gzip_support=off", "-f"])
+                .arg("-f")
                 .arg(&file)
-                .arg("-n")
-                .arg(folder.path()),
+                .args(["-s", "malloc,64m", "-s", "Transient=malloc,16m"])
+                .args(varnish_parameters()),
             _ => command.arg("-p").arg(folder.path()).arg("-c").arg(&file),
         };
         let child = command
@@ -113,6 +115,17 @@ fn nginx_balancer(
          {tls}proxy_next_upstream error timeout http_503 non_idempotent; proxy_buffering off; }} }}"
     );
     nginx(folder, &http)
+}
+
+/// The parameters (`-p name=value`) of the command that the comment of `deploy/varnish/strew.vcl` has.
+fn varnish_parameters() -> Vec<&'static str> {
+    let words: Vec<&str> = include_str!("../../../deploy/varnish/strew.vcl")
+        .lines()
+        .take_while(|line| line.starts_with('#'))
+        .flat_map(str::split_whitespace)
+        .collect();
+    let pairs = words.windows(2).filter(|pair| pair[0] == "-p");
+    pairs.flatten().copied().collect()
 }
 
 /// Settings of nginx around those of `http`, with all that it writes in a folder.
