@@ -5,7 +5,8 @@
 #     varnishd -a :80 -f strew.vcl -s malloc,2g -s Transient=malloc,256m -p http_gzip_support=off
 #
 # Without http_gzip_support=off Varnish requests gzip for every client, also of packed coordinates, which hardly shrink.
-# Transient holds what is not kept while it is sent. gRPC does not pass: Varnish speaks HTTP/1.1 to daemons.
+# Transient holds what is not kept while it is sent. gRPC does not pass: Varnish speaks HTTP/1.1 to daemons. For several
+# daemons put the address of their balancer here, or a backend for each and a director (vmod_directors).
 
 vcl 4.1;
 import std;

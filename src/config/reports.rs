@@ -38,7 +38,8 @@ impl Http {
         }
         let url = &self.public_url;
         let is_web = url.starts_with("http://") || url.starts_with("https://");
-        if !url.is_empty() && !(is_web && is_origin(url)) {
+        let is_allowed = url.is_empty() || (is_web && is_origin(url));
+        if !is_allowed {
             faults.push(format!(
                 "http.public_url = {url:?} is not allowed; allowed: \"\" or an address such as \
                  https://points.example or http://points.example:8080, without a path"
