@@ -19,8 +19,8 @@ export class Mask {
     this.side = 1;
   }
 
-  /** Takes what is chosen; returns what there is to say about it. */
-  async use(state) {
+  /** What is chosen, as the server has it: `{ words, … }`, for `take`. */
+  async load(state) {
     const { size } = state;
     const answer = await ask(`/v1/mask.png?${joined(pairsOf({ ...state, bits: "8" }))}`);
     const bitmap = await createImageBitmap(await answer.blob());
@@ -28,9 +28,13 @@ export class Mask {
     Object.assign(canvas, { width: size, height: size });
     const context = canvas.getContext("2d", { willReadFrequently: true });
     context.drawImage(bitmap, 0, 0);
-    Object.assign(this, { side: size, tile: canvas, thresholds: context.getImageData(0, 0, size, size).data });
-    return `${size} × ${size} pixels with ${state.bits === "8" ? "256" : "65,536"} thresholds. A pixel of a picture becomes white `
+    const words = `${size} × ${size} pixels with ${state.bits === "8" ? "256" : "65,536"} thresholds. A pixel of a picture becomes white `
       + "where its gray is above the threshold.";
+    return { side: size, tile: canvas, thresholds: context.getImageData(0, 0, size, size).data, words };
+  }
+
+  take({ side, tile, thresholds }) {
+    Object.assign(this, { side, tile, thresholds });
   }
 
   renew() {}

@@ -22,16 +22,19 @@ export class Period {
     this.side = 1;
   }
 
-  /** Takes what is chosen; returns what there is to say about it. */
-  async use(state) {
+  /** What is chosen, as the server has it: `{ words, … }`, for `take`. */
+  async load(state) {
     const set = joined(pairsOf(state));
     const [{ count, query }, answer] = await Promise.all([askJson(`/v1/count?${set}`), ask(`/v1/points?${set}&format=f32`)]);
     const points = new Float32Array(await answer.arrayBuffer());
-    Object.assign(this, { points, side: query.period.side, version: this.version + 1 });
-    this.measured = await measure(Float64Array.from(points), this.side);
     const { side } = query.period;
+    const measured = await measure(Float64Array.from(points), side);
     const apart = query.least_distance > 0 ? `, any two at least ${query.least_distance.toFixed(2)} apart, across the seam too` : "";
-    return `${counted(count)} on a square of ${side} × ${side} mean spacings${apart}.`;
+    return { points, side, measured, words: `${counted(count)} on a square of ${side} × ${side} mean spacings${apart}.` };
+  }
+
+  take({ points, side, measured }) {
+    Object.assign(this, { points, side, measured, version: this.version + 1 });
   }
 
   renew() {

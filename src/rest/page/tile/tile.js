@@ -79,9 +79,12 @@ async function show() {
   if (hash !== location.hash) history.replaceState(null, "", hash);
   update();
   try {
-    const words = await shown().use({ ...state, map: mapOf(state.profile) });
+    const kind = shown();
+    const made = await kind.load({ ...state, map: mapOf(state.profile) });
+    // A late answer does not replace a newer choice.
     if (mine !== turn) return;
-    byId("about").textContent = words;
+    kind.take(made);
+    byId("about").textContent = made.words;
     fault(byId("choices"), "seed", "");
     byId("banner").hidden = true;
     root.dataset.state = "ready";
