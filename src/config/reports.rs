@@ -1,5 +1,7 @@
 //! Settings of answers and reports: HTTP, the log, metrics, spans.
 
+use std::net::Ipv6Addr;
+
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
@@ -37,9 +39,7 @@ impl Http {
             ));
         }
         let url = &self.public_url;
-        let is_web = url.starts_with("http://") || url.starts_with("https://");
-        let is_allowed = url.is_empty() || (is_web && is_origin(url));
-        if !is_allowed {
+        if !url.is_empty() && !is_web_address(url) {
             faults.push(format!(
                 "http.public_url = {url:?} is not allowed; allowed: \"\" or an address such as \
                  https://points.example or http://points.example:8080, without a path"
@@ -60,6 +60,37 @@ fn is_origin(text: &str) -> bool {
         && scheme.chars().all(is_scheme)
         && !authority.is_empty()
         && authority.chars().all(is_host)
+}
+
+/// Whether a text is the address of a host on the web, perhaps with a port, and nothing else.
+fn is_web_address(text: &str) -> bool {
+    let stripped = ["http://", "https://"].map(|scheme| text.strip_prefix(scheme));
+    let Some(authority) = stripped.into_iter().flatten().next() else {
+        return false;
+    };
+    let (host, port) = match authority.rsplit_once(':') {
+        Some((host, port)) if !port.ends_with(']') => (host, Some(port)),
+        _ => (authority, None),
+    };
+    let is_port = |port: &str| {
+        port.bytes().all(|b| b.is_ascii_digit()) && port.parse::<u16>().is_ok_and(|port| port > 0)
+    };
+    let is_label = |label: &str| {
+        !label.is_empty()
+            && label
+                .bytes()
+                .all(|b| b.is_ascii_alphanumeric() || b == b'-')
+            && !label.starts_with('-')
+            && !label.ends_with('-')
+    };
+    let inner = host
+        .strip_prefix('[')
+        .and_then(|host| host.strip_suffix(']'));
+    let is_host = match inner {
+        Some(inner) => inner.parse::<Ipv6Addr>().is_ok(),
+        None => host.split('.').all(is_label),
+    };
+    is_host && port.is_none_or(is_port)
 }
 
 /// What to log.
@@ -187,4 +218,42 @@ const fn wrong_filter(_: &str) -> Option<String> {
 #[cfg(not(feature = "daemon"))]
 const fn is_endpoint(_: &str) -> bool {
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_web_address;
+
+    #[test]
+    fn web_addresses_have_a_host_and_perhaps_a_port() {
+        for good in [
+            "https://points.example",
+            "http://localhost:8080",
+            "http://127.0.0.1:1",
+            "https://[::1]:65535",
+            "https://[2001:db8::1]",
+        ] {
+            assert!(is_web_address(good), "{good}");
+        }
+        for wrong in [
+            "http://:",
+            "http://",
+            "https://a..b",
+            "https://a:b:c",
+            "https://[::1",
+            "https://-",
+            "https://a.example:99999",
+            "https://a.example:0",
+            "https://a.example:+1",
+            "https://a.example/",
+            "ftp://a.example",
+            "a.example",
+            "https://a b",
+            "https://u@a.example",
+            "https://a.example?x",
+            "https://a\"b",
+        ] {
+            assert!(!is_web_address(wrong), "{wrong}");
+        }
+    }
 }

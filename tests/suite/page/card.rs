@@ -22,7 +22,7 @@ fn the_card_is_beside_its_point_and_escape_closes_it() {
         return;
     };
     browser.look(&daemon, "#at=0,0&span=20");
-    for at in [[816, 400], [400, 60], [1240, 640], [380, 780]] {
+    for at in [[816, 400], [400, 60], [1240, 640], [420, 780]] {
         browser.tap(at);
         let id = pinned(&browser);
         let covered = browser.value(COVERED);

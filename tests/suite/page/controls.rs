@@ -74,7 +74,9 @@ fn every_control_changes_the_points_and_the_url() {
     browser.ready();
     browser.value("history.back()");
     browser.until("location.hash.includes('layers=2')");
-    assert_eq!(browser.ready(), count);
+    browser.until(&format!(
+        "document.documentElement.dataset.count === '{count}'"
+    ));
     assert_eq!(browser.errors(), Vec::<String>::new());
 }
 

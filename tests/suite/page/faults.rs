@@ -94,7 +94,7 @@ fn the_panel_stays_and_back_restores_a_field_with_the_focus() {
         return;
     };
     browser.look(&daemon, "#at=0,0&span=30&profile=blue&amount=1&seed=1");
-    browser.value("(globalThis.kept = document.querySelector('#amount'), 0)");
+    browser.value("(window.kept = document.querySelector('#amount'), 0)");
     browser.click("#amount");
     browser.keys(&["\u{E010}", "\u{E003}", "2"]);
     browser.until("location.hash.includes('amount=2')");

@@ -120,6 +120,9 @@ fn webgl2_and_the_plain_canvas_show_the_same_points() {
     let Some((daemon, browser)) = looking(1000, 700) else {
         return;
     };
+    if browser.lacks_webgl2() {
+        return;
+    }
     let hash = "#at=-77,4.5&span=25&seed=9&variant=1&angle=1&layers=2&2.amount=3&2.scale=1";
     browser.look(&daemon, &format!("{hash}&renderer=webgl2"));
     assert_eq!(

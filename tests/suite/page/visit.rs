@@ -69,7 +69,7 @@ fn a_first_visit_with_keys_alone() {
     browser.tab_to("amount-slider");
     let more = changed(&browser, || browser.keys(&[PAGE_DOWN]));
     assert!(more > before * 3 / 2, "{more} after {before}");
-    browser.tab_to("paint-open");
+    browser.tab_back_to("paint-open");
     browser.keys(&[ENTER]);
     browser.until("document.activeElement.id === 'brush'");
     browser.tab_to("paint-tool-road");

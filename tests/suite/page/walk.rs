@@ -47,6 +47,9 @@ fn what_stands_there_is_what_the_server_has_there() {
     let Some((daemon, browser)) = looking(640, 420) else {
         return;
     };
+    if browser.lacks_webgl2() {
+        return;
+    }
     walk(&daemon, &browser, "");
     let leaves = "strew.world.sets[0].leaves";
     for leaf in [
@@ -70,6 +73,9 @@ fn keys_walk_and_pick_and_the_same_trees_stand_there_on_the_way_back() {
     let Some((daemon, browser)) = looking(640, 420) else {
         return;
     };
+    if browser.lacks_webgl2() {
+        return;
+    }
     walk(&daemon, &browser, "");
     let press = |kind: &str, key: &str| {
         let event = format!("new KeyboardEvent('{kind}', {{ key: '{key}', bubbles: true }})");

@@ -23,6 +23,7 @@ static ALONE: Mutex<()> = Mutex::new(());
 pub mod key {
     pub const TAB: &str = "\u{E004}";
     pub const ENTER: &str = "\u{E007}";
+    pub const SHIFT: &str = "\u{E008}";
     pub const PAGE_DOWN: &str = "\u{E00F}";
     pub const ESCAPE: &str = "\u{E00C}";
     pub const LEFT: &str = "\u{E012}";
@@ -170,6 +171,16 @@ impl Browser {
         }
     }
 
+    /// Whether this is a Firefox that cannot draw by WebGL2, as without a screen; with a message, as the test is skipped.
+    pub fn lacks_webgl2(&self) -> bool {
+        let draws = "document.createElement('canvas').getContext('webgl2') !== null";
+        let lacks = self.engine == Engine::Firefox && self.value(draws) == false;
+        if lacks {
+            eprintln!("skipped: this Firefox has no WebGL2");
+        }
+        lacks
+    }
+
     /// Lets pages read the clipboard.
     pub fn allow_clipboard(&self) {
         if self.engine == Engine::Chromium {
@@ -278,11 +289,30 @@ impl Browser {
 
     /// Presses Tab until the element of an id has the focus.
     pub fn tab_to(&self, id: &str) {
+        self.seek(id, || self.keys(&[key::TAB]));
+    }
+
+    /// Presses Tab with Shift until the element of an id has the focus.
+    pub fn tab_back_to(&self, id: &str) {
+        let event = |kind: &str, key: &str| json!({ "type": kind, "value": key });
+        let actions = [
+            event("keyDown", key::SHIFT),
+            event("keyDown", key::TAB),
+            event("keyUp", key::TAB),
+            event("keyUp", key::SHIFT),
+        ];
+        let source = json!({ "type": "key", "id": "keys", "actions": actions });
+        self.seek(id, || {
+            drop(self.call("actions", &json!({ "actions": [source] })));
+        });
+    }
+
+    fn seek(&self, id: &str, step: impl Fn()) {
         for _ in 0..80 {
             if self.value("document.activeElement.id") == id {
                 return;
             }
-            self.keys(&[key::TAB]);
+            step();
         }
         panic!("no way by Tab to {id}");
     }

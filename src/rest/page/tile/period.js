@@ -18,20 +18,31 @@ export class Period {
   constructor(canvas) {
     this.sheet = new Sheet(canvas);
     this.version = 0;
-    this.points = new Float32Array(0);
-    this.side = 1;
+    this.clear();
   }
 
-  /** Takes what is chosen; returns what there is to say about it. */
-  async use(state) {
+  /** Whether there is something to show. */
+  get isThere() {
+    return this.points.length > 0;
+  }
+
+  clear() {
+    this.take({ points: new Float32Array(0), side: 1, measured: null });
+  }
+
+  /** What is chosen, as the server has it: `{ words, … }`, for `take`. */
+  async load(state) {
     const set = joined(pairsOf(state));
     const [{ count, query }, answer] = await Promise.all([askJson(`/v1/count?${set}`), ask(`/v1/points?${set}&format=f32`)]);
     const points = new Float32Array(await answer.arrayBuffer());
-    Object.assign(this, { points, side: query.period.side, version: this.version + 1 });
-    this.measured = await measure(Float64Array.from(points), this.side);
     const { side } = query.period;
-    const apart = query.least_distance > 0 ? `, any two at least ${query.least_distance.toFixed(2)} apart, across the seam too` : "";
-    return `${counted(count)} on a square of ${side} × ${side} mean spacings${apart}.`;
+    const measured = await measure(Float64Array.from(points), side);
+    const apart = query.least_distance >= 0.005 ? `, any two at least ${query.least_distance.toFixed(2)} apart, across the seam too` : "";
+    return { points, side, measured, words: `${counted(count)} on a square of ${side} × ${side} mean spacings${apart}.` };
+  }
+
+  take({ points, side, measured }) {
+    Object.assign(this, { points, side, measured, version: this.version + 1 });
   }
 
   renew() {
@@ -45,6 +56,7 @@ export class Period {
   /** The copies in and around a view, as the sheet takes them: where each one's corner is from the middle. */
   runs(view) {
     const { points, side } = this;
+    if (!this.isThere) return [];
     const half = [view.width, view.height].map((v) => 0.85 * v * view.unit);
     const from = [view.x, view.y].map((at) => distance({ i: 0, f: 0 }, at));
     const corners = from.map((at, axis) => {
@@ -57,7 +69,6 @@ export class Period {
 
   /** Draws the spectrum; returns what it is. */
   picture(canvas) {
-    if (!this.measured) return "";
     spectrumPicture(canvas, this.measured.image, this.measured.cells);
     return "Its spectrum: frequency 0 in the middle, up to ν = 2.5. Empty there means even spreading.";
   }
