@@ -8,7 +8,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use anyhow::{Context as _, anyhow};
+use anyhow::{Context as _, anyhow, ensure};
 
 use super::{
     chunks::{Chunk, Maker},
@@ -45,8 +45,18 @@ fn other(path: &Path) -> Failure {
     ))
 }
 
+fn no_file(path: &Path) -> Failure {
+    Failure::Usage(anyhow!(
+        "--archive {}: not a regular file; allowed: a new file, or one of an export",
+        path.display()
+    ))
+}
+
 /// A complete archive, if it is of this export.
 fn is_complete(path: &Path, spec: &Spec) -> Result<Found, Failure> {
+    if !path.is_file() {
+        return Err(no_file(path));
+    }
     let manifest = Reader::open(path).and_then(|mut archive| archive.read(MANIFEST));
     let manifest = manifest.and_then(|bytes| Manifest::read(&bytes));
     match manifest.is_ok_and(|manifest| manifest.export == *spec) {
@@ -95,6 +105,9 @@ impl Archive {
         let mut partial = path.as_os_str().to_owned();
         partial.push(".partial");
         let partial = PathBuf::from(partial);
+        if partial.exists() && !partial.is_file() {
+            return Err(no_file(&partial));
+        }
         let Some(mut file) = lock(&partial).with_context(unwritable)? else {
             return Err(Failure::Usage(anyhow!(
                 "--archive {}: another process writes this file",
@@ -287,6 +300,9 @@ pub(super) struct Reader {
 impl Reader {
     pub(super) fn open(path: &Path) -> anyhow::Result<Self> {
         let unreadable = || format!("cannot read {}", path.display());
+        // Devices can be read without end, and pipes block.
+        let kind = fs::metadata(path).with_context(unreadable)?;
+        ensure!(kind.is_file(), "{} is not a regular file", path.display());
         let mut file = File::open(path).with_context(unreadable)?;
         let members = zip::members(&mut file).with_context(unreadable)?;
         let members =

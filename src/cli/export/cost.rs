@@ -29,6 +29,8 @@ const BLOCK: u64 = 4096;
 #[derive(Clone, Debug)]
 pub(super) struct Cost {
     chunks: usize,
+    /// The number of chunks that are there already.
+    done: usize,
     points: f64,
     /// Whether the number of points was counted, not estimated.
     is_counted: bool,
@@ -83,6 +85,7 @@ impl Cost {
         let seconds = left * mean(|t| t.seconds) * scale / rayon::current_num_threads() as f64;
         Ok(Self {
             chunks,
+            done,
             points,
             is_counted: counted.is_some(),
             bytes: all * mean(|t| t.bytes) * scale,
@@ -111,26 +114,36 @@ impl Cost {
         let Some((bytes, files)) = free(folder) else {
             return Ok(());
         };
+        let place = folder.display();
+        let more = if self.done > 0 { " more" } else { "" };
+        // The options of an export that has begun are settled.
+        let advise = |otherwise: &str| match self.done {
+            0 => format!(": {otherwise}"),
+            done => format!("; {}", go_on(done, self.chunks)),
+        };
         if self.disk > bytes as f64 {
             return Err(Failure::Other(anyhow!(
-                "the export takes about {}, and the disk of {} has {} free: choose a smaller box, another format, fewer \
-                 points or another disk",
+                "the export takes about {}{more}, and the disk of {place} has {} free{}",
                 HumanBytes(self.disk as u64),
-                folder.display(),
-                HumanBytes(bytes)
+                HumanBytes(bytes),
+                advise("choose a smaller box, another format, fewer points or another disk")
             )));
         }
         // Some file systems do not count files.
         if !is_archive && files > 0 && self.files > files as f64 {
             return Err(Failure::Other(anyhow!(
-                "the export takes {:.0} files, and the disk of {} has room for {files}: choose larger chunks, or \
-                 --archive",
+                "the export takes {:.0} files{more}, and the disk of {place} has room for {files}{}",
                 self.files,
-                folder.display()
+                advise("choose larger chunks, or --archive")
             )));
         }
         Ok(())
     }
+}
+
+/// How an export goes on that lacks room.
+pub(super) fn go_on(done: usize, chunks: usize) -> String {
+    format!("{done} of {chunks} chunks are there: make room, and the same command goes on there")
 }
 
 fn try_out(

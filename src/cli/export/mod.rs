@@ -181,10 +181,11 @@ impl Job<'_> {
     }
 
     fn to_folder(&self, root: &Path) -> Result<(), Failure> {
-        let (folder, mut done) = match Folder::open(root, &self.spec, &self.maker)? {
-            folder::Found::Complete => return self.nothing_to_do(root),
-            folder::Found::Open(folder, done) => (folder, done),
-        };
+        let (folder, mut done) =
+            match Folder::open(root, &self.spec, &self.maker).map_err(no_room_to_open)? {
+                folder::Found::Complete => return self.nothing_to_do(root),
+                folder::Found::Open(folder, done) => (folder, done),
+            };
         if let Err(failure) = self.cost(done.len(), Some(root)) {
             if done.is_empty() {
                 folder.abandon();
@@ -229,10 +230,11 @@ impl Job<'_> {
     }
 
     fn to_archive(&self, path: &Path) -> Result<(), Failure> {
-        let (mut archive, mut records) = match Archive::open(path, &self.spec, &self.maker)? {
-            archive::Found::Complete => return self.nothing_to_do(path),
-            archive::Found::Open(archive, records) => (archive, records),
-        };
+        let (mut archive, mut records) =
+            match Archive::open(path, &self.spec, &self.maker).map_err(no_room_to_open)? {
+                archive::Found::Complete => return self.nothing_to_do(path),
+                archive::Found::Open(archive, records) => (archive, records),
+            };
         let folder = path
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
@@ -334,6 +336,15 @@ fn stopped(done: usize, chunks: usize) -> Failure {
 
 /// What to do where the disk is full, or a quota or a limit of files is reached.
 fn no_room(failure: Failure, done: usize, chunks: usize) -> Failure {
+    with_advice(failure, &cost::go_on(done, chunks))
+}
+
+/// The same where it is not known yet which chunks are there.
+fn no_room_to_open(failure: Failure) -> Failure {
+    with_advice(failure, "make room, and the same command goes on there")
+}
+
+fn with_advice(failure: Failure, advice: &str) -> Failure {
     use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
     let Failure::Other(error) = failure else {
         return failure;
@@ -344,9 +355,7 @@ fn no_room(failure: Failure, done: usize, chunks: usize) -> Failure {
     if !causes.any(is_room) {
         return Failure::Other(error);
     }
-    Failure::Other(anyhow!(
-        "{error:#}; {done} of {chunks} chunks are there: make room, and the same command goes on there"
-    ))
+    Failure::Other(anyhow!("{error:#}; {advice}"))
 }
 
 impl Packing {

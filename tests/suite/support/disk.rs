@@ -31,6 +31,13 @@ impl SmallDisk {
         );
     }
 
+    /// Makes it so small that no more than about this many bytes are free.
+    pub fn leave_free(&self, bytes: u64) {
+        let disk = rustix::fs::statvfs(self.path()).expect("a disk");
+        let used = (disk.f_blocks - disk.f_bfree) * disk.f_frsize;
+        self.resize(&(used + bytes).to_string());
+    }
+
     fn run(&self, options: &str) -> bool {
         let mounted = Command::new("mount")
             .args(["-t", "tmpfs", "-o", options, "strew-test"])

@@ -2,7 +2,7 @@
 
 use std::{
     fs,
-    process::{Command, Output, Stdio},
+    process::{Child, Command, Output, Stdio},
 };
 
 use strew_testkit::wait::until;
@@ -48,33 +48,81 @@ fn what_does_not_fit_is_refused_before_it_begins() {
 
 #[test]
 fn a_folder_goes_on_once_there_is_room() {
+    // 33 chunks of 32 KiB.
+    goes_on_once_there_is_room("-o", ".partial/journal", 3000);
+}
+
+#[test]
+fn an_archive_goes_on_once_there_is_room() {
+    goes_on_once_there_is_room("--archive", "", 1 << 20);
+}
+
+/// Fills the disk while an export runs, once a file of its has some length.
+fn goes_on_once_there_is_room(to: &str, growing: &str, length: u64) {
     let Some(disk) = SmallDisk::mount("64m") else {
         return;
     };
     let out = disk.path().join("world");
     let text = out.display().to_string();
-    let flags = [&LARGE[..], &["-o", &text]].concat();
+    let growing = match growing {
+        "" => out.with_extension("partial"),
+        name => out.join(name),
+    };
+    let flags = [&LARGE[..], &[to, &text]].concat();
     let mut command = strew();
     command.args(["export", "-q", "--threads=1"]).args(&flags);
     let child = command.stderr(Stdio::piped()).spawn();
     let child = child.expect("the program runs");
-    let journal = out.join(".partial/journal");
     until("some chunks are there", || {
-        let length = fs::metadata(&journal).ok()?.len();
-        (length > 3000).then_some(())
+        (fs::metadata(&growing).ok()?.len() > length).then_some(())
     });
-    // A quarter of all.
-    disk.resize("10m");
-    assert_no_room(
-        &child.wait_with_output().expect("it ends"),
-        "No space left on device",
+    // It must not write on while its disk shrinks.
+    signal(&child, "STOP");
+    disk.leave_free(1 << 20);
+    signal(&child, "CONT");
+    let output = child.wait_with_output().expect("it ends");
+    assert_no_room(&output, "No space left on device");
+    assert!(!out.join("manifest.json").exists() && !out.is_file());
+    if out.is_dir() {
+        let before = tree(&out).len();
+        assert!(before > 35, "{before}");
+    }
+    // There is still none, whether it is known before the first byte or not.
+    let again = export(&flags);
+    let said = errors(&again);
+    assert_eq!(again.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("make room, and the same command goes on there"),
+        "{said}"
     );
-    assert!(!out.join("manifest.json").exists());
-    let before = tree(&out).len();
-    assert!(before > 35, "{before}");
+    assert!(!said.contains("choose"), "{said}");
     disk.resize("64m");
     exported(&flags);
     exported(&["--check", &text]);
+}
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill")
+        .args(["-s", name, &child.id().to_string()])
+        .status();
+    assert!(sent.is_ok_and(|status| status.success()));
+}
+
+#[test]
+fn what_is_no_file_is_not_read() {
+    // It has zeros without end.
+    for flags in [
+        &[&SMALL[..], &["--archive", "/dev/full"]].concat()[..],
+        &["--check", "/dev/full"],
+    ] {
+        let refused = export(flags);
+        let said = errors(&refused);
+        assert!(!refused.status.success());
+        assert!(
+            said.contains("/dev/full") && said.contains("regular file"),
+            "{said}"
+        );
+    }
 }
 
 #[test]
