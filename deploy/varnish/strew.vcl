@@ -1,6 +1,6 @@
 # A cache of chunks and documents before one or several daemons, for Varnish 7. Those whose address holds a digest
-# (`table=…`, `world_digest=…`) never change and are kept for a year; others for as long as the daemon says. Nothing ever
-# needs to be purged: another table or world has another digest, and so another address. The points of regions
+# (`table=…`, `world_digest=…`) never change and are kept for a year; others for as long as the daemon says. Nothing
+# ever needs to be purged: another table or world has another digest, and so another address. The points of regions
 # (`/v1/points`) and answers of more than a million points are not kept.
 #
 #     varnishd -a :80 -f strew.vcl -s malloc,2g -s Transient=malloc,256m -p http_gzip_support=off \
@@ -8,8 +8,9 @@
 #
 # Without http_gzip_support=off Varnish requests gzip for every client, also of packed coordinates, which hardly shrink.
 # The other parameters let addresses of up to 64 KiB through, as the daemon does; by default Varnish ends at 32.
-# Transient holds answers with a key while they are sent: more clients that read slowly need more of it. gRPC does not pass: Varnish speaks HTTP/1.1 to daemons. For several
-# daemons put the address of their balancer here, or a backend for each and a director (vmod_directors).
+# Transient holds answers with a key while they are sent: more clients that read slowly need more of it. gRPC does not
+# pass: Varnish speaks HTTP/1.1 to daemons. For several daemons put the address of their balancer here, or a backend for
+# each and a director (vmod_directors).
 
 vcl 4.1;
 import std;
