@@ -8,9 +8,9 @@
 #
 # Without http_gzip_support=off Varnish requests gzip for every client, also of packed coordinates, which hardly shrink.
 # The other parameters let addresses of up to 64 KiB through, as the daemon does; by default Varnish ends at 32.
-# Transient holds answers with a key while they are sent: more clients that read slowly need more of it. gRPC does not
-# pass: Varnish speaks HTTP/1.1 to daemons. For several daemons put the address of their balancer here, or a backend for
-# each and a director (vmod_directors).
+# Transient holds what is neither kept nor piped while it is sent: short documents. gRPC does not pass: Varnish speaks
+# HTTP/1.1 to daemons. For several daemons put the address of their balancer here, or a backend for each and a director
+# (vmod_directors).
 
 vcl 4.1;
 import std;
@@ -33,7 +33,8 @@ sub vcl_recv {
         return (synth(404));
     }
     # Varnish reads an answer ahead into memory as fast as it comes, however slow its client is. So what can have any
-    # number of points goes straight through: regions, posted arrangements, and what `vcl_deliver` sends here again.
+    # number of points and is not kept goes straight through, on a connection of its own: regions, posted arrangements,
+    # chunks for clients with a key, and what `vcl_deliver` sends here again.
     if (req.restarts == 0) {
         unset req.http.Strew-Large;
     }
@@ -41,6 +42,9 @@ sub vcl_recv {
         return (pipe);
     }
     if (req.method == "POST" && req.url ~ "^/v1/pattern/arrangements") {
+        return (pipe);
+    }
+    if ((req.http.Authorization || req.http.X-API-Key) && req.url ~ "^/v1/[^?]*(chunks/|arrangements)") {
         return (pipe);
     }
     # The daemon reads none, and Varnish keeps nothing for clients that send some.
@@ -67,7 +71,8 @@ sub vcl_recv {
 }
 
 sub vcl_backend_response {
-    # An answer of more than a million points would push many chunks out. Only that it is large is kept.
+    # An answer of more than a million points would push many chunks out. Only that it is large is kept, and it
+    # is requested again. With `rate.points_per_second` the first request therefore costs twice.
     if (bereq.method == "GET" && std.integer(beresp.http.Strew-Count, 0) > 1000000) {
         return (error(503, "Large"));
     }
@@ -80,7 +85,7 @@ sub vcl_backend_response {
 sub vcl_backend_error {
     if (beresp.reason == "Large") {
         set beresp.http.Strew-Large = "1";
-        set beresp.ttl = 1h;
+        set beresp.ttl = 1d;
         return (deliver);
     }
 }
