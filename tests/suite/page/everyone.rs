@@ -42,7 +42,10 @@ fn the_gallery_shows_points_before_it_has_measured_them() {
         return;
     };
     browser.look(&daemon, "#at=0,0&span=30&tab=gallery");
-    browser.until("strew.gallery.cards.some((card) => card.draw && !card.measured)");
+    let is_drawn = "({ points }) => points.getContext('2d').getImageData(0, 0, points.width, points.height).data.some(Boolean)";
+    browser.until(&format!(
+        "strew.gallery.cards.filter((card) => !card.measured).some({is_drawn})"
+    ));
     browser.until("document.documentElement.dataset.gallery");
     assert_eq!(
         browser.value("document.querySelectorAll('#gallery .awaited').length"),
