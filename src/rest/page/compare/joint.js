@@ -49,9 +49,9 @@ export function toHash(state) {
 
 /** One view for all panels; `changed()` hears of every move. */
 export class Joint {
-  /** `least` and `most` bound the span. */
-  constructor(state, changed, [least, most] = [LEAST_SPAN, MOST_SPAN]) {
-    this.bounded = (span) => Math.min(most, Math.max(least, span));
+  /** `within(span)` is a span that can be shown. */
+  constructor(state, changed, within = bounded) {
+    this.bounded = within;
     this.state = state;
     this.changed = changed;
     this.view = { x: state.x, y: state.y, unit: 1, width: 1, height: 1, ratio: 1, pixels: [1, 1] };

@@ -16,7 +16,16 @@ export function pairsOf({ profile, map, size, seed, bits }) {
 export class Mask {
   constructor(canvas) {
     this.canvas = canvas;
-    this.side = 1;
+    this.clear();
+  }
+
+  /** Whether there is something to show. */
+  get isThere() {
+    return this.tile !== null;
+  }
+
+  clear() {
+    this.take({ side: 1, tile: null, thresholds: null });
   }
 
   /** What is chosen, as the server has it: `{ words, … }`, for `take`. */
@@ -28,7 +37,7 @@ export class Mask {
     Object.assign(canvas, { width: size, height: size });
     const context = canvas.getContext("2d", { willReadFrequently: true });
     context.drawImage(bitmap, 0, 0);
-    const words = `${size} × ${size} pixels with ${state.bits === "8" ? "256" : "65,536"} thresholds. A pixel of a picture becomes white `
+    const words = `${size} × ${size} pixels with ${Math.min(size ** 2, 2 ** Number(state.bits)).toLocaleString("en")} thresholds. A pixel of a picture becomes white `
       + "where its gray is above the threshold.";
     return { side: size, tile: canvas, thresholds: context.getImageData(0, 0, size, size).data, words };
   }
@@ -43,8 +52,8 @@ export class Mask {
     const { canvas, side, tile } = this;
     const [width, height] = view.pixels;
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    if (!tile) return;
     const context = canvas.getContext("2d");
+    if (!this.isThere) return context.clearRect(0, 0, width, height);
     const scale = view.ratio / view.unit;
     const [x, y] = [view.x, view.y].map((at) => distance({ i: 0, f: 0 }, at) % side);
     const pattern = context.createPattern(tile, "repeat");
@@ -57,7 +66,6 @@ export class Mask {
   /** Draws a ramp in black and white; returns what it is. */
   picture(canvas) {
     const { side, thresholds } = this;
-    if (!thresholds) return "";
     const { width, height } = RAMP;
     Object.assign(canvas, RAMP);
     const context = canvas.getContext("2d");

@@ -18,8 +18,16 @@ export class Period {
   constructor(canvas) {
     this.sheet = new Sheet(canvas);
     this.version = 0;
-    this.points = new Float32Array(0);
-    this.side = 1;
+    this.clear();
+  }
+
+  /** Whether there is something to show. */
+  get isThere() {
+    return this.points.length > 0;
+  }
+
+  clear() {
+    this.take({ points: new Float32Array(0), side: 1, measured: null });
   }
 
   /** What is chosen, as the server has it: `{ words, … }`, for `take`. */
@@ -29,7 +37,7 @@ export class Period {
     const points = new Float32Array(await answer.arrayBuffer());
     const { side } = query.period;
     const measured = await measure(Float64Array.from(points), side);
-    const apart = query.least_distance > 0 ? `, any two at least ${query.least_distance.toFixed(2)} apart, across the seam too` : "";
+    const apart = query.least_distance >= 0.005 ? `, any two at least ${query.least_distance.toFixed(2)} apart, across the seam too` : "";
     return { points, side, measured, words: `${counted(count)} on a square of ${side} × ${side} mean spacings${apart}.` };
   }
 
@@ -48,6 +56,7 @@ export class Period {
   /** The copies in and around a view, as the sheet takes them: where each one's corner is from the middle. */
   runs(view) {
     const { points, side } = this;
+    if (!this.isThere) return [];
     const half = [view.width, view.height].map((v) => 0.85 * v * view.unit);
     const from = [view.x, view.y].map((at) => distance({ i: 0, f: 0 }, at));
     const corners = from.map((at, axis) => {
@@ -60,7 +69,6 @@ export class Period {
 
   /** Draws the spectrum; returns what it is. */
   picture(canvas) {
-    if (!this.measured) return "";
     spectrumPicture(canvas, this.measured.image, this.measured.cells);
     return "Its spectrum: frequency 0 in the middle, up to ν = 2.5. Empty there means even spreading.";
   }

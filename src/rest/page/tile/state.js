@@ -33,7 +33,7 @@ export function fromHash(hash) {
 
 /** How much of a tile the shorter side shows at first. */
 export function spanOf({ what, size }) {
-  return what === "mask" ? Math.min(200, 1.2 * size) : 60;
+  return what === "mask" ? 1.2 * size : 60;
 }
 
 /** Writes the hash: what is not a default, so that a link shows the same tile. */

@@ -1,11 +1,12 @@
 // The page of a tile: what repeats, how it looks next to its copies, and the files of it.
 
-import { askJson, onPresence } from "../api.js";
+import { Gone, askJson, onPresence } from "../api.js";
 import { tools } from "../bar.js";
 import { curl } from "../commands.js";
 import { Joint } from "../compare/joint.js";
 import { byId, copy, make, settled, skipLinks } from "../dom.js";
 import { save } from "../download.js";
+import { faultsOf } from "../faults.js";
 import { check, fault, field, refusal, select, setOptions } from "../form.js";
 import { moveBy } from "../gestures.js";
 import { distance, place } from "../place.js";
@@ -19,7 +20,8 @@ import { LEAST_SHARE, SIZES, fromHash, spanOf, toHash } from "./state.js";
 const root = document.documentElement;
 const canvas = byId("view");
 /** The fewest and the most units along the shorter side: mean spacings, or pixels of a mask. */
-const SPANS = [6, 200];
+const LEAST_SPAN = 6;
+const mostSpan = ({ what, size }) => (what === "mask" ? 2.5 * size : 250);
 /** Periods of more points are not offered here: a page that shows copies of them is slow. */
 const MOST_POINTS = 60_000;
 const FILES = ["png", "svg", "csv", "json", "f32", "npy"];
@@ -28,7 +30,7 @@ const SIDES = ["512", "1024", "2048", "4096"];
 let state = fromHash(location.hash);
 let tables = [];
 const kinds = { points: new Period(canvas), mask: new Mask(canvas) };
-const joint = new Joint(state, () => draw(), SPANS);
+const joint = new Joint(state, () => draw(), (span) => Math.min(mostSpan(state), Math.max(LEAST_SPAN, span)));
 const shown = () => kinds[state.what];
 const file = { format: "png", side: "1024" };
 
@@ -40,7 +42,7 @@ function draw() {
   requestAnimationFrame(() => {
     isWaiting = false;
     shown().draw(joint.view);
-    if (state.seams) seams(joint.view, shown().side);
+    if (state.seams && shown().isThere) seams(joint.view, shown().side);
   });
 }
 
@@ -70,16 +72,16 @@ function seams({ x, y, unit, ratio, pixels: [width, height] }, side) {
 
 let turn = 0;
 
-/** Takes what is chosen to the server, and shows what comes back. */
-async function show() {
+/** Takes what is chosen to the server, and shows what comes back; `how` says whether Back undoes the choice. */
+async function show(how = "replaceState") {
   turn += 1;
   const mine = turn;
+  const kind = shown();
   root.dataset.state = "loading";
   const hash = toHash(state);
-  if (hash !== location.hash) history.replaceState(null, "", hash);
+  if (hash !== location.hash) history[how](null, "", hash);
   update();
   try {
-    const kind = shown();
     const made = await kind.load({ ...state, map: mapOf(state.profile) });
     // A late answer does not replace a newer choice.
     if (mine !== turn) return;
@@ -89,10 +91,13 @@ async function show() {
     byId("banner").hidden = true;
     root.dataset.state = "ready";
   } catch (error) {
-    if (mine !== turn) return;
-    const about = error.faults?.find((one) => one.field === "seed");
-    if (about) fault(byId("choices"), "seed", error.message);
-    else refusal(byId("banner"), error, begin);
+    // The page says already that the server does not answer, and asks again.
+    if (mine !== turn || error instanceof Gone) return;
+    const { seed } = faultsOf(error);
+    if (seed) fault(byId("choices"), "seed", seed);
+    else refusal(byId("banner"), error, () => begin());
+    kind.clear();
+    byId("about").textContent = "";
     root.dataset.state = "failed";
   }
   picture();
@@ -100,17 +105,22 @@ async function show() {
 }
 
 function picture() {
+  const { isThere } = shown();
+  byId("shown").hidden = !isThere;
+  byId("download").disabled = byId("copy").disabled = !isThere;
+  if (!isThere) return;
   byId("caption").textContent = shown().picture(byId("picture"));
   byId("picture").setAttribute("aria-label", state.what === "mask" ? "A dithered ramp" : "The spectrum");
 }
 
 const soon = settled(250, show);
 
+/** A choice that Back undoes. */
 function choose(change) {
-  const isOther = change.what && change.what !== state.what;
+  const before = spanOf(state);
   Object.assign(state, change);
-  if (isOther) joint.lookAt(place(0), place(0), spanOf(state));
-  show();
+  if (change.what || spanOf(state) !== before) joint.lookAt(place(0), place(0), spanOf(state));
+  show("pushState");
 }
 
 /** The smallest map of a profile's tables: it has the shortest periods. */
@@ -134,13 +144,14 @@ function build() {
   const share = make("input", {
     type: "range", id: "share", min: String(LEAST_SHARE), max: "1", step: "0.01", oninput: (event) => {
       state.share = Number(event.target.value);
+      sayShare();
       soon();
     },
   });
   byId("fields").append(
     field("Profile", "profile", select("profile", (profile) => {
-      Object.assign(state, { profile, points: 1 });
-      begin();
+      state.profile = profile;
+      begin("pushState");
     })),
     make("div", { class: "pair", id: "of-points" },
       field("Points", "points", select("points", (points) => choose({ points: Number(points) }))),
@@ -168,7 +179,7 @@ function build() {
   byId("save").append(
     make("div", { class: "pair", id: "how" }, format, side),
     make("button", { type: "button", id: "download", class: "main", onclick: () => save({ path: pathOf() }, nameOf(), () => {})
-      .catch((error) => refusal(byId("banner"), error, begin)) }, "Save"),
+      .catch((error) => refusal(byId("banner"), error, () => begin())) }, "Save"),
     make("pre", { tabindex: "0", "aria-label": "The request" }, make("code", { id: "command" })),
     make("button", { type: "button", id: "copy", onclick: (event) => copy(byId("command"), event.currentTarget) }, "Copy"),
     make("p", { class: "note", id: "help" }),
@@ -186,9 +197,15 @@ function update() {
   setOptions(byId("bits"), [["8", "8"], ["16", "16"]], state.bits);
   if (byId("seed").value.trim() !== state.seed) byId("seed").value = state.seed;
   byId("share").value = String(state.share);
-  byId("share").setAttribute("aria-valuetext", `${Math.round(100 * state.share)} %`);
+  sayShare();
   byId("seams").checked = state.seams;
   line();
+}
+
+function sayShare() {
+  const share = `${Math.round(100 * state.share)} %`;
+  byId("share").setAttribute("aria-valuetext", share);
+  document.querySelector("label[for=share]").textContent = `Share of them: ${share}`;
 }
 
 function pathOf() {
@@ -199,7 +216,7 @@ function pathOf() {
 }
 
 const isPicture = () => ["png", "svg"].includes(file.format);
-const nameOf = () => (state.what === "mask" ? "mask.png" : `tile.${file.format}`);
+const nameOf = () => (state.what === "mask" ? "mask.png" : `points.${file.format}`);
 
 /** The line to paste, and what to do with the file. */
 function line() {
@@ -211,7 +228,7 @@ function line() {
     : "Pictures repeat as they are. Coordinates lie in [0, L)², L being the side in mean spacings.";
 }
 
-async function begin() {
+async function begin(how) {
   try {
     ({ profiles: tables } = await askJson("/v1/profiles"));
     const names = profileNames(tables);
@@ -223,12 +240,12 @@ async function begin() {
     setOptions(byId("profile"), names, state.profile);
     await sizes();
   } catch (error) {
-    refusal(byId("banner"), error, begin);
+    if (!(error instanceof Gone)) refusal(byId("banner"), error, () => begin());
     root.dataset.state = "failed";
     return;
   }
   const said = byId("banner").hidden ? "" : byId("banner").textContent;
-  await show();
+  await show(how);
   if (said && root.dataset.state === "ready") Object.assign(byId("banner"), { hidden: false, textContent: said });
 }
 
