@@ -180,6 +180,14 @@ export class Controls {
     });
   }
 
+  /** Shows a layer's fields. */
+  pick(i) {
+    this.picked = i;
+    this.stopTyping();
+    this.update();
+    this.session.tell("picked");
+  }
+
   addLayer() {
     const { layers } = this.session.state;
     this.picked = layers.length;
@@ -196,12 +204,7 @@ export class Controls {
     if (this.bar.childElementCount !== layers.length + (layers.length < MOST_LAYERS ? 1 : 0)) {
       const focused = this.bar.contains(document.activeElement) ? document.activeElement.id : null;
       const buttons = layers.map((_, i) => make("button", {
-        type: "button", id: `layer-${i}`, onclick: () => {
-          this.picked = i;
-          this.stopTyping();
-          this.update();
-          this.session.tell("picked");
-        },
+        type: "button", id: `layer-${i}`, onclick: () => this.pick(i),
       }, make("i"), make("span")));
       const add = make("button", { type: "button", id: "add-layer", onclick: () => this.addLayer() }, "+ Add a layer");
       this.bar.replaceChildren(...buttons, ...(layers.length < MOST_LAYERS ? [add] : []));

@@ -142,11 +142,21 @@ async function refresh(isChosen = false) {
     root.dataset.state = "failed";
     status.refused();
     const other = notes.map((note) => note.faults?.[""]).find(Boolean);
+    const unseen = notes.findIndex((note, i) => note.faults && (i !== controls?.picked || session.state.tab !== "choose"));
     if (other) banner(other, [["Try again", () => refresh()]]);
+    else if (unseen >= 0) banner(`Layer ${unseen + 1}: ${Object.values(notes[unseen].faults)[0]}`, [["Show it", () => pointOut(unseen)]]);
     return;
   }
   isUnderstood = true;
   show(layers, notes.map((note) => note.understood), isChosen);
+}
+
+/** Shows the fields of a layer that something is wrong with. */
+function pointOut(layer) {
+  banner(null);
+  controls.pick(layer);
+  if (session.state.tab !== "choose") session.choose((state) => (state.tab = "choose"), "tab");
+  byId("choose").querySelector('[aria-invalid="true"]')?.focus();
 }
 
 /** Shows layers that the server has understood. */

@@ -1,4 +1,5 @@
-//! What everybody needs of the pages: contrast, pictures that come at once, links that skip parts, no motion of its own.
+//! What everybody needs of the pages: contrast, pictures that come at once, links that skip parts, and no motion of
+//! its own.
 
 use crate::support::browser::{
     key::{ENTER, TAB},
@@ -42,7 +43,11 @@ fn the_gallery_shows_points_before_it_has_measured_them() {
         return;
     };
     browser.look(&daemon, "#at=0,0&span=30&tab=gallery");
-    browser.until("strew.gallery.cards.some((card) => card.draw && !card.measured)");
+    let is_drawn = "({ points }) => points.getContext('2d') \
+        .getImageData(0, 0, points.width, points.height).data.some(Boolean)";
+    browser.until(&format!(
+        "strew.gallery.cards.filter((card) => !card.measured).some({is_drawn})"
+    ));
     browser.until("document.documentElement.dataset.gallery");
     assert_eq!(
         browser.value("document.querySelectorAll('#gallery .awaited').length"),
@@ -92,7 +97,8 @@ fn what_lies_under_another_tab_takes_no_focus() {
         return;
     };
     browser.look(&daemon, "#at=0,0&span=30&tab=works");
-    let covered = "['plane', 'jump-at', 'theme', 'works-slider'].map((id) => Boolean(document.getElementById(id).closest('[inert]')))";
+    let covered = "['plane', 'jump-at', 'theme', 'works-slider'] \
+        .map((id) => Boolean(document.getElementById(id).closest('[inert]')))";
     assert_eq!(
         browser.value(covered),
         serde_json::json!([true, true, true, false])

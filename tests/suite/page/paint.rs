@@ -90,9 +90,11 @@ fn what_is_painted_is_followed_and_comes_back() {
         changed(&browser, || drop(browser.value("history.back()"))),
         count
     );
-    // Clear and choose another field: nothing painted is left.
+    // Clear and nothing painted is left; undone, all of it is back.
     assert_eq!(changed(&browser, || browser.click("#paint-clear")), all);
     assert!(!browser.hash().contains("paint="));
+    assert_eq!(changed(&browser, || browser.click("#paint-undo")), count);
+    assert!(browser.hash().contains("paint="));
 }
 
 #[test]
@@ -134,6 +136,10 @@ fn a_world_file_holds_what_is_painted() {
         browser.value("strew.session.state.layers[0].seed"),
         "18446744073709551615"
     );
+    // With its strokes, which can be undone one by one.
+    assert_eq!(browser.value("strew.paint.work.strokes.length"), 3);
+    browser.click("#paint-open");
+    assert_ne!(changed(&browser, || browser.click("#paint-undo")), count);
     browser.value("(strew.paint.open(new File(['{\"only\": 3}'], 'other.json')), 0)");
     browser.until("document.querySelector('#banner').textContent.includes('does not know `only`')");
     assert_eq!(browser.errors(), Vec::<String>::new());

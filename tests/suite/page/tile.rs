@@ -56,11 +56,26 @@ fn a_tile_repeats_and_is_saved_as_it_is_shown() {
     browser.until(READY);
     browser.until("document.querySelector('#about').textContent.startsWith('101 points')");
     assert!(browser.text("#command").contains("keep=0.02"));
+    // Back restores what was chosen before.
+    browser.value("(document.querySelector('#points').value = '9409', document.querySelector('#points').dispatchEvent(new Event('change')), 0)");
+    browser.until(&format!(
+        "{READY} && document.querySelector('#about').textContent.includes('97 × 97')"
+    ));
+    browser.value("(history.back(), 0)");
+    browser.until(&format!(
+        "{READY} && document.querySelector('#about').textContent.includes('71 × 71')"
+    ));
     assert_eq!(browser.errors(), Vec::<String>::new());
     // A seed that is none is said at its field.
     browser.value("(document.querySelector('#seed').value = 'x', document.querySelector('#seed').dispatchEvent(new Event('input')), 0)");
     browser.until("!document.querySelector('#wrong-seed').hidden");
-    assert!(browser.text("#wrong-seed").contains("seed"));
+    assert!(browser.text("#wrong-seed").contains("whole number"));
+    // Nothing of the tile before is left.
+    assert_eq!(browser.text("#about"), "");
+    assert_eq!(
+        browser.value("document.querySelector('#download').disabled"),
+        true
+    );
 }
 
 #[test]

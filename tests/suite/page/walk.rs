@@ -79,8 +79,10 @@ fn keys_walk_and_pick_and_the_same_trees_stand_there_on_the_way_back() {
     walk(&daemon, &browser, "");
     let press = |kind: &str, key: &str| {
         let event = format!("new KeyboardEvent('{kind}', {{ key: '{key}', bubbles: true }})");
-        browser.value(&format!("strew.walker.canvas.dispatchEvent({event})"));
+        browser.value(&format!("document.activeElement.dispatchEvent({event})"));
     };
+    // A tool that was clicked has the focus, and keys walk all the same.
+    browser.click("#theme");
     press("keydown", "w");
     browser.until("strew.walker.y.i >= 1");
     press("keyup", "w");

@@ -171,7 +171,8 @@ impl Browser {
         }
     }
 
-    /// Whether this is a Firefox that cannot draw by WebGL2, as without a screen; with a message, as the test is skipped.
+    /// Whether this is a Firefox that cannot draw by WebGL2, as where there is no screen; with a message, because the
+    /// test is skipped.
     pub fn lacks_webgl2(&self) -> bool {
         let draws = "document.createElement('canvas').getContext('webgl2') !== null";
         let lacks = self.engine == Engine::Firefox && self.value(draws) == false;
@@ -349,7 +350,8 @@ impl Browser {
     pub fn middle(&self, selector: &str) -> [i32; 2] {
         let place = self.value(&format!(
             "(() => {{ const e = document.querySelector({selector:?}); e.scrollIntoView({{ block: 'nearest' }}); \
-             const b = e.getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2].map(Math.round); }})()"
+             const b = e.getBoundingClientRect(); \
+             return [b.left + b.width / 2, b.top + b.height / 2].map(Math.round); }})()"
         ));
         serde_json::from_value(place).expect("a place")
     }

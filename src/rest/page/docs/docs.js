@@ -91,7 +91,7 @@ function route(hasMoved) {
   const id = named(location.hash.slice(1));
   const one = all.find((operation) => operation.id === id);
   byId("main").replaceChildren(...(one ? operationView(one, api) : overview()));
-  document.title = one ? `${one.operation.summary} – Strew API` : "Strew API";
+  document.title = one ? `${one.operation.summary} · API · Strew` : "API · Strew";
   for (const link of document.querySelectorAll("#operations a")) {
     if (link.hash === `#${id}`) {
       link.setAttribute("aria-current", "page");

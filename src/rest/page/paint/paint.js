@@ -17,6 +17,11 @@ const BRUSH = "M14 6l4 4M4 20c3 0 5-1 5-4a3 3 0 0 0-3-3c-2 0-2 2-2 3s0 3-2 4c1 0
 /** The field below what is painted, described in full. */
 const whole = (name) => documentOf(name) ?? { name };
 
+/** How many strokes there are. */
+function strokes({ strokes: { length } }) {
+  return `${length} ${length === 1 ? "stroke" : "strokes"}`;
+}
+
 export class Paint {
   /** `picked()` is the index of the layer that is painted on; `say(words)` shows what went wrong. */
   constructor(session, plane, { picked, say }) {
@@ -54,7 +59,7 @@ export class Paint {
     this.elsewhere = make("select", { id: "paint-ground", onchange: (event) => this.change({ ground: Number(event.target.value) }) },
       GROUNDS.map(([share, words]) => make("option", { value: String(share) }, words)));
     this.undoButton = button("undo", "Undo", () => this.undo());
-    this.clearButton = button("clear", "Clear", () => this.change({ strokes: [] }, "Cleared"));
+    this.clearButton = button("clear", "Clear", () => this.clear());
     this.file = make("input", { type: "file", id: "paint-file", accept: ".json,application/json", hidden: true, "aria-label": "A world file", onchange: () => {
       const [file] = this.file.files;
       if (file) this.open(file);
@@ -105,7 +110,11 @@ export class Paint {
     this.toggle.setAttribute("aria-expanded", String(Boolean(tool)));
     this.tools.forEach((button, i) => button.setAttribute("aria-pressed", String(TOOLS[i][0] === tool)));
     this.strong.hidden = tool === "road";
-    this.undoButton.disabled = this.clearButton.disabled = this.work.strokes.length === 0;
+    const { activeElement } = document;
+    this.clearButton.disabled = this.work.strokes.length === 0;
+    this.undoButton.disabled = this.clearButton.disabled && !this.hasCleared;
+    // A button that can do no more gives the focus to what it worked on.
+    if (tool && activeElement?.disabled && this.bar.contains(activeElement)) this.canvas.focus({ preventScroll: true });
     this.elsewhere.value = String(this.work.ground);
     this.elsewhere.parentElement.hidden = Boolean(this.work.base);
   }
@@ -150,6 +159,7 @@ export class Paint {
     const text = layer.paint || this.texts.get(layer.field) || "";
     if (!text) this.work = blank(layer.field);
     else if (text !== written(this.work)) this.work = read(text);
+    if (this.tool) this.say(this.work.strokes.length > 0 ? strokes(this.work) : "");
     this.render();
   }
 
@@ -189,14 +199,31 @@ export class Paint {
     this.change({ strokes: [...work.strokes, stroke], ...(isFirst ? { ground: 0.1 } : {}) });
   }
 
+  clear() {
+    this.follow();
+    const { layer, work } = this;
+    this.change({ strokes: [] }, "Cleared");
+    this.cleared = { layer, work };
+    this.render();
+  }
+
+  /** Whether the last change took away all that was painted on this layer. */
+  get hasCleared() {
+    return this.cleared?.layer === this.layer && this.work.strokes.length === 0;
+  }
+
   undo() {
     this.follow();
-    if (this.work.strokes.length > 0) this.change({ strokes: this.work.strokes.slice(0, -1) }, "Undone");
+    if (this.hasCleared) {
+      const { ground, strokes } = this.cleared.work;
+      this.change({ ground, strokes }, "Back again");
+    } else if (this.work.strokes.length > 0) this.change({ strokes: this.work.strokes.slice(0, -1) }, "Undone");
   }
 
   /** Sends what is painted after a change, and shows it. */
   async change(members, words = "") {
     this.follow();
+    this.cleared = null;
     const before = this.work;
     const tooMuch = excess({ ...before, ...members }, whole);
     if (tooMuch) {
@@ -216,9 +243,8 @@ export class Paint {
       if (text) this.texts.set(field, text);
       const amount = layer.by === "min_distance" ? { by: "spacing", amount: await this.spacing(layer) } : {};
       this.session.choose(() => Object.assign(layer, { field, paint: text, ...amount }), "layers");
-      const count = work.strokes.length;
       const where = text.length > MOST_PAINT ? ", too much for the address: save it as a file" : "";
-      this.say(`${words ? `${words}: ` : ""}${count} ${count === 1 ? "stroke" : "strokes"}${where}`);
+      this.say(`${words ? `${words}: ` : ""}${strokes(work)}${where}`);
     } catch (error) {
       if (mine !== this.turn) return;
       if (this.owner === layer) this.work = before;
@@ -251,6 +277,7 @@ export class Paint {
       this.session.choose((state) => (state.layers = layers), "layers");
       this.say(`“${file.name}” is open`);
     } catch (error) {
+      this.say("");
       this.fail(error.message);
     }
   }

@@ -4,6 +4,7 @@ import { Digits, json } from "../digits.js";
 import { bodyOf, memberOf } from "../query.js";
 import { send } from "../sent.js";
 import { AMOUNTS, LAYER, MOST_LAYERS } from "../state.js";
+import { fieldOf, paintedIn, read, written } from "./strokes.js";
 
 /** The text of the world that layers are: what queries of it have in common, without a region. */
 export function worldOf(layers) {
@@ -73,7 +74,7 @@ async function layerOf(set, i, name, clear) {
   if (!by) throw new Error(`“${name}” has a layer without ${AMOUNTS.join(", ")}: one of them is needed.`);
   const layer = { ...LAYER, color: i, by, amount: String(set[by]), seed: textOf(set.seed ?? 0), clear };
   for (const member of ["profile", "alpha", "map", "warp"]) if (member in set) layer[member] = String(set[member]);
-  if (set.field) layer.field = typeof set.field === "string" ? set.field : await send(set.field);
+  if (set.field) Object.assign(layer, await fieldFrom(set.field));
   for (const attribute of [set.attributes ?? []].flat()) {
     if (!ATTRIBUTES.includes(attribute)) throw new Error(`“${name}” has an attribute that this page does not show: \`${attribute}\`.`);
     layer[attribute] = true;
@@ -84,6 +85,17 @@ async function layerOf(set, i, name, clear) {
     layer.variants = typeof variants === "string" ? variants : Object.entries(variants).map((pair) => pair.join(":")).join(",");
   }
   return layer;
+}
+
+/** A layer's field and what is painted in it, if it was painted here. Fields that are described are sent. */
+async function fieldFrom(field) {
+  if (typeof field === "string") return { field };
+  const painted = paintedIn(field);
+  if (!painted) return { field: await send(field) };
+  const { below } = painted;
+  const base = below ? below.name ?? await send(below) : "";
+  const paint = written({ ...painted, base });
+  return { field: await send(fieldOf(read(paint)), field), paint };
 }
 
 /** A seed as the field for it has it. */

@@ -38,7 +38,9 @@ export class Walker {
     const { canvas } = this;
     addEventListener("keydown", (event) => {
       this.isFast = event.shiftKey;
-      if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("input, button, a, select")) return;
+      if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest?.("input, select")) return;
+      // A button that was clicked keeps the focus, and its own keys.
+      if ([" ", "Enter"].includes(event.key) && event.target.closest?.("button, a")) return;
       const move = KEYS[event.key.toLowerCase()];
       if (move) this.hold(move);
       else if (event.key === "Enter" && event.target === canvas) this.tapped(null);

@@ -44,13 +44,18 @@ function fromHash(hash) {
   };
   const pitch = Math.max(-STEEPEST, Math.min(STEEPEST, degrees("pitch", -5)));
   const quality = given.get("quality") ?? "";
-  if (x && y && !isNear) banner("This walk ends at 1e14 in every direction. It begins at the origin instead.");
+  if (x && y && !isNear) banner("This walk ends at 1e14 in every direction. It begins at the beginning of the trail instead.");
   return {
     x: isNear ? x : place(START.x), y: isNear ? y : place(START.y), yaw: degrees("yaw", START.yaw), pitch,
-    seed: /^\d{1,20}$/.test(given.get("seed") ?? "") ? given.get("seed") : "7",
+    seed: isSeed(given.get("seed") ?? "") ? given.get("seed") : "7",
     quality: /^\d$/.test(quality) && QUALITIES[quality] ? Number(quality) : null,
     isFlying: given.get("fly") !== "0" && !given.has("at"),
   };
+}
+
+/** Whether a text is a seed: an integer of 64 bits. */
+function isSeed(text) {
+  return /^\d{1,20}$/.test(text) && BigInt(text) < 2n ** 64n;
 }
 
 /** Where a walk begins: on the trail. */
