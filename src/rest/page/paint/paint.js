@@ -113,7 +113,7 @@ export class Paint {
     const { activeElement } = document;
     this.clearButton.disabled = this.work.strokes.length === 0;
     this.undoButton.disabled = this.clearButton.disabled && !this.hasCleared;
-    // A button that can do no more gives the focus to what it worked on.
+    // A button that can do no more leaves the focus to what it worked on.
     if (tool && activeElement?.disabled && this.bar.contains(activeElement)) this.canvas.focus({ preventScroll: true });
     this.elsewhere.value = String(this.work.ground);
     this.elsewhere.parentElement.hidden = Boolean(this.work.base);
