@@ -119,6 +119,7 @@ const PARTS: &[(&str, &str)] = parts![
     "download.js",
     "faults.js",
     "fft.js",
+    "form.css",
     "form.js",
     "gallery.css",
     "gallery.js",

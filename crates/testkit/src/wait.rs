@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// How long a test waits before it gives up: long enough for a busy machine that draws a scene without a GPU.
+/// The longest time that a test waits: enough for a busy machine that draws a scene without a GPU.
 pub const PATIENCE: Duration = Duration::from_secs(90);
 
 /// The pause between two looks at a condition.

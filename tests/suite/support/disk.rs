@@ -23,7 +23,7 @@ impl SmallDisk {
         None
     }
 
-    /// Gives it another size, no less than what is on it.
+    /// Changes its size, to no less than what is on it.
     pub fn resize(&self, size: &str) {
         assert!(
             self.run(&format!("remount,size={size}")),
