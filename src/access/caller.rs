@@ -10,7 +10,7 @@ use std::{
 };
 
 use super::{
-    Denied, InUse, Usage,
+    Denied, InUse, Quota, Usage,
     bucket::{Bucket, Level},
 };
 
@@ -117,16 +117,16 @@ impl Caller {
         }
     }
 
-    /// A place for one more stream.
+    /// A place for one more stream among `all`.
     ///
     /// # Errors
-    /// [`Denied::TooManyStreams`] if the key has as many as it may have, [`Denied::Address`] if the
-    /// address has.
-    pub fn place(&self) -> Result<Place, Denied> {
+    /// [`Denied::TooManyStreams`] if the key has as many as it may have, [`Denied::Address`] and
+    /// [`Denied::Share`] if the address has.
+    pub fn place(&self, all: &Quota) -> Result<Place, Denied> {
         let usage = self.usage.as_ref();
         let mut place = Place {
             open: None,
-            _address: usage.map(Usage::stream).transpose()?,
+            _address: usage.map(|usage| usage.stream(all)).transpose()?,
         };
         if let Some(places) = &self.places {
             let limit = places.limit;

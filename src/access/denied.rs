@@ -47,6 +47,17 @@ pub enum Denied {
         /// The limit.
         limit: usize,
     },
+    /// The client's address uses as much as is left for all others.
+    #[error(
+        "this server has {limit} {what} for all clients, and an address uses no more of them than are left: \
+         try again later"
+    )]
+    Share {
+        /// What it uses.
+        what: &'static str,
+        /// The limit for all addresses.
+        limit: usize,
+    },
     /// The caller takes points too fast.
     #[error(
         "{points} points exceed the rate: {left} are left, and {rate} return every second, up to {burst}; \
@@ -69,9 +80,10 @@ impl Denied {
     #[must_use]
     pub const fn wait(&self) -> Option<Duration> {
         match self {
-            Self::TooManyStreams { .. } | Self::TooManyJobs { .. } | Self::Address { .. } => {
-                Some(Duration::from_secs(1))
-            }
+            Self::TooManyStreams { .. }
+            | Self::TooManyJobs { .. }
+            | Self::Address { .. }
+            | Self::Share { .. } => Some(Duration::from_secs(1)),
             Self::TooFast { short, .. } => Some(short.wait),
             _ => None,
         }

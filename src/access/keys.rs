@@ -291,10 +291,11 @@ mod tests {
              points_per_second = 10\n[[key]]\nname = 'b'\nhash = '{other_hash}'\nadmin = true\n"
         );
         let keys = read(&text, &Keys::default()).expect("valid");
+        let all = crate::access::Quota::new(9);
         let a = keys.find(secret.as_bytes()).expect("known");
         assert_eq!((a.name(), a.max_points(9)), (Some("a"), 5));
         assert!(a.must_be_admin().is_err() && a.level().is_some());
-        let place = a.place().expect("the first");
+        let place = a.place(&all).expect("the first");
         let b = keys.find(other.as_bytes()).expect("known");
         assert!(b.must_be_admin().is_ok() && b.level().is_none());
         assert!(keys.find(b"").is_none() && keys.find(hash.to_string().as_bytes()).is_none());
@@ -302,9 +303,9 @@ mod tests {
         a.charge(30, 0).expect("within the burst");
         let again = read(&text, &keys).expect("valid");
         let a = again.find(secret.as_bytes()).expect("known");
-        assert!(a.place().is_err());
+        assert!(a.place(&all).is_err());
         drop(place);
-        assert!(a.place().is_ok());
+        assert!(a.place(&all).is_ok());
         assert!(a.level().expect("limited").left < 100);
     }
 

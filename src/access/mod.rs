@@ -23,7 +23,7 @@ pub use caller::{Caller, Place};
 pub use denied::Denied;
 pub use keys::KeysError;
 pub use secret::{Hashed, new_key};
-pub use usage::{InUse, Quota, Usage};
+pub use usage::{InUse, OneOf, Quota, Usage};
 
 use clients::Clients;
 use keys::Keys;

@@ -55,14 +55,38 @@ impl Quota {
         taken.is_ok()
     }
 
+    /// Takes one, if the limit allows.
+    #[must_use]
+    pub fn one(self: Arc<Self>) -> Option<OneOf> {
+        self.take(1).then(|| OneOf(self))
+    }
+
     /// Takes `amount` whatever the limit; returns what is used now.
     pub fn take_anyway(&self, amount: usize) -> usize {
         self.used.fetch_add(amount, Ordering::AcqRel) + amount
     }
 
+    /// Whether an address may take `amount` more of what it shares with all others: it may use no more than is
+    /// left, so a few addresses together never take all. An address whose own limit is that of all may.
+    #[must_use]
+    pub fn is_fair(&self, amount: usize, all: &Self) -> bool {
+        let left = all.limit.saturating_sub(all.used());
+        self.limit >= all.limit || self.used().saturating_add(amount) <= left
+    }
+
     /// Gives back what was taken.
     pub fn give_back(&self, amount: usize) {
         self.used.fetch_sub(amount, Ordering::AcqRel);
+    }
+}
+
+/// One of what all addresses share, given back when dropped.
+#[derive(Debug)]
+pub struct OneOf(Arc<Quota>);
+
+impl Drop for OneOf {
+    fn drop(&mut self) {
+        self.0.give_back(1);
     }
 }
 
@@ -74,6 +98,8 @@ pub struct Usage {
     pub connections: Quota,
     /// Requests, from the head to the last byte of the answer.
     pub requests: Quota,
+    /// Requests that are worked on, from the end of the body to the head of the answer.
+    pub places: Quota,
     /// Health checks, which have places of their own.
     pub probes: Quota,
     /// Streams of points.
@@ -91,6 +117,7 @@ impl Usage {
             address,
             connections: Quota::new(limits.max_connections),
             requests: Quota::new(limits.max_requests),
+            places: Quota::new(limits.max_requests),
             probes: Quota::new(PROBES),
             streams: Quota::new(limits.max_streams),
             bytes: Quota::new(limits.max_bytes_in_flight),
@@ -110,20 +137,28 @@ impl Usage {
         Arc::new(Self::new(&limits, None))
     }
 
-    /// A place for a connection, given back when dropped.
+    /// A place for a connection among `all`, given back when dropped.
     ///
     /// # Errors
-    /// [`Denied::Address`] at the limit.
-    pub fn connection(self: &Arc<Self>) -> Result<InUse, Denied> {
-        self.one(|usage| &usage.connections, "connections")
+    /// [`Denied::Address`] at the limit, [`Denied::Share`] if few are left for others.
+    pub fn connection(self: &Arc<Self>, all: &Quota) -> Result<InUse, Denied> {
+        self.share(|usage| &usage.connections, "connections", all)
     }
 
-    /// A place for a stream, given back when dropped.
+    /// A place for a stream among `all`, given back when dropped.
     ///
     /// # Errors
-    /// [`Denied::Address`] at the limit.
-    pub fn stream(self: &Arc<Self>) -> Result<InUse, Denied> {
-        self.one(|usage| &usage.streams, "streams")
+    /// As [`connection`](Self::connection).
+    pub fn stream(self: &Arc<Self>, all: &Quota) -> Result<InUse, Denied> {
+        self.share(|usage| &usage.streams, "streams", all)
+    }
+
+    /// A place for a request that is worked on among `all`, given back when dropped.
+    ///
+    /// # Errors
+    /// As [`connection`](Self::connection).
+    pub fn place(self: &Arc<Self>, all: &Quota) -> Result<InUse, Denied> {
+        self.share(|usage| &usage.places, "requests", all)
     }
 
     /// A place for a health check, if one is free; given back when dropped.
@@ -140,6 +175,19 @@ impl Usage {
             usage: self.clone(),
             quota: |usage| &usage.requests,
         }
+    }
+
+    fn share(
+        self: &Arc<Self>,
+        quota: fn(&Self) -> &Quota,
+        what: &'static str,
+        all: &Quota,
+    ) -> Result<InUse, Denied> {
+        if !quota(self).is_fair(1, all) {
+            let limit = all.limit();
+            return Err(Denied::Share { what, limit });
+        }
+        self.one(quota, what)
     }
 
     fn one(
@@ -251,22 +299,45 @@ mod tests {
     fn an_address_is_bounded_and_others_are_not_affected() {
         let usages = usages();
         let one = usages.of(address("192.0.2.1"));
-        let held = [one.connection(), one.connection()].map(|held| held.expect("a place"));
-        let denied = one.connection().expect_err("no place");
+        let all = Quota::new(100);
+        let connect = |usage: &Arc<Usage>| usage.connection(&all);
+        let held = [connect(&one), connect(&one)].map(|held| held.expect("a place"));
+        let denied = connect(&one).expect_err("no place");
         assert!(denied.to_string().contains("2 connections"), "{denied}");
-        assert!(usages.of(address("192.0.2.1")).connection().is_err());
-        assert!(usages.of(address("192.0.2.2")).connection().is_ok());
+        assert!(connect(&usages.of(address("192.0.2.1"))).is_err());
+        assert!(connect(&usages.of(address("192.0.2.2"))).is_ok());
         drop(held);
-        assert!(one.connection().is_ok());
+        assert!(connect(&one).is_ok());
         assert!(one.bytes.take(10) && !one.bytes.take(1));
+    }
+
+    #[test]
+    fn a_few_addresses_never_take_all() {
+        let all = Quota::new(256);
+        let take = |address: &Quota| {
+            let mut taken = 0;
+            while address.is_fair(1, &all) && address.take(1) && all.take(1) {
+                taken += 1;
+            }
+            taken
+        };
+        let addresses: Vec<Quota> = (0..6).map(|_| Quota::new(64)).collect();
+        let taken: Vec<usize> = addresses.iter().map(take).collect();
+        assert_eq!(taken, [64, 64, 64, 32, 16, 8]);
+        // One that may take everything does.
+        let one = Quota::new(8);
+        let all = Quota::new(8);
+        assert!((0..8).all(|_| one.is_fair(1, &all) && one.take(1) && all.take(1)));
     }
 
     #[test]
     fn an_address_that_uses_nothing_is_forgotten() {
         let usages = usages();
-        let held = usages.of(address("2001:db8::1")).stream().expect("a place");
+        let all = Quota::new(100);
+        let stream = |text: &str| usages.of(address(text)).stream(&all);
+        let held = stream("2001:db8::1").expect("a place");
         // The whole /64 is one client.
-        assert!(usages.of(address("2001:db8::2:3")).stream().is_err());
+        assert!(stream("2001:db8::2:3").is_err());
         assert_eq!(usages.table.lock().len(), 1);
         drop(held);
         assert_eq!(usages.table.lock().len(), 0);

@@ -120,13 +120,15 @@ fn facts(error: &Error) -> HashMap<String, String> {
         }
         Error::Busy { limit }
         | Error::TooManyRequests { limit }
+        | Error::TooManyMixes { limit }
         | Error::TooManyBytes { limit }
         | Error::NeedsMoreBytes { limit, .. }
         | Error::TooManyJobs { limit }
         | Error::Denied(
             Denied::TooManyStreams { limit }
             | Denied::TooManyJobs { limit }
-            | Denied::Address { limit, .. },
+            | Denied::Address { limit, .. }
+            | Denied::Share { limit, .. },
         ) => {
             vec![("limit", limit.to_string())]
         }

@@ -18,7 +18,7 @@ use metrics::Counter;
 use tokio::{
     io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _},
     net::{TcpListener, TcpStream},
-    sync::{OwnedSemaphorePermit, Semaphore},
+    sync::Semaphore,
 };
 use tokio_util::{sync::CancellationToken, task::TaskTracker};
 
@@ -29,7 +29,7 @@ use super::{
     tls::Tls,
 };
 use crate::{
-    access::{Gate, InUse},
+    access::{Gate, InUse, OneOf, Quota},
     config::{Server, seconds},
     rest,
     service::Error,
@@ -49,8 +49,7 @@ struct Shared {
     http: Builder<TokioExecutor>,
     tls: Option<Tls>,
     patience: Patience,
-    limit: usize,
-    places: Arc<Semaphore>,
+    places: Arc<Quota>,
     /// Places for refusals in progress.
     telling: Arc<Semaphore>,
     /// The limits of addresses; nothing on the address of administrators.
@@ -101,8 +100,7 @@ impl Connections {
                 idle: seconds(settings.idle_connection_seconds),
                 stalled: seconds(settings.stalled_reader_seconds),
             },
-            limit,
-            places: Arc::new(Semaphore::new(limit)),
+            places: Arc::new(Quota::new(limit)),
             telling: Arc::new(Semaphore::new(REFUSALS_AT_ONCE)),
             gate,
             refused: LogThrottle::default(),
@@ -186,16 +184,16 @@ impl Connections {
 }
 
 /// A place among all connections, and one among those of the address.
-type Places = (OwnedSemaphorePermit, Option<InUse>);
+type Places = (OneOf, Option<InUse>);
 
 impl Shared {
     fn places_of(&self, peer: SocketAddr) -> Result<Places, Error> {
-        let limit = self.limit;
-        let place = self.places.clone().try_acquire_owned();
-        let place = place.map_err(|_| Error::TooManyConnections { limit })?;
         let usage = self.gate.as_ref().map(|gate| gate.usage(peer.ip()));
-        let of_address = usage.map(|usage| usage.connection()).transpose()?;
-        Ok((place, of_address))
+        let of_address = usage.map(|usage| usage.connection(&self.places));
+        let limit = self.places.limit();
+        let place = self.places.clone().one();
+        let place = place.ok_or(Error::TooManyConnections { limit })?;
+        Ok((place, of_address.transpose()?))
     }
 
     async fn serve(&self, stream: TcpStream, peer: SocketAddr, router: Router) {

@@ -92,13 +92,15 @@ impl<'a> Problem<'a> {
             | Error::Busy { limit }
             | Error::TooManyConnections { limit }
             | Error::TooManyRequests { limit }
+            | Error::TooManyMixes { limit }
             | Error::TooManyBytes { limit }
             | Error::NeedsMoreBytes { limit, .. }
             | Error::TooManyJobs { limit }
             | Error::Denied(
                 Denied::TooManyStreams { limit }
                 | Denied::TooManyJobs { limit }
-                | Denied::Address { limit, .. },
+                | Denied::Address { limit, .. }
+                | Denied::Share { limit, .. },
             ) => (None, u64::try_from(*limit).ok()),
             _ => (None, None),
         };

@@ -57,7 +57,7 @@ impl Budget {
     ///
     /// # Errors
     /// [`Error::NeedsMoreBytes`] if there can never be room, [`Error::TooManyBytes`] if there is none now,
-    /// [`Denied::Address`] if the address has used its own.
+    /// [`Denied::Address`] if the address has used its own, [`Denied::Share`] if little is left for others.
     pub fn hold(&self, bytes: usize) -> Result<Held, Error> {
         let mut held = self.hold_anyway(0);
         held.grow(bytes)?;
@@ -106,6 +106,10 @@ impl Held {
                     setting,
                 });
             }
+        }
+        if !address.bytes.is_fair(bytes, all) {
+            let (what, limit) = ("bytes", all.limit());
+            return Err(Denied::Share { what, limit }.into());
         }
         if !address.bytes.take(bytes) {
             let (what, limit) = ("bytes", address.bytes.limit());

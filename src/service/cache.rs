@@ -11,7 +11,7 @@ use std::sync::{
 
 use moka::{future::Cache, policy::EvictionPolicy};
 
-use super::{Entry, Error, Ready, Workers};
+use super::{Entry, Error, Lane, Ready, Workers};
 
 /// The cache.
 #[derive(Clone)]
@@ -92,7 +92,7 @@ impl Samplers {
                     .await
                     .unwrap_or(Err(Error::Internal("a computation failed")));
             }
-            workers.run(move || Ready::load(&entry)).await?
+            workers.take_turn(Lane::Short, move |_| Ready::load(&entry)).await?
         };
         self.ready
             .try_get_with_by_ref(&entry.digest, build)

@@ -271,14 +271,14 @@ impl Service {
         let held = blocks
             .saturating_add(ROWS)
             .saturating_add(side.saturating_mul(side));
-        let place = caller.place()?;
+        let place = caller.place(self.streams.places())?;
         let permit = self.streams.admit()?;
         Ok(permit.with(place, self.hold(held)?))
     }
 
     /// A place for an answer of events, which holds next to nothing.
     pub(super) fn place_for_events(&self, caller: &Caller) -> Result<Permit, Error> {
-        let place = caller.place()?;
+        let place = caller.place(self.streams.places())?;
         Ok(self.streams.admit()?.with(place, self.hold(64 << 10)?))
     }
 

@@ -216,6 +216,12 @@ pub enum Error {
         /// The limit.
         limit: usize,
     },
+    /// As many labels of kinds are being made, or wait to be made, as the server takes on at once.
+    #[error("{limit} kinds are being made, the limit of this server: try again later")]
+    TooManyMixes {
+        /// The limit.
+        limit: usize,
+    },
     /// Requests and answers hold as much memory as they may.
     #[error("requests and answers hold {limit} bytes, the limit of this server: try again later")]
     TooManyBytes {
@@ -396,12 +402,13 @@ impl Error {
                 Denied::NotAdmin { .. } => Kind::NotAllowed,
                 Denied::TooManyStreams { .. } => Kind::TooManyStreams,
                 Denied::TooManyJobs { .. } => Kind::TooManyJobs,
-                Denied::Address { .. } => Kind::TooManyForAddress,
+                Denied::Address { .. } | Denied::Share { .. } => Kind::TooManyForAddress,
                 Denied::TooFast { .. } => Kind::TooFast,
             },
             Self::Busy { .. }
             | Self::TooManyConnections { .. }
             | Self::TooManyRequests { .. }
+            | Self::TooManyMixes { .. }
             | Self::TooManyJobs { .. }
             | Self::TooManyBytes { .. }
             | Self::NeedsMoreBytes { .. } => Kind::Busy,

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use strew_core::{Table, table::Shares};
+use strew_core::{Table, server::Stop, table::Shares};
+use strew_forge::{Progress, Watch};
 
 use super::{Error, Fault};
 
@@ -37,15 +38,27 @@ impl Made {
     }
 }
 
+/// Ends the work of the forge once a flag is raised.
+struct Until<'a>(&'a Stop);
+
+impl Watch for Until<'_> {
+    fn progress(&self, _: &Progress) {}
+
+    fn stop(&self) -> bool {
+        self.0.is_raised()
+    }
+}
+
 /// Makes labels or a second order of a table. Takes seconds.
 ///
 /// # Errors
-/// [`Error::Invalid`] if the table has too few blocks for the shares.
-pub(super) fn make(table: &Table, what: &Made) -> Result<Table, Error> {
+/// [`Error::Invalid`] if the table has too few blocks for the shares, [`Error::Internal`] once it is stopped.
+pub(super) fn make(table: &Table, what: &Made, stop: &Stop) -> Result<Table, Error> {
     let began = std::time::Instant::now();
+    let watch = Until(stop);
     let made = match what {
-        Made::Labels(shares) => strew_forge::labels(table, shares, &()),
-        Made::SecondOrder => strew_forge::second_order(table, &())
+        Made::Labels(shares) => strew_forge::labels(table, shares, &watch),
+        Made::SecondOrder => strew_forge::second_order(table, &watch)
             .and_then(|order| Ok(order.map(|order| table.with_ranks(order)).transpose()?)),
     };
     let made = made.map_err(|error| {

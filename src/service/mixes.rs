@@ -1,8 +1,9 @@
 //! Mixes: tables whose variants are evenly spread, made for the first query that needs them.
 //!
-//! Making one takes seconds, so it is done once, at low priority, whoever asks, and to the end even if nobody
-//! waits any more. Those that were used last stay in memory; all are kept in a folder beside the tables, if
-//! there is one, so that a restart finds them.
+//! Making one takes seconds, so it is done once, at low priority, for the request that wants it first; others
+//! that want the same wait for it, too. Addresses take turns, and what none of them waits for any more ends. The
+//! mixes that were used last stay in memory; all are kept in a folder beside the tables, if there is one, so that a
+//! restart finds them.
 
 use std::{
     collections::HashMap,
@@ -13,28 +14,38 @@ use std::{
 
 use futures_util::{
     FutureExt as _,
-    future::{BoxFuture, Shared},
+    future::{BoxFuture, Shared, WeakShared},
 };
 use strew_core::{Table, server::Stop, table::MAX_FILE_BYTES};
 
 use super::{
-    Budget, Error, Lane, Ready, Workers,
+    Budget, Error, Lane, Owner, Ready, Record, Workers,
     cache::Samplers,
     mix::{Made, make},
 };
-use crate::bounded_file;
+use crate::{access::Denied, bounded_file};
 
 /// The mixes that were made.
 #[derive(Clone)]
 pub(super) struct Mixes {
     samplers: Samplers,
     budget: Budget,
-    making: Arc<Mutex<HashMap<String, Making>>>,
+    making: Arc<Mutex<HashMap<String, Begun>>>,
     folder: Option<Arc<Path>>,
 }
 
-/// A table that is being read or made.
-pub(super) type Making = Shared<BoxFuture<'static, Result<Ready, Error>>>;
+/// A table that is being read or made, while any request waits for it.
+type Making = Shared<BoxFuture<'static, Result<Ready, Error>>>;
+
+/// Something that was begun, and for whom.
+struct Begun {
+    making: WeakShared<BoxFuture<'static, Result<Ready, Error>>>,
+    owner: Owner,
+}
+
+/// The most mixes that are made or wait to be made at once, of one address and in all.
+const MOST_OF_ADDRESS: usize = 4;
+const MOST: usize = 16;
 
 /// The most mixes that are kept in a folder.
 const MOST_KEPT: usize = 256;
@@ -66,69 +77,79 @@ impl Mixes {
         self.samplers.known(&name(plain, what)).await
     }
 
-    /// Makes the labels or the second order of a table, unless that has begun.
-    pub(super) fn get(&self, plain: &Ready, what: &Made, workers: &Workers) -> Making {
+    /// Makes the labels or the second order of a table for the request that is being answered, or joins those
+    /// that wait for it. Ends when none of them waits any more.
+    ///
+    /// # Errors
+    /// [`Denied::Address`] and [`Error::TooManyMixes`] if too many are made or wait to be made,
+    /// [`Error::NeedsMoreBytes`] and others of [`Budget::hold`] for want of memory; [`Error::Invalid`] if the table
+    /// has too few blocks.
+    pub(super) async fn get(
+        &self,
+        plain: &Ready,
+        what: &Made,
+        workers: &Workers,
+    ) -> Result<Ready, Error> {
+        self.begin(plain, what, workers)?.await
+    }
+
+    fn begin(&self, plain: &Ready, what: &Made, workers: &Workers) -> Result<Making, Error> {
         let name = name(plain, what);
         let mut making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(begun) = making.get(&name) {
-            return begun.clone();
+        making.retain(|_, begun| begun.making.upgrade().is_some());
+        if let Some(begun) = making.get(&name).and_then(|begun| begun.making.upgrade()) {
+            return Ok(begun);
         }
-        let work = tokio::spawn(self.clone().work(
-            name.clone(),
-            plain.clone(),
-            what.clone(),
-            workers.clone(),
-        ));
-        // It goes on when nobody waits any more: the next one will ask again.
-        let work = work.map(|ended| ended.unwrap_or(Err(Error::Internal("a computation failed"))));
-        let begun = work.boxed().shared();
-        making.insert(name, begun.clone());
-        begun
+        let owner = Owner::current();
+        let of_address = making.values().filter(|begun| begun.owner.is_of(&owner));
+        if of_address.count() >= MOST_OF_ADDRESS {
+            let (what, limit) = ("kinds to be made", MOST_OF_ADDRESS);
+            return Err(Denied::Address { what, limit }.into());
+        }
+        if making.len() >= MOST {
+            return Err(Error::TooManyMixes { limit: MOST });
+        }
+        let work = self
+            .clone()
+            .make(name.clone(), plain.clone(), what.clone(), workers.clone());
+        // Whoever polls it, it is done for the request that wants it first.
+        let begun = owner.clone().scope(work).boxed().shared();
+        let weak = begun.downgrade();
+        if let Some(weak) = weak {
+            making.insert(name, Begun { making: weak, owner });
+        }
+        Ok(begun)
     }
 
     /// Reads or makes a mix.
-    async fn work(
+    async fn make(
         self,
         name: String,
         plain: Ready,
         what: Made,
         workers: Workers,
     ) -> Result<Ready, Error> {
-        let made = self.make(&name, &plain, what, &workers).await;
-        if let Ok(ready) = &made {
-            self.samplers.keep(name.clone(), ready.clone()).await;
-        }
-        let mut making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
-        making.remove(&name);
-        made
-    }
-
-    async fn make(
-        &self,
-        name: &str,
-        plain: &Ready,
-        what: Made,
-        workers: &Workers,
-    ) -> Result<Ready, Error> {
         // It may have been made since it was looked for.
-        if let Some(known) = self.samplers.known(name).await {
+        if let Some(known) = self.samplers.known(&name).await {
             return Ok(known);
         }
-        let held = self
-            .budget
-            .hold(ROOM + ROOM_BY_BLOCK * plain.entry.blocks())?;
+        let bytes = ROOM + ROOM_BY_BLOCK * plain.entry.blocks();
+        let budget = Record::current().map_or(self.budget, |record| record.budget().clone());
         let path = self.folder.as_deref();
         let path = path.map(|folder| folder.join(format!("{name}.strew")));
-        let Ready { entry, table, .. } = plain.clone();
-        let work = move |_: &Stop| {
-            let _held = held;
+        let Ready { entry, table, .. } = plain;
+        let work = move |stop: &Stop| -> Result<Ready, Error> {
+            // Held while it is made, not while it waits for its turn.
+            let _held = budget.hold(bytes)?;
             let made = match path {
-                Some(path) => read_or_make(&path, &table, &what),
-                None => make(&table, &what),
+                Some(path) => read_or_make(&path, &table, &what, stop),
+                None => make(&table, &what, stop),
             };
             Ok(Ready::new(entry, made?))
         };
-        workers.take_turn(Lane::Long, work).await?
+        let ready = workers.take_turn(Lane::Making, work).await??;
+        self.samplers.keep(name, ready.clone()).await;
+        Ok(ready)
     }
 }
 
@@ -142,13 +163,13 @@ fn name(plain: &Ready, what: &Made) -> String {
 }
 
 /// Reads a mix that was made earlier, or makes it and keeps it.
-fn read_or_make(path: &Path, plain: &Table, what: &Made) -> Result<Table, Error> {
+fn read_or_make(path: &Path, plain: &Table, what: &Made, stop: &Stop) -> Result<Table, Error> {
     let known = bounded_file::read(path, MAX_FILE_BYTES).ok();
     let known = known.and_then(|bytes| Table::from_bytes(&bytes).ok());
     if let Some(known) = known.filter(|made| what.is(made, plain)) {
         return Ok(known);
     }
-    let made = make(plain, what)?;
+    let made = make(plain, what, stop)?;
     if let Err(error) = keep(path, &made) {
         tracing::warn!(path = %path.display(), %error, "a mix could not be kept, and a restart will make it again");
     }

@@ -23,7 +23,6 @@ pub mod except;
 pub mod field;
 #[cfg(feature = "daemon")]
 pub mod forging;
-mod lane;
 pub mod library;
 #[cfg(feature = "daemon")]
 pub mod mask;
@@ -52,17 +51,13 @@ pub mod stream;
 #[cfg(feature = "daemon")]
 mod tables;
 mod terrain;
-#[cfg(feature = "daemon")]
-mod turns;
-#[cfg(feature = "daemon")]
-pub mod workers;
+pub mod work;
 pub mod world;
 
 pub use catalog::{Catalog, Entry, Key, Reload};
 pub use effort::{Neighbors, considered};
 pub use encode::{Answer, Encoding, Options, Output};
 pub use error::{Error, Fault, Kind};
-pub use lane::Lane;
 pub use library::{Columns, Library};
 pub use planned::{Placed, PlacedPoints, Planned};
 pub use planned_points::{PlannedPoints, Walk};
@@ -70,6 +65,7 @@ pub use planned_set::PlannedSet;
 pub use query::{Draft, Nearest, Query, Set, Token};
 pub use ready::Ready;
 pub use single::Found;
+pub use work::Lane;
 pub use world::{World, Worlds};
 #[cfg(feature = "daemon")]
 pub use {
@@ -79,7 +75,7 @@ pub use {
     promise::PointsInFlight,
     record::Record,
     stream::{BlockStream, Interrupted, Permit, Streams},
-    workers::Workers,
+    work::{Owner, Workers},
 };
 
 pub use crate::config::Limits;

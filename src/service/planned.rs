@@ -201,7 +201,7 @@ impl Planned {
                 Some(kinds) if ready.table.mix().is_none() => {
                     let table = match &kinds.made {
                         Some(made) => made.table()?,
-                        None => mix::make(&ready.table, &kinds.made_of())?,
+                        None => mix::make(&ready.table, &kinds.made_of(), &Stop::default())?,
                     };
                     Ok(ready.with_made(kinds, table))
                 }

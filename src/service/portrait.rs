@@ -78,7 +78,7 @@ impl Portraits {
         let make = async {
             let entry = entry.clone();
             let made = workers
-                .take_turn(Lane::Long, move |_| Portrait::new(&entry))
+                .take_turn(Lane::Making, move |_| Portrait::new(&entry))
                 .await?;
             Ok::<_, Error>(Arc::new(made?))
         };

@@ -9,7 +9,9 @@ use std::sync::{
     atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
 };
 
-use super::{Answer, Budget, Kind, Lane, PointsInFlight, encode::EncodeError, promise::Promise};
+use super::{
+    Answer, Budget, Kind, Lane, PointsInFlight, encode::EncodeError, promise::Promise, work::Clock,
+};
 
 tokio::task_local! {
     static CURRENT: Arc<Record>;
@@ -26,6 +28,7 @@ pub struct Record {
     promise: OnceLock<Promise>,
     is_long: AtomicBool,
     code: AtomicU32,
+    clock: Arc<Clock>,
 }
 
 /// No code yet.
@@ -44,6 +47,7 @@ impl Record {
             promise: OnceLock::new(),
             is_long: AtomicBool::new(false),
             code: AtomicU32::new(NONE),
+            clock: Arc::default(),
         })
     }
 
@@ -72,6 +76,12 @@ impl Record {
     #[must_use]
     pub const fn budget(&self) -> &Budget {
         &self.budget
+    }
+
+    /// How long the request has waited for turns.
+    #[must_use]
+    pub const fn clock(&self) -> &Arc<Clock> {
+        &self.clock
     }
 
     /// The name of the request.

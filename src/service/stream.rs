@@ -10,10 +10,7 @@
 use std::{
     collections::VecDeque,
     pin::Pin,
-    sync::{
-        Arc, Mutex, MutexGuard, PoisonError, Weak,
-        atomic::{AtomicUsize, Ordering},
-    },
+    sync::{Arc, Mutex, MutexGuard, PoisonError, Weak},
     task::{Context, Poll, Waker},
     time::{Duration, Instant},
 };
@@ -21,8 +18,8 @@ use std::{
 use futures_util::{FutureExt as _, Stream};
 use tokio_util::sync::{CancellationToken, WaitForCancellationFutureOwned};
 
-use super::{Error, Held, Lane, Workers};
-use crate::access::Place;
+use super::{Error, Held, Lane, Owner, Workers};
+use crate::access::{OneOf, Place, Quota};
 
 /// Why a stream broke off: its reader must see that it is not complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -44,8 +41,7 @@ pub enum Interrupted {
 /// All streams under way: counts them, bounds them, ends them.
 #[derive(Debug)]
 pub struct Streams {
-    open: AtomicUsize,
-    limit: usize,
+    open: Arc<Quota>,
     stop: CancellationToken,
 }
 
@@ -54,8 +50,7 @@ impl Streams {
     #[must_use]
     pub fn new(limit: usize) -> Self {
         Self {
-            open: AtomicUsize::new(0),
-            limit,
+            open: Arc::new(Quota::new(limit)),
             stop: CancellationToken::new(),
         }
     }
@@ -63,7 +58,12 @@ impl Streams {
     /// How many are under way, with those whose last block is still being made for nobody.
     #[must_use]
     pub fn open(&self) -> usize {
-        self.open.load(Ordering::Acquire)
+        self.open.used()
+    }
+
+    /// The places of all streams.
+    pub(super) fn places(&self) -> &Quota {
+        &self.open
     }
 
     /// The right to start one more.
@@ -75,12 +75,11 @@ impl Streams {
         if self.stop.is_cancelled() {
             return Err(Error::ShuttingDown);
         }
-        let more = |open: usize| (open < self.limit).then_some(open + 1);
-        self.open
-            .fetch_update(Ordering::AcqRel, Ordering::Acquire, more)
-            .map_err(|_| Error::Busy { limit: self.limit })?;
+        let limit = self.open.limit();
+        let one = self.open.clone().one().ok_or(Error::Busy { limit })?;
         Ok(Permit {
             streams: self.clone(),
+            _one: one,
             _place: None,
             _held: None,
         })
@@ -96,6 +95,7 @@ impl Streams {
 #[derive(Debug)]
 pub struct Permit {
     streams: Arc<Streams>,
+    _one: OneOf,
     /// The caller's place.
     _place: Option<Place>,
     /// What it may hold.
@@ -115,12 +115,6 @@ impl Permit {
     /// Waits until all streams are told to end.
     pub(super) async fn stopped(&self) {
         self.streams.stop.cancelled().await;
-    }
-}
-
-impl Drop for Permit {
-    fn drop(&mut self) {
-        self.streams.open.fetch_sub(1, Ordering::AcqRel);
     }
 }
 
@@ -167,6 +161,7 @@ pub struct BlockStream<I: Iterator> {
     /// Nothing once all is said.
     shared: Option<Arc<Mutex<Shared<I>>>>,
     workers: Workers,
+    owner: Owner,
     lane: Lane,
     stop: Pin<Box<WaitForCancellationFutureOwned>>,
     /// When the last block was taken.
@@ -195,6 +190,7 @@ where
         Self {
             shared: Some(Arc::new(Mutex::new(shared))),
             workers,
+            owner: Owner::current(),
             lane,
             stop,
             taken: Instant::now(),
@@ -306,7 +302,7 @@ where
                 shared: Arc::downgrade(&all),
             };
             drop(shared);
-            self.workers.spawn(self.lane, || turn.run());
+            self.workers.take_piece(&self.owner, self.lane, || turn.run());
         }
         match item {
             Some(item) => Poll::Ready(Some(Ok(item))),
@@ -317,6 +313,8 @@ where
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use futures_util::StreamExt as _;
 
     use super::*;
@@ -447,9 +445,8 @@ mod tests {
         let (mut stream, streams) = stream(numbers);
         // The only worker is busy, so there is nothing to take.
         let (hold, held) = std::sync::mpsc::channel::<()>();
-        stream.workers.spawn(Lane::Short, move || {
-            let _ = held.recv();
-        });
+        let busy = move || assert!(held.recv().is_err());
+        stream.workers.take_piece(&stream.owner, Lane::Short, busy);
         let mut context = Context::from_waker(Waker::noop());
         assert!(stream.poll_next_unpin(&mut context).is_pending());
         let reader = tokio::spawn(stream.collect::<Vec<_>>());

@@ -1,8 +1,11 @@
 //! A flag that ends counting early.
 
 use crate::error::{Error, ErrorKind};
-use alloc::sync::Arc;
-use core::sync::atomic::{AtomicBool, Ordering};
+use alloc::{boxed::Box, sync::Arc};
+use core::{
+    fmt,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 /// A flag that stops the counting of a plan. Clones share it; the default one is never raised.
 ///
@@ -17,9 +20,24 @@ use core::sync::atomic::{AtomicBool, Ordering};
 /// std::thread::spawn(move || shared.raise()).join().expect("does not panic");
 /// assert!(stop.is_raised());
 /// ```
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub struct Stop {
-    flag: Option<Arc<AtomicBool>>,
+    flag: Option<Arc<Flag>>,
+}
+
+#[derive(Default)]
+struct Flag {
+    is_raised: AtomicBool,
+    /// Called at each look.
+    look: Option<Box<dyn Fn() + Send + Sync>>,
+}
+
+impl fmt::Debug for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let flag = self.flag.as_ref();
+        let is_raised = flag.map(|flag| flag.is_raised.load(Ordering::Relaxed));
+        f.debug_struct("Stop").field("raised", &is_raised).finish()
+    }
 }
 
 impl Stop {
@@ -37,6 +55,32 @@ impl Stop {
         }
     }
 
+    /// A flag that calls a function at each look, before it reads the flag. Work looks often, so this is
+    /// where a server lets long work wait while other work takes its turn.
+    ///
+    /// ```
+    /// use std::sync::{Arc, atomic::{AtomicU32, Ordering}};
+    /// use strew_core::server::Stop;
+    ///
+    /// let looks = Arc::new(AtomicU32::new(0));
+    /// let counted = looks.clone();
+    /// let stop = Stop::with_look(move || {
+    ///     counted.fetch_add(1, Ordering::Relaxed);
+    /// });
+    /// assert!(!stop.is_raised() && !stop.clone().is_raised());
+    /// assert_eq!(looks.load(Ordering::Relaxed), 2);
+    /// ```
+    #[must_use]
+    pub fn with_look(look: impl Fn() + Send + Sync + 'static) -> Self {
+        let flag = Flag {
+            is_raised: AtomicBool::new(false),
+            look: Some(Box::new(look)),
+        };
+        Self {
+            flag: Some(Arc::new(flag)),
+        }
+    }
+
     /// Raises the flag and all its clones. Does nothing to the default one.
     ///
     /// ```
@@ -49,7 +93,7 @@ impl Stop {
     /// ```
     pub fn raise(&self) {
         if let Some(flag) = &self.flag {
-            flag.store(true, Ordering::Relaxed);
+            flag.is_raised.store(true, Ordering::Relaxed);
         }
     }
 
@@ -76,8 +120,11 @@ impl Stop {
     /// ```
     #[must_use]
     pub fn is_raised(&self) -> bool {
-        self.flag
-            .as_ref()
-            .is_some_and(|flag| flag.load(Ordering::Relaxed))
+        self.flag.as_ref().is_some_and(|flag| {
+            if let Some(look) = &flag.look {
+                look();
+            }
+            flag.is_raised.load(Ordering::Relaxed)
+        })
     }
 }

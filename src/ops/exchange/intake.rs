@@ -1,9 +1,10 @@
 //! What is taken on: the number of requests at once, the bytes of their bodies, and the time for each
 //! step to the head of the answer.
 //!
-//! A request is in progress from its head to the head of its answer. In that time its body must
-//! arrive and its answer must be found; a request that takes longer is refused, and the work for it
-//! stops. Health checks have places of their own.
+//! A body must arrive in time; what arrives takes bytes of the budget and no place. From the end of its body to the
+//! head of its answer a request has a place. There it waits for its turns and is worked on, each no longer than
+//! the settings allow; a request that takes longer is refused, and the work for it stops. Health checks have
+//! places of their own.
 
 use std::{
     pin::Pin,
@@ -22,12 +23,13 @@ use axum::{
 use bytes::Bytes;
 use http_body::{Body as HttpBody, Frame, SizeHint};
 use tokio::{
-    sync::{Notify, Semaphore},
-    time::{Sleep, sleep},
+    sync::Notify,
+    time::{Instant, Sleep, sleep, sleep_until},
 };
 
-use super::{Probe, Refused};
+use super::{Client, Probe, Refused};
 use crate::{
+    access::{InUse, OneOf, Quota, Usage},
     config::{Config, seconds},
     ops::{
         dialect::{BoxError, Dialect},
@@ -44,8 +46,7 @@ pub(in crate::ops) struct Intake {
 
 #[derive(Debug)]
 struct Shared {
-    places: Semaphore,
-    limit: usize,
+    places: Arc<Quota>,
     budget: Budget,
     body: Duration,
     first_byte: Duration,
@@ -54,11 +55,10 @@ struct Shared {
 
 impl Intake {
     pub(in crate::ops) fn new(config: &Config, budget: Budget) -> Self {
-        let (server, limit) = (&config.server, config.limits.max_requests);
+        let server = &config.server;
         Self {
             shared: Arc::new(Shared {
-                places: Semaphore::new(limit),
-                limit,
+                places: Arc::new(Quota::new(config.limits.max_requests)),
                 budget,
                 body: seconds(server.body_read_timeout_seconds),
                 first_byte: seconds(server.first_byte_seconds),
@@ -96,26 +96,28 @@ impl Shared {
         request: Request,
         next: Next,
     ) -> Result<Response, Error> {
-        let limit = self.limit;
         let is_probe = request.extensions().get::<Probe>().is_some();
-        let place = match is_probe {
-            true => None,
-            false => {
-                let place = self.places.try_acquire();
-                Some(place.map_err(|_| Error::TooManyRequests { limit })?)
-            }
-        };
+        let client = request.extensions().get::<Client>();
+        let places = (!is_probe).then(|| Places {
+            all: self.places.clone(),
+            address: client.map_or_else(Usage::unlimited, |client| client.usage.clone()),
+        });
         let record = Record::current();
         let budget = record
             .as_ref()
             .map_or(&self.budget, |record| record.budget());
         let received = Arc::new(Receiving {
             held: Mutex::new(budget.hold_anyway(0)),
+            place: Mutex::new(None),
+            places,
             done: Notify::new(),
         });
+        if request.body().is_end_stream() {
+            received.take_place()?;
+            received.done.notify_one();
+        }
         let request = request.map(|body| {
             if body.is_end_stream() {
-                received.done.notify_one();
                 return body;
             }
             Body::new(Received {
@@ -128,10 +130,17 @@ impl Shared {
                 free: if is_probe { PROBE_BODY } else { 0 },
             })
         });
-        // The body has a deadline of its own; the time for the answer begins when it is there.
+        // The body has a deadline of its own; the time for the answer begins when it is there. Waiting for turns
+        // and work each have as long as the settings allow.
         let too_long = async {
             received.done.notified().await;
-            sleep(self.first_byte).await;
+            let begun = Instant::now();
+            let mut waited = Duration::ZERO;
+            while waited < self.first_byte && begun.elapsed() < self.first_byte + waited {
+                sleep_until(begun + self.first_byte + waited).await;
+                let clock = record.as_ref().map(|record| record.clock().waited());
+                waited = clock.unwrap_or_default();
+            }
         };
         let mut response = tokio::select! {
             response = next.run(request) => response,
@@ -140,7 +149,7 @@ impl Shared {
                 return Err(Error::TimeOver { seconds: seconds.to_string() });
             }
         };
-        drop((place, received));
+        drop(received);
         let whole = response.body().size_hint().exact();
         if let Some(bytes @ 1..) = whole {
             let bytes = usize::try_from(bytes).unwrap_or(usize::MAX);
@@ -159,8 +168,36 @@ impl Shared {
 struct Receiving {
     /// What has come of it: it is kept until there is an answer.
     held: Mutex<Held>,
+    /// The place of the request, once all of it has come.
+    place: Mutex<Option<(OneOf, InUse)>>,
+    /// Where it takes its place; health checks need none.
+    places: Option<Places>,
     /// Told when the last of it has come, or is not wanted any more.
     done: Notify,
+}
+
+/// The places for requests.
+#[derive(Debug)]
+struct Places {
+    all: Arc<Quota>,
+    address: Arc<Usage>,
+}
+
+impl Receiving {
+    /// Takes a place for the request, unless it has one.
+    fn take_place(&self) -> Result<(), Error> {
+        let Some(Places { all, address }) = &self.places else {
+            return Ok(());
+        };
+        let mut place = self.place.lock().unwrap_or_else(PoisonError::into_inner);
+        if place.is_none() {
+            let limit = all.limit();
+            let of_address = address.place(all)?;
+            let one = all.clone().one().ok_or(Error::TooManyRequests { limit })?;
+            *place = Some((one, of_address));
+        }
+        Ok(())
+    }
 }
 
 /// As much is read before other requests have their turn: clients that send fast would keep the
@@ -207,6 +244,7 @@ impl HttpBody for Received {
                     .grow(counted)
                     .err()
             }
+            Poll::Ready(None) => self.receiving.take_place().err(),
             Poll::Ready(_) => None,
             Poll::Pending => {
                 self.at_once = 0;
@@ -232,6 +270,8 @@ impl HttpBody for Received {
 
 impl Drop for Received {
     fn drop(&mut self) {
+        // What is not read to its end counts all the same, where there is a place.
+        let _ = self.receiving.take_place();
         self.receiving.done.notify_one();
     }
 }

@@ -16,7 +16,7 @@ use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderValue, header};
 
 use super::vary;
-use crate::service::{Error, Held, Lane, Service, Workers};
+use crate::service::{Error, Held, Lane, Owner, Service, Workers};
 pub(super) use choice::Coding;
 pub(super) use encoder::Encoder;
 
@@ -117,11 +117,13 @@ async fn whole_document(
 fn compressed(body: Body, coding: Coding, workers: Workers, held: Held) -> Body {
     let state = Encoder::new(coding).map(|encoder| (body.into_data_stream(), encoder));
     let start = stream::once(std::future::ready(state));
+    // The body is polled outside of its request.
+    let threads = (workers, Owner::current());
     let blocks = start.flat_map(move |state| {
-        let workers = workers.clone();
+        let threads = threads.clone();
         match state {
             Ok(state) => {
-                stream::try_unfold(Some(state), move |state| next_block(state, workers.clone()))
+                stream::try_unfold(Some(state), move |state| next_block(state, threads.clone()))
                     .left_stream()
             }
             Err(error) => {
@@ -137,13 +139,17 @@ fn compressed(body: Body, coding: Coding, workers: Workers, held: Held) -> Body 
 
 type State = Option<(axum::body::BodyDataStream, Encoder)>;
 
-async fn next_block(state: State, workers: Workers) -> Result<Option<(Bytes, State)>, axum::Error> {
+async fn next_block(
+    state: State,
+    (workers, owner): (Workers, Owner),
+) -> Result<Option<(Bytes, State)>, axum::Error> {
     let Some((mut blocks, encoder)) = state else {
         return Ok(None);
     };
     let block = blocks.next().await.transpose()?;
     let is_last = block.is_none();
-    let made = workers.run(move || encoder.encode(block)).await;
+    let encode = move |_: &_| encoder.encode(block);
+    let made = workers.take_turn_for(&owner, Lane::Short, encode).await;
     let (encoder, encoded) = made.map_err(axum::Error::new)?.map_err(axum::Error::new)?;
     Ok(Some((encoded, (!is_last).then_some((blocks, encoder)))))
 }

@@ -7,6 +7,7 @@
 mod columns;
 pub mod measured;
 
+use strew_core::server::Stop;
 use std::{
     collections::HashMap,
     path::Path,
@@ -289,7 +290,7 @@ impl Library {
         let what = kinds.made_of();
         let name = format!("{} {what}", plain.entry.digest);
         let made = self.kept(&name, || {
-            let table = mix::make(&plain.table, &what)?;
+            let table = mix::make(&plain.table, &what, &Stop::default())?;
             Ok(Ready::new(plain.entry.clone(), table))
         })?;
         Ok(plain.with_made(kinds, made.table))
