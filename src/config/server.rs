@@ -35,6 +35,8 @@ pub struct Server {
     pub body_read_timeout_seconds: f64,
     /// How long the head of an answer may take once its request is there, in seconds.
     pub first_byte_seconds: f64,
+    /// How long short work may wait for a worker before the daemon is not ready, in seconds.
+    pub ready_within_seconds: f64,
     /// How long an answer may take in all, in seconds.
     pub max_stream_seconds: f64,
     /// How long a reader may take nothing of what waits for it, in seconds.
@@ -55,6 +57,7 @@ impl Server {
             idle_connection_seconds: 0.1 * SECOND..=DAY,
             body_read_timeout_seconds: 0.1 * SECOND..=HOUR,
             first_byte_seconds: 0.1 * SECOND..=HOUR,
+            ready_within_seconds: 0.1 * SECOND..=HOUR,
             max_stream_seconds: 0.1 * SECOND..=365.0 * DAY,
             stalled_reader_seconds: 0.1 * SECOND..=DAY,
             min_bytes_per_second: 0.0..=1e9,

@@ -25,7 +25,7 @@ use std::sync::Arc;
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use bytes::Bytes;
 use http::{HeaderMap, HeaderValue};
-use tonic::{Status, service::Routes};
+use tonic::{Status, server::NamedService, service::Routes};
 use tonic_health::server::HealthReporter;
 
 use crate::service::{Error, Interrupted, Service};
@@ -115,13 +115,16 @@ pub struct Health {
 }
 
 impl Health {
-    /// Reports from now on that nothing is served.
-    pub async fn close(&self) {
-        let state = tonic_health::ServingStatus::NotServing;
-        self.reporter.set_service_status("", state).await;
-        self.reporter
-            .set_not_serving::<PointServiceServer<Points>>()
-            .await;
+    /// Reports from now on whether the service is served.
+    pub async fn set(&self, is_serving: bool) {
+        let state = match is_serving {
+            true => tonic_health::ServingStatus::Serving,
+            false => tonic_health::ServingStatus::NotServing,
+        };
+        let name = <PointServiceServer<Points> as NamedService>::NAME;
+        for service in ["", name] {
+            self.reporter.set_service_status(service, state).await;
+        }
     }
 }
 

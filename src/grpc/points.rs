@@ -62,7 +62,7 @@ impl Points {
     ) -> Result<Response<MessageStream>, Error> {
         let (query, encoding) = self.read(request).await?;
         let (permit, planned) = self.service.open(caller, query, None).await?;
-        let block_bytes = self.service.limits().block_bytes;
+        let block_bytes = planned.block_bytes(self.service.limits().block_bytes);
         let messages = Messages::new(request, planned, encoding, block_bytes)?;
         Record::in_format(match encoding {
             Encoding::F32Le => "f32",

@@ -1,44 +1,71 @@
 //! Whether the daemon lives, and whether it takes requests.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Duration,
 };
 
 use axum::{body::Body, extract::State, response::Response, routing::get};
 use http::{HeaderValue, Method, StatusCode, header};
 use schemars::JsonSchema;
 use serde::Serialize;
+use tokio::sync::watch;
 
 use crate::{
+    grpc::Health,
     rest::api::{Answer, Endpoint, Operation, Tag, schemas},
-    service::Service,
+    service::{Pulse, Service, Workers},
 };
 
-/// Whether requests are welcome. Starts as yes.
+/// Whether requests are welcome: until the daemon stops, while its workers answer in time.
 #[derive(Clone, Debug)]
 pub struct Readiness {
-    ready: Arc<AtomicBool>,
-}
-
-impl Default for Readiness {
-    fn default() -> Self {
-        Self {
-            ready: Arc::new(AtomicBool::new(true)),
-        }
-    }
+    is_closed: Arc<AtomicBool>,
+    pulse: Arc<Pulse>,
+    bound: Duration,
 }
 
 impl Readiness {
-    /// From now on: no.
+    /// Ready from now on, while short work waits for no longer than `bound`.
+    #[must_use]
+    pub fn within(bound: Duration) -> Self {
+        Self {
+            is_closed: Arc::default(),
+            pulse: Arc::default(),
+            bound,
+        }
+    }
+
+    /// Not ready from now on.
     pub fn close(&self) {
-        self.ready.store(false, Ordering::Release);
+        self.is_closed.store(true, Ordering::Release);
     }
 
     /// Whether requests are welcome.
     #[must_use]
     pub fn is_ready(&self) -> bool {
-        self.ready.load(Ordering::Acquire)
+        !self.is_closed.load(Ordering::Acquire) && self.pulse.is_within(self.bound)
+    }
+
+    /// Looks at the workers until the task is dropped, and reports to the health service of gRPC.
+    pub async fn watch(self, workers: Workers, grpc: Health) {
+        let (sender, mut in_time) = watch::channel(true);
+        let report = async {
+            while in_time.changed().await.is_ok() {
+                let is_ready = *in_time.borrow_and_update();
+                match is_ready {
+                    true => tracing::info!("short work is done in time again"),
+                    false => tracing::error!("short work waits too long: the daemon is not ready"),
+                }
+                if !self.is_closed.load(Ordering::Acquire) {
+                    grpc.set(is_ready).await;
+                }
+            }
+        };
+        tokio::join!(self.pulse.beat(workers, self.bound, sender), report);
     }
 }
 
@@ -55,7 +82,7 @@ pub fn endpoints(readiness: Readiness, service: Arc<Service>) -> Vec<Endpoint> {
         "getReadyz",
         "Whether the daemon takes requests",
         |generator| generator.subschema_for::<Ready>(),
-        vec![(200, "It takes requests."), (503, "It is about to stop.")],
+        vec![(200, "It takes requests."), (503, "It is about to stop, or points wait too long for a worker.")],
         "/readyz",
     );
     let live = get(|| async { typed(StatusCode::OK, &Alive { alive: true }) });

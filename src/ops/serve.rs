@@ -207,8 +207,12 @@ impl App {
         let forging = self.service.forging().clone();
         let begin = forging.clone();
         let _ = tokio::task::spawn_blocking(move || begin.resume()).await;
-        let readiness = Readiness::default();
+        let readiness =
+            Readiness::within(config::seconds(self.config.server.ready_within_seconds));
         let (router, grpc_health) = self.router(readiness.clone()).await?;
+        let watch = readiness.clone();
+        let watch = watch.watch(self.service.workers().clone(), grpc_health.clone());
+        let _pulse = AbortOnDropHandle::new(tokio::spawn(watch));
         let listener = asynchronous(listener)?;
         let handshakes = self.metrics.failed_handshakes();
         let server = &self.config.server;
@@ -232,7 +236,7 @@ impl App {
         readiness.close();
         // Jobs keep a checkpoint while connections drain.
         let stopped = tokio::task::spawn_blocking(move || forging.stop(FORGE_GRACE));
-        grpc_health.close().await;
+        grpc_health.set(false).await;
         tokio::time::sleep(config::seconds(self.config.shutdown.notice_seconds)).await;
         connections.close();
         // From here on the port is free for another.

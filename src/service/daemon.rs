@@ -170,8 +170,10 @@ impl Service {
         query: Query,
         picture: Option<u32>,
     ) -> Result<(Permit, Planned), Error> {
+        // Waiting for labels takes no place.
+        let tables = self.tables(caller, &query).await?;
         let permit = self.admit(caller, picture)?;
-        let (planned, charged) = self.charged(caller, query).await?;
+        let (planned, charged) = self.charged(caller, query, tables).await?;
         self.check_points(caller, &planned)?;
         caller.charge(considered(&planned), charged)?;
         // No more than the limit, which has 64 bits.
@@ -202,31 +204,47 @@ impl Service {
     /// [`Error::TooManyRows`] if counting would take too long, and [`Error::Denied`] if the caller's
     /// rate does not allow it.
     pub async fn count(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
-        let (planned, _) = self.charged(caller, query).await?;
+        let tables = self.tables(caller, &query).await?;
+        let (planned, _) = self.charged(caller, query, tables).await?;
         Ok(planned)
     }
 
-    /// Plans a query. Returns the plan and what was charged for it.
-    async fn charged(&self, caller: &Caller, query: Query) -> Result<(Planned, u128), Error> {
-        let mut charged = 0;
+    /// The tables of the sets of a query.
+    async fn tables(&self, caller: &Caller, query: &Query) -> Result<Vec<Ready>, Error> {
         let mut tables = vec![];
         for set in &*query.sets {
             tables.push(self.ready(caller, set).await?);
         }
+        Ok(tables)
+    }
+
+    /// Plans a query. Returns the plan and what was charged for it.
+    async fn charged(
+        &self,
+        caller: &Caller,
+        query: Query,
+        tables: Vec<Ready>,
+    ) -> Result<(Planned, u128), Error> {
+        let mut charged = 0;
+        let limits = self.limits.clone();
         let planned = if query.is_small() {
             // Handing it over would take longer.
-            Planned::new(query, &tables, &self.limits)?
+            Planned::new(query, &tables, &limits)?
         } else {
-            let limits = self.limits.clone();
-            let rows = effort::planning(&query, &tables, limits.max_rows);
+            let most = limits.max_rows;
+            let is_plain = effort::is_plain(&query);
+            let price = move |_: &Stop| (effort::planning(&query, &tables, most), query, tables);
+            let (rows, query, tables) = match is_plain {
+                true => price(&Stop::default()),
+                false => self.workers.take_turn(Lane::Short, price).await?,
+            };
             charged = rows as u128;
             // Before the work, which is done even if the answer is refused.
             if charged > 0 {
                 caller.charge(charged, 0)?;
             }
-            let lane = effort::lane(rows);
             let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
-            self.workers.take_turn(lane, plan).await??
+            self.workers.take_turn(effort::lane(rows), plan).await??
         };
         tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
         if let Some(record) = Record::current() {

@@ -75,7 +75,7 @@ pub use {
     promise::PointsInFlight,
     record::Record,
     stream::{BlockStream, Interrupted, Permit, Streams},
-    work::{Owner, Workers},
+    work::{Owner, Pulse, Workers},
 };
 
 pub use crate::config::Limits;

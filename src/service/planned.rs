@@ -7,6 +7,7 @@ use strew_core::{BoundAttributes, Cursor, Member, PeriodicSet, PointId, PointSet
 use super::{
     Entry, Error, Limits, Ready,
     attributes::PointAttributes,
+    effort,
     encode::{Attributes, Part},
     mix,
     planned_set::PlannedSet,
@@ -308,8 +309,25 @@ impl Planned {
         }
         let bound = |i: u128| i * (self.count / parts) + i.min(self.count % parts);
         let size = |i: u128| u64::try_from(bound(i + 1) - bound(i)).unwrap_or(u64::MAX);
-        let places = (0..parts).filter_map(|i| Some((self.place(bound(i))?, size(i))));
-        Ok(places.collect())
+        // Beyond as many parts as there are points, parts are empty.
+        let numbers: Vec<u128> = (0..parts.min(self.count)).map(bound).collect();
+        let mut places = Vec::with_capacity(numbers.len());
+        let first = self.query.window.cursor;
+        let first = first.map_or(0, |token| usize::from(token.set));
+        let mut before = 0;
+        for (i, set) in self.sets.iter().enumerate().skip(first) {
+            let end = before + set.plan.count();
+            let own = &numbers[places.len()..];
+            let own = own[..own.partition_point(|&k| k < end)].iter();
+            let own: Vec<u128> = own.map(|k| k - before).collect();
+            let tokens = set.plan.cursors(&own).into_iter();
+            places.extend(tokens.map(|cursor| self.token(i, cursor?)));
+            before = end;
+        }
+        let sized = places.into_iter().zip(0..);
+        Ok(sized
+            .filter_map(|(place, i)| Some((place?, size(i))))
+            .collect())
     }
 
     /// What is asked of the plans from here on stops with this flag.
@@ -321,17 +339,10 @@ impl Planned {
         self
     }
 
-    /// The place of point number `k` of the answer.
-    fn place(&self, mut k: u128) -> Option<Token> {
-        let first = self.query.window.cursor;
-        let first = first.map_or(0, |token| usize::from(token.set));
-        for (i, set) in self.sets.iter().enumerate().skip(first) {
-            if k < set.plan.count() {
-                return self.token(i, set.plan.window(k, None).cursor()?);
-            }
-            k -= set.plan.count();
-        }
-        None
+    /// The size of the blocks of the answer, where the settings allow `most` bytes: less where points are costly.
+    #[must_use]
+    pub fn block_bytes(&self, most: usize) -> usize {
+        effort::block_bytes(self, most)
     }
 
     /// The parts of the answer.

@@ -79,6 +79,21 @@ impl PlannedPoints {
         }
     }
 
+    /// The places of points of some numbers below the count, each greater than the one before.
+    #[must_use]
+    pub(super) fn cursors(&self, numbers: &[u128]) -> Vec<Option<Cursor>> {
+        match self {
+            Self::Plane(plan) => {
+                let windows = server::windows(plan, numbers).into_iter();
+                windows.map(|window| window.cursor()).collect()
+            }
+            Self::Period(plan) => {
+                let cursor = |&k: &u128| plan.window(k, None).cursor();
+                numbers.iter().map(cursor).collect()
+            }
+        }
+    }
+
     /// The place of the first point, if there is one.
     #[must_use]
     pub fn cursor(&self) -> Option<Cursor> {

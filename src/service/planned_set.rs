@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use strew_core::Spacing;
+use strew_core::{Region, Spacing};
 
 use super::{
-    Entry, PlannedPoints,
+    Entry, PlannedPoints, effort,
     query::{KindDistance, Set},
 };
 
@@ -24,6 +24,8 @@ pub struct PlannedSet {
     pub plan: PlannedPoints,
     /// The points that counting all of them looks at one by one; none without a field.
     pub candidates: u128,
+    /// What making a point takes, in nanoseconds.
+    pub(super) nanoseconds: f64,
     /// How many points of the region each of the set's kinds has.
     pub kinds: Vec<u128>,
     /// The distances that their points keep.
@@ -50,6 +52,7 @@ impl PlannedSet {
             total: plan.total(),
             plan,
             candidates,
+            nanoseconds: 0.0,
             kinds: vec![],
             kind_distances: vec![],
             before: 0,
@@ -63,6 +66,13 @@ impl PlannedSet {
             kind_distances,
             ..self
         }
+    }
+
+    /// The set with what making a point takes, where testing a place against other layers takes `test`
+    /// nanoseconds.
+    pub(super) fn priced(mut self, set: &Set, test: f64, within: Region) -> Self {
+        self.nanoseconds = effort::point(set, self.looks_by_point(set), test, within);
+        self
     }
 
     /// How many points are looked at to make one.

@@ -7,7 +7,7 @@ use strew_core::{
 
 use super::{
     Error, Limits, PlannedPoints, PlannedSet, Ready,
-    effort::{self, Selection},
+    effort::{self, Layers, Selection},
     except::MOST_HOLES,
     query::{Amount, Kinds, Period, Query, Set, Token, parameters},
     resolve::{Resolved, check_reach, kind_distances, least_distance, no_period, resolve, unit},
@@ -19,18 +19,20 @@ pub(super) struct Planner<'a> {
     limits: &'a Limits,
     stop: &'a Stop,
     layers: Vec<PointSet>,
+    prices: Layers,
     /// How many more points all sets together may leave out.
     room: usize,
 }
 
 impl<'a> Planner<'a> {
     /// `stop` ends the counting early; what is planned then means nothing.
-    pub(super) const fn new(query: &'a Query, limits: &'a Limits, stop: &'a Stop) -> Self {
+    pub(super) fn new(query: &'a Query, limits: &'a Limits, stop: &'a Stop) -> Self {
         Self {
             query,
             limits,
             stop,
             layers: vec![],
+            prices: Layers::default(),
             room: MOST_HOLES,
         }
     }
@@ -58,11 +60,9 @@ impl<'a> Planner<'a> {
         };
         let points = set.points(ready, known.unwrap_or(Spacing::ONE));
         let area = self.left(set, ready, &points, is_over)?;
-        let mut selection = Selection {
-            set: self.keeping_clear(set, points)?,
-            area,
-            looks_at_all: !set.clear_of.is_empty() || set.varies(),
-        };
+        let points = self.keeping_clear(set, points)?;
+        let test = self.prices.test(set);
+        let mut selection = Selection::new(set, points, area, test);
         let plan = match (known, here) {
             (Ok(spacing), _) if is_over || here.is_some() => {
                 let cursor = here.map_or_else(nothing, |token| token.cursor);
@@ -91,10 +91,10 @@ impl<'a> Planner<'a> {
         };
         let spacing = plan.placement().spacing;
         let candidates = match set.field {
-            Some(_) => effort::candidates(&Selection {
-                set: selection.set.clone().placed(plan.placement()),
-                ..selection.clone()
-            }),
+            Some(_) => {
+                let placed = selection.set.clone().placed(plan.placement());
+                effort::candidates(&selection.with_set(placed))
+            }
             None => 0,
         };
         let kinds = match &set.kinds {
@@ -103,6 +103,7 @@ impl<'a> Planner<'a> {
             Some(kinds) => self.kind_counts(kinds, &selection, &plan)?,
             None => vec![],
         };
+        self.prices.push(set, Some(spacing), region.bounds);
         let whole = plan.placement().with_keep(set.whole);
         let layer = selection.set.placed(whole);
         self.layers.push(match &set.region {
@@ -119,6 +120,7 @@ impl<'a> Planner<'a> {
             plan.into(),
             candidates,
         )
+        .priced(set, test, region.bounds)
         .with_kinds(kinds, kind_distances(set, ready, spacing, region.reach())))
     }
 
@@ -198,6 +200,7 @@ impl<'a> Planner<'a> {
             plan,
             candidates,
         );
+        let planned = planned.priced(set, 0.0, self.query.region.bounds);
         Ok(planned.with_kinds(kinds, distances))
     }
 
@@ -265,7 +268,7 @@ impl<'a> Planner<'a> {
             self.check_rows(selection, effort::counts(set) + effort::kinds(set))?;
         }
         let most = self.limits.max_rows as f64 / (effort::counts(set) + effort::kinds(set));
-        let least = effort::least_spacing(selection, most);
+        let least = effort::least_spacing(selection, most, self.stop);
         let Selection {
             set: points, area, ..
         } = &*selection;

@@ -20,6 +20,7 @@ use core::ops::Range;
 
 use crate::{
     error::Error,
+    field::FieldSpec,
     map::Clusters,
     pattern::Alpha,
     sample::{Area, PeriodicPlan, PeriodicSet, Plan, PointSet, Region, Spacing},
@@ -149,8 +150,8 @@ pub fn kinds_of_period(set: &PeriodicSet, stop: &Stop) -> Result<Vec<u64>, Error
 
 /// About the number of points that [`within`] visits one by one to count those of a set in a
 /// [field](PointSet::in_field), and that are visited again to make them: the points at full density, times the
-/// greatest share in each of up to some thousand pieces of the area's box. 0 for sets in no field, and where
-/// the field is the same in all of the box. Takes a millisecond at most with bounds that take 100 ns.
+/// greatest share in each of up to `pieces` pieces of the area's box, for each of which the field's bounds are looked
+/// up once. 0 for sets in no field.
 ///
 /// # Errors
 /// As [`PointSet::within`].
@@ -161,15 +162,31 @@ pub fn kinds_of_period(set: &PeriodicSet, stop: &Stop) -> Result<Vec<u64>, Error
 /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
 /// let set = PointSet::new(table);
 /// let region = Region::new([0.0, 0.0], [1000.0, 1000.0])?;
-/// assert_eq!(server::candidates(&set, region)?, 0);
+/// assert_eq!(server::candidates(&set, region, 8192)?, 0);
 /// // One hundredth of the box.
 /// let pond = FieldSpec::radial([500.0, 500.0], [50.0, 56.4], [1.0, 0.0])?;
-/// let (visited, kept) = (server::candidates(&set.in_field(pond.clone()), region)?, set.in_field(pond).count(region)?);
+/// let (visited, kept) = (server::candidates(&set.in_field(pond.clone()), region, 8192)?, set.in_field(pond).count(region)?);
 /// assert!(visited > kept && visited < 3 * kept);
 /// # Ok::<(), strew_core::Error>(())
 /// ```
-pub fn candidates(set: &PointSet, area: impl Into<Area>) -> Result<u128, Error> {
-    set.candidates(area.into())
+pub fn candidates(set: &PointSet, area: impl Into<Area>, pieces: usize) -> Result<u128, Error> {
+    set.candidates(area.into(), pieces)
+}
+
+/// About the nanoseconds that a look at a field takes, the mean over a few places of a region, on a processor of some
+/// years ago. What is looked at is counted and no clock is read, so it is the same on every machine.
+///
+/// ```
+/// use strew_core::{Region, field::{FieldSpec, Noise}, server};
+///
+/// let region = Region::new([0.0, 0.0], [100.0, 100.0])?;
+/// let noise = |octaves| FieldSpec::noise(Noise { seed: 7, wavelength: 20.0, octaves, range: [0.0, 1.0] });
+/// assert!(server::look(&noise(8)?, region) > 5.0 * server::look(&noise(1)?, region));
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[must_use]
+pub fn look(field: &FieldSpec, within: Region) -> f64 {
+    field.nanoseconds(within)
 }
 
 /// The columns and rows of the lattice that hold all points of an area, and a few more around it: an id beyond them
@@ -212,6 +229,24 @@ pub fn addresses(set: &PointSet, area: impl Into<Area>) -> Result<[Range<i64>; 2
 #[must_use]
 pub fn stopped_by(plan: Plan, stop: Stop) -> Plan {
     plan.with_stop(stop)
+}
+
+/// The windows of a plan that begin at some offsets, which ascend, each up to the next and the last one to the end
+/// of the plan. Where places are found in time proportional to the rows, many windows take little longer than one.
+///
+/// ```
+/// use strew_core::{Circle, PointSet, Table, server};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let plan = PointSet::new(table).within(Circle::new([0.0, 0.0], 50.0)?)?;
+/// let pages = server::windows(&plan, &[0, 100, 250]);
+/// assert_eq!(pages[1].to_vec(), plan.window(100, Some(150)).to_vec());
+/// assert_eq!(pages[2].count(), plan.count() - 250);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[must_use]
+pub fn windows(plan: &Plan, offsets: &[u128]) -> Vec<Plan> {
+    plan.windows(offsets, plan.count())
 }
 
 /// A sparser or denser set of the same table and seed in the area of a plan, whatever its window and

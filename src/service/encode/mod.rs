@@ -146,7 +146,7 @@ impl Answer {
         }
         Ok(Self {
             warning: output.warning(),
-            ..Self::of_parts(planned, planned.parts()?, output, block_bytes)?
+            ..Self::of_parts(planned, planned.parts()?, output, planned.block_bytes(block_bytes))?
         })
     }
 

@@ -36,7 +36,9 @@ mod world;
 
 use std::{fmt, sync::Arc};
 
-use strew_core::{Area, Attributes, ErrorKind, Keep, Placement, PointSet, Seed, Spacing, Warp};
+use strew_core::{
+    Area, Attributes, ErrorKind, Keep, Placement, PointSet, Seed, Spacing, Warp, server,
+};
 
 use super::{Entry, Error, Fault, Ready, except::Except, world::Named};
 
@@ -142,6 +144,9 @@ pub struct Set {
     pub clear_of: Vec<(usize, f64)>,
 }
 
+/// What the looks at fields of a small query may take, in nanoseconds.
+const QUICK: f64 = 3e5;
+
 impl Query {
     /// Whether it holds all that its answer depends on: it names the digests of all of its tables, no field that may
     /// change, no list of points, and no kinds of a loaded table; or the digest of a world that all of these come from.
@@ -205,11 +210,20 @@ impl Query {
         let [min_x, min_y, max_x, max_y] = self.region.bbox();
         let [width, height] = [(max_x - min_x) / spacing, (max_y - min_y) / spacing];
         let is_plain = set.region.is_none() && set.clear_of.is_empty() && set.except.is_none();
-        // A look at a field of many parts takes longer.
-        let is_quick = |field: &SetField| field.spec.parts() <= 4;
+        if !is_plain || width * height > 2048.0 || width.max(height) > 128.0 {
+            return false;
+        }
         let terrain = set.terrain.iter().map(|terrain| &terrain.field);
-        let is_plain = is_plain && set.fields().chain(terrain).all(is_quick);
-        is_plain && width * height <= 2048.0 && width.max(height) <= 128.0
+        let mut fields = set.fields().chain(terrain).map(|field| &field.spec);
+        let mut looks = 0.0;
+        let is_quick = fields.all(|field| {
+            // What a look takes is found out by a few looks.
+            let is_plain = field.parts() <= 4 && field.vertices() <= 64;
+            looks += if is_plain { server::look(field, self.region.bounds) } else { 0.0 };
+            is_plain
+        });
+        // A point may look around itself, too.
+        is_quick && width * height * looks * 5.0 <= QUICK
     }
 }
 

@@ -12,6 +12,8 @@ mod lane;
 #[cfg(feature = "daemon")]
 mod owner;
 #[cfg(feature = "daemon")]
+mod pulse;
+#[cfg(feature = "daemon")]
 mod shift;
 #[cfg(feature = "daemon")]
 mod turns;
@@ -23,5 +25,6 @@ pub use lane::Lane;
 pub use {
     clock::Clock,
     owner::Owner,
+    pulse::Pulse,
     workers::Workers,
 };

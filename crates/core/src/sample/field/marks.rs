@@ -173,7 +173,20 @@ impl Measure {
         }
     }
 
+    /// The number of nodes and sides that a distance looks at.
+    pub(super) fn looks(&self, at: [f64; 2]) -> usize {
+        let mut looks = 0;
+        self.nearest(at, |more| looks += more);
+        looks
+    }
+
     fn squared(&self, at: [f64; 2]) -> f64 {
+        self.nearest(at, |_| {})
+    }
+
+    /// The squared distance; `looked` is called with numbers of nodes and sides that were looked at.
+    #[inline(always)]
+    fn nearest(&self, at: [f64; 2], mut looked: impl FnMut(usize)) -> f64 {
         let mut best = f64::INFINITY;
         let mut open = [0u32; STACK];
         let mut number = 1;
@@ -181,6 +194,7 @@ impl Measure {
             number -= 1;
             let index = open[number] as usize;
             let node = &self.nodes[index];
+            looked(1 + node.count as usize);
             // Never leaves out what is nearest, so the tree does not matter to the result.
             if node.squared(at) > best * (1.0 + 1e-9) + self.slack {
                 continue;

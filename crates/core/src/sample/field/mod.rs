@@ -12,6 +12,7 @@
 //! what bounds of the field rule out and find the same points with the same bits.
 
 mod canon;
+mod cost;
 mod definition;
 mod evaluate;
 mod grid;

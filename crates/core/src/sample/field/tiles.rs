@@ -220,12 +220,9 @@ pub(crate) fn constant_until(
     Some((share, end))
 }
 
-/// The most pieces whose shares an estimate looks up: about a millisecond.
-const MOST_PIECES: usize = 8192;
-
 /// About the number of points of a piece that are visited to find those that are left: in smaller and smaller
-/// pieces, the greatest share times the points at full density.
-pub(crate) fn candidates(lattice: &Lattice, grade: &Grade, piece: Piece) -> u128 {
+/// pieces, but no more than `pieces`, the greatest share times the points at full density.
+pub(crate) fn candidates(lattice: &Lattice, grade: &Grade, piece: Piece, pieces: usize) -> u128 {
     let side = lattice.table.alpha().set_side_f64();
     let mut open = VecDeque::from([piece]);
     let (mut looked, mut sum) = (0, 0.0);
@@ -240,7 +237,7 @@ pub(crate) fn candidates(lattice: &Lattice, grade: &Grade, piece: Piece) -> u128
         if high <= 0.0 {
             continue;
         }
-        if is_small || high <= low * 1.1 || looked + open.len() >= MOST_PIECES {
+        if is_small || high <= low * 1.1 || looked + open.len() >= pieces {
             sum += width as f64 * height as f64 * side * side * high;
         } else if width > height {
             let middle = columns.start + width / 2;

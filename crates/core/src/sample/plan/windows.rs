@@ -1,12 +1,17 @@
 //! Windows: parts of a request's points, and the cursors between them.
 
+use alloc::vec::Vec;
+
 use super::Plan;
 use crate::sample::{
     cursor::Cursor,
     lattice::PointId,
-    seek::locate,
+    seek::locate_all,
     walk::{Mark, Window, locate_graded},
 };
+
+/// The most parts that are found together.
+const AT_ONCE: u128 = 4096;
 
 impl Plan {
     /// The number of points of the whole request, of which the plan may be a window.
@@ -125,29 +130,72 @@ impl Plan {
 
     /// The lattice address of point number `k` of the request, if it has as many.
     fn locate(&self, k: u128) -> Option<PointId> {
+        self.locate_all(&[k]).pop().flatten()
+    }
+
+    /// The lattice addresses of points of the request of some numbers, which ascend.
+    fn locate_all(&self, numbers: &[u128]) -> Vec<Option<PointId>> {
         let Window {
             start,
             offset,
             total,
             ..
         } = self.window;
-        if k >= total {
-            return None;
-        }
         if let Some(kept) = &self.counted.kept {
-            return kept.id(usize::try_from(k).ok()?);
+            let id = |&k: &u128| kept.id(usize::try_from(k).ok()?);
+            return numbers.iter().map(id).collect();
         }
         if self.scope.lattice.grade.is_none() {
-            return locate(&self.scope, total, k);
+            return locate_all(&self.scope, total, numbers);
         }
         let marks = &self.counted.marks;
-        let after = marks.partition_point(|mark| mark.before <= k);
-        let mark = after.checked_sub(1).map(|last| marks[last]);
-        // A window may begin nearer.
-        let own = start.map(|at| Mark { at, before: offset });
-        let own = own.filter(|own| own.before <= k);
-        let nearest = [mark, own].into_iter().flatten();
-        locate_graded(&self.scope, nearest.max_by_key(|mark| mark.before), k)
+        // The window may begin nearer than a mark, and the point that was found last may lie nearer still.
+        let mut last = start.map(|at| Mark { at, before: offset });
+        let mut locate = |k: u128| {
+            if k >= total {
+                return None;
+            }
+            let after = marks.partition_point(|mark| mark.before <= k);
+            let mark = after.checked_sub(1).map(|last| marks[last]);
+            let own = last.filter(|own| own.before <= k);
+            let nearest = [mark, own].into_iter().flatten();
+            let at = locate_graded(&self.scope, nearest.max_by_key(|mark| mark.before), k)?;
+            last = Some(Mark { at, before: k });
+            Some(at)
+        };
+        numbers.iter().map(|&k| locate(k)).collect()
+    }
+
+    /// The windows that begin at some offsets, which ascend, each up to the next, the last one to `end`. Together they
+    /// take little longer to find than one of them.
+    pub(crate) fn windows(&self, offsets: &[u128], end: u128) -> Vec<Self> {
+        let Window {
+            start,
+            offset: before,
+            count,
+            total,
+        } = self.window;
+        let count = end.min(count);
+        let inside = |&offset: &u128| offset.min(count);
+        let numbers: Vec<u128> = offsets.iter().map(|k| before + inside(k)).collect();
+        // The place of an empty window does not matter.
+        let sought = numbers.partition_point(|&k| k < before + count);
+        let first = numbers.partition_point(|&k| k <= before);
+        let found = self.locate_all(&numbers[first.min(sought)..sought]);
+        let place = |i: usize| match i.checked_sub(first) {
+            Some(i) => found.get(i).copied().flatten(),
+            None => start,
+        };
+        let window = |(i, &offset): (usize, &u128)| {
+            let end = numbers.get(i + 1).copied().unwrap_or(before + count);
+            self.with_window(Window {
+                start: place(i),
+                offset,
+                count: end.saturating_sub(offset),
+                total,
+            })
+        };
+        numbers.iter().enumerate().map(window).collect()
     }
 
     /// The place of the first point, or `None` if there are no points.
@@ -212,12 +260,16 @@ impl Plan {
     /// assert!(points.into_iter().eq(plan.iter()));
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    pub fn split(&self, parts: u32) -> impl Iterator<Item = Self> {
+    pub fn split(&self, parts: u32) -> impl Iterator<Item = Self> + use<> {
         let parts = u128::from(parts.max(1));
-        let start = move |i: u128| {
-            let (quotient, rest) = (self.count() / parts, self.count() % parts);
-            i * quotient + i.min(rest)
-        };
-        (0..parts).map(move |i| self.window(start(i), Some(start(i + 1) - start(i))))
+        let (quotient, rest) = (self.count() / parts, self.count() % parts);
+        let start = move |i: u128| i * quotient + i.min(rest);
+        let plan = self.clone();
+        (0..parts.div_ceil(AT_ONCE)).flat_map(move |batch| {
+            let numbers = batch * AT_ONCE..parts.min((batch + 1) * AT_ONCE);
+            let end = start(numbers.end);
+            let starts: Vec<u128> = numbers.map(start).collect();
+            plan.windows(&starts, end)
+        })
     }
 }

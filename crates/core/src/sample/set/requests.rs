@@ -159,13 +159,13 @@ impl PointSet {
     }
 
     /// About the number of points that counting an area visits one by one; 0 without a field.
-    pub(crate) fn candidates(&self, area: Area) -> Result<u128, Error> {
+    pub(crate) fn candidates(&self, area: Area, pieces: usize) -> Result<u128, Error> {
         let scope = Scope::new(&self.lattice, &self.mask, area, Stop::default())?;
         let Some(grade) = &scope.lattice.grade else {
             return Ok(0);
         };
         let piece = [scope.x.all.clone(), scope.y.all.clone()];
-        Ok(candidates(&scope.lattice, grade, piece))
+        Ok(candidates(&scope.lattice, grade, piece, pieces))
     }
 
     /// [`within`](Self::within), whose counting a flag stops.

@@ -1,15 +1,26 @@
-//! What counting the points of a selection takes, known before it begins.
+//! What a request takes, known before its work begins: rows to count, points to make, neighbors to find.
 //!
-//! The unit is a lattice row that is counted by itself, about a microsecond.
+//! The unit of counting is a lattice row that is counted by itself, about a microsecond. What is looked at is counted
+//! and no clock is read, so a request has the same price on every machine.
 
-use strew_core::{Area, PointSet, Region, Spacing, Warp, server};
+mod layers;
+mod making;
+
+use strew_core::{
+    Area, PointSet, Region, Spacing, Warp,
+    server::{self, Stop},
+};
 
 use super::{
-    Lane, Placed, Planned, PlannedSet, Ready,
+    Lane, Placed, Ready,
     query::{Nearest, Query, Set},
     resolve::{Resolved, resolve},
     single::MOST_WITHIN,
 };
+pub(super) use layers::Layers;
+use layers::look;
+pub use making::considered;
+pub(super) use making::{block_bytes, block_lane, point};
 
 /// About how many lattice units a mean spacing has.
 const UNITS: f64 = 3.0;
@@ -19,8 +30,15 @@ const STRIP: f64 = 256.0 / UNITS;
 /// comparison for each unit of outline and each edge.
 const COMPARISON: f64 = 5e-4;
 
-/// Looking at a point of a field takes this much of a row.
-const CANDIDATE: f64 = 0.03;
+/// Looking at a point of a field takes this many nanoseconds, besides the look at the field itself.
+const CANDIDATE: f64 = 30.0;
+/// A row takes as many.
+const ROW: f64 = 1e3;
+/// How long the number of points in a field is estimated, how long looking up the bounds of a piece takes beside the
+/// look at its field, and the fewest pieces.
+const ESTIMATE: f64 = 1e6;
+const BOUNDS: f64 = 100.0;
+const LEAST_PIECES: usize = 64;
 
 /// About how often an area is counted to find the spacing of a count; in a field less often.
 const COUNTS: f64 = 32.0;
@@ -52,17 +70,57 @@ pub(super) struct Selection {
     pub(super) set: PointSet,
     /// Where points are requested.
     pub(super) area: Area,
-    /// Whether points are looked at one by one: to keep clear of others, or for kinds whose shares vary.
-    pub(super) looks_at_all: bool,
+    /// What each point takes, in nanoseconds, if points are looked at one by one: to keep clear of others, or for
+    /// kinds whose shares vary.
+    by_point: f64,
+    /// What a look at the field takes, in nanoseconds.
+    look: f64,
+}
+
+impl Selection {
+    /// The points of a set in an area, where testing a place against other layers takes `test` nanoseconds.
+    pub(super) fn new(set: &Set, points: PointSet, area: Area, test: f64) -> Self {
+        let within = area.bounds();
+        let varied = set.kinds.iter().flat_map(|kinds| &kinds.fields);
+        let varied = varied.map(|(_, field)| &field.spec);
+        let own = set.field.as_ref().map(|field| &field.spec);
+        let of = |within| (look(varied, within), look(own, within));
+        let (varied, look) = within.map_or((0.0, 0.0), of);
+        Self {
+            set: points,
+            area,
+            by_point: test + varied,
+            look,
+        }
+    }
+
+    /// The points of another set with the same fields.
+    pub(super) fn with_set(&self, set: PointSet) -> Self {
+        Self {
+            set,
+            ..self.clone()
+        }
+    }
+
+    /// Whether points are looked at one by one whatever the area.
+    fn looks_at_all(&self) -> bool {
+        self.by_point > 0.0
+    }
 }
 
 /// What takes more rows than this, in rows of warped sets, is planned in the lane for long work:
-/// some ten milliseconds.
-const SHORT_ROWS: f64 = 30_000.0;
+/// some milliseconds.
+const SHORT_ROWS: f64 = 3_000.0;
 /// A row of a set without warp takes this much of one with warp.
 const PLAIN: f64 = 0.1;
-/// Blocks for which more points than this are considered are made in the lane for long work.
-const SHORT_BLOCK: f64 = 2e7;
+
+/// Whether the price of planning a query is found at once: it has nothing but a few boxes.
+pub(super) fn is_plain(query: &Query) -> bool {
+    let is_box = |set: &Set| set.region.is_none() && set.fields().next().is_none();
+    matches!(query.region.area, Area::Region(_))
+        && query.sets.len() <= 2
+        && query.sets.iter().all(is_box)
+}
 
 /// What planning a query takes, in rows of warped sets. Sets with more than `most` rows take none:
 /// they are refused.
@@ -71,8 +129,9 @@ pub(super) fn planning(query: &Query, tables: &[Ready], most: u64) -> f64 {
     if query.window.cursor.is_some() {
         return 0.0;
     }
+    let mut layers = Layers::default();
     let sets = query.sets.iter().zip(tables);
-    let rows = sets.map(|(set, ready)| counted(query, set, ready));
+    let rows = sets.map(|(set, ready)| counted(query, set, ready, &mut layers));
     rows.filter(|(rows, _)| *rows <= most as f64)
         .map(|(rows, weight)| rows * weight)
         .sum()
@@ -97,13 +156,13 @@ pub(super) fn lane(rows: f64) -> Lane {
 }
 
 /// The rows that are counted to plan a set, and how much of a row of a warped set each takes.
-fn counted(query: &Query, set: &Set, ready: &Ready) -> (f64, f64) {
+fn counted(query: &Query, set: &Set, ready: &Ready, layers: &mut Layers) -> (f64, f64) {
     if set.period.is_some() {
         return (rows_of_period(set), 1.0);
     }
     let bounds = query.region.bbox();
     let (spacing, counts) = match resolve(set, ready) {
-        Err(_) => return (0.0, 0.0),
+        Err(_) => (None, 0.0),
         Ok(Resolved::Known(spacing, _)) => (Some(spacing), 1.0 + kinds(set)),
         Ok(Resolved::Count(count)) => {
             let [min_x, min_y, max_x, max_y] = bounds;
@@ -112,33 +171,19 @@ fn counted(query: &Query, set: &Set, ready: &Ready) -> (f64, f64) {
             (Spacing::new(guess).ok(), counts(set) + kinds(set))
         }
     };
+    let test = layers.test(set);
+    layers.push(set, spacing, query.region.bounds);
     let Some(spacing) = spacing else {
         return (0.0, 0.0);
     };
-    let selection = Selection {
-        set: set.points(ready, spacing),
-        area: set.area(&query.region),
-        looks_at_all: !set.clear_of.is_empty() || set.varies(),
-    };
-    let is_plain = selection.set.placement().warp == Warp::OFF && !selection.looks_at_all;
+    let points = set.points(ready, spacing);
+    let selection = Selection::new(set, points, set.area(&query.region), test);
+    let is_plain = selection.set.placement().warp == Warp::OFF && !selection.looks_at_all();
     let is_plain = is_plain && set.field.is_none();
     let weight = if is_plain { PLAIN } else { 1.0 };
     // Seeking an offset counts again.
     let seeks = 1.0 + f64::from(u8::from(query.window.offset > 0));
     (rows_and_edges(&selection) * counts, weight * seeks)
-}
-
-/// The lane in which the blocks of an answer are made: points that are thinned out take as long as
-/// those that stay.
-pub(super) fn block_lane(planned: &Planned) -> Lane {
-    /// The most points of a block.
-    const BLOCK: u128 = 1 << 15;
-    let sets = planned.query.sets.iter().zip(&planned.sets);
-    let is_long = sets.into_iter().any(|(set, planned)| {
-        let block = planned.plan.count().min(BLOCK) as f64;
-        block * planned.looks_by_point(set) > SHORT_BLOCK
-    });
-    if is_long { Lane::Long } else { Lane::Short }
 }
 
 /// What a search for neighbors takes, known before it begins.
@@ -181,34 +226,12 @@ impl Neighbors {
     }
 }
 
-/// The points that are considered to make those of a plan: with `keep`, those that are thinned out,
-/// too, also after the last one; in a field also those that are counted and left out.
-#[must_use]
-pub fn considered(planned: &Planned) -> u128 {
-    let bounds = planned.query.region.bounds;
-    let [width, height] = sides(bounds);
-    let is_counted = planned.query.window.cursor.is_none();
-    let considered = |(set, planned): (&Set, &PlannedSet)| {
-        let count = planned.plan.count() as f64;
-        if set.field.is_some() {
-            let made = count * planned.looks_by_point(set);
-            return match is_counted {
-                true => made.max(planned.candidates as f64),
-                false => made,
-            };
-        }
-        let most = width * height * planned.spacing.density();
-        ((count + 1.0) / set.share() - 1.0).min(most).max(count)
-    };
-    let sets = planned.query.sets.iter().zip(&planned.sets);
-    let all: f64 = sets.map(considered).sum();
-    all.round() as u128
-}
-
 /// The points that counting a selection looks at one by one; none without a field.
 pub(super) fn candidates(selection: &Selection) -> u128 {
-    // Where it is too far out is told when it is planned.
-    server::candidates(&selection.set, selection.area.clone()).unwrap_or_default()
+    // As many pieces as are looked up in about a millisecond. Planning reports what is too far out.
+    let pieces = (ESTIMATE / (BOUNDS + selection.look)) as usize;
+    let area = selection.area.clone();
+    server::candidates(&selection.set, area, pieces.max(LEAST_PIECES)).unwrap_or_default()
 }
 
 /// The number of rows that are counted one by one, or points tested, which takes as long: none for a
@@ -217,8 +240,8 @@ pub(super) fn rows(selection: &Selection) -> f64 {
     let area = &selection.area;
     let placement = selection.set.placement();
     let is_box = matches!(area, Area::Region(_));
-    let is_closed = placement.warp == Warp::OFF && !selection.looks_at_all;
-    let looks = candidates(selection) as f64 * CANDIDATE;
+    let is_closed = placement.warp == Warp::OFF && !selection.looks_at_all();
+    let looks = candidates(selection) as f64 * (CANDIDATE + selection.look) / ROW;
     let Some(bounds) = area.bounds().filter(|_| !(is_box && is_closed)) else {
         return looks;
     };
@@ -230,8 +253,9 @@ pub(super) fn rows(selection: &Selection) -> f64 {
     } else {
         height * UNITS / spacing
     };
-    let cleared = if selection.looks_at_all {
-        width * height * placement.spacing.density() * placement.keep.get()
+    let cleared = if selection.looks_at_all() {
+        let points = width * height * placement.spacing.density() * placement.keep.get();
+        points * (ROW + selection.by_point) / ROW
     } else {
         0.0
     };
@@ -254,7 +278,7 @@ pub(super) fn rows_and_edges(selection: &Selection) -> f64 {
 
 /// The least spacing at which so many rows are not passed, from the selection's own downward; 0 if
 /// there is none to pass.
-pub(super) fn least_spacing(selection: &Selection, most: f64) -> f64 {
+pub(super) fn least_spacing(selection: &Selection, most: f64, stop: &Stop) -> f64 {
     /// Each step goes this far.
     const STEP: f64 = 0.8;
     if rows(selection) == 0.0 {
@@ -269,7 +293,7 @@ pub(super) fn least_spacing(selection: &Selection, most: f64) -> f64 {
         };
         placement.spacing = next;
         trial.set = trial.set.placed(placement);
-        if rows(&trial) > most || rows_and_edges(&trial) > most {
+        if stop.is_raised() || rows(&trial) > most || rows_and_edges(&trial) > most {
             return spacing;
         }
     }
