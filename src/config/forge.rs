@@ -40,6 +40,10 @@ pub struct Forge {
     pub checkpoint_seconds: f64,
     /// The most jobs that are remembered after their end.
     pub max_ended: usize,
+    /// The most files of tables in the folder, beyond which none is made.
+    pub max_tables: usize,
+    /// The most bytes of these files.
+    pub max_bytes: u64,
 }
 
 impl Forge {
@@ -58,6 +62,8 @@ impl Forge {
             max_radius: 1.0..=f64::from(strew_forge::MAX_RADIUS),
             checkpoint_seconds: 0.0..=DAY,
             max_ended: 0.0..=1e4,
+            max_tables: 1.0..=1e6,
+            max_bytes: 1.0..=1e15,
         );
         if self.is_on() && tables.folder().is_none() {
             faults.push("forge.allow needs tables.folder, where finished tables are kept".into());

@@ -240,6 +240,16 @@ pub enum Error {
         /// The setting of the limit.
         setting: &'static str,
     },
+    /// The folder of tables holds as much as the forge may make.
+    #[error(
+        "the folder of tables is full: {setting} = {limit} on this server, which its operator can raise"
+    )]
+    FolderFull {
+        /// The setting of the limit.
+        setting: &'static str,
+        /// The limit.
+        limit: u64,
+    },
     /// The body took longer to come than it may.
     #[error("the body did not arrive within {seconds} seconds")]
     BodyTooSlow {
@@ -409,6 +419,7 @@ impl Error {
             | Self::TooManyConnections { .. }
             | Self::TooManyRequests { .. }
             | Self::TooManyMixes { .. }
+            | Self::FolderFull { .. }
             | Self::TooManyJobs { .. }
             | Self::TooManyBytes { .. }
             | Self::NeedsMoreBytes { .. } => Kind::Busy,
@@ -427,7 +438,7 @@ impl Error {
             // It was slow because others ask, too: soon it may be fast.
             Self::TimeOver { .. } | Self::TableUnreadable { .. } => Some(5),
             // Never, with these settings.
-            Self::NeedsMoreBytes { .. } => None,
+            Self::NeedsMoreBytes { .. } | Self::FolderFull { .. } => None,
             #[cfg(feature = "daemon")]
             Self::Denied(denied) => denied.wait_seconds(),
             _ => (self.kind() == Kind::Busy).then_some(1),

@@ -90,6 +90,18 @@ impl Folder {
         remove(&self.checkpoint(id));
     }
 
+    /// The number of tables in the folder, and the bytes of their files.
+    pub(super) fn holds(&self) -> io::Result<(usize, u64)> {
+        let mut holds = (0, 0);
+        for entry in fs::read_dir(&self.tables)? {
+            let entry = entry?;
+            if entry.path().extension().is_some_and(|own| own == EXTENSION) {
+                holds = (holds.0 + 1, holds.1 + entry.metadata()?.len());
+            }
+        }
+        Ok(holds)
+    }
+
     /// Writes a finished table, under its usual name if that is free. Returns where it is.
     pub(super) fn store(&self, job: &Job, id: &str, table: &Table) -> Result<PathBuf, String> {
         let usual = file_name(&job.profile, job.alpha, job.radius);

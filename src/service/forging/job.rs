@@ -259,6 +259,11 @@ impl Job {
         self.number
     }
 
+    pub(super) fn client(&self) -> &str {
+        &self.by
+    }
+
+    /// Whether it is done for a client.
     pub(super) fn is_of(&self, client: &str) -> bool {
         self.by == client
     }

@@ -11,7 +11,7 @@ mod request;
 mod run;
 
 use std::{
-    collections::{BTreeMap, VecDeque},
+    collections::{BTreeMap, HashMap, VecDeque},
     path::PathBuf,
     sync::{
         Arc, Condvar, Mutex, MutexGuard, PoisonError,
@@ -29,6 +29,9 @@ use folder::Folder;
 use job::Kept;
 pub use job::{Job, JobStatus, State};
 pub use request::{Request, Spec};
+
+/// About the largest file of a table that is made, in bytes.
+const LARGEST: u64 = 700_000;
 
 /// Serves a finished table; an error says why it cannot.
 type Publish = Box<dyn Fn(PathBuf) -> Result<(), String> + Send + Sync>;
@@ -54,6 +57,9 @@ struct Inner {
 struct Jobs {
     by_id: BTreeMap<String, Arc<Job>>,
     waiting: VecDeque<Arc<Job>>,
+    /// The turns that clients have had: each begins a job in its turn.
+    served: HashMap<String, u64>,
+    turn: u64,
     running: usize,
     /// Counts jobs, so that the oldest can be forgotten.
     last: u64,
@@ -86,6 +92,23 @@ impl std::fmt::Debug for Forging {
         f.debug_struct("Forging")
             .field("settings", &self.0.settings)
             .finish_non_exhaustive()
+    }
+}
+
+impl Jobs {
+    /// The next job to begin: the first of the client that was served longest ago.
+    fn next(&mut self) -> Option<Arc<Job>> {
+        let served = |job: &Job| self.served.get(job.client()).copied().unwrap_or(0);
+        let all = self.waiting.iter().enumerate();
+        let (at, _) = all.min_by_key(|(at, job)| (served(job), *at))?;
+        let job = self.waiting.remove(at)?;
+        self.turn += 1;
+        self.served.insert(job.client().to_owned(), self.turn);
+        // Of the others only those who wait matter.
+        let (waiting, last) = (&self.waiting, self.turn);
+        let waits = |client: &str| waiting.iter().any(|job| job.is_of(client));
+        self.served.retain(|client, turn| *turn == last || waits(client));
+        Some(job)
     }
 }
 
@@ -199,6 +222,8 @@ impl Forging {
         if !is_free && jobs.waiting.len() >= limit {
             return Err(Error::TooManyJobs { limit });
         }
+        let open = open().count();
+        self.0.check_room(open)?;
         jobs.last += 1;
         let job = Arc::new(Job::new(spec, made, client, jobs.last));
         self.0.keep(&job).map_err(|error| {
@@ -279,6 +304,32 @@ impl Forging {
 impl Inner {
     fn jobs(&self) -> MutexGuard<'_, Jobs> {
         self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether the folder has room for one more table than those that are being made.
+    fn check_room(&self, open: usize) -> Result<(), Error> {
+        let Some(folder) = &self.folder else {
+            return Ok(());
+        };
+        let (tables, bytes) = folder.holds().map_err(|error| {
+            tracing::error!(%error, "the folder of tables cannot be read");
+            Error::Internal("the folder of tables cannot be read")
+        })?;
+        let config::Forge {
+            max_tables,
+            max_bytes,
+            ..
+        } = self.settings;
+        let coming = (open as u64 + 1) * LARGEST;
+        if tables + open >= max_tables {
+            let (setting, limit) = ("forge.max_tables", max_tables as u64);
+            return Err(Error::FolderFull { setting, limit });
+        }
+        if bytes + coming > max_bytes {
+            let (setting, limit) = ("forge.max_bytes", max_bytes);
+            return Err(Error::FolderFull { setting, limit });
+        }
+        Ok(())
     }
 
     /// Writes down how a job stands.

@@ -36,7 +36,7 @@ impl Inner {
             if is_full || inner.is_stopping.load(Ordering::Acquire) {
                 return;
             }
-            let Some(job) = jobs.waiting.pop_front() else {
+            let Some(job) = jobs.next() else {
                 return;
             };
             jobs.running += 1;
