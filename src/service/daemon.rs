@@ -23,6 +23,7 @@ use super::{
     mixes::Mixes,
     portrait::Portraits,
     query,
+    ready::Need,
     record::Recorded,
 };
 use crate::{access::Caller, config::Config};
@@ -240,22 +241,18 @@ impl Service {
         /// Making a mix takes about as long as making this many points for each block.
         const POINTS: u128 = 10_000;
         let ready = self.samplers.get(&set.entry, &self.workers).await?;
-        let Some(kinds) = set.kinds.as_ref().filter(|_| ready.table.mix().is_none()) else {
-            return Ok(ready);
+        let made = match ready.needs(set) {
+            None => return Ok(ready),
+            Some(Need::Loaded(entry)) => self.samplers.get(&entry, &self.workers).await?,
+            Some(Need::Made(what)) => match self.mixes.known(&ready, &what).await {
+                Some(known) => known,
+                None => {
+                    caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
+                    self.mixes.get(&ready, &what, &self.workers).await?
+                }
+            },
         };
-        if let Some(made) = &kinds.made {
-            let Ready { table, .. } = self.samplers.get(made, &self.workers).await?;
-            return Ok(ready.with_made(kinds, table));
-        }
-        let what = kinds.made_of();
-        let made = match self.mixes.known(&ready, &what).await {
-            Some(known) => known,
-            None => {
-                caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
-                self.mixes.get(&ready, &what, &self.workers).await?
-            }
-        };
-        Ok(ready.with_made(kinds, made.table))
+        Ok(ready.with_made(set, made.table))
     }
 
     /// The right of a caller to start one more stream; a picture of that size is held whole.

@@ -112,11 +112,13 @@ fn counted(query: &Query, set: &Set, ready: &Ready) -> (f64, f64) {
             (Spacing::new(guess).ok(), counts(set) + kinds(set))
         }
     };
-    let Some(spacing) = spacing else {
+    // What cannot be planned is refused then.
+    let points = spacing.and_then(|spacing| set.points(ready, spacing).ok());
+    let Some(points) = points else {
         return (0.0, 0.0);
     };
     let selection = Selection {
-        set: set.points(ready, spacing),
+        set: points,
         area: set.area(&query.region),
         looks_at_all: !set.clear_of.is_empty() || set.varies(),
     };

@@ -56,7 +56,7 @@ impl<'a> Planner<'a> {
             Resolved::Known(spacing, _) => Ok(spacing),
             Resolved::Count(count) => here.and_then(|token| token.spacing).ok_or(count),
         };
-        let points = set.points(ready, known.unwrap_or(Spacing::ONE));
+        let points = set.points(ready, known.unwrap_or(Spacing::ONE))?;
         let area = self.left(set, ready, &points, is_over)?;
         let mut selection = Selection {
             set: self.keeping_clear(set, points)?,
