@@ -68,10 +68,7 @@ impl Placed {
         let found = match (k, radius) {
             (k, None) => points.nearest(at, k.unwrap_or(1)),
             (None, Some(radius)) => points.around(at, radius, MOST_WITHIN),
-            (Some(k), Some(radius)) => points.nearest(at, k).map(|mut found| {
-                found.retain(|neighbor| neighbor.distance <= radius);
-                found
-            }),
+            (Some(k), Some(radius)) => points.nearest_within(at, k, radius),
         };
         let found = found.map_err(|error| fault(nearest, &error))?;
         self.check_reach(found.iter().map(|neighbor| &neighbor.member))?;

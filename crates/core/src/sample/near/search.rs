@@ -22,29 +22,34 @@ use crate::{
 /// A point found, with its squared distance.
 pub(crate) type Found = (f64, Point);
 
-/// The `k` nearest points, in order.
+/// The `k` nearest points, in order, at most those within a radius.
 pub(crate) fn nearest(
     lattice: &Lattice,
     mask: &Mask,
     at: [f64; 2],
     k: usize,
+    most: Option<f64>,
 ) -> Result<Vec<Found>, Error> {
-    if k > MAX_NEAREST {
-        let allowed = alloc::format!("at most {MAX_NEAREST}");
+    if !(1..=MAX_NEAREST).contains(&k) {
+        let allowed = alloc::format!("an integer from 1 to {MAX_NEAREST}");
         return Err(Error::new(ErrorKind::Neighbors, "k", k, allowed));
     }
+    if let Some(most) = most {
+        check_radius(most)?;
+    }
+    let most = most.unwrap_or(f64::INFINITY);
     let placement = lattice.placement;
     // A disk that holds k + √k + 1 points on average mostly has k.
     let wanted = k as f64 + libm::sqrt(k as f64) + 1.0;
     let area = wanted / (core::f64::consts::PI * lattice.share());
-    let mut radius = placement.spacing.get() * libm::sqrt(area);
+    let mut radius = most.min(placement.spacing.get() * libm::sqrt(area));
     loop {
         let mut found = within(lattice, mask, at, radius, MAX_CANDIDATES)?;
-        if found.len() >= k {
+        if found.len() >= k || radius >= most {
             found.truncate(k);
             return Ok(found);
         }
-        radius *= 1.5;
+        radius = most.min(radius * 1.5);
     }
 }
 

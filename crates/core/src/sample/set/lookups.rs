@@ -130,7 +130,7 @@ impl PointSet {
     /// Distances are those of the reported coordinates, compared as dx·dx + dy·dy in `f64`.
     ///
     /// # Errors
-    /// [`ErrorKind::Neighbors`](crate::ErrorKind::Neighbors) if `k` is above
+    /// [`ErrorKind::Neighbors`](crate::ErrorKind::Neighbors) unless `k` is from 1 to
     /// [`MAX_NEAREST`](Self::MAX_NEAREST), [`ErrorKind::Place`](crate::ErrorKind::Place) if the place is
     /// not finite, [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the search leaves the
     /// [limit](Self::search_limit), and [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if the set has so
@@ -147,7 +147,31 @@ impl PointSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn nearest(&self, at: [f64; 2], k: usize) -> Result<Vec<Neighbor>, Error> {
-        let found = search::nearest(&self.lattice, &self.mask, at, k)?;
+        let found = search::nearest(&self.lattice, &self.mask, at, k, None)?;
+        Ok(self.neighbors(found))
+    }
+
+    /// The `k` nearest points of a place among those within `radius`, nearest first; fewer where fewer lie there.
+    /// Nothing beyond the radius is searched.
+    ///
+    /// # Errors
+    /// As [`nearest`](Self::nearest) and [`around`](Self::around).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let rare = PointSet::new(table).keep(1e-6)?;
+    /// assert!(rare.nearest_within([0.0, 0.0], 5, 10.0)?.is_empty());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn nearest_within(
+        &self,
+        at: [f64; 2],
+        k: usize,
+        radius: f64,
+    ) -> Result<Vec<Neighbor>, Error> {
+        let found = search::nearest(&self.lattice, &self.mask, at, k, Some(radius))?;
         Ok(self.neighbors(found))
     }
 
