@@ -2,9 +2,9 @@
 //!
 //! The flags are the parameters of GET /v1/pattern/arrangements, and so are the answers.
 
-use super::{Failure, config, output, output::Output, query::placed, refusal::Source};
+use super::{Failure, config, output, output::Output, refusal::Source};
 use crate::service::{
-    Error,
+    Error, Placed,
     pattern::{ArrangementQuery, Listing},
     query::{Values, groups},
 };
@@ -99,13 +99,18 @@ impl Args {
 /// Prints the facts, or the occurrences.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let refused = |error: Error| Source::Flags.refused(error);
-    let config = args.settings.merged()?;
+    let config = args.settings.merged(config::Uses::LISTS)?;
     let query = ArrangementQuery::check(&args.values(), &config.tables()?).map_err(refused)?;
     let facts = query.facts();
     let Some(list) = query.list else {
         return output::print_json([facts]);
     };
-    let places = query.set.clone().map(placed).transpose().map_err(refused)?;
+    let places = query
+        .set
+        .clone()
+        .map(Placed::at_once)
+        .transpose()
+        .map_err(refused)?;
     let listing = Listing::new(&query, places, config.limits.max_points).map_err(refused)?;
     let cursor = listing.cursor();
     let mut output = Output::open(None)?;

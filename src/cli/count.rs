@@ -6,7 +6,7 @@ use anyhow::Context as _;
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
-use super::{Failure, flags::Counted, output, query::QueryArgs, remote::RemoteArgs};
+use super::{Failure, config, flags::Counted, output, query::QueryArgs, remote::RemoteArgs};
 use crate::service::query::Resolved;
 
 /// Flags of `strew count`.
@@ -38,7 +38,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.remote.is_given()? {
         return from_server(args);
     }
-    let config = args.query.settings.merged()?;
+    let config = args.query.settings.merged(config::Uses::QUERIES)?;
     let planned = args.query.plan(&config)?.planned;
     let count = planned.count();
     if args.json {

@@ -1,6 +1,9 @@
 //! The field of a command: one that is loaded, a file, or a raster with its place.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use anyhow::anyhow;
 
@@ -48,15 +51,11 @@ impl FieldArgs {
     /// Adds the field of the flags to what is loaded; in the values it then has a name.
     pub(super) fn load(&self, values: &mut Values, catalog: Catalog) -> Result<Catalog, Failure> {
         let fields = catalog.fields();
-        let field = match (&self.raster, values.text(&parameters::FIELD)) {
-            (Some(raster), _) => Some(self.raster(raster, fields)?),
-            (None, given) => of_file(&parameters::FIELD, &given, fields)?,
+        let field = match &self.raster {
+            Some(raster) => Some(self.raster(raster, fields)?),
+            None => of_file(&parameters::FIELD, values, fields)?,
         };
-        let mut terrain = of_file(
-            &parameters::TERRAIN,
-            &values.text(&parameters::TERRAIN),
-            fields,
-        )?;
+        let mut terrain = of_file(&parameters::TERRAIN, values, fields)?;
         if let (Some(field), Some(terrain)) = (&field, &mut terrain)
             && field.name == terrain.name
         {
@@ -83,9 +82,9 @@ impl FieldArgs {
             ("--field", &parameters::FIELD),
             ("--terrain", &parameters::TERRAIN),
         ];
-        let named = flags.map(|(flag, parameter)| (flag, values.text(parameter)));
-        let mut files = named.into_iter();
-        let file = files.find(|(_, name)| is_file(name, &Fields::default()));
+        let file = flags.into_iter().find_map(|(flag, parameter)| {
+            Some((flag, file(parameter, values, &Fields::default())?))
+        });
         match raster.or(file) {
             None => Ok(()),
             Some((flag, file)) => Err(Failure::Usage(anyhow!(
@@ -123,22 +122,28 @@ impl FieldArgs {
 /// The field of a parameter whose value is a file instead of a name.
 fn of_file(
     parameter: &Parameter,
-    given: &str,
+    values: &Values,
     fields: &Fields,
 ) -> Result<Option<NamedField>, Failure> {
-    if !is_file(given, fields) {
+    let Some(file) = file(parameter, values, fields) else {
         return Ok(None);
-    }
-    let wrong = |error| Failure::Usage(anyhow!("--{} {given}: {error}", parameter.name));
-    from_file(Path::new(given), fields).map(Some).map_err(wrong)
+    };
+    let wrong = |error| Failure::Usage(anyhow!("--{} {file}: {error}", parameter.name));
+    from_file(Path::new(&file), fields).map(Some).map_err(wrong)
 }
 
-/// Whether a value is a file instead of a name.
-fn is_file(given: &str, fields: &Fields) -> bool {
+/// The file of a parameter, if its value is one instead of the name or the description of a field.
+fn file(parameter: &Parameter, values: &Values, fields: &Fields) -> Option<String> {
+    // Values that cannot be read are refused with the query.
+    let given = values.get::<Arc<Document>>(parameter).ok()??;
+    let Document::Name(given) = &*given else {
+        return None;
+    };
     let endings = ["json", "toml", "png", "tif", "tiff", "npy"];
     let ending = Path::new(given).extension();
     let is_like_one = ending.is_some_and(|ending| endings.iter().any(|known| ending == *known));
-    fields.get(given).is_none() && !given.is_empty() && (is_like_one || given.contains('/'))
+    let is_file = fields.get(given).is_none() && (is_like_one || given.contains('/'));
+    is_file.then(|| given.clone())
 }
 
 impl Config {

@@ -42,7 +42,7 @@ pub(super) struct Args {
 
 /// Makes a mask.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let config = args.settings.merged()?;
+    let config = args.settings.merged(config::Uses::LOADED)?;
     let catalog = config.tables()?;
     let ready = chosen(&args.table.values(), &catalog).and_then(|entry| Ready::load(&entry));
     let ready = ready.map_err(|error| Source::Flags.refused(error))?;

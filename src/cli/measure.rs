@@ -257,7 +257,7 @@ fn compared(plan: &Plan, side: f64, density: f64, seeds: u64) -> anyhow::Result<
 type Compared = (Report, Option<Target>, Option<Value>);
 
 fn of_query(args: &Args) -> Result<Compared, Failure> {
-    let config = args.settings.merged()?;
+    let config = args.settings.merged(config::Uses::QUERIES)?;
     let catalog = config.tables()?;
     let checked = Draft::of(args.flags.values()).check(&catalog, 0);
     let planned = checked.and_then(|(query, _)| Planned::at_once(query, &config.limits));

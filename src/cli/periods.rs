@@ -22,7 +22,7 @@ pub(super) struct Args {
 
 /// Prints the periods, one a line.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let config = args.settings.merged()?;
+    let config = args.settings.merged(config::Uses::LOADED)?;
     let found = Periods::of(&args.flags.values(), &config.tables()?);
     let found = found.map_err(|error| Source::Flags.refused(error))?;
     if args.json {

@@ -7,10 +7,9 @@ use super::{
     fields::FieldArgs,
     flags::{Flags, Near, Single},
     output,
-    query::placed,
     refusal::Source,
 };
-use crate::service::{Found, Nearest, Set, query::ResolvedSet};
+use crate::service::{Found, Nearest, Placed, Set, query::ResolvedSet};
 
 /// Flags of `strew point`.
 #[derive(Debug, clap::Args)]
@@ -57,11 +56,11 @@ struct Several {
 
 /// Prints a point.
 pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
-    let config = args.settings.merged()?;
+    let config = args.settings.merged(config::Uses::LOADED)?;
     let mut values = args.flags.values();
     let catalog = args.field.load(&mut values, config.tables()?)?;
     let set = Set::single(&values, &catalog);
-    let found = set.and_then(placed).and_then(|placed| {
+    let found = set.and_then(Placed::at_once).and_then(|placed| {
         let point = placed.point(&args.id)?;
         Ok((placed, point))
     });
@@ -75,12 +74,12 @@ pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
 
 /// Prints the points near a place.
 pub(super) fn nearest(args: &NearestArgs) -> Result<(), Failure> {
-    let config = args.settings.merged()?;
+    let config = args.settings.merged(config::Uses::LOADED)?;
     let mut values = args.flags.values();
     let catalog = args.field.load(&mut values, config.tables()?)?;
     let near = Nearest::of_set(&values, &catalog);
     let found = near.and_then(|(set, nearest)| {
-        let placed = placed(set)?;
+        let placed = Placed::at_once(set)?;
         let neighbors = placed.nearest(nearest)?;
         Ok((placed, neighbors))
     });

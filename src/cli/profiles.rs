@@ -25,7 +25,7 @@ fn cells(entry: &Entry, catalog: &Catalog) -> [String; 5] {
 
 /// Prints the tables.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let catalog = args.settings.merged()?.tables()?;
+    let catalog = args.settings.merged(config::Uses::LOADED)?.tables()?;
     let tables = catalog.entries().map(|entry| cells(entry, &catalog));
     let rows: Vec<[String; 5]> = [TITLES.map(String::from)]
         .into_iter()

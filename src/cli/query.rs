@@ -16,7 +16,7 @@ use super::{
 use crate::{
     config::Config,
     service::{
-        Catalog, Draft, Error, Options, Placed, Planned, PlannedSet, Ready, Set, Worlds,
+        Catalog, Draft, Options, Planned, PlannedSet, Set, Worlds,
         catalog::CatalogError,
         except::Lists,
         query::{Faults, Group, RegionDraft, ShapeDraft, groups, of, read_body, read_region},
@@ -204,12 +204,6 @@ fn read_file(flag: &str, path: &Path) -> Result<Vec<u8>, Failure> {
     };
     let read = read.with_context(|| format!("{flag}: cannot read {}", path.display()));
     read.map_err(Failure::Usage)
-}
-
-/// A set of points without a region, laid into the world.
-pub(super) fn placed(set: Set) -> Result<Placed, Error> {
-    let ready = Ready::load(&set.entry)?;
-    Placed::new(set, ready)
 }
 
 /// What a planned query asks for, in a few words.

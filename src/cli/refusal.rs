@@ -79,9 +79,9 @@ impl Source {
                     .into()
             }
             (None, "spacing") => {
-                "an amount is missing: give --density, --spacing, --min-distance or, with a region, \
-                 --count"
-                    .into()
+                let names = allowed.trim_start_matches("one of ").split(", ");
+                let flags: Vec<String> = names.map(flag).collect();
+                format!("an amount is missing: give one of {}", flags.join(", "))
             }
             (None, _) => format!("{name} is missing; allowed: {allowed}"),
             (Some(value), "format") if Encoding::from_name(value).is_none() => {

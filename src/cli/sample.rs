@@ -10,6 +10,7 @@ use strew_core::{F32, F64, Plan, Tile};
 use super::{
     Failure,
     compression::Compression,
+    config::Uses,
     flags::Answered,
     output::Output as Target,
     progress::Progress,
@@ -71,10 +72,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.remote.is_given()? {
         return from_server(args);
     }
-    let config = args.query.settings.merged()?;
+    let config = args.query.settings.merged(Uses::POINTS)?;
     let output = Target::open(args.output.as_deref())?;
     let ask = args.query.plan(&config)?;
     let (planned, options) = (&ask.planned, ask.options);
+    let (count, limit) = (planned.count(), config.limits.max_points);
+    if count > limit.into() {
+        return Err(ask.source.refused(Error::TooManyPoints { count, limit }));
+    }
     let encoding = match options.encoding {
         Some(encoding) => encoding,
         None => encoding_of(args.output.as_deref())?,

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::{Failure, flags::Parted, output, query::QueryArgs, refusal::Source};
+use super::{Failure, config, flags::Parted, output, query::QueryArgs, refusal::Source};
 use crate::service::{
     Token,
     query::{groups, parts},
@@ -33,7 +33,7 @@ struct Part {
 
 /// Prints the parts, a query a line.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let config = args.query.settings.merged()?;
+    let config = args.query.settings.merged(config::Uses::QUERIES)?;
     let parts = parts(&args.query.flags.values_of(groups::SPLIT));
     let parts = parts.map_err(|faults| Source::Flags.refused(faults.into()))?;
     let ask = args.query.plan(&config)?;

@@ -75,7 +75,7 @@ const PICTURE: &str = "picture";
 
 /// Writes the dots.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let config = args.settings.merged()?;
+    let config = args.settings.merged(config::Uses::POINTS)?;
     for (flag, value, [least, most]) in [
         ("--gamma", args.gamma, [0.01, 100.0]),
         ("--dot", args.dot, [0.01, 10.0]),

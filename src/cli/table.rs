@@ -137,7 +137,7 @@ impl Which {
             let table = read(file).map_err(Failure::Other)?;
             return Ok(vec![(file.display().to_string(), table)]);
         }
-        let config = self.settings.merged()?;
+        let config = self.settings.merged(config::Uses::LOADED)?;
         let catalog = config
             .catalog()
             .map_err(|error| Failure::Usage(error.into()))?;

@@ -30,8 +30,8 @@ pub(super) struct Args {
 /// Runs one of them.
 pub(super) fn run(command: &Command) -> Result<(), Failure> {
     match command {
-        Command::List(args) => list(&args.settings.merged()?),
-        Command::Check(args) => check(&args.settings.merged()?),
+        Command::List(args) => list(&args.settings.merged(config::Uses::QUERIES)?),
+        Command::Check(args) => check(&args.settings.merged(config::Uses::QUERIES)?),
     }
 }
 

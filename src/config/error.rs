@@ -53,6 +53,29 @@ pub enum ConfigError {
         /// The flag's value.
         text: String,
     },
+    /// A key that two flags set.
+    #[error("`{key}` is set twice, by {first} and by {second}; allowed: one of them")]
+    Twice {
+        /// The key.
+        key: String,
+        /// The first flag.
+        first: String,
+        /// The second one.
+        second: String,
+    },
+    /// A flag for a setting that a command does not use.
+    #[error(
+        "{source_name}: `{key}` has no effect on this command; allowed: {}",
+        list(used)
+    )]
+    Unused {
+        /// The flag.
+        source_name: String,
+        /// The key.
+        key: String,
+        /// The keys of the settings that it uses.
+        used: Vec<String>,
+    },
     /// A value that does not read as what it should be.
     #[error("the merged configuration is not valid: {0}")]
     Invalid(Box<toml::de::Error>),
@@ -62,6 +85,13 @@ pub enum ConfigError {
         /// Each with its key, its value and what is allowed.
         faults: Vec<String>,
     },
+}
+
+fn list(keys: &[String]) -> String {
+    match keys {
+        [] => "no settings".into(),
+        keys => keys.join(", "),
+    }
 }
 
 fn suggestion(keys: &[String]) -> String {

@@ -23,6 +23,8 @@ const NAMED: [&str; 3] = ["fields.", "worlds.", "except."];
 #[derive(Clone, Debug)]
 pub struct Layers {
     merged: Table,
+    /// The keys that flags have set, each with the flag.
+    by_flags: Vec<(String, String)>,
     /// The last file that was laid over.
     file: Option<PathBuf>,
 }
@@ -35,6 +37,7 @@ impl Layers {
     pub fn new() -> Result<Self, ConfigError> {
         Ok(Self {
             merged: parse("the built-in configuration", DEFAULTS)?,
+            by_flags: vec![],
             file: None,
         })
     }
@@ -85,7 +88,7 @@ impl Layers {
         Ok(self)
     }
 
-    /// Lays a flag over what is there: `key=value`.
+    /// Lays a flag over what is there: `key=value`. The last one of a key counts.
     ///
     /// # Errors
     /// For an unknown key, a value of the wrong type, or a text without `=`.
@@ -101,17 +104,44 @@ impl Layers {
                 suggestions: closest(key, &keys),
             });
         }
-        self.set_text(key, value, &format!("--set {text}"))?;
+        let flag = format!("--set {text}");
+        self.set_text(key, value, &flag)?;
+        self.by_flags.push((key.into(), flag));
         Ok(self)
     }
 
     /// Lays a flag of its own over what is there.
     ///
     /// # Errors
-    /// If the value is of the wrong type.
+    /// If the value is of the wrong type, or another flag has set the key.
     pub fn flag(mut self, flag: &str, key: &str, value: &str) -> Result<Self, ConfigError> {
+        if let Some((_, first)) = self.by_flags.iter().find(|(known, _)| known == key) {
+            return Err(ConfigError::Twice {
+                key: key.into(),
+                first: first.clone(),
+                second: flag.into(),
+            });
+        }
         self.set_text(key, value, flag)?;
+        self.by_flags.push((key.into(), flag.into()));
         Ok(self)
+    }
+
+    /// The same layers, unless a flag has set something else than these settings, each a section with a dot or a key.
+    /// Files and the environment are shared with the daemon, and may.
+    ///
+    /// # Errors
+    /// Names the flag and what may be set.
+    pub fn only(self, used: &[&str]) -> Result<Self, ConfigError> {
+        let is_used = |key: &str| used.iter().any(|used| key.starts_with(used));
+        match self.by_flags.iter().find(|(key, _)| !is_used(key)) {
+            None => Ok(self),
+            Some((key, flag)) => Err(ConfigError::Unused {
+                source_name: flag.clone(),
+                key: key.clone(),
+                used: self.keys().into_iter().filter(|key| is_used(key)).collect(),
+            }),
+        }
     }
 
     /// The merged settings, checked.

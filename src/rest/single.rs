@@ -129,10 +129,9 @@ async fn near(State(service): State<Arc<Service>>, context: Context) -> Result<R
     freshness.answer(&context.headers, make).await
 }
 
-/// The freshness of a document about single points, which changes with the table and the field only.
+/// The freshness of a document about single points of a set.
 fn freshness(context: &Context, set: &Set) -> Freshness {
-    let field = set.field.as_ref();
-    let made_of = (&set.entry.digest, field.map(|field| &field.digest));
-    let is_pinned = set.pin.is_some() && field.is_none_or(|field| field.name.is_none());
-    Freshness::of(&context.uri, &context.headers, document::JSON, &made_of).pinned(is_pinned)
+    let made_of: Vec<&str> = set.digests().collect();
+    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &made_of);
+    freshness.pinned(set.is_pinned())
 }

@@ -9,7 +9,7 @@ use std::{path::PathBuf, sync::Arc};
 use arc_swap::ArcSwap;
 use bytes::Bytes;
 use futures_util::{Stream, StreamExt as _};
-use strew_core::server::Stop;
+use strew_core::server::{Stop, Visits};
 
 use super::{
     Answer, BlockStream, Budget, Catalog, Draft, Entry, Error, Found, Held, Interrupted, Lane,
@@ -23,6 +23,7 @@ use super::{
     mixes::Mixes,
     portrait::Portraits,
     query,
+    ready::Need,
     record::Recorded,
 };
 use crate::{access::Caller, config::Config};
@@ -258,22 +259,18 @@ impl Service {
         /// Making a mix takes about as long as making this many points for each block.
         const POINTS: u128 = 10_000;
         let ready = self.samplers.get(&set.entry, &self.workers).await?;
-        let Some(kinds) = set.kinds.as_ref().filter(|_| ready.table.mix().is_none()) else {
-            return Ok(ready);
+        let made = match ready.needs(set) {
+            None => return Ok(ready),
+            Some(Need::Loaded(entry)) => self.samplers.get(&entry, &self.workers).await?,
+            Some(Need::Made(what)) => match self.mixes.known(&ready, &what).await {
+                Some(known) => known,
+                None => {
+                    caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
+                    self.mixes.get(&ready, &what, &self.workers).await?
+                }
+            },
         };
-        if let Some(made) = &kinds.made {
-            let Ready { table, .. } = self.samplers.get(made, &self.workers).await?;
-            return Ok(ready.with_made(kinds, table));
-        }
-        let what = kinds.made_of();
-        let made = match self.mixes.known(&ready, &what).await {
-            Some(known) => known,
-            None => {
-                caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
-                self.mixes.get(&ready, &what, &self.workers).await?
-            }
-        };
-        Ok(ready.with_made(kinds, made.table))
+        Ok(ready.with_made(set, made.table))
     }
 
     /// The right of a caller to start one more stream; a picture of that size is held whole.
@@ -380,12 +377,14 @@ impl Service {
         let placed = self.place(caller, set).await?;
         let effort = Neighbors::of(&placed, &nearest);
         let (budget, caller) = (self.own_budget(), caller.clone());
-        let search = move |_: &Stop| {
+        let most = effort.visits(self.limits.max_rows);
+        let search = move |stop: &Stop| {
             let _held = budget.hold(effort.bytes)?;
-            let found = placed.nearest(nearest)?;
+            let visits = Visits::new(most, stop.clone());
+            let found = placed.nearest_visiting(nearest, &visits)?;
             // Those that are thinned out take as long to find.
             let considered = found.len() as f64 / placed.set.keep.get();
-            caller.charge(considered.round() as u128, 0)?;
+            caller.charge(effort.considered(considered, visits.made()), 0)?;
             answer(&placed, found)
         };
         self.workers.take_turn(effort.lane, search).await?

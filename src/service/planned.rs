@@ -9,11 +9,11 @@ use super::{
     attributes::PointAttributes,
     effort,
     encode::{Attributes, Part},
-    mix,
     planned_set::PlannedSet,
     planner::Planner,
     query::{Amount, Query, Resolved, ResolvedSet, Set, Token},
-    resolve,
+    ready::Anew,
+    resolve::{self, other_kinds},
     terrain::{Ground, OnTerrain},
 };
 
@@ -49,6 +49,15 @@ pub struct Placed {
 }
 
 impl Placed {
+    /// A set laid into the world at once, in the calling thread: what a command line needs.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and as [`Planned::tables`].
+    pub fn at_once(set: Set) -> Result<Self, Error> {
+        let ready = Ready::of(&set, &Anew)?;
+        Self::new(set, ready)
+    }
+
     /// A set laid into the world.
     ///
     /// # Errors
@@ -70,7 +79,7 @@ impl Placed {
                 set.periodic(&ready.table, period)
                     .map_err(resolve::no_period)?,
             ),
-            None => PlacedPoints::Plane(Box::new(set.points(&ready, spacing))),
+            None => PlacedPoints::Plane(Box::new(set.points(&ready, spacing)?)),
         };
         Ok(Self {
             resolved: set.resolved(&[], density, spacing, least, (&[], &distances)),
@@ -122,12 +131,6 @@ impl PlacedPoints {
             Self::Period(points) => points.attributes(attributes),
         }
     }
-}
-
-/// The error of a table whose kinds are not those that were found for it.
-fn other_kinds(error: strew_core::Error) -> Error {
-    tracing::error!(%error, "a table has other kinds");
-    Error::Internal("a table has other kinds")
 }
 
 impl Planned {
@@ -196,20 +199,8 @@ impl Planned {
     /// [`Error::Internal`] if a table cannot be read any more; [`Error::Invalid`] if it has too few blocks for its
     /// kinds.
     pub fn tables(query: &Query) -> Result<Vec<Ready>, Error> {
-        let ready = |set: &Set| -> Result<Ready, Error> {
-            let ready = Ready::load(&set.entry)?;
-            match &set.kinds {
-                Some(kinds) if ready.table.mix().is_none() => {
-                    let table = match &kinds.made {
-                        Some(made) => made.table()?,
-                        None => mix::make(&ready.table, &kinds.made_of(), &Stop::default())?,
-                    };
-                    Ok(ready.with_made(kinds, table))
-                }
-                _ => Ok(ready),
-            }
-        };
-        query.sets.iter().map(ready).collect()
+        let tables = query.sets.iter().map(|set| Ready::of(set, &Anew));
+        tables.collect()
     }
 
     /// Narrows the sets' plans to the query's window.

@@ -58,7 +58,7 @@ impl<'a> Planner<'a> {
             Resolved::Known(spacing, _) => Ok(spacing),
             Resolved::Count(count) => here.and_then(|token| token.spacing).ok_or(count),
         };
-        let points = set.points(ready, known.unwrap_or(Spacing::ONE));
+        let points = set.points(ready, known.unwrap_or(Spacing::ONE))?;
         let area = self.left(set, ready, &points, is_over)?;
         let points = self.keeping_clear(set, points)?;
         let test = self.prices.test(set);

@@ -78,6 +78,12 @@ pub(super) fn no_period(error: strew_core::Error) -> Error {
     Error::Internal("a table has no such period")
 }
 
+/// The error of a table whose kinds are not those that were found for it.
+pub(super) fn other_kinds(error: strew_core::Error) -> Error {
+    tracing::error!(%error, "a table has other kinds");
+    Error::Internal("a table has other kinds")
+}
+
 /// The distance that coordinates within ±`reach` keep.
 pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing, reach: f64) -> f64 {
     if moves(set, ready) {

@@ -3,7 +3,10 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
-use strew_core::{Attribute, ErrorKind, Member, Neighbor, PointId};
+use strew_core::{
+    Attribute, ErrorKind, Member, Neighbor, PointId,
+    server::{self, Stop, Visits},
+};
 
 use super::{
     Error, Fault, Placed, PlacedPoints,
@@ -61,24 +64,31 @@ impl Placed {
     /// # Errors
     /// [`Error::Invalid`] for a place too far out or too many points.
     pub fn nearest(&self, nearest: Nearest) -> Result<Vec<Found>, Error> {
+        self.nearest_visiting(nearest, &Visits::new(usize::MAX, Stop::default()))
+    }
+
+    /// [`nearest`](Self::nearest) that visits a bounded number of points.
+    ///
+    /// # Errors
+    /// As `nearest`, also for more points than may be visited.
+    pub fn nearest_visiting(&self, nearest: Nearest, visits: &Visits) -> Result<Vec<Found>, Error> {
         let Nearest { at, k, radius } = nearest;
         let PlacedPoints::Plane(points) = &self.points else {
             return Err(Error::Internal("neighbors of a period were not refused"));
         };
         let found = match (k, radius) {
-            (k, None) => points.nearest(at, k.unwrap_or(1)),
-            (None, Some(radius)) => points.around(at, radius, MOST_WITHIN),
-            (Some(k), Some(radius)) => points.nearest(at, k).map(|mut found| {
-                found.retain(|neighbor| neighbor.distance <= radius);
-                found
-            }),
+            (None, Some(radius)) => server::around(points, at, radius, MOST_WITHIN, visits),
+            (k, radius) => server::nearest(points, at, k.unwrap_or(1), radius, visits),
         };
         let found = found.map_err(|error| fault(nearest, &error))?;
         self.check_reach(found.iter().map(|neighbor| &neighbor.member))?;
-        let found = found
-            .iter()
-            .map(|Neighbor { member, distance }| self.found(member, Some(*distance)));
-        Ok(found.collect())
+        let found = found.iter().map(|Neighbor { member, distance }| {
+            if visits.is_stopped() {
+                return Err(Error::Internal("a search was stopped that is still wanted"));
+            }
+            Ok(self.found(member, Some(*distance)))
+        });
+        found.collect()
     }
 
     /// Refuses a least distance that the coordinates of some points do not keep.

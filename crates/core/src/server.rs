@@ -23,10 +23,10 @@ use crate::{
     field::FieldSpec,
     map::Clusters,
     pattern::Alpha,
-    sample::{Area, PeriodicPlan, PeriodicSet, Plan, PointSet, Region, Spacing},
+    sample::{Area, Neighbor, PeriodicPlan, PeriodicSet, Plan, PointSet, Region, Spacing},
 };
 
-pub use crate::sample::Stop;
+pub use crate::sample::{Stop, Visits};
 
 /// [`Clusters::new`], whose search stops once the flag is raised. It looks at the flag for each block.
 ///
@@ -209,6 +209,54 @@ pub fn look(field: &FieldSpec, within: Region) -> f64 {
 /// ```
 pub fn addresses(set: &PointSet, area: impl Into<Area>) -> Result<[Range<i64>; 2], Error> {
     set.addresses(area.into())
+}
+
+/// [`PointSet::nearest`], or [`PointSet::nearest_within`] if there is a radius, that visits a bounded number of points.
+///
+/// # Errors
+/// As those, [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) where more points would have to be visited, and
+/// [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+///
+/// ```
+/// use strew_core::{PointSet, Table, server::{self, Stop, Visits}};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let (set, visits) = (PointSet::new(table), Visits::new(1000, Stop::default()));
+/// assert_eq!(server::nearest(&set, [9.0, 3.0], 5, None, &visits)?, set.nearest([9.0, 3.0], 5)?);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub fn nearest(
+    set: &PointSet,
+    at: [f64; 2],
+    k: usize,
+    radius: Option<f64>,
+    visits: &Visits,
+) -> Result<Vec<Neighbor>, Error> {
+    set.nearest_visiting(at, k, radius, visits)
+}
+
+/// [`PointSet::around`] that visits a bounded number of points.
+///
+/// # Errors
+/// As [`PointSet::around`], [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) where more points would have to be visited,
+/// and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+///
+/// ```
+/// use strew_core::{PointSet, Table, server::{self, Stop, Visits}};
+///
+/// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+/// let (set, visits) = (PointSet::new(table), Visits::new(1000, Stop::default()));
+/// assert_eq!(server::around(&set, [9.0, 3.0], 4.0, 100, &visits)?, set.around([9.0, 3.0], 4.0, 100)?);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub fn around(
+    set: &PointSet,
+    at: [f64; 2],
+    radius: f64,
+    limit: usize,
+    visits: &Visits,
+) -> Result<Vec<Neighbor>, Error> {
+    set.around_visiting(at, radius, limit, visits)
 }
 
 /// The plan with another flag: its windows and cursors, which may have to count, stop once that is raised.

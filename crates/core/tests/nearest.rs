@@ -73,14 +73,23 @@ proptest! {
 
     #[test]
     fn the_nearest_are_what_brute_force_finds(
-        (set, at) in any_query(), k in prop_oneof![0usize..12, 0usize..200],
+        (set, at) in any_query(), k in prop_oneof![1usize..12, 1usize..200], part in 0.1..3.0f64,
     ) {
         let nearest = found(set.nearest(at, k).expect("near"));
         prop_assert_eq!(nearest.len(), k);
         let farthest = nearest.last().map_or(0.0, |n| n.1);
         let all = in_box(&set, at, farthest);
         prop_assert!(all.len() >= k);
-        prop_assert_eq!(nearest, pairs(&all[..k]));
+        prop_assert_eq!(&nearest, &pairs(&all[..k]));
+        // Within a radius there may be fewer.
+        let radius = farthest * part;
+        let mut fewer = pairs(&in_box(&set, at, radius.min(farthest)));
+        fewer.retain(|(p, _)| {
+            let (dx, dy) = (p.x - at[0], p.y - at[1]);
+            dx * dx + dy * dy <= radius * radius
+        });
+        fewer.truncate(k);
+        prop_assert_eq!(set.nearest_within(at, k, radius).map(found), Ok(fewer));
     }
 
     #[test]
@@ -159,11 +168,20 @@ fn a_thousand_neighbors_and_the_limits() {
 
     let kind = |error: strew_core::Error| error.kind();
     let most = PointSet::MAX_NEAREST;
-    let error = set.nearest(at, most + 1).expect_err("too many");
-    assert_eq!(
-        (error.kind(), error.value()),
-        (ErrorKind::Neighbors, "10001")
-    );
+    for k in [0, most + 1] {
+        let error = set.nearest(at, k).expect_err("none or too many");
+        let value = k.to_string();
+        assert_eq!(
+            (error.kind(), error.value()),
+            (ErrorKind::Neighbors, &*value)
+        );
+    }
+    // Nothing beyond the radius is searched, so there is an answer where there are too few points.
+    let rare = set.clone().keep(1e-9).expect("a share");
+    assert!(rare.nearest(at, 5).is_err());
+    assert_eq!(rare.nearest_within(at, 5, 30.0), Ok(vec![]));
+    let wrong = rare.nearest_within(at, 5, f64::NAN).map_err(kind);
+    assert_eq!(wrong, Err(ErrorKind::Radius));
     let error = set.around(at, 1e6, 1_000_000).expect_err("many");
     assert!(error.to_string().contains("at most"), "{error}");
     assert!(set.around(at, 1e300, 1_000_000).is_err());

@@ -107,7 +107,7 @@ struct Job<'a> {
 
 /// Exports, or checks an export.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let config = args.settings.merged()?;
+    let config = args.settings.merged(config::Uses::POINTS)?;
     let threads = args
         .threads
         .map_or(config.workers.threads, |threads| threads as usize);

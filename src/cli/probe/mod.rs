@@ -53,7 +53,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         usage(anyhow!("--timeout {value}: allowed: 0.001 to 3600 seconds"))
     })?;
     let (is_tls, host) = match &args.url {
-        Some(url) => host(url).map_err(usage)?,
+        Some(url) => {
+            let why = "--url has the address";
+            args.settings.must_be_unused(why)?;
+            host(url).map_err(usage)?
+        }
         None => {
             let settings = args.settings.merged()?;
             let host = local(settings.server.listen).map_err(usage)?;

@@ -27,7 +27,7 @@ use super::{
 pub(super) struct RemoteArgs {
     /// Let the daemon at this address answer, such as http://127.0.0.1:8080, or https://strew.example with --ca: its
     /// tables, fields, worlds, lists and limits count.
-    #[arg(long, value_name = "URL", conflicts_with_all = ["tables", "set"])]
+    #[arg(long, value_name = "URL", conflicts_with_all = ["config", "tables", "set"])]
     url: Option<String>,
     /// A file with the key for that daemon [default: the key in the variable STREW_API_KEY, if it is set]
     #[arg(long, value_name = "FILE", requires = "url", hide_short_help = true)]

@@ -5,6 +5,7 @@
 
 mod layers;
 mod making;
+mod neighbors;
 
 use strew_core::{
     Area, PointSet, Region, Spacing, Warp,
@@ -12,15 +13,15 @@ use strew_core::{
 };
 
 use super::{
-    Lane, Placed, Ready,
-    query::{Nearest, Query, Set},
+    Lane, Ready,
+    query::{Query, Set},
     resolve::{Resolved, resolve},
-    single::MOST_WITHIN,
 };
 pub(super) use layers::Layers;
 use layers::look;
 pub use making::considered;
 pub(super) use making::{block_bytes, block_lane, point};
+pub use neighbors::Neighbors;
 
 /// About how many lattice units a mean spacing has.
 const UNITS: f64 = 3.0;
@@ -173,10 +174,11 @@ fn counted(query: &Query, set: &Set, ready: &Ready, layers: &mut Layers) -> (f64
     };
     let test = layers.test(set);
     layers.push(set, spacing, query.region.bounds);
-    let Some(spacing) = spacing else {
+    // What cannot be planned is refused then.
+    let points = spacing.and_then(|spacing| set.points(ready, spacing).ok());
+    let Some(points) = points else {
         return (0.0, 0.0);
     };
-    let points = set.points(ready, spacing);
     let selection = Selection::new(set, points, set.area(&query.region), test);
     let is_plain = selection.set.placement().warp == Warp::OFF && !selection.looks_at_all();
     let is_plain = is_plain && set.field.is_none();
@@ -184,46 +186,6 @@ fn counted(query: &Query, set: &Set, ready: &Ready, layers: &mut Layers) -> (f64
     // Seeking an offset counts again.
     let seeks = 1.0 + f64::from(u8::from(query.window.offset > 0));
     (rows_and_edges(&selection) * counts, weight * seeks)
-}
-
-/// What a search for neighbors takes, known before it begins.
-#[derive(Clone, Copy, Debug)]
-pub struct Neighbors {
-    /// The most bytes that the points and the answer with them hold.
-    pub bytes: usize,
-    /// Where to search.
-    pub lane: Lane,
-}
-
-impl Neighbors {
-    /// What a search among the points of a set takes.
-    #[must_use]
-    pub fn of(placed: &Placed, nearest: &Nearest) -> Self {
-        /// A point without attributes, and a value, in memory and as text.
-        const POINT: usize = 384;
-        const VALUE: usize = 160;
-        /// More points than this take milliseconds.
-        const MANY: usize = 500;
-        let within = nearest.radius.map_or(1.0, |radius| {
-            // The disk and its rim, generously.
-            let across = radius * placed.resolved.density.sqrt() + 2.0;
-            across * across * 4.0
-        });
-        let most = nearest.k.unwrap_or(MOST_WITHIN).min(MOST_WITHIN);
-        let most = match (nearest.k, nearest.radius) {
-            (Some(_), None) => most,
-            _ => most.min(within.ceil() as usize),
-        };
-        let values = placed.set.attributes.as_slice().len();
-        Self {
-            bytes: most * (POINT + values * VALUE),
-            // In a field there may be nothing for long.
-            lane: match most > MANY || placed.set.fields().next().is_some() {
-                true => Lane::Long,
-                false => Lane::Short,
-            },
-        }
-    }
 }
 
 /// The points that counting a selection looks at one by one; none without a field.

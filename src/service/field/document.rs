@@ -81,6 +81,20 @@ impl Document {
         shown
     }
 
+    /// Whether it is a name, or one of its parts is.
+    #[must_use]
+    pub fn has_names(&self) -> bool {
+        match self {
+            Self::Name(_) => true,
+            Self::Multiply(parts) | Self::Min(parts) | Self::Max(parts) => {
+                parts.0.iter().any(Self::has_names)
+            }
+            Self::Invert(of) => of.has_names(),
+            Self::Curve(curve) => curve.of.has_names(),
+            _ => false,
+        }
+    }
+
     /// Visits the pixels of all its parts.
     pub fn each_pixels(&mut self, visit: &mut impl FnMut(&mut Pixels)) {
         match self {

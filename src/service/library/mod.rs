@@ -14,13 +14,16 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
+use strew_core::Table;
+
 use super::{
-    Answer, Catalog, Draft, Encoding, Error, Fault, Found, Limits, Nearest, Options, Output,
+    Answer, Catalog, Draft, Encoding, Entry, Error, Fault, Found, Limits, Nearest, Options, Output,
     Placed, Planned, Query, Ready, Set, Token,
     catalog::CatalogError,
     field::{self, Document, FieldError, Fields, NamedField},
-    mix,
+    mix::{self, Made},
     query::{self, groups, parse_pairs, read_body},
+    ready::Store,
 };
 use crate::config::{ConfigError, Layers};
 
@@ -144,7 +147,7 @@ impl Library {
     }
 
     fn planned(&self, query: Query) -> Result<Planned, Error> {
-        let tables = query.sets.iter().map(|set| self.ready(set));
+        let tables = query.sets.iter().map(|set| Ready::of(set, self));
         let tables = tables.collect::<Result<Vec<_>, _>>()?;
         Planned::new(query, &tables, &self.limits)
     }
@@ -261,7 +264,7 @@ impl Library {
     }
 
     fn placed(&self, set: Set) -> Result<Placed, Error> {
-        let ready = self.ready(&set)?;
+        let ready = Ready::of(&set, self)?;
         Placed::new(set, ready)
     }
 
@@ -275,25 +278,6 @@ impl Library {
             Ok(few) if count <= u128::from(limit) => Ok(few),
             _ => Err(Error::TooManyPoints { count, limit }),
         }
-    }
-
-    /// The table of a set, which is read, or made, the first time.
-    fn ready(&self, set: &Set) -> Result<Ready, Error> {
-        let plain = self.kept(&set.entry.digest, || Ready::load(&set.entry))?;
-        let Some(kinds) = set.kinds.as_ref().filter(|_| plain.table.mix().is_none()) else {
-            return Ok(plain);
-        };
-        if let Some(made) = &kinds.made {
-            let Ready { table, .. } = self.kept(&made.digest, || Ready::load(made))?;
-            return Ok(plain.with_made(kinds, table));
-        }
-        let what = kinds.made_of();
-        let name = format!("{} {what}", plain.entry.digest);
-        let made = self.kept(&name, || {
-            let table = mix::make(&plain.table, &what, &Stop::default())?;
-            Ok(Ready::new(plain.entry.clone(), table))
-        })?;
-        Ok(plain.with_made(kinds, made.table))
     }
 
     /// What is known under a name. It is made without the lock: others go on meanwhile.
@@ -312,6 +296,22 @@ impl Library {
 
     fn known(&self) -> MutexGuard<'_, HashMap<String, Ready>> {
         self.ready.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Tables are read, and mixes made, the first time.
+impl Store for Library {
+    fn load(&self, entry: &Arc<Entry>) -> Result<Ready, Error> {
+        self.kept(&entry.digest, || Ready::load(entry))
+    }
+
+    fn make(&self, plain: &Ready, what: &Made) -> Result<Table, Error> {
+        let name = format!("{} {what}", plain.entry.digest);
+        let made = self.kept(&name, || {
+            let table = mix::make(&plain.table, what, &Stop::default())?;
+            Ok(Ready::new(plain.entry.clone(), table))
+        })?;
+        Ok(made.table)
     }
 }
 

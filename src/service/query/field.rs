@@ -12,6 +12,8 @@ use crate::service::{Catalog, field::Document};
 pub struct SetField {
     /// Its name, if it is one that is loaded.
     pub name: Option<String>,
+    /// Whether it is, or is made of, fields that are loaded, which may change.
+    pub has_names: bool,
     /// The field.
     pub spec: FieldSpec,
     /// Its digest, in hexadecimal.
@@ -59,6 +61,7 @@ impl<'a> Loaded<'a> {
                 Document::Name(name) => Some(name.clone()),
                 _ => None,
             },
+            has_names: document.has_names(),
             digest: spec.digest().to_string(),
             spec,
         })

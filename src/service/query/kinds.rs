@@ -10,7 +10,8 @@ use super::{
     parameters::{ONLY, PERIODIC, SPREAD, VARIANT_FIELDS, VARIANTS},
 };
 use crate::service::{
-    Catalog, Entry, Fault, Ready, catalog::MixKey, field::Document, mix::Made, query::unknown,
+    Catalog, Entry, Error, Fault, Ready, catalog::MixKey, field::Document, mix::Made,
+    query::unknown, resolve::other_kinds,
 };
 
 /// How variants are spread.
@@ -169,27 +170,27 @@ impl Kinds {
     }
 
     /// The points of a set that have these kinds, limited to one of them if that is wanted.
-    pub(super) fn of(&self, mut points: PointSet, ready: &Ready) -> PointSet {
-        let varying = || {
-            let second = ready.second.as_ref()?;
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if the table lacks what the kinds need, or has other kinds.
+    pub(super) fn of(&self, mut points: PointSet, ready: &Ready) -> Result<PointSet, Error> {
+        if self.vary_by_place() {
+            const WITHOUT: Error = Error::Internal("a table has no second order");
+            let second = ready.second.as_ref().ok_or(WITHOUT)?;
             let mut fields: Vec<Option<Arc<dyn Field>>> = vec![None; self.shares().kinds()];
             for (name, field) in &self.fields {
-                let place = fields.get_mut(usize::from(self.variants.kind(name)?))?;
-                *place = Some(Arc::new(field.spec.clone()));
+                let kind = self.variants.kind(name).map(usize::from);
+                let place = kind.and_then(|kind| fields.get_mut(kind));
+                *place.ok_or(WITHOUT)? = Some(Arc::new(field.spec.clone()));
             }
-            VaryingKinds::new(second, self.shares().clone(), fields).ok()
-        };
-        if let Some(varying) = varying()
-            && let Ok(varied) = points.clone().with_varying_kinds(varying)
-        {
-            points = varied;
+            let varying = VaryingKinds::new(second, self.shares().clone(), fields);
+            let varied = varying.and_then(|varying| points.with_varying_kinds(varying));
+            points = varied.map_err(other_kinds)?;
         }
-        if let Some((_, kind)) = self.only
-            && let Ok(of_kind) = points.clone().only(kind)
-        {
-            points = of_kind;
+        match self.only {
+            Some((_, kind)) => points.only(kind).map_err(other_kinds),
+            None => Ok(points),
         }
-        points
     }
 
     /// Finds the table of the kinds among those of a catalog, beside a plain one: that of a joint spread answers

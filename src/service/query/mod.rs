@@ -8,6 +8,7 @@
 mod amount;
 mod attributes;
 mod cursor;
+mod depends;
 mod draft;
 mod echo;
 mod except;
@@ -148,48 +149,19 @@ pub struct Set {
 const QUICK: f64 = 3e5;
 
 impl Query {
-    /// Whether it holds all that its answer depends on: it names the digests of all of its tables, no field that may
-    /// change, no list of points, and no kinds of a loaded table; or the digest of a world that all of these come from.
+    /// Whether it holds all that its answer depends on: in its sets, or in the digest of a world that all of it comes
+    /// from.
     #[must_use]
     pub fn is_pinned(&self) -> bool {
-        let is_named = |field: &SetField| field.name.is_some();
-        let has_lists =
-            |set: &Set| (set.except.as_ref()).is_some_and(|except| !except.names.is_empty());
-        let is_fixed = |set: &Set| {
-            let terrain = set.terrain.iter().map(|terrain| &terrain.field);
-            let has_names = set.fields().chain(terrain).any(is_named) || has_lists(set);
-            set.pin.is_some() && !has_names
-        };
-        let is_given = |set: &Set| set.kinds.as_ref().is_some_and(|kinds| kinds.made.is_some());
         match &self.world {
             Some(world) => world.is_pinned,
-            None => self.sets.iter().all(|set| is_fixed(set) && !is_given(set)),
+            None => self.sets.iter().all(Set::is_pinned),
         }
     }
 
-    /// The digests of everything that its points depend on beyond the query itself: tables, then fields, then lists.
+    /// The digests of everything that its points depend on beyond the query itself.
     pub fn digests(&self) -> impl Iterator<Item = &str> {
-        let except = self.sets.iter().filter_map(|set| set.except.as_ref());
-        let except = except.flat_map(|except| except.parts.iter().map(|part| part.digest()));
-        let tables = self.sets.iter().map(|set| set.entry.digest.as_str());
-        let mixes = self
-            .sets
-            .iter()
-            .filter_map(|set| set.kinds.as_ref()?.made.as_ref());
-        let fields = self.sets.iter().flat_map(|set| {
-            let none = if set.field.is_none() { Some("") } else { None };
-            none.into_iter()
-                .chain(set.fields().map(|field| field.digest.as_str()))
-        });
-        let terrains = self.sets.iter().filter_map(|set| {
-            let terrain = set.terrain.as_ref()?;
-            Some(terrain.field.digest.as_str())
-        });
-        tables
-            .chain(fields)
-            .chain(terrains)
-            .chain(mixes.map(|entry| entry.digest.as_str()))
-            .chain(except)
+        self.sets.iter().flat_map(Set::digests)
     }
 
     /// Whether planning it and making its points takes no longer than handing it to another
@@ -237,16 +209,18 @@ impl Set {
     }
 
     /// The points of a table at a spacing.
-    #[must_use]
-    pub(super) fn points(&self, ready: &Ready, spacing: Spacing) -> PointSet {
+    ///
+    /// # Errors
+    /// As [`Kinds::of`].
+    pub(super) fn points(&self, ready: &Ready, spacing: Spacing) -> Result<PointSet, Error> {
         let mut points = PointSet::new(ready.table.clone()).placed(self.placement(spacing));
         if let Some(kinds) = &self.kinds {
-            points = kinds.of(points, ready);
+            points = kinds.of(points, ready)?;
         }
-        match &self.field {
+        Ok(match &self.field {
             Some(field) => points.in_field(field.spec.clone()),
             None => points,
-        }
+        })
     }
 
     /// Keeps a share of its points, while other layers keep clear of all of them.

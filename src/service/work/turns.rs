@@ -220,11 +220,10 @@ mod tests {
         scene.take(2, 20);
         assert!(scene.turns.is_wanted_by_others(1));
         scene.turns.give_way(turn, 1, scene.named(10).0);
-        // The address that waited longer is next.
         let mut names = vec![];
         while let Some((name, _turn)) = scene.next() {
             names.push(name);
         }
-        assert_eq!(names, [10, 20, 11]);
+        assert_eq!(names, [20, 10, 11]);
     }
 }

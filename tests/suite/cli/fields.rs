@@ -4,6 +4,7 @@ use std::{fs, path::Path};
 
 use crate::support::{
     command::{errors, run},
+    daemon::Daemon,
     fields::{folder, left_half, png},
 };
 
@@ -85,6 +86,25 @@ fn names_documents_and_rasters_are_the_same_field() {
         text(&document),
     ];
     assert!(printed(&point).contains(id));
+}
+
+#[test]
+fn what_a_query_describes_is_no_file_whatever_its_text_has() {
+    let field =
+        r#"{"raster": {"f32": "AACAPwAA/z4=", "width": 2, "height": 1, "bbox": [0, 0, 3, 3]}}"#;
+    let of = |member: &str| {
+        format!(r#"{{"region": {{"bbox": [0, 0, 3, 3]}}, "spacing": 1, "{member}": {field}}}"#)
+    };
+    let daemon = Daemon::start(&[]);
+    for member in ["field", "terrain"] {
+        let body: serde_json::Value = serde_json::from_str(&of(member)).expect("JSON");
+        let count = daemon.post("/v1/count", &body).json()["count"].to_string();
+        for more in [&[][..], &["--url", &daemon.url("")]] {
+            let output = run(&[&["count", "--query", "-"], more].concat(), &of(member));
+            assert!(output.status.success(), "{member}: {}", errors(&output));
+            assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), count);
+        }
+    }
 }
 
 #[test]

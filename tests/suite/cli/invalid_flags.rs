@@ -3,11 +3,32 @@
 use crate::support::command::run;
 
 /// (arguments, texts in the message).
-const WRONG: [(&str, &[&str]); 32] = [
+const WRONG: [(&str, &[&str]); 38] = [
     (
         "sample --bbox 0,0,9,9 --spacing 1 -o trees.shp",
         &["--output", ".shp", "--format", "parquet"],
     ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --set limits.max_points=10",
+        &["has 81 points", "allow 10", "--set limits.max_points=81"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --set limits.max_streams=3",
+        &["--set limits.max_streams=3", "no effect", "limits.max_rows"],
+    ),
+    (
+        "sample --bbox 0,0,9,9 --spacing 1 --tables /a --set tables.folder=/b",
+        &["`tables.folder`", "--set tables.folder=/b and by --tables"],
+    ),
+    (
+        "count --bbox 0,0,9,9 --spacing 1 --url http://127.0.0.1:1 --config a.toml",
+        &["--url <URL>", "--config <FILE>"],
+    ),
+    (
+        "probe --url http://127.0.0.1:1 --listen 127.0.0.1:2",
+        &["--listen has no effect", "--url"],
+    ),
+    ("nearest --at 0,0", &["--spacing, --min-distance\n"]),
     (
         "nearest --at 0,0 --spacing 1 --radius 1000",
         &["--radius 1000", "3141593", "10000"],

@@ -256,6 +256,48 @@ async fn calls_and_commands_agree() {
 }
 
 #[test]
+fn single_points_have_their_kinds_on_the_command_line_too() {
+    let daemon = Daemon::built_in();
+    let query = format!("{SET}&spread=even&only=birch");
+    let near = daemon.get(&format!("/v1/nearest?at=20,15&k=40&{query}"));
+    let neighbors = near.json()["neighbors"].clone();
+    let neighbors = neighbors.as_array().expect("a list");
+    assert_eq!(neighbors.len(), 40);
+    assert!(neighbors.iter().all(|point| point["variant"] == "birch"));
+    let flags = "--map s --spacing 1 --seed 9 --attributes variant --variants oak:3,birch:1 \
+                 --spread even --only birch --json";
+    let printed = |command: &[&str]| {
+        let arguments: Vec<&str> = command
+            .iter()
+            .copied()
+            .chain(flags.split_whitespace())
+            .collect();
+        command::run(&arguments, "")
+    };
+    let output = printed(&["nearest", "--at", "20,15", "--k", "40"]);
+    assert!(output.status.success(), "{}", command::errors(&output));
+    let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(json, near.json());
+    // A point of the other kind is none of the set.
+    let all = daemon.get(&format!("/v1/nearest?at=20,15&k=40&{SET}&spread=even"));
+    for point in all.json()["neighbors"].as_array().expect("a list") {
+        let id = point["id"].as_str().expect("text");
+        let answer = daemon.get(&format!("/v1/points/{id}?{query}"));
+        let output = printed(&["point", id]);
+        let is_birch = point["variant"] == "birch";
+        assert_eq!(
+            (answer.status == 200, output.status.success()),
+            (is_birch, is_birch),
+            "{id}"
+        );
+        if is_birch {
+            let json: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+            assert_eq!(json, answer.json());
+        }
+    }
+}
+
+#[test]
 fn a_restart_finds_what_was_made() {
     let address = format!("/v1/points?bbox=0,0,30,30&{SET}&spread=even&format=csv");
     let folder = no_tables();

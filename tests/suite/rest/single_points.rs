@@ -106,6 +106,21 @@ fn the_nearest_points_are_those_of_a_brute_force_search() {
     }
 }
 
+#[test]
+fn nothing_beyond_the_radius_is_searched() {
+    let daemon = Daemon::start(&[]);
+    let nothing = daemon.post("/v1/fields", &json!({ "constant": 0 })).json();
+    let nothing = nothing["digest"].as_str().expect("a digest");
+    for set in ["keep=1e-6", &format!("field={nothing}")] {
+        let address = format!("/v1/nearest?at=0,0&k=5&spacing=1&{set}");
+        let refused = daemon.get(&address);
+        assert_eq!(refused.status, 400, "{}", refused.text());
+        let answer = daemon.get(&format!("{address}&radius=10"));
+        assert_eq!(answer.status, 200, "{}", answer.text());
+        assert_eq!(answer.json()["neighbors"], json!([]));
+    }
+}
+
 const ATTRIBUTES: &str = "attributes=angle,scale,variant,rank,u1,u16&scale_range=0.5,2&\
                           variants=oak:3,birch,ash:0.5";
 

@@ -6,13 +6,16 @@ use strew::grpc::proto::{
     point_service_client::PointServiceClient, point_set::Amount,
 };
 use strew_core::Point;
-use strew_testkit::http1::Answer;
+use strew_testkit::{
+    http1::{self, Answer},
+    wait::until,
+};
 
 use crate::support::{
     command,
     csv::Csv,
     daemon::{Daemon, no_tables},
-    fields::folder,
+    fields::{folder, write},
     grpc,
     problem::assert_fault,
 };
@@ -148,6 +151,53 @@ fn answers_say_which_fields_and_change_with_them() {
     let answer = daemon.get(&format!("{other}&cursor={next}"));
     assert_fault(&answer, "another field", "cursor", &[]);
     assert_ne!(daemon.get(&other).header("etag"), tag);
+}
+
+#[test]
+fn tags_of_single_points_change_with_all_that_is_loaded() {
+    let folder = folder();
+    let daemon = daemon(&folder);
+    let near = format!("/v1/nearest?at=20,20&{SET}");
+    let table = daemon.get("/v1/points?bbox=0,0,1,1&map=s&spacing=1");
+    let table = table.header("strew-table");
+    let pin = format!("table={table}");
+    let terrain = format!("{near}&terrain=ramp&{pin}");
+    let varied = format!("{near}&{VARIED}&{pin}");
+    let id = daemon.get(&near).json()["neighbors"][0]["id"].clone();
+    let id = id.as_str().expect("an id");
+    let single = format!("/v1/points/{id}?{SET}&terrain=ramp&{pin}");
+    let paths = [terrain, varied, single];
+    let before: Vec<Answer> = paths.iter().map(|path| daemon.get(path)).collect();
+    for (path, answer) in paths.iter().zip(&before) {
+        assert_eq!(answer.status, 200, "{}", answer.text());
+        let kept = answer.header("cache-control");
+        assert!(!kept.contains("immutable"), "{path}: {kept}");
+    }
+    // A described field that names a loaded one may change as well.
+    let within = json!({
+        "region": { "bbox": [0, 0, 4, 4] }, "spacing": 1, "map": "s", "table": table,
+        "field": { "invert": { "name": "ramp" } },
+    });
+    let within = daemon.post("/v1/points:query", &within);
+    assert_eq!(within.status, 200, "{}", within.text());
+    assert!(!within.header("cache-control").contains("immutable"));
+
+    write(
+        folder.path(),
+        "ramp.json",
+        br#"{"ramp": {"from": [0, 0], "to": [80, 0]}}"#,
+    );
+    daemon.signal("-HUP");
+    until("the field is served", || {
+        let answer = daemon.get(&paths[0]);
+        (answer.body != before[0].body).then_some(())
+    });
+    for (path, before) in paths.iter().zip(&before) {
+        let tag = before.header("etag");
+        let after = http1::get(daemon.address(), path, &[("if-none-match", tag)]);
+        assert_eq!(after.status, 200, "{path}");
+        assert_ne!(after.header("etag"), tag, "{path}");
+    }
 }
 
 #[test]

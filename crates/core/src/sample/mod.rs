@@ -47,7 +47,7 @@ pub use iter::Members;
 pub use kernel::{Backend, F32, F64, Format, Offsets, Points};
 pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing, VaryingKinds};
 pub use member::Member;
-pub use near::{Clearance, LeastDistance};
+pub use near::{Clearance, LeastDistance, Visits};
 pub use periodic::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use plan::Plan;
 pub use seed::Seed;

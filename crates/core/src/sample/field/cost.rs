@@ -66,17 +66,14 @@ mod tests {
         assert!(look(&noise(8)) > 6.0 * look(&noise(1)));
         let many = FieldSpec::multiply(vec![noise(8); 63]).expect("valid");
         assert!(look(&many) > 60.0 * look(&noise(8)));
-        // Sides that all cross the view cannot be told apart by boxes around them; a street can.
-        let zigzag = |width: f64, step: f64| {
-            let line = (0..5000).map(|i| {
-                let x = f64::from(i) * step;
-                [x, if i % 2 == 0 { 0.0 } else { width }]
-            });
+        // Boxes around sides that all cross the view do not tell which is near; those of a street do.
+        let line = |place: &dyn Fn(u32) -> [u32; 2]| {
+            let line = (0..5000).map(|i| place(i).map(f64::from).map(|v| v * 0.02));
             let marks = Marks::Lines(vec![line.collect()]);
             FieldSpec::distance(marks, [0.0, 1.0], [0.0, 1.0]).expect("valid")
         };
-        let tangled = look(&zigzag(100.0, 1e-6));
-        let street = look(&zigzag(0.1, 0.02));
+        let tangled = look(&line(&|i| [i * 1871 % 5003, i * 3571 % 5009]));
+        let street = look(&line(&|i| [i, i % 7]));
         assert!(tangled > 20.0 * street, "{tangled} {street}");
     }
 }

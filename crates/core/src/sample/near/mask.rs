@@ -222,7 +222,7 @@ impl Clearance {
             return false;
         }
         let squared = *distance * *distance;
-        let scanned = scan(lattice, scratch, at, *distance, |d, point| {
+        let scanned = scan(lattice, scratch, at, *distance, None, |d, point| {
             if d < squared && guards.permit(point.at()) && accept(&point) {
                 ControlFlow::Break(())
             } else {

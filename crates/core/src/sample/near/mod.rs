@@ -1,7 +1,7 @@
 //! Points near a place.
 //!
 //! `scan` visits the points around a place. `search` returns the nearest ones and those within a radius,
-//! and `limits` refuses what would take too long. `mask` decides by such neighbors which points of a set
+//! and `limits` refuses what would take too long; `visits` counts and stops them. `mask` decides by such neighbors which points of a set
 //! exist: those in its area that keep clear of other sets. `distance` is the least distance between any
 //! two points of a table, by the `pairs` of its blocks.
 
@@ -11,7 +11,9 @@ mod mask;
 mod pairs;
 mod scan;
 pub(super) mod search;
+mod visits;
 
 pub use distance::LeastDistance;
 pub use mask::Clearance;
+pub use visits::Visits;
 pub(super) use mask::{ClearOf, Guard, Mask};

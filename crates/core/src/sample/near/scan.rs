@@ -10,6 +10,7 @@
 use alloc::vec::Vec;
 use core::ops::{ControlFlow, RangeInclusive};
 
+use super::visits::Visits;
 use crate::{
     pattern::Axis,
     sample::{
@@ -32,13 +33,14 @@ struct NearColumn {
 }
 
 /// Calls `visit` with the squared distance of every point whose reported coordinates lie within `radius`
-/// of `at`, and of some farther ones, until it breaks. `at` and the disk around it lie within the
+/// of `at`, and of some farther ones, until it or a flag breaks. `at` and the disk around it lie within the
 /// lattice's limit.
 pub(super) fn scan(
     lattice: &Lattice,
     scratch: &mut Scratch,
     at: [f64; 2],
     radius: f64,
+    visits: Option<&Visits>,
     mut visit: impl FnMut(f64, Point) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let there = at.map(|v| whole(v / lattice.step));
@@ -64,10 +66,11 @@ pub(super) fn scan(
         };
         let offset = (fixed(y) - center[1]) as i64;
         let (vectors, keeps) = (lattice.vectors(block), lattice.keeps(block));
-        for column in scratch.0[class.ordinal()]
-            .iter()
-            .filter(|column| keeps(&column.line))
-        {
+        let columns = &scratch.0[class.ordinal()];
+        if let (Some(visits), None) = (visits, &lattice.grade) {
+            visits.row(columns.len())?;
+        }
+        for column in columns.iter().filter(|column| keeps(&column.line)) {
             let block_x = column.line.block as usize;
             let id = PointId {
                 x: column.line.at,
@@ -75,6 +78,9 @@ pub(super) fn scan(
             };
             let mut vector = vectors[block_x];
             if let Some(grade) = &lattice.grade {
+                if let Some(visits) = visits {
+                    visits.one()?;
+                }
                 let displaced = [
                     left + column.offset + i64::from(vector[0]),
                     bottom + offset + i64::from(vector[1]),

@@ -13,38 +13,46 @@ use super::{
     },
     mask::Mask,
     scan::{Scratch, scan},
+    visits::Visits,
 };
 use crate::{
     error::{Error, ErrorKind},
     sample::lattice::{Lattice, Point},
+    stop::Stop,
 };
 
 /// A point found, with its squared distance.
 pub(crate) type Found = (f64, Point);
 
-/// The `k` nearest points, in order.
+/// The `k` nearest points, in order, at most those within a radius.
 pub(crate) fn nearest(
     lattice: &Lattice,
     mask: &Mask,
     at: [f64; 2],
     k: usize,
+    most: Option<f64>,
+    visits: &Visits,
 ) -> Result<Vec<Found>, Error> {
-    if k > MAX_NEAREST {
-        let allowed = alloc::format!("at most {MAX_NEAREST}");
+    if !(1..=MAX_NEAREST).contains(&k) {
+        let allowed = alloc::format!("an integer from 1 to {MAX_NEAREST}");
         return Err(Error::new(ErrorKind::Neighbors, "k", k, allowed));
     }
+    if let Some(most) = most {
+        check_radius(most)?;
+    }
+    let most = most.unwrap_or(f64::INFINITY);
     let placement = lattice.placement;
     // A disk that holds k + √k + 1 points on average mostly has k.
     let wanted = k as f64 + libm::sqrt(k as f64) + 1.0;
     let area = wanted / (core::f64::consts::PI * lattice.share());
-    let mut radius = placement.spacing.get() * libm::sqrt(area);
+    let mut radius = most.min(placement.spacing.get() * libm::sqrt(area));
     loop {
-        let mut found = within(lattice, mask, at, radius, MAX_CANDIDATES)?;
-        if found.len() >= k {
+        let mut found = within(lattice, mask, at, radius, MAX_CANDIDATES, visits)?;
+        if found.len() >= k || radius >= most {
             found.truncate(k);
             return Ok(found);
         }
-        radius *= 1.5;
+        radius = most.min(radius * 1.5);
     }
 }
 
@@ -55,18 +63,20 @@ pub(crate) fn within(
     at: [f64; 2],
     radius: f64,
     limit: usize,
+    visits: &Visits,
 ) -> Result<Vec<Found>, Error> {
     check_place(at)?;
     check_radius(radius)?;
     // Counts come close to their means in disks of many points.
     let generous = limit.saturating_mul(2).max(100);
     check_number(lattice, radius, lattice.share(), generous)?;
-    check_work(lattice, radius, 2 * MAX_CANDIDATES)?;
+    check_work(lattice, radius, visits.most())?;
     check_reach(lattice, at, radius)?;
     let squared = radius * radius;
     let guards = mask.guards();
     let (mut found, mut inside) = (Vec::with_capacity(limit.min(12)), 0usize);
-    let _ = scan(lattice, &mut Scratch::default(), at, radius, |d, point| {
+    let mut scratch = Scratch::default();
+    let scanned = scan(lattice, &mut scratch, at, radius, Some(visits), |d, point| {
         if d <= squared && guards.permit(point.at()) {
             inside += 1;
             if inside <= limit {
@@ -75,6 +85,9 @@ pub(crate) fn within(
         }
         ControlFlow::Continue(())
     });
+    if scanned.is_break() {
+        return Err(Stop::error());
+    }
     if inside > limit {
         return Err(too_many(radius, inside as f64, limit));
     }

@@ -10,7 +10,7 @@ use crate::{
         attribute::{Attributes, BoundAttributes},
         lattice::{Placement, PointId},
         member::Member,
-        near::{Clearance, LeastDistance, limits, search},
+        near::{Clearance, LeastDistance, Visits, limits, search},
     },
 };
 
@@ -130,7 +130,7 @@ impl PointSet {
     /// Distances are those of the reported coordinates, compared as dx·dx + dy·dy in `f64`.
     ///
     /// # Errors
-    /// [`ErrorKind::Neighbors`](crate::ErrorKind::Neighbors) if `k` is above
+    /// [`ErrorKind::Neighbors`](crate::ErrorKind::Neighbors) unless `k` is from 1 to
     /// [`MAX_NEAREST`](Self::MAX_NEAREST), [`ErrorKind::Place`](crate::ErrorKind::Place) if the place is
     /// not finite, [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the search leaves the
     /// [limit](Self::search_limit), and [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if the set has so
@@ -147,8 +147,30 @@ impl PointSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn nearest(&self, at: [f64; 2], k: usize) -> Result<Vec<Neighbor>, Error> {
-        let found = search::nearest(&self.lattice, &self.mask, at, k)?;
-        Ok(self.neighbors(found))
+        self.nearest_visiting(at, k, None, &Visits::any())
+    }
+
+    /// The `k` nearest points of a place among those within `radius`, nearest first; fewer where fewer lie there.
+    /// Nothing beyond the radius is searched.
+    ///
+    /// # Errors
+    /// As [`nearest`](Self::nearest) and [`around`](Self::around).
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let rare = PointSet::new(table).keep(1e-6)?;
+    /// assert!(rare.nearest_within([0.0, 0.0], 5, 10.0)?.is_empty());
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn nearest_within(
+        &self,
+        at: [f64; 2],
+        k: usize,
+        radius: f64,
+    ) -> Result<Vec<Neighbor>, Error> {
+        self.nearest_visiting(at, k, Some(radius), &Visits::any())
     }
 
     /// All points within `radius` of a place (dx·dx + dy·dy ≤ radius·radius in `f64`), nearest first; of
@@ -170,8 +192,31 @@ impl PointSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn around(&self, at: [f64; 2], radius: f64, limit: usize) -> Result<Vec<Neighbor>, Error> {
+        self.around_visiting(at, radius, limit, &Visits::any())
+    }
+
+    /// [`nearest`](Self::nearest) and [`nearest_within`](Self::nearest_within) that visit a bounded number of points.
+    pub(crate) fn nearest_visiting(
+        &self,
+        at: [f64; 2],
+        k: usize,
+        radius: Option<f64>,
+        visits: &Visits,
+    ) -> Result<Vec<Neighbor>, Error> {
+        let found = search::nearest(&self.lattice, &self.mask, at, k, radius, visits)?;
+        Ok(self.neighbors(found))
+    }
+
+    /// [`around`](Self::around) that visits a bounded number of points.
+    pub(crate) fn around_visiting(
+        &self,
+        at: [f64; 2],
+        radius: f64,
+        limit: usize,
+        visits: &Visits,
+    ) -> Result<Vec<Neighbor>, Error> {
         let limit = limit.min(Self::MAX_CANDIDATES);
-        let found = search::within(&self.lattice, &self.mask, at, radius, limit)?;
+        let found = search::within(&self.lattice, &self.mask, at, radius, limit, visits)?;
         Ok(self.neighbors(found))
     }
 

@@ -1,0 +1,110 @@
+//! What a search may visit, and what it has visited.
+
+use core::{cell::Cell, ops::ControlFlow};
+
+use super::limits::MAX_CANDIDATES;
+use crate::stop::Stop;
+
+/// How many points a search may visit, kept or not, how many it has visited, and a flag that ends it.
+///
+/// ```
+/// use strew_core::server::{Stop, Visits};
+///
+/// let visits = Visits::new(1000, Stop::new());
+/// assert_eq!(visits.made(), 0);
+/// ```
+#[derive(Debug)]
+pub struct Visits {
+    most: usize,
+    made: Cell<usize>,
+    stop: Stop,
+}
+
+/// Visits between two looks at the flag where each takes long.
+const OFTEN: usize = 16;
+
+impl Visits {
+    /// At most `most` points, or as many as any search may visit if they are fewer, until a flag is raised.
+    ///
+    /// ```
+    /// use strew_core::{ErrorKind, PointSet, Table, server::{self, Stop, Visits}};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let rare = PointSet::new(table).keep(1e-4)?;
+    /// let few = Visits::new(1000, Stop::default());
+    /// let error = server::nearest(&rare, [0.0, 0.0], 5, None, &few).unwrap_err();
+    /// assert_eq!(error.kind(), ErrorKind::TooMany);
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn new(most: usize, stop: Stop) -> Self {
+        Self {
+            most: most.min(2 * MAX_CANDIDATES),
+            made: Cell::new(0),
+            stop,
+        }
+    }
+
+    /// As many as any search may visit.
+    pub(crate) fn any() -> Self {
+        Self::new(usize::MAX, Stop::default())
+    }
+
+    /// The points that were visited.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table, server::{self, Stop, Visits}};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let visits = Visits::new(1000, Stop::default());
+    /// assert_eq!(server::nearest(&PointSet::new(table), [0.0, 0.0], 5, None, &visits)?.len(), 5);
+    /// assert!((5..200).contains(&visits.made()));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    #[must_use]
+    pub fn made(&self) -> usize {
+        self.made.get()
+    }
+
+    pub(crate) const fn most(&self) -> usize {
+        self.most
+    }
+
+    /// Whether the flag is raised.
+    ///
+    /// ```
+    /// use strew_core::server::{Stop, Visits};
+    ///
+    /// let stop = Stop::new();
+    /// let visits = Visits::new(1000, stop.clone());
+    /// stop.raise();
+    /// assert!(visits.is_stopped());
+    /// ```
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.stop.is_raised()
+    }
+
+    /// Counts the points of a row that are visited together.
+    pub(super) fn row(&self, points: usize) -> ControlFlow<()> {
+        self.made.set(self.made.get() + points);
+        self.look()
+    }
+
+    /// Counts a point whose visit takes long.
+    pub(super) fn one(&self) -> ControlFlow<()> {
+        let made = self.made.get() + 1;
+        self.made.set(made);
+        match made % OFTEN {
+            0 => self.look(),
+            _ => ControlFlow::Continue(()),
+        }
+    }
+
+    fn look(&self) -> ControlFlow<()> {
+        match self.is_stopped() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+}
