@@ -82,7 +82,13 @@ pub fn endpoints(readiness: Readiness, service: Arc<Service>) -> Vec<Endpoint> {
         "getReadyz",
         "Whether the daemon takes requests",
         |generator| generator.subschema_for::<Ready>(),
-        vec![(200, "It takes requests."), (503, "It is about to stop, or points wait too long for a worker.")],
+        vec![
+            (200, "It takes requests."),
+            (
+                503,
+                "It is about to stop, or points wait too long for a worker.",
+            ),
+        ],
         "/readyz",
     );
     let live = get(|| async { typed(StatusCode::OK, &Alive { alive: true }) });

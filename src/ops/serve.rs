@@ -207,8 +207,7 @@ impl App {
         let forging = self.service.forging().clone();
         let begin = forging.clone();
         let _ = tokio::task::spawn_blocking(move || begin.resume()).await;
-        let readiness =
-            Readiness::within(config::seconds(self.config.server.ready_within_seconds));
+        let readiness = Readiness::within(config::seconds(self.config.server.ready_within_seconds));
         let (router, grpc_health) = self.router(readiness.clone()).await?;
         let watch = readiness.clone();
         let watch = watch.watch(self.service.workers().clone(), grpc_health.clone());

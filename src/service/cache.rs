@@ -92,7 +92,9 @@ impl Samplers {
                     .await
                     .unwrap_or(Err(Error::Internal("a computation failed")));
             }
-            workers.take_turn(Lane::Short, move |_| Ready::load(&entry)).await?
+            workers
+                .take_turn(Lane::Short, move |_| Ready::load(&entry))
+                .await?
         };
         self.ready
             .try_get_with_by_ref(&entry.digest, build)

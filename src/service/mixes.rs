@@ -116,7 +116,13 @@ impl Mixes {
         let begun = owner.clone().scope(work).boxed().shared();
         let weak = begun.downgrade();
         if let Some(weak) = weak {
-            making.insert(name, Begun { making: weak, owner });
+            making.insert(
+                name,
+                Begun {
+                    making: weak,
+                    owner,
+                },
+            );
         }
         Ok(begun)
     }

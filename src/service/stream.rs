@@ -302,7 +302,8 @@ where
                 shared: Arc::downgrade(&all),
             };
             drop(shared);
-            self.workers.take_piece(&self.owner, self.lane, || turn.run());
+            self.workers
+                .take_piece(&self.owner, self.lane, || turn.run());
         }
         match item {
             Some(item) => Poll::Ready(Some(Ok(item))),

@@ -39,7 +39,11 @@ impl Layers {
                 return 0.0;
             };
             let near = std::f64::consts::PI * distance * distance * layer.density;
-            let seen = if layer.look > 0.0 { 1.0 + near } else { near.clamp(1.0, FIRST) };
+            let seen = if layer.look > 0.0 {
+                1.0 + near
+            } else {
+                near.clamp(1.0, FIRST)
+            };
             SEARCH + seen * (FOUND + layer.look)
         };
         set.clear_of.iter().map(test).sum()

@@ -44,7 +44,8 @@ impl Neighbors {
         Self {
             bytes: most * (POINT + values * VALUE),
             visit: VISIT
-                + around(nearest, placed.resolved.density).map_or(0.0, |within| look(specs, within)),
+                + around(nearest, placed.resolved.density)
+                    .map_or(0.0, |within| look(specs, within)),
             // In a field there may be nothing for long.
             lane: match most > MANY || placed.set.fields().next().is_some() || has_ground {
                 true => Lane::Long,

@@ -146,7 +146,12 @@ impl Answer {
         }
         Ok(Self {
             warning: output.warning(),
-            ..Self::of_parts(planned, planned.parts()?, output, planned.block_bytes(block_bytes))?
+            ..Self::of_parts(
+                planned,
+                planned.parts()?,
+                output,
+                planned.block_bytes(block_bytes),
+            )?
         })
     }
 

@@ -107,7 +107,8 @@ impl Jobs {
         // Of the others only those who wait matter.
         let (waiting, last) = (&self.waiting, self.turn);
         let waits = |client: &str| waiting.iter().any(|job| job.is_of(client));
-        self.served.retain(|client, turn| *turn == last || waits(client));
+        self.served
+            .retain(|client, turn| *turn == last || waits(client));
         Some(job)
     }
 }

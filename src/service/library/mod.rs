@@ -7,12 +7,12 @@
 mod columns;
 pub mod measured;
 
-use strew_core::server::Stop;
 use std::{
     collections::HashMap,
     path::Path,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
+use strew_core::server::Stop;
 
 use strew_core::Table;
 

@@ -191,7 +191,11 @@ impl Query {
         let is_quick = fields.all(|field| {
             // What a look takes is found out by a few looks.
             let is_plain = field.parts() <= 4 && field.vertices() <= 64;
-            looks += if is_plain { server::look(field, self.region.bounds) } else { 0.0 };
+            looks += if is_plain {
+                server::look(field, self.region.bounds)
+            } else {
+                0.0
+            };
             is_plain
         });
         // A point may look around itself, too.

@@ -22,9 +22,4 @@ mod workers;
 
 pub use lane::Lane;
 #[cfg(feature = "daemon")]
-pub use {
-    clock::Clock,
-    owner::Owner,
-    pulse::Pulse,
-    workers::Workers,
-};
+pub use {clock::Clock, owner::Owner, pulse::Pulse, workers::Workers};

@@ -68,9 +68,15 @@ mod tests {
             let bound = Duration::from_millis(1);
             Pulse::default().beat(workers, bound, sender).await;
         });
-        in_time.wait_for(|in_time| !in_time).await.expect("it beats");
+        in_time
+            .wait_for(|in_time| !in_time)
+            .await
+            .expect("it beats");
         drop(release);
-        in_time.wait_for(|in_time| *in_time).await.expect("it beats");
+        in_time
+            .wait_for(|in_time| *in_time)
+            .await
+            .expect("it beats");
         assert_eq!(stuck.await.expect("no panic"), Ok(true));
         beating.abort();
     }

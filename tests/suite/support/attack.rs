@@ -14,9 +14,14 @@ pub const ATTACKER: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 2);
 
 /// Connects from [`ATTACKER`], with a small buffer for what arrives.
 pub fn connect(to: SocketAddr) -> io::Result<TcpStream> {
+    connect_from(ATTACKER, to)
+}
+
+/// Connects from a loopback address, with a small buffer for what arrives.
+pub fn connect_from(from: Ipv4Addr, to: SocketAddr) -> io::Result<TcpStream> {
     let socket = Socket::new(Domain::IPV4, Type::STREAM, None)?;
     socket.set_recv_buffer_size(4096)?;
-    socket.bind(&SocketAddr::from((ATTACKER, 0)).into())?;
+    socket.bind(&SocketAddr::from((from, 0)).into())?;
     socket.connect(&to.into())?;
     let stream = TcpStream::from(socket);
     stream.set_read_timeout(Some(strew_testkit::wait::PATIENCE))?;

@@ -1,9 +1,6 @@
 //! What a look at a field takes, counted without a clock.
 
-use super::{
-    FieldSpec,
-    spec::Shape,
-};
+use super::{FieldSpec, spec::Shape};
 use crate::sample::area::Region;
 
 /// A look at one octave of noise, in nanoseconds.
@@ -59,7 +56,12 @@ mod tests {
     fn a_look_costs_what_it_looks_at() {
         let view = Region::new([0.0, 0.0], [100.0, 100.0]).expect("a box");
         let noise = |octaves| {
-            let noise = Noise { seed: 1, wavelength: 9.0, octaves, range: [0.0, 1.0] };
+            let noise = Noise {
+                seed: 1,
+                wavelength: 9.0,
+                octaves,
+                range: [0.0, 1.0],
+            };
             FieldSpec::noise(noise).expect("valid")
         };
         let look = |spec: &FieldSpec| spec.nanoseconds(view);

@@ -15,5 +15,5 @@ mod visits;
 
 pub use distance::LeastDistance;
 pub use mask::Clearance;
-pub use visits::Visits;
 pub(super) use mask::{ClearOf, Guard, Mask};
+pub use visits::Visits;

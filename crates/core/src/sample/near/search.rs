@@ -76,15 +76,22 @@ pub(crate) fn within(
     let guards = mask.guards();
     let (mut found, mut inside) = (Vec::with_capacity(limit.min(12)), 0usize);
     let mut scratch = Scratch::default();
-    let scanned = scan(lattice, &mut scratch, at, radius, Some(visits), |d, point| {
-        if d <= squared && guards.permit(point.at()) {
-            inside += 1;
-            if inside <= limit {
-                found.push((d, point));
+    let scanned = scan(
+        lattice,
+        &mut scratch,
+        at,
+        radius,
+        Some(visits),
+        |d, point| {
+            if d <= squared && guards.permit(point.at()) {
+                inside += 1;
+                if inside <= limit {
+                    found.push((d, point));
+                }
             }
-        }
-        ControlFlow::Continue(())
-    });
+            ControlFlow::Continue(())
+        },
+    );
     if scanned.is_break() {
         return Err(Stop::error());
     }
