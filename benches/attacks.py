@@ -59,11 +59,11 @@ class Daemon:
         status = open(f"/proc/{self.process.pid}/status").read()
         return int(re.search(figure + r":\s+(\d+)", status).group(1)) // 1024
 
-    def connect(self):
+    def connect(self, address="127.0.0.2"):
         stream = socket.socket()
         stream.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         stream.settimeout(60)
-        stream.bind(("127.0.0.2", 0))
+        stream.bind((address, 0))
         stream.connect(("127.0.0.1", self.port))
         return stream
 
@@ -326,7 +326,102 @@ def forges(daemon):
     print(f"    {daemon.memory('VmHWM')} MiB at most; the job: {daemon.json('GET', f'/v1/jobs/{job}')['state']}", flush=True)
 
 
-ATTACKS = [pages, answers, bodies, arriving, counts, readers, documents, health, forges]
+VICTIMS = [
+    SMALL,
+    "/v1/chunks/64/3/4?spacing=1&format=f32",
+    "/v1/points?bbox=0,0,200,200&spacing=1&seed=7&format=csv",
+    "/livez",
+]
+
+
+def costly(octaves=8, parts=60):
+    """A field that takes some ten microseconds a look."""
+    return {"multiply": [{"noise": {"wavelength": 5 + i, "octaves": octaves, "seed": i}} for i in range(parts)]}
+
+
+def reading(daemon, clients, request, victims):
+    """Victims while clients read the answers to a request, again and again."""
+
+    def read(is_over, statuses):
+        while not is_over.is_set():
+            try:
+                stream = daemon.connect()
+                stream.settimeout(1)
+                stream.sendall(request)
+                count(statuses, status(stream))
+                while not is_over.is_set() and stream.recv(65536):
+                    pass
+            except TimeoutError:
+                count(statuses, "late")
+            except OSError as error:
+                count(statuses, type(error).__name__)
+
+    compared(daemon, clients, read, victims)
+
+
+def mixes(daemon):
+    """Kinds of ever new shares, whose clients leave after 0.3 s."""
+    number = iter(range(1, 10**6))
+
+    def leave(is_over, statuses):
+        while not is_over.is_set():
+            shares = f"oak:{100 + next(number)},fir:1000"
+            path = f"/v1/points?bbox=0,0,9,9&spacing=1&spread=even&variants={shares}&map={'lms'[next(number) % 3]}"
+            try:
+                stream = daemon.connect()
+                stream.sendall(daemon.request("GET", path))
+                stream.settimeout(0.3)
+                count(statuses, status(stream))
+                stream.close()
+            except OSError as error:
+                count(statuses, type(error).__name__)
+
+    compared(daemon, 12, leave, [*VICTIMS, "/v1/count?circle=0,0,9000&spacing=1"])
+
+
+def streams(daemon):
+    """Streams of points that cost 50 microseconds each."""
+    body = {"region": {"bbox": [0, 0, 3000, 3000]}, "spacing": 1, "format": "f32", "terrain": costly(), "heights": [0, 9], "normals": "on"}
+    reading(daemon, 8, daemon.request("POST", "/v1/points:query", json.dumps(body).encode()), VICTIMS)
+
+
+def longlane(daemon):
+    """Work that takes as long as it may, beside an honest long count and a figure."""
+    tangled = [[i * 617 % 1000, i * 367 % 1009] for i in range(9999)]
+    chain = [
+        {"name": f"l{i}", "spacing": 1, "seed": i, "clear_of": {f"l{j}": 1 for j in range(i)}} for i in range(16)
+    ]
+    box = {"bbox": [0, 0, 1000, 1000]}
+    bodies = [
+        {"region": box, "spacing": 1, "field": costly()},
+        {"region": box, "spacing": 1, "field": {"distance": {"distances": [0, 5], "lines": [tangled]}}},
+        {"region": {"bbox": [0, 0, 200, 200]}, "layers": chain},
+        {"region": {"circle": {"center": [0, 0], "radius": 250000}}, "spacing": 1, "warp": 2, "seed": 7},
+    ]
+    victims = [*VICTIMS, "/v1/count?circle=0,0,9000&spacing=1", "/v1/pattern/figures/map.svg?alpha=sqrt(3)"]
+    for body in bodies:
+        repeated(daemon, 3, daemon.request("POST", "/v1/count", json.dumps(body).encode()), victims)
+    split = "/v1/split?circle=0,0,30000&spacing=1&parts=10000"
+    repeated(daemon, 3, daemon.request("GET", split), victims)
+
+
+def four(daemon):
+    """Four addresses, each within its share: bodies that do not end, and readers of 5 kB/s."""
+    body = daemon.request("POST", "/v1/points:query", bytes(1000))[:-900]
+    held = []
+    for last in range(2, 6):
+        for request, number in ((body, 250), (daemon.request("GET", LONG), 64)):
+            for _ in range(number):
+                stream = daemon.connect(f"127.0.0.{last}")
+                stream.sendall(request)
+                held.append(stream)
+    time.sleep(2)
+    for path in VICTIMS:
+        print(f"{path}\n    {daemon.victim(path, 4)}", flush=True)
+    print(f"    {len(held)} held, {daemon.memory('VmHWM')} MiB at most", flush=True)
+
+
+ATTACKS = [pages, answers, bodies, arriving, counts, readers, documents, health, forges, mixes, streams, longlane, four]
 
 
 def main():
