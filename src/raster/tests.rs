@@ -10,7 +10,7 @@ const SMALL: Limits = Limits {
 };
 
 fn read(bytes: &[u8]) -> Result<Image, RasterError> {
-    Image::from_bytes(bytes, Meaning::Data, SMALL)
+    Image::from_bytes(bytes, Meaning::Data, SMALL, &Stop::default())
 }
 
 fn refusal(bytes: &[u8]) -> String {
@@ -95,12 +95,13 @@ fn colors_become_linear_light() {
     // 188 of 255 is half of the light.
     assert_eq!(image.samples, Samples::U16(vec![65535, 0, 13933, 32957]));
     let gray = png([1, 1], ColorType::Grayscale, BitDepth::Eight, &[188]);
-    let as_picture = Image::from_bytes(&gray, Meaning::Picture, SMALL).expect("a picture");
+    let as_picture =
+        Image::from_bytes(&gray, Meaning::Picture, SMALL, &Stop::default()).expect("a picture");
     assert_eq!(as_picture.samples, Samples::U16(vec![32957]));
     // Pictures lie on white paper; a mask lets nothing through.
     let clear = png([1, 1], ColorType::Rgba, BitDepth::Eight, &[9, 9, 9, 0]);
     let of = |meaning| {
-        Image::from_bytes(&clear, meaning, SMALL)
+        Image::from_bytes(&clear, meaning, SMALL, &Stop::default())
             .expect("clear")
             .samples
     };
@@ -133,7 +134,12 @@ fn arrays_have_their_types_and_shapes() {
         let image = read(file).expect("written by NumPy");
         assert_eq!((image.size, &image.samples), ([4, 3], &expected));
     }
-    let bare = Image::read_floats(Cursor::new(seed!("floats.f32")), [4, 3], SMALL);
+    let bare = Image::read_floats(
+        Cursor::new(seed!("floats.f32")),
+        [4, 3],
+        SMALL,
+        &Stop::default(),
+    );
     assert_eq!(bare.expect("as long").samples, expected);
 }
 

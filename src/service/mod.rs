@@ -42,6 +42,8 @@ mod portrait;
 #[cfg(feature = "daemon")]
 mod promise;
 pub mod query;
+#[cfg(feature = "daemon")]
+mod reading;
 mod ready;
 #[cfg(feature = "daemon")]
 pub mod record;
@@ -77,6 +79,7 @@ pub use {
     daemon::Service,
     portrait::Portrait,
     promise::PointsInFlight,
+    reading::allowance,
     record::Record,
     stream::{BlockStream, Interrupted, Permit, Streams},
     workers::Workers,

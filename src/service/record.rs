@@ -5,11 +5,13 @@
 //! need no counters. The record also has the byte budget of the request and the lane of its work.
 
 use std::sync::{
-    Arc, OnceLock,
+    Arc, Mutex, OnceLock, PoisonError,
     atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
 };
 
-use super::{Answer, Budget, Kind, Lane, PointsInFlight, encode::EncodeError, promise::Promise};
+use super::{
+    Answer, Budget, Error, Held, Kind, Lane, PointsInFlight, encode::EncodeError, promise::Promise,
+};
 
 tokio::task_local! {
     static CURRENT: Arc<Record>;
@@ -26,6 +28,8 @@ pub struct Record {
     promise: OnceLock<Promise>,
     is_long: AtomicBool,
     code: AtomicU32,
+    /// The memory of what the request has brought along.
+    held: Mutex<Option<Held>>,
 }
 
 /// No code yet.
@@ -44,6 +48,7 @@ impl Record {
             promise: OnceLock::new(),
             is_long: AtomicBool::new(false),
             code: AtomicU32::new(NONE),
+            held: Mutex::default(),
         })
     }
 
@@ -56,6 +61,32 @@ impl Record {
     #[must_use]
     pub fn current() -> Option<Arc<Self>> {
         CURRENT.try_with(Arc::clone).ok()
+    }
+
+    /// Runs a job for a request on another thread: there, too, it is the [`current`](Self::current) one.
+    pub(super) fn within<T>(record: Option<Arc<Self>>, job: impl FnOnce() -> T) -> T {
+        match record {
+            Some(record) => CURRENT.sync_scope(record, job),
+            None => job(),
+        }
+    }
+
+    /// Takes memory for what the request that is being answered has brought along, until its answer is over.
+    ///
+    /// # Errors
+    /// As [`Budget::hold`].
+    pub(super) fn hold(bytes: usize) -> Result<(), Error> {
+        let Some(record) = Self::current() else {
+            return Ok(());
+        };
+        let mut held = record.held.lock().unwrap_or_else(PoisonError::into_inner);
+        match &mut *held {
+            Some(held) => held.grow(bytes),
+            none => {
+                *none = Some(record.budget.hold(bytes)?);
+                Ok(())
+            }
+        }
     }
 
     /// Notes why the request that is being answered was refused.

@@ -1,6 +1,6 @@
 //! The grammar: what it reads, what it makes, and the paths of what is wrong.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use strew_core::{Field as _, field::FieldSpec};
 
@@ -12,6 +12,8 @@ fn sources(pixels: usize) -> Sources<'static> {
         named: &|name| (name == "half").then(|| FieldSpec::constant(0.5).expect("a share")),
         names: &|| "half".into(),
         files: None,
+        allowance: Allowance::UNLIMITED,
+        refused: RefCell::new(None),
         pixels: Cell::new(pixels),
         frame: Cell::new(None),
         bytes: Cell::new(0),
