@@ -92,3 +92,38 @@ impl Cut {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Image, Limits, Meaning};
+
+    macro_rules! shape {
+        ($name:literal) => {
+            include_bytes!(concat!("../../fuzz/regressions/raster/", $name)).as_slice()
+        };
+    }
+
+    #[test]
+    fn files_that_inflate_to_more_than_their_pixels_are_refused() {
+        for (file, expected) in [
+            (
+                shape!("wide_tiles.tif"),
+                "it has strips or tiles of 268435456 bytes; allowed: up to 262144 bytes for 16 × 256 pixels",
+            ),
+            (
+                shape!("many_channels.tif"),
+                "it has strips or tiles of 204800 bytes; allowed: up to 196608 bytes for 16 × 64 pixels",
+            ),
+            (shape!("empty_blocks.tif"), "it has strips or tiles of 483"),
+            (
+                shape!("single_pixels.tif"),
+                "it has 4096 strips or tiles; allowed: up to 144 for 64 × 64 pixels",
+            ),
+        ] {
+            let stop = strew_core::server::Stop::NEVER;
+            let read = Image::from_bytes(file, Meaning::Data, Limits::FILES, &stop);
+            let error = read.expect_err("wasteful").to_string();
+            assert!(error.starts_with(expected), "{error}");
+        }
+    }
+}

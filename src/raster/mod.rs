@@ -13,6 +13,7 @@ mod picture;
 mod png;
 mod price;
 mod samples;
+mod tags;
 mod tiff;
 mod tone;
 mod wanted;

@@ -1,6 +1,6 @@
 //! Rasters from TIFF, with the place that GeoTIFF states.
 
-use std::io::{BufRead, Seek};
+use std::io::{BufRead, Seek, SeekFrom};
 
 use tiff::{
     ColorType, TiffError, TiffUnsupportedError,
@@ -16,6 +16,7 @@ use super::{
     image::Image,
     limits::Limits,
     samples::Samples,
+    tags,
     tone::{self, Channels, Meaning},
     wanted::look,
 };
@@ -31,7 +32,7 @@ const ALLOWED: &str = "one channel of 8, 16 or 32 bits (integers or floats) or o
                        deflate, or none";
 
 pub(super) fn read(
-    from: impl BufRead + Seek,
+    mut from: impl BufRead + Seek,
     meaning: Meaning,
     limits: Limits,
     stop: &Stop,
@@ -40,6 +41,8 @@ pub(super) fn read(
     bounds.decoding_buffer_size = CHUNK_BYTES;
     bounds.intermediate_buffer_size = CHUNK_BYTES;
     bounds.ifd_value_size = TAG_BYTES;
+    let length = from.seek(SeekFrom::End(0))?;
+    tags::check(&mut from, length)?;
     let mut decoder = Decoder::new(from).map_err(damaged)?.with_limits(bounds);
     let (width, height) = decoder.dimensions().map_err(damaged)?;
     let size = limits.check(width.into(), height.into())?;

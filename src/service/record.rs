@@ -228,4 +228,25 @@ mod tests {
         assert_eq!((a.format(), a.id(), b.id()), (Some("csv"), "a", "b"));
         assert_eq!(a.code(), None);
     }
+
+    #[tokio::test]
+    async fn what_a_request_brings_along_is_held_until_it_is_over() {
+        let budget = Budget::new(100);
+        let record = Record::new("a", budget.clone());
+        let job = async {
+            let record = Record::current();
+            let there = std::thread::spawn(|| {
+                Record::within(record, || {
+                    (Record::hold(60), Record::hold(30), Record::hold(11))
+                })
+            });
+            there.join().expect("no panic")
+        };
+        let (first, second, third) = record.clone().scope(job).await;
+        assert!(first.is_ok() && second.is_ok() && third.is_err());
+        assert_eq!(budget.held(), 90);
+        drop(record);
+        assert_eq!(budget.held(), 0);
+        assert!(Record::hold(1000).is_ok());
+    }
 }
