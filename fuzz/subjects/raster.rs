@@ -3,6 +3,7 @@
 use std::io::Cursor;
 
 use strew::raster::{Image, Limits, Meaning, RasterError, Samples};
+use strew_core::server::Stop;
 
 const LIMITS: Limits = Limits {
     side: 256,
@@ -10,11 +11,12 @@ const LIMITS: Limits = Limits {
 };
 
 pub fn run(data: &[u8]) {
+    let stop = Stop::default();
     for read in [
-        Image::from_bytes(data, Meaning::Data, LIMITS),
-        Image::from_bytes(data, Meaning::Picture, LIMITS),
+        Image::from_bytes(data, Meaning::Data, LIMITS, &stop),
+        Image::from_bytes(data, Meaning::Picture, LIMITS, &stop),
         Image::read_picture(Cursor::new(data), LIMITS),
-        Image::read_floats(Cursor::new(data), [4, data.len() / 16], LIMITS),
+        Image::read_floats(Cursor::new(data), [4, data.len() / 16], LIMITS, &stop),
     ] {
         check(read);
     }

@@ -3,9 +3,12 @@
 //! `X-Forwarded-For` is a list to which each proxy appends the address of its client. Any client can send
 //! one, so it is read from its end, and only while its writers are trusted.
 
-use std::net::IpAddr;
+use std::net::{IpAddr, Ipv4Addr};
 
 use crate::config::Networks;
+
+/// All clients whom a trusted proxy names by what is no address, such as `unknown`: they share the limits of one.
+const UNKNOWN: IpAddr = IpAddr::V4(Ipv4Addr::UNSPECIFIED);
 
 /// The client behind a peer: the last one whom a trusted proxy names and that is no such proxy
 /// itself. `lines` are those of `X-Forwarded-For`, in their order.
@@ -22,8 +25,9 @@ pub(super) fn client<'a>(
         .rev()
         .flat_map(|line| line.rsplit(|&byte| byte == b','));
     for name in named {
-        // What is not an address was not written by a proxy that is to be trusted.
-        let Some(address) = read(name) else { break };
+        let Some(address) = read(name) else {
+            return UNKNOWN;
+        };
         client = address;
         if !proxies.contains(client) {
             break;
@@ -76,13 +80,28 @@ mod tests {
     }
 
     #[test]
+    fn clients_without_an_address_are_one_that_is_no_proxy() {
+        for broken in [
+            "198.51.100.1, nobody, 10.9.9.9",
+            "unknown",
+            "_hidden",
+            "",
+            "10.1.2.3:x",
+        ] {
+            assert_eq!(
+                client("10.0.0.0/8", "10.1.2.3", &[broken]),
+                "0.0.0.0",
+                "{broken}"
+            );
+        }
+    }
+
+    #[test]
     fn proxies_in_a_row_are_passed() {
         let lines = ["203.0.113.7", "198.51.100.1, 10.9.9.9", "10.8.8.8:4711"];
         assert_eq!(client("10.0.0.0/8", "10.1.2.3", &lines), "198.51.100.1");
         assert_eq!(client("10.0.0.0/8", "10.1.2.3", &[]), "10.1.2.3");
         assert_eq!(client("10.0.0.0/8", "10.1.2.3", &["10.4.4.4"]), "10.4.4.4");
-        let broken = ["198.51.100.1, nobody, 10.9.9.9"];
-        assert_eq!(client("10.0.0.0/8", "10.1.2.3", &broken), "10.9.9.9");
         assert_eq!(
             client("fd00::/8 ::1", "::1", &["[2001:db8::5]:80"]),
             "2001:db8::5"

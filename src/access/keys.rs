@@ -14,7 +14,7 @@
 
 use std::{
     io,
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{Arc, atomic::AtomicUsize},
     time::Instant,
 };
@@ -71,6 +71,17 @@ pub enum KeysError {
     },
 }
 
+impl KeysError {
+    /// Whether there is no key any more, rather than one that cannot be read now.
+    fn leaves_none(&self) -> bool {
+        match self {
+            Self::Empty { .. } => true,
+            Self::Unreadable { error, .. } => error.kind() == io::ErrorKind::NotFound,
+            Self::Syntax { .. } | Self::Field { .. } => false,
+        }
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Document {
@@ -112,26 +123,42 @@ pub(super) struct Keys {
 
 impl Keys {
     /// Reads the keys that the settings name; `common` is the rate of keys that have none of their
-    /// own. What `before` knows of a key's use is kept.
+    /// own.
+    ///
+    /// What `before` knows of a key's use is kept. Where there were keys before, a file that holds none any more, or
+    /// is gone, is one that admits nobody; at the start it is an error.
     pub(super) fn read(
         settings: &Settings,
         common: Option<Rate>,
-        before: &Self,
+        before: Option<&Self>,
     ) -> Result<Self, KeysError> {
         let mut keys = Self::default();
+        let none = Self::default();
+        let known = before.unwrap_or(&none);
         if let Some(path) = settings.keys_file() {
-            let text = bounded_file::read_text(path, MAX_BYTES).map_err(|error| {
-                KeysError::Unreadable {
-                    path: path.into(),
-                    error,
-                }
-            })?;
-            keys.add(&path.display().to_string(), &text, common, before)?;
+            match keys.add_file(path, common, known) {
+                Err(error) if before.is_some() && error.leaves_none() => {}
+                read => read?,
+            }
         }
         if !settings.keys.is_empty() {
-            keys.add("access.keys", &settings.keys, common, before)?;
+            keys.add("access.keys", &settings.keys, common, known)?;
         }
         Ok(keys)
+    }
+
+    fn add_file(
+        &mut self,
+        path: &Path,
+        common: Option<Rate>,
+        before: &Self,
+    ) -> Result<(), KeysError> {
+        let text = bounded_file::read_text(path, MAX_BYTES);
+        let text = text.map_err(|error| KeysError::Unreadable {
+            path: path.into(),
+            error,
+        })?;
+        self.add(&path.display().to_string(), &text, common, before)
     }
 
     fn add(
@@ -279,7 +306,11 @@ mod tests {
             keys: text.into(),
             ..Settings::default()
         };
-        Keys::read(&settings, None, before)
+        Keys::read(
+            &settings,
+            None,
+            Some(before).filter(|before| before.len() > 0),
+        )
     }
 
     #[test]

@@ -63,7 +63,7 @@ impl Gate {
         Ok(Self {
             // Settings are checked before.
             proxies: Networks::read(&settings.trusted_proxies).unwrap_or_default(),
-            keys: ArcSwap::from_pointee(Keys::read(&settings, rate, &Keys::default())?),
+            keys: ArcSwap::from_pointee(Keys::read(&settings, rate, None)?),
             clients: rate.map(|rate| Clients::new(rate, most)),
             usages: Usages::new(addresses),
             rate,
@@ -71,12 +71,13 @@ impl Gate {
         })
     }
 
-    /// Reads the keys again; gives how many there are. If they cannot be read, those before stay.
+    /// Reads the keys again, and returns how many there are. If they cannot be read, those before stay; if there
+    /// are none any more, none is valid.
     ///
     /// # Errors
     /// As [`new`](Self::new).
     pub fn reload(&self) -> Result<usize, KeysError> {
-        let keys = Keys::read(&self.settings, self.rate, &self.keys.load())?;
+        let keys = Keys::read(&self.settings, self.rate, Some(&self.keys.load()))?;
         let count = keys.len();
         self.keys.store(Arc::new(keys));
         Ok(count)

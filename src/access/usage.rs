@@ -137,6 +137,12 @@ impl Usage {
         Arc::new(Self::new(&limits, None))
     }
 
+    /// The client that it is of; none for those without limits.
+    #[must_use]
+    pub fn client(&self) -> Option<IpAddr> {
+        self.address.as_ref().map(|(client, _)| *client)
+    }
+
     /// A place for a connection among `all`, given back when dropped.
     ///
     /// # Errors

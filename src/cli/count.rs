@@ -9,6 +9,9 @@ use serde_json::value::RawValue;
 use super::{Failure, config, flags::Counted, output, query::QueryArgs, remote::RemoteArgs};
 use crate::service::query::Resolved;
 
+/// More than the answer with any query as understood.
+const MOST_BYTES: u64 = 16 << 20;
+
 /// Flags of `strew count`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
@@ -24,7 +27,7 @@ pub(super) struct Args {
 /// The answer of a server.
 #[derive(Deserialize)]
 struct FromServer {
-    count: Box<RawValue>,
+    count: u128,
 }
 
 #[derive(Serialize)]
@@ -53,11 +56,15 @@ fn from_server(args: &Args) -> Result<(), Failure> {
     let body = args.query.for_server()?.to_body();
     let mut answer = args.remote.request("/v1/count", &body)?;
     let mut text = String::new();
-    let read = answer.body.read_to_string(&mut text);
+    let read = (&mut answer.body)
+        .take(MOST_BYTES)
+        .read_to_string(&mut text);
     read.context("the answer broke off")?;
     if args.json {
-        return output::print(&format!("{}\n", text.trim_end()));
+        let document: Box<RawValue> =
+            serde_json::from_str(&text).context("the answer is not JSON")?;
+        return output::print(&format!("{document}\n"));
     }
     let counted: FromServer = serde_json::from_str(&text).context("the answer holds no count")?;
-    output::print(&format!("{}\n", counted.count.get()))
+    output::print(&format!("{}\n", counted.count))
 }

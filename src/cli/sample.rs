@@ -115,15 +115,11 @@ fn from_server(args: &Args) -> Result<(), Failure> {
     let mut body = draft.to_body();
     body.insert(FORMAT.name.into(), encoding.name().into());
     let answer = args.remote.request("/v1/points:query", &body)?;
-    if answer.header("strew-count").is_none() {
-        let problem =
-            "the answer has no header strew-count; allowed: the address of a strew daemon";
-        return Err(anyhow!("--url: {problem}").into());
-    }
+    let count = remote::promised(&answer)?;
     if !args.quiet {
         remote::announce(&answer, encoding.name());
     }
-    remote::write(answer, output)
+    remote::write(answer, (count, encoding), output)
 }
 
 /// Writes an answer. What the service refuses is returned as it is, because flags have other names than

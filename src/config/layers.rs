@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use super::{Config, ConfigError, DEFAULTS, validate::validate};
+use crate::bounded_file;
 
 /// Variables of the environment that begin so are settings.
 const PREFIX: &str = "STREW_";
@@ -15,6 +16,9 @@ const PREFIX: &str = "STREW_";
 const TEST_PREFIX: &str = "STREW_TEST_";
 /// Variables that are neither settings nor for tests: the name of a configuration file, a key for a server.
 const OTHERS: [&str; 2] = ["STREW_CONFIG", "STREW_API_KEY"];
+
+/// The most bytes of a file of settings. Fields and worlds may hold outlines.
+const MOST_BYTES: u64 = 16 << 20;
 
 /// The sections whose tables are named by files.
 const NAMED: [&str; 3] = ["fields.", "worlds.", "except."];
@@ -45,12 +49,13 @@ impl Layers {
     /// Lays a file over what is there.
     ///
     /// # Errors
-    /// If the file cannot be read, is not TOML, or has a key or type that does not exist.
+    /// If the file is not a regular one, is too long, cannot be read, is not TOML, or has a key or type that does not exist.
     pub fn file(mut self, path: &Path) -> Result<Self, ConfigError> {
-        let text = std::fs::read_to_string(path).map_err(|error| ConfigError::Unreadable {
-            path: path.into(),
-            error,
-        })?;
+        let text =
+            bounded_file::read_text(path, MOST_BYTES).map_err(|error| ConfigError::Unreadable {
+                path: path.into(),
+                error,
+            })?;
         let name = path.display().to_string();
         let over = parse(&name, &text)?;
         let keys = self.keys();

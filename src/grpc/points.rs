@@ -4,7 +4,7 @@ use std::{pin::Pin, sync::Arc};
 
 use futures_util::{Stream, StreamExt as _, TryStreamExt as _, stream};
 use prost::Message as _;
-use strew_core::ALGORITHM_VERSION;
+use strew_core::{ALGORITHM_VERSION, server::Stop};
 use tonic::{Request, Response, Status};
 
 use super::{
@@ -27,7 +27,13 @@ use super::{
 };
 use crate::access::Caller;
 use crate::service::forging::Submitted;
-use crate::service::{Error, Fault, Found, Placed, Query, Record, Service, Set, query::groups};
+use crate::service::{
+    Draft, Error, Fault, Found, Nearest, Placed, Query, Record, Service, Set, allowance,
+    query::{Values, groups},
+};
+
+/// A query as it was read.
+type Read = (Draft, Result<Encoding, Fault>);
 
 /// Answers over gRPC.
 #[derive(Debug)]
@@ -42,15 +48,14 @@ impl Points {
 
     /// The checked query of a request.
     async fn read(&self, request: &StreamPointsRequest) -> Result<(Query, Encoding), Error> {
-        /// A shorter query is checked as fast as it is handed over.
-        const SHORT: usize = 4 << 10;
-        let bytes = request.encoded_len();
-        if bytes <= SHORT {
-            return query::query(request, &self.service);
-        }
-        let request = request.clone();
-        let read = move |service: &Service| query::query(&request, service);
-        self.service.process(bytes, read).await?
+        let (bytes, request) = (request.encoded_len(), request.clone());
+        let read = move || Ok(query::read(&request));
+        let check = |service: &Service, (draft, encoding): Read, stop: &Stop| {
+            let (query, _) = service.check(&draft, stop)?;
+            Ok((query, encoding?))
+        };
+        let price = |(draft, _): &Read| draft.price();
+        self.service.read(bytes, read, price, check).await
     }
 
     /// The answer of messages, which tonic has to compress, or of frames that are sent as they are.
@@ -117,8 +122,12 @@ impl Points {
         caller: &Caller,
         request: &GetPointRequest,
     ) -> Result<GetPointResponse, Error> {
-        let values = set::values(request.set.as_ref(), groups::SINGLE, "");
-        let set = Set::single(&values, &self.service.catalog())?;
+        let (bytes, set) = (request.encoded_len(), request.set.clone());
+        let read = move || Ok(set::values(set.as_ref(), groups::SINGLE, ""));
+        let check = |service: &Service, values: Values, stop: &Stop| {
+            Set::single_within(&values, &service.catalog(), allowance(stop))
+        };
+        let set = self.service.read(bytes, read, Values::price, check).await?;
         let placed = self.service.place(caller, set).await?;
         Ok(GetPointResponse {
             point: Some(single::point(placed.point(&request.id)?)),
@@ -141,7 +150,12 @@ impl Points {
         caller: &Caller,
         request: &FindNearestRequest,
     ) -> Result<FindNearestResponse, Error> {
-        let (set, nearest) = query::nearest(request, &self.service)?;
+        let (bytes, request) = (request.encoded_len(), request.clone());
+        let read = move || Ok(query::nearest(&request));
+        let check = |service: &Service, values: Values, stop: &Stop| {
+            Nearest::of_set_within(&values, &service.catalog(), allowance(stop))
+        };
+        let (set, nearest) = self.service.read(bytes, read, Values::price, check).await?;
         let answer = |placed: &Placed, found: Vec<Found>| {
             Ok(FindNearestResponse {
                 neighbors: found.into_iter().map(single::point).collect(),

@@ -5,9 +5,9 @@ use super::{
     region, set,
 };
 use crate::service::{
-    Draft, Error, Fault, Nearest, Query, Service, Set,
+    Draft, Error, Fault,
     query::{
-        Checked, LayerDraft, Parameter, RegionDraft, Value, groups,
+        Checked, LayerDraft, Parameter, RegionDraft, Value, Values, groups,
         parameters::{AT, CURSOR, K, LIMIT, OFFSET, RADIUS, WORLD, WORLD_DIGEST},
     },
 };
@@ -30,18 +30,14 @@ fn encoding(request: &StreamPointsRequest) -> Result<Encoding, Fault> {
     }
 }
 
-/// The checked query of a request, with its encoding.
-pub(super) fn query(
-    request: &StreamPointsRequest,
-    service: &Service,
-) -> Result<(Query, Encoding), Error> {
+/// The draft of a request, with its encoding.
+pub(super) fn read(request: &StreamPointsRequest) -> (Draft, Result<Encoding, Fault>) {
     let mut draft = draft(request);
     let encoding = encoding(request);
     if let Err(fault) = &encoding {
         draft.values.refuse(fault.clone());
     }
-    let (query, _) = service.check(&draft)?;
-    Ok((query, encoding?))
+    (draft, encoding)
 }
 
 fn draft(request: &StreamPointsRequest) -> Draft {
@@ -90,11 +86,8 @@ pub(super) fn by_field(error: Error) -> Error {
     }
 }
 
-/// The checked set and place of a request.
-pub(super) fn nearest(
-    request: &FindNearestRequest,
-    service: &Service,
-) -> Result<(Set, Nearest), Error> {
+/// The values of a request.
+pub(super) fn nearest(request: &FindNearestRequest) -> Values {
     let mut values = set::values(request.set.as_ref(), groups::NEAREST, "");
     let given: [(&'static Parameter, Option<Value>); 3] = [
         (
@@ -107,5 +100,5 @@ pub(super) fn nearest(
         (&RADIUS, request.radius.map(Value::Number)),
     ];
     values.add_values(given);
-    Nearest::of_set(&values, &service.catalog())
+    values
 }

@@ -287,6 +287,12 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
             refusal.detail
         );
     }
+    if done.keys == Some(0) {
+        tracing::error!(
+            cause,
+            "no key is valid: access.keys_file is gone or holds none, and requests that need a key are refused"
+        );
+    }
     tracing::info!(
         cause,
         loaded = reload.loaded.len(),

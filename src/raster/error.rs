@@ -35,6 +35,14 @@ pub enum RasterError {
         /// What it may have.
         allowed: &'static str,
     },
+    /// It would take far more work than its pixels are worth.
+    #[error("it has {found}; allowed: {allowed}")]
+    Wasteful {
+        /// What it has.
+        found: String,
+        /// How much its pixels allow.
+        allowed: String,
+    },
     /// It breaks the rules of its format, or ends early.
     #[error("the {format} is damaged or truncated: {detail}")]
     Damaged {
@@ -43,6 +51,9 @@ pub enum RasterError {
         /// What is wrong where.
         detail: String,
     },
+    /// It was not wanted any more while it was read.
+    #[error("it was not read to its end")]
+    Stopped,
     /// A pixel is no number.
     #[error("the pixel in column {x}, row {y} is {value}; allowed: finite numbers")]
     NotFinite {

@@ -4,26 +4,34 @@
 //! grows with what the file really holds, so a short file with a huge header takes nothing. What is read is
 //! one number for each pixel: see [`Meaning`] for how colors become one.
 
+mod chunks;
 mod error;
 mod image;
 mod limits;
 mod npy;
 mod picture;
 mod png;
+mod price;
 mod samples;
+mod tags;
 mod tiff;
 mod tone;
+mod wanted;
 
 use std::io::{BufRead, Cursor, Read, Seek, SeekFrom};
 
 pub use error::RasterError;
 pub use image::Image;
 pub use limits::{Limits, MOST_SIDE};
+pub use price::Price;
 pub use samples::Samples;
 pub use tone::Meaning;
 
+use strew_core::server::Stop;
+use wanted::{Wanted, look};
+
 impl Image {
-    /// Reads a PNG, a TIFF or a npy file, whichever it is.
+    /// Reads a PNG, a TIFF or a npy file, whichever it is. Stops soon after the flag is raised.
     ///
     /// # Errors
     /// [`RasterError`].
@@ -31,16 +39,41 @@ impl Image {
         mut from: impl BufRead + Seek,
         meaning: Meaning,
         limits: Limits,
+        stop: &Stop,
     ) -> Result<Self, RasterError> {
-        match Format::of(&mut from)? {
-            Some(Format::Png) => png::read(from, meaning, limits),
-            Some(Format::Tiff) => tiff::read(from, meaning, limits),
-            Some(Format::Npy) => npy::read(from, limits),
+        let format = Format::of(&mut from)?;
+        let from = Wanted::new(from, stop);
+        let read = match format {
+            Some(Format::Png) => png::read(from, meaning, limits, stop),
+            Some(Format::Tiff) => tiff::read(from, meaning, limits, stop),
+            Some(Format::Npy) => npy::read(from, limits, stop),
             _ => Err(RasterError::Unknown("a PNG, TIFF or npy file")),
+        };
+        unless_stopped(read, stop)
+    }
+
+    /// Reads a PNG, and no other format: of those, the bytes that are to be decoded are known from the header.
+    ///
+    /// # Errors
+    /// [`RasterError`].
+    pub fn read_png(
+        bytes: &[u8],
+        meaning: Meaning,
+        limits: Limits,
+        stop: &Stop,
+    ) -> Result<Self, RasterError> {
+        let mut from = Cursor::new(bytes);
+        match Format::of(&mut from)? {
+            Some(Format::Png) => Self::read(from, meaning, limits, stop),
+            Some(other) => Err(RasterError::Unsupported {
+                found: format!("it is {}", other.name()),
+                allowed: ONLY_PNG,
+            }),
+            None => Err(RasterError::Unknown(ONLY_PNG)),
         }
     }
 
-    /// Reads 32-bit floats, little endian, row by row from the top.
+    /// Reads 32-bit floats, little endian, row by row from the top. Stops soon after the flag is raised.
     ///
     /// # Errors
     /// [`RasterError`], if there are not exactly as many as the size says.
@@ -48,9 +81,11 @@ impl Image {
         from: impl Read + Seek,
         [width, height]: [usize; 2],
         limits: Limits,
+        stop: &Stop,
     ) -> Result<Self, RasterError> {
         let size = limits.check(width as u64, height as u64)?;
-        npy::read_floats(from, size)
+        let read = npy::read_floats(Wanted::new(from, stop), size, stop);
+        unless_stopped(read, stop)
     }
 
     /// Reads a picture: also JPEG and WebP. Its numbers are shares of the greatest light.
@@ -64,7 +99,7 @@ impl Image {
         match Format::of(&mut from)? {
             Some(Format::Jpeg) => picture::jpeg(from, limits),
             Some(Format::WebP) => picture::webp(from, limits),
-            Some(_) => Self::read(from, Meaning::Picture, limits),
+            Some(_) => Self::read(from, Meaning::Picture, limits, &Stop::default()),
             None => Err(RasterError::Unknown("a PNG, JPEG, WebP, TIFF or npy file")),
         }
     }
@@ -88,9 +123,25 @@ impl Image {
     ///
     /// # Errors
     /// As [`read`](Self::read).
-    pub fn from_bytes(bytes: &[u8], meaning: Meaning, limits: Limits) -> Result<Self, RasterError> {
-        Self::read(Cursor::new(bytes), meaning, limits)
+    pub fn from_bytes(
+        bytes: &[u8],
+        meaning: Meaning,
+        limits: Limits,
+        stop: &Stop,
+    ) -> Result<Self, RasterError> {
+        Self::read(Cursor::new(bytes), meaning, limits, stop)
     }
+}
+
+/// How PNGs begin.
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+/// What is read where only PNG is.
+const ONLY_PNG: &str = "a PNG";
+
+/// A flag that is raised comes out of decoders as an error of reading.
+fn unless_stopped(read: Result<Image, RasterError>, stop: &Stop) -> Result<Image, RasterError> {
+    look(stop)?;
+    read
 }
 
 /// A format, by how its files begin.
@@ -103,12 +154,23 @@ enum Format {
 }
 
 impl Format {
+    /// What a file of it is, in words.
+    const fn name(&self) -> &'static str {
+        match self {
+            Self::Png => "a PNG",
+            Self::Tiff => "a TIFF",
+            Self::Npy => "a npy array",
+            Self::Jpeg => "a JPEG",
+            Self::WebP => "a WebP",
+        }
+    }
+
     fn of(from: &mut (impl BufRead + Seek)) -> Result<Option<Self>, RasterError> {
         let mut head = vec![];
         from.by_ref().take(12).read_to_end(&mut head)?;
         from.seek(SeekFrom::Start(0))?;
         let begins = |magic: &[u8]| head.starts_with(magic);
-        Ok(if begins(b"\x89PNG\r\n\x1a\n") {
+        Ok(if begins(PNG) {
             Some(Self::Png)
         } else if [b"II*\0", b"II+\0", b"MM\0*", b"MM\0+"]
             .iter()

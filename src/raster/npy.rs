@@ -2,7 +2,15 @@
 
 use std::io::{Read, Seek, SeekFrom};
 
-use super::{error::RasterError, image::Image, limits::Limits, samples::Samples};
+use strew_core::server::Stop;
+
+use super::{
+    error::RasterError,
+    image::Image,
+    limits::Limits,
+    samples::Samples,
+    wanted::{FEW, look},
+};
 
 /// What is read.
 const ALLOWED: &str = "two dimensions in C order, of the types u1, u2, f4 or f8, little endian";
@@ -29,7 +37,11 @@ impl Kind {
     }
 }
 
-pub(super) fn read(mut from: impl Read + Seek, limits: Limits) -> Result<Image, RasterError> {
+pub(super) fn read(
+    mut from: impl Read + Seek,
+    limits: Limits,
+    stop: &Stop,
+) -> Result<Image, RasterError> {
     let mut start = [0; 8];
     fill(&mut from, &mut start)?;
     let [.., major, _] = start;
@@ -76,14 +88,16 @@ pub(super) fn read(mut from: impl Read + Seek, limits: Limits) -> Result<Image, 
         )));
     };
     let size = limits.check(width, height)?;
-    let mut image = numbers(from, size, kind)?;
+    let mut image = numbers(from, size, kind, stop)?;
     // Truth is stored as 0 and 1.
     if let Samples::U8(values) = &mut image.samples
         && value(&header, "descr")?.contains("b1")
     {
-        values
-            .iter_mut()
-            .for_each(|value| *value = u8::from(*value > 0) * u8::MAX);
+        for part in values.chunks_mut(FEW) {
+            look(stop)?;
+            part.iter_mut()
+                .for_each(|value| *value = u8::from(*value > 0) * u8::MAX);
+        }
     }
     Ok(image)
 }
@@ -91,13 +105,19 @@ pub(super) fn read(mut from: impl Read + Seek, limits: Limits) -> Result<Image, 
 pub(super) fn read_floats(
     mut from: impl Read + Seek,
     size: [usize; 2],
+    stop: &Stop,
 ) -> Result<Image, RasterError> {
     from.seek(SeekFrom::Start(0))?;
-    numbers(from, size, Kind::F32)
+    numbers(from, size, Kind::F32, stop)
 }
 
 /// The numbers from here to the end, as many as the size says.
-fn numbers(mut from: impl Read + Seek, size: [usize; 2], kind: Kind) -> Result<Image, RasterError> {
+fn numbers(
+    mut from: impl Read + Seek,
+    size: [usize; 2],
+    kind: Kind,
+    stop: &Stop,
+) -> Result<Image, RasterError> {
     let here = from.stream_position()?;
     let there = from.seek(SeekFrom::End(0))?;
     from.seek(SeekFrom::Start(here))?;
@@ -115,10 +135,10 @@ fn numbers(mut from: impl Read + Seek, size: [usize; 2], kind: Kind) -> Result<I
             Samples::U8(values)
         }
         Kind::U16 => Samples::U16(each(from, count, u16::from_le_bytes)?),
-        Kind::F32 => Samples::floats(each(from, count, f32::from_le_bytes)?, size[0])?,
+        Kind::F32 => Samples::floats(each(from, count, f32::from_le_bytes)?, size[0], stop)?,
         Kind::F64 => {
             let narrow = |bytes| f64::from_le_bytes(bytes) as f32;
-            Samples::floats(each(from, count, narrow)?, size[0])?
+            Samples::floats(each(from, count, narrow)?, size[0], stop)?
         }
     };
     Ok(Image {

@@ -4,12 +4,15 @@ use std::io::{BufRead, Seek};
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Transformations};
 
+use strew_core::server::Stop;
+
 use super::{
     error::RasterError,
     image::Image,
     limits::Limits,
     samples::Samples,
     tone::{self, Channels, Meaning},
+    wanted::look,
 };
 
 /// What the decoder may take besides the pixels: a few rows, a palette.
@@ -21,6 +24,7 @@ pub(super) fn read(
     from: impl BufRead + Seek,
     meaning: Meaning,
     limits: Limits,
+    stop: &Stop,
 ) -> Result<Image, RasterError> {
     let mut decoder = Decoder::new_with_limits(
         from,
@@ -62,12 +66,13 @@ pub(super) fn read(
         }
         let mut whole = vec![0; reader.output_buffer_size().unwrap_or(bytes)];
         reader.next_frame(&mut whole).map_err(damaged)?;
-        whole
-            .chunks_exact(width)
-            .take(size[1])
-            .for_each(|row| rows.add(row));
+        for row in whole.chunks_exact(width).take(size[1]) {
+            look(stop)?;
+            rows.add(row);
+        }
     } else {
         for _ in 0..size[1] {
+            look(stop)?;
             let row = reader.next_row().map_err(damaged)?;
             let row = row.ok_or_else(|| damaged("it ends before its last row"))?;
             rows.add(row.data());

@@ -1,6 +1,11 @@
 //! The numbers of a raster's pixels, as small as the file has them.
 
-use super::error::RasterError;
+use strew_core::server::Stop;
+
+use super::{
+    error::RasterError,
+    wanted::{FEW, look},
+};
 
 /// A number for each pixel.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,14 +69,18 @@ impl Samples {
     }
 
     /// Floats, the rows of which have this width.
-    pub(super) fn floats(values: Vec<f32>, width: usize) -> Result<Self, RasterError> {
-        match values.iter().position(|value| !value.is_finite()) {
-            Some(at) => Err(RasterError::NotFinite {
-                x: at % width,
-                y: at / width,
-                value: values[at].into(),
-            }),
-            None => Ok(Self::F32(values)),
+    pub(super) fn floats(values: Vec<f32>, width: usize, stop: &Stop) -> Result<Self, RasterError> {
+        for (part, start) in values.chunks(FEW).zip((0..).step_by(FEW)) {
+            look(stop)?;
+            if let Some(at) = part.iter().position(|value| !value.is_finite()) {
+                let at = start + at;
+                return Err(RasterError::NotFinite {
+                    x: at % width,
+                    y: at / width,
+                    value: values[at].into(),
+                });
+            }
         }
+        Ok(Self::F32(values))
     }
 }

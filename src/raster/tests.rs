@@ -10,7 +10,7 @@ const SMALL: Limits = Limits {
 };
 
 fn read(bytes: &[u8]) -> Result<Image, RasterError> {
-    Image::from_bytes(bytes, Meaning::Data, SMALL)
+    Image::from_bytes(bytes, Meaning::Data, SMALL, &Stop::default())
 }
 
 fn refusal(bytes: &[u8]) -> String {
@@ -95,12 +95,13 @@ fn colors_become_linear_light() {
     // 188 of 255 is half of the light.
     assert_eq!(image.samples, Samples::U16(vec![65535, 0, 13933, 32957]));
     let gray = png([1, 1], ColorType::Grayscale, BitDepth::Eight, &[188]);
-    let as_picture = Image::from_bytes(&gray, Meaning::Picture, SMALL).expect("a picture");
+    let as_picture =
+        Image::from_bytes(&gray, Meaning::Picture, SMALL, &Stop::default()).expect("a picture");
     assert_eq!(as_picture.samples, Samples::U16(vec![32957]));
     // Pictures lie on white paper; a mask lets nothing through.
     let clear = png([1, 1], ColorType::Rgba, BitDepth::Eight, &[9, 9, 9, 0]);
     let of = |meaning| {
-        Image::from_bytes(&clear, meaning, SMALL)
+        Image::from_bytes(&clear, meaning, SMALL, &Stop::default())
             .expect("clear")
             .samples
     };
@@ -133,7 +134,12 @@ fn arrays_have_their_types_and_shapes() {
         let image = read(file).expect("written by NumPy");
         assert_eq!((image.size, &image.samples), ([4, 3], &expected));
     }
-    let bare = Image::read_floats(Cursor::new(seed!("floats.f32")), [4, 3], SMALL);
+    let bare = Image::read_floats(
+        Cursor::new(seed!("floats.f32")),
+        [4, 3],
+        SMALL,
+        &Stop::default(),
+    );
     assert_eq!(bare.expect("as long").samples, expected);
 }
 
@@ -267,4 +273,125 @@ fn what_is_not_read_is_told() {
         assert!(refusal(&file).starts_with(expected), "{}", refusal(&file));
     }
     assert!(refusal(seed!("picture.jpg")).starts_with("it is of no known format"));
+}
+
+/// Bytes that are not wanted any more once some of them were read.
+struct Leaving<'a> {
+    from: Cursor<&'a [u8]>,
+    after: u64,
+    stop: &'a Stop,
+}
+
+impl Leaving<'_> {
+    fn look(&self) {
+        if self.from.position() > self.after {
+            self.stop.raise();
+        }
+    }
+}
+
+impl Read for Leaving<'_> {
+    fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
+        self.look();
+        self.from.read(out)
+    }
+}
+
+impl BufRead for Leaving<'_> {
+    fn fill_buf(&mut self) -> std::io::Result<&[u8]> {
+        self.look();
+        self.from.fill_buf()
+    }
+
+    fn consume(&mut self, bytes: usize) {
+        self.from.consume(bytes);
+    }
+}
+
+impl Seek for Leaving<'_> {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        self.from.seek(to)
+    }
+}
+
+#[test]
+fn decoding_ends_soon_after_it_is_not_wanted_any_more() {
+    use ::png::{BitDepth, ColorType};
+    // Noise, which is hardly compressed.
+    let noise: Vec<u8> = (0..512 * 512_u32)
+        .map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8 ^ (i >> 3) as u8)
+        .collect();
+    let floats: Vec<u8> = noise
+        .iter()
+        .flat_map(|v| f32::from(*v).to_le_bytes())
+        .collect();
+    for file in [
+        png([512, 512], ColorType::Grayscale, BitDepth::Eight, &noise),
+        npy("<f4", "False", "512, 512", &floats),
+        npy("|u1", "False", "512, 512", &noise),
+    ] {
+        let after = file.len() as u64 / 2;
+        let stop = Stop::new();
+        let mut from = Leaving {
+            from: Cursor::new(&file),
+            after,
+            stop: &stop,
+        };
+        let read = Image::read(&mut from, Meaning::Data, Limits::FILES, &stop);
+        assert!(matches!(read, Err(RasterError::Stopped)), "{read:?}");
+        assert!(
+            from.from.position() < after + (20 << 10),
+            "{}",
+            from.from.position()
+        );
+    }
+}
+
+#[test]
+fn queries_are_read_as_png_alone() {
+    let stop = Stop::NEVER;
+    let read = |file: &[u8]| Image::read_png(file, Meaning::Data, SMALL, &stop);
+    assert!(read(seed!("gray.png")).is_ok());
+    for (file, found) in [
+        (seed!("gray.tif"), "it is a TIFF; allowed: a PNG"),
+        (seed!("floats.npy"), "it is a npy array; allowed: a PNG"),
+        (seed!("picture.jpg"), "it is a JPEG; allowed: a PNG"),
+        (seed!("picture.webp"), "it is a WebP; allowed: a PNG"),
+        (b"GIF89a", "it is of no known format; allowed: a PNG"),
+    ] {
+        assert_eq!(read(file).expect_err("no PNG").to_string(), found);
+    }
+}
+
+/// A PNG with a chunk of this kind before its pixels.
+fn with_chunk(kind: &[u8; 4], data: &[u8]) -> Vec<u8> {
+    let gray = seed!("gray.png");
+    let mut chunk = (data.len() as u32).to_be_bytes().to_vec();
+    chunk.extend(kind);
+    chunk.extend(data);
+    let crc = crc(&chunk[4..]);
+    chunk.extend(crc.to_be_bytes());
+    [&gray[..33], &chunk, &gray[33..]].concat()
+}
+
+#[test]
+fn what_pngs_hold_besides_their_pixels_is_not_inflated() {
+    use std::io::Write as _;
+    let mut packed = flate2::write::ZlibEncoder::new(vec![], flate2::Compression::best());
+    packed.write_all(&vec![0; 64 << 20]).expect("in memory");
+    let packed = packed.finish().expect("in memory");
+    let expected = read(seed!("gray.png")).expect("gray").samples;
+    for (kind, head) in [
+        (b"zTXt", b"a\0\0".as_slice()),
+        (b"iCCP", b"a\0\0"),
+        (b"iTXt", b"a\0\x01\0\0\0"),
+    ] {
+        let file = with_chunk(kind, &[head, &packed].concat());
+        assert_eq!(read(&file).expect("gray").samples, expected);
+    }
+    // Pixels beyond those that the header says.
+    let mut rows = with_chunk(b"IDAT", &packed);
+    assert_eq!(read(&rows).expect("black").samples.get(0), 0.0);
+    rows.truncate(40);
+    assert!(read(&rows).is_err());
 }

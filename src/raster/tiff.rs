@@ -1,19 +1,24 @@
 //! Rasters from TIFF, with the place that GeoTIFF states.
 
-use std::io::{BufRead, Seek};
+use std::io::{BufRead, Seek, SeekFrom};
 
 use tiff::{
-    ColorType, TiffError,
+    ColorType, TiffError, TiffUnsupportedError,
     decoder::{ChunkType, Decoder, DecodingResult},
     tags::Tag,
 };
 
+use strew_core::server::Stop;
+
 use super::{
+    chunks::Cut,
     error::RasterError,
     image::Image,
     limits::Limits,
     samples::Samples,
+    tags,
     tone::{self, Channels, Meaning},
+    wanted::look,
 };
 
 /// A strip or tile may take this much when decoded.
@@ -27,14 +32,17 @@ const ALLOWED: &str = "one channel of 8, 16 or 32 bits (integers or floats) or o
                        deflate, or none";
 
 pub(super) fn read(
-    from: impl BufRead + Seek,
+    mut from: impl BufRead + Seek,
     meaning: Meaning,
     limits: Limits,
+    stop: &Stop,
 ) -> Result<Image, RasterError> {
     let mut bounds = tiff::decoder::Limits::default();
     bounds.decoding_buffer_size = CHUNK_BYTES;
     bounds.intermediate_buffer_size = CHUNK_BYTES;
     bounds.ifd_value_size = TAG_BYTES;
+    let length = from.seek(SeekFrom::End(0))?;
+    tags::check(&mut from, length)?;
     let mut decoder = Decoder::new(from).map_err(damaged)?.with_limits(bounds);
     let (width, height) = decoder.dimensions().map_err(damaged)?;
     let size = limits.check(width.into(), height.into())?;
@@ -44,7 +52,7 @@ pub(super) fn read(
         ColorType::GrayA(_) => (false, true),
         ColorType::RGB(_) => (true, false),
         ColorType::RGBA(_) => (true, true),
-        other => return Err(unsupported(format!("pixels of the kind {other:?}"))),
+        other => return Err(unsupported(kind(other))),
     };
     let channels = Channels {
         has_colors,
@@ -76,7 +84,15 @@ pub(super) fn read(
     if u64::from(chunks.map_err(damaged)?) < expected {
         return Err(broken("it has too few strips or tiles"));
     }
+    let cut = Cut {
+        size,
+        channels: channels.count(),
+        across: [across, columns],
+        chunks: expected,
+    };
+    cut.check(&mut decoder)?;
     for chunk in 0..expected as u32 {
+        look(stop)?;
         let decoded = decoder.read_chunk(chunk).map_err(damaged)?;
         let corner = [chunk % columns * across, chunk / columns * tall].map(|v| v as usize);
         let sides = [across as usize, tall as usize];
@@ -85,7 +101,7 @@ pub(super) fn read(
     }
     let samples = rows.samples.ok_or_else(|| broken("it has no pixels"))?;
     let samples = match samples {
-        Samples::F32(values) => Samples::floats(values, size[0])?,
+        Samples::F32(values) => Samples::floats(values, size[0], stop)?,
         integers => integers,
     };
     Ok(Image {
@@ -216,7 +232,7 @@ fn frame(
         }
         (_, _, Some([sx, rx, _, x, ry, sy, _, y, ..])) => {
             if *rx != 0.0 || *ry != 0.0 {
-                return Err(unsupported("a raster that is turned".into()));
+                return Err(askew("a raster that is turned"));
             }
             ([*x, *y], [*sx, -sy])
         }
@@ -238,9 +254,7 @@ fn frame(
     ];
     let is_box = frame[0] < frame[2] && frame[1] < frame[3];
     if !is_box || frame.iter().any(|v| !v.is_finite()) {
-        return Err(unsupported(
-            "a raster that is mirrored or has no area".into(),
-        ));
+        return Err(askew("a raster that is mirrored or has no area"));
     }
     Ok(Some(frame))
 }
@@ -252,21 +266,49 @@ fn missing(decoder: &mut Decoder<impl BufRead + Seek>) -> Option<f64> {
     text.trim_matches(['\0', ' ']).parse().ok()
 }
 
-fn damaged(error: TiffError) -> RasterError {
+pub(super) fn damaged(error: TiffError) -> RasterError {
     match error {
         TiffError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
             error.into()
         }
-        TiffError::UnsupportedError(error) => unsupported(error.to_string()),
+        TiffError::UnsupportedError(error) => unsupported(match error {
+            TiffUnsupportedError::UnsupportedColorType(color) => kind(color),
+            TiffUnsupportedError::UnsupportedCompressionMethod(method) => {
+                format!("compression by method {}", method.to_u16())
+            }
+            _ => "a layout of pixels that is rarely used".into(),
+        }),
         TiffError::LimitsExceeded => unsupported("strips, tiles or tags of too many bytes".into()),
         error => broken(&error.to_string()),
     }
 }
 
-fn broken(detail: &str) -> RasterError {
+pub(super) fn broken(detail: &str) -> RasterError {
     RasterError::Damaged {
         format: "TIFF",
         detail: detail.into(),
+    }
+}
+
+/// What pixels are, in words.
+fn kind(color: ColorType) -> String {
+    match color {
+        ColorType::Palette(_) => "pixels of a palette".into(),
+        ColorType::CMYK(_) | ColorType::CMYKA(_) => "CMYK pixels".into(),
+        ColorType::YCbCr(_) => "YCbCr pixels".into(),
+        ColorType::Lab(_) => "Lab pixels".into(),
+        ColorType::Multiband {
+            bit_depth,
+            num_samples,
+        } => format!("pixels of {num_samples} channels of {bit_depth} bits"),
+        other => format!("pixels of {} bits", other.bit_depth()),
+    }
+}
+
+fn askew(found: &str) -> RasterError {
+    RasterError::Unsupported {
+        found: found.into(),
+        allowed: "rows from west to east, the northernmost first",
     }
 }
 

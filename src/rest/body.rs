@@ -9,6 +9,7 @@ use axum::extract::{FromRequest, Request};
 use bytes::Bytes;
 use futures_util::StreamExt as _;
 use http::header;
+use strew_core::server::Stop;
 
 use crate::service::{
     Draft, Error, Fault, Options, Query, Service,
@@ -85,12 +86,12 @@ pub(super) async fn query(
     groups: &'static [Group],
 ) -> Result<(Draft, Query, Options), Error> {
     let bytes = body.len();
-    let read = move |service: &Service| {
-        let draft = read_body(&body, groups)?;
-        let (query, options) = service.check(&draft)?;
+    let read = move || Ok(read_body(&body, groups)?);
+    let check = |service: &Service, draft: Draft, stop: &Stop| {
+        let (query, options) = service.check(&draft, stop)?;
         Ok((draft, query, options))
     };
-    service.process(bytes, read).await?
+    service.read(bytes, read, Draft::price, check).await
 }
 
 /// Why a body broke off: as the gate says, or because the client stopped.

@@ -9,6 +9,7 @@ use axum::{
     routing,
 };
 use http::Method;
+use strew_core::server::Stop;
 
 use super::{
     answer,
@@ -83,7 +84,7 @@ async fn get(
     context: Context,
 ) -> Result<Response, Error> {
     let draft = Draft::new(context.values(groups::CHUNK)).within(region([&size, &x, &y]));
-    let (query, options) = service.check(&draft)?;
+    let (query, options) = service.check(&draft, &Stop::NEVER)?;
     answer::stream(&service, &context, query, options).await
 }
 

@@ -7,6 +7,7 @@ use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
+use strew_core::server::Stop;
 
 use super::{
     answer,
@@ -82,7 +83,7 @@ struct Count {
 
 async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
     let draft = Draft::of(context.values(groups::COUNT));
-    let (query, _) = service.check(&draft)?;
+    let (query, _) = service.check(&draft, &Stop::NEVER)?;
     let freshness = answer::freshness(&service, &context, &query, document::JSON);
     freshness
         .answer(&context.headers, counted(&service, &context, query))

@@ -12,6 +12,7 @@ use http::{HeaderValue, Method, header};
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
+use strew_core::server::Stop;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
@@ -81,11 +82,14 @@ async fn post(
     Whole(body): Whole,
 ) -> Result<Response, Error> {
     context.no_parameters()?;
-    let read = move |service: &Service| {
+    let bytes = body.len();
+    let read = move || {
         let text = String::from_utf8_lossy(&body);
-        service.hold_field(field::read_json("field", text.trim())?)
+        Ok(field::read_json("field", text.trim())?)
     };
-    let held = service.process(1 << 16, read).await??;
+    let hold =
+        |service: &Service, document: Document, stop: &Stop| service.hold_field(document, stop);
+    let held = service.read(bytes, read, Document::price, hold).await?;
     document::json(&Summary::new(&held))
 }
 
@@ -232,7 +236,7 @@ async fn chunk(
     let (size, x, y) = (SIZE.read(&size), COLUMN.read(&x), ROW.read(&y)).together()?;
     let freshness = Freshness::of(&context.uri, &context.headers, PNG, &field.digest());
     let make = async {
-        let draw = move |_: &Service| field.picture(size, [x, y]);
+        let draw = move |_: &Service, _: &Stop| field.picture(size, [x, y]);
         let picture = service.process(SIDE * SIDE, draw).await??;
         let mut response = Response::new(Body::from(picture));
         let value = HeaderValue::from_static(PNG);

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use axum::{extract::State, response::Response, routing};
 use http::Method;
+use strew_core::server::Stop;
 
 use super::{
     answer,
@@ -34,6 +35,6 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
 /// Answers a query.
 async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
     let draft = Draft::of(context.values(groups::POINTS));
-    let (query, options) = service.check(&draft)?;
+    let (query, options) = service.check(&draft, &Stop::NEVER)?;
     answer::stream(&service, &context, query, options).await
 }

@@ -7,6 +7,7 @@ use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
+use strew_core::server::Stop;
 
 use super::{
     api::{
@@ -89,7 +90,7 @@ async fn post(
     // Each part repeats the body, in memory and in the answer.
     let bytes = places.len().saturating_mul(size + PART_BYTES);
     let _held = service.hold(bytes.saturating_mul(3))?;
-    let write = move |_: &Service| {
+    let write = move |_: &Service, _: &Stop| {
         let part = |(token, count): (Token, u64)| Part {
             count,
             query: draft.part(&token, count).to_body(),

@@ -11,6 +11,7 @@ use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::value::RawValue;
+use strew_core::server::Stop;
 
 use super::{
     answer,
@@ -196,7 +197,7 @@ async fn chunk(
     let mut values = context.values(groups::WORLD_CHUNK);
     values.replace(&WORLD, Some(Value::Text(name)));
     let draft = Draft::new(values).within(chunks::region([&size, &x, &y]));
-    let (query, options) = service.check(&draft)?;
+    let (query, options) = service.check(&draft, &Stop::NEVER)?;
     answer::stream(&service, &context, query, options).await
 }
 

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use super::Error;
+use super::{Error, field::Sender};
 use crate::access::{Denied, Quota, Usage};
 
 /// The byte budget that a request takes from: the daemon's, and that of the client's address. Cheap
@@ -39,6 +39,11 @@ impl Budget {
     /// A number that tells addresses apart, by which their work takes turns.
     pub(super) fn address(&self) -> usize {
         Arc::as_ptr(&self.address).addr()
+    }
+
+    /// Who sends what the request brings along.
+    pub(super) fn sender(&self) -> Sender {
+        Sender(self.address.client())
     }
 
     /// The bytes that are held of all addresses together.

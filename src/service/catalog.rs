@@ -13,7 +13,7 @@ mod patterns;
 mod reload;
 
 use std::{
-    cell::Cell,
+    cell::{Cell, RefCell},
     collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
@@ -24,9 +24,9 @@ use bytes::Bytes;
 use strew_core::{Alpha, field::FieldSpec, map::Size, table::BLUE};
 
 use super::{
-    Worlds,
+    Error, Worlds,
     except::Lists,
-    field::{self, Document, Fields, NamedField, Sent},
+    field::{self, Allowance, Document, Fields, NamedField, Sent},
     query::Checked,
 };
 pub use entry::Entry;
@@ -68,7 +68,7 @@ pub struct Catalog {
 }
 
 /// What building a field has left and taken.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Built {
     /// How many pixels the query may still bring along.
     pub left: usize,
@@ -76,6 +76,8 @@ pub struct Built {
     pub bytes: usize,
     /// A box around them.
     pub frame: Option<[f64; 4]>,
+    /// Why there was no memory for its pixels, if there was none.
+    pub refused: Option<Error>,
 }
 
 impl Catalog {
@@ -218,11 +220,14 @@ impl Catalog {
         path: &str,
         document: &Document,
         pixels: usize,
+        allowance: Allowance<'_>,
     ) -> (Checked<FieldSpec>, Built) {
         let sources = field::Sources {
             named: &|name| Some(self.field(name)?.spec.clone()),
             names: &|| self.fields.names(),
             files: None,
+            allowance,
+            refused: RefCell::new(None),
             pixels: Cell::new(pixels),
             frame: Cell::new(None),
             bytes: Cell::new(0),
@@ -232,6 +237,7 @@ impl Catalog {
             left: sources.pixels.get(),
             bytes: sources.bytes.get(),
             frame: sources.frame.get(),
+            refused: sources.refused.take(),
         };
         (spec, built)
     }

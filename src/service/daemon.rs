@@ -17,12 +17,12 @@ use super::{
     Ready, Record, Reload, Set, Streams, Token, Workers,
     cache::{CacheState, Samplers},
     considered, effort,
-    field::{self, Document, NamedField},
+    field::{self, Document, NamedField, Sender},
     forging::Forging,
     library,
     mixes::Mixes,
     portrait::Portraits,
-    query,
+    query, reading,
     ready::Need,
     record::Recorded,
 };
@@ -105,8 +105,11 @@ impl Service {
     ///
     /// # Errors
     /// [`Error::Invalid`] for a field that is not valid or too large to be held.
-    pub fn hold_field(&self, document: Document) -> Result<Arc<NamedField>, Error> {
-        library::hold_field(&self.catalog(), document, field::MOST_PIXELS)
+    pub fn hold_field(&self, document: Document, stop: &Stop) -> Result<Arc<NamedField>, Error> {
+        let allowance = reading::allowance(stop);
+        let sender = Record::current().map_or(Sender::default(), |record| record.budget().sender());
+        let catalog = self.catalog();
+        library::hold_field(&catalog, document, field::MOST_PIXELS, allowance, sender)
     }
 
     /// The limits.
@@ -148,8 +151,10 @@ impl Service {
     ///
     /// # Errors
     /// As [`Draft::check`], and [`Error::Invalid`] for a format that is for files only.
-    pub fn check(&self, draft: &Draft) -> Result<(Query, Options), Error> {
-        let (query, options) = draft.check(&self.catalog(), self.limits.max_vertices)?;
+    pub fn check(&self, draft: &Draft, stop: &Stop) -> Result<(Query, Options), Error> {
+        let (catalog, vertices) = (self.catalog(), self.limits.max_vertices);
+        let allowance = reading::allowance(stop);
+        let (query, options) = draft.check_within(&catalog, vertices, allowance)?;
         match options.encoding {
             Some(encoding) if !encoding.is_streamed() => {
                 let format = &query::parameters::FORMAT;
@@ -324,32 +329,6 @@ impl Service {
     pub async fn split(&self, planned: Planned, parts: u32) -> Result<Vec<(Token, u64)>, Error> {
         let split = move |stop: &Stop| planned.stopped_by(stop).split(parts);
         self.workers.take_turn(Lane::Long, split).await?
-    }
-
-    /// Reads or writes this many bytes of a request or an answer: at once if they are few, else on the
-    /// workers.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if the job panicked.
-    pub async fn process<T: Send + 'static>(
-        self: &Arc<Self>,
-        bytes: usize,
-        job: impl FnOnce(&Self) -> T + Send + 'static,
-    ) -> Result<T, Error> {
-        /// This much takes as long as handing it over.
-        const FEW: usize = 4 << 10;
-        /// More than this takes milliseconds.
-        const MANY: usize = 64 << 10;
-        if bytes <= FEW {
-            return Ok(job(self));
-        }
-        let lane = if bytes <= MANY {
-            Lane::Short
-        } else {
-            Lane::Long
-        };
-        let service = self.clone();
-        self.workers.take_turn(lane, move |_| job(&service)).await
     }
 
     /// Lays a set into the world, to look up single points.

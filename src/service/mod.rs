@@ -41,6 +41,8 @@ mod portrait;
 #[cfg(feature = "daemon")]
 mod promise;
 pub mod query;
+#[cfg(feature = "daemon")]
+mod reading;
 mod ready;
 #[cfg(feature = "daemon")]
 pub mod record;
@@ -73,6 +75,7 @@ pub use {
     daemon::Service,
     portrait::Portrait,
     promise::PointsInFlight,
+    reading::allowance,
     record::Record,
     stream::{BlockStream, Interrupted, Permit, Streams},
     work::{Owner, Pulse, Workers},

@@ -5,12 +5,13 @@
 //! need no counters. The record also has the byte budget of the request and the lane of its work.
 
 use std::sync::{
-    Arc, OnceLock,
+    Arc, Mutex, OnceLock, PoisonError,
     atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
 };
 
 use super::{
-    Answer, Budget, Kind, Lane, PointsInFlight, encode::EncodeError, promise::Promise, work::Clock,
+    Answer, Budget, Error, Held, Kind, Lane, PointsInFlight, encode::EncodeError, promise::Promise,
+    work::Clock,
 };
 
 tokio::task_local! {
@@ -29,6 +30,8 @@ pub struct Record {
     is_long: AtomicBool,
     code: AtomicU32,
     clock: Arc<Clock>,
+    /// The memory of what the request has brought along.
+    held: Mutex<Option<Held>>,
 }
 
 /// No code yet.
@@ -48,6 +51,7 @@ impl Record {
             is_long: AtomicBool::new(false),
             code: AtomicU32::new(NONE),
             clock: Arc::default(),
+            held: Mutex::default(),
         })
     }
 
@@ -60,6 +64,32 @@ impl Record {
     #[must_use]
     pub fn current() -> Option<Arc<Self>> {
         CURRENT.try_with(Arc::clone).ok()
+    }
+
+    /// Runs a job for a request on another thread: there, too, it is the [`current`](Self::current) one.
+    pub(super) fn within<T>(record: Option<Arc<Self>>, job: impl FnOnce() -> T) -> T {
+        match record {
+            Some(record) => CURRENT.sync_scope(record, job),
+            None => job(),
+        }
+    }
+
+    /// Takes memory for what the request that is being answered has brought along, until its answer is over.
+    ///
+    /// # Errors
+    /// As [`Budget::hold`].
+    pub(super) fn hold(bytes: usize) -> Result<(), Error> {
+        let Some(record) = Self::current() else {
+            return Ok(());
+        };
+        let mut held = record.held.lock().unwrap_or_else(PoisonError::into_inner);
+        match &mut *held {
+            Some(held) => held.grow(bytes),
+            none => {
+                *none = Some(record.budget.hold(bytes)?);
+                Ok(())
+            }
+        }
     }
 
     /// Notes why the request that is being answered was refused.
@@ -206,5 +236,26 @@ mod tests {
         assert_eq!(b.refused(), Some(Kind::Internal));
         assert_eq!((a.format(), a.id(), b.id()), (Some("csv"), "a", "b"));
         assert_eq!(a.code(), None);
+    }
+
+    #[tokio::test]
+    async fn what_a_request_brings_along_is_held_until_it_is_over() {
+        let budget = Budget::new(100);
+        let record = Record::new("a", budget.clone());
+        let job = async {
+            let record = Record::current();
+            let there = std::thread::spawn(|| {
+                Record::within(record, || {
+                    (Record::hold(60), Record::hold(30), Record::hold(11))
+                })
+            });
+            there.join().expect("no panic")
+        };
+        let (first, second, third) = record.clone().scope(job).await;
+        assert!(first.is_ok() && second.is_ok() && third.is_err());
+        assert_eq!(budget.held(), 90);
+        drop(record);
+        assert_eq!(budget.held(), 0);
+        assert!(Record::hold(1000).is_ok());
     }
 }

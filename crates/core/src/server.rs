@@ -19,8 +19,9 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use crate::{
+    Raster,
     error::Error,
-    field::FieldSpec,
+    field::{FieldSpec, Terrain},
     map::Clusters,
     pattern::Alpha,
     sample::{Area, Neighbor, PeriodicPlan, PeriodicSet, Plan, PointSet, Region, Spacing},
@@ -257,6 +258,52 @@ pub fn around(
     visits: &Visits,
 ) -> Result<Vec<Neighbor>, Error> {
     set.around_visiting(at, radius, limit, visits)
+}
+
+/// [`FieldSpec::slope`], ended early once the flag is raised.
+///
+/// # Errors
+/// As [`FieldSpec::slope`], and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+///
+/// ```
+/// use strew_core::{ErrorKind, Region, field::{Pixels, Terrain}, server::{self, Stop}};
+///
+/// let heights = Pixels::from_floats(3, vec![0.0, 5.0, 10.0])?;
+/// let terrain = Terrain::new(Region::new([0.0, 0.0], [30.0, 10.0])?, heights)?;
+/// let stop = Stop::new();
+/// assert!(server::slope(terrain.clone(), [0.0, 1.0], [1.0, 0.0], &stop).is_ok());
+/// stop.raise();
+/// let error = server::slope(terrain, [0.0, 1.0], [1.0, 0.0], &stop).unwrap_err();
+/// assert_eq!(error.kind(), ErrorKind::Stopped);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub fn slope(
+    terrain: Terrain,
+    slopes: [f64; 2],
+    shares: [f64; 2],
+    stop: &Stop,
+) -> Result<FieldSpec, Error> {
+    FieldSpec::slope_unless(terrain, [slopes, shares], stop)
+}
+
+/// [`Raster::tone`], ended early once the flag is raised.
+///
+/// # Errors
+/// As [`Raster::tone`], and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
+///
+/// ```
+/// use strew_core::{ErrorKind, Raster, Region, server::{self, Stop}};
+///
+/// let raster = Raster::new(Region::chunk(2.0, [0, 0])?, 2, vec![0.0, 1.0])?;
+/// let stop = Stop::new();
+/// assert!(server::tone(raster.clone(), 0.0, 1.0, 2.0, &stop).is_ok());
+/// stop.raise();
+/// let error = server::tone(raster, 0.0, 1.0, 2.0, &stop).unwrap_err();
+/// assert_eq!(error.kind(), ErrorKind::Stopped);
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+pub fn tone(raster: Raster, low: f64, high: f64, gamma: f64, stop: &Stop) -> Result<Raster, Error> {
+    raster.tone_unless([low, high, gamma], stop)
 }
 
 /// The plan with another flag: its windows and cursors, which may have to count, stop once that is raised.

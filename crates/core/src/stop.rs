@@ -41,6 +41,17 @@ impl fmt::Debug for Stop {
 }
 
 impl Stop {
+    /// A flag that is never raised, as the default one.
+    ///
+    /// ```
+    /// use strew_core::server::Stop;
+    ///
+    /// static NEVER: Stop = Stop::NEVER;
+    /// NEVER.raise();
+    /// assert!(!NEVER.is_raised());
+    /// ```
+    pub const NEVER: Self = Self { flag: None };
+
     /// A flag that is not raised and can be.
     ///
     /// ```

@@ -15,7 +15,7 @@ use rustls::{
     pki_types::{CertificateDer, PrivateKeyDer, ServerName, UnixTime, pem::PemObject as _},
 };
 
-use crate::ops::tls::certificates;
+use crate::{bounded_file, ops::tls::certificates};
 
 /// Flags for a daemon that speaks TLS.
 #[derive(Debug, clap::Args)]
@@ -139,8 +139,12 @@ fn authorities(path: &Path) -> anyhow::Result<RootCertStore> {
     Ok(roots)
 }
 
+/// The most bytes of a file with certificates or a key.
+const MOST_BYTES: u64 = 4 << 20;
+
 fn read(flag: &str, path: &Path) -> anyhow::Result<Vec<u8>> {
-    std::fs::read(path).with_context(|| format!("{flag} {}: it cannot be read", path.display()))
+    bounded_file::read(path, MOST_BYTES)
+        .with_context(|| format!("{flag} {}: it cannot be read", path.display()))
 }
 
 fn of(flag: &str, path: &Path, problem: &str) -> anyhow::Error {

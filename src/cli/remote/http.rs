@@ -9,6 +9,7 @@ use std::{
 use anyhow::{Context as _, bail};
 use rustls::{ClientConnection, StreamOwned};
 
+use super::shown::shown;
 use crate::cli::probe::Trust;
 
 /// The most bytes of the head of an answer.
@@ -104,6 +105,12 @@ fn read(mut stream: BufReader<Box<dyn Stream>>) -> anyhow::Result<Answer> {
         (None, Some(length)) => Left::Bytes(length.parse().context("the answer is not HTTP")?),
         _ => bail!("the answer has no length"),
     };
+    if let Some(coding) = header("content-encoding").filter(|coding| *coding != "identity") {
+        bail!(
+            "the answer is coded as {}; allowed: identity, which was requested",
+            shown(coding)
+        );
+    }
     Ok(Answer {
         status,
         headers,

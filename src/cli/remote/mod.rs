@@ -4,6 +4,8 @@
 //! refuses is shown in its words. An answer that is cut off is an error, and leaves no file.
 
 mod http;
+mod shown;
+mod tally;
 
 use std::{
     io::{ErrorKind, Read as _},
@@ -15,12 +17,13 @@ use std::{
 use anyhow::{Context as _, anyhow, bail};
 use serde_json::{Map, Value};
 
-use self::http::Answer;
+use self::{http::Answer, shown::shown, tally::Tally};
 use super::{
     Failure,
     output::Output,
     probe::{OVER_HTTP, TrustArgs, connect, explained, host},
 };
+use crate::{bounded_file, service::Encoding};
 
 /// Flags of a server that answers instead of this program.
 #[derive(Debug, clap::Args)]
@@ -38,6 +41,8 @@ pub(super) struct RemoteArgs {
 
 /// The variable with a key.
 const KEY: &str = "STREW_API_KEY";
+/// The most bytes of a file with a key.
+const MOST_KEY: u64 = 64 << 10;
 /// How long a connection may take, and how long an answer may pause.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// More than any problem document.
@@ -96,7 +101,7 @@ impl RemoteArgs {
     fn key(&self) -> anyhow::Result<Option<String>> {
         let (source, key) = match &self.key_file {
             Some(file) => {
-                let text = std::fs::read_to_string(file);
+                let text = bounded_file::read_text(file, MOST_KEY);
                 let text = text.with_context(|| format!("--key-file {}", file.display()))?;
                 (format!("--key-file {}", file.display()), text)
             }
@@ -126,15 +131,34 @@ fn problem(answer: &mut Answer) -> anyhow::Result<String> {
     (&mut answer.body).take(MOST_BYTES).read_to_end(&mut text)?;
     let document: Option<Value> = serde_json::from_slice(&text).ok();
     let member = |name: &str| Some(document.as_ref()?.get(name)?.as_str()?.to_owned());
-    Ok(match (member("title"), member("detail")) {
+    Ok(shown(&match (member("title"), member("detail")) {
         (Some(title), Some(detail)) => format!("{title}: {detail}"),
         (None, Some(text)) | (Some(text), None) => text,
         (None, None) => String::from_utf8_lossy(&text).trim().to_owned(),
-    })
+    }))
 }
 
-/// Writes the body of an answer as it comes.
-pub(super) fn write(mut answer: Answer, mut output: Output) -> Result<(), Failure> {
+/// The points that the head of an answer promises.
+pub(super) fn promised(answer: &Answer) -> Result<u64, Failure> {
+    let count = answer.header(COUNT).ok_or_else(|| {
+        let problem =
+            "the answer has no header strew-count; allowed: the address of a strew daemon";
+        anyhow!("--url: {problem}")
+    })?;
+    let number = count.parse().map_err(|_| {
+        let count = shown(count);
+        anyhow!("the answer has the header strew-count: {count}; allowed: a number")
+    });
+    Ok(number?)
+}
+
+/// Writes the body of an answer as it comes. Fails if it does not hold the points that its head promises.
+pub(super) fn write(
+    mut answer: Answer,
+    (count, encoding): (u64, Encoding),
+    mut output: Output,
+) -> Result<(), Failure> {
+    let mut tally = Tally::new(encoding, answer.header("strew-columns"));
     let mut part = vec![0; 1 << 16];
     loop {
         let read = match answer.body.read(&mut part) {
@@ -143,19 +167,24 @@ pub(super) fn write(mut answer: Answer, mut output: Output) -> Result<(), Failur
         };
         let read = read.context("the answer broke off")?;
         if read == 0 {
-            return Ok(output.finish()?);
+            break;
         }
+        tally.add(&part[..read]);
         output.write(&part[..read])?;
     }
+    tally.check(count).map_err(|held| {
+        anyhow!("the answer holds {held}, and its header strew-count says {count}: it is not whole")
+    })?;
+    Ok(output.finish()?)
 }
+
+/// The header with the number of points.
+const COUNT: &str = "strew-count";
 
 /// Announces the answer on standard error.
 pub(super) fn announce(answer: &Answer, format: &str) {
-    let header = |name: &str| answer.header(name);
-    eprintln!(
-        "{} points as {format}",
-        header("strew-count").unwrap_or("?")
-    );
+    let header = |name: &str| answer.header(name).map(shown);
+    eprintln!("{} points as {format}", header(COUNT).unwrap_or("?".into()));
     for (name, text) in [
         ("strew-next", "the rest begins at the cursor "),
         ("strew-origin", "coordinates are relative to the origin "),

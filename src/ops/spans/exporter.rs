@@ -19,6 +19,7 @@ use tokio_util::{sync::CancellationToken, task::AbortOnDropHandle};
 
 use super::{Answered, SpansError};
 use crate::{
+    bounded_file,
     config::{self, Telemetry as Settings},
     ops::{
         identity,
@@ -103,13 +104,16 @@ impl Collector {
     }
 }
 
+/// The most bytes of a file with certificates.
+const MOST_BYTES: u64 = 4 << 20;
+
 fn read_authorities(settings: &Settings) -> Result<Vec<u8>, SpansError> {
     let wrong = |problem| SpansError {
         setting: "telemetry.otlp_ca",
         value: settings.otlp_ca.display().to_string(),
         problem,
     };
-    let pem = std::fs::read(&settings.otlp_ca)
+    let pem = bounded_file::read(&settings.otlp_ca, MOST_BYTES)
         .map_err(|error| wrong(format!("it cannot be read: {error}")))?;
     certificates(&pem).map_err(wrong)?;
     Ok(pem)

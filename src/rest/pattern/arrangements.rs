@@ -7,6 +7,7 @@ use futures_util::StreamExt as _;
 use http::{HeaderName, HeaderValue, Method, header};
 use schemars::JsonSchema;
 use serde_json::json;
+use strew_core::server::Stop;
 
 use super::{
     api::{
@@ -156,7 +157,7 @@ async fn post(
 ) -> Result<Response, Error> {
     context.no_parameters()?;
     let bytes = body.len();
-    let read = move |service: &Service| {
+    let read = move |service: &Service, _: &Stop| {
         let values = read_members(&body, groups::ARRANGEMENT)?;
         ArrangementQuery::check(&values, &service.catalog())
     };

@@ -1,6 +1,9 @@
 //! Fields made of their documents: what is checked here is not checked again.
 
-use strew_core::field::{FieldSpec, Marks, Noise, Raster, Terrain};
+use strew_core::{
+    field::{FieldSpec, Marks, Noise, Raster, Terrain},
+    server,
+};
 
 use super::{
     Document,
@@ -19,6 +22,7 @@ use crate::service::{
 /// # Errors
 /// Every fault.
 pub fn build(path: &str, document: &Document, sources: &Sources<'_>) -> Checked<FieldSpec> {
+    sources.go_on(path)?;
     let inside = |name: &str| format!("{path}.{name}");
     match document {
         Document::Name(name) => named(path, name, sources),
@@ -49,7 +53,8 @@ pub fn build(path: &str, document: &Document, sources: &Sources<'_>) -> Checked<
         Document::Slope(slope) => {
             let path = inside("slope");
             let terrain = terrain(&format!("{path}.terrain"), &slope.terrain, sources)?;
-            let spec = FieldSpec::slope(terrain, slope.slopes, slope.shares);
+            let stop = sources.allowance.stop;
+            let spec = server::slope(terrain, slope.slopes, slope.shares, stop);
             spec.map_err(|error| within(&path, &error))
         }
         Document::Multiply(parts) => {
@@ -116,7 +121,14 @@ fn raster(path: &str, document: &Pixels, sources: &Sources<'_>) -> Checked<Field
             .edges(document.edges.into())
             .filter(document.filter.into());
         let (low, high) = (document.low.unwrap_or(0.0), document.high.unwrap_or(1.0));
-        FieldSpec::raster(raster.tone(low, high, document.gamma.unwrap_or(1.0))?)
+        let gamma = document.gamma.unwrap_or(1.0);
+        FieldSpec::raster(server::tone(
+            raster,
+            low,
+            high,
+            gamma,
+            sources.allowance.stop,
+        )?)
     });
     raster.map_err(|error| within(path, &error))
 }

@@ -5,12 +5,15 @@
 
 use std::fmt;
 
+use base64::{Engine as _, prelude::BASE64_STANDARD};
 use schemars::JsonSchema;
 use serde::{
     Deserialize, Deserializer, Serialize,
     de::{Error as _, SeqAccess, Visitor},
 };
 use strew_core::field::{Edges, FieldSpec, Filter};
+
+use crate::raster::Price;
 
 /// A field: a share of the density, from 0 to 1, at each place. Exactly one member.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -95,7 +98,30 @@ impl Document {
         }
     }
 
+    /// What decoding its pixels takes, as far as it holds them itself.
+    #[must_use]
+    pub fn price(&self) -> Price {
+        let mut all = vec![];
+        self.for_each_pixels(&mut |pixels| all.push(pixels.price()));
+        all.into_iter().sum()
+    }
+
     /// Visits the pixels of all its parts.
+    pub(super) fn for_each_pixels<'a>(&'a self, visit: &mut impl FnMut(&'a Pixels)) {
+        match self {
+            Self::Raster(pixels) => visit(pixels),
+            Self::Height(height) => visit(&height.terrain),
+            Self::Slope(slope) => visit(&slope.terrain),
+            Self::Multiply(parts) | Self::Min(parts) | Self::Max(parts) => {
+                parts.0.iter().for_each(|part| part.for_each_pixels(visit));
+            }
+            Self::Invert(of) => of.for_each_pixels(visit),
+            Self::Curve(curve) => curve.of.for_each_pixels(visit),
+            _ => {}
+        }
+    }
+
+    /// Visits the pixels of all its parts, to change them.
     pub fn each_pixels(&mut self, visit: &mut impl FnMut(&mut Pixels)) {
         match self {
             Self::Raster(pixels) => visit(pixels),
@@ -228,6 +254,34 @@ pub struct Pixels {
     /// The share of v between black and white is low + (high − low)·v^gamma; 1 by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gamma: Option<f64>,
+}
+
+impl Pixels {
+    /// What decoding them takes, as far as the document holds them itself.
+    #[must_use]
+    pub fn price(&self) -> Price {
+        match (&self.png, self.f32.is_some(), self.width, self.height) {
+            (Some(png), ..) => {
+                // Whole groups of four characters, of three bytes each.
+                let head = png.get(..Price::HEADER / 3 * 4).unwrap_or_default();
+                Price::of_png(&BASE64_STANDARD.decode(head).unwrap_or_default())
+            }
+            (None, true, Some(width), Some(height)) => Price::of_floats([width, height]),
+            _ => Price::default(),
+        }
+    }
+
+    /// What they are held in, for faults: never the pixels themselves.
+    #[must_use]
+    pub fn shown(&self) -> String {
+        let bytes = |text: &str| text.trim_end_matches('=').len() * 3 / 4;
+        match (&self.file, &self.png, &self.f32) {
+            (Some(file), ..) => file.clone(),
+            (None, Some(png), _) => format!("a png of {} bytes", bytes(png)),
+            (None, None, Some(floats)) => format!("an f32 of {} bytes", bytes(floats)),
+            (None, None, None) => String::new(),
+        }
+    }
 }
 
 /// `shares[0]` up to `heights[0]`, `shares[1]` from `heights[1]` on, linear between.

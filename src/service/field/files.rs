@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{Document, document::Pixels};
+use super::Document;
 use crate::bounded_file;
 
 /// The endings of documents, then of rasters.
@@ -46,22 +46,11 @@ fn all(folder: &Path) -> io::Result<Vec<PathBuf>> {
 
 /// Visits the files that a document names.
 pub(super) fn of_document(document: &Document, visit: &mut impl FnMut(&str)) {
-    let mut pixels = |pixels: &Pixels| {
+    document.for_each_pixels(&mut |pixels| {
         if let Some(file) = &pixels.file {
             visit(file);
         }
-    };
-    match document {
-        Document::Raster(raster) => pixels(raster),
-        Document::Height(height) => pixels(&height.terrain),
-        Document::Slope(slope) => pixels(&slope.terrain),
-        Document::Multiply(parts) | Document::Min(parts) | Document::Max(parts) => {
-            parts.0.iter().for_each(|part| of_document(part, visit));
-        }
-        Document::Invert(of) => of_document(of, visit),
-        Document::Curve(curve) => of_document(&curve.of, visit),
-        _ => {}
-    }
+    });
 }
 
 /// What some files hold: their content where they are small, else their size, time of change and place on

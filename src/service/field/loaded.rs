@@ -6,17 +6,17 @@
 //! unchanged is kept as it is.
 
 use std::{
-    cell::Cell,
+    cell::{Cell, RefCell},
     collections::BTreeMap,
     io::BufReader,
     path::{Path, PathBuf},
     sync::Arc,
 };
 
-use strew_core::field::FieldSpec;
+use strew_core::{field::FieldSpec, server::Stop};
 
 use super::{
-    Document, Sources, build,
+    Allowance, Document, Sources, build,
     document::Pixels,
     files::{self, Stamp},
     named::NamedField,
@@ -321,6 +321,8 @@ fn of_files(
 ) -> Result<Built, String> {
     let read = |file: &str, size: Option<[usize; 2]>| read_file(&base.join(file), size, room);
     let sources = Sources {
+        allowance: Allowance::UNLIMITED,
+        refused: RefCell::new(None),
         named: &|name| Some(fields.get(name)?.spec.clone()),
         names: &|| fields.names(),
         files: Some(&read),
@@ -391,14 +393,16 @@ fn read_file(path: &Path, size: Option<[usize; 2]>, room: usize) -> Result<Image
         pixels: room.min(Limits::FILES.pixels),
     };
     let file = bounded_file::open_regular(path)?;
+    let stop = Stop::default();
     match size {
         Some(size) if path.extension().is_some_and(|e| e == "f32") => {
-            Image::read_floats(file, size, limits)
+            Image::read_floats(file, size, limits, &stop)
         }
         _ => Image::read(
             BufReader::with_capacity(1 << 16, file),
             Meaning::Data,
             limits,
+            &stop,
         ),
     }
 }

@@ -29,8 +29,8 @@ pub use loaded::{FieldError, Fields, from_document, from_file};
 pub use named::NamedField;
 pub use picture::SIDE;
 pub use read::{read_json, read_toml};
-pub use sent::Sent;
-pub use sources::{MOST_PIXELS, ReadFile, Sources};
+pub use sent::{Sender, Sent};
+pub use sources::{Allowance, MOST_PIXELS, ReadFile, Sources};
 
 use super::query::Faults;
 

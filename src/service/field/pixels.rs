@@ -40,11 +40,9 @@ pub(super) fn shares(
     }
     let made = match image.samples {
         samples if is_scaled => {
-            let share = |i| ((samples.get(i) - black) / (white - black)).clamp(0.0, 1.0) as f32;
-            Grid::from_floats(
-                width,
-                flipped((0..samples.len()).map(share).collect(), width),
-            )
+            let share = |v: f64| ((v - black) / (white - black)).clamp(0.0, 1.0) as f32;
+            let all = numbers(path, &samples, share, sources)?;
+            Grid::from_floats(width, flipped(all, width))
         }
         Samples::U8(values) => Grid::from_bytes(width, flipped(values, width)),
         Samples::U16(values) => Grid::from_words(width, flipped(values, width)),
@@ -56,7 +54,7 @@ pub(super) fn shares(
         let detail = format!("its numbers reach from {least} to {most}");
         let allowed =
             "shares from 0 to 1, or with black and white the numbers that count as 0 and 1";
-        return Err(Fault::new(path, name(document), detail, allowed).into());
+        return Err(Fault::new(path, document.shown(), detail, allowed).into());
     }
     Ok((region, made))
 }
@@ -70,7 +68,7 @@ pub(super) fn heights(
     let image = image(path, document, sources)?;
     let region = region(path, document, &image, sources)?;
     let (width, samples) = (image.size[0], image.samples);
-    let all = (0..samples.len()).map(|i| samples.get(i) as f32).collect();
+    let all = numbers(path, &samples, |v| v as f32, sources)?;
     // Heights and slopes are floats.
     sources
         .bytes
@@ -80,6 +78,24 @@ pub(super) fn heights(
         region,
         made.map_err(|error| refused(path, error.value(), &error))?,
     ))
+}
+
+/// Numbers made of all pixels.
+fn numbers(
+    path: &str,
+    samples: &Samples,
+    of: impl Fn(f64) -> f32,
+    sources: &Sources<'_>,
+) -> Checked<Vec<f32>> {
+    /// The most pixels that are looked at in a row.
+    const FEW: usize = 1 << 16;
+    let mut all = Vec::with_capacity(samples.len());
+    while all.len() < samples.len() {
+        sources.go_on(path)?;
+        let places = (all.len()..samples.len()).take(FEW);
+        all.extend(places.map(|i| of(samples.get(i))));
+    }
+    Ok(all)
 }
 
 /// Rows from the top as rows from the bottom.
@@ -120,6 +136,17 @@ fn image(path: &str, document: &Pixels, sources: &Sources<'_>) -> Checked<Image>
         (Some(width), Some(height)) => Some([width, height]),
         _ => None,
     };
+    let stop = sources.allowance.stop;
+    let shown = document.shown();
+    let limits = Limits {
+        side: MOST_SIDE,
+        pixels: sources.pixels.get(),
+    };
+    if document.file.is_none() {
+        // Before the work, which is done even if nothing comes of it.
+        let price = document.price();
+        sources.take(path, price)?;
+    }
     let read = match (&document.file, &document.png, &document.f32) {
         (Some(file), None, None) => {
             let field = format!("{path}.file");
@@ -131,9 +158,13 @@ fn image(path: &str, document: &Pixels, sources: &Sources<'_>) -> Checked<Image>
         }
         (None, Some(png), None) => {
             let field = format!("{path}.png");
-            let bytes = decoded(&field, png)?;
-            let read = Image::from_bytes(&bytes, Meaning::Data, room(sources));
-            read.map_err(|error| wrong(&field, png, &error))
+            let bytes = decoded(&field, png, &shown)?;
+            let read = match sources.files {
+                // What an operator has written may be of any format.
+                Some(_) => Image::from_bytes(&bytes, Meaning::Data, limits, stop),
+                None => Image::read_png(&bytes, Meaning::Data, limits, stop),
+            };
+            read.map_err(|error| wrong(&field, &shown, &error))
         }
         (None, None, Some(floats)) => {
             let field = format!("{path}.f32");
@@ -142,40 +173,27 @@ fn image(path: &str, document: &Pixels, sources: &Sources<'_>) -> Checked<Image>
                 let name = document.width.map_or("width", |_| "height");
                 return Err(Fault::missing(&format!("{path}.{name}"), allowed).into());
             };
-            let bytes = decoded(&field, floats)?;
-            let read = Image::read_floats(std::io::Cursor::new(bytes), size, room(sources));
-            read.map_err(|error| wrong(&field, floats, &error))
+            let bytes = std::io::Cursor::new(decoded(&field, floats, &shown)?);
+            let read = Image::read_floats(bytes, size, limits, stop);
+            read.map_err(|error| wrong(&field, &shown, &error))
         }
         (None, None, None) => return Err(Fault::missing(&format!("{path}.png"), SOURCES).into()),
         _ => {
             let detail = "more than one of file, png and f32";
-            return Err(Fault::new(path, name(document), detail, SOURCES).into());
+            return Err(Fault::new(path, shown, detail, SOURCES).into());
         }
     };
     let image = read?;
     let bytes = image.samples.len() * image.samples.width();
     sources.bytes.set(sources.bytes.get() + bytes);
-    if document.file.is_none() {
-        let left = sources.pixels.get();
-        let count = image.size[0] * image.size[1];
-        sources.pixels.set(left.saturating_sub(count));
-    }
     Ok(image)
 }
 
-/// What a raster in a document may have.
-fn room(sources: &Sources<'_>) -> Limits {
-    Limits {
-        side: MOST_SIDE,
-        pixels: sources.pixels.get(),
-    }
-}
-
-fn decoded(field: &str, text: &str) -> Result<Vec<u8>, Faults> {
+fn decoded(field: &str, text: &str, shown: &str) -> Result<Vec<u8>, Faults> {
     let bytes = BASE64_STANDARD.decode(text);
     bytes.map_err(|error| {
         let allowed = "base64 with the standard alphabet and padding";
-        Fault::new(field, text, format!("not base64: {error}"), allowed).into()
+        Fault::new(field, shown, format!("not base64: {error}"), allowed).into()
     })
 }
 
@@ -188,10 +206,4 @@ fn wrong(field: &str, value: &str, error: &RasterError) -> Faults {
 
 fn refused(path: &str, value: &str, error: &strew_core::Error) -> Faults {
     Fault::new(path, value, problem(error), error.allowed()).into()
-}
-
-/// What a document calls its pixels.
-fn name(document: &Pixels) -> &str {
-    let inline = document.png.as_deref().or(document.f32.as_deref());
-    document.file.as_deref().or(inline).unwrap_or_default()
 }

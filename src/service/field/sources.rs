@@ -1,16 +1,39 @@
 //! What documents of fields may refer to: other fields, and files.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
-use strew_core::field::FieldSpec;
+use strew_core::{field::FieldSpec, server::Stop};
 
-use crate::raster::{Image, RasterError};
+use super::read::FIELD;
+use crate::{
+    raster::{Image, Price, RasterError},
+    service::{Error, Fault, query::Checked},
+};
 
 /// Reads a file by the name that a document has for it; the size is that of bare floats.
 pub type ReadFile<'a> = dyn Fn(&str, Option<[usize; 2]>) -> Result<Image, RasterError> + 'a;
 
 /// The most pixels that a query brings along, over all its layers.
 pub const MOST_PIXELS: usize = 1 << 20;
+
+/// What making fields may take.
+#[derive(Clone, Copy)]
+pub struct Allowance<'a> {
+    /// Raised once the field is not wanted any more.
+    pub stop: &'a Stop,
+    /// Takes this many bytes of memory, before pixels are decoded.
+    pub hold: &'a dyn Fn(usize) -> Result<(), Error>,
+}
+
+impl Allowance<'_> {
+    /// Of programs that answer their own queries.
+    pub const UNLIMITED: Allowance<'static> = Allowance {
+        stop: &NEVER,
+        hold: &|_| Ok(()),
+    };
+}
+
+static NEVER: Stop = Stop::NEVER;
 
 /// Where names and files of documents lead.
 pub struct Sources<'a> {
@@ -20,12 +43,42 @@ pub struct Sources<'a> {
     pub names: &'a dyn Fn() -> String,
     /// Reads files; `None` where documents may not name any.
     pub files: Option<&'a ReadFile<'a>>,
+    /// What it may take.
+    pub allowance: Allowance<'a>,
+    /// Why there was no memory, if there was none.
+    pub refused: RefCell<Option<Error>>,
     /// How many pixels documents may still hold.
     pub pixels: Cell<usize>,
     /// A box around all pixels that were read.
     pub frame: Cell<Option<[f64; 4]>>,
     /// The memory that all pixels take, in bytes.
     pub bytes: Cell<usize>,
+}
+
+impl Sources<'_> {
+    /// Takes what decoding pixels takes, also if nothing comes of it.
+    pub(super) fn take(&self, path: &str, price: Price) -> Checked<()> {
+        self.go_on(path)?;
+        let left = self.pixels.get();
+        if price.pixels > left {
+            // Its size is refused where its header is read.
+            return Ok(());
+        }
+        self.pixels.set(left - price.pixels);
+        (self.allowance.hold)(price.bytes).map_err(|error| {
+            let fault = Fault::new(path, "", error.to_string(), "fewer pixels");
+            self.refused.replace(Some(error));
+            fault.into()
+        })
+    }
+
+    /// Whether the field is still wanted.
+    pub(super) fn go_on(&self, path: &str) -> Checked<()> {
+        match self.allowance.stop.is_raised() {
+            true => Err(Fault::new(path, "", "not wanted any more", FIELD).into()),
+            false => Ok(()),
+        }
+    }
 }
 
 /// What the library says is wrong; often the value says it all.

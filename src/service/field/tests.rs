@@ -1,17 +1,22 @@
 //! The grammar: what it reads, what it makes, and the paths of what is wrong.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use strew_core::{Field as _, field::FieldSpec};
 
 use super::*;
-use crate::service::query::Checked;
+use crate::{
+    raster::Price,
+    service::{Error, query::Checked},
+};
 
 fn sources(pixels: usize) -> Sources<'static> {
     Sources {
         named: &|name| (name == "half").then(|| FieldSpec::constant(0.5).expect("a share")),
         names: &|| "half".into(),
         files: None,
+        allowance: Allowance::UNLIMITED,
+        refused: RefCell::new(None),
         pixels: Cell::new(pixels),
         frame: Cell::new(None),
         bytes: Cell::new(0),
@@ -276,5 +281,84 @@ fn all_layers_of_a_query_share_the_pixels_it_may_bring() {
     assert!(
         faults.as_slice()[0].allowed.contains("3 in all"),
         "{faults:?}"
+    );
+}
+
+/// A gray PNG of 64 × 64 pixels, and a field of it.
+fn png_field() -> (Vec<u8>, String) {
+    let mut file = vec![];
+    let mut writer = png::Encoder::new(&mut file, 64, 64)
+        .write_header()
+        .expect("a header");
+    writer.write_image_data(&[7; 4096]).expect("written");
+    writer.finish().expect("written");
+    let text = base64::Engine::encode(&base64::prelude::BASE64_STANDARD, &file);
+    (file, format!(r#"{{"raster": {{"png": "{text}"}}}}"#))
+}
+
+#[test]
+fn memory_is_taken_before_pixels_are_decoded() {
+    let (file, field) = png_field();
+    let document = read_json("field", &field).expect("a field");
+    let price = Price::of_png(&file);
+    assert_eq!((document.price(), price.pixels), (price, 4096));
+    assert!(price.bytes >= 4096);
+    let held = Cell::new(0);
+    let hold = |bytes: usize| {
+        held.set(held.get() + bytes);
+        match held.get() > price.bytes {
+            true => Err(Error::TooManyBytes { limit: 1 }),
+            false => Ok(()),
+        }
+    };
+    let sources = Sources {
+        allowance: Allowance {
+            hold: &hold,
+            ..Allowance::UNLIMITED
+        },
+        ..sources(10_000)
+    };
+    assert!(build("field", &document, &sources).is_ok());
+    assert!(build("field", &document, &sources).is_err());
+    let refused = sources.refused.take();
+    assert_eq!(refused, Some(Error::TooManyBytes { limit: 1 }));
+    // What was refused has been decoded no further than its header.
+    assert_eq!(sources.bytes.get(), 4096);
+}
+
+#[test]
+fn a_field_that_is_not_wanted_any_more_is_not_made() {
+    let stop = strew_core::server::Stop::new();
+    let sources = Sources {
+        allowance: Allowance {
+            stop: &stop,
+            ..Allowance::UNLIMITED
+        },
+        ..sources(10_000)
+    };
+    for field in [png_field().1, UPPER.into(), r#"{"constant": 1}"#.into()] {
+        let document = read_json("field", &field).expect("a field");
+        assert!(build("field", &document, &sources).is_ok());
+    }
+    stop.raise();
+    let document = read_json("field", UPPER).expect("a field");
+    let faults = build("field", &document, &sources).expect_err("stopped");
+    assert_eq!(faults.as_slice()[0].detail, "not wanted any more");
+}
+
+#[test]
+fn faults_of_pixels_say_what_they_are_in_instead_of_showing_them() {
+    let faults = made(r#"{"raster": {"png": "AADgQAAA4EAAAOBA"}}"#).expect_err("no PNG");
+    let fault = &faults.as_slice()[0];
+    assert_eq!(fault.value.as_deref(), Some("a png of 12 bytes"));
+    assert_eq!(
+        (&*fault.detail, &*fault.allowed),
+        ("it is of no known format", "a PNG")
+    );
+    let beyond = r#"{"raster": {"f32": "AADgQAAA4EAAAOBA", "width": 3, "height": 1}}"#;
+    let faults = made(beyond).expect_err("no shares");
+    assert_eq!(
+        faults.as_slice()[0].value.as_deref(),
+        Some("an f32 of 12 bytes")
     );
 }

@@ -20,7 +20,7 @@ use super::{
     Answer, Catalog, Draft, Encoding, Entry, Error, Fault, Found, Limits, Nearest, Options, Output,
     Placed, Planned, Query, Ready, Set, Token,
     catalog::CatalogError,
-    field::{self, Document, FieldError, Fields, NamedField},
+    field::{self, Allowance, Document, FieldError, Fields, NamedField, Sender},
     mix::{self, Made},
     query::{self, groups, parse_pairs, read_body},
     ready::Store,
@@ -259,7 +259,13 @@ impl Library {
     /// What the daemon answers.
     pub fn hold_field(&self, body: &str) -> Result<String, Error> {
         let document = field::read_json("field", body.trim())?;
-        let held = hold_field(&self.catalog, document, MOST_PIXELS)?;
+        let held = hold_field(
+            &self.catalog,
+            document,
+            MOST_PIXELS,
+            Allowance::UNLIMITED,
+            Sender::default(),
+        )?;
         Ok(held.name.clone())
     }
 
@@ -323,13 +329,18 @@ pub(super) fn hold_field(
     catalog: &Catalog,
     document: Document,
     pixels: usize,
+    allowance: Allowance<'_>,
+    sender: Sender,
 ) -> Result<Arc<NamedField>, Error> {
-    let (spec, built) = catalog.build_field("field", &document, pixels);
+    let (spec, built) = catalog.build_field("field", &document, pixels, allowance);
+    if let Some(error) = built.refused {
+        return Err(error);
+    }
     let field = NamedField::sent(document, spec?, built.bytes, built.frame);
     let name = field.name.clone();
     let held = catalog
         .sent()
-        .hold(field)
+        .hold(field, sender)
         .then(|| catalog.sent().get(&name));
     held.flatten().ok_or_else(|| {
         let detail = format!("takes {} bytes, which there is no room for", built.bytes);

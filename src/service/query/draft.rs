@@ -22,7 +22,7 @@ use super::{
     table, terrain,
     text::parse_pairs,
 };
-use crate::service::{Catalog, Encoding, Entry, Error, Fault, encode::Options};
+use crate::service::{Catalog, Encoding, Entry, Error, Fault, encode::Options, field::Allowance};
 
 /// A query as it was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,8 +137,21 @@ impl Draft {
         catalog: &Catalog,
         most_vertices: usize,
     ) -> Result<(Query, Options), Error> {
+        self.check_within(catalog, most_vertices, Allowance::UNLIMITED)
+    }
+
+    /// As [`check`](Self::check), with no more than is allowed.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check), and why there is no memory.
+    pub fn check_within(
+        &self,
+        catalog: &Catalog,
+        most_vertices: usize,
+        allowance: Allowance<'_>,
+    ) -> Result<(Query, Options), Error> {
         let (draft, world) = self.filled(catalog.worlds())?;
-        let (mut query, options) = draft.check_whole(catalog, most_vertices)?;
+        let (mut query, options) = draft.check_whole(catalog, most_vertices, allowance)?;
         query.world = world;
         Ok((query, options))
     }
@@ -148,14 +161,16 @@ impl Draft {
         &self,
         catalog: &Catalog,
         most_vertices: usize,
+        allowance: Allowance<'_>,
     ) -> Result<(Query, Options), Error> {
         self.check_vertices(most_vertices)?;
-        let loaded = Loaded::new(catalog);
+        let loaded = Loaded::new(catalog, allowance);
         let sets = match &self.layers {
             Ok(layers) if layers.is_empty() => self.alone(&loaded).map(|set| vec![set]),
             Ok(layers) => self.layers(layers, &loaded),
             Err(faults) => Err(faults.clone()),
         };
+        loaded.had_room()?;
         let (read, region, sets, window, options) = (
             self.values.read(),
             self.region(),
@@ -381,7 +396,22 @@ impl Set {
     /// # Errors
     /// As [`Draft::check`].
     pub fn single(values: &Values, catalog: &Catalog) -> Result<Self, Error> {
-        let ((), set) = (values.read(), Self::of(values, &Loaded::new(catalog))).together()?;
+        Self::single_within(values, catalog, Allowance::UNLIMITED)
+    }
+
+    /// As [`single`](Self::single), with no more than is allowed.
+    ///
+    /// # Errors
+    /// As [`Draft::check_within`].
+    pub fn single_within(
+        values: &Values,
+        catalog: &Catalog,
+        allowance: Allowance<'_>,
+    ) -> Result<Self, Error> {
+        let loaded = Loaded::new(catalog, allowance);
+        let set = Self::of(values, &loaded);
+        loaded.had_room()?;
+        let ((), set) = (values.read(), set).together()?;
         table::hold(&set.entry, set.pin.as_deref())?;
         Ok(set)
     }

@@ -1,11 +1,14 @@
 //! The field of a set: by name, or as the query describes it.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use strew_core::field::FieldSpec;
 
 use super::{Checked, Value, Values, parameters::FIELD};
-use crate::service::{Catalog, field::Document};
+use crate::service::{
+    Catalog, Error,
+    field::{Allowance, Document},
+};
 
 /// The field that a set is in.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,15 +31,19 @@ impl SetField {
     }
 }
 
-/// What is loaded, and how many pixels the fields of a query may still bring along.
+/// What is loaded, and what the fields of a query may still take.
 pub(super) struct Loaded<'a> {
     pub(super) catalog: &'a Catalog,
     pixels: Cell<usize>,
+    allowance: Allowance<'a>,
+    refused: RefCell<Option<Error>>,
 }
 
 impl<'a> Loaded<'a> {
-    pub(super) fn new(catalog: &'a Catalog) -> Self {
+    pub(super) fn new(catalog: &'a Catalog, allowance: Allowance<'a>) -> Self {
         Self {
+            allowance,
+            refused: RefCell::new(None),
             catalog,
             pixels: Cell::new(catalog.most_pixels()),
         }
@@ -53,8 +60,12 @@ impl<'a> Loaded<'a> {
 
     /// A field that is described at a path.
     pub(super) fn built(&self, path: &str, document: &Document) -> Checked<SetField> {
-        let (spec, sources) = self.catalog.build_field(path, document, self.pixels.get());
+        let (pixels, allowance) = (self.pixels.get(), self.allowance);
+        let (spec, sources) = self.catalog.build_field(path, document, pixels, allowance);
         self.pixels.set(sources.left);
+        if sources.refused.is_some() {
+            self.refused.replace(sources.refused);
+        }
         let spec = spec?;
         Ok(SetField {
             name: match document {
@@ -65,5 +76,9 @@ impl<'a> Loaded<'a> {
             digest: spec.digest().to_string(),
             spec,
         })
+    }
+    /// Whether there was memory for all fields. If not, their faults say no more.
+    pub(super) fn had_room(&self) -> Result<(), Error> {
+        self.refused.take().map_or(Ok(()), Err)
     }
 }

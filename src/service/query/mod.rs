@@ -24,6 +24,7 @@ mod parameter;
 pub mod parameters;
 pub mod patterns;
 mod period;
+mod price;
 #[cfg(test)]
 mod recipe;
 mod region;

@@ -4,7 +4,7 @@ use super::{
     Checked, Set, Together as _, Values,
     parameters::{AT, K, RADIUS},
 };
-use crate::service::{Catalog, Error};
+use crate::service::{Catalog, Error, field::Allowance};
 
 /// Which points near a place are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,22 @@ impl Nearest {
     /// # Errors
     /// As [`Set::single`], with every fault of both.
     pub fn of_set(values: &Values, catalog: &Catalog) -> Result<(Set, Self), Error> {
-        match (Self::of(values), Set::single(values, catalog)) {
+        Self::of_set_within(values, catalog, Allowance::UNLIMITED)
+    }
+
+    /// As [`of_set`](Self::of_set), with no more than is allowed.
+    ///
+    /// # Errors
+    /// As [`Set::single_within`].
+    pub fn of_set_within(
+        values: &Values,
+        catalog: &Catalog,
+        allowance: Allowance<'_>,
+    ) -> Result<(Set, Self), Error> {
+        match (
+            Self::of(values),
+            Set::single_within(values, catalog, allowance),
+        ) {
             (Ok(nearest), set) => Ok((set?, nearest)),
             (Err(faults), Err(Error::Invalid(others))) => Err(faults.and(others).into()),
             (Err(faults), _) => Err(faults.into()),

@@ -184,3 +184,31 @@ fn errors_name_the_setting_and_its_source() {
         refused(&give, &texts);
     }
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn only_regular_files_of_a_bounded_size_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = folder.path().join("pipe");
+    let made = Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.expect("mkfifo").success());
+    let sparse = folder.path().join("sparse.toml");
+    let long = std::fs::File::create(&sparse).expect("writable");
+    long.set_len(1 << 30).expect("a sparse file");
+    for (path, problem) in [
+        (
+            std::path::Path::new("/dev/zero"),
+            "it is not a regular file",
+        ),
+        (&pipe, "it is not a regular file"),
+        (folder.path(), "it is not a regular file"),
+        (&sparse, "it has more than 16777216 bytes"),
+    ] {
+        let (code, _, message) = config(|command| {
+            command.arg("--config").arg(path);
+        });
+        assert_eq!(code, Some(2), "{message}");
+        assert!(message.contains(problem), "{message}");
+        assert!(message.contains(&path.display().to_string()), "{message}");
+    }
+}

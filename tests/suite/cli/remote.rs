@@ -189,3 +189,92 @@ fn an_answer_that_is_cut_leaves_no_file() {
     assert_eq!(left, 0);
     served.join().expect("served");
 }
+
+/// A server that sends these answers, one to each connection.
+fn serving(answers: Vec<String>) -> (String, thread::JoinHandle<()>) {
+    let server = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let url = format!("http://{}", server.local_addr().expect("an address"));
+    let served = thread::spawn(move || {
+        for answer in answers {
+            let (mut stream, _) = server.accept().expect("a client");
+            let _ = stream.read(&mut [0; 4096]);
+            stream.write_all(answer.as_bytes()).expect("writable");
+        }
+    });
+    (url, served)
+}
+
+#[test]
+fn what_a_server_says_does_not_reach_the_terminal_raw() {
+    let evil = "\u{1b}[2J\u{9b}1m\u{202e}";
+    let head = format!(
+        "HTTP/1.1 200 OK\r\nstrew-count: 0\r\nstrew-next: a{evil}\r\nstrew-origin: {evil}\r\n\
+         strew-columns: {evil}\r\nstrew-warning: {evil}\r\ncontent-length: 7\r\n\r\nid,x,y\n"
+    );
+    let count = format!("HTTP/1.1 200 OK\r\nstrew-count: 1{evil}\r\ncontent-length: 0\r\n\r\n");
+    let coded = format!("HTTP/1.1 200 OK\r\ncontent-encoding: {evil}\r\ncontent-length: 0\r\n\r\n");
+    let problem = serde_json::json!({ "title": evil, "detail": format!("a\nb{evil}") }).to_string();
+    let (problem, length) = (&problem, problem.len());
+    let problem = format!("HTTP/1.1 400 No\r\ncontent-length: {length}\r\n\r\n{problem}");
+    let plain = format!(
+        "HTTP/1.1 503 No\r\ncontent-length: {}\r\n\r\n{evil}",
+        evil.len()
+    );
+    let codes = [(head, 0), (count, 1), (coded, 1), (problem, 2), (plain, 1)];
+    let (url, served) = serving(codes.iter().map(|(answer, _)| answer.clone()).collect());
+    for (answer, code) in &codes {
+        let flags = [
+            "sample",
+            "--chunk",
+            "16/3/-2",
+            "--spacing",
+            "1.5",
+            "--format",
+            "csv",
+        ];
+        let output = run(&[&flags[..], &["--url", &url]].concat(), "");
+        let text = errors(&output);
+        assert_eq!(output.status.code(), Some(*code), "{answer}: {text}");
+        let is_odd = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
+        assert!(!text.contains(is_odd), "{text:?}");
+        assert!(text.contains("\\u{1b}[2J"), "{text}");
+    }
+    served.join().expect("served");
+}
+
+#[test]
+fn an_answer_with_other_points_than_promised_leaves_no_file() {
+    let answer = |count: &str, more: &str, body: &str| {
+        let length = body.len();
+        format!(
+            "HTTP/1.1 200 OK\r\nstrew-count: {count}\r\n{more}content-length: {length}\r\n\r\n{body}"
+        )
+    };
+    let (url, served) = serving(vec![
+        answer("2", "", "id,x,y\n1:2,3,4\n"),
+        answer("2", "", "12345678"),
+        answer("two", "", "id,x,y\n"),
+        answer("1", "content-encoding: gzip\r\n", "id,x,y\n1:2,3,4\n"),
+        answer("1", "content-encoding: identity\r\n", "id,x,y\n1:2,3,4\n"),
+    ]);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("points");
+    let file = file.to_str().expect("Unicode");
+    for (format, problem) in [
+        ("csv", "holds 1 points, and its header strew-count says 2"),
+        (
+            "f32",
+            "holds 8 bytes, 8 a point, and its header strew-count says 2",
+        ),
+        ("csv", "strew-count: two; allowed: a number"),
+        ("csv", "coded as gzip"),
+    ] {
+        let flags = ["--format", format, "--url", &url, "-o", file];
+        let error = refused(&[&QUERY[..], &flags].concat(), 1);
+        assert!(error.contains(problem), "{error}");
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0);
+    }
+    let flags = ["--format", "csv", "--url", &url, "-o", file];
+    printed(&[&QUERY[..], &flags].concat());
+    served.join().expect("served");
+}

@@ -260,7 +260,7 @@ fn keys_are_added_and_removed_while_the_daemon_serves() {
     // An invalid file changes nothing.
     let daemon = Daemon::start(&[&setting, "reload.watch_seconds=0"]);
     let is_in = |key: &str| get_with_key(&daemon, POINTS, key).status == 200;
-    for wrong in ["[[key]", "", "[[key]]\nname = 'a'\nhash = 'a'"] {
+    for wrong in ["[[key]", "[[key]]\nname = 'a'\nhash = 'a'"] {
         write_keys(wrong);
         let new = table("sqrt(3)", &format!("new{}", wrong.len()));
         write(daemon.folder(), "new.strew", &new);
@@ -277,6 +277,31 @@ fn keys_are_added_and_removed_while_the_daemon_serves() {
     write_keys(&entry("a", "one", ""));
     daemon.signal("-HUP");
     until("a valid file is applied", || is_in("one").then_some(()));
+}
+
+#[test]
+fn a_file_that_holds_no_key_any_more_admits_nobody() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("keys.toml");
+    let write_keys = |text: &str| fs::write(&file, text).expect("writable");
+    write_keys(&entry("a", "one", ""));
+    let setting = format!("access.keys_file={}", file.display());
+    let daemon = Daemon::start(&[&setting, "reload.watch_seconds=0.05"]);
+    let with_key = || get_with_key(&daemon, POINTS, "one").status;
+    let empty: [&dyn Fn(); 3] = [&|| write_keys(""), &|| write_keys("# none left\n"), &|| {
+        fs::remove_file(&file).expect("removed")
+    }];
+    for empty in empty {
+        assert_eq!(with_key(), 200);
+        empty();
+        until("the key is not valid", || (with_key() == 401).then_some(()));
+        // It never falls open.
+        assert_eq!(daemon.get(POINTS).status, 401);
+        write_keys(&entry("a", "one", ""));
+        until("the key is valid again", || {
+            (with_key() == 200).then_some(())
+        });
+    }
 }
 
 #[test]

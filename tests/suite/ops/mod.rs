@@ -16,6 +16,7 @@ mod limits;
 mod logs;
 mod metrics;
 mod panics;
+mod pictures;
 mod prices;
 mod rates;
 mod reload;

@@ -9,6 +9,7 @@ use crate::support::{
     daemon::Daemon,
     grpc::square,
     keys::{entry, get_with_key, keys},
+    queries::long,
 };
 
 /// About 400 points.
@@ -195,4 +196,24 @@ fn clients_behind_a_trusted_proxy_have_rates_of_their_own() {
     let alone = Daemon::start(&[SLOW, burst]);
     assert_eq!(from(&alone, "192.0.2.1"), 200);
     assert_eq!(from(&alone, "192.0.2.2"), 429);
+}
+
+#[test]
+fn clients_that_a_proxy_does_not_know_share_the_limits_of_one() {
+    let settings = [
+        "access.trusted_proxies=127.0.0.1",
+        "per_address.max_streams=1",
+    ];
+    let daemon = Daemon::start(&settings);
+    let path = long("f32");
+    let open = |client: &str| {
+        let headers = [("x-forwarded-for", client)];
+        http1::open(daemon.address(), "GET", &path, &headers)
+    };
+    let first = open("198.51.100.1, unknown");
+    assert_eq!(first.status, 200);
+    for client in ["unknown", "198.51.100.2, _hidden", ""] {
+        assert_eq!(open(client).status, 429, "{client}");
+    }
+    assert_eq!(open("198.51.100.1").status, 200);
 }

@@ -5,6 +5,7 @@ use core::ops::RangeInclusive;
 
 use crate::{
     error::{Error, ErrorKind, number},
+    stop::Stop,
     table::Digest,
 };
 
@@ -139,16 +140,28 @@ impl Pixels {
         })))
     }
 
-    /// Pixels made from each of these.
-    pub(super) fn map(&self, of: impl Fn(f32) -> f32) -> Self {
-        let pixels: Vec<f32> = (0..self.0.store.len())
-            .map(|at| of(self.0.store.get(at)))
-            .collect();
-        self.replaced(pixels)
+    /// Pixels made from each of these, unless stopped.
+    pub(super) fn map(&self, stop: &Stop, of: impl Fn(f32) -> f32) -> Result<Self, Error> {
+        self.made(stop, |at| of(self.0.store.get(at)))
+    }
+
+    /// Pixels made from their places in the rows, unless stopped.
+    pub(super) fn made(&self, stop: &Stop, of: impl Fn(usize) -> f32) -> Result<Self, Error> {
+        /// The most pixels that are made without a look at the flag.
+        const FEW: usize = 1 << 14;
+        let number = self.0.store.len();
+        let mut pixels = Vec::with_capacity(number);
+        while pixels.len() < number {
+            if stop.is_raised() {
+                return Err(Stop::error());
+            }
+            pixels.extend((pixels.len()..number).take(FEW).map(&of));
+        }
+        Ok(self.replaced(pixels))
     }
 
     /// Other numbers in rows of the same width.
-    pub(super) fn replaced(&self, pixels: Vec<f32>) -> Self {
+    fn replaced(&self, pixels: Vec<f32>) -> Self {
         let (size, store) = (self.0.size, Store::Floats(pixels));
         let (levels, digest) = (levels(size, &store), store.digest(size[0]));
         Self(Arc::new(Stored {

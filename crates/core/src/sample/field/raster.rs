@@ -12,6 +12,7 @@ use super::{
 use crate::{
     error::{Error, ErrorKind, number},
     sample::area::Region,
+    stop::Stop,
     table::Digest,
 };
 
@@ -138,7 +139,16 @@ impl Raster {
     /// assert_eq!(share(0.0, 1.0, 0.0).unwrap_err().field(), "gamma");
     /// # Ok::<(), strew_core::Error>(())
     /// ```
-    pub fn tone(mut self, low: f64, high: f64, gamma: f64) -> Result<Self, Error> {
+    pub fn tone(self, low: f64, high: f64, gamma: f64) -> Result<Self, Error> {
+        self.tone_unless([low, high, gamma], &Stop::default())
+    }
+
+    /// As [`tone`](Self::tone), unless stopped.
+    pub(crate) fn tone_unless(
+        mut self,
+        [low, high, gamma]: [f64; 3],
+        stop: &Stop,
+    ) -> Result<Self, Error> {
         check_share("low", low)?;
         check_share("high", high)?;
         if !(0.01..=100.0).contains(&gamma) {
@@ -171,7 +181,7 @@ impl Raster {
             Store::Bytes(_) => self.tones = Some(tones(255)),
             Store::Words(_) => self.tones = Some(tones(65535)),
             Store::Floats(_) => {
-                self.grid.pixels = self.grid.pixels.map(|v| share(f64::from(v)));
+                self.grid.pixels = self.grid.pixels.map(stop, |v| share(f64::from(v)))?;
             }
         }
         Ok(self)

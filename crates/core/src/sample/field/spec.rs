@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     error::{Error, ErrorKind, number},
+    stop::Stop,
     table::Digest,
 };
 
@@ -296,11 +297,20 @@ impl FieldSpec {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn slope(terrain: Terrain, slopes: [f64; 2], shares: [f64; 2]) -> Result<Self, Error> {
+        Self::slope_unless(terrain, [slopes, shares], &Stop::default())
+    }
+
+    /// As [`slope`](Self::slope), unless stopped.
+    pub(crate) fn slope_unless(
+        terrain: Terrain,
+        [slopes, shares]: [[f64; 2]; 2],
+        stop: &Stop,
+    ) -> Result<Self, Error> {
         let slide = Slide::new("slopes", slopes, shares)?;
         let mut canon = Canon::new("slope");
         canon.digest(terrain.digest());
         canon.places(&[slopes, shares]);
-        Self::new(Shape::Terrain(terrain.steepness(), slide), canon, 0)
+        Self::new(Shape::Terrain(terrain.steepness(stop)?, slide), canon, 0)
     }
 
     /// The product of fields.

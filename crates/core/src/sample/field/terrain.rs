@@ -1,14 +1,12 @@
 //! Heights over a box.
 
-use alloc::vec::Vec;
-
 use super::{
     canon::Canon,
     grid::{Edges, Filter, Grid},
     pixels::Pixels,
     scale::{Slide, widened},
 };
-use crate::{error::Error, sample::area::Region, table::Digest};
+use crate::{error::Error, sample::area::Region, stop::Stop, table::Digest};
 
 /// Heights of pixels over a box, for fields of [height](super::FieldSpec::height) and
 /// [slope](super::FieldSpec::slope).
@@ -102,7 +100,7 @@ impl Terrain {
 
     /// The same with steepness in place of height: rise over run at each pixel, from its neighbors along
     /// both axes, and linear between pixels.
-    pub(super) fn steepness(mut self) -> Self {
+    pub(super) fn steepness(mut self, stop: &Stop) -> Result<Self, Error> {
         let [width, height] = self.grid.pixels.size();
         let (scale, edges) = (self.grid.scale, self.grid.edges);
         let store = self.grid.pixels.store();
@@ -130,9 +128,8 @@ impl Terrain {
             let [x, y] = [rise(at, 0), rise(at, 1)];
             libm::sqrt(x * x + y * y).min(1e30) as f32
         };
-        let all: Vec<f32> = (0..store.len()).map(steep).collect();
-        self.grid.pixels = self.grid.pixels.replaced(all);
-        self
+        self.grid.pixels = self.grid.pixels.made(stop, steep)?;
+        Ok(self)
     }
 
     #[inline]
