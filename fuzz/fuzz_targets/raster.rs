@@ -4,4 +4,4 @@
 #[path = "../subjects/mod.rs"]
 mod subjects;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| subjects::raster::run(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| subjects::check("raster", data));
