@@ -20,6 +20,8 @@ use http_body::Frame;
 use prost::Message;
 use tonic::{Status, body::Body, codegen::Service, server::NamedService};
 
+use super::message;
+
 /// What stands before a message on the wire: whether it is compressed, and its length.
 pub(super) const PREFIX: usize = 5;
 
@@ -61,9 +63,13 @@ impl fmt::Debug for Frames {
     }
 }
 
-/// A service whose answers may carry [`Frames`]: then these are the body.
+/// A service whose requests come with their message decoded (`message`), and whose answers may carry
+/// [`Frames`]: then these are the body.
 #[derive(Clone, Debug)]
-pub(super) struct Direct<S>(pub(super) S);
+pub(super) struct Direct<S> {
+    pub(super) inner: S,
+    pub(super) service: Arc<crate::service::Service>,
+}
 
 impl<S: NamedService> NamedService for Direct<S> {
     const NAME: &'static str = S::NAME;
@@ -71,9 +77,10 @@ impl<S: NamedService> NamedService for Direct<S> {
 
 type Answer = Pin<Box<dyn Future<Output = Result<Response<Body>, Infallible>> + Send>>;
 
-impl<S, B> Service<Request<B>> for Direct<S>
+impl<S> Service<Request<Body>> for Direct<S>
 where
-    S: Service<Request<B>, Response = Response<Body>, Error = Infallible>,
+    S: Service<Request<Body>, Response = Response<Body>, Error = Infallible>,
+    S: Clone + Send + 'static,
     S::Future: Send + 'static,
 {
     type Response = Response<Body>;
@@ -81,13 +88,19 @@ where
     type Future = Answer;
 
     fn poll_ready(&mut self, cx: &mut Context<'_>) -> Poll<Result<(), Infallible>> {
-        self.0.poll_ready(cx)
+        self.inner.poll_ready(cx)
     }
 
-    fn call(&mut self, request: Request<B>) -> Answer {
-        let answer = self.0.call(request);
+    fn call(&mut self, request: Request<Body>) -> Answer {
+        // Generated services are always ready.
+        let Self { mut inner, service } = self.clone();
         Box::pin(async move {
-            let mut answer = answer.await?;
+            // What the message takes is held until the head of the answer.
+            let (request, _held) = match message::read(&service, request).await {
+                Ok(read) => read,
+                Err(refused) => return Ok(refused.into_http()),
+            };
+            let mut answer = inner.call(request).await?;
             let frames = answer.extensions_mut().remove::<Frames>();
             if let Some(frames) = frames.and_then(|frames| frames.take()) {
                 *answer.body_mut() = Body::new(Framed(Some(frames)));

@@ -15,7 +15,7 @@ use serde_json::json;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
-    body::Whole,
+    body::{self, Whole},
     chunks::{COLUMN, ROW, SIZE},
     context::Context,
     document,
@@ -81,11 +81,13 @@ async fn post(
     Whole(body): Whole,
 ) -> Result<Response, Error> {
     context.no_parameters()?;
+    let (effort, budget) = (body::effort(&body), service.own_budget());
     let read = move |service: &Service| {
+        let _held = budget.hold(body::COPIES * body.len())?;
         let text = String::from_utf8_lossy(&body);
         service.hold_field(field::read_json("field", text.trim())?)
     };
-    let held = service.process(1 << 16, read).await??;
+    let held = service.process(effort, read).await??;
     document::json(&Summary::new(&held))
 }
 
@@ -231,9 +233,10 @@ async fn chunk(
     let field = named(&service, &name, &context)?;
     let (size, x, y) = (SIZE.read(&size), COLUMN.read(&x), ROW.read(&y)).together()?;
     let freshness = Freshness::of(&context.uri, &context.headers, PNG, &field.digest());
+    let parts = field.spec.parts();
     let make = async {
         let draw = move |_: &Service| field.picture(size, [x, y]);
-        let picture = service.process(SIDE * SIDE, draw).await??;
+        let picture = service.process(SIDE * SIDE * parts, draw).await??;
         let mut response = Response::new(Body::from(picture));
         let value = HeaderValue::from_static(PNG);
         response.headers_mut().insert(header::CONTENT_TYPE, value);

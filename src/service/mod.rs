@@ -9,6 +9,7 @@
 //! What only a daemon needs is there with the feature `daemon`.
 
 mod attributes;
+mod bounded_list;
 #[cfg(feature = "daemon")]
 pub mod budget;
 #[cfg(feature = "daemon")]
@@ -46,6 +47,8 @@ mod ready;
 #[cfg(feature = "daemon")]
 pub mod record;
 mod resolve;
+#[cfg(feature = "daemon")]
+pub mod segments;
 mod single;
 #[cfg(feature = "daemon")]
 pub mod stream;
@@ -54,6 +57,8 @@ mod tables;
 mod terrain;
 #[cfg(feature = "daemon")]
 mod turns;
+#[cfg(feature = "daemon")]
+pub mod unpack;
 #[cfg(feature = "daemon")]
 pub mod workers;
 pub mod world;
