@@ -14,7 +14,7 @@ static MEMORY: PeakAlloc = PeakAlloc;
 /// its sampler, which stay in the cache, take most of them.
 const MOST_BYTES: usize = 64 << 20;
 /// The most bytes for each byte of an input.
-const BYTES_FOR_A_BYTE: usize = 64;
+const BYTES_FOR_A_BYTE: usize = 32;
 /// The most time of the processor, in a build without optimization.
 const MOST_TIME: Duration = Duration::from_secs(2);
 

@@ -2,6 +2,7 @@
 
 mod compression;
 mod deadline;
+mod direct;
 mod field;
 mod forging;
 mod frames;
@@ -31,7 +32,7 @@ use tonic_health::server::HealthReporter;
 
 use crate::service::{Error, Interrupted, Service};
 pub use deadline::Deadline;
-use frames::Direct;
+use direct::Direct;
 use points::Points;
 use proto::point_service_server::PointServiceServer;
 

@@ -2,7 +2,7 @@
 //!
 //! tonic would unpack and decode a message on the thread that serves the socket, before any limit of a query is
 //! looked at. So requests come to it with their message decoded already, beside an empty one that it decodes:
-//! as answers pass by it in frames (`frames.rs`).
+//! as answers pass by it in frames (`direct.rs`).
 
 mod most;
 mod walk;

@@ -118,7 +118,10 @@ fn lists_of_a_request_are_counted_together_and_parts_by_field() {
 fn what_is_no_message_is_refused_and_what_is_unknown_is_skipped() {
     let limits = limits();
     let stream = METHODS[0].shape;
-    let deep = |levels| (0..levels).fold(vec![], |inner, _| field(1, &field(5, &field(1, &inner))));
+    let deep = |levels| {
+        let regions = (0..levels).fold(vec![], |inner, _| field(5, &field(1, &inner)));
+        field(1, &regions)
+    };
     for bytes in [
         &[0xff; 30][..],
         &[0x0a, 5, 0],
