@@ -325,11 +325,13 @@ impl<'de> Deserialize<'de> for Parts {
     }
 }
 
+type Vertices = Vec<[f64; 2]>;
+
 /// The vertices of one shape.
 #[derive(Deserialize)]
-struct Line(#[serde(deserialize_with = "vertices")] Vec<[f64; 2]>);
+struct Line(#[serde(deserialize_with = "vertices")] Vertices);
 
-fn vertices<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<[f64; 2]>, D::Error> {
+fn vertices<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vertices, D::Error> {
     list(deserializer, 0..=FieldSpec::MAX_VERTICES, "vertices")
 }
 
@@ -341,14 +343,12 @@ fn shapes<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Line>, D::Er
     list(deserializer, 0..=FieldSpec::MAX_VERTICES, "shapes")
 }
 
-fn points<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<[f64; 2]>>, D::Error> {
+fn points<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vertices>, D::Error> {
     let points = Option::<Line>::deserialize(deserializer)?;
     Ok(points.map(|points| points.0))
 }
 
-fn lines<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Option<Vec<Vec<[f64; 2]>>>, D::Error> {
+fn lines<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<Vertices>>, D::Error> {
     let lines = Option::<Lines>::deserialize(deserializer)?;
     Ok(lines.map(|lines| lines.0.into_iter().map(|line| line.0).collect()))
 }
