@@ -18,13 +18,21 @@ use {
 };
 
 #[cfg(feature = "daemon")]
+#[path = "build/shapes.rs"]
+mod shapes;
+
+#[cfg(feature = "daemon")]
 const CONTRACT: &str = "strew/v1/points.proto";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(env::var("OUT_DIR")?);
     #[cfg(feature = "daemon")]
-    convert_sets(&compile_contract(&out)?, &out.join("point_set.rs"))?;
+    {
+        let contract = compile_contract(&out)?;
+        convert_sets(&contract, &out.join("point_set.rs"))?;
+        fs::write(out.join("shapes.rs"), shapes::code(&contract)?)?;
+    }
     let tables = root.join("tables");
     list_tables([tables.clone(), tables.join("mix")], &out.join("tables.rs"))?;
     Ok(())

@@ -9,6 +9,7 @@ keep sending are processes of their own.
 """
 
 import argparse
+import gzip
 import http.client
 import json
 import multiprocessing
@@ -421,7 +422,69 @@ def four(daemon):
     print(f"    {len(held)} held, {daemon.memory('VmHWM')} MiB at most", flush=True)
 
 
-ATTACKS = [pages, answers, bodies, arriving, counts, readers, documents, health, forges, mixes, streams, longlane, four]
+def field(number, content=b""):
+    """A field of a message."""
+    def varint(value):
+        low = bytes([value & 127 | 128])
+        return low + varint(value >> 7) if value > 127 else bytes([value])
+
+    return varint(number << 3 | 2) + varint(len(content)) + content
+
+
+def messages(daemon):
+    """4 MB of empty layers and of empty parts of a field, plain and as gzip."""
+    many = 2_000_000
+    for name, message in [
+        ("layers", field(3) * many),
+        ("parts", field(2, field(15, field(10, field(1) * many)))),
+    ]:
+        for coding in ("identity", "gzip"):
+            packed = gzip.compress(message) if coding == "gzip" else message
+            body = bytes([coding == "gzip"]) + struct.pack(">I", len(packed)) + packed
+            headers = {"content-type": "application/grpc-web+proto", "grpc-encoding": coding, **daemon.headers()}
+            connection = http.client.HTTPConnection("127.0.0.1", daemon.port, timeout=60, source_address=("127.0.0.2", 0))
+            connection.request("POST", "/strew.v1.PointService/StreamPoints", body, headers)
+            answer = connection.getresponse()
+            answer.read()
+            daemon.report(f"{name}, {coding}: {len(body)} bytes, status {answer.headers['grpc-status']}")
+            connection.close()
+
+
+def includes(daemon):
+    boxes = b",".join([b'{"bbox":[0,0,1,1]}'] * 210_000)
+    body = b'{"spacing": 1, "region": {"include": [' + boxes + b"]}}"
+    repeated(daemon, 8, daemon.request("POST", "/v1/points:query", body), [SMALL, "/livez"])
+
+
+def fields_posts(daemon):
+    body = b'{"distance": {"unknown": [0' + b",0" * 1_990_000 + b"]}}"
+    victims = [
+        SMALL,
+        "/v1/points?bbox=0,0,200,200&spacing=1&warp=1&format=csv",
+        "/v1/chunks/64/3/4?spacing=1&format=f32",
+        "/livez",
+    ]
+    repeated(daemon, 8, daemon.request("POST", "/v1/fields", body), victims)
+
+
+ATTACKS = [
+    pages,
+    answers,
+    bodies,
+    arriving,
+    counts,
+    readers,
+    documents,
+    health,
+    forges,
+    messages,
+    includes,
+    fields_posts,
+    mixes,
+    streams,
+    longlane,
+    four,
+]
 
 
 def main():

@@ -56,6 +56,7 @@ kinds! {
     TooManyForAddress: "The client's address uses as much as one address may", TOO_MANY_REQUESTS, ResourceExhausted;
     TooFast: "Points are taken too fast", TOO_MANY_REQUESTS, ResourceExhausted;
     Busy: "The server is busy", SERVICE_UNAVAILABLE, ResourceExhausted;
+    UnknownCoding: "The query has a coding that is not read", UNSUPPORTED_MEDIA_TYPE, InvalidArgument;
     BodyTooSlow: "The query arrived too slowly", REQUEST_TIMEOUT, DeadlineExceeded;
     TimeOver: "The answer took too long", SERVICE_UNAVAILABLE, ResourceExhausted;
     ShuttingDown: "The server is shutting down", SERVICE_UNAVAILABLE, Unavailable;

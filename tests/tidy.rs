@@ -13,6 +13,7 @@ fn sources() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut open: Vec<PathBuf> = [
         "src",
+        "build",
         "bindings/python/src",
         "bindings/c/src",
         "crates",

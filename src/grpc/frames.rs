@@ -6,7 +6,6 @@
 //! socket as it is. Calls that ask for compression go through tonic.
 
 use std::{
-    convert::Infallible,
     fmt,
     pin::Pin,
     sync::{Arc, Mutex, PoisonError},
@@ -15,10 +14,10 @@ use std::{
 
 use bytes::Bytes;
 use futures_util::Stream;
-use http::{HeaderMap, Request, Response};
+use http::HeaderMap;
 use http_body::Frame;
 use prost::Message;
-use tonic::{Status, body::Body, codegen::Service, server::NamedService};
+use tonic::{Status, body::Body};
 
 /// What stands before a message on the wire: whether it is compressed, and its length.
 pub(super) const PREFIX: usize = 5;
@@ -41,7 +40,7 @@ pub(super) fn framed(message: &impl Message) -> Bytes {
 
 type FrameStream = Pin<Box<dyn Stream<Item = Result<Bytes, Status>> + Send>>;
 
-/// Framed messages, which an answer carries past tonic to [`Direct`].
+/// Framed messages, which an answer carries past tonic (`direct.rs`).
 #[derive(Clone)]
 pub(super) struct Frames(Arc<Mutex<Option<FrameStream>>>);
 
@@ -50,50 +49,16 @@ impl Frames {
         Self(Arc::new(Mutex::new(Some(Box::pin(frames)))))
     }
 
-    fn take(&self) -> Option<FrameStream> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    /// The body of these frames, which can be taken once.
+    pub(super) fn body(&self) -> Option<Body> {
+        let frames = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
+        Some(Body::new(Framed(Some(frames?))))
     }
 }
 
 impl fmt::Debug for Frames {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Frames")
-    }
-}
-
-/// A service whose answers may carry [`Frames`]: then these are the body.
-#[derive(Clone, Debug)]
-pub(super) struct Direct<S>(pub(super) S);
-
-impl<S: NamedService> NamedService for Direct<S> {
-    const NAME: &'static str = S::NAME;
-}
-
-type Answer = Pin<Box<dyn Future<Output = Result<Response<Body>, Infallible>> + Send>>;
-
-impl<S, B> Service<Request<B>> for Direct<S>
-where
-    S: Service<Request<B>, Response = Response<Body>, Error = Infallible>,
-    S::Future: Send + 'static,
-{
-    type Response = Response<Body>;
-    type Error = Infallible;
-    type Future = Answer;
-
-    fn poll_ready(&mut self, cx: &mut Context<'_>) -> Poll<Result<(), Infallible>> {
-        self.0.poll_ready(cx)
-    }
-
-    fn call(&mut self, request: Request<B>) -> Answer {
-        let answer = self.0.call(request);
-        Box::pin(async move {
-            let mut answer = answer.await?;
-            let frames = answer.extensions_mut().remove::<Frames>();
-            if let Some(frames) = frames.and_then(|frames| frames.take()) {
-                *answer.body_mut() = Body::new(Framed(Some(frames)));
-            }
-            Ok(answer)
-        })
     }
 }
 

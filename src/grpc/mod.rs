@@ -2,10 +2,12 @@
 
 mod compression;
 mod deadline;
+mod direct;
 mod field;
 mod forging;
 mod frames;
 mod mask;
+mod message;
 mod messages;
 mod pattern;
 mod periods;
@@ -30,7 +32,7 @@ use tonic_health::server::HealthReporter;
 
 use crate::service::{Error, Interrupted, Service};
 pub use deadline::Deadline;
-use frames::Direct;
+use direct::Direct;
 use points::Points;
 use proto::point_service_server::PointServiceServer;
 
@@ -55,6 +57,10 @@ pub const METHODS: [&str; 15] = [
     "/strew.v1.PointService/GetClusters",
     "/strew.v1.PointService/GetMap",
 ];
+
+/// The longest message to the services of health and reflection, which take names: those of files and of
+/// symbols.
+const NAMES: usize = 4 << 10;
 
 /// The name of a code, as the protocol writes it.
 #[must_use]
@@ -96,15 +102,22 @@ pub async fn routes(service: Arc<Service>) -> Result<(Routes, Health), BuildErro
             .register_encoded_file_descriptor_set(DESCRIPTORS)
             .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
     };
-    let most = service.limits().max_body_bytes;
     let points = compression::COMPRESSIONS.into_iter().fold(
-        PointServiceServer::new(Points::new(service)).max_decoding_message_size(most),
+        PointServiceServer::new(Points::new(service.clone())),
         |server, coding| server.accept_compressed(coding).send_compressed(coding),
     );
-    let routes = Routes::new(Direct(points))
-        .add_service(health)
-        .add_service(reflection().build_v1()?)
-        .add_service(reflection().build_v1alpha()?);
+    let points = Direct {
+        inner: points,
+        service,
+    };
+    let routes = Routes::new(points)
+        .add_service(health.max_decoding_message_size(NAMES))
+        .add_service(reflection().build_v1()?.max_decoding_message_size(NAMES))
+        .add_service(
+            reflection()
+                .build_v1alpha()?
+                .max_decoding_message_size(NAMES),
+        );
     Ok((routes, Health { reporter }))
 }
 

@@ -1,11 +1,12 @@
 //! Arrangements, clusters and maps as messages.
 
-use std::pin::Pin;
+use std::{pin::Pin, sync::Arc};
 
 use futures_util::{Stream, TryStreamExt as _};
 use tonic::Status;
 
 use super::{
+    message::Received,
     proto::{
         Arrangement, ArrangementRequest, Block, ClusterShape, ClustersRequest, ClustersResponse,
         GridBox, GridOffset, IndexRange, ListOccurrencesResponse, MapRequest, MapResponse,
@@ -71,11 +72,14 @@ fn named(text: &str) -> Option<Value> {
 }
 
 /// What is known of an arrangement.
-pub(super) fn arrangement(
-    service: &Service,
-    request: &ArrangementRequest,
+pub(super) async fn arrangement(
+    service: &Arc<Service>,
+    Received { message, effort }: Received<ArrangementRequest>,
 ) -> Result<Arrangement, Error> {
-    Ok(described(query(service, request, false)?.facts()))
+    let facts = move |service: &Service| -> Result<Facts, Error> {
+        Ok(query(service, &message, false)?.facts())
+    };
+    Ok(described(service.process(effort, facts).await??))
 }
 
 fn described(facts: Facts) -> Arrangement {
@@ -101,11 +105,12 @@ fn described(facts: Facts) -> Arrangement {
 
 /// The occurrences of an arrangement.
 pub(super) async fn occurrences(
-    service: &Service,
+    service: &Arc<Service>,
     caller: &Caller,
-    request: &ArrangementRequest,
+    Received { message, effort }: Received<ArrangementRequest>,
 ) -> Result<OccurrenceStream, Error> {
-    let query = query(service, request, true)?;
+    let read = move |service: &Service| query(service, &message, true);
+    let query = service.process(effort, read).await??;
     let (permit, listing) = service.list(caller, &query).await?;
     Record::in_format("points");
     let header = OccurrencesHeader {

@@ -3,7 +3,6 @@
 use std::{pin::Pin, sync::Arc};
 
 use futures_util::{Stream, StreamExt as _, TryStreamExt as _, stream};
-use prost::Message as _;
 use strew_core::{ALGORITHM_VERSION, server::Stop};
 use tonic::{Request, Response, Status};
 
@@ -11,6 +10,7 @@ use super::{
     compression, field, forging,
     frames::Frames,
     mask,
+    message::{Received, received},
     messages::{Framed, Messages},
     pattern::{self, OccurrenceStream},
     periods, profile,
@@ -34,6 +34,8 @@ use crate::service::{
 
 /// A query as it was read.
 type Read = (Draft, Result<Encoding, Fault>);
+/// The same with its message.
+type Whole = (StreamPointsRequest, Read);
 
 /// Answers over gRPC.
 #[derive(Debug)]
@@ -46,29 +48,34 @@ impl Points {
         Self { service }
     }
 
-    /// The checked query of a request.
-    async fn read(&self, request: &StreamPointsRequest) -> Result<(Query, Encoding), Error> {
-        let (bytes, request) = (request.encoded_len(), request.clone());
-        let read = move || Ok(query::read(&request));
-        let check = |service: &Service, (draft, encoding): Read, stop: &Stop| {
-            let (query, _) = service.check(&draft, stop)?;
-            Ok((query, encoding?))
+    /// A request with its checked query.
+    async fn read(
+        &self,
+        Received { message, effort }: Received<StreamPointsRequest>,
+    ) -> Result<(StreamPointsRequest, Query, Encoding), Error> {
+        let read = move || {
+            let read = query::read(&message);
+            Ok((message, read))
         };
-        let price = |(draft, _): &Read| draft.price();
-        self.service.read(bytes, read, price, check).await
+        let check = |service: &Service, (message, (draft, encoding)): Whole, stop: &Stop| {
+            let (query, _) = service.check(&draft, stop)?;
+            Ok((message, query, encoding?))
+        };
+        let price = |(_, (draft, _)): &Whole| draft.price();
+        self.service.read(effort, read, price, check).await
     }
 
     /// The answer of messages, which tonic has to compress, or of frames that are sent as they are.
     async fn stream(
         &self,
         caller: &Caller,
-        request: &StreamPointsRequest,
+        request: Received<StreamPointsRequest>,
         is_compressed: bool,
     ) -> Result<Response<MessageStream>, Error> {
-        let (query, encoding) = self.read(request).await?;
+        let (request, query, encoding) = self.read(request).await?;
         let (permit, planned) = self.service.open(caller, query, None).await?;
         let block_bytes = planned.block_bytes(self.service.limits().block_bytes);
-        let messages = Messages::new(request, planned, encoding, block_bytes)?;
+        let messages = Messages::new(&request, planned, encoding, block_bytes)?;
         Record::in_format(match encoding {
             Encoding::F32Le => "f32",
             Encoding::F64Le => "f64",
@@ -89,28 +96,28 @@ impl Points {
     async fn count(
         &self,
         caller: &Caller,
-        request: &StreamPointsRequest,
+        request: Received<StreamPointsRequest>,
     ) -> Result<CountPointsResponse, Error> {
-        let (query, encoding) = self.read(request).await?;
+        let (request, query, encoding) = self.read(request).await?;
         let planned = self.service.count(caller, query).await?;
         Ok(CountPointsResponse {
             count: u64::try_from(planned.count()).unwrap_or(u64::MAX),
             digits: planned.count().to_string(),
-            query: Some(resolved::query(request, &planned, encoding)),
+            query: Some(resolved::query(&request, &planned, encoding)),
         })
     }
 
     async fn split(
         &self,
         caller: &Caller,
-        request: &StreamPointsRequest,
+        request: Received<StreamPointsRequest>,
         parts: u32,
     ) -> Result<SplitPointsResponse, Error> {
-        let (query, _) = self.read(request).await?;
+        let (request, query, _) = self.read(request).await?;
         let planned = self.service.count(caller, query).await?;
         let count = u64::try_from(planned.count()).unwrap_or(u64::MAX);
         let places = self.service.split(planned, parts).await?;
-        let part = |place| split::part(request, place);
+        let part = |place| split::part(&request, place);
         Ok(SplitPointsResponse {
             count,
             parts: places.into_iter().map(part).collect(),
@@ -120,17 +127,20 @@ impl Points {
     async fn point(
         &self,
         caller: &Caller,
-        request: &GetPointRequest,
+        Received { message, effort }: Received<GetPointRequest>,
     ) -> Result<GetPointResponse, Error> {
-        let (bytes, set) = (request.encoded_len(), request.set.clone());
-        let read = move || Ok(set::values(set.as_ref(), groups::SINGLE, ""));
+        let id = message.id;
+        let read = move || Ok(set::values(message.set.as_ref(), groups::SINGLE, ""));
         let check = |service: &Service, values: Values, stop: &Stop| {
             Set::single_within(&values, &service.catalog(), allowance(stop))
         };
-        let set = self.service.read(bytes, read, Values::price, check).await?;
+        let set = self
+            .service
+            .read(effort, read, Values::price, check)
+            .await?;
         let placed = self.service.place(caller, set).await?;
         Ok(GetPointResponse {
-            point: Some(single::point(placed.point(&request.id)?)),
+            point: Some(single::point(placed.point(&id)?)),
             set: Some(resolved::placed(&placed)),
         })
     }
@@ -148,14 +158,16 @@ impl Points {
     async fn nearest(
         &self,
         caller: &Caller,
-        request: &FindNearestRequest,
+        Received { message, effort }: Received<FindNearestRequest>,
     ) -> Result<FindNearestResponse, Error> {
-        let (bytes, request) = (request.encoded_len(), request.clone());
-        let read = move || Ok(query::nearest(&request));
+        let read = move || Ok(query::nearest(&message));
         let check = |service: &Service, values: Values, stop: &Stop| {
             Nearest::of_set_within(&values, &service.catalog(), allowance(stop))
         };
-        let (set, nearest) = self.service.read(bytes, read, Values::price, check).await?;
+        let (set, nearest) = self
+            .service
+            .read(effort, read, Values::price, check)
+            .await?;
         let answer = |placed: &Placed, found: Vec<Found>| {
             Ok(FindNearestResponse {
                 neighbors: found.into_iter().map(single::point).collect(),
@@ -172,11 +184,15 @@ fn caller<T>(request: &Request<T>) -> Result<Caller, Status> {
 }
 
 /// The query of a request, which must be there.
-fn required(query: Option<StreamPointsRequest>) -> Result<StreamPointsRequest, Status> {
-    query.ok_or_else(|| {
+fn required(
+    query: Option<StreamPointsRequest>,
+    effort: usize,
+) -> Result<Received<StreamPointsRequest>, Status> {
+    let message = query.ok_or_else(|| {
         let fault = Fault::missing("query", "a StreamPointsRequest");
         status::status(&fault.into())
-    })
+    })?;
+    Ok(Received { message, effort })
 }
 
 fn answered<T>(answer: Result<T, Error>) -> Result<Response<T>, Status> {
@@ -203,7 +219,7 @@ impl PointService for Points {
         request: Request<ForgeTableRequest>,
     ) -> Result<Response<JobStream>, Status> {
         let caller = caller(&request)?;
-        let states = self.forge(&caller, request.into_inner()).await;
+        let states = self.forge(&caller, received(request).message).await;
         states
             .map(Response::new)
             .map_err(|error| status::status(&error))
@@ -215,7 +231,7 @@ impl PointService for Points {
     ) -> Result<Response<MessageStream>, Status> {
         let caller = caller(&request)?;
         let is_compressed = compression::is_asked(request.metadata());
-        let answer = self.stream(&caller, request.get_ref(), is_compressed).await;
+        let answer = self.stream(&caller, received(request), is_compressed).await;
         answer.map_err(|error| status::status(&query::by_field(error)))
     }
 
@@ -224,8 +240,9 @@ impl PointService for Points {
         request: Request<CountPointsRequest>,
     ) -> Result<Response<CountPointsResponse>, Status> {
         let caller = caller(&request)?;
-        let query = required(request.into_inner().query)?;
-        let answer = self.count(&caller, &query).await;
+        let Received { message, effort } = received(request);
+        let query = required(message.query, effort)?;
+        let answer = self.count(&caller, query).await;
         answered(answer.map_err(|error| status::within("query", query::by_field(error))))
     }
 
@@ -234,10 +251,11 @@ impl PointService for Points {
         request: Request<SplitPointsRequest>,
     ) -> Result<Response<SplitPointsResponse>, Status> {
         let caller = caller(&request)?;
-        let SplitPointsRequest { query, parts } = request.into_inner();
-        let query = required(query)?;
-        let parts = split::check(&query, parts).map_err(|error| status::status(&error))?;
-        let answer = self.split(&caller, &query, parts).await;
+        let Received { message, effort } = received(request);
+        let SplitPointsRequest { query, parts } = message;
+        let query = required(query, effort)?;
+        let parts = split::check(&query.message, parts).map_err(|error| status::status(&error))?;
+        let answer = self.split(&caller, query, parts).await;
         answered(answer.map_err(|error| status::within("query", query::by_field(error))))
     }
 
@@ -246,7 +264,7 @@ impl PointService for Points {
         request: Request<GetPointRequest>,
     ) -> Result<Response<GetPointResponse>, Status> {
         let caller = caller(&request)?;
-        answered(self.point(&caller, request.get_ref()).await)
+        answered(self.point(&caller, received(request)).await)
     }
 
     async fn find_nearest(
@@ -254,7 +272,7 @@ impl PointService for Points {
         request: Request<FindNearestRequest>,
     ) -> Result<Response<FindNearestResponse>, Status> {
         let caller = caller(&request)?;
-        answered(self.nearest(&caller, request.get_ref()).await)
+        answered(self.nearest(&caller, received(request)).await)
     }
 
     async fn list_profiles(
@@ -275,7 +293,7 @@ impl PointService for Points {
         &self,
         request: Request<ListPeriodsRequest>,
     ) -> Result<Response<ListPeriodsResponse>, Status> {
-        let listed = periods::list(request.into_inner(), &self.service);
+        let listed = periods::list(received(request).message, &self.service);
         listed
             .map(Response::new)
             .map_err(|error| status::status(&error))
@@ -286,14 +304,14 @@ impl PointService for Points {
         request: Request<GetMaskRequest>,
     ) -> Result<Response<GetMaskResponse>, Status> {
         let caller = caller(&request)?;
-        plainly(mask::mask(&self.service, &caller, request.into_inner()).await)
+        plainly(mask::mask(&self.service, &caller, received(request).message).await)
     }
 
     async fn get_arrangement(
         &self,
         request: Request<ArrangementRequest>,
     ) -> Result<Response<Arrangement>, Status> {
-        answered(pattern::arrangement(&self.service, request.get_ref()))
+        answered(pattern::arrangement(&self.service, received(request)).await)
     }
 
     type ListOccurrencesStream = OccurrenceStream;
@@ -303,7 +321,7 @@ impl PointService for Points {
         request: Request<ArrangementRequest>,
     ) -> Result<Response<OccurrenceStream>, Status> {
         let caller = caller(&request)?;
-        answered(pattern::occurrences(&self.service, &caller, request.get_ref()).await)
+        answered(pattern::occurrences(&self.service, &caller, received(request)).await)
     }
 
     async fn get_clusters(
@@ -311,12 +329,12 @@ impl PointService for Points {
         request: Request<ClustersRequest>,
     ) -> Result<Response<ClustersResponse>, Status> {
         let caller = caller(&request)?;
-        plainly(pattern::clusters(&self.service, &caller, request.get_ref()).await)
+        plainly(pattern::clusters(&self.service, &caller, &received(request).message).await)
     }
 
     async fn get_map(&self, request: Request<MapRequest>) -> Result<Response<MapResponse>, Status> {
         let caller = caller(&request)?;
-        plainly(pattern::map(&self.service, &caller, request.get_ref()).await)
+        plainly(pattern::map(&self.service, &caller, &received(request).message).await)
     }
 
     async fn list_fields(

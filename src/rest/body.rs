@@ -1,4 +1,4 @@
-//! Bodies of requests: read whole, up to a limit, whatever they are said to be.
+//! Bodies of requests: read whole, up to a limit, whatever they are said to be; gzip is unpacked.
 //!
 //! The content type is not looked at: a body is read as JSON anyway, and `curl -d` calls everything
 //! a form.
@@ -8,12 +8,14 @@ use std::{error::Error as _, sync::Arc};
 use axum::extract::{FromRequest, Request};
 use bytes::Bytes;
 use futures_util::StreamExt as _;
-use http::header;
+use http::{HeaderMap, header};
 use strew_core::server::Stop;
 
 use crate::service::{
     Draft, Error, Fault, Options, Query, Service,
     query::{Group, read_body},
+    segments::Segments,
+    unpack::Coding,
 };
 
 /// A whole body.
@@ -25,6 +27,7 @@ impl FromRequest<Arc<Service>> for Whole {
 
     async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Error> {
         let limit = service.limits().max_body_bytes;
+        let is_packed = is_packed(request.headers())?;
         let length = request.headers().get(header::CONTENT_LENGTH);
         let length = length.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
         // What says that it is too long need not even be sent.
@@ -32,52 +35,42 @@ impl FromRequest<Arc<Service>> for Whole {
             return Err(Error::BodyTooLarge { limit });
         }
         let mut pieces = request.into_body().into_data_stream();
-        let (mut length, mut segments) = (0, Segments::default());
+        let mut segments = Segments::default();
         while let Some(piece) = pieces.next().await {
             let piece = piece.map_err(|error| why(&error))?;
-            length += piece.len();
-            if length > limit {
+            if segments.len() + piece.len() > limit {
                 return Err(Error::BodyTooLarge { limit });
             }
             segments.append(&piece);
         }
-        Ok(Self(segments.joined()))
+        let bytes = segments.joined();
+        Ok(Self(match is_packed {
+            true => service.unpacked(Coding::Gzip, bytes, "body").await?,
+            false => bytes,
+        }))
     }
 }
 
-/// What has come of a body. A vector that grows would leave behind as much memory as it takes, and
-/// hundreds of bodies may arrive at once.
-#[derive(Debug, Default)]
-struct Segments(Vec<Vec<u8>>);
-
-impl Segments {
-    const SIZE: usize = 64 << 10;
-
-    fn append(&mut self, mut piece: &[u8]) {
-        while !piece.is_empty() {
-            let last = self.0.last_mut();
-            let Some(last) = last.filter(|last| last.len() < last.capacity()) else {
-                // Most bodies come in one piece.
-                let is_first = self.0.is_empty();
-                let size = if is_first { piece.len() } else { Self::SIZE };
-                self.0.push(Vec::with_capacity(size));
-                continue;
-            };
-            let room = last.capacity() - last.len();
-            let (now, later) = piece.split_at(piece.len().min(room));
-            last.extend_from_slice(now);
-            piece = later;
+/// Whether a body is gzip.
+fn is_packed(headers: &HeaderMap) -> Result<bool, Error> {
+    let lines = headers.get_all(header::CONTENT_ENCODING).iter();
+    let names: Vec<String> = lines
+        .flat_map(|line| line.as_bytes().split(|&byte| byte == b','))
+        .map(|name| String::from_utf8_lossy(name).trim().to_ascii_lowercase())
+        .filter(|name| name != "identity")
+        .collect();
+    match names.as_slice() {
+        [] => Ok(false),
+        [name] if name == "gzip" || name == "x-gzip" => Ok(true),
+        _ => {
+            let coding = names.join(", ").chars().take(60).collect();
+            Err(Error::UnknownCoding { coding })
         }
     }
-
-    fn joined(mut self) -> Bytes {
-        let whole = match self.0.len() {
-            1 => self.0.swap_remove(0),
-            _ => self.0.concat(),
-        };
-        whole.into()
-    }
 }
+
+/// The bytes of memory that reading takes for each of a body.
+pub(super) const COPIES: usize = 4;
 
 /// The query that a body asks, as it was read and checked: on the workers if it is long.
 pub(super) async fn query(
@@ -85,8 +78,11 @@ pub(super) async fn query(
     body: Bytes,
     groups: &'static [Group],
 ) -> Result<(Draft, Query, Options), Error> {
-    let bytes = body.len();
-    let read = move || Ok(read_body(&body, groups)?);
+    let (bytes, budget) = (body.len(), service.own_budget());
+    let read = move || {
+        let _held = budget.hold(COPIES * body.len())?;
+        Ok(read_body(&body, groups)?)
+    };
     let check = |service: &Service, draft: Draft, stop: &Stop| {
         let (query, options) = service.check(&draft, stop)?;
         Ok((draft, query, options))
@@ -105,4 +101,9 @@ fn why(error: &axum::Error) -> Error {
     }
     let detail = "broke off before its end";
     Fault::new("body", "", detail, "a whole body").into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
 }

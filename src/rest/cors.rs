@@ -1,7 +1,7 @@
 //! Pages of other origins as clients (the Fetch standard's CORS protocol), without credentials that
 //! browsers add by themselves: keys are headers that a page has to know.
 
-use axum::{body::Body, response::Response};
+use axum::{body::Body, extract::Request, response::Response};
 use http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 
 use super::vary;
@@ -39,6 +39,44 @@ impl Origins {
             }
         }
     }
+}
+
+/// Why a page of another origin may not send a request, if that is not only for reading: browsers send some with a
+/// body without asking first. What is only read may be sent by any page, which then cannot see the answer.
+pub(super) fn refusal(origins: &Origins, request: &Request) -> Option<String> {
+    let headers = request.headers();
+    let origin = headers.get(header::ORIGIN)?;
+    let method = request.method();
+    let only_reads = [Method::GET, Method::HEAD, Method::OPTIONS].contains(method);
+    if only_reads || is_own(origin, request) || origins.allowed(origin).is_some() {
+        return None;
+    }
+    let origin: String = String::from_utf8_lossy(origin.as_bytes())
+        .chars()
+        .take(100)
+        .collect();
+    Some(format!(
+        "pages of `{origin}` may not send {method}; allowed: this server's own pages, and those of \
+         http.cors_origins"
+    ))
+}
+
+/// Whether a request comes from a page of this server: its browser says so, or the origin has the host that the
+/// request is sent to. (Behind a proxy the scheme may be another.)
+fn is_own(origin: &HeaderValue, request: &Request) -> bool {
+    let headers = request.headers();
+    if headers
+        .get("sec-fetch-site")
+        .is_some_and(|site| site == "same-origin")
+    {
+        return true;
+    }
+    let host = headers.get(header::HOST).map(HeaderValue::as_bytes);
+    let authority = request.uri().authority().map(|of| of.as_str().as_bytes());
+    let own = origin.to_str().ok().and_then(|of| of.split_once("://"));
+    let own = own.map(|(_, own)| own.as_bytes());
+    own.zip(host.or(authority))
+        .is_some_and(|(own, host)| own.eq_ignore_ascii_case(host))
 }
 
 /// How long a browser may remember that it is allowed to ask, in seconds; browsers cut it.

@@ -16,7 +16,7 @@ use strew_core::server::Stop;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
-    body::Whole,
+    body::{self, Whole},
     chunks::{COLUMN, ROW, SIZE},
     context::Context,
     document,
@@ -82,8 +82,9 @@ async fn post(
     Whole(body): Whole,
 ) -> Result<Response, Error> {
     context.no_parameters()?;
-    let bytes = body.len();
+    let (bytes, budget) = (body.len(), service.own_budget());
     let read = move || {
+        let _held = budget.hold(body::COPIES * body.len())?;
         let text = String::from_utf8_lossy(&body);
         Ok(field::read_json("field", text.trim())?)
     };
@@ -235,9 +236,10 @@ async fn chunk(
     let field = named(&service, &name, &context)?;
     let (size, x, y) = (SIZE.read(&size), COLUMN.read(&x), ROW.read(&y)).together()?;
     let freshness = Freshness::of(&context.uri, &context.headers, PNG, &field.digest());
+    let parts = field.spec.parts();
     let make = async {
         let draw = move |_: &Service, _: &Stop| field.picture(size, [x, y]);
-        let picture = service.process(SIDE * SIDE, draw).await??;
+        let picture = service.process(SIDE * SIDE * parts, draw).await??;
         let mut response = Response::new(Body::from(picture));
         let value = HeaderValue::from_static(PNG);
         response.headers_mut().insert(header::CONTENT_TYPE, value);

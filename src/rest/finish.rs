@@ -57,7 +57,9 @@ async fn finish_answer(State(finish): State<Finish>, request: Request, next: Nex
     let is_head = *method == Method::HEAD;
     let origin = headers.get(header::ORIGIN).cloned();
     let accept = picked(headers, &header::ACCEPT_ENCODING);
-    let refusal = too_long(&request, finish.head_bytes).or_else(|| wrong_host(&request));
+    let refusal = too_long(&request, finish.head_bytes)
+        .or_else(|| wrong_host(&request))
+        .or_else(|| foreign(&finish.origins, &request));
     let mut response = match refusal {
         Some(refusal) => refusal,
         None => next.run(request).await,
@@ -90,6 +92,12 @@ fn wrong_host(request: &Request) -> Option<Response> {
     let is_wrong = request.version() == Version::HTTP_11 && hosts != 1;
     let detail = || format!("it has {hosts} lines `Host`; allowed: exactly one");
     is_wrong.then(|| Problem::of_status(StatusCode::BAD_REQUEST, detail()))
+}
+
+/// The refusal of a request of a page that may not send it, before its body is read.
+fn foreign(origins: &Origins, request: &Request) -> Option<Response> {
+    let detail = cors::refusal(origins, request)?;
+    Some(Problem::of_status(StatusCode::FORBIDDEN, detail))
 }
 
 /// The refusal of a request whose head is too long. (What is much too long never gets here: the

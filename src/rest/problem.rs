@@ -137,6 +137,10 @@ impl<'a> Problem<'a> {
         if let Some(seconds) = error.retry_seconds() {
             headers.insert(header::RETRY_AFTER, seconds.into());
         }
+        if let Error::UnknownCoding { .. } = error {
+            // RFC 9110, 12.5.3: what is read.
+            headers.insert(header::ACCEPT_ENCODING, HeaderValue::from_static("gzip"));
+        }
         // RFC 6750, 3: what was wrong is only told to those who showed something.
         let challenge = match error {
             Error::Denied(Denied::NoKey) => "Bearer realm=\"strew\"",

@@ -68,7 +68,9 @@ async fn post(
 ) -> Result<Response, Error> {
     context.no_parameters()?;
     service.forging().admit(&context.caller)?;
-    let request: Request = serde_json::from_slice(&body).map_err(|error| {
+    let length = body.len();
+    let read = move |_: &Service| serde_json::from_slice::<Request>(&body);
+    let request = service.process(length, read).await?.map_err(|error| {
         let allowed = "a JSON object with profile, alpha, map and target, all of them text";
         Fault::new("body", "", error.to_string(), allowed)
     })?;

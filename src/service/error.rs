@@ -250,6 +250,12 @@ pub enum Error {
         /// The limit.
         limit: u64,
     },
+    /// The body has a coding that is not read.
+    #[error("`Content-Encoding: {coding}` is not read; allowed: gzip, or none")]
+    UnknownCoding {
+        /// The coding, as the client names it.
+        coding: String,
+    },
     /// The body took longer to come than it may.
     #[error("the body did not arrive within {seconds} seconds")]
     BodyTooSlow {
@@ -319,6 +325,8 @@ pub enum Kind {
     /// [`Error::Busy`], [`Error::TooManyConnections`], [`Error::TooManyRequests`],
     /// [`Error::TooManyBytes`], [`Error::NeedsMoreBytes`], [`Error::TooManyJobs`].
     Busy,
+    /// [`Error::UnknownCoding`].
+    UnknownCoding,
     /// [`Error::BodyTooSlow`].
     BodyTooSlow,
     /// [`Error::TimeOver`].
@@ -331,7 +339,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::Invalid,
         Self::TooManyPoints,
         Self::TooManyRows,
@@ -351,6 +359,7 @@ impl Kind {
         Self::TooManyForAddress,
         Self::TooFast,
         Self::Busy,
+        Self::UnknownCoding,
         Self::BodyTooSlow,
         Self::TimeOver,
         Self::ShuttingDown,
@@ -380,6 +389,7 @@ impl Kind {
             Self::TooManyForAddress => "too-many-for-address",
             Self::TooFast => "too-fast",
             Self::Busy => "busy",
+            Self::UnknownCoding => "unknown-coding",
             Self::BodyTooSlow => "body-too-slow",
             Self::TimeOver => "time-over",
             Self::ShuttingDown => "shutting-down",
@@ -423,6 +433,7 @@ impl Error {
             | Self::TooManyJobs { .. }
             | Self::TooManyBytes { .. }
             | Self::NeedsMoreBytes { .. } => Kind::Busy,
+            Self::UnknownCoding { .. } => Kind::UnknownCoding,
             Self::BodyTooSlow { .. } => Kind::BodyTooSlow,
             Self::TimeOver { .. } => Kind::TimeOver,
             Self::ShuttingDown => Kind::ShuttingDown,

@@ -9,6 +9,7 @@
 //! What only a daemon needs is there with the feature `daemon`.
 
 mod attributes;
+mod bounded_list;
 #[cfg(feature = "daemon")]
 pub mod budget;
 #[cfg(feature = "daemon")]
@@ -47,12 +48,16 @@ mod ready;
 #[cfg(feature = "daemon")]
 pub mod record;
 mod resolve;
+#[cfg(feature = "daemon")]
+pub mod segments;
 mod single;
 #[cfg(feature = "daemon")]
 pub mod stream;
 #[cfg(feature = "daemon")]
 mod tables;
 mod terrain;
+#[cfg(feature = "daemon")]
+pub mod unpack;
 pub mod work;
 pub mod world;
 

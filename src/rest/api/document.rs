@@ -84,7 +84,9 @@ fn described(operation: &Operation, is_open: bool, generator: &mut SchemaGenerat
     }
     let mut problems: Vec<Kind> = operation.problems.clone();
     problems.extend(EVERYWHERE);
-    problems.extend(operation.body.is_some().then_some(Kind::BodyTooSlow));
+    if operation.body.is_some() {
+        problems.extend([Kind::UnknownCoding, Kind::BodyTooSlow]);
+    }
     if !is_open {
         problems.extend(AT_THE_GATE);
     }

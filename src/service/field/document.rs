@@ -3,17 +3,12 @@
 //! An object with one member, whose name says the shape. The numbers are checked when the document is
 //! [built](super::build).
 
-use std::fmt;
-
 use base64::{Engine as _, prelude::BASE64_STANDARD};
 use schemars::JsonSchema;
-use serde::{
-    Deserialize, Deserializer, Serialize,
-    de::{Error as _, SeqAccess, Visitor},
-};
+use serde::{Deserialize, Deserializer, Serialize};
 use strew_core::field::{Edges, FieldSpec, Filter};
 
-use crate::raster::Price;
+use crate::{raster::Price, service::bounded_list::list};
 
 /// A field: a share of the density, from 0 to 1, at each place. Exactly one member.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -174,13 +169,25 @@ pub struct Radial {
 #[schemars(rename = "FieldDistance")]
 pub struct Distance {
     /// Points: x and y of each.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "points",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub points: Option<Vec<[f64; 2]>>,
     /// Lines: the vertices of each, at least two.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "lines",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub lines: Option<Vec<Vec<[f64; 2]>>>,
     /// Rings: the vertices of each, at least three. Rings in rings are holes. Distances inside are below 0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "lines",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub polygons: Option<Vec<Vec<[f64; 2]>>>,
     /// Two distances in ascending order.
     pub distances: [f64; 2],
@@ -320,6 +327,7 @@ pub struct Curve {
     /// The field.
     pub of: Document,
     /// Pairs of a share of the field and what it becomes, 2 to 256, in ascending order of the first.
+    #[serde(deserialize_with = "curve")]
     #[schemars(length(min = 2, max = 256))]
     pub points: Vec<[f64; 2]>,
 }
@@ -379,30 +387,40 @@ pub struct Parts(pub Vec<Document>);
 impl<'de> Deserialize<'de> for Parts {
     /// Stops at more than a field may have, so that a long list takes no memory.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct List;
-
-        impl<'de> Visitor<'de> for List {
-            type Value = Parts;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("an array of fields")
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut parts: A) -> Result<Parts, A::Error> {
-                const MOST: usize = FieldSpec::MAX_PARTS;
-                let mut all = vec![];
-                while let Some(part) = parts.next_element()? {
-                    if all.len() == MOST {
-                        return Err(A::Error::custom(format!("more than {MOST} fields")));
-                    }
-                    all.push(part);
-                }
-                Ok(Parts(all))
-            }
-        }
-
-        deserializer.deserialize_seq(List)
+        list(deserializer, 0..=FieldSpec::MAX_PARTS, "fields").map(Self)
     }
+}
+
+type Vertices = Vec<[f64; 2]>;
+
+/// The vertices of one shape.
+#[derive(Deserialize)]
+struct Line(#[serde(deserialize_with = "vertices")] Vertices);
+
+fn vertices<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vertices, D::Error> {
+    list(deserializer, 0..=FieldSpec::MAX_VERTICES, "vertices")
+}
+
+/// Several of them.
+#[derive(Deserialize)]
+struct Lines(#[serde(deserialize_with = "shapes")] Vec<Line>);
+
+fn shapes<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Line>, D::Error> {
+    list(deserializer, 0..=FieldSpec::MAX_VERTICES, "shapes")
+}
+
+fn points<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vertices>, D::Error> {
+    let points = Option::<Line>::deserialize(deserializer)?;
+    Ok(points.map(|points| points.0))
+}
+
+fn lines<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<Vertices>>, D::Error> {
+    let lines = Option::<Lines>::deserialize(deserializer)?;
+    Ok(lines.map(|lines| lines.0.into_iter().map(|line| line.0).collect()))
+}
+
+fn curve<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<[f64; 2]>, D::Error> {
+    list(deserializer, 0..=FieldSpec::MAX_CURVE, "points")
 }
 
 const fn rising() -> [f64; 2] {

@@ -71,6 +71,10 @@ pub const DEFAULT_PROFILE: &str = "blue";
 pub const DEFAULT_ALPHA: &str = "(5-sqrt(3))/2";
 /// The most layers of a query.
 pub const MOST_LAYERS: usize = 16;
+/// The most regions that lists of regions have in one query.
+pub const MOST_REGIONS: usize = 1000;
+/// The most names in a list, such as attributes.
+pub const MOST_NAMES: usize = 64;
 /// The most parts that a query is split into.
 pub const MOST_PARTS: u64 = 10_000;
 

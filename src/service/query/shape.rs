@@ -235,10 +235,7 @@ impl Shape {
                 let values = serde_json::from_str(json.get());
                 Value::Numbers(values.map_err(|_| "must be an array of numbers")?)
             }
-            (Self::Names { .. }, _) => {
-                let names = serde_json::from_str(json.get());
-                Value::Names(names.map_err(|_| "must be an array of names")?)
-            }
+            (Self::Names { .. }, _) => Value::Names(json::list_of_names(json)?),
             (Self::Weights, _) => Value::Weights(json::weights(json)?),
             (Self::Ranges, _) => Value::Ranges(json::ranges(json)?),
             (Self::Field, _) => return Err("must be a name".into()),

@@ -8,14 +8,19 @@ use crate::support::{attack::without_window, daemon::Daemon};
 const COUNT: &str = "/strew.v1.PointService/CountPoints";
 
 /// A gRPC frame.
-fn frame(flag: u8, message: &[u8]) -> Vec<u8> {
+pub(super) fn frame(flag: u8, message: &[u8]) -> Vec<u8> {
     let length = u32::try_from(message.len()).expect("short");
     [&[flag][..], &length.to_be_bytes(), message].concat()
 }
 
 /// Sends a call with a body and a header. Returns the status and its message, which a call without
 /// an answer has in its head.
-async fn call(daemon: &Daemon, path: &str, body: Vec<u8>, coding: &str) -> (String, String) {
+pub(super) async fn call(
+    daemon: &Daemon,
+    path: &str,
+    body: Vec<u8>,
+    coding: &str,
+) -> (String, String) {
     let (client, _) = without_window(daemon.address()).await.expect("connected");
     let mut client = client.ready().await.expect("ready");
     let request = http::Request::post(daemon.url(path))

@@ -14,6 +14,7 @@ mod hostile_clients;
 mod keys;
 mod limits;
 mod logs;
+mod messages;
 mod metrics;
 mod panics;
 mod pictures;

@@ -111,3 +111,59 @@ fn allowed_origins_can_be_listed_or_none() {
     let closed = Daemon::start(&["http.cors_origins="]);
     assert_eq!(ask(&closed, "https://a.example"), "");
 }
+
+/// Browsers send a body of plain text without asking first.
+#[test]
+fn pages_that_are_not_allowed_send_nothing_but_requests_for_reading() {
+    const QUERY: &str = "/v1/count";
+    const CALL: &str = "/strew.v1.PointService/ListProfiles";
+    const BODY: &[u8] = br#"{"region": {"bbox": [0, 0, 9, 9]}, "spacing": 1}"#;
+    let closed = Daemon::start(&["http.cors_origins="]);
+    let listed = Daemon::start(&["http.cors_origins=https://a.example"]);
+    let open = Daemon::start(&[]);
+    let post = |daemon: &Daemon, headers: &[(&str, &str)]| {
+        http1::post(daemon.address(), QUERY, headers, BODY).status
+    };
+    let page = ("origin", "https://a.example");
+    let other = ("origin", "https://b.example");
+    let plain = ("content-type", "text/plain");
+    assert_eq!(post(&closed, &[page, plain]), 403);
+    assert_eq!(post(&closed, &[("origin", "null"), plain]), 403);
+    assert_eq!(post(&listed, &[page, plain]), 200);
+    assert_eq!(post(&listed, &[other, plain]), 403);
+    assert_eq!(post(&open, &[other, plain]), 200);
+    // Its own pages, programs, and pages that a proxy serves under another name.
+    let own = closed.url("");
+    assert_eq!(post(&closed, &[("origin", own.trim_end_matches('/'))]), 200);
+    assert_eq!(post(&closed, &[]), 200);
+    assert_eq!(
+        post(&closed, &[page, ("sec-fetch-site", "same-origin")]),
+        200
+    );
+    // What is only read is answered, and browsers keep it from the page.
+    let read = http1::get(closed.address(), "/livez", &[page]);
+    assert_eq!(
+        (read.status, read.header("access-control-allow-origin")),
+        (200, "")
+    );
+
+    let frame = [0; 5];
+    let web = ("content-type", "application/grpc-web+proto");
+    let call = |daemon: &Daemon, origin| {
+        http1::post(daemon.address(), CALL, &[web, origin], &frame).status
+    };
+    assert_eq!(call(&closed, page), 403);
+    assert_eq!(call(&listed, page), 200);
+    let asks = [
+        page,
+        ("access-control-request-method", "POST"),
+        ("access-control-request-headers", "content-type,x-grpc-web"),
+    ];
+    let allowed = |daemon: &Daemon| {
+        let answer = http1::request(daemon.address(), "OPTIONS", CALL, &asks);
+        answer.header("access-control-allow-origin").to_owned()
+    };
+    assert_eq!(allowed(&closed), "");
+    assert_eq!(allowed(&listed), page.1);
+    assert_eq!(allowed(&open), "*");
+}

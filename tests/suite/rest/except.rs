@@ -278,6 +278,7 @@ fn what_is_no_point_or_list_is_refused() {
     let many: Vec<String> = (0..10_001).map(|i| format!("{i}:0")).collect();
     let body = json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1, "except": many });
     let (field, detail, allowed) = fault(daemon.post("/v1/points:query", &body).json());
-    assert_eq!((field.as_str(), detail.as_str()), ("except", "too many"));
-    assert!(allowed.contains("10000"), "{allowed}");
+    assert_eq!(field, "except");
+    assert_eq!(detail, "10001 names, more than 10000");
+    assert!(!allowed.is_empty());
 }

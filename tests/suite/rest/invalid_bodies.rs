@@ -77,7 +77,7 @@ fn members() -> Vec<(Value, &'static str, Vec<&'static str>)> {
         (
             polygon(json!([[[0, 0], [1, 1]]])),
             "region.polygon",
-            vec!["2 different vertices"],
+            vec!["coordinates[0] has 2 positions", "3 or more"],
         ),
         (
             polygon(json!([[[0, 0], [1, 1], [2, null]]])),

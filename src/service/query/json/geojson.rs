@@ -1,12 +1,13 @@
 //! Polygons of GeoJSON: a geometry, a feature, or a collection of either.
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
 use super::{
     super::{MOST_LEVELS, Rings, values::shown},
     object::{Position, each, text_of},
 };
+use crate::service::bounded_list::list;
 
 /// What is read.
 pub(super) const GEOJSON: &str = "GeoJSON: a Polygon or MultiPolygon, or a Feature, \
@@ -81,13 +82,12 @@ fn collect(
     };
     match object.r#type.as_deref() {
         Some("Polygon") => {
-            let rings: Vec<Vec<Position>> = coordinates(&object, name(), &under("coordinates"), 2)?;
+            let rings: RingsJson = coordinates(&object, name(), &under("coordinates"), 2)?;
             found.push(plain(rings));
             Ok(())
         }
         Some("MultiPolygon") => {
-            let all: Vec<Vec<Vec<Position>>> =
-                coordinates(&object, name(), &under("coordinates"), 3)?;
+            let PolygonsJson(all) = coordinates(&object, name(), &under("coordinates"), 3)?;
             found.extend(all.into_iter().map(plain));
             Ok(())
         }
@@ -111,8 +111,37 @@ fn collect(
     }
 }
 
-fn plain(rings: Vec<Vec<Position>>) -> Rings {
-    let ring = |ring: Vec<Position>| ring.into_iter().map(|position| position.0).collect();
+/// The least positions of a ring.
+const LEAST: usize = 3;
+
+// Empty lists would take many times the memory of their text.
+
+/// A ring.
+#[derive(Deserialize)]
+struct RingJson(#[serde(deserialize_with = "positions")] Vec<Position>);
+
+/// The rings of a polygon.
+#[derive(Deserialize)]
+struct RingsJson(#[serde(deserialize_with = "some")] Vec<RingJson>);
+
+/// Polygons.
+#[derive(Deserialize)]
+struct PolygonsJson(#[serde(deserialize_with = "some")] Vec<RingsJson>);
+
+fn positions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Position>, D::Error> {
+    list(deserializer, LEAST..=usize::MAX, "positions")
+}
+
+fn some<'de, D, T>(deserializer: D) -> Result<Vec<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    list(deserializer, 1..=usize::MAX, "rings")
+}
+
+fn plain(RingsJson(rings): RingsJson) -> Rings {
+    let ring = |RingJson(ring): RingJson| ring.into_iter().map(|position| position.0).collect();
     rings.into_iter().map(ring).collect()
 }
 
@@ -136,13 +165,21 @@ fn wrong(json: &RawValue, path: &str, levels: usize) -> Option<String> {
         let text: String = shown(json).chars().take(60).collect();
         return (!is_position).then(|| format!("{path} is `{text}`, not a position [x, y]"));
     }
-    let mut first = None;
+    let (mut first, mut count) = (None, 0);
     let is_array = each(json, |i, item| {
+        count = i + 1;
         first = wrong(item, &format!("{path}[{i}]"), levels - 1);
         first.is_none()
     });
+    let few = match (levels, count) {
+        (1, ..LEAST) => Some(format!(
+            "{path} has {count} positions, and a ring has {LEAST} or more"
+        )),
+        (_, 0) => Some(format!("{path} is empty")),
+        _ => None,
+    };
     if is_array {
-        return first;
+        return first.or(few);
     }
     let what = match levels {
         1 => "a ring, an array of positions",

@@ -19,7 +19,7 @@ use super::{
 use crate::service::Fault;
 use object::Object;
 
-pub(super) use object::{fields, ranges, weights};
+pub(super) use object::{fields, list_of_names, ranges, weights};
 pub use region::read_region;
 pub use schema::RegionSchema;
 
@@ -49,13 +49,14 @@ pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
         serde_json::from_slice(bytes).map_err(|error| fault(format!("not JSON: {error}")))?;
     let object = Object::read(whole).map_err(fault)?;
     let mut draft = Draft::new(Values::new(groups, ""));
+    let mut listed = 0;
     for (name, json) in object.members() {
         if draft.values.is_full() {
             break;
         }
         match name {
-            "region" => draft.region = region::read(json, "region").map(Some),
-            "layers" => draft.layers = layers(json),
+            "region" => draft.region = region::read(json, "region", &mut listed).map(Some),
+            "layers" => draft.layers = layers(json, &mut listed),
             // A common slip, which the list of members would not explain.
             "bbox" | "circle" | "polygon" | "chunk" | "include" | "exclude" => {
                 let detail = format!("belongs in `region`: {{\"region\": {{\"{name}\": …}}}}");
@@ -122,7 +123,7 @@ fn members(others: &[&str], groups: &'static [Group]) -> String {
     format!("{}, {}", others.join(", "), names(groups))
 }
 
-fn layers(json: &RawValue) -> Checked<Vec<LayerDraft>> {
+fn layers(json: &RawValue, listed: &mut usize) -> Checked<Vec<LayerDraft>> {
     let fault = |detail: &str| Faults::from(Fault::new("layers", shown(json), detail, LAYERS));
     let mut layers = vec![];
     let mut unread: Checked<()> = Ok(());
@@ -130,7 +131,7 @@ fn layers(json: &RawValue) -> Checked<Vec<LayerDraft>> {
     let is_array = object::each(json, |i, item| {
         count += 1;
         if i < MOST_LAYERS {
-            match layer(&format!("layers[{i}]"), item) {
+            match layer(&format!("layers[{i}]"), item, listed) {
                 Ok(layer) => layers.push(layer),
                 Err(fault) => Faults::add(&mut unread, fault),
             }
@@ -151,13 +152,16 @@ fn layers(json: &RawValue) -> Checked<Vec<LayerDraft>> {
     unread.map(|()| layers)
 }
 
-fn layer(path: &str, json: &RawValue) -> Result<LayerDraft, Fault> {
+fn layer(path: &str, json: &RawValue, listed: &mut usize) -> Result<LayerDraft, Fault> {
     let fault = |detail| Fault::new(path, shown(json), detail, LAYERS);
     let object = Object::read(json).map_err(fault)?;
     let mut layer = LayerDraft::new(Values::new(groups::SET, &format!("{path}.")));
     for (name, json) in object.members() {
         match name {
-            "region" => layer.region = region::read(json, &format!("{path}.region")).map(Some),
+            "region" => {
+                let read = region::read(json, &format!("{path}.region"), listed);
+                layer.region = read.map(Some);
+            }
             "name" => {
                 let wrong = |_| {
                     let field = format!("{path}.name");

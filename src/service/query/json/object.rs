@@ -7,6 +7,8 @@ use serde_json::{Deserializer, value::RawValue};
 
 use crate::service::{
     Fault,
+    bounded_list::list,
+    except::MOST_GIVEN,
     field::{self, Document},
     query::{Checked, all, values::shown},
 };
@@ -130,6 +132,18 @@ pub(super) fn numbers(json: &RawValue) -> Result<Vec<(String, f64)>, String> {
         Ok((name.to_owned(), number))
     };
     Object::read(json)?.members().map(read).collect()
+}
+
+/// An array of names.
+///
+/// # Errors
+/// What is wrong with it.
+pub(in crate::service::query) fn list_of_names(json: &RawValue) -> Result<Vec<String>, String> {
+    let mut deserializer = Deserializer::from_str(json.get());
+    list(&mut deserializer, 0..=MOST_GIVEN, "names").map_err(|error| match text_of(&error) {
+        text if text.contains("more than") => text,
+        _ => "must be an array of names".into(),
+    })
 }
 
 /// Weights: an object of weights by name.

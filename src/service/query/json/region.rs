@@ -5,8 +5,8 @@ use serde_json::value::RawValue;
 
 use super::{
     super::{
-        Checked, Faults, MOST_LEVELS, RegionDraft, ShapeDraft, parameter::unknown, region::REGION,
-        shape::LONGEST, values::shown,
+        Checked, Faults, MOST_LEVELS, MOST_REGIONS, RegionDraft, ShapeDraft, parameter::unknown,
+        region::REGION, shape::LONGEST, values::shown,
     },
     geojson::{GEOJSON, polygons},
     object::{self, Object, text_of},
@@ -67,12 +67,12 @@ pub fn read_region(bytes: &[u8]) -> Result<RegionDraft, Fault> {
     })
 }
 
-/// A region.
-pub(super) fn read(json: &RawValue, path: &str) -> Checked<RegionDraft> {
-    region(json, path, 0)
+/// A region. `listed` counts the regions in lists of the query.
+pub(super) fn read(json: &RawValue, path: &str, listed: &mut usize) -> Checked<RegionDraft> {
+    region(json, path, 0, listed)
 }
 
-fn region(json: &RawValue, path: &str, depth: usize) -> Checked<RegionDraft> {
+fn region(json: &RawValue, path: &str, depth: usize, listed: &mut usize) -> Checked<RegionDraft> {
     let wrong = |detail: String| Faults::from(Fault::new(path, shown(json), detail, REGION));
     let object = Object::read(json).map_err(wrong)?;
     let given: Vec<&str> = SHAPES
@@ -129,9 +129,9 @@ fn region(json: &RawValue, path: &str, depth: usize) -> Checked<RegionDraft> {
             return Err(wrong("regions are nested too deeply".into(), &allowed));
         }
         _ => {
-            let include = list(&field, json, depth)?;
+            let include = list(&field, json, depth, listed)?;
             let exclude = object.get("exclude");
-            let exclude = exclude.map(|json| list(&format!("{path}.exclude"), json, depth));
+            let exclude = exclude.map(|json| list(&format!("{path}.exclude"), json, depth, listed));
             ShapeDraft::Combined(include, exclude.transpose()?.unwrap_or_default())
         }
     };
@@ -147,19 +147,35 @@ const CHUNK_JSON: &str =
     r#"{"size": s, "x": column, "y": row}, a number above 0 and integers within ±4503599627370496"#;
 
 /// A list of regions, each with its faults in its place.
-fn list(path: &str, json: &RawValue, depth: usize) -> Checked<Vec<Checked<RegionDraft>>> {
+fn list(
+    path: &str,
+    json: &RawValue,
+    depth: usize,
+    listed: &mut usize,
+) -> Checked<Vec<Checked<RegionDraft>>> {
     let mut regions = vec![];
     let mut faults = 0;
     let is_array = object::each(json, |i, item| {
-        let read = region(item, &format!("{path}[{i}]"), depth + 1);
+        *listed += 1;
+        if *listed > MOST_REGIONS {
+            // Only counted.
+            return true;
+        }
+        let read = region(item, &format!("{path}[{i}]"), depth + 1, listed);
         faults += usize::from(read.is_err());
         regions.push(read);
-        faults < super::super::faults::MOST_FAULTS
+        *listed > MOST_REGIONS || faults < super::super::faults::MOST_FAULTS
     });
-    if is_array {
-        return Ok(regions);
+    if !is_array {
+        let allowed = "an array of regions";
+        return Err(Fault::new(path, shown(json), "must be an array", allowed).into());
     }
-    Err(Fault::new(path, shown(json), "must be an array", "an array of regions").into())
+    if *listed > MOST_REGIONS {
+        let (value, detail) = (format!("{listed} regions"), "too many regions");
+        let allowed = format!("at most {MOST_REGIONS} regions in the lists of a query");
+        return Err(Fault::new(path, value, detail, allowed).into());
+    }
+    Ok(regions)
 }
 
 /// As many numbers as are wanted.

@@ -54,13 +54,14 @@ pub struct ChunkRegion {
     chunk: ChunkJson,
 }
 
-/// What lies in any region of include and in none of exclude. Lists nest 8 levels deep.
+/// What lies in any region of include and in none of exclude. Lists nest 8 levels deep, and those of a query have
+/// 1000 regions in all.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct CombinedRegion {
-    #[schemars(length(min = 1))]
+    #[schemars(length(min = 1, max = 1000))]
     include: Vec<RegionSchema>,
-    #[schemars(default)]
+    #[schemars(default, length(max = 1000))]
     exclude: Option<Vec<RegionSchema>>,
 }
 

@@ -1,0 +1,131 @@
+//! The shapes of the messages that requests are made of, as a table for the look at a message before it is
+//! decoded (`src/grpc/message/walk.rs`).
+
+use std::{error::Error, fmt::Write as _};
+
+use prost_types::{
+    DescriptorProto, FieldDescriptorProto, FileDescriptorSet,
+    field_descriptor_proto::{Label, Type},
+};
+
+/// The code of the table. A repeated field needs a limit, by its name, in `src/grpc/message/most.rs`.
+pub fn code(descriptors: &FileDescriptorSet) -> Result<String, Box<dyn Error>> {
+    let files = || descriptors.file.iter();
+    let mut known = vec![];
+    for message in files().flat_map(|file| &file.message_type) {
+        known.push((format!(".strew.v1.{}", message.name()), message));
+        for inner in &message.nested_type {
+            known.push((
+                format!(".strew.v1.{}.{}", message.name(), inner.name()),
+                inner,
+            ));
+        }
+    }
+    let find = |name: &str| -> Result<&DescriptorProto, String> {
+        let found = known.iter().find(|(known, _)| known == name);
+        found
+            .map(|(_, message)| *message)
+            .ok_or_else(|| format!("no message {name}"))
+    };
+    let methods = files()
+        .flat_map(|file| &file.service)
+        .flat_map(|service| &service.method);
+    let (mut wanted, mut of_methods): (Vec<String>, _) = (vec![], String::new());
+    for method in methods {
+        let at = place(&mut wanted, method.input_type());
+        let input = find(method.input_type())?.name();
+        writeln!(
+            of_methods,
+            "Method {{ path: \"/strew.v1.PointService/{}\", shape: {at}, decode: decoded::<proto::{input}> }},",
+            method.name()
+        )?;
+    }
+    let (mut shapes, mut most, mut i) = (String::new(), 0, 0);
+    while let Some(name) = wanted.get(i).cloned() {
+        let message = find(&name)?;
+        let mut fields = String::new();
+        for field in &message.field {
+            if let Some(kind) = kind(field, &mut wanted)? {
+                writeln!(
+                    fields,
+                    "Field {{ number: {}, name: {:?}, kind: Kind::{kind}, most: {} }},",
+                    field.number(),
+                    field.name(),
+                    limit(message, field)
+                )?;
+            }
+        }
+        most = most.max(message.field.len());
+        writeln!(
+            shapes,
+            "Shape {{ bytes: size_of::<{}>(), is_field: {}, fields: &[{fields}] }},",
+            rust_type(message)?,
+            message.name() == "Field"
+        )?;
+        i += 1;
+    }
+    Ok(format!(
+        "/// The most fields of a message.\nconst MOST_FIELDS: usize = {most};\n\
+         pub(super) static SHAPES: [Shape; {i}] = [{shapes}];\n\
+         pub(super) static METHODS: &[Method] = &[{of_methods}];\n"
+    ))
+}
+
+/// The place of a message in the table.
+fn place(wanted: &mut Vec<String>, name: &str) -> usize {
+    wanted
+        .iter()
+        .position(|known| known == name)
+        .unwrap_or_else(|| {
+            wanted.push(name.to_owned());
+            wanted.len() - 1
+        })
+}
+
+/// What a field holds; nothing for a number, which takes no memory of its own.
+fn kind(
+    field: &FieldDescriptorProto,
+    wanted: &mut Vec<String>,
+) -> Result<Option<String>, Box<dyn Error>> {
+    Ok(Some(match field.r#type() {
+        Type::String => "Text".into(),
+        Type::Bytes => "Pixels".into(),
+        Type::Message => format!("Message({})", place(wanted, field.type_name())),
+        _ if field.label() == Label::Repeated => {
+            return Err(format!("numbers are not counted yet: {}", field.name()).into());
+        }
+        _ => return Ok(None),
+    }))
+}
+
+/// The name of a field's limit.
+fn limit(message: &DescriptorProto, field: &FieldDescriptorProto) -> String {
+    if field.label() != Label::Repeated {
+        return "most::ONCE".into();
+    }
+    let mut name = String::new();
+    for (i, letter) in message.name().chars().enumerate() {
+        if i > 0 && letter.is_uppercase() {
+            name.push('_');
+        }
+        name.push(letter.to_ascii_uppercase());
+    }
+    format!("most::{name}_{}", field.name().to_uppercase())
+}
+
+/// The type that a message is decoded to: of a map's entry a pair.
+fn rust_type(message: &DescriptorProto) -> Result<String, Box<dyn Error>> {
+    if !message.options.as_ref().is_some_and(|o| o.map_entry()) {
+        return Ok(format!("proto::{}", message.name()));
+    }
+    let part = |field: &FieldDescriptorProto| -> Result<String, String> {
+        Ok(match field.r#type() {
+            Type::String => "String".into(),
+            Type::Double => "f64".into(),
+            Type::Message => field.type_name().replace(".strew.v1.", "proto::"),
+            other => return Err(format!("a map of {other:?}")),
+        })
+    };
+    let parts: Result<Vec<_>, _> = message.field.iter().map(part).collect();
+    Ok(format!("({})", parts?.join(", ")))
+}

@@ -1,0 +1,85 @@
+//! Lists that are counted while they are read, so that a long one takes no memory.
+
+use std::{fmt, marker::PhantomData, ops::RangeInclusive};
+
+use serde::de::{Deserialize, Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
+
+/// Reads a list of a number of elements, called `what`.
+///
+/// # Errors
+/// As the deserializer, and for fewer or more elements.
+pub fn list<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+    range: RangeInclusive<usize>,
+    what: &'static str,
+) -> Result<Vec<T>, D::Error> {
+    let elements = PhantomData;
+    deserializer.deserialize_seq(List {
+        range,
+        what,
+        elements,
+    })
+}
+
+struct List<T> {
+    range: RangeInclusive<usize>,
+    what: &'static str,
+    elements: PhantomData<T>,
+}
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for List<T> {
+    type Value = Vec<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "an array of {}", self.what)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<Vec<T>, A::Error> {
+        let (least, most) = (*self.range.start(), *self.range.end());
+        let what = self.what;
+        let mut all = vec![];
+        while all.len() < most {
+            match elements.next_element()? {
+                Some(element) => all.push(element),
+                None if all.len() < least => {
+                    let count = all.len();
+                    return Err(A::Error::custom(format!(
+                        "{count} {what}, fewer than {least}"
+                    )));
+                }
+                None => return Ok(all),
+            }
+        }
+        let mut count = most;
+        while elements.next_element::<IgnoredAny>()?.is_some() {
+            count += 1;
+        }
+        if count > most {
+            return Err(A::Error::custom(format!(
+                "{count} {what}, more than {most}"
+            )));
+        }
+        Ok(all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_are_as_long_as_they_may_be_and_faults_say_how_long_they_are() {
+        let read = |text: &str| {
+            let mut json = serde_json::Deserializer::from_str(text);
+            let read: Result<Vec<u8>, _> = list(&mut json, 1..=3, "numbers");
+            read.map_err(|error| error.to_string())
+        };
+        assert_eq!(read("[1, 2, 3]"), Ok(vec![1, 2, 3]));
+        let fault = read("[1, 2, 3, {}, 5]").expect_err("too many");
+        assert!(fault.starts_with("5 numbers, more than 3"), "{fault}");
+        let fault = read("[]").expect_err("too few");
+        assert!(fault.starts_with("0 numbers, fewer than 1"), "{fault}");
+        let fault = read("{}").expect_err("no list");
+        assert!(fault.contains("an array of numbers"), "{fault}");
+    }
+}
