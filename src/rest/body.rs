@@ -102,8 +102,3 @@ fn why(error: &axum::Error) -> Error {
     let detail = "broke off before its end";
     Fault::new("body", "", detail, "a whole body").into()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-}
