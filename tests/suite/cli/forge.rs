@@ -7,7 +7,7 @@ use std::{
 };
 
 use strew_forge::{Checkpoint, read_table};
-use strew_testkit::wait::until;
+use strew_testkit::{process::Running, wait::until};
 
 use crate::support::{command::errors, daemon::strew};
 
@@ -68,16 +68,11 @@ fn an_interrupt_keeps_a_checkpoint() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let kept = folder.join("t.strew.checkpoint");
-    let child = forge(folder, &["--steps", "1000000", "--checkpoint-every", "0"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program runs");
+    let endless = ["--steps", "1000000", "--checkpoint-every", "0"];
+    let child = Running::start(forge(folder, &endless).stderr(Stdio::piped()));
     until("a checkpoint is kept", || kept.exists().then_some(()));
-    let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(sent.expect("kill runs").success());
-    let output = child.wait_with_output().expect("a child");
+    child.signal("INT");
+    let output = child.end();
     assert_eq!(output.status.code(), Some(130));
     let text = errors(&output);
     assert!(text.contains("the same command goes on from"), "{text}");
