@@ -156,6 +156,33 @@ fn an_impossible_target_is_announced_and_reported_as_missed() {
 }
 
 #[test]
+fn a_table_that_will_be_rejected_is_announced_as_such() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (alpha, announced, doubt) in [
+        ("sqrt(2)", ": 121 blocks,", "(11 × 11 blocks)"),
+        // The map has more intervals, but points lie in 31 − 20 of them only.
+        (
+            "1.55",
+            ": 121 blocks,",
+            "(11 × 11 blocks, and the pattern repeats every 40 grid units)",
+        ),
+    ] {
+        let output = run(
+            folder.path(),
+            &["--alpha", alpha, "--steps", "1", "--force"],
+        );
+        let text = errors(&output);
+        assert!(text.contains(announced), "{text}");
+        let warning = text.find(doubt).unwrap_or_else(|| panic!("{text}"));
+        let verdict = text.find("the table is rejected").expect("judged");
+        assert!(warning < verdict, "{text}");
+    }
+    let blank = ["--profile", "pattern", "--steps", "1", "--restart"];
+    let text = errors(&run(folder.path(), &blank));
+    assert!(!text.contains("warning"), "{text}");
+}
+
+#[test]
 fn bad_curves_are_refused_before_any_work() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
