@@ -42,6 +42,14 @@ impl Served {
 }
 
 impl Args {
+    /// The flags of a command that has none: variables still count.
+    pub(super) fn of_environment() -> Self {
+        Self {
+            config: std::env::var_os("STREW_CONFIG").map(PathBuf::from),
+            ..Self::default()
+        }
+    }
+
     /// The merged settings.
     pub(crate) fn merged(&self) -> Result<Config, Failure> {
         self.merge(None)

@@ -297,20 +297,7 @@ fn names_that_end_with_gz_and_zst_are_compressed() {
 }
 
 #[test]
-fn shells_and_man_know_every_command() {
-    for (shell, begins) in [
-        ("bash", "_strew()"),
-        ("zsh", "#compdef strew"),
-        ("fish", "# Print an optspec"),
-        ("powershell", ""),
-    ] {
-        let output = run(&["completions", shell], "");
-        let script = String::from_utf8_lossy(&output.stdout);
-        assert!(
-            script.starts_with(begins) && script.contains("min-distance"),
-            "{shell}: {script:.200}"
-        );
-    }
+fn man_knows_every_command() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = run(
         &["man", "--out-dir", folder.path().to_str().expect("text")],
