@@ -4,6 +4,7 @@ import * as THREE from "three";
 const SIDE = 32; // meters, along each side of a chunk
 const NEAR = 3; // chunks within which all points are drawn
 const FAR = 8; // chunks that are drawn at all
+const [SHORTEST_PAUSE, LONGEST_PAUSE] = [1000, 60_000]; // milliseconds, after a failure
 const COLUMNS = { x: 0, y: 1, angle: 2, scale: 3, variant: 4, rank: 5 };
 const WIDTH = 6;
 
@@ -13,6 +14,8 @@ export class Chunks {
     loaded = 0;
     drawn = 0;
     #loaded = new Map();
+    #pause = 0;
+    #resumes = 0;
 
     constructor(url, kinds) {
         this.kinds = kinds;
@@ -50,15 +53,21 @@ export class Chunks {
 
     async #want(cx, cy) {
         const key = `${cx},${cy}`;
-        if (this.#loaded.has(key) || this.error) return;
+        if (this.#loaded.has(key) || performance.now() < this.#resumes) return;
         const chunk = { cx, cy, group: new THREE.Group(), meshes: [], count: 0 };
         this.#loaded.set(key, chunk);
         this.group.add(chunk.group);
         try {
             const answer = await patient(`${this.url}/v1/chunks/${SIDE}/${cx}/${cy}?${this.query}`);
             this.#fill(chunk, new Float32Array(await answer.arrayBuffer()));
+            [this.error, this.#pause] = [null, 0];
         } catch (error) {
             this.error = `The daemon at ${this.url} does not answer: ${error.message}`;
+            // The next call after a pause requests it again.
+            this.#forget(key, chunk);
+            if (performance.now() < this.#resumes) return;
+            this.#pause = Math.min(Math.max(2 * this.#pause, SHORTEST_PAUSE), LONGEST_PAUSE);
+            this.#resumes = performance.now() + this.#pause;
         }
     }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow};
-use clap_complete::Shell;
+use clap_complete::{Shell, env::Shells};
 
 use super::{Failure, output::Output};
 
@@ -24,13 +24,15 @@ pub(super) struct ManArgs {
     out_dir: Option<PathBuf>,
 }
 
-/// Prints the completions of a shell.
-pub(super) fn completions(
-    args: &CompletionsArgs,
-    mut command: clap::Command,
-) -> Result<(), Failure> {
+/// Prints a script by which a shell asks the program itself what can follow.
+pub(super) fn completions(args: &CompletionsArgs) -> Result<(), Failure> {
+    const NAME: &str = "strew";
+    let shells = Shells::builtins();
+    let shell = shells.completer(&args.shell.to_string());
+    let shell = shell.context("this shell has no completions")?;
     let mut script = vec![];
-    clap_complete::generate(args.shell, &mut command, "strew", &mut script);
+    let written = shell.write_registration("COMPLETE", NAME, NAME, NAME, &mut script);
+    written.context("the script cannot be made")?;
     write(None, &script)
 }
 

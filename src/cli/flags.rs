@@ -5,6 +5,7 @@ use std::{fmt, marker::PhantomData};
 
 use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches};
 
+use super::candidates;
 use crate::service::{
     Encoding,
     query::{
@@ -284,6 +285,7 @@ fn argument(parameter: &'static Parameter) -> Arg {
         .help_heading(heading(parameter.group))
         .hide_short_help(RARE.contains(&name))
         .action(ArgAction::Set)
+        .add(candidates::completer(parameter))
         // Negative numbers, also those that are wrong: the query says what is.
         .allow_hyphen_values(!is_name)
 }

@@ -13,8 +13,8 @@ use std::{
 use anyhow::{Context as _, anyhow};
 use strew_core::Alpha;
 use strew_forge::{
-    Checkpoint, DEFAULT_SEED, Estimate, ForgeError, Job, Outcome, Target, file_name, forge,
-    gravest, resume, write_table,
+    Checkpoint, DEFAULT_SEED, Estimate, ForgeError, Job, Outcome, Prospect, Target, file_name,
+    forge, gravest, resume, write_table,
 };
 
 use super::{Failure, output, watcher::Watcher};
@@ -176,7 +176,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let kept = checkpoint_path(&path);
     let found = pool.install(|| args.checkpoint(&job, &kept))?;
     if !args.quiet {
-        announce(&path, &estimate);
+        announce(&path, &job.prospect(), &estimate);
         if let Some(found) = &found {
             let (steps, from) = (found.steps(), kept.display());
             eprintln!(
@@ -237,16 +237,19 @@ impl Args {
 }
 
 /// Says what will be done, and whether it can succeed.
-fn announce(path: &Path, estimate: &Estimate) {
+fn announce(path: &Path, prospect: &Prospect, estimate: &Estimate) {
     eprintln!(
         "forging {}: {} blocks, {} steps over {} pairs, judged on {} points; about {:.0} s",
         path.display(),
-        estimate.blocks,
+        prospect.blocks(),
         estimate.steps,
         estimate.pairs,
         estimate.measured_points,
         estimate.time.as_secs_f64().max(1.0)
     );
+    if let Some(doubt) = prospect.doubt() {
+        eprintln!("warning: the table will probably be rejected: {doubt}");
+    }
     if let Some(least) = estimate.correlation.filter(|least| least.is_impossible()) {
         eprintln!(
             "warning: no point set has exactly this power curve: its pair correlation would be \

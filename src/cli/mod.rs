@@ -1,6 +1,7 @@
 //! The command line.
 
 mod arrangement;
+mod candidates;
 mod completions;
 mod compression;
 mod config;
@@ -36,6 +37,7 @@ mod worlds;
 use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
+use clap_complete::CompleteEnv;
 
 /// What `strew` does.
 #[derive(Debug, Parser)]
@@ -142,6 +144,8 @@ impl From<anyhow::Error> for Failure {
 /// Runs the program.
 #[must_use]
 pub fn main() -> ExitCode {
+    // Shells run the program with COMPLETE=SHELL for what can follow.
+    CompleteEnv::with_factory(Cli::command).complete();
     let done = match Cli::parse().command {
         Command::Serve(args) => serve::run(&args),
         Command::Sample(args) => sample::run(&args),
@@ -163,7 +167,7 @@ pub fn main() -> ExitCode {
         Command::Config(args) => config::run(&args),
         Command::Profiles(args) => profiles::run(&args),
         Command::Worlds(command) => worlds::run(&command),
-        Command::Completions(args) => completions::completions(&args, Cli::command()),
+        Command::Completions(args) => completions::completions(&args),
         Command::Man(args) => completions::man(&args, Cli::command()),
     };
     let (error, code) = match done {

@@ -100,6 +100,7 @@ pub async fn routes(service: Arc<Service>) -> Result<(Routes, Health), BuildErro
     let reflection = || {
         tonic_reflection::server::Builder::configure()
             .register_encoded_file_descriptor_set(DESCRIPTORS)
+            .register_encoded_file_descriptor_set(tonic_types::pb::FILE_DESCRIPTOR_SET)
             .register_encoded_file_descriptor_set(tonic_health::pb::FILE_DESCRIPTOR_SET)
     };
     let points = compression::COMPRESSIONS.into_iter().fold(

@@ -18,6 +18,7 @@ use rustls::{
 };
 use tokio_rustls::TlsAcceptor;
 
+pub use self::expiry::validity;
 use crate::{bounded_file, config::Tls as Settings};
 
 /// What is wrong with a certificate, or a file of them.

@@ -3,8 +3,8 @@
 use std::{collections::BTreeMap, convert::Infallible};
 
 use axum::{body::Body, response::Response};
-use futures_util::stream;
-use http::{HeaderMap, HeaderName, HeaderValue, Method, header};
+use futures_util::{StreamExt as _, stream};
+use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
 use schemars::JsonSchema;
 use strew_core::ALGORITHM_VERSION;
 
@@ -14,6 +14,7 @@ use super::{
     context::Context,
     freshness::Freshness,
     negotiate::{self, Chosen},
+    range::{self, Wanted},
 };
 use crate::service::{
     Answer, Error, Kind, Options, Output, Planned, Query, Record, Service,
@@ -33,7 +34,7 @@ const NEXT: HeaderName = HeaderName::from_static("strew-next");
 const CURSOR: HeaderName = HeaderName::from_static("strew-cursor");
 
 /// The headers of an answer with points, and what they say.
-const HEADERS: [(&str, &str); 11] = [
+const HEADERS: [(&str, &str); 12] = [
     ("strew-count", "Exactly how many points follow."),
     ("strew-table", "The digest of the table that answers."),
     (
@@ -67,6 +68,11 @@ const HEADERS: [(&str, &str); 11] = [
         "strew-kinds",
         "How many points of the region each variant has, if they are evenly spread: a JSON object by name; \
          with layers, one for each of those that have such variants.",
+    ),
+    (
+        "accept-ranges",
+        "`bytes` with npy, f32, f64, ply, multimesh and instances: GET with `Range: bytes=first-last` is answered \
+         206 with these bytes of the whole, and only their points are made; all other headers are those of the whole.",
     ),
     (
         "strew-warning",
@@ -176,6 +182,10 @@ pub(super) async fn stream(
         return points(service, context, query, chosen, output).await;
     }
     let freshness = freshness(service, context, &query, chosen.content_type).negotiated();
+    if let Some(wanted) = Wanted::of(method, headers, &freshness) {
+        let make = part(service, context, query, chosen, output, wanted);
+        return freshness.answer(headers, make).await;
+    }
     let make = points(service, context, query, chosen, output);
     freshness.answer(headers, make).await
 }
@@ -222,6 +232,60 @@ async fn points(
     };
     let mut response = Response::new(body);
     std::mem::swap(response.headers_mut(), &mut response_headers);
+    Ok(response)
+}
+
+/// Answers with a part, or with the whole if the format has no parts.
+async fn part(
+    service: &Service,
+    context: &Context,
+    query: Query,
+    chosen: Chosen,
+    output: Output,
+    wanted: Wanted,
+) -> Result<Response, Error> {
+    let block_bytes = service.limits().block_bytes;
+    let planned = service.plan(&context.caller, query.clone()).await?;
+    let whole = Answer::new(&planned, &output, block_bytes)?;
+    let (Some(size), Some(record)) = (whole.size(), whole.record_bytes()) else {
+        return points(service, context, query, chosen, output).await;
+    };
+    let Some(part) = wanted.within(size) else {
+        return Ok(range::unsatisfiable(size));
+    };
+    let before = whole.head().cloned().unwrap_or_default();
+    let length = before.len() as u64;
+    let in_head = |place: u64| usize::try_from(place.min(length)).unwrap_or(before.len());
+    let front = before.slice(in_head(part.start)..in_head(part.end));
+    // The bytes among the records, and the records that have them.
+    let bytes = part.start.max(length) - length..part.end.max(length) - length;
+    let records = bytes.start / record..bytes.end.div_ceil(record);
+    let body = if bytes.is_empty() {
+        Body::from(front)
+    } else {
+        let mut some = query.clone();
+        some.window.offset = some.window.offset.saturating_add(records.start);
+        some.window.limit = Some(records.end - records.start);
+        let (permit, planned) = service.open(&context.caller, some, None).await?;
+        let rows = Answer::new(&planned, &output, block_bytes)?;
+        if rows.legend() != whole.legend() || rows.origin() != whole.origin() {
+            drop(permit);
+            return points(service, context, query, chosen, output).await;
+        }
+        let head = rows.head().map_or(0, |head| head.len() as u64);
+        let start = head + bytes.start - records.start * record;
+        let blocks = service.blocks(permit, rows);
+        let wanted = range::cut(blocks, start..start + (bytes.end - bytes.start));
+        Body::from_stream(stream::iter([Ok(front)]).chain(wanted))
+    };
+    let mut response = Response::new(body);
+    *response.status_mut() = StatusCode::PARTIAL_CONTENT;
+    *response.headers_mut() = describe(&planned, &whole, chosen)?;
+    let place = format!("bytes {}-{}/{size}", part.start, part.end - 1);
+    let place = HeaderValue::from_str(&place).map_err(|_| Error::Internal("a range is no text"))?;
+    let headers = response.headers_mut();
+    headers.insert(header::CONTENT_RANGE, place);
+    headers.insert(header::CONTENT_LENGTH, (part.end - part.start).into());
     Ok(response)
 }
 
@@ -303,6 +367,9 @@ fn describe(planned: &Planned, answer: &Answer, chosen: Chosen) -> Result<Header
     headers.insert(header::CONTENT_DISPOSITION, text(&disposition)?);
     if let Some(size) = answer.size() {
         headers.insert(header::CONTENT_LENGTH, size.into());
+    }
+    if answer.record_bytes().is_some() {
+        headers.insert(header::ACCEPT_RANGES, range::BYTES);
     }
     Ok(headers)
 }

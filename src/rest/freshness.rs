@@ -63,6 +63,11 @@ impl Freshness {
         }
     }
 
+    /// The tag of the answer.
+    pub(super) const fn tag(&self) -> &HeaderValue {
+        &self.tag
+    }
+
     /// The coding of the answer, which its tag says.
     pub(super) const fn coding(&self) -> Option<Coding> {
         self.coding

@@ -29,9 +29,11 @@ mod problem;
 mod profiles;
 mod quality;
 mod query;
+mod range;
 mod single;
 mod split;
 mod tables;
+mod unknown;
 mod vary;
 mod worlds;
 
@@ -45,6 +47,7 @@ use api::Endpoint;
 pub use document::json;
 pub use finish::finished;
 use problem::Problem;
+pub use unknown::not_found;
 pub use worlds::world_document;
 
 /// The endpoints of REST, without their description.
@@ -113,27 +116,9 @@ impl Routes {
             let routers = endpoints.into_iter().map(Endpoint::into_router);
             routers.fold(Router::new(), Router::merge)
         };
-        let router = open(joined(free)).merge(gate(joined(closed)));
+        let router = open(joined(free).merge(page::icon())).merge(gate(joined(closed)));
         Self { router, paths }
     }
-}
-
-/// The answer where nothing is.
-#[must_use]
-pub fn not_found(request: &Request, paths: &str) -> Response {
-    let path = request.uri().path();
-    // A slash at the end is what most of them have too much.
-    let without = path.trim_end_matches('/');
-    let known =
-        !without.is_empty() && without != path && paths.split(", ").any(|known| known == without);
-    let error = Error::NoSuchPath {
-        path: path.into(),
-        available: match known {
-            true => format!("{without} (without the slash at the end)"),
-            false => paths.into(),
-        },
-    };
-    Problem::response(&error)
 }
 
 /// The whole HTTP/1.1 response to a client whose connection is refused.

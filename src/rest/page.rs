@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response, routing};
+use axum::{Router, extract::State, response::Response, routing};
 use bytes::Bytes;
 use http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
 
@@ -225,6 +225,17 @@ pub(super) fn endpoints(public_url: &str) -> Vec<Endpoint> {
     );
     all.push(parts_at(of_a_folder, &[&FOLDER, &FILE], &parts));
     all
+}
+
+/// The icon at the address where browsers look for that of an answer that is no page.
+pub(super) fn icon() -> Router {
+    let text = PARTS.iter().find(|(name, _)| *name == "icon.svg");
+    let content = text.map_or(Bytes::new(), |(_, text)| {
+        Bytes::from_static(text.as_bytes())
+    });
+    let icon = Fixed::new(PICTURE, content);
+    let answer = move |uri: Uri, headers: HeaderMap| async move { part(&icon, &uri, &headers) };
+    Router::new().route("/favicon.ico", routing::get(answer))
 }
 
 /// The name of the joined parts of a page.

@@ -225,21 +225,21 @@ fn disturb(
                 let middle = bytes.len() / 2;
                 bytes[middle] ^= 1;
                 std::fs::write(tables.join(DAMAGED), bytes).expect("writable");
-                steady.signal("-HUP");
+                steady.signal("HUP");
                 tally.event("a reload with a damaged table");
             }
             1 => {
                 // A daemon does not start on a damaged table.
                 write(tables, DAMAGED, table);
-                shaky.restart("-KILL");
+                shaky.restart("KILL");
                 tally.event("a daemon killed and restarted");
             }
             2 => {
-                steady.signal("-HUP");
+                steady.signal("HUP");
                 tally.event("a reload");
             }
             _ => {
-                shaky.restart("-TERM");
+                shaky.restart("TERM");
                 tally.event("a daemon stopped and restarted");
             }
         }

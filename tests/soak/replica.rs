@@ -12,8 +12,8 @@ use std::{
 };
 
 use strew_testkit::{
-    daemon::{self, Daemon, Launcher, NotReady},
-    http1,
+    daemon::{Daemon, Launcher, NotReady},
+    http1, process,
     wait::until,
 };
 
@@ -102,7 +102,7 @@ impl Replica {
 
 /// The program without the settings of the caller's environment.
 pub fn strew() -> Command {
-    daemon::command(PROGRAM)
+    process::command(PROGRAM)
 }
 
 fn launch(address: SocketAddr, tables: &Path) -> Result<Daemon, NotReady> {

@@ -18,27 +18,42 @@ use modules::{Import, Module, Path, modules};
 /// The files of a crate: the path in its source folder, such as `judge/mod.rs`, and the text.
 pub type Files = BTreeMap<String, String>;
 
-/// Returns circles of imports, such as `a.rs -> b.rs -> a.rs`. Of circles that share files the
-/// shortest is returned.
-pub fn circles(files: &Files) -> Vec<String> {
+/// Files that all lead to each other (a strongly connected component), each with the shortest circle
+/// back to it, such as `a.rs -> b.rs -> a.rs`.
+pub type Component = BTreeMap<String, String>;
+
+/// Returns all components of two and more files.
+pub fn components(files: &Files) -> Vec<Component> {
     let all = Crate::new(files);
     let edges = all.edges();
-    let mut found: Vec<Vec<&str>> = edges
+    let leads_to: BTreeMap<&str, BTreeSet<&str>> = edges
         .keys()
-        .filter_map(|file| path_back(&edges, file))
+        .map(|file| (*file, reached_from(&edges, file)))
         .collect();
-    found.sort_by_key(Vec::len);
-    let mut shown = BTreeSet::new();
-    found.retain(|circle| {
-        let is_new = circle.iter().all(|file| !shown.contains(file));
-        shown.extend(circle.clone());
-        is_new
-    });
-    found.iter().map(|circle| circle.join(" -> ")).collect()
+    let mut found = BTreeMap::<&str, Component>::new();
+    for (&file, reached) in &leads_to {
+        if let Some(circle) = path_back(&edges, file) {
+            let returns = |other: &&&str| leads_to[**other].contains(file);
+            let first = reached.iter().find(returns).expect("itself");
+            let component = found.entry(first).or_default();
+            component.insert(file.to_owned(), circle.join(" -> "));
+        }
+    }
+    found.into_values().collect()
 }
 
 /// The files that each file depends on.
 type Edges<'a> = BTreeMap<&'a str, BTreeSet<&'a str>>;
+
+/// All files that a file depends on, itself only if one of them depends on it.
+fn reached_from<'a>(edges: &Edges<'a>, start: &'a str) -> BTreeSet<&'a str> {
+    let mut reached = BTreeSet::new();
+    let mut open = vec![start];
+    while let Some(file) = open.pop() {
+        open.extend(edges[file].iter().filter(|&&next| reached.insert(next)));
+    }
+    reached
+}
 
 /// The shortest path along the edges from a file back to itself.
 fn path_back<'a>(edges: &Edges<'a>, start: &'a str) -> Option<Vec<&'a str>> {
@@ -166,9 +181,17 @@ impl<'a> Crate<'a> {
 mod tests {
     use super::*;
 
-    fn circles_of(files: &[(&str, &str)]) -> Vec<String> {
+    fn components_of(files: &[(&str, &str)]) -> Vec<Component> {
         let owned = |(name, text): &(&str, &str)| ((*name).to_owned(), (*text).to_owned());
-        circles(&files.iter().map(owned).collect())
+        components(&files.iter().map(owned).collect())
+    }
+
+    /// A circle of each component.
+    fn circles_of(files: &[(&str, &str)]) -> Vec<String> {
+        let components = components_of(files).into_iter();
+        components
+            .filter_map(|component| component.into_values().next())
+            .collect()
     }
 
     const ROOT: (&str, &str) = (
@@ -225,15 +248,29 @@ mod tests {
     }
 
     #[test]
-    fn of_circles_that_share_files_the_shortest_is_shown() {
-        let lib = ("lib.rs", "mod a; mod b; mod c; mod d;");
+    fn circles_that_share_files_are_one_component() {
+        let lib = ("lib.rs", "mod a; mod b; mod c; mod d; mod e; mod f;");
         let files = [
             lib,
             ("a.rs", "use crate::{b, c};"),
             ("b.rs", "use crate::c;"),
             ("c.rs", "use crate::a;"),
             ("d.rs", "use crate::{a, d};"),
+            ("e.rs", "use crate::{a, f};"),
+            ("f.rs", "use crate::e;"),
         ];
-        assert_eq!(circles_of(&files), ["a.rs -> c.rs -> a.rs"]);
+        let shown = components_of(&files).into_iter().map(|component| {
+            let circles = component.into_values();
+            circles.collect::<Vec<_>>()
+        });
+        let shown: Vec<_> = shown.collect();
+        let first = [
+            "a.rs -> c.rs -> a.rs",
+            "b.rs -> c.rs -> a.rs -> b.rs",
+            "c.rs -> a.rs -> c.rs",
+        ];
+        assert_eq!(shown[0], first);
+        assert_eq!(shown[1], ["e.rs -> f.rs -> e.rs", "f.rs -> e.rs -> f.rs"]);
+        assert_eq!(shown.len(), 2);
     }
 }

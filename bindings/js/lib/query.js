@@ -25,11 +25,11 @@ function region(shape, value) {
     return value;
 }
 
-/** Keywords as a body. Those that are undefined or null are left out. */
+/** Keywords as a body. Those that are undefined are left out, and regions that are null. */
 export function body(keywords) {
     const made = {};
     for (const [name, value] of Object.entries(keywords)) {
-        if (value === undefined || value === null) continue;
+        if (value === undefined || (value === null && SHAPES.includes(name))) continue;
         if (SHAPES.includes(name)) {
             // Several shapes are refused together, with all their names.
             made.region = { ...made.region, [name]: region(name, value) };
@@ -42,11 +42,15 @@ export function body(keywords) {
     return made;
 }
 
-/** A body as JSON: a bigint is an integer, a typed array a list. */
+/**
+ * A body as JSON: a bigint is an integer, a typed array a list. What JSON cannot hold (NaN, infinity, functions, symbols)
+ * becomes a word in its place, so that it is refused with the name of its member and what is allowed there.
+ */
 export function text(value) {
     const plain = (_, part) => {
         if (typeof part === "bigint") return `\u0001${part}\u0001`;
-        if (typeof part === "number" && !Number.isFinite(part)) throw new TypeError(`a query cannot hold ${part}`);
+        if (typeof part === "number" && !Number.isFinite(part)) return String(part);
+        if (typeof part === "function" || typeof part === "symbol") return `[${typeof part}]`;
         return isList(part) ? Array.from(part) : part;
     };
     return JSON.stringify(value, plain).replace(/"\\u0001(-?\d+)\\u0001"/g, "$1");

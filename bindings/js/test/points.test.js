@@ -73,7 +73,17 @@ test("what is wrong has the words of REST", () => {
         return true;
     });
     assert.throws(() => strew.points({ spacing: NaN }).nearest([0, 0]), StrewError);
-    assert.throws(() => strew.points({ bbox: [0, 0, 1, NaN], spacing: 1 }), TypeError);
+    for (const [odd, name] of [
+        [{ spacing: NaN }, "spacing"], [{ spacing: 1, seed: Infinity }, "seed"], [{ spacing: 1, foo: null }, "foo"],
+        [{ spacing: 1, foo: () => 1 }, "foo"], [{ spacing: 1, keep: Symbol("x") }, "keep"],
+    ]) {
+        assert.throws(() => strew.points({ bbox: [0, 0, 9, 9], ...odd }), (error) => {
+            assert.match(error.message, /allowed: /);
+            assert.deepEqual([error.kind, error.faults.map(({ field }) => field)], ["invalid-query", [name]]);
+            return true;
+        });
+    }
+    assert.throws(() => strew.points({ bbox: [0, 0, 1, NaN], spacing: 1 }), /region.bbox/);
 });
 
 test("a module without the default table says what is loaded", async () => {

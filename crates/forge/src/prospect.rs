@@ -65,10 +65,13 @@ impl Prospect {
         }
     }
 
-    /// Whether the map has so few blocks that the judge will probably refuse the table.
+    /// Why the judge will probably reject the table, if it will: the map has too few blocks.
     #[must_use]
-    pub const fn is_doubtful(&self) -> bool {
-        self.displaces && self.intervals < FEW_INTERVALS
+    pub fn doubt(&self) -> Option<String> {
+        let is_doubtful = self.displaces && self.intervals < FEW_INTERVALS;
+        is_doubtful.then(|| {
+            format!("no table with this few blocks has met the bounds of `blue` so far ({self})")
+        })
     }
 }
 

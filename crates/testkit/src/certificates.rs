@@ -57,19 +57,27 @@ impl Authority {
 
     /// A certificate that is valid to the beginning of a year.
     fn issue(&self, purpose: ExtendedKeyUsagePurpose, year: i32) -> Certificate {
-        let names = vec!["localhost".to_owned(), "127.0.0.1".to_owned()];
-        let mut params = CertificateParams::new(names).expect("names");
+        let mut params = CertificateParams::new(names()).expect("names");
         params.extended_key_usages = vec![purpose];
         params.not_after = date_time_ymd(year, 1, 1);
         let key = KeyPair::generate().expect("a key");
         let certificate = params.signed_by(&key, &self.issuer).expect("signed");
-        Certificate {
-            pem: certificate.pem(),
-            key_pem: key.serialize_pem(),
-            der: certificate.der().to_vec(),
-            key_der: key.serialize_der(),
-        }
+        Certificate::new(&certificate, &key)
     }
+}
+
+/// A self-signed certificate for `localhost` and `127.0.0.1` that is an authority, as `openssl req -x509`
+/// makes them, valid to the beginning of a year.
+pub fn self_signed(year: i32) -> Certificate {
+    let mut params = CertificateParams::new(names()).expect("names");
+    params.is_ca = IsCa::Ca(BasicConstraints::Unconstrained);
+    params.not_after = date_time_ymd(year, 1, 1);
+    let key = KeyPair::generate().expect("a key");
+    Certificate::new(&params.self_signed(&key).expect("signed"), &key)
+}
+
+fn names() -> Vec<String> {
+    vec!["localhost".to_owned(), "127.0.0.1".to_owned()]
 }
 
 /// A certificate with its key. The key is PKCS #8.
@@ -85,6 +93,15 @@ pub struct Certificate {
 }
 
 impl Certificate {
+    fn new(certificate: &rcgen::Certificate, key: &KeyPair) -> Self {
+        Self {
+            pem: certificate.pem(),
+            key_pem: key.serialize_pem(),
+            der: certificate.der().to_vec(),
+            key_der: key.serialize_der(),
+        }
+    }
+
     /// Writes the certificate and its key as `server.pem` and `server.key`.
     pub fn write_server(&self, folder: &Path) {
         std::fs::write(folder.join("server.pem"), &self.pem).expect("writable");

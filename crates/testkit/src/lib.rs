@@ -5,6 +5,7 @@
 //! | [`certificates`] | a certificate authority for TLS tests |
 //! | [`daemon`] | starts the program, waits until it listens, kills it on drop |
 //! | [`http1`] | an HTTP/1.1 client over raw sockets |
+//! | [`process`] | programs as child processes, and signals to them |
 //! | [`random`] | reproducible pseudo-random numbers |
 //! | [`tables`] | tables with random displacements |
 //! | [`wait`] | waiting for a condition |
@@ -17,6 +18,7 @@
 pub mod certificates;
 pub mod daemon;
 pub mod http1;
+pub mod process;
 pub mod random;
 pub mod tables;
 pub mod wait;

@@ -5,6 +5,7 @@
 //! deadline, whatever the other side does.
 
 mod trust;
+mod verifier;
 
 use std::{
     io::{self, Read, Write},

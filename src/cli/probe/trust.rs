@@ -7,20 +7,18 @@ use std::{
 
 use anyhow::{Context as _, anyhow, bail};
 use rustls::{
-    ClientConfig, DigitallySignedStruct, Error, RootCertStore, SignatureScheme,
-    client::danger::{HandshakeSignatureValid, ServerCertVerified, ServerCertVerifier},
-    crypto::{
-        CryptoProvider, ring::default_provider, verify_tls12_signature, verify_tls13_signature,
-    },
-    pki_types::{CertificateDer, PrivateKeyDer, ServerName, UnixTime, pem::PemObject as _},
+    ClientConfig,
+    crypto::{CryptoProvider, ring::default_provider},
+    pki_types::{PrivateKeyDer, ServerName, pem::PemObject as _},
 };
 
+use super::verifier::Verifier;
 use crate::{bounded_file, ops::tls::certificates};
 
 /// Flags for a daemon that speaks TLS.
 #[derive(Debug, clap::Args)]
 pub(in crate::cli) struct TrustArgs {
-    /// A PEM file with the authorities that vouch for the daemon.
+    /// A PEM file with the authorities that vouch for the daemon, or with its own certificate.
     #[arg(
         long,
         value_name = "FILE",
@@ -81,12 +79,13 @@ impl TrustArgs {
         let provider = Arc::new(default_provider());
         let builder = ClientConfig::builder_with_provider(provider.clone())
             .with_safe_default_protocol_versions()?;
-        let builder = match &self.ca {
-            Some(path) => builder.with_root_certificates(authorities(path)?),
-            None => builder
-                .dangerous()
-                .with_custom_certificate_verifier(Arc::new(Anyone(provider))),
+        let verifier = match &self.ca {
+            Some(path) => authorities(path, provider)?,
+            None => Verifier::of_anyone(provider),
         };
+        let builder = builder
+            .dangerous()
+            .with_custom_certificate_verifier(Arc::new(verifier));
         let mut config = match (&self.certificate, &self.key) {
             (Some(certificate), Some(key)) => {
                 let chain = certificates(&read("--certificate", certificate)?)
@@ -128,15 +127,10 @@ fn without_port(host: &str) -> &str {
     inner.unwrap_or(name)
 }
 
-fn authorities(path: &Path) -> anyhow::Result<RootCertStore> {
-    let mut roots = RootCertStore::empty();
-    let read = certificates(&read("--ca", path)?).map_err(|problem| of("--ca", path, &problem))?;
-    for authority in read {
-        roots
-            .add(authority)
-            .map_err(|error| of("--ca", path, &error.to_string()))?;
-    }
-    Ok(roots)
+fn authorities(path: &Path, provider: Arc<CryptoProvider>) -> anyhow::Result<Verifier> {
+    certificates(&read("--ca", path)?)
+        .and_then(|named| Verifier::of(named, provider))
+        .map_err(|problem| of("--ca", path, &problem))
 }
 
 /// The most bytes of a file with certificates or a key.
@@ -149,47 +143,6 @@ fn read(flag: &str, path: &Path) -> anyhow::Result<Vec<u8>> {
 
 fn of(flag: &str, path: &Path, problem: &str) -> anyhow::Error {
     anyhow!("{flag} {}: {problem}", path.display())
-}
-
-/// Believes whoever has the key of the certificate shown, whatever that says.
-#[derive(Debug)]
-struct Anyone(Arc<CryptoProvider>);
-
-impl ServerCertVerifier for Anyone {
-    fn verify_server_cert(
-        &self,
-        _: &CertificateDer<'_>,
-        _: &[CertificateDer<'_>],
-        _: &ServerName<'_>,
-        _: &[u8],
-        _: UnixTime,
-    ) -> Result<ServerCertVerified, Error> {
-        Ok(ServerCertVerified::assertion())
-    }
-
-    fn verify_tls12_signature(
-        &self,
-        message: &[u8],
-        certificate: &CertificateDer<'_>,
-        signed: &DigitallySignedStruct,
-    ) -> Result<HandshakeSignatureValid, Error> {
-        let known = &self.0.signature_verification_algorithms;
-        verify_tls12_signature(message, certificate, signed, known)
-    }
-
-    fn verify_tls13_signature(
-        &self,
-        message: &[u8],
-        certificate: &CertificateDer<'_>,
-        signed: &DigitallySignedStruct,
-    ) -> Result<HandshakeSignatureValid, Error> {
-        let known = &self.0.signature_verification_algorithms;
-        verify_tls13_signature(message, certificate, signed, known)
-    }
-
-    fn supported_verify_schemes(&self) -> Vec<SignatureScheme> {
-        self.0.signature_verification_algorithms.supported_schemes()
-    }
 }
 
 #[cfg(test)]

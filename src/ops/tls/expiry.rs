@@ -1,4 +1,4 @@
-//! When a certificate expires (RFC 5280, 4.1.2.5), for warnings.
+//! When a certificate is valid (RFC 5280, 4.1.2.5).
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -10,7 +10,7 @@ const DAY: u64 = 86_400;
 pub(super) fn warning(certificate: &[u8]) -> Option<String> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH);
     let now = now.as_ref().map_or(0, Duration::as_secs);
-    let end = not_after(certificate)?;
+    let (_, end) = validity(certificate)?;
     if end <= now {
         let days = (now - end) / DAY;
         return Some(format!("the certificate expired {days} days ago"));
@@ -19,8 +19,8 @@ pub(super) fn warning(certificate: &[u8]) -> Option<String> {
     (end - now < SOON).then(|| format!("the certificate expires in {days} days"))
 }
 
-/// The end of a certificate's validity, in seconds since 1970.
-fn not_after(certificate: &[u8]) -> Option<u64> {
+/// The first and the last second of a certificate in DER, counted from 1970.
+pub fn validity(certificate: &[u8]) -> Option<(u64, u64)> {
     const SEQUENCE: u8 = 0x30;
     const VERSION: u8 = 0xA0;
     let (_, certificate, _) = element(certificate)?;
@@ -33,10 +33,11 @@ fn not_after(certificate: &[u8]) -> Option<u64> {
         fields = element(fields)?.2;
     }
     let (tag, validity, _) = element(fields)?;
-    let (_, _, rest) = element(validity)?;
-    let (form, text, _) = element(rest)?;
     (tag == SEQUENCE).then_some(())?;
-    time(form, text)
+    let (form, start, rest) = element(validity)?;
+    let start = time(form, start)?;
+    let (form, end, _) = element(rest)?;
+    Some((start, time(form, end)?))
 }
 
 /// The first element of some DER: its tag, its content, and what follows it.

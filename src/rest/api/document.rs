@@ -72,10 +72,12 @@ pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
 fn described(operation: &Operation, is_open: bool, generator: &mut SchemaGenerator) -> Value {
     let in_path = operation.path_parameters.iter();
     let in_query = of(operation.parameters);
+    let rules = rules::of(operation.parameters);
     let parameters: Vec<Value> = in_path
-        .map(|parameter| parameter_in("path", parameter, true))
+        .map(|parameter| parameter_in("path", parameter, &[], true))
         .chain(in_query.map(|parameter| {
-            parameter_in("query", parameter, rules::is_first_of_its_kind(parameter))
+            let with_example = rules::is_first_of_its_kind(parameter);
+            parameter_in("query", parameter, &rules, with_example)
         }))
         .collect();
     let mut responses = Map::new();
@@ -103,10 +105,8 @@ fn described(operation: &Operation, is_open: bool, generator: &mut SchemaGenerat
         "responses": responses,
         "x-curl": operation.example,
     });
-    let rules = rules::of(operation.parameters);
     if !rules.is_empty() {
-        described["description"] =
-            format!("{} {}", operation.about, rules::in_words(&rules)).into();
+        described["description"] = rules::below(operation.about, &rules).into();
         described["x-rules"] = json!(rules);
     }
     if is_open {
@@ -123,13 +123,19 @@ fn described(operation: &Operation, is_open: bool, generator: &mut SchemaGenerat
 
 /// A parameter. Those that exclude each other do not all have an example: examples are valid
 /// together.
-fn parameter_in(place: &str, parameter: &Parameter, with_example: bool) -> Value {
+fn parameter_in(
+    place: &str,
+    parameter: &Parameter,
+    rules: &[rules::Rule],
+    with_example: bool,
+) -> Value {
     let default = parameter.default;
     let default = default.map_or_else(String::new, |default| format!(" Default: {default}."));
     let text = format!(
-        "{} Allowed: {}.{default}",
+        "{} Allowed: {}.{default}{}",
         parameter.about,
-        parameter.allowed()
+        parameter.allowed(),
+        rules::at(parameter.name, rules)
     );
     let mut described = json!({
         "name": parameter.name,

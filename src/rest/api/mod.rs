@@ -10,14 +10,14 @@ mod rules;
 pub mod schemas;
 mod sets;
 
-use axum::{Router, response::Response, routing::MethodRouter};
-use http::{HeaderValue, Method, Uri, header};
+use axum::{Router, routing::MethodRouter};
+use http::Method;
 use schemars::JsonSchema;
 use serde_json::Value;
 
-use super::problem::Problem;
+use super::unknown::wrong_method;
 use crate::service::{
-    Error, Kind,
+    Kind,
     query::{Group, Parameter},
 };
 use schemas::Content;
@@ -195,7 +195,7 @@ impl Endpoint {
         let allowed = allowed.join(", ");
         let fallback = move |method, uri| {
             let allowed = allowed.clone();
-            async move { wrong_method(method, uri, allowed) }
+            async move { wrong_method(&method, &uri, &allowed) }
         };
         Self {
             path,
@@ -236,18 +236,4 @@ impl Endpoint {
     pub(super) fn into_router(self) -> Router {
         self.router
     }
-}
-
-/// The answer to a method that a path does not take.
-fn wrong_method(method: Method, uri: Uri, allowed: String) -> Response {
-    let error = Error::NoSuchMethod {
-        path: uri.path().into(),
-        method: method.to_string(),
-        allowed: allowed.clone(),
-    };
-    let mut response = Problem::response(&error);
-    if let Ok(allow) = HeaderValue::from_str(&allowed) {
-        response.headers_mut().insert(header::ALLOW, allow);
-    }
-    response
 }

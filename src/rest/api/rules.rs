@@ -1,5 +1,5 @@
 //! Rules between parameters, which no schema of a single one can state: published as `x-rules` of an
-//! operation, and in its description.
+//! operation, and in words: in its description, or in that of the parameter.
 
 use serde::Serialize;
 
@@ -254,41 +254,65 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
     rules
 }
 
-/// The rules as sentences.
-pub(super) fn in_words(rules: &[Rule]) -> String {
-    let sentence = |rule: &Rule| match rule {
-        Rule::ExactlyOneOf { parameters, unless } => {
-            let unless = unless.map_or_else(String::new, |other| format!(", unless {other} is"));
-            format!(
-                "Exactly one of {} must be given{unless}.",
+/// The rules that are about no single parameter, as a list in Markdown below a description.
+pub(super) fn below(about: &str, rules: &[Rule]) -> String {
+    let shared = rules.iter().filter_map(Rule::of_several);
+    let items: String = shared.map(|words| format!("\n- {words}")).collect();
+    match items.is_empty() {
+        true => about.into(),
+        false => format!("{about}\n{items}"),
+    }
+}
+
+/// The rules about a parameter, as sentences behind its description.
+pub(super) fn at(parameter: &str, rules: &[Rule]) -> String {
+    let sentences = rules.iter().filter_map(|rule| rule.of_one(parameter));
+    sentences.map(|words| format!(" {words}")).collect()
+}
+
+impl Rule {
+    fn of_several(&self) -> Option<String> {
+        match self {
+            Self::ExactlyOneOf { parameters, unless } => {
+                let unless =
+                    unless.map_or_else(String::new, |other| format!(", unless {other} is"));
+                let parameters = parameters.join(", ");
+                Some(format!(
+                    "Exactly one of {parameters} must be given{unless}."
+                ))
+            }
+            Self::AtMostOneOf { parameters } => Some(format!(
+                "At most one of {} may be given.",
                 parameters.join(", ")
-            )
+            )),
+            _ => None,
         }
-        Rule::AtMostOneOf { parameters } => {
-            format!("At most one of {} may be given.", parameters.join(", "))
+    }
+
+    fn of_one(&self, wanted: &str) -> Option<String> {
+        match self {
+            Self::OnlyWith {
+                parameter,
+                other,
+                values,
+            } if *parameter == wanted => Some(format!("Only with {other} {}.", values.join(", "))),
+            Self::OnlyWithOneOf { parameter, others } if *parameter == wanted => {
+                let others = others.iter().map(|other| {
+                    let words = [&[other.parameter], &other.values[..]].concat();
+                    words.join(" ").replace("even joint", "even or joint")
+                });
+                let others: Vec<String> = others.collect();
+                Some(format!("Only with {}.", others.join(", ")))
+            }
+            Self::NotWith { parameter, others } if *parameter == wanted && !others.is_empty() => {
+                Some(format!("Not together with {}.", others.join(", ")))
+            }
+            Self::Needs {
+                parameter,
+                value,
+                needs,
+            } if *parameter == wanted => Some(format!("`{value}` needs {needs}.")),
+            _ => None,
         }
-        Rule::OnlyWith {
-            parameter,
-            other,
-            values,
-        } => format!("{parameter} is for {other} {} only.", values.join(", ")),
-        Rule::NotWith { parameter, others } => {
-            format!("{parameter} is not for {}.", others.join(", "))
-        }
-        Rule::OnlyWithOneOf { parameter, others } => {
-            let others = others.iter().map(|other| {
-                let words = [&[other.parameter], &other.values[..]].concat();
-                words.join(" ").replace("even joint", "even or joint")
-            });
-            let others: Vec<String> = others.collect();
-            format!("{parameter} is for {} only.", others.join(", "))
-        }
-        Rule::Needs {
-            parameter,
-            value,
-            needs,
-        } => format!("{value} among {parameter} needs {needs}."),
-    };
-    let sentences: Vec<String> = rules.iter().map(sentence).collect();
-    sentences.join(" ")
+    }
 }

@@ -111,6 +111,8 @@ pub struct Answer {
     head: Option<Bytes>,
     blocks: Box<dyn Blocks>,
     size: Option<u64>,
+    /// The bytes of a point, if all have equally many and nothing is between them and after them.
+    record_bytes: Option<u64>,
     origin: Option<[f64; 2]>,
     legend: Option<String>,
     warning: Option<&'static str>,
@@ -288,6 +290,7 @@ impl Answer {
         Self {
             head: None,
             size: None,
+            record_bytes: None,
             origin,
             legend: None,
             warning: None,
@@ -344,6 +347,7 @@ impl Answer {
             head,
             blocks,
             size,
+            record_bytes: Some(bytes),
             origin,
             legend: None,
             warning: None,
@@ -356,6 +360,18 @@ impl Answer {
     #[must_use]
     pub const fn size(&self) -> Option<u64> {
         self.size
+    }
+
+    /// The bytes of each point, for answers of nothing but a head and points of equally many bytes.
+    #[must_use]
+    pub const fn record_bytes(&self) -> Option<u64> {
+        self.record_bytes
+    }
+
+    /// What stands before the points, until it is taken.
+    #[must_use]
+    pub const fn head(&self) -> Option<&Bytes> {
+        self.head.as_ref()
     }
 
     /// What coordinates are relative to, if not to the world's origin.

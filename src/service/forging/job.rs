@@ -130,9 +130,6 @@ pub struct JobStatus {
 
 impl JobStatus {
     fn new(spec: &Spec, prospect: &Prospect) -> Self {
-        let warning = prospect.is_doubtful().then(|| {
-            format!("tables of so few blocks have not met the bounds of `blue` so far ({prospect})")
-        });
         Self {
             id: spec.id(),
             state: State::Queued,
@@ -141,7 +138,7 @@ impl JobStatus {
             map: spec.map.clone(),
             blocks: prospect.blocks() as u64,
             period: prospect.period,
-            warning,
+            warning: prospect.doubt(),
             stage: None,
             step: 0,
             steps: 0,

@@ -7,7 +7,7 @@ use std::{
 };
 
 use strew_forge::{Checkpoint, read_table};
-use strew_testkit::wait::until;
+use strew_testkit::{process::Running, wait::until};
 
 use crate::support::{command::errors, daemon::strew};
 
@@ -68,16 +68,11 @@ fn an_interrupt_keeps_a_checkpoint() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let kept = folder.join("t.strew.checkpoint");
-    let child = forge(folder, &["--steps", "1000000", "--checkpoint-every", "0"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program runs");
+    let endless = ["--steps", "1000000", "--checkpoint-every", "0"];
+    let child = Running::start(forge(folder, &endless).stderr(Stdio::piped()));
     until("a checkpoint is kept", || kept.exists().then_some(()));
-    let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(sent.expect("kill runs").success());
-    let output = child.wait_with_output().expect("a child");
+    child.signal("INT");
+    let output = child.end();
     assert_eq!(output.status.code(), Some(130));
     let text = errors(&output);
     assert!(text.contains("the same command goes on from"), "{text}");
@@ -158,6 +153,33 @@ fn an_impossible_target_is_announced_and_reported_as_missed() {
         "{}",
         errors(&kept)
     );
+}
+
+#[test]
+fn a_table_that_will_be_rejected_is_announced_as_such() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (alpha, announced, doubt) in [
+        ("sqrt(2)", ": 121 blocks,", "(11 × 11 blocks)"),
+        // The map has more intervals, but points lie in 31 − 20 of them only.
+        (
+            "1.55",
+            ": 121 blocks,",
+            "(11 × 11 blocks, and the pattern repeats every 40 grid units)",
+        ),
+    ] {
+        let output = run(
+            folder.path(),
+            &["--alpha", alpha, "--steps", "1", "--force"],
+        );
+        let text = errors(&output);
+        assert!(text.contains(announced), "{text}");
+        let warning = text.find(doubt).unwrap_or_else(|| panic!("{text}"));
+        let verdict = text.find("the table is rejected").expect("judged");
+        assert!(warning < verdict, "{text}");
+    }
+    let blank = ["--profile", "pattern", "--steps", "1", "--restart"];
+    let text = errors(&run(folder.path(), &blank));
+    assert!(!text.contains("warning"), "{text}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::{
 
 use strew_core::Table;
 use strew_forge::{labels, read_table, write_table};
-use strew_testkit::wait::until;
+use strew_testkit::{process::Running, wait::until};
 
 use crate::support::{command::errors, daemon::strew};
 
@@ -103,8 +103,7 @@ fn an_interrupt_leaves_nothing() {
     let folder = folder.path();
     let flags = ["--table", "mine.strew", "--shares", "1:1", "--joint"];
     let long = [&flags[..], &["--steps", "10000", "-o", "joint.strew"]].concat();
-    let child = mix(folder, &long).stderr(Stdio::piped()).spawn();
-    let child = child.expect("the program runs");
+    let child = Running::start(mix(folder, &long).stderr(Stdio::piped()));
     // A process that catches the signal shows it in its status.
     until("the signal is caught", || {
         let status = fs::read_to_string(format!("/proc/{}/status", child.id())).ok()?;
@@ -112,11 +111,8 @@ fn an_interrupt_leaves_nothing() {
         let caught = u64::from_str_radix(caught.trim(), 16).ok()?;
         (caught & 0b10 != 0).then_some(())
     });
-    let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(sent.expect("kill runs").success());
-    let output = child.wait_with_output().expect("a child");
+    child.signal("INT");
+    let output = child.end();
     assert_eq!(output.status.code(), Some(130));
     let text = errors(&output);
     assert!(text.contains("interrupted"), "{text}");

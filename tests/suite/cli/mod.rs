@@ -2,6 +2,7 @@
 //! daemon, `figure` and `arrangement`, `forge` with interruptions, `config` and its layers, `probe` as health checks
 //! run it, what wrong flags and full disks lead to.
 
+mod completions;
 mod config;
 mod export;
 mod fields;

@@ -6,7 +6,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use strew_testkit::{certificates::Authority, wait::until};
+use strew_testkit::{
+    certificates::{Authority, self_signed},
+    wait::until,
+};
 
 use crate::support::daemon::{Daemon, strew};
 
@@ -148,6 +151,34 @@ fn the_probe_speaks_tls() {
             .contains("not ready: status 503")
             .then_some(())
     });
+}
+
+#[test]
+fn a_certificate_that_is_its_own_authority_is_believed_if_it_is_the_one_in_the_file() {
+    for (year, expected) in [(4000, ""), (2020, "expired")] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| folder.path().join(name).display().to_string();
+        self_signed(year).write_server(folder.path());
+        std::fs::write(path("other.pem"), self_signed(4000).pem).expect("writable");
+        let daemon = Daemon::with_tls(folder.path(), &[]);
+        let url = format!("https://{}", daemon.address());
+        let ca = path("server.pem");
+        let (code, message) = probe(&["--url", &url, "--ca", &ca]);
+        let is_good = expected.is_empty();
+        assert_eq!(code, Some(i32::from(!is_good)), "{message}");
+        assert!(message.contains(expected), "{message}");
+        for (flags, part) in [
+            (
+                &["--ca", &ca, "--server-name", "else.example"][..],
+                "else.example",
+            ),
+            (&["--ca", &path("other.pem")], "invalid peer certificate"),
+        ] {
+            let (code, message) = probe(&[&["--url", &url], flags].concat());
+            assert_eq!(code, Some(1), "{message}");
+            assert!(message.contains(part), "{message}");
+        }
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The examples of docs/*.md, README.md and examples/README.md run against a daemon and must print what the
 //! documents show.
 //!
-//! An example is a fenced `sh` block that begins with `curl`, `grpcurl` or `strew`, and the block right
+//! An example is a fenced `sh` block that begins with `curl`, `grpcurl`, `jq` or `strew`, and the block right
 //! after it shows its output; or a `console` block of `$ `, such a command and its output. In an output a
 //! line `…` stands for any number of lines, and a line that ends in `…` for a longer one.
 //! `UPDATE_GOLDEN=1` writes the current output, shortened in the same places; an empty block is filled.
@@ -13,7 +13,7 @@ use std::{
 
 use crate::support::{
     clients,
-    daemon::{Daemon, no_tables, strew},
+    daemon::{Daemon, PROGRAM, no_tables, strew},
 };
 
 /// The daemon's address in the documents.
@@ -48,8 +48,7 @@ fn blocks(lines: &[String]) -> Vec<Block> {
 /// The output of an example, with the document's address in place of the daemon's.
 fn run(script: &str, daemon: &Daemon, folder: &Path) -> Vec<String> {
     let mut command = Command::new("sh");
-    let program = strew();
-    let programs = Path::new(program.get_program()).parent().expect("a folder");
+    let programs = Path::new(PROGRAM).parent().expect("a folder");
     let path = std::env::var_os("PATH").unwrap_or_default();
     let python = std::env::var_os("STREW_TEST_PYTHON").map(PathBuf::from);
     let python = python.and_then(|python| Some(python.parent()?.to_owned()));
@@ -58,7 +57,7 @@ fn run(script: &str, daemon: &Daemon, folder: &Path) -> Vec<String> {
         .chain(python)
         .chain(std::env::split_paths(&path));
     command.env("PATH", std::env::join_paths(path).expect("a path"));
-    for (name, _) in program.get_envs() {
+    for (name, _) in strew().get_envs() {
         command.env_remove(name);
     }
     let url = daemon.url("");
@@ -140,7 +139,7 @@ fn examples(lines: &[String]) -> Vec<Example> {
         let program = example.script.split(' ').next().unwrap_or_default();
         match program {
             "python3" => has_packages(&example.script),
-            "curl" | "grpcurl" => clients::find(program).is_some(),
+            "curl" | "grpcurl" | "jq" => clients::find(program).is_some(),
             other => ["strew", "for", "cat"].contains(&other),
         }
     });

@@ -2,6 +2,7 @@
 
 use std::{
     io::{BufRead as _, BufReader},
+    net::{Shutdown, SocketAddr, TcpListener, TcpStream},
     path::Path,
     process::{Child, Command, Stdio},
 };
@@ -120,6 +121,25 @@ fn a_forest_of_three_js_grows_around_the_camera() {
     browser.until(&format!("{said}.includes('does not answer')"));
 }
 
+/// The address of a proxy that drops its first connections and hands the others on.
+fn unsteady(daemon: SocketAddr) -> SocketAddr {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = listener.local_addr().expect("bound");
+    std::thread::spawn(move || {
+        for client in listener.incoming().skip(5).filter_map(Result::ok) {
+            let server = TcpStream::connect(daemon).expect("the daemon listens");
+            let pair = |stream: &TcpStream| stream.try_clone().expect("a socket");
+            for (mut from, mut to) in [(pair(&client), pair(&server)), (server, client)] {
+                std::thread::spawn(move || {
+                    let _ = std::io::copy(&mut from, &mut to);
+                    let _ = to.shutdown(Shutdown::Write);
+                });
+            }
+        }
+    });
+    address
+}
+
 #[test]
 fn a_forest_of_godot_has_the_points_of_its_chunks() {
     let Some(godot) = clients::find("godot3-server") else {
@@ -150,4 +170,10 @@ fn a_forest_of_godot_has_the_points_of_its_chunks() {
     let output = run("http://127.0.0.1:1");
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("no answer from"));
+
+    // Chunks whose requests failed are requested again.
+    let output = run(&format!("http://{}", unsteady(daemon.address())));
+    let printed = String::from_utf8_lossy(&output.stdout);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no answer from"));
+    assert!(printed.contains(&words), "{printed} and not {words}");
 }

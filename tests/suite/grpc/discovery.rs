@@ -48,6 +48,7 @@ async fn health_is_serving() {
     }
 }
 
+const DETAILS: &str = "google.rpc.BadRequest";
 const SERVICES: [&str; 2] = ["grpc.health.v1.Health", "strew.v1.PointService"];
 
 #[tokio::test]
@@ -65,10 +66,12 @@ async fn reflection_v1_lists_the_services() {
     let asked = futures_util::stream::iter([
         ask(MessageRequest::ListServices(String::new())),
         ask(MessageRequest::FileContainingSymbol(SERVICES[1].into())),
+        // Clients print the details of errors by it.
+        ask(MessageRequest::FileContainingSymbol(DETAILS.into())),
     ]);
     let answer = client.server_reflection_info(asked).await.expect("answers");
     let mut answers = answer.into_inner();
-    let mut next = async || answers.message().await.expect("a message").expect("two");
+    let mut next = async || answers.message().await.expect("a message").expect("three");
     let Some(MessageResponse::ListServicesResponse(list)) = next().await.message_response else {
         panic!("no list");
     };
@@ -79,6 +82,11 @@ async fn reflection_v1_lists_the_services() {
         panic!("no contract");
     };
     assert_eq!(files.file_descriptor_proto.len(), 1);
+    let details = next().await.message_response;
+    assert!(
+        matches!(details, Some(MessageResponse::FileDescriptorResponse(_))),
+        "{details:?}"
+    );
 }
 
 #[tokio::test]

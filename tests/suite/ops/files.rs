@@ -24,10 +24,10 @@ fn pipes_and_devices_among_the_tables_are_refused_and_the_daemon_stops() {
         assert!(line.contains("not a regular file"), "{line}");
     }
     std::fs::remove_file(daemon.folder().join("pipe.strew")).expect("removable");
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     daemon.log_line("cause=\"signal\" loaded=0");
     let start = Instant::now();
-    daemon.signal("-TERM");
+    daemon.signal("TERM");
     until("it stops", || daemon.ended());
     assert!(start.elapsed() < PATIENCE / 2);
 }

@@ -164,7 +164,7 @@ async fn a_job_that_is_killed_goes_on_and_is_followed_by_grpc() {
     let mut daemon = start(folder.path(), &every_step);
     let path = accepted(&post(&daemon, QUICK));
     until_job(&daemon, &path, |job| job["step"].as_u64() > Some(40));
-    daemon.signal("-KILL");
+    daemon.signal("KILL");
     daemon.wait();
     let checkpoint = path.replace("/v1/jobs/", "forge/") + ".checkpoint";
     assert!(folder.path().join(&checkpoint).exists());

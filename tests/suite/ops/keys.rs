@@ -264,7 +264,7 @@ fn keys_are_added_and_removed_while_the_daemon_serves() {
         write_keys(wrong);
         let new = table("sqrt(3)", &format!("new{}", wrong.len()));
         write(daemon.folder(), "new.strew", &new);
-        daemon.signal("-HUP");
+        daemon.signal("HUP");
         let path = format!(
             "/v1/count?bbox=0,0,5,5&density=1&alpha=sqrt(3)&profile=new{}",
             wrong.len()
@@ -275,7 +275,7 @@ fn keys_are_added_and_removed_while_the_daemon_serves() {
         assert!(is_in("two") && !is_in("one"));
     }
     write_keys(&entry("a", "one", ""));
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until("a valid file is applied", || is_in("one").then_some(()));
 }
 

@@ -228,7 +228,7 @@ fn metrics_can_be_switched_off() {
 #[test]
 fn reloads_are_counted() {
     let daemon = Daemon::start(&[]);
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until("the signal is counted", || {
         let labels = ["cause=\"signal\""];
         let reloads = sum(&samples(&daemon), "strew_tables_reloads_total", &labels);

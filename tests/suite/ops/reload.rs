@@ -66,7 +66,7 @@ fn a_signal_applies_new_changed_and_removed_tables() {
     write(daemon.folder(), "c.strew", &table(ALPHA, "added"));
     fs::remove_file(daemon.folder().join("b.strew")).expect("removable");
     assert_eq!(digest(&daemon), before.header("strew-table"));
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until_served(&daemon, &other());
     assert!(has_profile(&daemon, "added"));
     assert!(has_profile(&daemon, "blue"), "built-in tables stay");
@@ -81,7 +81,7 @@ fn a_signal_applies_new_changed_and_removed_tables() {
         "a.strew",
         &table(ALPHA, PROFILE).to_bytes(),
     );
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until_served(&daemon, &table(ALPHA, PROFILE));
     assert_eq!(daemon.get(POINTS).body, before.body);
 }
@@ -130,7 +130,7 @@ fn a_bad_file_is_refused_and_the_table_before_serves_on() {
         write(daemon.folder(), "z.strew", &table("sqrt(3)", PROFILE));
         // A good table shows when the folder has been read.
         write(daemon.folder(), "good.strew", &table(ALPHA, name));
-        daemon.signal("-HUP");
+        daemon.signal("HUP");
         until("the good one is served", || {
             has_profile(&daemon, name).then_some(())
         });
@@ -147,10 +147,10 @@ fn a_bad_file_is_refused_and_the_table_before_serves_on() {
     // A folder that cannot be read removes no table.
     let hidden = daemon.folder().with_extension("hidden");
     fs::rename(daemon.folder(), &hidden).expect("renamed");
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     fs::rename(&hidden, daemon.folder()).expect("renamed");
     replace(daemon.folder(), "a.strew", &other().to_bytes());
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until_served(&daemon, &other());
     assert!(has_profile(&daemon, "foreign"));
 }
@@ -167,7 +167,7 @@ fn a_stream_ends_with_the_table_it_began_with() {
     let reader = http1::open(daemon.address(), "GET", path, &[]);
     assert_eq!(reader.status, 200);
     replace(daemon.folder(), "a.strew", &other().to_bytes());
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until_served(&daemon, &other());
     let (body, complete) = reader.finish();
     assert!(complete);
@@ -184,7 +184,7 @@ fn a_pin_of_a_replaced_table_is_a_conflict() {
     let first = daemon.get(&format!("{POINTS}&limit=10"));
     let (pinned, cursor) = (first.header("strew-table"), first.header("strew-next"));
     replace(daemon.folder(), "a.strew", &other().to_bytes());
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until_served(&daemon, &other());
     let refused = daemon.get(&format!("{POINTS}&table={pinned}"));
     assert_eq!(refused.status, 409, "{}", refused.text());

@@ -159,7 +159,7 @@ fn keys_certificates_and_fields_are_rolled_out(program: &str) {
         for replica in &replicas {
             write_keys(&replica.files, &[&old[..], &new].concat());
             after.issue_server().write_server(replica.files.path());
-            replica.daemon.signal("-HUP");
+            replica.daemon.signal("HUP");
             until("the new authority vouches for the replica", || {
                 get_with(&mut connect(&replica.daemon, &trust), "/livez", "").ok()
             });
@@ -197,7 +197,7 @@ fn keys_certificates_and_fields_are_rolled_out(program: &str) {
     while_read(proxy, &readers, |read_on| {
         for (i, replica) in replicas.iter().enumerate() {
             write_field(&replica.files, 0.9);
-            replica.daemon.signal("-HUP");
+            replica.daemon.signal("HUP");
             until("the replica has the new field", || {
                 replica
                     .status(&trust, &pinned, "new")
@@ -227,7 +227,7 @@ fn keys_certificates_and_fields_are_rolled_out(program: &str) {
     while_read(proxy, &readers, |read_on| {
         for replica in &replicas {
             write_keys(&replica.files, &new);
-            replica.daemon.signal("-HUP");
+            replica.daemon.signal("HUP");
             until("the old key is refused", || {
                 replica
                     .status(&trust, CHUNK, "old")

@@ -156,7 +156,7 @@ fn damage_beyond_the_head_shows_at_the_first_use_and_ends_with_it() {
     assert_eq!(daemon.get(&query(0)).status, 200);
     // One that is cut is refused at the start already.
     fs::write(daemon.folder().join("b.strew"), &good[..good.len() - 1]).expect("writable");
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     let line = daemon.log_line("b.strew");
     assert!(line.contains("refused"), "{line}");
 }

@@ -143,7 +143,7 @@ fn new_certificates_serve_new_connections_and_bad_ones_change_nothing() {
     let mut open = connect(&daemon, &config);
     get(&mut open, "/livez").expect("an answer");
     assert_eq!(shown(&daemon, &config), first.der);
-    let hang_up = || daemon.signal("-HUP");
+    let hang_up = || daemon.signal("HUP");
 
     let second = authority.issue_server();
     second.write_server(folder);

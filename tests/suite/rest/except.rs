@@ -147,7 +147,7 @@ fn nothing_appears_where_a_tree_was_felled() {
     let list = serde_json::to_string(&items).expect("JSON");
     let file = daemon.folder().join("strew.toml");
     fs::write(&file, WORLD.replace("ids = []", &format!("ids = {list}"))).expect("writable");
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until("the list is read", || {
         (rows(&daemon, CHUNK) == left).then_some(())
     });
@@ -199,7 +199,7 @@ fn a_folder_of_lists_is_watched() {
     });
     // A wrong list does not replace it.
     write("1:2\nthree\n");
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     fs::write(folder.path().join("new.txt"), "1:2").expect("writable");
     until("the folder is read", || {
         let lists = daemon.get("/v1/except").json();

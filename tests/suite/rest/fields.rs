@@ -295,7 +295,7 @@ fn changed_fields_change_answers_and_tags() {
     let before = daemon.get(PATH);
     write(folder.path(), "ramp.json", br#"{"constant": 1}"#);
     write(folder.path(), "left.png", b"damaged");
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until("the field is served", || {
         let shape = &daemon.get("/v1/fields/ramp").json()["shape"];
         (shape == "constant").then_some(())

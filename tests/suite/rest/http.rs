@@ -102,6 +102,23 @@ fn unknown_paths_and_methods_are_problem_documents() {
             assert!(answer.text().contains(method));
         }
     }
+    let of = |method: &str, path: &str| {
+        http1::request(daemon.address(), method, path, &[])
+            .text()
+            .to_owned()
+    };
+    assert!(of("POST", "/v1/points").contains("POST is for /v1/points:query"));
+    let near = of("GET", "/v1/point");
+    assert!(
+        near.contains("/v1/points, ") && near.contains("/openapi.json"),
+        "{near}"
+    );
+    assert!(near.len() < 400, "{near}");
+    let icon = daemon.get("/favicon.ico");
+    assert_eq!(
+        (icon.status, icon.header("content-type")),
+        (200, "image/svg+xml")
+    );
     let grpc = [("content-type", "application/grpc")];
     let answer = http1::request(daemon.address(), "POST", "/strew.v1.Nothing/X", &grpc);
     assert_eq!((answer.status, answer.header("grpc-status")), (200, "12"));

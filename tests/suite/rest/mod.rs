@@ -24,6 +24,7 @@ mod paging;
 mod patterns;
 mod periods;
 mod profiles;
+mod ranges;
 mod regions;
 mod single_points;
 mod terrain;

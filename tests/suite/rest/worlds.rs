@@ -203,7 +203,7 @@ fn worlds_are_read_again_and_a_wrong_one_replaces_none() {
     let before = names();
     let text = WORLDS.replace("spacing = 1.5", "spacing = 2.5");
     fs::write(&file, format!("{text}\n[worlds.new]\ndensity = 1\n")).expect("writable");
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until("there is a new world", || {
         (names().len() == 3).then_some(())
     });
@@ -213,7 +213,7 @@ fn worlds_are_read_again_and_a_wrong_one_replaces_none() {
     // Wrong ones do not replace good ones; the new one is gone.
     let wrong = text.replace("spacing = 2.5", "spacing = -1");
     fs::write(&file, wrong).expect("writable");
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until("the new world is gone", || {
         (names().len() == 2).then_some(())
     });
@@ -221,7 +221,7 @@ fn worlds_are_read_again_and_a_wrong_one_replaces_none() {
     assert_eq!(daemon.get("/v1/worlds/meadow/chunks/9/0/0").status, 200);
     // What is no TOML changes nothing.
     fs::write(&file, "[worlds").expect("writable");
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     fs::write(daemon.folder().join("c.strew"), "no table").expect("writable");
     assert_eq!(names(), after[..2]);
 }

@@ -11,7 +11,7 @@ use std::{
 use strew_core::Table;
 use strew_testkit::{
     daemon::{self, Launcher, NotReady},
-    http1,
+    http1, process,
     tables::{random, write},
     wait::until,
 };
@@ -25,7 +25,7 @@ pub const PROGRAM: &str = env!("CARGO_BIN_EXE_strew");
 
 /// The program without the settings of the caller's environment.
 pub fn strew() -> Command {
-    daemon::command(PROGRAM)
+    process::command(PROGRAM)
 }
 
 /// A table with random displacements.

@@ -1,4 +1,4 @@
-//! Where a seed puts a point, written from "A seed" in ARCHITECTURE.md and not from the library's code:
+//! Where a seed puts a point, written from "A seed" in docs/algorithm.md and not from the library's code:
 //! wide integers, one step after another, nothing kept.
 
 use strew_core::{Field, Keep, PointId, PointSet, Seed, Table};

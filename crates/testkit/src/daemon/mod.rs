@@ -13,19 +13,11 @@ use std::{
     process::{Child, Command, ExitStatus, Stdio},
 };
 
-use crate::wait::until;
+use crate::{
+    process::{self, command},
+    wait::until,
+};
 use output::Output;
-
-/// The program without the `STREW_…` settings of the caller's environment.
-pub fn command(program: impl AsRef<OsStr>) -> Command {
-    let mut command = Command::new(program);
-    for (name, _) in std::env::vars_os() {
-        if name.to_string_lossy().starts_with("STREW_") {
-            command.env_remove(name);
-        }
-    }
-    command
-}
 
 /// How to start a daemon. By default it listens on a free port of this machine and has the built-in
 /// tables and the default settings; its log is kept, see [`Daemon::log`].
@@ -224,18 +216,14 @@ impl Daemon {
         self.process.child.id()
     }
 
-    /// Sends a signal, such as `-HUP`.
-    pub fn signal(&self, signal: &str) {
-        let sent = Command::new("kill")
-            .args([signal, &self.pid().to_string()])
-            .status()
-            .expect("kill runs");
-        assert!(sent.success(), "kill {signal} {}", self.pid());
+    /// Sends a signal, such as `HUP`.
+    pub fn signal(&self, name: &str) {
+        process::signal(self.pid(), name);
     }
 
     /// Sends `SIGTERM`.
     pub fn terminate(&self) {
-        self.signal("-TERM");
+        self.signal("TERM");
     }
 
     /// Waits for the process to end.

@@ -2,11 +2,20 @@
 
 import { make } from "../dom.js";
 import { attempt } from "./attempt.js";
-import { folded, limitsOf, membersOf, resolved, typeOf } from "./schema.js";
+import { folded, isSaid, limitsOf, membersOf, resolved, typeOf } from "./schema.js";
+
+/** A description: a paragraph, and below it the items of a list, if it has any. */
+function prose(text) {
+  const [about, ...items] = text.split(/\n+- /);
+  return [
+    make("p", { class: "about" }, about),
+    items.length > 0 && make("ul", { class: "about" }, items.map((item) => make("li", {}, item))),
+  ].filter(Boolean);
+}
 
 function parameterRow(one, api) {
   const { of } = resolved(one.schema, api);
-  const limits = limitsOf(one.schema, api);
+  const limits = isSaid(one.description) ? [] : limitsOf(one.schema, api);
   return make("li", { id: `parameter-${one.name}` },
     make("div", {}, make("code", { class: "name" }, one.name), " ",
       make("span", { class: "type" }, `${one.in}, ${typeOf(one.schema, api)}`),
@@ -66,7 +75,7 @@ export function operationView({ path, method, operation, tag }, api) {
     make("p", { class: "crumb" }, tag),
     make("h2", { tabindex: "-1" }, operation.summary),
     make("p", { class: "path" }, make("span", { class: `method ${method.toLowerCase()}` }, method), make("code", {}, path)),
-    make("p", { class: "about" }, operation.description ?? ""),
+    ...prose(operation.description ?? ""),
     make("div", { class: "columns" },
       make("div", {},
         ...parameters(operation.parameters ?? [], api).filter(Boolean),

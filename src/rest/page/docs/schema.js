@@ -33,6 +33,9 @@ export function typeOf(schema, api, depth = 0) {
   return [of.type ?? "any"].flat().join(" | ");
 }
 
+/** Whether a description has the limits in words. */
+export const isSaid = (description) => Boolean(description?.includes("Allowed: "));
+
 /** The limits of a value, in a few words each. */
 export function limitsOf(schema, api) {
   const { of } = resolved(schema, api);
@@ -76,7 +79,8 @@ function member(name, schema, isRequired, api) {
     make("code", { class: "name" }, name), " ", make("span", { class: "type" }, typeOf(schema, api)),
     isRequired && make("span", { class: "required" }, " required"),
   ];
-  const about = [schema.description ?? of.description, ...limitsOf(schema, api)].filter(Boolean).join(" · ");
+  const said = schema.description ?? of.description;
+  const about = [said, ...(isSaid(said) ? [] : limitsOf(schema, api))].filter(Boolean).join(" · ");
   const words = about && make("p", {}, about);
   if (!hasMembers(schema, api)) return make("li", {}, make("div", {}, head), words);
   return make("li", {}, folded(make("span", {}, head), () => membersOf(schema, api)), words);

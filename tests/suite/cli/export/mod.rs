@@ -10,11 +10,11 @@ use std::{
     fs,
     net::SocketAddr,
     path::Path,
-    process::{Command, Output, Stdio},
+    process::{Output, Stdio},
     time::SystemTime,
 };
 
-use strew_testkit::{http1, wait::until};
+use strew_testkit::{http1, process::Running, wait::until};
 
 use crate::support::{
     clients,
@@ -372,21 +372,15 @@ fn an_interrupt_ends_it_in_good_order() {
         .args(["export", "-q", "--threads=1", "-o"])
         .arg(&out)
         .args(large);
-    let child = command
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program runs");
+    let child = Running::start(command.stderr(Stdio::piped()));
     let journal = out.join(".partial/journal");
     until("some chunks are there", || {
         fs::metadata(&journal)
             .is_ok_and(|file| file.len() > 3000)
             .then_some(())
     });
-    let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(sent.is_ok_and(|status| status.success()));
-    let output = child.wait_with_output().expect("it ends");
+    child.signal("INT");
+    let output = child.end();
     assert_eq!(output.status.code(), Some(130));
     assert!(
         errors(&output).contains("goes on there"),

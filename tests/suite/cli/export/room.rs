@@ -2,10 +2,10 @@
 
 use std::{
     fs,
-    process::{Child, Command, Output, Stdio},
+    process::{Command, Output, Stdio},
 };
 
-use strew_testkit::wait::until;
+use strew_testkit::{process::Running, wait::until};
 
 use super::{LARGE, SMALL, export, exported, tree};
 use crate::support::{
@@ -71,16 +71,15 @@ fn goes_on_once_there_is_room(to: &str, growing: &str, length: u64) {
     let flags = [&LARGE[..], &[to, &text]].concat();
     let mut command = strew();
     command.args(["export", "-q", "--threads=1"]).args(&flags);
-    let child = command.stderr(Stdio::piped()).spawn();
-    let child = child.expect("the program runs");
+    let child = Running::start(command.stderr(Stdio::piped()));
     until("some chunks are there", || {
         (fs::metadata(&growing).ok()?.len() > length).then_some(())
     });
     // It must not write on while its disk shrinks.
-    signal(&child, "STOP");
+    child.signal("STOP");
     disk.leave_free(1 << 20);
-    signal(&child, "CONT");
-    let output = child.wait_with_output().expect("it ends");
+    child.signal("CONT");
+    let output = child.end();
     assert_no_room(&output, "No space left on device");
     assert!(!out.join("manifest.json").exists() && !out.is_file());
     if out.is_dir() {
@@ -99,13 +98,6 @@ fn goes_on_once_there_is_room(to: &str, growing: &str, length: u64) {
     disk.resize("64m");
     exported(&flags);
     exported(&["--check", &text]);
-}
-
-fn signal(child: &Child, name: &str) {
-    let sent = Command::new("kill")
-        .args(["-s", name, &child.id().to_string()])
-        .status();
-    assert!(sent.is_ok_and(|status| status.success()));
 }
 
 #[test]

@@ -1,0 +1,127 @@
+//! What shells offer for the value of a flag: the words of its parameter, and what is loaded.
+
+use std::{collections::BTreeSet, ffi::OsStr};
+
+use clap_complete::engine::{
+    ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter as _,
+};
+
+use super::config;
+use crate::service::{
+    Catalog, Encoding, Worlds,
+    query::{
+        Parameter, Shape,
+        parameters::{ATTRIBUTES, FIELD, TERRAIN},
+    },
+};
+
+/// Completes the value of a parameter's flag. Where nothing is known, it offers nothing instead of files.
+pub(super) fn completer(parameter: &'static Parameter) -> ArgValueCompleter {
+    ArgValueCompleter::new(move |current: &OsStr| {
+        let text = current.to_str().unwrap_or_default();
+        let mut found = matching(text, &words(parameter), parameter.shape.is_of_names());
+        if *parameter == FIELD || *parameter == TERRAIN {
+            found.extend(PathCompleter::file().complete(current));
+        }
+        found
+    })
+}
+
+/// The words that go on with `text`: of a list, with its last item.
+fn matching(text: &str, words: &[String], is_list: bool) -> Vec<CompletionCandidate> {
+    let (before, last) = match text.rfind(',').filter(|_| is_list) {
+        Some(comma) => text.split_at(comma + 1),
+        None => ("", text),
+    };
+    let is_given = |word: &str| before.split(',').any(|given| given == word);
+    let fitting = words
+        .iter()
+        .filter(|word| word.starts_with(last) && !is_given(word));
+    fitting
+        .map(|word| CompletionCandidate::new(format!("{before}{word}")))
+        .collect()
+}
+
+/// The values that are known.
+fn words(parameter: &Parameter) -> Vec<String> {
+    let owned = |words: &[&str]| words.iter().map(|&word| word.to_owned()).collect();
+    match parameter.shape {
+        Shape::Switch => owned(&["on", "off"]),
+        Shape::Strength { .. } => owned(&["off", "on"]),
+        Shape::Choice(words) => owned(words),
+        Shape::Format => owned(&formats()),
+        _ if *parameter == ATTRIBUTES => attributes(),
+        _ => loaded(parameter).unwrap_or_default(),
+    }
+}
+
+fn formats() -> Vec<&'static str> {
+    let of_files = [Encoding::Parquet, Encoding::Feather];
+    let all = Encoding::ALL.into_iter().chain(of_files);
+    all.map(Encoding::name).collect()
+}
+
+fn attributes() -> Vec<String> {
+    let named = ["angle", "scale", "variant", "rank"].map(String::from);
+    let uniform = (1..=16).map(|number| format!("u{number}"));
+    named.into_iter().chain(uniform).collect()
+}
+
+/// The names of what the settings of the environment load; none if they are wrong, which the command
+/// itself reports.
+fn loaded(parameter: &Parameter) -> Option<Vec<String>> {
+    if !["profile", "alpha", "map", "world", "field", "terrain"].contains(&parameter.name) {
+        return None;
+    }
+    let config = config::Args::of_environment().merged().ok()?;
+    let catalog = config.tables().ok()?;
+    let of_tables = |name: fn(&crate::service::Entry) -> String| -> Vec<String> {
+        let names: BTreeSet<String> = catalog.entries().map(|entry| name(entry)).collect();
+        names.into_iter().collect()
+    };
+    Some(match parameter.name {
+        "profile" => of_tables(|entry| entry.key.profile.to_string()),
+        "alpha" => of_tables(|entry| entry.key.alpha.to_string()),
+        "map" => of_tables(|entry| entry.key.size.to_string()),
+        "world" => {
+            let worlds = Worlds::load(&config.worlds, &catalog, config.limits.max_vertices).ok()?;
+            worlds.iter().map(|world| world.name.clone()).collect()
+        }
+        _ => field_names(&catalog),
+    })
+}
+
+fn field_names(catalog: &Catalog) -> Vec<String> {
+    let fields = catalog.fields().iter();
+    fields.map(|field| field.name.clone()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::service::query::parameters::MAP;
+
+    fn offered(parameter: &'static Parameter, text: &str) -> Vec<String> {
+        let found = completer(parameter).complete(OsStr::new(text));
+        let text = |found: &CompletionCandidate| found.get_value().to_string_lossy().into_owned();
+        found.iter().map(text).collect()
+    }
+
+    #[test]
+    fn lists_go_on_after_a_comma() {
+        assert_eq!(offered(&ATTRIBUTES, "an"), ["angle"]);
+        assert_eq!(offered(&ATTRIBUTES, "angle,va"), ["angle,variant"]);
+        assert_eq!(offered(&ATTRIBUTES, "angle,an"), [""; 0]);
+        assert_eq!(offered(&MAP, "s,"), [""; 0]);
+    }
+
+    #[test]
+    fn attributes_are_those_that_are_allowed() {
+        let Shape::Names { pattern } = ATTRIBUTES.shape else {
+            panic!("a list");
+        };
+        for name in ["angle", "scale", "variant", "rank"] {
+            assert!(pattern.contains(name) && attributes().contains(&name.to_owned()));
+        }
+    }
+}
