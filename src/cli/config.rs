@@ -83,14 +83,6 @@ impl Served {
 }
 
 impl Args {
-    /// The flags of a command that has none: variables still count.
-    pub(super) fn of_environment() -> Self {
-        Self {
-            config: std::env::var_os("STREW_CONFIG").map(PathBuf::from),
-            ..Self::default()
-        }
-    }
-
     /// The merged settings, of which flags may set those that are used.
     pub(crate) fn merged(&self, uses: Uses) -> Result<Config, Failure> {
         self.merge(uses, None)

@@ -268,14 +268,19 @@ impl<'a> Planner<'a> {
             self.check_rows(selection, effort::counts(set) + effort::kinds(set))?;
         }
         let most = self.limits.max_rows as f64 / (effort::counts(set) + effort::kinds(set));
-        let least = effort::least_spacing(selection, most, self.stop);
+        let is_in_field = set.field.is_some();
+        let least = effort::least_spacing(selection, is_in_field, most, self.stop);
         let Selection {
             set: points, area, ..
         } = &*selection;
         let plan = server::exactly(points, count.into(), area, least, self.stop);
         plan.map_err(|error| match error.kind() {
             ErrorKind::Count | ErrorKind::TooDense => {
-                set.fault("count", count, error.problem(), parameters::COUNT.allowed())
+                let allowed = match error.allowed() {
+                    "" => parameters::COUNT.allowed(),
+                    allowed => allowed.into(),
+                };
+                set.fault("count", count, error.problem(), allowed)
             }
             _ => {
                 let spacing = points.placement().spacing;

@@ -80,7 +80,15 @@ def _png(array: np.ndarray[Any, Any]) -> bytes:
 
 
 def darkness(image: Any, invert: bool) -> np.ndarray[Any, np.dtype[np.uint16]]:
-    """How dark each pixel of a picture is, in linear light."""
+    """How dark each pixel of a picture is, in linear light; some pixel is."""
+    dark = _darkness(image, invert)
+    if not dark.any():
+        color, other = ("black", "without invert") if invert else ("white", "with invert=True")
+        raise ValueError(f"the picture is all {color}: no dot has a place; allowed: another picture, or {other}")
+    return dark
+
+
+def _darkness(image: Any, invert: bool) -> np.ndarray[Any, np.dtype[np.uint16]]:
     if isinstance(image, (str, os.PathLike)):
         picture = Path(image).read_bytes()
     elif isinstance(image, (bytes, bytearray, memoryview)):
@@ -96,11 +104,7 @@ def darkness(image: Any, invert: bool) -> np.ndarray[Any, np.dtype[np.uint16]]:
             return (light * 65535.0 + 0.5).astype(np.uint16)
         picture = _picture(array)
     width, height, words = _strew.darkness(picture, invert)
-    dark = np.frombuffer(words, dtype=np.uint16).reshape(height, width)
-    if not dark.any():
-        color, other = ("black", "without invert") if invert else ("white", "with invert=True")
-        raise ValueError(f"the picture is all {color}: no dot has a place; allowed: another picture, or {other}")
-    return dark
+    return np.frombuffer(words, dtype=np.uint16).reshape(height, width)
 
 
 def _picture(array: np.ndarray[Any, Any]) -> bytes:

@@ -147,6 +147,7 @@ def test_pictures_that_cannot_be_used_are_refused() -> None:
         (np.full((4, 4), 2.0), "light from 0"),
         (np.zeros((4, 4), np.int64), "uint8"),
         (np.full((4, 4), 255, np.uint8), "all white"),
+        (np.ones((8, 8)), "all white"),
         (b"no picture", "cannot be read"),
     ):
         with pytest.raises(ValueError, match=words):

@@ -6,8 +6,8 @@ use std::sync::{Arc, OnceLock};
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Backend, Circle, F32, F64, Field, Format, Member, Offsets, Placement, Plan, Point,
-    PointId, PointSet, Points, Polygon, Raster, Region, Seed, Spacing, Table, Warp,
+    Area, Backend, Circle, ErrorKind, F32, F64, Field, Format, Member, Offsets, Placement, Plan,
+    Point, PointId, PointSet, Points, Polygon, Raster, Region, Seed, Spacing, Table, Warp,
     field::{Edges, FieldSpec, Filter, Marks, Noise, Pixels},
     server::{self, Stop},
 };
@@ -302,6 +302,25 @@ proptest! {
         prop_assert!(same.count() - count <= more, "{}", same.count());
         prop_assert_eq!(&same.to_vec()[..count as usize], plan.to_vec());
     }
+}
+
+#[test]
+fn no_number_is_sought_where_a_field_leaves_nothing() {
+    let set = PointSet::new(tables()[0].clone());
+    let thin = Region::new([0.0, 0.0], [0.2, 274.0]).expect("ordered");
+    let beyond = FieldSpec::radial([16.0, 20.0], [2.0, 10.0], [1.0, 0.0]).expect("valid");
+    let refused = |set: &PointSet, least: f64| {
+        let error = server::exactly(set, 800, &thin.into(), least, &Stop::default());
+        let error = error.expect_err("nothing");
+        (error.kind(), error.problem().to_owned())
+    };
+    // Bounds say so, so nothing is counted: without a least spacing that would not end.
+    let (kind, problem) = refused(&set.in_field(beyond), 0.0);
+    assert_eq!(kind, ErrorKind::Count);
+    assert_eq!(problem, "the field is 0 in all of the region");
+    let (kind, problem) = refused(&set.in_field(|_: [f64; 2]| 0.0), 0.05);
+    assert_eq!(kind, ErrorKind::TooDense);
+    assert_eq!(problem, "no point is left here, down to a spacing of 0.05");
 }
 
 #[test]

@@ -5,8 +5,8 @@ mod subject;
 use proptest::prelude::*;
 use rayon::prelude::*;
 use strew_core::{
-    Backend, F32, F64, LATTICE_LIMIT, Pattern, Placement, Point, PointId, PointSet, Points, Region,
-    Spacing, Warp, table::FRACTION_BITS,
+    Backend, F32, F64, LATTICE_LIMIT, Offsets, Pattern, Placement, Point, PointId, PointSet,
+    Points, Region, Spacing, Warp, table::FRACTION_BITS,
 };
 use subject::{all, all_by, any_seed, any_table, definition, in_order_of_ids, set, tables, unit};
 
@@ -177,9 +177,16 @@ proptest! {
         prop_assert_eq!(&filled.concat(), &pairs);
 
         let (min, max) = (region.min(), region.max());
-        for (relative, p) in all::<F32>(&plan, block).iter().zip(&pairs) {
+        let offsets = all::<Offsets>(&plan, block);
+        for ((relative, p), exact) in all::<F32>(&plan, block).iter().zip(&pairs).zip(offsets) {
             for axis in 0..2 {
                 let extent = max[axis] - min[axis];
+                // One rounding to f32 of the offset from the corner, and that of the corner's own place far out.
+                let rounding = exact[axis] * 6e-8 + f64::from(f32::MIN_POSITIVE);
+                let beside = min[axis].abs() * 2.3e-16;
+                let off = (f64::from(relative[axis]) - exact[axis]).abs();
+                let is_last = extent - exact[axis] <= extent * 1.2e-7;
+                prop_assert!(off <= rounding + beside || is_last, "{} {}", relative[axis], exact[axis]);
                 prop_assert!(relative[axis] >= 0.0 && f64::from(relative[axis]) < extent);
                 // The rounding of f32, that of the f64 it is compared with, and one unit.
                 let allowed = extent * 1.2e-7 + p[axis].abs() * 4.5e-16 + spacing.get() * 4e-7;

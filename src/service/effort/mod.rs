@@ -239,13 +239,25 @@ pub(super) fn rows_and_edges(selection: &Selection) -> f64 {
 }
 
 /// The least spacing at which so many rows are not passed, from the selection's own downward; 0 if
-/// there is none to pass.
-pub(super) fn least_spacing(selection: &Selection, most: f64, stop: &Stop) -> f64 {
+/// there is none to pass, whatever the spacing.
+pub(super) fn least_spacing(
+    selection: &Selection,
+    is_in_field: bool,
+    most: f64,
+    stop: &Stop,
+) -> f64 {
     /// Each step goes this far.
     const STEP: f64 = 0.8;
-    if rows(selection) == 0.0 {
+    // In a field there may be rows at smaller spacings alone.
+    if rows(selection) == 0.0 && !is_in_field {
         return 0.0;
     }
+    let bounds = selection.area.bounds();
+    let corners = bounds.map(|bounds| [bounds.min(), bounds.max()].concat());
+    let reach = corners
+        .iter()
+        .flatten()
+        .fold(0.0, |reach: f64, v| reach.max(v.abs()));
     let mut trial = selection.clone();
     loop {
         let mut placement = trial.set.placement();
@@ -255,7 +267,10 @@ pub(super) fn least_spacing(selection: &Selection, most: f64, stop: &Stop) -> f6
         };
         placement.spacing = next;
         trial.set = trial.set.placed(placement);
-        if stop.is_raised() || rows(&trial) > most || rows_and_edges(&trial) > most {
+        if stop.is_raised() || trial.set.limit() < reach {
+            return spacing;
+        }
+        if rows(&trial) > most || rows_and_edges(&trial) > most {
             return spacing;
         }
     }

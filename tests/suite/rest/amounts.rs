@@ -5,6 +5,7 @@ use serde_json::json;
 use crate::support::{
     csv::{Csv, least_distance},
     daemon::Daemon,
+    problem::assert_fault,
 };
 
 #[test]
@@ -48,6 +49,32 @@ fn a_count_is_met_in_regions_of_all_kinds() {
             }
         }
     }
+}
+
+#[test]
+fn a_count_where_nothing_can_be_is_refused_with_the_reason() {
+    let daemon = Daemon::start(&["limits.max_rows=100000"]);
+    let far = json!({ "distance": { "distances": [2, 10], "points": [[16, 20]] } });
+    let bands = json!({ "noise": { "wavelength": 3, "range": [0, 0.001] } });
+    let low = json!({ "curve": { "of": bands, "points": [[0, 0], [0.9, 0], [1, 1]] } });
+    for (bbox, field) in [
+        ([0.0, 0.0, 20.0, 20.0], json!({ "constant": 0 })),
+        ([0.0, 0.0, 0.2, 274.0], json!({ "invert": far })),
+        ([0.0, 0.0, 200.0, 200.0], low),
+    ] {
+        let body = json!({ "region": { "bbox": bbox }, "count": 800, "field": field });
+        let answer = daemon.post("/v1/points:query", &body);
+        let texts = ["the field is 0 in all of the region", "leaves points"];
+        assert_fault(&answer, &body.to_string(), "count", &texts);
+    }
+    // Bounds over the box around the region do not tell.
+    let body = json!({
+        "region": { "polygon": { "type": "Polygon", "coordinates": [[[0, 0], [20, 0], [0, 20], [0, 0]]] } },
+        "count": 5, "field": { "ramp": { "from": [10.5, 10.5], "to": [20, 20] } },
+    });
+    let answer = daemon.post("/v1/points:query", &body);
+    let texts = ["no point is left here, down to", "leaves points"];
+    assert_fault(&answer, &body.to_string(), "count", &texts);
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! The spacing at which an area holds a given number of points.
 
+use alloc::collections::VecDeque;
+
 use super::{
     area::{Area, Region},
     lattice::{Grade, Lattice, Placement, Spacing},
@@ -43,7 +45,15 @@ pub(super) fn exactly(
         .ok_or_else(|| Error::new(ErrorKind::Unbounded, "area", "unbounded", "within a box"))?;
     let [width, height] = [0, 1].map(|i| bounds.max()[i] - bounds.min()[i]);
     let share = match &lattice.grade {
-        Some(grade) => mean_share(grade, &bounds) * lattice.kind_share(),
+        Some(grade) => match sum_of_shares(grade, &bounds) {
+            0.0 if is_zero(grade, bounds) => {
+                let allowed = "a region in which the field leaves points";
+                let error = Error::new(ErrorKind::Count, "count", count, allowed);
+                return Err(error.because("the field is 0 in all of the region"));
+            }
+            // At least a quarter of one place's.
+            sum => sum.max(0.25) / f64::from(SIDE * SIDE) * lattice.kind_share(),
+        },
         None => lattice.share(),
     };
     let wanted = count as f64;
@@ -66,9 +76,12 @@ pub(super) fn exactly(
         let plan = match Plan::new(&trial, mask, area.clone(), stop.clone(), None) {
             Ok(plan) => plan,
             // So dense that points cannot be told apart.
-            Err(error) if error.kind() == ErrorKind::TooFar && low == 0.0 && high.is_finite() => {
+            Err(error) if error.kind() == ErrorKind::TooFar && high.is_finite() => {
                 low = guess;
                 guess = between(low, high);
+                if guess <= low || guess >= high {
+                    break;
+                }
                 continue;
             }
             Err(error) => return Err(error),
@@ -83,10 +96,18 @@ pub(super) fn exactly(
                 more = Some(plan);
             }
         } else if guess <= least {
-            let allowed = "a smaller number";
+            let spacing = number(least);
+            let (problem, allowed) = match found {
+                0 => (
+                    alloc::format!("no point is left here, down to a spacing of {spacing}"),
+                    "a region in which the field leaves points",
+                ),
+                _ => (
+                    alloc::format!("{count} points take a spacing below {spacing} here"),
+                    "a smaller number",
+                ),
+            };
             let error = Error::new(ErrorKind::TooDense, "count", count, allowed);
-            let problem =
-                alloc::format!("{count} points take a spacing below {} here", number(least));
             return Err(error.because(problem).with_limit(least));
         } else {
             (high, ends[1]) = (guess, found as f64);
@@ -125,17 +146,51 @@ pub(super) fn exactly(
     Ok(more.window(0, Some(count)))
 }
 
-/// The mean share of a field over a box, from a grid of places; at least a quarter of one place's.
-fn mean_share(grade: &Grade, bounds: &Region) -> f64 {
-    const SIDE: u32 = 64;
+/// A field is looked at in so many rows and columns of places to begin with.
+const SIDE: u32 = 64;
+
+/// The sum of the shares of a field at a grid of places in a box.
+fn sum_of_shares(grade: &Grade, bounds: &Region) -> f64 {
     let (min, max) = (bounds.min(), bounds.max());
     let along = |axis: usize, i: u32| {
         let part = (f64::from(i) + 0.5) / f64::from(SIDE);
         min[axis] + (max[axis] - min[axis]) * part
     };
     let row = |y: u32| (0..SIDE).map(move |x| grade.share([along(0, x), along(1, y)]));
-    let sum: f64 = (0..SIDE).flat_map(row).sum();
-    sum.max(0.25) / f64::from(SIDE * SIDE)
+    (0..SIDE).flat_map(row).sum()
+}
+
+/// Whether the bounds of a field say that it is 0 in all of a box, in smaller and smaller pieces of it.
+fn is_zero(grade: &Grade, bounds: Region) -> bool {
+    /// The most pieces that are looked at: less than a millisecond.
+    const MOST: usize = 4096;
+    let mut open = VecDeque::from([bounds]);
+    for _ in 0..MOST {
+        let Some(piece) = open.pop_front() else {
+            return true;
+        };
+        let [low, high] = grade.bounds(&piece);
+        if low > 0.0 {
+            return false;
+        }
+        if high > 0.0 {
+            let Some(halves) = halves(piece) else {
+                return false;
+            };
+            open.extend(halves);
+        }
+    }
+    open.is_empty()
+}
+
+/// The halves of a box across its longer side.
+fn halves(piece: Region) -> Option<[Region; 2]> {
+    let (min, max) = (piece.min(), piece.max());
+    let longer = usize::from(max[1] - min[1] > max[0] - min[0]);
+    let (mut end, mut start) = (max, min);
+    end[longer] = between(min[longer], max[longer]);
+    start[longer] = end[longer];
+    Some([Region::new(min, end).ok()?, Region::new(start, max).ok()?])
 }
 
 /// The spacing between two at which a count lies as far between theirs, as counts go as spacing⁻².

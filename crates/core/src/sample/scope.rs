@@ -42,9 +42,6 @@ pub(crate) struct Corner {
     pub(crate) first: [i128; 2],
     /// The distances from the exact place to [`first`](Self::first); see [`Multiple::gap`].
     pub(crate) gap: [[f64; 2]; 2],
-    /// Whether the place is a chunk's, and `f32` offsets are from it and not from
-    /// [`first`](Self::first).
-    pub(crate) is_chunk: bool,
     /// Offsets are below this.
     pub(crate) extent: [f64; 2],
 }
@@ -67,7 +64,6 @@ impl Corner {
             at: min,
             first,
             gap: [gap(0), gap(1)],
-            is_chunk: false,
             extent: [0, 1].map(|axis| max[axis] - min[axis]),
         }
     }
@@ -79,7 +75,6 @@ impl Corner {
             at: at.map(|index| index as f64 * size),
             first: multiples.map(|multiple| multiple.first),
             gap: multiples.map(|multiple| multiple.gap),
-            is_chunk: true,
             extent: [size; 2],
         }
     }

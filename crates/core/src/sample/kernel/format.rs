@@ -36,8 +36,6 @@ pub struct Geometry {
     pub(crate) first: [i128; 2],
     /// The distances from the corner to these in world units, each as a number and its rounding error.
     pub(crate) gap: [[f64; 2]; 2],
-    /// Whether `f32` offsets begin at the corner, not at the first coordinates.
-    pub(crate) is_chunk: bool,
     /// Offsets are below this.
     pub(crate) extent: [f64; 2],
 }

@@ -11,10 +11,10 @@ use crate::table::fixed;
 /// Pairs of `f32` coordinates relative to the region's lower corner
 /// ([`Plan::origin`](crate::Plan::origin)).
 ///
-/// The offset from the first fixed-point place inside the region is exact in integers, scaled in `f64`
-/// and rounded once to `f32`. In a chunk it is the offset from the chunk's exact corner, at any distance
-/// from the origin. What would round up to the region's extent becomes the largest `f32` below it, so
-/// relative coordinates lie in \[0, extent).
+/// The offset is computed in `f64`, from exact integers, and rounded once to `f32`. A chunk's corner is the exact
+/// multiple of its size, at any distance from the origin. In a region that is no chunk, reported coordinates decide
+/// what lies inside: where they round the first place up to the corner, offsets are from that place. What would round
+/// up to the region's extent becomes the largest `f32` below it, so relative coordinates lie in \[0, extent).
 ///
 /// ```
 /// use strew_core::{F32, PointSet, Table};
@@ -60,10 +60,9 @@ impl Emit for F32 {
         Self {
             step: geometry.step,
             first: geometry.first,
-            lead: geometry.gap.map(|[gap, _]| match geometry.is_chunk {
-                true => gap / geometry.step,
-                false => 0.0,
-            }),
+            lead: geometry
+                .gap
+                .map(|[gap, error]| ((gap + error) / geometry.step).max(0.0)),
             last: geometry.extent.map(below),
         }
     }

@@ -180,7 +180,6 @@ fn rows_of_offsets_have_the_same_bits_by_all_backends() {
         step: 3.7e-7,
         first: [77, -(5 << 40) + 3],
         gap: [[1.3e-7, 4e-24], [0.0; 2]],
-        is_chunk: true,
         // Some places are above these.
         extent: [410_000.0, -1.249_4e9],
     });

@@ -121,17 +121,12 @@ impl<F: Format> Blocks<F> {
             None => Kept::Columns,
         };
         let Corner {
-            first,
-            gap,
-            is_chunk,
-            extent,
-            ..
+            first, gap, extent, ..
         } = scope.corner;
         let format = F::new(&Geometry {
             step: scope.lattice.step,
             first,
             gap,
-            is_chunk,
             extent,
         });
         let patch = Patch::new(&scope.lattice, bands.start, rows.start, &scope.x, &scope.y);
