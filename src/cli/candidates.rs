@@ -73,7 +73,7 @@ fn loaded(parameter: &Parameter) -> Option<Vec<String>> {
     if !["profile", "alpha", "map", "world", "field", "terrain"].contains(&parameter.name) {
         return None;
     }
-    let config = config::Args::default().merged(Uses::ALL).ok()?;
+    let config = config::Args::default().merged(config::Uses::ALL).ok()?;
     let catalog = config.tables().ok()?;
     let of_tables = |name: fn(&crate::service::Entry) -> String| -> Vec<String> {
         let names: BTreeSet<String> = catalog.entries().map(|entry| name(entry)).collect();
