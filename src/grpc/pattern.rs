@@ -3,6 +3,7 @@
 use std::{pin::Pin, sync::Arc};
 
 use futures_util::{Stream, TryStreamExt as _};
+use strew_core::server::Stop;
 use tonic::Status;
 
 use super::{
@@ -76,7 +77,7 @@ pub(super) async fn arrangement(
     service: &Arc<Service>,
     Received { message, effort }: Received<ArrangementRequest>,
 ) -> Result<Arrangement, Error> {
-    let facts = move |service: &Service| -> Result<Facts, Error> {
+    let facts = move |service: &Service, _: &Stop| -> Result<Facts, Error> {
         Ok(query(service, &message, false)?.facts())
     };
     Ok(described(service.process(effort, facts).await??))
@@ -109,7 +110,7 @@ pub(super) async fn occurrences(
     caller: &Caller,
     Received { message, effort }: Received<ArrangementRequest>,
 ) -> Result<OccurrenceStream, Error> {
-    let read = move |service: &Service| query(service, &message, true);
+    let read = move |service: &Service, _: &Stop| query(service, &message, true);
     let query = service.process(effort, read).await??;
     let (permit, listing) = service.list(caller, &query).await?;
     Record::in_format("points");

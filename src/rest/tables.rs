@@ -5,6 +5,7 @@ use std::sync::Arc;
 use axum::{extract::State, response::Response, routing};
 use http::{HeaderValue, Method, StatusCode, header};
 use serde_json::json;
+use strew_core::server::Stop;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
@@ -69,7 +70,7 @@ async fn post(
     context.no_parameters()?;
     service.forging().admit(&context.caller)?;
     let length = body.len();
-    let read = move |_: &Service| serde_json::from_slice::<Request>(&body);
+    let read = move |_: &Service, _: &Stop| serde_json::from_slice::<Request>(&body);
     let request = service.process(length, read).await?.map_err(|error| {
         let allowed = "a JSON object with profile, alpha, map and target, all of them text";
         Fault::new("body", "", error.to_string(), allowed)

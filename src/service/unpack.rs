@@ -9,6 +9,8 @@ use std::{
 use bytes::Bytes;
 use flate2::bufread::MultiGzDecoder;
 
+use strew_core::server::Stop;
+
 use super::{Budget, Error, Fault, Held, Service, segments::Segments};
 
 /// A coding that is read.
@@ -46,7 +48,7 @@ impl Service {
         {
             return Ok(few);
         }
-        let all = move |_: &Self| unpack(coding, &bytes, limit, &budget, field);
+        let all = move |_: &Self, _: &Stop| unpack(coding, &bytes, limit, &budget, field);
         let all = self.process(limit.max(MANY), all).await??;
         all.ok_or(Error::BodyTooLarge { limit })
     }

@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use bytes::Bytes;
 use http::HeaderMap;
 use http_body_util::{BodyExt as _, Full};
+use strew_core::server::Stop;
 use tonic::{Status, body::Body};
 
 use super::{
@@ -161,7 +162,7 @@ async fn decoded(
         None => bytes,
     };
     let (length, held) = (bytes.len(), service.hold(0)?);
-    let decode = move |service: &Service| decode(service, method, &bytes, held);
+    let decode = move |service: &Service, _: &Stop| decode(service, method, &bytes, held);
     service.process(length, decode).await?
 }
 
