@@ -9,6 +9,7 @@ keep sending are processes of their own.
 """
 
 import argparse
+import base64
 import gzip
 import http.client
 import json
@@ -20,6 +21,7 @@ import subprocess
 import tempfile
 import threading
 import time
+import zlib
 
 SMALL = "/v1/points?bbox=0,0,10,10&spacing=1"
 LARGE = "/v1/nearest?at=0,0&k=10000&spacing=1&attributes=angle,u1,u2,u3,u4,u5,u6,u7,u8"
@@ -467,6 +469,66 @@ def fields_posts(daemon):
     repeated(daemon, 8, daemon.request("POST", "/v1/fields", body), victims)
 
 
+def wide_tiff(width, height, tile):
+    """A TIFF whose tiles of one row are far wider than the picture; all of them are the same bytes."""
+    packed = zlib.compress(bytes(tile), 9)
+    places = 8 + len(packed)
+    tags = [(256, 1, width), (257, 1, height), (258, 1, 8), (259, 1, 8), (262, 1, 1), (277, 1, 1), (322, 1, tile)]
+    tags += [(323, 1, 1), (324, height, places), (325, height, places + 4 * height)]
+    arrays = struct.pack(f"<{2 * height}I", *[8] * height, *[len(packed)] * height)
+    entries = b"".join(struct.pack("<HHII", tag, 4, n, value) for tag, n, value in tags)
+    head = struct.pack("<2sHI", b"II", 42, places + len(arrays))
+    return head + packed + arrays + struct.pack("<H", len(tags)) + entries + bytes(4)
+
+
+def mask(side, shade):
+    """A gray PNG of one shade."""
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    head = chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 0, 0, 0, 0))
+    rows = zlib.compress((b"\0" + bytes([shade]) * side) * side, 9)
+    return b"\x89PNG\r\n\x1a\n" + head + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
+
+
+def field(picture):
+    return {"raster": {"png": base64.b64encode(picture).decode()}}
+
+
+def pictures(daemon):
+    """Pictures that would inflate to gigabytes: large bodies, and bodies that are read at once; then PNGs."""
+    victims = [
+        SMALL,
+        "/v1/points?bbox=0,0,200,200&spacing=1&seed=7&format=csv",
+        "/v1/chunks/64/3/4?spacing=1&format=f32",
+        "/livez",
+    ]
+    for clients, picture in (
+        (2, wide_tiff(64, 16384, 20_000_000)),
+        (8, wide_tiff(16, 200, 1 << 20)),
+        (8, mask(1024, 7)),
+    ):
+        body = json.dumps(field(picture)).encode()
+        print(f"bodies of {len(body)} bytes", flush=True)
+        repeated(daemon, clients, daemon.request("POST", "/v1/fields", body), victims)
+
+
+def sent(daemon):
+    """40 fields of 4 MB push out none of another client's."""
+    known = daemon.json("POST", "/v1/fields", field(mask(256, 255)))["digest"]
+    floats = base64.b64encode(bytes(3_000_000)).decode()
+    statuses = {}
+    for i in range(40):
+        raster = {"f32": floats, "width": 1000, "height": 750, "bbox": [0, 0, 1 + i, 1]}
+        stream = daemon.connect()
+        stream.sendall(daemon.request("POST", "/v1/fields", json.dumps({"raster": raster}).encode()))
+        count(statuses, status(stream))
+        stream.close()
+    named = daemon.victim(f"{SMALL}&field={known}", 1)
+    daemon.report(f"40 fields {statuses}; the other client's: {named}")
+
+
 ATTACKS = [
     pages,
     answers,
@@ -480,6 +542,8 @@ ATTACKS = [
     messages,
     includes,
     fields_posts,
+    pictures,
+    sent,
     mixes,
     streams,
     longlane,

@@ -16,11 +16,13 @@ const MANY: usize = 64 << 10;
 
 /// Where this many bytes are processed: at once if they are few.
 fn lane(bytes: usize) -> Option<Lane> {
-    match bytes {
-        ..=FEW => None,
-        ..=MANY => Some(Lane::Short),
-        _ => Some(Lane::Long),
+    if bytes <= FEW {
+        return None;
     }
+    Some(match bytes <= MANY {
+        true => Lane::Short,
+        false => Lane::Long,
+    })
 }
 
 /// What making the fields of the request may take that is being answered.

@@ -22,19 +22,6 @@ pub fn gray(size: [u32; 2], shade: u8) -> Vec<u8> {
     png(size, |_, _| shade)
 }
 
-/// A black PNG of 16 bits.
-pub fn deep([width, height]: [u32; 2]) -> Vec<u8> {
-    let mut file = vec![];
-    let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(png::ColorType::Grayscale);
-    encoder.set_depth(png::BitDepth::Sixteen);
-    let mut writer = encoder.write_header().expect("a header");
-    let pixels = vec![0; 2 * (width * height) as usize];
-    writer.write_image_data(&pixels).expect("written");
-    writer.finish().expect("written");
-    file
-}
-
 /// A TIFF whose tiles of one row are far wider than the picture; all of them are the same bytes.
 pub fn wide_tiff([width, height]: [u32; 2], tile: usize) -> Vec<u8> {
     use std::io::Write as _;
