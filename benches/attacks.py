@@ -492,7 +492,7 @@ def mask(side, shade):
     return b"\x89PNG\r\n\x1a\n" + head + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
 
 
-def field(picture):
+def raster(picture):
     return {"raster": {"png": base64.b64encode(picture).decode()}}
 
 
@@ -509,14 +509,14 @@ def pictures(daemon):
         (8, wide_tiff(16, 200, 1 << 20)),
         (8, mask(1024, 7)),
     ):
-        body = json.dumps(field(picture)).encode()
+        body = json.dumps(raster(picture)).encode()
         print(f"bodies of {len(body)} bytes", flush=True)
         repeated(daemon, clients, daemon.request("POST", "/v1/fields", body), victims)
 
 
 def sent(daemon):
     """40 fields of 4 MB push out none of another client's."""
-    known = daemon.json("POST", "/v1/fields", field(mask(256, 255)))["digest"]
+    known = daemon.json("POST", "/v1/fields", raster(mask(256, 255)))["digest"]
     floats = base64.b64encode(bytes(3_000_000)).decode()
     statuses = {}
     for i in range(40):
