@@ -520,9 +520,9 @@ def sent(daemon):
     floats = base64.b64encode(bytes(3_000_000)).decode()
     statuses = {}
     for i in range(40):
-        raster = {"f32": floats, "width": 1000, "height": 750, "bbox": [0, 0, 1 + i, 1]}
+        pixels = {"f32": floats, "width": 1000, "height": 750, "bbox": [0, 0, 1 + i, 1]}
         stream = daemon.connect()
-        stream.sendall(daemon.request("POST", "/v1/fields", json.dumps({"raster": raster}).encode()))
+        stream.sendall(daemon.request("POST", "/v1/fields", json.dumps({"raster": pixels}).encode()))
         count(statuses, status(stream))
         stream.close()
     named = daemon.victim(f"{SMALL}&field={known}", 1)
