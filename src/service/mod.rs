@@ -79,8 +79,7 @@ pub use {
     daemon::Service,
     portrait::Portrait,
     promise::PointsInFlight,
-    reading::allowance,
-    record::Record,
+    record::{Record, allowance},
     stream::{BlockStream, Interrupted, Permit, Streams},
     workers::Workers,
 };
