@@ -12,7 +12,7 @@ use tiff::{
 
 use super::{
     error::RasterError,
-    tiff::{broken, damaged},
+    tiff_faults::{broken, damaged},
 };
 
 /// Rows may be padded to this many pixels, or to four times their width: tiles are rarely wider.

@@ -15,6 +15,7 @@ mod price;
 mod samples;
 mod tags;
 mod tiff;
+mod tiff_faults;
 mod tone;
 mod wanted;
 

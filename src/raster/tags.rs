@@ -2,7 +2,7 @@
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-use super::{error::RasterError, tiff::broken};
+use super::{error::RasterError, tiff_faults::broken};
 
 /// Refuses a file whose first directory has a tag that is longer than the file.
 pub(super) fn check(from: &mut (impl Read + Seek), length: u64) -> Result<(), RasterError> {

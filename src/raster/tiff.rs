@@ -3,7 +3,7 @@
 use std::io::{BufRead, Seek, SeekFrom};
 
 use tiff::{
-    ColorType, TiffError, TiffUnsupportedError,
+    ColorType,
     decoder::{ChunkType, Decoder, DecodingResult},
     tags::Tag,
 };
@@ -17,6 +17,7 @@ use super::{
     limits::Limits,
     samples::Samples,
     tags,
+    tiff_faults::{askew, broken, damaged, kind, unsupported},
     tone::{self, Channels, Meaning},
     wanted::look,
 };
@@ -25,11 +26,6 @@ use super::{
 const CHUNK_BYTES: usize = 128 << 20;
 /// A tag may take this much: the places of a million tiles.
 const TAG_BYTES: usize = 16 << 20;
-
-/// What is read.
-const ALLOWED: &str = "one channel of 8, 16 or 32 bits (integers or floats) or of 64-bit floats, or RGB of \
-                       8 or 16 bits, either with alpha; pixels side by side; compression with LZW or \
-                       deflate, or none";
 
 pub(super) fn read(
     mut from: impl BufRead + Seek,
@@ -264,57 +260,4 @@ fn missing(decoder: &mut Decoder<impl BufRead + Seek>) -> Option<f64> {
     let value = decoder.find_tag(Tag::GdalNodata).ok()??;
     let text = value.into_string().ok()?;
     text.trim_matches(['\0', ' ']).parse().ok()
-}
-
-pub(super) fn damaged(error: TiffError) -> RasterError {
-    match error {
-        TiffError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => {
-            error.into()
-        }
-        TiffError::UnsupportedError(error) => unsupported(match error {
-            TiffUnsupportedError::UnsupportedColorType(color) => kind(color),
-            TiffUnsupportedError::UnsupportedCompressionMethod(method) => {
-                format!("compression by method {}", method.to_u16())
-            }
-            _ => "a layout of pixels that is rarely used".into(),
-        }),
-        TiffError::LimitsExceeded => unsupported("strips, tiles or tags of too many bytes".into()),
-        error => broken(&error.to_string()),
-    }
-}
-
-pub(super) fn broken(detail: &str) -> RasterError {
-    RasterError::Damaged {
-        format: "TIFF",
-        detail: detail.into(),
-    }
-}
-
-/// What pixels are, in words.
-fn kind(color: ColorType) -> String {
-    match color {
-        ColorType::Palette(_) => "pixels of a palette".into(),
-        ColorType::CMYK(_) | ColorType::CMYKA(_) => "CMYK pixels".into(),
-        ColorType::YCbCr(_) => "YCbCr pixels".into(),
-        ColorType::Lab(_) => "Lab pixels".into(),
-        ColorType::Multiband {
-            bit_depth,
-            num_samples,
-        } => format!("pixels of {num_samples} channels of {bit_depth} bits"),
-        other => format!("pixels of {} bits", other.bit_depth()),
-    }
-}
-
-fn askew(found: &str) -> RasterError {
-    RasterError::Unsupported {
-        found: found.into(),
-        allowed: "rows from west to east, the northernmost first",
-    }
-}
-
-fn unsupported(found: String) -> RasterError {
-    RasterError::Unsupported {
-        found,
-        allowed: ALLOWED,
-    }
 }

@@ -22,9 +22,9 @@ use super::{
     library,
     mixes::Mixes,
     portrait::Portraits,
-    query, reading,
+    query,
     ready::Need,
-    record::Recorded,
+    record::{Recorded, allowance},
 };
 use crate::{access::Caller, config::Config};
 
@@ -106,7 +106,7 @@ impl Service {
     /// # Errors
     /// [`Error::Invalid`] for a field that is not valid or too large to be held.
     pub fn hold_field(&self, document: Document, stop: &Stop) -> Result<Arc<NamedField>, Error> {
-        let allowance = reading::allowance(stop);
+        let allowance = allowance(stop);
         let sender = Record::current().map_or(Sender::default(), |record| record.budget().sender());
         let catalog = self.catalog();
         library::hold_field(&catalog, document, field::MOST_PIXELS, allowance, sender)
@@ -153,7 +153,7 @@ impl Service {
     /// As [`Draft::check`], and [`Error::Invalid`] for a format that is for files only.
     pub fn check(&self, draft: &Draft, stop: &Stop) -> Result<(Query, Options), Error> {
         let (catalog, vertices) = (self.catalog(), self.limits.max_vertices);
-        let allowance = reading::allowance(stop);
+        let allowance = allowance(stop);
         let (query, options) = draft.check_within(&catalog, vertices, allowance)?;
         match options.encoding {
             Some(encoding) if !encoding.is_streamed() => {

@@ -80,8 +80,7 @@ pub use {
     daemon::Service,
     portrait::Portrait,
     promise::PointsInFlight,
-    reading::allowance,
-    record::Record,
+    record::{Record, allowance},
     stream::{BlockStream, Interrupted, Permit, Streams},
     work::{Owner, Pulse, Workers},
 };

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use strew_core::server::Stop;
 
-use super::{Error, Lane, Record, Service, field::Allowance};
+use super::{Error, Lane, Record, Service};
 use crate::raster::Price;
 
 /// This much takes as long as handing it over.
@@ -23,15 +23,6 @@ fn lane(bytes: usize) -> Option<Lane> {
         true => Lane::Short,
         false => Lane::Long,
     })
-}
-
-/// What making the fields of the request may take that is being answered.
-#[must_use]
-pub fn allowance(stop: &Stop) -> Allowance<'_> {
-    Allowance {
-        stop,
-        hold: &Record::hold,
-    }
 }
 
 impl Service {

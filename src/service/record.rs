@@ -8,10 +8,11 @@ use std::sync::{
     Arc, Mutex, OnceLock, PoisonError,
     atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
 };
+use strew_core::server::Stop;
 
 use super::{
-    Answer, Budget, Error, Held, Kind, Lane, PointsInFlight, encode::EncodeError, promise::Promise,
-    work::Clock,
+    Answer, Budget, Error, Held, Kind, Lane, PointsInFlight, encode::EncodeError, field::Allowance,
+    promise::Promise, work::Clock,
 };
 
 tokio::task_local! {
@@ -175,6 +176,15 @@ impl Record {
     /// Notes with which code a call ended.
     pub fn ended(&self, code: u32) {
         self.code.store(code, Ordering::Relaxed);
+    }
+}
+
+/// What making the fields of the request may take that is being answered.
+#[must_use]
+pub fn allowance(stop: &Stop) -> Allowance<'_> {
+    Allowance {
+        stop,
+        hold: &Record::hold,
     }
 }
 
