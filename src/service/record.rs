@@ -25,7 +25,20 @@ pub struct Record {
     points: AtomicU64,
     promise: OnceLock<Promise>,
     is_long: AtomicBool,
+    is_making: AtomicBool,
     code: AtomicU32,
+}
+
+/// The request that is being answered waits for kinds to be made, until this is dropped.
+#[derive(Debug)]
+pub(super) struct Making(Option<Arc<Record>>);
+
+impl Drop for Making {
+    fn drop(&mut self) {
+        if let Some(record) = &self.0 {
+            record.is_making.store(false, Ordering::Relaxed);
+        }
+    }
 }
 
 /// No code yet.
@@ -43,6 +56,7 @@ impl Record {
             points: AtomicU64::new(0),
             promise: OnceLock::new(),
             is_long: AtomicBool::new(false),
+            is_making: AtomicBool::new(false),
             code: AtomicU32::new(NONE),
         })
     }
@@ -124,6 +138,22 @@ impl Record {
     /// Chooses the lane in which the blocks of the answer are made.
     pub(super) fn take_lane(&self, lane: Lane) {
         self.is_long.store(lane == Lane::Long, Ordering::Relaxed);
+    }
+
+    /// Notes that the request that is being answered waits for kinds to be made.
+    #[must_use]
+    pub(super) fn making() -> Making {
+        let record = Self::current();
+        if let Some(record) = &record {
+            record.is_making.store(true, Ordering::Relaxed);
+        }
+        Making(record)
+    }
+
+    /// Whether the request waits for kinds to be made.
+    #[must_use]
+    pub fn is_making(&self) -> bool {
+        self.is_making.load(Ordering::Relaxed)
     }
 
     /// The code with which a call ended, where the protocol says so after the answer.

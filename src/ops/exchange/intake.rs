@@ -132,13 +132,15 @@ impl Shared {
         let too_long = async {
             received.done.notified().await;
             sleep(self.first_byte).await;
+            let seconds = self.first_byte.as_secs_f64().to_string();
+            match record.as_ref().is_some_and(|record| record.is_making()) {
+                true => Error::KindsInTheMaking { seconds },
+                false => Error::TimeOver { seconds },
+            }
         };
         let mut response = tokio::select! {
             response = next.run(request) => response,
-            () = too_long => {
-                let seconds = self.first_byte.as_secs_f64();
-                return Err(Error::TimeOver { seconds: seconds.to_string() });
-            }
+            error = too_long => return Err(error),
         };
         drop((place, received));
         let whole = response.body().size_hint().exact();
