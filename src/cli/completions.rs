@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, anyhow};
+use anyhow::Context as _;
 use clap_complete::Shell;
 
 use super::{Failure, output::Output};
@@ -39,12 +39,6 @@ pub(super) fn man(args: &ManArgs, command: clap::Command) -> Result<(), Failure>
     let Some(folder) = &args.out_dir else {
         return write(None, &page(command)?);
     };
-    if !folder.is_dir() {
-        let folder = folder.display();
-        return Err(Failure::Usage(anyhow!(
-            "--out-dir {folder}: there is no such folder"
-        )));
-    }
     // The names of commands within commands begin with those around them.
     let mut command = command.disable_help_subcommand(true);
     command.build();
