@@ -41,12 +41,6 @@ pub(super) fn man(args: &ManArgs, command: clap::Command) -> Result<(), Failure>
     let Some(folder) = &args.out_dir else {
         return write(None, &page(command)?);
     };
-    if !folder.is_dir() {
-        let folder = folder.display();
-        return Err(Failure::Usage(anyhow!(
-            "--out-dir {folder}: there is no such folder"
-        )));
-    }
     // The names of commands within commands begin with those around them.
     let mut command = command.disable_help_subcommand(true);
     command.build();

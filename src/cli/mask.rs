@@ -11,7 +11,7 @@ use strew_forge::{
 use super::{
     Failure, config,
     flags::{Flags, Tabled},
-    output::Output,
+    output::{Output, must_not_be_terminal},
     refusal::Source,
 };
 use crate::service::{Ready, query::chosen};
@@ -42,6 +42,17 @@ pub(super) struct Args {
 
 /// Makes a mask.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    if let Some(path) = &args.output
+        && !path
+            .extension()
+            .is_none_or(|own| own.eq_ignore_ascii_case("png"))
+    {
+        return Err(Failure::Usage(anyhow!(
+            "--output {}: a mask is a PNG; allowed: a file whose name ends in .png",
+            path.display()
+        )));
+    }
+    must_not_be_terminal(args.output.as_deref(), "a PNG")?;
     let config = args.settings.merged(config::Uses::LOADED)?;
     let catalog = config.tables()?;
     let ready = chosen(&args.table.values(), &catalog).and_then(|entry| Ready::load(&entry));

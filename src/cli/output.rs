@@ -4,7 +4,7 @@
 use std::{
     fmt,
     fs::{self, File},
-    io::{self, Write as _},
+    io::{self, IsTerminal as _, Write as _},
     path::{Path, PathBuf},
 };
 
@@ -48,8 +48,8 @@ impl fmt::Display for ReaderLeft {
 impl std::error::Error for ReaderLeft {}
 
 impl Output {
-    /// `None` or `-` is standard output. A file is compressed if its name ends with .gz or .zst. Fails if the path
-    /// cannot be written.
+    /// `None` or `-` is standard output. A file is compressed if its name ends with .gz or .zst; its folder is made if
+    /// there is none. Fails if the path cannot be written.
     pub(super) fn open(path: Option<&Path>) -> anyhow::Result<Self> {
         let Some(path) = path.filter(|path| *path != Path::new("-")) else {
             return Ok(Self {
@@ -122,7 +122,8 @@ fn open(path: &Path) -> anyhow::Result<(File, Option<Pending>)> {
                 .parent()
                 .filter(|folder| !folder.as_os_str().is_empty());
             if let Some(folder) = folder.filter(|folder| !folder.exists()) {
-                return Err(anyhow!("there is no folder {}", folder.display()));
+                let unwritable = || format!("cannot make the folder {}", folder.display());
+                fs::create_dir_all(folder).with_context(unwritable)?;
             }
         }
         Err(error) => return Err(error.into()),
@@ -136,6 +137,16 @@ fn open(path: &Path) -> anyhow::Result<(File, Option<Pending>)> {
         target,
     };
     Ok((file, Some(pending)))
+}
+
+/// Refuses a terminal for what is no text, unless `-` was given as the path.
+pub(super) fn must_not_be_terminal(path: Option<&Path>, what: &str) -> Result<(), Failure> {
+    if path.is_none() && io::stdout().is_terminal() {
+        return Err(Failure::Usage(anyhow!(
+            "{what} is not written to a terminal; allowed: -o FILE, a pipe, or -o - to write it anyway"
+        )));
+    }
+    Ok(())
 }
 
 /// Fails if a file could not be written; nothing is left there.

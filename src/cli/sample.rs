@@ -12,7 +12,7 @@ use super::{
     compression::Compression,
     config::Uses,
     flags::Answered,
-    output::Output as Target,
+    output::{Output as Target, must_not_be_terminal},
     progress::Progress,
     query::{QueryArgs, described},
     refusal::Source,
@@ -84,6 +84,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Some(encoding) => encoding,
         None => encoding_of(args.output.as_deref())?,
     };
+    check_terminal(args, encoding)?;
     let looks = options.output(encoding).map(|looks| Output {
         relative_to: planned.query.region.corner,
         ..looks
@@ -94,6 +95,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Ok(failure) => failure,
         Err(error) => ask.source.refused(error),
     })
+}
+
+/// Refuses a format that is no text where it would be written to a terminal.
+fn check_terminal(args: &Args, encoding: Encoding) -> Result<(), Failure> {
+    match encoding.is_text() {
+        true => Ok(()),
+        false => must_not_be_terminal(args.output.as_deref(), encoding.name()),
+    }
 }
 
 /// Writes the answer of a server.
@@ -112,6 +121,7 @@ fn from_server(args: &Args) -> Result<(), Failure> {
             encoding.name()
         )));
     }
+    check_terminal(args, encoding)?;
     let mut body = draft.to_body();
     body.insert(FORMAT.name.into(), encoding.name().into());
     let answer = args.remote.request("/v1/points:query", &body)?;

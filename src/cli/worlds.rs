@@ -6,7 +6,7 @@ use super::{Failure, config, output};
 use crate::{
     config::Config,
     service::{
-        Catalog, Draft, Error, Planned, World, Worlds,
+        Answer, Catalog, Draft, Encoding, Error, Planned, World, Worlds,
         world::{by_layer, with_path},
     },
 };
@@ -82,13 +82,17 @@ fn check(config: &Config) -> Result<(), Failure> {
     }
 }
 
-/// Plans a chunk of a world, which shows what only its tables know: distances that cannot be kept.
+/// Plans a chunk of a world, which shows what only its tables know, distances that cannot be kept, and what only its
+/// points show: a format that has no room for their attributes.
 fn plan(draft: &Draft, catalog: &Catalog, config: &Config) -> Result<(), Error> {
     let draft = draft.tried("bbox=0,0,64,64");
-    let (query, _) = draft.check(catalog, config.limits.max_vertices)?;
+    let (query, options) = draft.check(catalog, config.limits.max_vertices)?;
+    let encoding = options.encoding.unwrap_or(Encoding::Json);
+    let output = options.output(encoding)?;
     match Planned::at_once(query, &config.limits) {
+        Ok(planned) => Answer::new(&planned, &output, config.limits.block_bytes).map(|_| ()),
         // It depends on the region, too.
-        Ok(_) | Err(Error::TooManyPoints { .. } | Error::TooManyRows { .. }) => Ok(()),
+        Err(Error::TooManyPoints { .. } | Error::TooManyRows { .. }) => Ok(()),
         Err(error) => Err(error),
     }
 }

@@ -77,7 +77,7 @@ pub enum ConfigError {
         used: Vec<String>,
     },
     /// A value that does not read as what it should be.
-    #[error("the merged configuration is not valid: {0}")]
+    #[error("the merged configuration is not valid: {}", in_a_line(.0))]
     Invalid(Box<toml::de::Error>),
     /// Values out of range.
     #[error("the merged configuration is not valid: {}", faults.join("; "))]
@@ -85,6 +85,12 @@ pub enum ConfigError {
         /// Each with its key, its value and what is allowed.
         faults: Vec<String>,
     },
+}
+
+/// A message of the reader of TOML, which has lines.
+fn in_a_line(error: &toml::de::Error) -> String {
+    let text = error.to_string();
+    text.trim().replace('\n', " ")
 }
 
 fn list(keys: &[String]) -> String {

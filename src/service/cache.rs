@@ -112,10 +112,14 @@ impl Samplers {
         self.ready.insert(name, ready).await;
     }
 
-    /// Makes room: the table of this digest is not loaded any more. Answers under way keep what they
-    /// have.
+    /// Makes room: the table of this digest is not loaded any more, so neither it nor its mixes, whose names begin
+    /// with the digest, are wanted. Answers under way keep what they have.
     pub(super) async fn forget(&self, digest: &str) {
-        self.ready.invalidate(digest).await;
+        let names = self.ready.iter().map(|(name, _)| name);
+        let names: Vec<_> = names.filter(|name| name.starts_with(digest)).collect();
+        for name in names {
+            self.ready.invalidate(&*name).await;
+        }
     }
 }
 
@@ -149,6 +153,25 @@ mod tests {
             ready.table.displacements().as_ptr()
         };
         assert!(got.iter().all(|ready| vectors(ready) == vectors(&got[0])));
+    }
+
+    #[tokio::test]
+    async fn a_table_that_is_gone_takes_its_mixes_along() {
+        let (_folder, catalog) = catalog();
+        let workers = Workers::new(1).expect("threads");
+        let samplers = Samplers::new(1 << 30);
+        for entry in catalog.entries() {
+            let ready = samplers.get(entry, &workers).await.expect("built");
+            samplers.keep(format!("{}-1-3", entry.digest), ready).await;
+        }
+        let mut entries = catalog.entries();
+        let (gone, stays) = (entries.next().expect("two"), entries.next().expect("two"));
+        samplers.forget(&gone.digest).await;
+        for (entry, is_there) in [(gone, false), (stays, true)] {
+            for name in [entry.digest.clone(), format!("{}-1-3", entry.digest)] {
+                assert_eq!(samplers.known(&name).await.is_some(), is_there, "{name}");
+            }
+        }
     }
 
     #[tokio::test]

@@ -271,6 +271,7 @@ impl Service {
                 Some(known) => known,
                 None => {
                     caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
+                    let _making = Record::making();
                     self.mixes.get(&ready, &what, &self.workers).await?
                 }
             },

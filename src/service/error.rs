@@ -270,6 +270,15 @@ pub enum Error {
         /// The limit.
         seconds: String,
     },
+    /// The kinds of the query were still being made when the time for the answer was over.
+    #[error(
+        "labels of these kinds are being made, once, which takes longer than the {seconds} seconds of an answer: \
+         try again in {} seconds", self.retry_seconds().unwrap_or(1)
+    )]
+    KindsInTheMaking {
+        /// The limit.
+        seconds: String,
+    },
     /// The server is about to stop.
     #[error("the server is shutting down: try again later, or elsewhere")]
     ShuttingDown,
@@ -329,7 +338,7 @@ pub enum Kind {
     UnknownCoding,
     /// [`Error::BodyTooSlow`].
     BodyTooSlow,
-    /// [`Error::TimeOver`].
+    /// [`Error::TimeOver`], [`Error::KindsInTheMaking`].
     TimeOver,
     /// [`Error::ShuttingDown`].
     ShuttingDown,
@@ -435,7 +444,7 @@ impl Error {
             | Self::NeedsMoreBytes { .. } => Kind::Busy,
             Self::UnknownCoding { .. } => Kind::UnknownCoding,
             Self::BodyTooSlow { .. } => Kind::BodyTooSlow,
-            Self::TimeOver { .. } => Kind::TimeOver,
+            Self::TimeOver { .. } | Self::KindsInTheMaking { .. } => Kind::TimeOver,
             Self::ShuttingDown => Kind::ShuttingDown,
             Self::Internal(_) => Kind::Internal,
         }
@@ -447,7 +456,9 @@ impl Error {
         match self {
             Self::ShuttingDown => Some(1),
             // It was slow because others ask, too: soon it may be fast.
-            Self::TimeOver { .. } | Self::TableUnreadable { .. } => Some(5),
+            Self::TimeOver { .. }
+            | Self::KindsInTheMaking { .. }
+            | Self::TableUnreadable { .. } => Some(5),
             // Never, with these settings.
             Self::NeedsMoreBytes { .. } | Self::FolderFull { .. } => None,
             #[cfg(feature = "daemon")]

@@ -10,6 +10,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
+    time::Duration,
 };
 
 use futures_util::{
@@ -17,6 +18,7 @@ use futures_util::{
     future::{BoxFuture, Shared, WeakShared},
 };
 use strew_core::{Table, server::Stop, table::MAX_FILE_BYTES};
+use tokio::runtime::Handle;
 
 use super::{
     Budget, Error, Lane, Owner, Ready, Record, Workers,
@@ -41,6 +43,29 @@ type Making = Shared<BoxFuture<'static, Result<Ready, Error>>>;
 struct Begun {
     making: WeakShared<BoxFuture<'static, Result<Ready, Error>>>,
     owner: Owner,
+}
+
+/// A request that waits. One whose time is over is told to come back, and what it waited for goes on for a while.
+struct Waiter(Option<(Making, Option<Arc<Record>>)>);
+
+/// How long a mix goes on for clients that were told to come back.
+const UNTIL_THEY_COME: Duration = Duration::from_secs(60);
+
+impl Waiter {
+    fn over(mut self) {
+        self.0 = None;
+    }
+}
+
+impl Drop for Waiter {
+    fn drop(&mut self) {
+        let Some((making, Some(record))) = self.0.take() else {
+            return;
+        };
+        if let (true, Ok(runtime)) = (record.is_expected(), Handle::try_current()) {
+            runtime.spawn(tokio::time::timeout(UNTIL_THEY_COME, making));
+        }
+    }
 }
 
 /// The most mixes that are made or wait to be made at once, of one address and in all.
@@ -90,7 +115,11 @@ impl Mixes {
         what: &Made,
         workers: &Workers,
     ) -> Result<Ready, Error> {
-        self.begin(plain, what, workers)?.await
+        let making = self.begin(plain, what, workers)?;
+        let waiter = Waiter(Some((making.clone(), Record::current())));
+        let made = making.await;
+        waiter.over();
+        made
     }
 
     fn begin(&self, plain: &Ready, what: &Made, workers: &Workers) -> Result<Making, Error> {

@@ -29,10 +29,24 @@ pub struct Record {
     points: AtomicU64,
     promise: OnceLock<Promise>,
     is_long: AtomicBool,
+    is_making: AtomicBool,
+    is_expected: AtomicBool,
     code: AtomicU32,
     clock: Arc<Clock>,
     /// The memory of what the request has brought along.
     held: Mutex<Option<Held>>,
+}
+
+/// The request that is being answered waits for kinds to be made, until this is dropped.
+#[derive(Debug)]
+pub(super) struct Making(Option<Arc<Record>>);
+
+impl Drop for Making {
+    fn drop(&mut self) {
+        if let Some(record) = &self.0 {
+            record.is_making.store(false, Ordering::Relaxed);
+        }
+    }
 }
 
 /// No code yet.
@@ -50,6 +64,8 @@ impl Record {
             points: AtomicU64::new(0),
             promise: OnceLock::new(),
             is_long: AtomicBool::new(false),
+            is_making: AtomicBool::new(false),
+            is_expected: AtomicBool::new(false),
             code: AtomicU32::new(NONE),
             clock: Arc::default(),
             held: Mutex::default(),
@@ -165,6 +181,30 @@ impl Record {
     /// Chooses the lane in which the blocks of the answer are made.
     pub(super) fn take_lane(&self, lane: Lane) {
         self.is_long.store(lane == Lane::Long, Ordering::Relaxed);
+    }
+
+    /// Notes that the request that is being answered waits for kinds to be made.
+    #[must_use]
+    pub(super) fn making() -> Making {
+        let record = Self::current();
+        if let Some(record) = &record {
+            record.is_making.store(true, Ordering::Relaxed);
+        }
+        Making(record)
+    }
+
+    /// Notes that the time for the answer is over. Whether the request waits for kinds to be made: then its client is
+    /// told to come back for them.
+    #[must_use]
+    pub fn come_back(&self) -> bool {
+        let is_making = self.is_making.load(Ordering::Relaxed);
+        self.is_expected.store(is_making, Ordering::Relaxed);
+        is_making
+    }
+
+    /// Whether the client was told to come back for what the request waited for.
+    pub(super) fn is_expected(&self) -> bool {
+        self.is_expected.load(Ordering::Relaxed)
     }
 
     /// The code with which a call ended, where the protocol says so after the answer.

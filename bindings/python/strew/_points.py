@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +17,10 @@ if TYPE_CHECKING:
     from ._strew import Columns
 
 Floats = np.ndarray[Any, np.dtype[np.float64]]
+
+
+# Endings of files that are not the names of formats.
+_ENDINGS = {"jsonl": "ndjson", "geojsons": "geojsonseq", "geojsonl": "geojsonseq", "arrow": "feather", "arrows": "arrow"}
 
 
 @dataclass(frozen=True)
@@ -275,10 +280,14 @@ class PointSet:
         return self.plan().document(texts)
 
     def write(self, path: str | Path, format: str | None = None, **options: Any) -> None:
-        """Writes a document; the ending of the path is the format."""
-        ending = Path(path).suffix.lstrip(".").lower()
-        content = self.document(format or ending, **options)
-        Path(path).write_bytes(content)
+        """Writes a document; the ending of the path is the format, as of ``strew sample -o``, also with ``.gz``."""
+        inner = Path(path)
+        is_packed = inner.suffix.lower() == ".gz"
+        if is_packed:
+            inner = inner.with_suffix("")
+        ending = inner.suffix.lstrip(".").lower()
+        content = self.document(format or _ENDINGS.get(ending, ending), **options)
+        Path(path).write_bytes(gzip.compress(content, mtime=0) if is_packed else content)
 
     def _repr_svg_(self) -> str | None:
         """A picture, for notebooks."""

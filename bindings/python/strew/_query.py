@@ -123,7 +123,16 @@ def body(keywords: Mapping[str, Any]) -> Body:
 
 def text(body: Mapping[str, Any]) -> str:
     """A body as JSON."""
-    return json.dumps(body, default=_plain, separators=(",", ":"))
+    try:
+        return json.dumps(body, default=_plain, separators=(",", ":"), allow_nan=False)
+    except ValueError:
+        for name, value in body.items():
+            try:
+                json.dumps(value, default=_plain, allow_nan=False)
+            except ValueError:
+                shown = value if isinstance(value, float) else "holds a number that"
+                raise ValueError(f"`{name}`: {shown} is not finite; allowed: finite numbers") from None
+        raise
 
 
 def _plain(value: Any) -> Any:

@@ -141,13 +141,15 @@ impl Shared {
                 let clock = record.as_ref().map(|record| record.clock().waited());
                 waited = clock.unwrap_or_default();
             }
+            let seconds = self.first_byte.as_secs_f64().to_string();
+            match record.as_ref().is_some_and(|record| record.come_back()) {
+                true => Error::KindsInTheMaking { seconds },
+                false => Error::TimeOver { seconds },
+            }
         };
         let mut response = tokio::select! {
             response = next.run(request) => response,
-            () = too_long => {
-                let seconds = self.first_byte.as_secs_f64();
-                return Err(Error::TimeOver { seconds: seconds.to_string() });
-            }
+            error = too_long => return Err(error),
         };
         drop(received);
         let whole = response.body().size_hint().exact();

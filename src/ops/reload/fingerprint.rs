@@ -76,7 +76,9 @@ impl Watched {
         });
         let mut tables: Vec<PathBuf> = tables.collect();
         tables.sort();
-        let fields = field::stamp(&self.config.fields);
+        // A reload may have added fields, whose files are watched from then on.
+        let now = self.config.read_names();
+        let fields = field::stamp(&now.as_ref().unwrap_or(&self.config).fields);
         let worlds = field::stamp_of(self.config.worlds.folder());
         let except = field::stamp_of(self.config.except.folder());
         Fingerprint::of(&tables, &self.files, &[fields, worlds, except])
@@ -164,5 +166,25 @@ mod tests {
         assert_eq!(look(), one);
         fs::write(folder.join("keys.toml"), "").expect("writable");
         assert_ne!(look(), one);
+    }
+
+    #[test]
+    fn files_of_fields_that_the_configuration_names_later_are_watched() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("strew.toml");
+        fs::write(&file, "").expect("writable");
+        let layers = crate::config::Layers::new().and_then(|layers| layers.file(&file));
+        let config = layers.and_then(crate::config::Layers::finish);
+        let watched = Watched::of(&config.expect("valid"));
+        let picture = folder.path().join("hill.png");
+        let place = "bbox = [0, 0, 1, 1]";
+        let named = format!(
+            "[fields.hill.raster]\nfile = '{}'\n{place}\n",
+            picture.display()
+        );
+        fs::write(&file, named).expect("writable");
+        let before = watched.look();
+        fs::write(picture, "a picture").expect("writable");
+        assert_ne!(watched.look(), before);
     }
 }

@@ -200,7 +200,7 @@ impl Encoding {
     /// Whether readers want to know what plane coordinates are in.
     #[must_use]
     pub const fn has_crs(self) -> bool {
-        matches!(self, Self::Geojson | Self::Geojsonseq | Self::Parquet)
+        matches!(self, Self::Geojson | Self::Parquet)
     }
 
     /// Whether it is a picture.
@@ -211,7 +211,8 @@ impl Encoding {
 
     /// The names of the formats that some test holds for, for an error.
     pub(super) fn names_where(holds: impl Fn(Self) -> bool) -> String {
-        let names = Self::ALL.into_iter().filter(|encoding| holds(*encoding));
+        let all = Self::ALL.into_iter().chain(Self::FILES);
+        let names = all.filter(|encoding| holds(*encoding));
         names.map(Self::name).collect::<Vec<_>>().join(", ")
     }
 }

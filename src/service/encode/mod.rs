@@ -268,7 +268,7 @@ impl Answer {
     /// Libraries have no writers of columnar formats: their programs have better ones.
     #[cfg(not(feature = "daemon"))]
     fn in_columns(_: Rows, _: &Head, output: &Output, _: usize) -> Result<Self, Error> {
-        let name = output.encoding.name();
+        let encoding = output.encoding;
         let is_other = |encoding| {
             !matches!(
                 encoding,
@@ -276,13 +276,11 @@ impl Answer {
             )
         };
         let allowed = Encoding::names_where(is_other);
-        Err(Fault::new(
-            "format",
-            name,
-            "only the daemon and `strew sample` write it",
-            allowed,
-        )
-        .into())
+        let detail = match encoding.is_streamed() {
+            true => "only the daemon and `strew sample` write it",
+            false => "only `strew sample` writes it",
+        };
+        Err(Fault::new("format", encoding.name(), detail, allowed).into())
     }
 
     /// Blocks of unknown size, without anything before them.

@@ -84,7 +84,8 @@ parameters! {
         name: "periodic",
         about: "One exact period of points on [0, L)² instead of a region: the smallest that has at least this \
                 many points. Its copies, moved by L, continue one another. L is the mean spacing times the root of \
-                the number of points. The list of periods shows what there is.",
+                the number of points. Small maps have more periods: with map=m, the default, 5000 becomes 57121, with \
+                map=s 5041. The list of periods has all.",
         group: Group::Period,
         shape: Shape::Integer { min: 1, max: PeriodicSet::MAX_POINTS },
         default: Some("the points of a region, on the unbounded plane"),

@@ -193,8 +193,8 @@ impl Shape {
         self.check(value)
     }
 
-    /// Reads a value from JSON. Lists may also be written as in an address; long integers, and numbers that
-    /// are not decimals, are written as text.
+    /// Reads a value from JSON. Every value may also be text, as in an address: long integers are, and numbers that
+    /// are not decimals.
     ///
     /// # Errors
     /// What is wrong with it.
@@ -217,8 +217,8 @@ impl Shape {
             (Self::Number { .. } | Self::Strength { .. }, Err(_)) if is_number => {
                 Value::Number(finite(json.get())?)
             }
-            (Self::Number { .. }, _) => return Err("must be a number".into()),
             (_, Ok(text)) => return self.read(&text),
+            (Self::Number { .. }, _) => return Err("must be a number".into()),
             (Self::Switch, _) => {
                 let value = serde_json::from_str(json.get());
                 Value::Switch(value.map_err(|_| "must be true, false, \"on\" or \"off\"")?)
@@ -374,6 +374,7 @@ mod tests {
             (bounds, " 1.5 ", "1.5", Ok(Value::Number(1.5))),
             (bounds, "3", "3", Err("out of range")),
             (bounds, "1e999", "1e999", Err("must be finite")),
+            (bounds, "1.5", "\"1.5\"", Ok(Value::Number(1.5))),
             (bounds, "x", "\"x\"", Err("must be a number")),
             (
                 seed,

@@ -271,14 +271,15 @@ fn dots_are_written_as_pictures() {
 fn what_cannot_be_done_is_told_before_the_work() {
     let folder = tempfile::tempdir().expect("a folder");
     let picture = shades(folder.path());
-    let missing = folder.path().join("none/out.svg");
+    let inside = folder.path().join("d.svg");
+    fs::create_dir(&inside).expect("a folder");
     let output = run(
-        &["stipple", text(&picture), "-n", "9", "-o", text(&missing)],
+        &["stipple", text(&picture), "-n", "9", "-o", text(&inside)],
         "",
     );
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        errors(&output).contains("there is no folder"),
+        errors(&output).contains("it is a folder"),
         "{}",
         errors(&output)
     );

@@ -12,7 +12,7 @@ use strew_testkit::{process::Running, wait};
 use crate::support::{
     clients,
     command::{errors, run},
-    daemon::strew,
+    daemon::{PROGRAM, strew},
 };
 
 fn names(folder: &Path) -> Vec<String> {
@@ -100,7 +100,8 @@ fn a_reader_that_leaves_ends_a_command_quietly() {
 #[test]
 fn places_that_cannot_be_written_are_refused_before_the_work() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (inside, missing) = (folder.path().join("d"), folder.path().join("no/x.csv"));
+    let (inside, missing) = (folder.path().join("d"), folder.path().join("f/x.csv"));
+    fs::write(folder.path().join("f"), "a file").expect("writable");
     fs::create_dir(&inside).expect("a folder");
     // So many points that the work would not end.
     let long = [
@@ -129,10 +130,7 @@ fn places_that_cannot_be_written_are_refused_before_the_work() {
         ];
         run(&measured, "")
     };
-    for (path, problem) in [
-        (&inside, "it is a folder"),
-        (&missing, "there is no folder"),
-    ] {
+    for (path, problem) in [(&inside, "it is a folder"), (&missing, "Not a directory")] {
         let path = path.to_string_lossy();
         for output in [
             sample(&path),
@@ -318,9 +316,10 @@ fn man_knows_every_command() {
         page.contains("EXTRA") || page.contains("Examples"),
         "{page}"
     );
-    let refused = run(&["man", "--out-dir", "/no/such/folder"], "");
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(errors(&refused).contains("--out-dir /no/such/folder"));
+    let below = folder.path().join("strew.1/pages").display().to_string();
+    let refused = run(&["man", "--out-dir", &below], "");
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(errors(&refused).contains(&below), "{}", errors(&refused));
 }
 
 #[test]
@@ -338,4 +337,74 @@ fn profiles_are_listed() {
         blue.is_some_and(|line| line.contains("16641") && line.contains("1:3:10")),
         "{list}"
     );
+}
+
+#[test]
+fn folders_of_outputs_are_made() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let sample = ["sample", "-q", "--bbox", "0,0,2,2", "--spacing", "1"];
+    let file = path("new/deep/points.csv");
+    for arguments in [
+        [&sample[..], &["-o", &file]].concat(),
+        vec!["man", "--out-dir", &path("pages")],
+        vec!["mask", "--size", "16", "-o", &path("masks/m.PNG")],
+    ] {
+        let output = run(&arguments, "");
+        assert!(
+            output.status.success(),
+            "{arguments:?}: {}",
+            errors(&output)
+        );
+    }
+    for made in [&file, &path("pages/strew.1"), &path("masks/m.PNG")] {
+        assert!(
+            fs::metadata(made).is_ok_and(|made| made.len() > 0),
+            "{made}"
+        );
+    }
+    for name in ["m.npy", "m.tif", "m.bmp"] {
+        let output = run(&["mask", "--size", "16", "-o", &path(name)], "");
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        assert!(
+            errors(&output).contains("a mask is a PNG; allowed: "),
+            "{name}"
+        );
+        assert!(!folder.path().join(name).exists());
+    }
+}
+
+#[test]
+fn what_is_no_text_is_written_to_a_terminal_only_on_request() {
+    let Some(script) = clients::find("script") else {
+        return;
+    };
+    let at_terminal = |arguments: &str| {
+        let line = format!("{PROGRAM} {arguments}");
+        let mut script = Command::new(&script);
+        script
+            .args(["-qec", &line, "/dev/null"])
+            .stdin(Stdio::null());
+        let output = script.output().expect("it runs");
+        (
+            output.status.code(),
+            String::from_utf8_lossy(&output.stdout).into_owned(),
+        )
+    };
+    let sample = "sample -q --bbox 0,0,2,2 --spacing 1 --format";
+    for refused in [
+        format!("{sample} f64"),
+        format!("{sample} parquet"),
+        "mask --size 16".into(),
+    ] {
+        let (code, text) = at_terminal(&refused);
+        assert_eq!(code, Some(2), "{refused}: {text}");
+        assert!(
+            text.contains("is not written to a terminal; allowed: -o FILE"),
+            "{text}"
+        );
+    }
+    for taken in [format!("{sample} f64 -o -"), format!("{sample} csv")] {
+        assert_eq!(at_terminal(&taken).0, Some(0), "{taken}");
+    }
 }

@@ -79,3 +79,23 @@ fn a_check_names_what_is_wrong() {
     }
     assert!(output.stdout.starts_with(b"fen  "));
 }
+
+#[test]
+fn a_check_looks_at_the_format_of_a_world_too() {
+    let of = |more: &str| format!("[worlds.heath]\nspacing = 2\nattributes = ['u1']\n{more}\n");
+    for (more, words) in [
+        ("format = 'instances'", "no room for u1"),
+        (
+            "format = 'f32'\ndecimals = 3",
+            "has no effect in the format f32",
+        ),
+    ] {
+        let (_folder, file) = settings(&of(more));
+        let output = run(&["worlds", "check", "--config", &file], "");
+        assert_eq!(output.status.code(), Some(2), "{more}");
+        let text = errors(&output);
+        assert!(text.contains("heath") && text.contains(words), "{text}");
+    }
+    let (_folder, file) = settings(&of("format = 'csv'\ndecimals = 3"));
+    assert!(printed(&["worlds", "check", "--config", &file]).contains("heath"));
+}

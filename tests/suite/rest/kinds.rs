@@ -8,6 +8,7 @@ use strew::grpc::proto::{
     point_set::Amount,
 };
 use strew_core::{Point, Table};
+use strew_testkit::wait::until;
 
 use crate::support::{
     command,
@@ -295,6 +296,31 @@ fn single_points_have_their_kinds_on_the_command_line_too() {
             assert_eq!(json, answer.json());
         }
     }
+}
+
+#[test]
+fn an_answer_that_waits_for_labels_says_so_and_when_to_come_back() {
+    let daemon = Daemon::with_tables(no_tables(), &["server.first_byte_seconds=0.1"]);
+    let address = "/v1/count?bbox=0,0,30,30&spacing=1&map=l";
+    until("the table is read", || {
+        (daemon.get(address).status == 200).then_some(())
+    });
+    let mut waits = vec![];
+    until("the labels are made", || {
+        let kinds = "spread=even&variants=oak:13,birch:7,ash:5,elm:3,fir:2,yew:1";
+        let answer = daemon.get(&format!("{address}&{kinds}"));
+        if answer.status == 200 {
+            return Some(());
+        }
+        assert_eq!((answer.status, answer.header("retry-after")), (503, "5"));
+        waits.push(answer.json()["detail"].to_string());
+        None
+    });
+    let words = "labels of these kinds are being made";
+    assert!(
+        waits.iter().any(|detail| detail.contains(words)),
+        "{waits:?}"
+    );
 }
 
 #[test]
