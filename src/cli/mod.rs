@@ -8,6 +8,7 @@ mod config;
 mod count;
 mod examples;
 mod export;
+mod failure;
 mod fields;
 mod figure;
 mod flags;
@@ -38,6 +39,8 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 use clap_complete::CompleteEnv;
+
+pub(crate) use failure::Failure;
 
 /// What `strew` does.
 #[derive(Debug, Parser)]
@@ -121,25 +124,8 @@ enum Command {
     Man(completions::ManArgs),
 }
 
-/// Why a command failed: decides the exit code.
-#[derive(Debug)]
-pub(crate) enum Failure {
-    /// Wrong flags or settings: 2.
-    Usage(anyhow::Error),
-    /// Stopped from outside, in good order: 130.
-    Interrupted(anyhow::Error),
-    /// Anything else: 1.
-    Other(anyhow::Error),
-}
-
 /// The exit code after an interrupt, as shells have it.
 const INTERRUPTED: u8 = 130;
-
-impl From<anyhow::Error> for Failure {
-    fn from(error: anyhow::Error) -> Self {
-        Self::Other(error)
-    }
-}
 
 /// Runs the program.
 #[must_use]

@@ -147,6 +147,64 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"a query cannot hold a {type(value).__name__}")
 
 
+#: The longest address that is sent, in characters. Proxies and caches refuse much longer ones.
+LONGEST = 2000
+#: Members that are text in an address and in a body.
+TEXTS = frozenset("alpha crs cursor field format map only profile spread table terrain world world_digest".split())
+#: Members that are switches in both.
+SWITCHES = frozenset(("normals", "summary"))
+
+
+def path(query: Body) -> str | None:
+    """The address of a query that is short and means the same there, so that caches keep its answer."""
+    values = {name: value for name, value in query.items() if name != "region"}
+    route = "/v1/points"
+    if "region" in query:
+        region = query["region"]
+        if not isinstance(region, Mapping) or len(region) != 1:
+            return None
+        [(shape, place)] = region.items()
+        place = place.tolist() if isinstance(place, np.ndarray) else place
+        if shape == "bbox" and _is_numbers(place, 4):
+            values["bbox"] = place
+        elif isinstance(place, Mapping) and shape == "circle" and set(place) == {"center", "radius"}:
+            values["circle"] = [*place["center"], place["radius"]] if _is_numbers(place["center"], 2) else None
+        elif isinstance(place, Mapping) and shape == "chunk" and set(place) == {"size", "x", "y"}:
+            parts = [place[name] for name in ("size", "x", "y")]
+            if not _is_numbers(parts, 3):
+                return None
+            route = "/v1/chunks/" + "/".join(map(_text, parts))
+        else:
+            return None
+    if not all(_is_plain(name, value) for name, value in values.items()):
+        return None
+    made = f"{route}?{address(values)}"
+    return made if len(made) <= LONGEST else None
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+
+
+def _is_numbers(value: Any, count: int | None = None) -> bool:
+    is_list = isinstance(value, (list, tuple)) and count in (None, len(value))
+    return is_list and len(value) > 0 and all(map(_is_number, value))
+
+
+def _is_plain(name: str, value: Any) -> bool:
+    """Whether a member is written in an address as in a body. What is wrong is refused in the words of bodies."""
+    if name in TEXTS:
+        return isinstance(value, str)
+    if name in SWITCHES:
+        return isinstance(value, bool)
+    if name == "attributes":
+        return isinstance(value, (list, tuple)) and len(value) > 0 and all(isinstance(one, str) for one in value)
+    if name in ("variants", "scale_ranges"):
+        items = value.items() if isinstance(value, Mapping) else ()
+        return bool(items) and all(isinstance(key, str) and (_is_number(of) or _is_numbers(of, 2)) for key, of in items)
+    return _is_number(value) or _is_numbers(value)
+
+
 def address(values: Mapping[str, Any]) -> str:
     """Values as the parameters of an address."""
     pairs = (f"{quote(name, safe='')}={quote(_text(value), safe=',:')}" for name, value in values.items())

@@ -14,7 +14,7 @@ import numpy as np
 
 from ._errors import Disconnected, StrewError
 from ._ipc import Batch, Column, Stream
-from ._query import Body, text
+from ._query import Body, path, text
 from ._replicas import Attempts, Elsewhere, Later, Replica, Replicas, retry_after
 from ._source import Plan, Source
 from ._strew import Columns
@@ -109,6 +109,19 @@ class Daemon(Source):
             raise Later(retry_after(response.headers.get("retry-after")), refusal)
         self._replicas.answered(replica)
         raise Elsewhere(refusal) if _is_about_held(refusal) else refusal
+
+    def open_points(self, replica: Replica, query: Body) -> http.client.HTTPResponse:
+        """The points of a query: by GET if its address is short, because caches keep no answers to POST."""
+        short = path(query)
+        if short is not None:
+            try:
+                return self.open(replica, "GET", short)
+            except (StrewError, Elsewhere) as refusal:
+                error = refusal.error if isinstance(refusal, Elsewhere) else refusal
+                # What is not valid is refused again, in the words of bodies.
+                if error.kind != "invalid-query":
+                    raise
+        return self.open(replica, "POST", "/v1/points:query", text(query))
 
     def read(self, method: str, path: str, body: str | None = None) -> bytes:
         """The content of a response."""
@@ -242,9 +255,9 @@ class _Asked:
 
     def _first(self) -> tuple[str | None, list[str]]:
         if self._begun is None:
-            daemon, body = self._daemon, self._body(format="f32")
+            daemon = self._daemon
             for attempt in daemon.attempts():
-                with attempt as replica, daemon.open(replica, "POST", "/v1/points:query", body) as response:
+                with attempt as replica, daemon.open_points(replica, {**self._query, "format": "f32"}) as response:
                     self._begun = response.headers.get("strew-next"), _tables(response)
                     break
         assert self._begun is not None
@@ -265,7 +278,10 @@ class _Asked:
         for name in ("decimals", "size"):
             if given.get(name, "").isdigit():
                 given[name] = int(given[name])
-        return self._daemon.read("POST", "/v1/points:query", self._body(**given))
+        for attempt in self._daemon.attempts():
+            with attempt as replica, self._daemon.open_points(replica, {**self._query, **given}) as response:
+                return response.read()
+        raise AssertionError("the last attempt raises")
 
     def coordinates(self) -> np.ndarray[Any, np.dtype[np.float64]]:
         return np.asarray(self.columns().at())
@@ -320,7 +336,7 @@ class _Answer:
         if self._cursor is None or not self._rows:
             # Short answers have no cursor: they begin again. So does one of which nothing came.
             self._rows, self._expected, self._cursor, self.batches = 0, None, None, []
-        with self._daemon.open(replica, "POST", "/v1/points:query", text(self._rest())) as response:
+        with self._daemon.open_points(replica, self._rest()) as response:
             count = int(response.headers["strew-count"])
             if self._expected is None:
                 self._expected, self._cursor = count, response.headers.get("strew-cursor")

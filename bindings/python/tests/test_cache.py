@@ -60,7 +60,7 @@ def answered(url: str, route: str) -> int:
 def test_the_points_of_queries_pass_and_what_is_requested_again_is_kept(tmp_path: Path, url: str) -> None:
     with cache(tmp_path, [url]) as address:
         there = strew.connect(address)
-        # All queries have one path, and differ by their bodies.
+        # Long queries have one path, and differ by their bodies.
         compared = 0
         for seed in range(40):
             query = random_query(seed)
@@ -73,6 +73,12 @@ def test_the_points_of_queries_pass_and_what_is_requested_again_is_kept(tmp_path
                 same(here, there.query(query))
             compared += len(here) > 0
         assert compared > 20
+        # Short queries have addresses of their own, which the cache keeps.
+        box = {"bbox": (0, 0, 9, 9), "spacing": 1, "seed": 77}
+        before = answered(url, "/v1/points")
+        for _ in range(3):
+            same(strew.points(**box), there.points(**box))
+        assert answered(url, "/v1/points") == before + 1
         points = [source.points(spacing=1, seed=5) for source in (strew, there)]
         before = answered(url, "/v1/nearest")
         for _ in range(3):

@@ -8,6 +8,7 @@ import urllib.error
 import urllib.request
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
+from urllib.parse import parse_qsl, urlsplit
 
 import numpy as np
 import pytest
@@ -185,10 +186,10 @@ class Breaking(BaseHTTPRequestHandler):
     def log_message(self, *_: object) -> None:
         pass
 
-    def do_POST(self) -> None:
-        body = self.rfile.read(int(self.headers["content-length"]))
-        self.requests.append(json.loads(body))
-        with urllib.request.urlopen(urllib.request.Request(self.upstream + self.path, body)) as response:
+    def do_GET(self) -> None:
+        pairs = parse_qsl(urlsplit(self.path).query)
+        self.requests.append({name: int(value) if name == "offset" else value for name, value in pairs})
+        with urllib.request.urlopen(self.upstream + self.path) as response:
             content = response.read()
             self.send_response(200)
             for name in ("strew-count", "strew-cursor", "strew-next", "strew-table"):

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qsl, urlsplit
 
 import pytest
 from conftest import daemon
@@ -128,9 +129,16 @@ class Answering(BaseHTTPRequestHandler):
         self.server.answer(self, body)  # type: ignore[attr-defined]
         self.close_connection = True
 
+    def do_GET(self) -> None:
+        pairs = parse_qsl(urlsplit(self.path).query)
+        query = {name: int(value) if name in ("offset", "limit") else value for name, value in pairs}
+        self.server.requests.append(query)  # type: ignore[attr-defined]
+        self.server.answer(self, None)  # type: ignore[attr-defined]
+        self.close_connection = True
 
-def refusing(status: int, content: str = "{}", **headers: str) -> Callable[[Any, bytes], None]:
-    def answer(handler: Any, _: bytes) -> None:
+
+def refusing(status: int, content: str = "{}", **headers: str) -> Callable[[Any, bytes | None], None]:
+    def answer(handler: Any, _: bytes | None) -> None:
         handler.send_response(status)
         for name, value in headers.items():
             handler.send_header(name.replace("_", "-"), value)
@@ -141,13 +149,13 @@ def refusing(status: int, content: str = "{}", **headers: str) -> Callable[[Any,
     return answer
 
 
-def breaking(upstream: str, share: float = 2 / 3) -> Callable[[Any, bytes], None]:
+def breaking(upstream: str, share: float = 2 / 3) -> Callable[[Any, bytes | None], None]:
     """Answers once with a share of a daemon's answer; later connections break at once."""
     import urllib.request
 
-    answered: list[bytes] = []
+    answered: list[bytes | None] = []
 
-    def answer(handler: Any, body: bytes) -> None:
+    def answer(handler: Any, body: bytes | None) -> None:
         if answered:
             return
         answered.append(body)

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::{
     chunks::{Maker, variants},
+    disk::Speed,
     spec::{DEFLATE, Spec},
 };
 use crate::cli::{Failure, compression::Compression};
@@ -24,6 +25,11 @@ const SHARE: usize = 8;
 const TRIAL: Duration = Duration::from_secs(2);
 /// What a file takes on a disk is a multiple of this.
 const BLOCK: u64 = 4096;
+
+/// The disk is tried for exports of more bytes than this,
+const WORTH: f64 = (1u64 << 20) as f64;
+/// and if it has more free.
+const ROOM: u64 = 1 << 30;
 
 /// What is expected.
 #[derive(Clone, Debug)]
@@ -93,6 +99,21 @@ impl Cost {
             files: left * (1 + compressions.len()) as f64,
             time: Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX),
         })
+    }
+
+    /// The same with the time that the disk of a folder takes, where it has ample room for a trial.
+    pub(super) fn written_to(self, folder: &Path) -> Self {
+        let has_room = free(folder).is_some_and(|(bytes, _)| bytes > ROOM);
+        let speed = (has_room && self.disk > WORTH).then(|| Speed::of(folder));
+        let Some(speed) = speed.flatten() else {
+            return self;
+        };
+        let writing = speed.time(self.files, self.disk);
+        let writing = Duration::try_from_secs_f64(writing).unwrap_or(Duration::MAX);
+        Self {
+            time: self.time.saturating_add(writing),
+            ..self
+        }
     }
 
     /// One line.

@@ -4,6 +4,7 @@ mod archive;
 mod check;
 mod chunks;
 mod cost;
+mod disk;
 mod folder;
 mod grid;
 mod lock;
@@ -161,7 +162,10 @@ impl Job<'_> {
     /// Says what is to come, unless the disk has no room for it.
     fn cost(&self, done: usize, place: Option<&Path>) -> Result<(), Failure> {
         let is_archive = self.args.archive.is_some();
-        let cost = Cost::of(&self.maker, &self.spec, done)?;
+        let mut cost = Cost::of(&self.maker, &self.spec, done)?;
+        if let Some(place) = place {
+            cost = cost.written_to(place);
+        }
         if !self.args.quiet {
             eprintln!("{}", cost.line());
             if done > 0 {

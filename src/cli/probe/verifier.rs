@@ -1,6 +1,6 @@
 //! Which certificates of daemons are believed.
 
-use std::sync::Arc;
+use std::{sync::Arc, time::Duration};
 
 use rustls::{
     CertificateError, DigitallySignedStruct, Error, RootCertStore, SignatureScheme,
@@ -76,11 +76,14 @@ impl Authorities {
         // very one is trusted, so only its name and its time are left to check.
         verify_server_name(&ParsedCertificate::try_from(shown)?, name)?;
         let (start, end) = validity(shown).ok_or(CertificateError::BadEncoding)?;
+        let at = |seconds| UnixTime::since_unix_epoch(Duration::from_secs(seconds));
         if now.as_secs() < start {
-            return Err(CertificateError::NotValidYet.into());
+            let (time, not_before) = (now, at(start));
+            return Err(CertificateError::NotValidYetContext { time, not_before }.into());
         }
         if now.as_secs() > end {
-            return Err(CertificateError::Expired.into());
+            let (time, not_after) = (now, at(end));
+            return Err(CertificateError::ExpiredContext { time, not_after }.into());
         }
         Ok(ServerCertVerified::assertion())
     }
