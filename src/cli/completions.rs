@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, anyhow};
+use anyhow::Context as _;
 use clap_complete::{Shell, env::Shells};
 
 use super::{Failure, output::Output};
