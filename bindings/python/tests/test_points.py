@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gzip
+import math
 import multiprocessing
 import os
 import pickle
@@ -154,6 +156,23 @@ def test_pictures_that_cannot_be_used_are_refused() -> None:
             strew.stipple(image, 9)
     with pytest.raises(ValueError, match="2 dimensions"):
         strew.raster(np.zeros(3))
+
+
+def test_numbers_that_are_not_finite_are_refused_by_name() -> None:
+    for name, query in (("spacing", {"spacing": math.nan}), ("region", {"spacing": 1})):
+        region = (0, 0, math.inf, 9) if name == "region" else (0, 0, 9, 9)
+        with pytest.raises(ValueError, match=f"`{name}`.*not finite"):
+            strew.points(bbox=region, **query).count()
+
+
+def test_endings_are_those_of_the_command(tmp_path: Path) -> None:
+    points = strew.points(bbox=(0, 0, 4, 4), spacing=1)
+    points.write(tmp_path / "a.jsonl")
+    assert (tmp_path / "a.jsonl").read_bytes() == points.document("ndjson")
+    points.write(tmp_path / "a.csv.gz")
+    assert gzip.decompress((tmp_path / "a.csv.gz").read_bytes()) == points.document("csv")
+    with pytest.raises(ValueError, match="only `strew sample` writes it"):
+        points.write(tmp_path / "a.parquet")
 
 
 def test_large_masks_are_taken_in_process() -> None:

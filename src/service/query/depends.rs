@@ -35,11 +35,15 @@ impl Set {
             is_fixed: false,
         });
         let except = self.except.iter().flat_map(|except| {
-            let is_fixed = except.names.is_empty();
-            except.parts.iter().map(move |part| Dependency {
+            let parts = except.parts.iter().map(|part| Dependency {
                 digest: part.digest(),
-                is_fixed,
-            })
+                is_fixed: true,
+            });
+            let lists = except.names.iter().map(|name| Dependency {
+                digest: name,
+                is_fixed: false,
+            });
+            parts.chain(lists)
         });
         let rest = fields.chain(kinds).chain(except);
         [table].into_iter().chain(none).chain(rest)

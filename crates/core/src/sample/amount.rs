@@ -98,7 +98,7 @@ pub(super) fn exactly(
         } else if guess <= least {
             let spacing = number(least);
             let (problem, allowed) = match found {
-                0 => (
+                0 if lattice.grade.is_some() => (
                     alloc::format!("no point is left here, down to a spacing of {spacing}"),
                     "a region in which the field leaves points",
                 ),
