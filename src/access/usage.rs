@@ -67,11 +67,12 @@ impl Quota {
     }
 
     /// Whether an address may take `amount` more of what it shares with all others: it may use no more than is
-    /// left, so a few addresses together never take all. An address whose own limit is that of all may.
+    /// left, so a few addresses together never take all. Where an address may have more than half of all, the
+    /// operator wants two of them to take everything.
     #[must_use]
     pub fn is_fair(&self, amount: usize, all: &Self) -> bool {
         let left = all.limit.saturating_sub(all.used());
-        self.limit >= all.limit || self.used().saturating_add(amount) <= left
+        self.limit > all.limit / 2 || self.used().saturating_add(amount) <= left
     }
 
     /// Gives back what was taken.

@@ -76,9 +76,9 @@ Examples:
   strew worlds check --config strew.toml";
 pub(super) const COMPLETIONS: &str = "\
 Examples:
-  echo 'source <(strew completions bash)' >> ~/.bashrc
-  echo 'source <(strew completions zsh)' >> ~/.zshrc
-  echo 'strew completions fish | source' > ~/.config/fish/completions/strew.fish";
+  strew completions bash > ~/.local/share/bash-completion/completions/strew
+  strew completions zsh > ~/.zfunc/_strew
+  strew completions fish > ~/.config/fish/completions/strew.fish";
 pub(super) const MAN: &str = "\
 Examples:
   strew man --out-dir /usr/local/share/man/man1

@@ -247,7 +247,7 @@ fn an_address_takes_no_more_than_its_share() {
     let daemon = Daemon::start(&[
         "per_address.max_streams=3",
         "per_address.max_connections=8",
-        "server.max_connections=24",
+        "server.max_connections=12",
         "limits.max_streams=6",
     ]);
     let path = long("f32");
