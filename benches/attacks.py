@@ -368,8 +368,9 @@ def mixes(daemon):
 
     def leave(is_over, statuses):
         while not is_over.is_set():
-            shares = f"oak:{100 + next(number)},fir:1000"
-            path = f"/v1/points?bbox=0,0,9,9&spacing=1&spread=even&variants={shares}&map={'lms'[next(number) % 3]}"
+            some = next(number)
+            shares = f"oak:{1 + some % 1020},fir:{1020 - some % 1020}"
+            path = f"/v1/points?bbox=0,0,9,9&spacing=1&spread=even&variants={shares}&map={'lms'[some % 3]}"
             try:
                 stream = daemon.connect()
                 stream.sendall(daemon.request("GET", path))

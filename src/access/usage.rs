@@ -66,13 +66,13 @@ impl Quota {
         self.used.fetch_add(amount, Ordering::AcqRel) + amount
     }
 
-    /// Whether an address may take `amount` more of what it shares with all others: it may use no more than is
-    /// left, so a few addresses together never take all. Where an address may have more than half of all, the
+    /// Whether an address may use as much as it does of what it shares with all others: no more than these leave,
+    /// so a few addresses together never take all. Where an address may have more than half of all, the
     /// operator wants two of them to take everything.
     #[must_use]
-    pub fn is_fair(&self, amount: usize, all: &Self) -> bool {
+    pub fn is_fair(&self, all: &Self) -> bool {
         let left = all.limit.saturating_sub(all.used());
-        self.limit > all.limit / 2 || self.used().saturating_add(amount) <= left
+        self.limit > all.limit / 2 || self.used() <= left
     }
 
     /// Gives back what was taken.
@@ -190,11 +190,12 @@ impl Usage {
         what: &'static str,
         all: &Quota,
     ) -> Result<InUse, Denied> {
-        if !quota(self).is_fair(1, all) {
+        let one = self.one(quota, what)?;
+        if !quota(self).is_fair(all) {
             let limit = all.limit();
             return Err(Denied::Share { what, limit });
         }
-        self.one(quota, what)
+        Ok(one)
     }
 
     fn one(
@@ -323,7 +324,7 @@ mod tests {
         let all = Quota::new(256);
         let take = |address: &Quota| {
             let mut taken = 0;
-            while address.is_fair(1, &all) && address.take(1) && all.take(1) {
+            while address.take(1) && address.is_fair(&all) && all.take(1) {
                 taken += 1;
             }
             taken
@@ -334,7 +335,7 @@ mod tests {
         // One that may take everything does.
         let one = Quota::new(8);
         let all = Quota::new(8);
-        assert!((0..8).all(|_| one.is_fair(1, &all) && one.take(1) && all.take(1)));
+        assert!((0..8).all(|_| one.take(1) && one.is_fair(&all) && all.take(1)));
     }
 
     #[test]

@@ -112,17 +112,19 @@ impl Held {
                 });
             }
         }
-        if !address.bytes.is_fair(bytes, all) {
-            let (what, limit) = ("bytes", all.limit());
-            return Err(Denied::Share { what, limit }.into());
-        }
         if !address.bytes.take(bytes) {
             let (what, limit) = ("bytes", address.bytes.limit());
             return Err(Denied::Address { what, limit }.into());
         }
-        if !all.take(bytes) {
+        let refused = if !address.bytes.is_fair(all) {
+            let (what, limit) = ("bytes", all.limit());
+            Some(Denied::Share { what, limit }.into())
+        } else {
+            (!all.take(bytes)).then(|| Error::TooManyBytes { limit: all.limit() })
+        };
+        if let Some(refused) = refused {
             address.bytes.give_back(bytes);
-            return Err(Error::TooManyBytes { limit: all.limit() });
+            return Err(refused);
         }
         self.bytes += bytes;
         Ok(())

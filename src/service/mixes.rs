@@ -169,7 +169,8 @@ impl Mixes {
             return Ok(known);
         }
         let bytes = ROOM + ROOM_BY_BLOCK * plain.entry.blocks();
-        let budget = Record::current().map_or(self.budget, |record| record.budget().clone());
+        // Of all addresses: it is more than one may hold, and one mix is made at a time.
+        let budget = self.budget;
         let path = self.folder.as_deref();
         let path = path.map(|folder| folder.join(format!("{name}.strew")));
         let Ready { entry, table, .. } = plain;

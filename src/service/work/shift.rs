@@ -1,4 +1,5 @@
-//! Long work that gives way: after a second it lets other addresses have their turns, then goes on.
+//! Long work that gives way: after a second it lets other addresses have their turns, then goes on. What is made for
+//! all does not: it would hold its memory meanwhile.
 //!
 //! The work itself is an ordinary function that looks at a [`Stop`] now and then. A look is where it waits.
 
@@ -21,6 +22,7 @@ const SHIFT: Duration = Duration::from_secs(1);
 pub(super) struct Shift {
     turns: Turns,
     owner: Owner,
+    gives_way: bool,
     state: Mutex<State>,
     changed: Condvar,
 }
@@ -34,8 +36,9 @@ struct State {
 }
 
 impl Shift {
-    pub(super) fn new(turns: Turns, owner: Owner) -> Arc<Self> {
+    pub(super) fn new(turns: Turns, owner: Owner, gives_way: bool) -> Arc<Self> {
         Arc::new(Self {
+            gives_way,
             turns,
             owner,
             state: Mutex::new(State {
@@ -78,6 +81,9 @@ impl Shift {
 
     /// Gives way to other addresses if the work has gone on for long.
     fn look(self: &Arc<Self>) {
+        if !self.gives_way {
+            return;
+        }
         let mut state = self.lock();
         if state.since.elapsed() < SHIFT || state.turn.is_none() {
             return;

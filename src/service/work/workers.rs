@@ -1,6 +1,9 @@
 //! The threads of each lane.
 
-use std::{fmt, sync::Arc};
+use std::{
+    fmt,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
 
 use strew_core::server::Stop;
 use tokio::sync::oneshot;
@@ -19,9 +22,17 @@ pub struct Workers {
     short: Arc<rayon::ThreadPool>,
     /// For what of long work is short: blocks. Whole long jobs have a thread each, since they may pause.
     long: Arc<rayon::ThreadPool>,
+    /// Threads of jobs that have ended, for the next ones.
+    idle: Arc<Idle>,
     /// Who may begin work, by lane.
     turns: [Turns; 3],
 }
+
+/// Pools of one thread each, in which jobs stay.
+type Idle = Mutex<Vec<Arc<rayon::ThreadPool>>>;
+
+/// The most threads that are kept for further jobs.
+const MOST_IDLE: usize = 4;
 
 impl fmt::Debug for Workers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -54,6 +65,7 @@ impl Workers {
                     Lane::Making => 1,
                 })
             }),
+            idle: Arc::default(),
             short: Arc::new(short),
             long: Arc::new(long),
         })
@@ -83,13 +95,19 @@ impl Workers {
         job: impl FnOnce(&Stop) -> T + Send + 'static,
     ) -> Result<T, Error> {
         let (answer, answered) = oneshot::channel();
-        let shift = (lane != Lane::Short)
-            .then(|| Shift::new(self.turns[lane as usize].clone(), owner.clone()));
+        let shift = (lane != Lane::Short).then(|| {
+            Shift::new(
+                self.turns[lane as usize].clone(),
+                owner.clone(),
+                lane == Lane::Long,
+            )
+        });
         let stop = shift.as_ref().map_or_else(Stop::new, Shift::stop);
         let wanted = Wanted(Some((stop.clone(), shift.clone())));
         let job = Job {
             waiting: owner.wait(),
             short: self.short.clone(),
+            idle: self.idle.clone(),
             shift,
             answer,
             job: move || job(&stop),
@@ -159,6 +177,7 @@ impl Drop for Wanted {
 struct Job<T, F> {
     waiting: Waiting,
     short: Arc<rayon::ThreadPool>,
+    idle: Arc<Idle>,
     /// How it holds its turn, unless it is short.
     shift: Option<Arc<Shift>>,
     answer: oneshot::Sender<T>,
@@ -174,6 +193,7 @@ impl<T: Send + 'static, F: FnOnce() -> T + Send + 'static> Waiter for Job<T, F> 
         let Self {
             waiting,
             short,
+            idle,
             shift,
             answer,
             job,
@@ -188,19 +208,29 @@ impl<T: Send + 'static, F: FnOnce() -> T + Send + 'static> Waiter for Job<T, F> 
             });
         };
         // A thread of its own, which may pause, in a pool of its own, where it stays.
-        let thread = pool(1, "job").start_handler(|_| lower_priority()).build();
-        let thread = match thread {
+        let start = || pool(1, "job").start_handler(|_| lower_priority()).build();
+        let free = lock(&idle).pop();
+        let thread = match free.map_or_else(|| start().map(Arc::new), Ok) {
             Ok(thread) => thread,
             Err(error) => return tracing::error!(%error, "no thread for long work"),
         };
+        let own = thread.clone();
         thread.spawn(move || {
             let _end = EndOnDrop(shift.clone());
             shift.start(turn);
             if !answer.is_closed() {
                 let _ = answer.send(job());
             }
+            let mut idle = lock(&idle);
+            if idle.len() < MOST_IDLE {
+                idle.push(own);
+            }
         });
     }
+}
+
+fn lock(idle: &Idle) -> MutexGuard<'_, Vec<Arc<rayon::ThreadPool>>> {
+    idle.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Ends a shift, also when its job panics.

@@ -194,7 +194,7 @@ fn errors_name_the_file_and_the_member() {
         (
             "--region=-",
             r#"{"type": "Polygon", "coordinates": [[[0, 0], [1, 1]]]}"#,
-            &["--region", "vertices"],
+            &["--region", "coordinates[0] has 2 positions"],
         ),
     ] {
         let mut arguments = vec!["sample", flag];

@@ -175,7 +175,7 @@ fn kinds_are_made_for_who_waits_and_an_address_has_a_few_at_once() {
     };
     // The first four are made or wait to be made; their clients leave.
     let shares: Vec<String> = (1..=9)
-        .map(|i| format!("oak:{},fir:1000", 500 + i))
+        .map(|i| format!("oak:{},fir:500", 300 + i))
         .collect();
     let waiting: Vec<_> = shares[..4]
         .iter()

@@ -187,7 +187,7 @@ fn tags_of_single_points_change_with_all_that_is_loaded() {
         "ramp.json",
         br#"{"ramp": {"from": [0, 0], "to": [80, 0]}}"#,
     );
-    daemon.signal("-HUP");
+    daemon.signal("HUP");
     until("the field is served", || {
         let answer = daemon.get(&paths[0]);
         (answer.body != before[0].body).then_some(())
