@@ -212,7 +212,7 @@ fn main() {
         fill_all::<F32>(&plan, &mut vec![[0f32; 2]; BLOCK]);
         let filled = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let candidates = server::candidates(&graded, region).expect("near");
+        let candidates = server::candidates(&graded, region, 8192).expect("near");
         let estimated = start.elapsed().as_secs_f64();
         println!(
             "mask, {part} of its side: {} points, counted in {:.1} ms, filled in {:.1} ms, {candidates} candidates in {:.2} ms",

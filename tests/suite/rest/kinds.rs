@@ -301,7 +301,7 @@ fn single_points_have_their_kinds_on_the_command_line_too() {
 #[test]
 fn an_answer_that_waits_for_labels_says_so_and_when_to_come_back() {
     let daemon = Daemon::with_tables(no_tables(), &["server.first_byte_seconds=0.1"]);
-    let address = "/v1/count?bbox=0,0,30,30&spacing=1&map=l";
+    let address = "/v1/count?bbox=0,0,30,30&spacing=1&map=m";
     until("the table is read", || {
         (daemon.get(address).status == 200).then_some(())
     });
