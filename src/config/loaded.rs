@@ -78,6 +78,8 @@ pub struct Except {
     pub folder: PathBuf,
     /// The most ids of one list. Bounds memory.
     pub max_ids: usize,
+    /// The most memory that lists may take which clients send to name them later, in bytes; 0 for none.
+    pub max_sent_bytes: usize,
     /// Lists by name, as documents.
     #[serde(flatten)]
     pub named: BTreeMap<String, toml::Table>,

@@ -1,4 +1,4 @@
-//! `GET /v1/except`: the lists of points that queries may leave out.
+//! `/v1/except`: the lists of points that queries may leave out, and how clients send one.
 
 use std::sync::Arc;
 
@@ -6,18 +6,26 @@ use axum::{extract::State, response::Response, routing};
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
+use serde_json::json;
+use strew_core::server::Stop;
 
 use super::{
-    api::{self, Endpoint, Operation, Tag},
+    api::{self, Endpoint, Operation, Tag, schemas},
+    body::Whole,
     context::Context,
     document,
     freshness::Freshness,
+    query,
 };
-use crate::service::{Error, Kind, Service, query::groups};
+use crate::service::{
+    Error, Kind, Service,
+    except::{NamedList, Section},
+    query::groups,
+};
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
-    let operation = Operation {
+    let listed = Operation {
         method: Method::GET,
         id: "listExcept",
         summary: "The lists of points that are left out",
@@ -33,7 +41,39 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         problems: vec![Kind::Invalid],
         example: "/v1/except".into(),
     };
-    Endpoint::new("/v1/except", service, vec![(operation, routing::get(all))])
+    let sent = Operation {
+        method: Method::POST,
+        id: "sendExcept",
+        summary: "Send a list of points to name it later",
+        about: "Queries name it by its digest: except=DIGEST. The body is an object, or text with an id a line, where \
+                what follows # is a comment. The list is held while there is room; one that is gone is an unknown \
+                list, and is sent again.",
+        body: Some(query::body(schemas::of::<Section<'_>>, example())),
+        answers: vec![api::Answer::json::<List<'_>>(
+            "The list that is held; its name is its digest.",
+        )],
+        problems: vec![Kind::Invalid, Kind::BodyTooLarge],
+        example: format!("/v1/except -d '{}'", example()),
+        ..listed.clone()
+    };
+    let operations = vec![(listed, routing::get(all)), (sent, routing::post(post))];
+    Endpoint::new("/v1/except", service, operations)
+}
+
+fn example() -> serde_json::Value {
+    json!({ "ids": ["trees/18:-17", "trees/23:-15"] })
+}
+
+async fn post(
+    State(service): State<Arc<Service>>,
+    context: Context,
+    Whole(body): Whole,
+) -> Result<Response, Error> {
+    context.no_parameters()?;
+    let bytes = body.len();
+    let hold = move |service: &Service, _: &Stop| service.hold_list(&body);
+    let held = service.process(bytes, hold).await??;
+    document::json(&List::new(&held))
 }
 
 /// The lists of points that queries may leave out.
@@ -58,17 +98,23 @@ struct List<'a> {
     layers: Vec<&'a str>,
 }
 
+impl<'a> List<'a> {
+    fn new(list: &'a NamedList) -> Self {
+        Self {
+            name: &list.name,
+            digest: &list.digest,
+            count: list.len(),
+            layers: list.layers().collect(),
+        }
+    }
+}
+
 async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let lists = Lists {
         lists: (catalog.except().iter())
-            .map(|list| List {
-                name: &list.name,
-                digest: &list.digest,
-                count: list.len(),
-                layers: list.layers().collect(),
-            })
+            .map(|list| List::new(list))
             .collect(),
     };
     let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &lists);

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use super::{Error, field::Sender};
+use super::{Error, sent::Sender};
 use crate::access::{Denied, Quota, Usage};
 
 /// The byte budget that a request takes from: the daemon's, and that of the client's address. Cheap

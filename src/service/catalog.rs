@@ -26,8 +26,9 @@ use strew_core::{Alpha, field::FieldSpec, map::Size, table::BLUE};
 use super::{
     Error, Worlds,
     except::Lists,
-    field::{self, Allowance, Document, Fields, NamedField, Sent},
+    field::{self, Allowance, Document, Fields, NamedField},
     query::Checked,
+    sent::Sent,
 };
 pub use entry::Entry;
 pub use error::CatalogError;
@@ -56,7 +57,7 @@ pub struct Catalog {
     /// The worlds that queries may name, checked against all else.
     worlds: Arc<Worlds>,
     /// The fields that clients have sent.
-    sent: Arc<Sent>,
+    sent: Arc<Sent<NamedField>>,
     /// Plain patterns that queries have named.
     patterns: Arc<Patterns>,
     /// How many bytes of files are held.
@@ -203,7 +204,7 @@ impl Catalog {
 
     /// The fields that clients have sent.
     #[must_use]
-    pub fn sent(&self) -> &Sent {
+    pub fn sent(&self) -> &Sent<NamedField> {
         &self.sent
     }
 

@@ -17,7 +17,8 @@ use super::{
     Ready, Record, Reload, Set, Streams, Token, Workers,
     cache::{CacheState, Samplers},
     considered, effort,
-    field::{self, Document, NamedField, Sender},
+    except::NamedList,
+    field::{self, Document, NamedField},
     forging::Forging,
     library,
     mixes::Mixes,
@@ -106,10 +107,27 @@ impl Service {
     /// # Errors
     /// [`Error::Invalid`] for a field that is not valid or too large to be held.
     pub fn hold_field(&self, document: Document, stop: &Stop) -> Result<Arc<NamedField>, Error> {
-        let allowance = allowance(stop);
-        let sender = Record::current().map_or(Sender::default(), |record| record.budget().sender());
-        let catalog = self.catalog();
-        library::hold_field(&catalog, document, field::MOST_PIXELS, allowance, sender)
+        let (catalog, sender) = (self.catalog(), self.own_budget().sender());
+        library::hold_field(
+            &catalog,
+            document,
+            field::MOST_PIXELS,
+            allowance(stop),
+            sender,
+        )
+    }
+
+    /// Reads and holds a list of points that a client sends, under its digest.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a list that is not valid or too large to be held, and as [`hold`](Self::hold) where
+    /// there is no room to read it.
+    pub fn hold_list(&self, body: &[u8]) -> Result<Arc<NamedList>, Error> {
+        let (catalog, budget) = (self.catalog(), self.own_budget());
+        let lists = catalog.except();
+        let _held = budget.hold(lists.reading(body))?;
+        let text = String::from_utf8_lossy(body);
+        Ok(lists.hold(&text, budget.sender())?)
     }
 
     /// The limits.

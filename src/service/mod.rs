@@ -50,6 +50,7 @@ pub mod record;
 mod resolve;
 #[cfg(feature = "daemon")]
 pub mod segments;
+pub mod sent;
 mod single;
 #[cfg(feature = "daemon")]
 pub mod stream;

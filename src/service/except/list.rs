@@ -1,9 +1,11 @@
-//! Lists of points with names: those of the configuration and of a folder.
+//! Lists of points with names: those of the configuration and of a folder, and those that clients have sent.
 //!
-//! A list is text, an id a line: `12:-3`, or `trees/12:-3` for a point of a layer. What follows `#` is a comment.
+//! A list is text, an id a line: `12:-3`, or `trees/12:-3` for a point of a layer. What follows `#` is a comment. Or
+//! it is an object of JSON with these ids: `{"ids": ["12:-3"]}`.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{borrow::Cow, collections::BTreeMap, mem::size_of, sync::Arc};
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use strew_core::PointId;
 
@@ -11,34 +13,50 @@ use super::Ids;
 use crate::{
     config::Except as Settings,
     name::is_name,
-    service::named::{self, Changes, Found, NamedError, Places, Refused, Source},
+    service::{
+        Fault,
+        named::{self, Changes, NamedError, Places, Refused},
+        sent::{Sendable, Sender, Sent},
+    },
 };
 
-/// The lists that are loaded, by name.
+/// The most layers that a list has ids of.
+const MOST_LAYERS: usize = 1000;
+
+/// The lists that are loaded, by name, and those that were sent.
 #[derive(Clone, Debug, Default)]
 pub struct Lists {
     entries: BTreeMap<String, Arc<NamedList>>,
+    sent: Arc<Sent<NamedList>>,
+    /// The most ids of a list.
+    most: usize,
 }
 
 /// A list of points.
 #[derive(Clone, Debug)]
 pub struct NamedList {
-    /// Its name.
+    /// Its name; of one that was sent, its digest.
     pub name: String,
-    /// Where it comes from.
-    pub source: Source,
     /// The BLAKE3 digest of its ids, in hexadecimal.
     pub digest: String,
     /// The ids by layer; those of no layer under an empty name.
     by_layer: BTreeMap<String, Arc<Ids>>,
 }
 
-/// A list in the configuration.
-#[derive(Deserialize)]
+/// A list as an object.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct Section {
-    ids: Vec<String>,
+#[schemars(rename = "SentList")]
+pub struct Section<'a> {
+    /// Ids of points: column:row, or layer/column:row for a point of a layer.
+    #[serde(borrow)]
+    ids: Vec<Item<'a>>,
 }
+
+/// An item of a list, which is not copied.
+#[derive(Deserialize, JsonSchema)]
+#[serde(transparent)]
+struct Item<'a>(#[serde(borrow)] Cow<'a, str>);
 
 impl Lists {
     /// Loads the lists that the settings name.
@@ -46,7 +64,11 @@ impl Lists {
     /// # Errors
     /// The first that is not valid.
     pub fn load(settings: &Settings) -> Result<Self, NamedError> {
-        let (lists, _, refused) = Self::default().reload(settings);
+        let empty = Self {
+            sent: Arc::new(Sent::new(settings.max_sent_bytes)),
+            ..Self::default()
+        };
+        let (lists, _, refused) = empty.reload(settings);
         match refused.into_iter().next() {
             Some((error, _)) => Err(error),
             None => Ok(lists),
@@ -67,10 +89,21 @@ impl Lists {
             most_bytes: settings.max_ids as u64 * 110,
         };
         let read = places.over(&self.entries, digest, |found, text| {
-            NamedList::read(found, text, settings.max_ids)
+            let list = NamedList::read(text, settings.max_ids);
+            let list = list.map_err(|fault| fault.to_string())?;
+            let name = found.name.clone();
+            Ok(NamedList { name, ..list })
         });
+        let (sent, most) = (self.sent.clone(), settings.max_ids);
         let (after, refused) = match read {
-            Ok((entries, refused)) => (Self { entries }, refused),
+            Ok((entries, refused)) => (
+                Self {
+                    entries,
+                    sent,
+                    most,
+                },
+                refused,
+            ),
             // All of them stay.
             Err(error) => (self.clone(), vec![(error, None)]),
         };
@@ -78,13 +111,38 @@ impl Lists {
         (after, changes, refused)
     }
 
-    /// The list of a name.
+    /// The list of a digest that was sent, or of a name. What a digest names is never another list.
     #[must_use]
-    pub fn get(&self, name: &str) -> Option<&Arc<NamedList>> {
-        self.entries.get(name)
+    pub fn get(&self, name: &str) -> Option<Arc<NamedList>> {
+        let sent = self.sent.get(name);
+        sent.or_else(|| self.entries.get(name).cloned())
     }
 
-    /// All lists, by name.
+    /// The memory that it takes to read a list that is sent, at most, in bytes.
+    #[must_use]
+    pub fn reading(&self, body: &[u8]) -> usize {
+        /// An id is held as text, then as a number, in lists that double as they grow.
+        const ID: usize = 3 * (size_of::<Item<'_>>() + size_of::<PointId>());
+        let ends = body.iter().filter(|&&byte| matches!(byte, b'\n' | b','));
+        // What is not Unicode is copied.
+        4 * body.len() + ID * ends.take(self.most).count() + MOST_LAYERS * LAYER
+    }
+
+    /// Reads a list that was sent, and holds it.
+    ///
+    /// # Errors
+    /// A fault of a list that is not valid or too large to be held.
+    pub fn hold(&self, text: &str, sender: Sender) -> Result<Arc<NamedList>, Fault> {
+        let list = NamedList::read(text, self.most)?;
+        let size = list.size();
+        self.sent.hold(list, sender).ok_or_else(|| {
+            let detail = format!("takes {size} bytes, which there is no room for");
+            let allowed = "a smaller list, or except.max_sent_bytes raised";
+            Fault::new("ids", "", detail, allowed)
+        })
+    }
+
+    /// All lists that are loaded, by name.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &Arc<NamedList>> {
         self.entries.values()
     }
@@ -97,57 +155,57 @@ impl Lists {
 }
 
 impl NamedList {
-    /// Reads a list.
-    fn read(found: &Found, text: &str, most: usize) -> Result<Self, String> {
+    /// Reads a list, whose name is its digest.
+    fn read(text: &str, most: usize) -> Result<Self, Fault> {
         // Editors of Windows begin files with this mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let mut by_layer: BTreeMap<String, Vec<PointId>> = BTreeMap::new();
-        let mut count = 0;
-        let mut add = |place: &str, item: &str| {
-            let (layer, id) = split(item).ok_or_else(|| {
-                format!("{place}: `{item}` is not an id; allowed: column:row, or layer/column:row")
+        let mut list = Unsorted::default();
+        if text.trim_start().starts_with('{') {
+            // No id has a comma, so several are counted before they take memory.
+            let commas = text.bytes().filter(|&byte| byte == b',').count();
+            if commas > 0 {
+                check_count(commas + 1, most)?;
+            }
+            let section: Section<'_> = serde_json::from_str(text).map_err(|error| {
+                let allowed = "an object of ids, or text with an id a line";
+                Fault::new("body", "", error.to_string(), allowed)
             })?;
-            count += 1;
-            if count > most {
-                return Err(format!("more than {most} ids; allowed: except.max_ids"));
+            check_count(section.ids.len(), most)?;
+            for (i, Item(item)) in section.ids.iter().enumerate() {
+                list.add(item, || format!("ids[{i}]"))?;
             }
-            by_layer
-                .entry(layer.unwrap_or_default().into())
-                .or_default()
-                .push(id);
-            Ok(())
-        };
-        match &found.source {
-            Source::File(_) => {
-                for (i, line) in text.lines().enumerate() {
-                    let item = line.split('#').next().unwrap_or_default().trim();
-                    if !item.is_empty() {
-                        add(&format!("line {}", i + 1), item)?;
-                    }
-                }
-            }
-            _ => {
-                let section: Section =
-                    serde_json::from_str(text).map_err(|error| error.to_string())?;
-                for (i, item) in section.ids.iter().enumerate() {
-                    add(&format!("except.{}.ids[{i}]", found.name), item)?;
-                }
+        } else {
+            let items = || {
+                let lines = text.lines().enumerate();
+                let items = lines.map(|(i, line)| (i, line.split('#').next().unwrap_or_default()));
+                let items = items.map(|(i, item)| (i, item.trim()));
+                items.filter(|(_, item)| !item.is_empty())
+            };
+            check_count(items().count(), most)?;
+            for (i, item) in items() {
+                list.add(item, || format!("line {}", i + 1))?;
             }
         }
         let ids = |(layer, ids)| (layer, Arc::new(Ids::new(ids)));
-        let by_layer: BTreeMap<String, Arc<Ids>> = by_layer.into_iter().map(ids).collect();
+        let by_layer: BTreeMap<String, Arc<Ids>> = list.0.into_iter().map(ids).collect();
         let mut hasher = blake3::Hasher::new();
         for (layer, ids) in &by_layer {
             hasher.update(&(layer.len() as u64).to_le_bytes());
             hasher.update(layer.as_bytes());
             hasher.update(ids.digest().as_bytes());
         }
+        let digest = hasher.finalize().to_hex().to_string();
         Ok(Self {
-            name: found.name.clone(),
-            source: found.source.clone(),
-            digest: hasher.finalize().to_hex().to_string(),
+            name: digest.clone(),
+            digest,
             by_layer,
         })
+    }
+
+    /// Whether another list may have its name later.
+    #[must_use]
+    pub fn may_change(&self) -> bool {
+        self.name != self.digest
     }
 
     /// How many ids it has.
@@ -173,6 +231,54 @@ impl NamedList {
         let names = self.by_layer.keys().map(String::as_str);
         names.filter(|name| !name.is_empty())
     }
+}
+
+/// What a layer of a list takes besides its ids, at most, in bytes.
+const LAYER: usize = 512;
+
+impl Sendable for NamedList {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn size(&self) -> usize {
+        /// What a list takes besides its layers, at most.
+        const LIST: usize = 4 << 10;
+        LIST + LAYER * self.by_layer.len() + size_of::<PointId>() * self.len()
+    }
+}
+
+/// The ids of a list by layer, as they are read.
+#[derive(Default)]
+struct Unsorted(BTreeMap<String, Vec<PointId>>);
+
+impl Unsorted {
+    /// Adds the item of a place.
+    fn add(&mut self, item: &str, place: impl Fn() -> String) -> Result<(), Fault> {
+        let Some((layer, id)) = split(item) else {
+            let allowed = "column:row, or layer/column:row";
+            return Err(Fault::new(&place(), item, "not an id", allowed));
+        };
+        let layer = layer.unwrap_or_default();
+        if let Some(ids) = self.0.get_mut(layer) {
+            ids.push(id);
+        } else if self.0.len() == MOST_LAYERS {
+            let allowed = format!("ids of at most {MOST_LAYERS} layers");
+            return Err(Fault::new(&place(), item, "one layer too many", allowed));
+        } else {
+            self.0.insert(layer.into(), vec![id]);
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a list that is too long.
+fn check_count(count: usize, most: usize) -> Result<(), Fault> {
+    if count <= most {
+        return Ok(());
+    }
+    let allowed = format!("at most {most} ids in a list (except.max_ids)");
+    Err(Fault::new("ids", count, "too many", allowed))
 }
 
 /// The layer and the id of an item: `12:-3` or `trees/12:-3`.
@@ -212,7 +318,7 @@ mod tests {
     #[test]
     fn ids_are_sorted_by_layer() {
         let felled = list("[felled]\nids = ['3:4', 'oak/-5:6', '1:2', '1:2']").expect_err("4 ids");
-        assert!(felled.contains("more than 3 ids"), "{felled}");
+        assert!(felled.contains("at most 3 ids"), "{felled}");
         let felled = list("[felled]\nids = ['3:4', 'oak/-5:6', '1:2']").expect("valid");
         assert_eq!(
             (felled.len(), felled.layers().collect::<Vec<_>>()),
@@ -231,8 +337,11 @@ mod tests {
     #[test]
     fn what_is_no_id_is_named() {
         for (text, expected) in [
-            ("[a]\nids = ['x']", "except.a.ids[0]: `x` is not an id"),
-            ("[a]\nids = ['1:2', 'a b/1:2']", "except.a.ids[1]"),
+            ("[a]\nids = ['x']", "`ids[0]` = `x`: not an id"),
+            (
+                "[a]\nids = ['1:2', 'a b/1:2']",
+                "[except.a] of the configuration: `ids[1]`",
+            ),
             ("[a]\nids = 3", "invalid type"),
             ("[a]\nid = ['1:2']", "unknown field `id`"),
         ] {

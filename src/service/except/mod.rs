@@ -1,6 +1,6 @@
 //! Points that were taken away: lists of ids that answers leave out.
 //!
-//! A query names ids, and lists of the configuration or of a folder. What was taken away has its place all the
+//! A query names ids, and lists of the configuration, of a folder or of a client. What was taken away has its place all the
 //! same: other layers keep clear of it, attributes and ids of others stay. So nothing appears where a tree was
 //! felled. [`Except`] is what one set is without; planning cuts a hole of one coordinate for each of its points that
 //! lie in the region, and counts, cursors and parts follow from the area that is left.
@@ -14,7 +14,7 @@ use strew_core::{PointId, PointSet};
 
 use super::Fault;
 
-pub use list::{Lists, NamedList, split};
+pub use list::{Lists, NamedList, Section, split};
 
 /// The most ids of one query, besides those of lists.
 pub const MOST_GIVEN: usize = 10_000;
@@ -35,6 +35,8 @@ pub struct Except {
     pub given: Vec<(String, PointId)>,
     /// The names of the lists.
     pub names: Vec<String>,
+    /// Whether the name of one may stand for another list later.
+    pub may_change: bool,
     /// The ids of the query and of the lists.
     pub parts: Vec<Arc<Ids>>,
 }
@@ -45,6 +47,7 @@ impl Ids {
     pub fn new(mut ids: Vec<PointId>) -> Self {
         ids.sort_unstable_by_key(|id| (id.x, id.y));
         ids.dedup();
+        ids.shrink_to_fit();
         let mut hasher = blake3::Hasher::new();
         for id in &ids {
             hasher.update(&id.x.to_le_bytes());

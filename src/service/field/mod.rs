@@ -14,7 +14,6 @@ mod picture;
 mod pixels;
 mod read;
 mod schema;
-pub mod sent;
 mod sources;
 
 #[cfg(test)]
@@ -29,7 +28,6 @@ pub use loaded::{FieldError, Fields, from_document, from_file};
 pub use named::NamedField;
 pub use picture::SIDE;
 pub use read::{read_json, read_toml};
-pub use sent::{Sender, Sent};
 pub use sources::{Allowance, MOST_PIXELS, ReadFile, Sources};
 
 use super::query::Faults;

@@ -3,7 +3,7 @@
 use strew_core::field::FieldSpec;
 
 use super::{Document, files::Stamp};
-use crate::service::named::Source;
+use crate::service::{named::Source, sent::Sendable};
 
 /// A field that is loaded.
 #[derive(Clone, Debug)]
@@ -61,5 +61,19 @@ impl NamedField {
     #[must_use]
     pub fn digest(&self) -> String {
         self.spec.digest().to_string()
+    }
+}
+
+impl Sendable for NamedField {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn size(&self) -> usize {
+        /// What a field takes besides its pixels, at most: its shapes and vertices.
+        const SHAPES: usize = 16 << 10;
+        /// What a vertex takes, with its place in a tree.
+        const VERTEX: usize = 64;
+        SHAPES + self.bytes + VERTEX * self.spec.vertices()
     }
 }

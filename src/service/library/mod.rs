@@ -20,10 +20,11 @@ use super::{
     Answer, Catalog, Draft, Encoding, Entry, Error, Fault, Found, Limits, Nearest, Options, Output,
     Placed, Planned, Query, Ready, Set, Token,
     catalog::CatalogError,
-    field::{self, Allowance, Document, FieldError, Fields, NamedField, Sender},
+    field::{self, Allowance, Document, FieldError, Fields, NamedField},
     mix::{self, Made},
     query::{self, groups, parse_pairs, read_body},
     ready::Store,
+    sent::Sender,
 };
 use crate::config::{ConfigError, Layers};
 
@@ -337,12 +338,7 @@ pub(super) fn hold_field(
         return Err(error);
     }
     let field = NamedField::sent(document, spec?, built.bytes, built.frame);
-    let name = field.name.clone();
-    let held = catalog
-        .sent()
-        .hold(field, sender)
-        .then(|| catalog.sent().get(&name));
-    held.flatten().ok_or_else(|| {
+    catalog.sent().hold(field, sender).ok_or_else(|| {
         let detail = format!("takes {} bytes, which there is no room for", built.bytes);
         Fault::new(
             "field",

@@ -34,16 +34,10 @@ impl Set {
             digest: &entry.digest,
             is_fixed: false,
         });
-        let except = self.except.iter().flat_map(|except| {
-            let parts = except.parts.iter().map(|part| Dependency {
-                digest: part.digest(),
-                is_fixed: true,
-            });
-            let lists = except.names.iter().map(|name| Dependency {
-                digest: name,
-                is_fixed: false,
-            });
-            parts.chain(lists)
+        let parts = self.except.iter().flat_map(|except| &except.parts);
+        let except = parts.map(|part| Dependency {
+            digest: part.digest(),
+            is_fixed: true,
         });
         let rest = fields.chain(kinds).chain(except);
         [table].into_iter().chain(none).chain(rest)
@@ -55,9 +49,11 @@ impl Set {
     }
 
     /// Whether the query holds all that its points depend on: it names the digest of the table, no field that may
-    /// change, no list of points, and no kinds of a loaded table.
+    /// change, no list of points that may, and no kinds of a loaded table.
     #[must_use]
     pub fn is_pinned(&self) -> bool {
-        self.depends_on().all(|part| part.is_fixed)
+        // A list may have no ids for this set now, and some later.
+        let lists = self.except.as_ref();
+        !lists.is_some_and(|lists| lists.may_change) && self.depends_on().all(|part| part.is_fixed)
     }
 }

@@ -7,12 +7,16 @@ use strew_core::PointId;
 use super::{
     Checked, Faults, Set, Values, all,
     parameters::{COUNT, EXCEPT, PERIODIC},
+    table::is_digest,
     unknown,
 };
 use crate::service::{
     Catalog, Fault,
     except::{Except, Ids, MOST_GIVEN, NamedList, split},
 };
+
+/// What may have become of a list that is named by its digest.
+const GONE: &str = "one that was sent is gone and is to be sent again (POST /v1/except)";
 
 /// An item of `except`.
 enum Item {
@@ -31,7 +35,7 @@ impl Items {
         let texts = values.get::<Vec<String>>(&EXCEPT)?.unwrap_or_default();
         let field = |i: usize| format!("{}{}[{i}]", values.path(), EXCEPT.name);
         if texts.len() > MOST_GIVEN {
-            let allowed = format!("at most {MOST_GIVEN}; more in a list of the server");
+            let allowed = format!("at most {MOST_GIVEN}; more in a list");
             let name = format!("{}{}", values.path(), EXCEPT.name);
             return Err(Fault::new(&name, texts.len(), "too many", allowed).into());
         }
@@ -53,10 +57,14 @@ impl Items {
                 }
                 None => {
                     let names = lists.iter().map(|list| list.name.as_str());
-                    let list = lists
-                        .get(text)
-                        .ok_or_else(|| wrong(unknown("list", text, names), lists.names()))?;
-                    Item::List(Arc::clone(list))
+                    let list = lists.get(text).ok_or_else(|| {
+                        let (detail, allowed) = (unknown("list", text, names), lists.names());
+                        match is_digest(text) {
+                            true => wrong(format!("{detail}; {GONE}"), allowed),
+                            false => wrong(detail, allowed),
+                        }
+                    })?;
+                    Item::List(list)
                 }
             };
             Ok((field(i), read))
@@ -119,6 +127,7 @@ impl Items {
                     let parts = parts.into_iter().flatten().filter_map(|name| list.of(name));
                     except.parts.extend(parts.cloned());
                     except.names.push(list.name.clone());
+                    except.may_change |= list.may_change();
                 }
             }
         }

@@ -31,16 +31,16 @@ pub(super) const WORLD_DIGEST: Parameter = Parameter {
 /// The points to leave out.
 pub(super) const EXCEPT: Parameter = Parameter {
     name: "except",
-    about: "The points that are left out, by their ids, and lists of the server by their names. Other layers keep \
-            clear of them all the same. Beside layers ids are layer/column:row. The list of lists shows what is \
-            loaded.",
+    about: "The points that are left out, by their ids, lists of the server by their names, and lists that were sent \
+            by their digests. Other layers keep clear of them all the same. Beside layers ids are layer/column:row. \
+            The list of lists shows what is loaded.",
     group: Group::Except,
     shape: Shape::Names {
         pattern: "^([A-Za-z0-9_.-]{1,64}/)?-?[0-9]+:-?[0-9]+$|^[A-Za-z0-9_.-]{1,64}$",
     },
     allowed: Some(
         "at most 10000 ids of points (column:row, beside layers layer/column:row) and names of loaded \
-                   lists, joined by commas; not with count or periodic",
+                   lists or digests of sent ones, joined by commas; not with count or periodic",
     ),
     default: Some("none"),
     example: "18:-17",

@@ -139,10 +139,15 @@ pub fn digest(values: &Values, parameter: &'static Parameter) -> Checked<Option<
     let Some(text) = values.get::<String>(parameter)? else {
         return Ok(None);
     };
-    if text.len() == 64 && text.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+    if is_digest(&text) {
         return Ok(Some(text.to_ascii_lowercase()));
     }
     Err(values.fault(parameter, "not a digest").into())
+}
+
+/// Whether a text is a BLAKE3 digest.
+pub(super) fn is_digest(text: &str) -> bool {
+    text.len() == 64 && text.bytes().all(|byte| byte.is_ascii_hexdigit())
 }
 
 /// Checks that a table is the pinned one.

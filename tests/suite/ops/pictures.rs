@@ -1,10 +1,5 @@
 //! Pictures that queries bring along: what they take is known before they are decoded, and bounded.
 
-use std::{
-    io::{self, Read as _, Write as _},
-    net::{SocketAddr, TcpStream},
-};
-
 use serde_json::{Value, json};
 use strew::grpc::proto::{
     Field, FieldPixels, FindNearestRequest, PointSet, Position, field::Shape,
@@ -31,24 +26,6 @@ fn field(picture: &[u8]) -> Value {
 /// A text answer that is made on the threads for short work.
 const TEXT: &str = "/v1/points?bbox=0,0,200,200&spacing=1&format=csv&profile=test";
 
-/// Sends a POST of JSON from another address than others use; its answer is read later.
-fn post(to: SocketAddr, path: &str, body: &str) -> io::Result<TcpStream> {
-    let mut stream = attack::connect(to)?;
-    let length = body.len();
-    write!(
-        stream,
-        "POST {path} HTTP/1.1\r\nhost: {to}\r\nconnection: close\r\ncontent-length: {length}\r\n\r\n{body}"
-    )?;
-    Ok(stream)
-}
-
-/// The answer to what was sent, head and body.
-fn answer(stream: &mut TcpStream) -> String {
-    let mut text = vec![];
-    stream.read_to_end(&mut text).expect("an answer");
-    String::from_utf8_lossy(&text).into_owned()
-}
-
 #[test]
 fn queries_take_png_alone_and_others_go_on() {
     let daemon = Daemon::start(&[]);
@@ -65,9 +42,9 @@ fn queries_take_png_alone_and_others_go_on() {
         ] {
             let body = body.to_string();
             // The attacker's answer is not read until another client has its own.
-            let mut waiting = post(daemon.address(), path, &body).expect("sent");
+            let mut waiting = attack::post(daemon.address(), path, &body).expect("sent");
             assert_eq!(daemon.get(TEXT).status, 200);
-            let text = answer(&mut waiting);
+            let text = attack::answer(&mut waiting);
             assert!(text.starts_with("HTTP/1.1 400"), "{text}");
             assert!(text.contains(name), "{text}");
             assert!(
@@ -138,8 +115,8 @@ fn fields_of_one_address_do_not_push_out_those_of_another() {
     let mut last = String::new();
     for shade in 0..40 {
         let body = field(&gray([512, 512], shade)).to_string();
-        let mut waiting = post(daemon.address(), "/v1/fields", &body).expect("sent");
-        let text = answer(&mut waiting);
+        let mut waiting = attack::post(daemon.address(), "/v1/fields", &body).expect("sent");
+        let text = attack::answer(&mut waiting);
         assert!(text.starts_with("HTTP/1.1 200"), "{text}");
         let body = text.split("\r\n\r\n").nth(1).expect("a body");
         let body: Value = serde_json::from_str(body).expect("JSON");

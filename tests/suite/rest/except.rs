@@ -3,9 +3,12 @@
 use std::fs;
 
 use serde_json::{Value, json};
-use strew_testkit::wait::until;
+use strew::grpc::proto::{
+    PointSet, StreamPointsRequest, point_service_client::PointServiceClient, point_set::Amount,
+};
+use strew_testkit::{http1, wait::until};
 
-use crate::support::daemon::Daemon;
+use crate::support::{attack, daemon::Daemon, grpc, problem::assert_fault};
 
 /// The rows of an answer as CSV, without its head.
 fn rows(daemon: &Daemon, path: &str) -> Vec<String> {
@@ -206,6 +209,159 @@ fn a_folder_of_lists_is_watched() {
         (lists["lists"].as_array().map(Vec::len) == Some(2)).then_some(())
     });
     assert_eq!(rows(&daemon, &listed), left);
+}
+
+/// Sends a list, which must be taken. Returns its digest.
+fn sent(daemon: &Daemon, list: &str) -> String {
+    let answer = http1::post(daemon.address(), "/v1/except", &[], list.as_bytes());
+    assert_eq!(answer.status, 200, "{}", answer.text());
+    let held = answer.json();
+    assert_eq!(held["name"], held["digest"]);
+    held["digest"].as_str().expect("a digest").into()
+}
+
+#[tokio::test]
+async fn a_list_is_sent_once_and_named_by_its_digest() {
+    let daemon = Daemon::built_in();
+    let set = "spacing=1&seed=7";
+    let address = format!("/v1/points?bbox=0,0,40,40&{set}&format=csv");
+    let wide = rows(
+        &daemon,
+        &format!("/v1/points?bbox=0,0,150,150&{set}&format=csv"),
+    );
+    let ids: Vec<String> = (wide.iter().step_by(2))
+        .map(|row| id(row, 0).into())
+        .collect();
+    assert!(ids.len() > 10_000, "{}", ids.len());
+    let text = ids.join("\n");
+    let digest = sent(
+        &daemon,
+        &format!("# Felled, more than a query has.\n{text}\n"),
+    );
+    // However it is written, it is the same list, which is held once.
+    let lists = [json!({ "ids": ids }).to_string(), format!("\u{feff}{text}")];
+    assert_eq!(lists.map(|list| sent(&daemon, &list)), [&*digest, &*digest]);
+    let inside = rows(&daemon, &address);
+    let inline: Vec<String> = (inside.iter().map(|row| id(row, 0).to_owned()))
+        .filter(|id| ids.contains(id))
+        .collect();
+    let left = rows(&daemon, &format!("{address}&except={}", inline.join(",")));
+    assert_eq!(left, without(&inside, &inline, 0));
+    let named = format!("{address}&except={digest}");
+    assert_eq!(rows(&daemon, &named), left);
+    let body = json!({
+        "region": { "bbox": [0, 0, 40, 40] }, "spacing": 1, "seed": 7, "except": [digest], "format": "csv",
+    });
+    let answer = daemon.post("/v1/points:query", &body);
+    let lines: Vec<&str> = answer.text().lines().skip(1).collect();
+    assert_eq!(lines, left);
+    let request = StreamPointsRequest {
+        region: grpc::boxed([0.0, 0.0, 40.0, 40.0]),
+        set: Some(PointSet {
+            amount: Some(Amount::Spacing(1.0)),
+            seed: Some(7),
+            except: vec![digest.clone()],
+            ..PointSet::default()
+        }),
+        ..StreamPointsRequest::default()
+    };
+    let mut client = PointServiceClient::new(daemon.channel().await);
+    let points = grpc::collect(&mut client, request).await.points();
+    let streamed: Vec<&str> = points.iter().filter_map(|p| p["id"].as_str()).collect();
+    let expected: Vec<&str> = left.iter().map(|row| id(row, 0)).collect();
+    assert_eq!(streamed, expected);
+    // The digest says what the list has, so caches may keep the answer.
+    let table = daemon.get(&named).header("strew-table").to_owned();
+    let pinned = daemon.get(&format!("{named}&table={table}"));
+    assert!(pinned.header("cache-control").contains("immutable"));
+    // Lists that are loaded are listed, others are not.
+    assert_eq!(daemon.get("/v1/except").json(), json!({ "lists": [] }));
+}
+
+#[test]
+fn a_list_that_was_sent_is_for_worlds_too() {
+    let daemon = Daemon::with_config(WORLD);
+    let all = rows(&daemon, CHUNK);
+    let trees = all.iter().filter(|row| row.starts_with("trees,"));
+    let gone = some(&trees.cloned().collect::<Vec<_>>(), 1);
+    let items: Vec<String> = gone.iter().map(|id| format!("trees/{id}")).collect();
+    let digest = sent(&daemon, &items.join("\n"));
+    let named = format!("{CHUNK}&except={digest}");
+    assert_eq!(rows(&daemon, &named), without(&all, &gone, 1));
+    // It stays when the lists of the configuration are read again.
+    fs::write(
+        daemon.folder().join("strew.toml"),
+        WORLD.replace("ids = []", "ids = ['trees/0:0']"),
+    )
+    .expect("writable");
+    daemon.signal("HUP");
+    until("the list is read", || {
+        let lists = daemon.get("/v1/except").json();
+        (lists["lists"][0]["count"] == 1).then_some(())
+    });
+    assert_eq!(rows(&daemon, &named), without(&all, &gone, 1));
+}
+
+#[test]
+fn lists_that_cannot_be_held_or_are_gone_are_refused() {
+    let daemon = Daemon::start(&["except.max_ids=3", "except.max_sent_bytes=10000"]);
+    let first = sent(&daemon, "1:2\n3:4 # a comment\n\n1:-2");
+    let path = format!("/v1/count?bbox=0,0,9,9&spacing=1&except={first}");
+    assert_eq!(daemon.get(&path).status, 200);
+    let many_layers: String = (0..1001).map(|i| format!("l{i}/0:0\n")).collect();
+    for (list, field, texts) in [
+        ("1:2\n3:4\n5:6\n7:8", "ids", ["too many", "at most 3 ids"]),
+        (
+            r#"{"ids":["1:2","3:4","5:6","7:8"]}"#,
+            "ids",
+            ["too many", "except.max_ids"],
+        ),
+        ("1:2\n\nthree", "line 3", ["not an id", "column:row"]),
+        (r#"{"ids":["1:2","x"]}"#, "ids[1]", ["not an id", "layer/"]),
+        (
+            r#"{"id":[]}"#,
+            "body",
+            ["unknown field `id`", "an id a line"],
+        ),
+        (r#"{"ids":3}"#, "body", ["invalid type", "an object of ids"]),
+    ] {
+        let answer = http1::post(daemon.address(), "/v1/except", &[], list.as_bytes());
+        assert_fault(&answer, list, field, &texts);
+    }
+    // Others make it go, and the fault says what to do.
+    for i in 0..3 {
+        sent(&daemon, &format!("{i}:5"));
+    }
+    let texts = ["unknown list", "sent again", "POST /v1/except"];
+    assert_fault(&daemon.get(&path), &path, "except[0]", &texts);
+    assert_eq!(sent(&daemon, r#"{"ids":["1:-2","3:4","1:2"]}"#), first);
+    assert_eq!(daemon.get(&path).status, 200);
+    let closed = Daemon::start(&["except.max_sent_bytes=0"]);
+    let post = |list: &str| http1::post(closed.address(), "/v1/except", &[], list.as_bytes());
+    let texts = ["no room", "except.max_sent_bytes"];
+    assert_fault(&post("1:2"), "1:2", "ids", &texts);
+    let texts = ["one layer too many", "at most 1000 layers"];
+    assert_fault(&post(&many_layers), "layers", "line 1001", &texts);
+}
+
+#[test]
+fn lists_of_one_address_do_not_push_out_those_of_another() {
+    let daemon = Daemon::start(&["except.max_sent_bytes=100000"]);
+    let first = sent(&daemon, "1:2");
+    let mut last = String::new();
+    for i in 0..40 {
+        let body = format!("{i}:3");
+        let mut waiting = attack::post(daemon.address(), "/v1/except", &body).expect("sent");
+        let text = attack::answer(&mut waiting);
+        assert!(text.starts_with("HTTP/1.1 200"), "{text}");
+        let body = text.split("\r\n\r\n").nth(1).expect("a body");
+        let body: Value = serde_json::from_str(body).expect("JSON");
+        last = body["digest"].as_str().expect("a digest").into();
+    }
+    for digest in [first, last] {
+        let path = format!("/v1/count?bbox=0,0,9,9&spacing=1&except={digest}");
+        assert_eq!(daemon.get(&path).status, 200);
+    }
 }
 
 #[test]
