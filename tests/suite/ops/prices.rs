@@ -25,14 +25,8 @@ fn costly_field() -> Value {
     json!({ "multiply": (0..60).map(noise).collect::<Vec<_>>() })
 }
 
-fn post(from: Ipv4Addr, daemon: &Daemon, path: &str, body: &str) -> TcpStream {
-    let mut stream = attack::connect_from(from, daemon.address()).expect("connected");
-    let head = format!(
-        "POST {path} HTTP/1.1\r\nhost: x\r\ncontent-length: {}\r\n\r\n",
-        body.len()
-    );
-    stream.write_all((head + body).as_bytes()).expect("sent");
-    stream
+fn post(daemon: &Daemon, path: &str, body: &str) -> TcpStream {
+    attack::post(daemon.address(), path, body).expect("sent")
 }
 
 fn refused_rows(daemon: &Daemon, body: &Value) {
@@ -115,7 +109,7 @@ fn streams_of_costly_points_leave_others_their_workers() {
     });
     let body = body.to_string();
     let streams: Vec<_> = (0..8)
-        .map(|_| post(attack::ATTACKER, &daemon, "/v1/points:query", &body))
+        .map(|_| post(&daemon, "/v1/points:query", &body))
         .collect();
     let points = || metrics::sum(&metrics::samples(&daemon), "strew_points_total", &[]);
     for mut stream in &streams {
@@ -154,7 +148,7 @@ fn long_work_of_one_address_gives_way_to_that_of_another() {
         MANY_ROWS,
         "server.first_byte_seconds=3600",
     ]);
-    let long = [(); 3].map(|()| post(attack::ATTACKER, &daemon, "/v1/count", SLOW));
+    let long = [(); 3].map(|()| post(&daemon, "/v1/count", SLOW));
     let longer = "/v1/count?circle=0,0,3000&spacing=1&profile=test&warp=1&seed=2";
     assert_eq!(daemon.get(longer).status, 200);
     for stream in &long {
