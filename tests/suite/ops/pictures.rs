@@ -8,10 +8,9 @@ use strew::grpc::proto::{
 use strew_testkit::http1;
 
 use crate::support::{
-    attack,
     daemon::Daemon,
     fields::{base64, gray, wide_tiff},
-    grpc,
+    grpc, sending,
 };
 
 /// A query for a few points in a field of a picture.
@@ -42,9 +41,9 @@ fn queries_take_png_alone_and_others_go_on() {
         ] {
             let body = body.to_string();
             // The attacker's answer is not read until another client has its own.
-            let mut waiting = attack::post(daemon.address(), path, &body).expect("sent");
+            let mut waiting = sending::post(daemon.address(), path, &body).expect("sent");
             assert_eq!(daemon.get(TEXT).status, 200);
-            let text = attack::answer(&mut waiting);
+            let text = sending::answer(&mut waiting);
             assert!(text.starts_with("HTTP/1.1 400"), "{text}");
             assert!(text.contains(name), "{text}");
             assert!(
@@ -115,8 +114,8 @@ fn fields_of_one_address_do_not_push_out_those_of_another() {
     let mut last = String::new();
     for shade in 0..40 {
         let body = field(&gray([512, 512], shade)).to_string();
-        let mut waiting = attack::post(daemon.address(), "/v1/fields", &body).expect("sent");
-        let text = attack::answer(&mut waiting);
+        let mut waiting = sending::post(daemon.address(), "/v1/fields", &body).expect("sent");
+        let text = sending::answer(&mut waiting);
         assert!(text.starts_with("HTTP/1.1 200"), "{text}");
         let body = text.split("\r\n\r\n").nth(1).expect("a body");
         let body: Value = serde_json::from_str(body).expect("JSON");

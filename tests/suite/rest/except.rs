@@ -8,7 +8,7 @@ use strew::grpc::proto::{
 };
 use strew_testkit::{http1, wait::until};
 
-use crate::support::{attack, daemon::Daemon, grpc, problem::assert_fault};
+use crate::support::{daemon::Daemon, grpc, problem::assert_fault, sending};
 
 /// The rows of an answer as CSV, without its head.
 fn rows(daemon: &Daemon, path: &str) -> Vec<String> {
@@ -351,8 +351,8 @@ fn lists_of_one_address_do_not_push_out_those_of_another() {
     let mut last = String::new();
     for i in 0..40 {
         let body = format!("{i}:3");
-        let mut waiting = attack::post(daemon.address(), "/v1/except", &body).expect("sent");
-        let text = attack::answer(&mut waiting);
+        let mut waiting = sending::post(daemon.address(), "/v1/except", &body).expect("sent");
+        let text = sending::answer(&mut waiting);
         assert!(text.starts_with("HTTP/1.1 200"), "{text}");
         let body = text.split("\r\n\r\n").nth(1).expect("a body");
         let body: Value = serde_json::from_str(body).expect("JSON");

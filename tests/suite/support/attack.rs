@@ -1,7 +1,7 @@
 //! Clients at a loopback address of their own, so that limits by address tell them from others.
 
 use std::{
-    io::{self, Read as _, Write as _},
+    io::{self, Write as _},
     net::{Ipv4Addr, SocketAddr, TcpStream},
 };
 
@@ -33,24 +33,6 @@ pub fn get(to: SocketAddr, path: &str, headers: &str) -> io::Result<TcpStream> {
     let mut stream = connect(to)?;
     write!(stream, "GET {path} HTTP/1.1\r\nhost: {to}\r\n{headers}\r\n")?;
     Ok(stream)
-}
-
-/// Sends a POST from [`ATTACKER`]; its answer is read later.
-pub fn post(to: SocketAddr, path: &str, body: &str) -> io::Result<TcpStream> {
-    let mut stream = connect(to)?;
-    let length = body.len();
-    write!(
-        stream,
-        "POST {path} HTTP/1.1\r\nhost: {to}\r\nconnection: close\r\ncontent-length: {length}\r\n\r\n{body}"
-    )?;
-    Ok(stream)
-}
-
-/// The answer to what was sent, head and body.
-pub fn answer(stream: &mut TcpStream) -> String {
-    let mut text = vec![];
-    stream.read_to_end(&mut text).expect("an answer");
-    String::from_utf8_lossy(&text).into_owned()
 }
 
 /// An HTTP/2 connection from [`ATTACKER`] that grants no window for answers. The task ends with the

@@ -17,4 +17,5 @@ pub mod metrics;
 pub mod problem;
 pub mod proxy;
 pub mod queries;
+pub mod sending;
 pub mod tls;

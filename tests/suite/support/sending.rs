@@ -1,0 +1,26 @@
+//! Bodies sent from an address that others do not use.
+
+use std::{
+    io::{self, Read as _, Write as _},
+    net::{SocketAddr, TcpStream},
+};
+
+use super::attack;
+
+/// Sends a POST from another address than others use; its answer is read later.
+pub fn post(to: SocketAddr, path: &str, body: &str) -> io::Result<TcpStream> {
+    let mut stream = attack::connect(to)?;
+    let length = body.len();
+    write!(
+        stream,
+        "POST {path} HTTP/1.1\r\nhost: {to}\r\nconnection: close\r\ncontent-length: {length}\r\n\r\n{body}"
+    )?;
+    Ok(stream)
+}
+
+/// The answer to what was sent, head and body.
+pub fn answer(stream: &mut TcpStream) -> String {
+    let mut text = vec![];
+    stream.read_to_end(&mut text).expect("an answer");
+    String::from_utf8_lossy(&text).into_owned()
+}
