@@ -13,7 +13,6 @@
 //! Exits with 1 if any answer was wrong, or missing without an excuse, if a daemon died, or if
 //! streams are still in progress afterwards.
 
-#[expect(dead_code, reason = "the suite uses more of it")]
 #[path = "../suite/support/attack.rs"]
 mod attack;
 mod attacks;

@@ -14,6 +14,7 @@ use crate::support::{
     daemon::{Daemon, tables},
     metrics,
     queries::{MANY_ROWS, SLOW, long},
+    sending,
 };
 
 const SMALL: &str = "/v1/points?bbox=0,0,9,9&density=1&profile=test";
@@ -26,7 +27,7 @@ fn costly_field() -> Value {
 }
 
 fn post(daemon: &Daemon, path: &str, body: &str) -> TcpStream {
-    attack::post(daemon.address(), path, body).expect("sent")
+    sending::post(daemon.address(), path, body).expect("sent")
 }
 
 fn refused_rows(daemon: &Daemon, body: &Value) {
