@@ -405,8 +405,8 @@ def longlane(daemon):
     victims = [*VICTIMS, "/v1/count?circle=0,0,9000&spacing=1", "/v1/pattern/figures/map.svg?alpha=sqrt(3)"]
     for body in bodies:
         repeated(daemon, 3, daemon.request("POST", "/v1/count", json.dumps(body).encode()), victims)
-    split = "/v1/split?circle=0,0,30000&spacing=1&parts=10000"
-    repeated(daemon, 3, daemon.request("GET", split), victims)
+    split = {"region": {"circle": {"center": [0, 0], "radius": 30000}}, "spacing": 1}
+    repeated(daemon, 3, daemon.request("POST", "/v1/points:split?parts=10000", json.dumps(split).encode()), victims)
 
 
 def four(daemon):

@@ -262,6 +262,7 @@ impl Service {
                 true => price(&Stop::default()),
                 false => self.workers.take_turn(Lane::Short, price).await?,
             };
+            let rows = rows?;
             charged = rows as u128;
             // Before the work, which is done even if the answer is refused.
             if charged > 0 {

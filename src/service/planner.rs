@@ -1,7 +1,7 @@
 //! Planning the sets of a query one after another, each knowing the layers before it.
 
 use strew_core::{
-    Area, Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Region, Spacing,
+    Area, Cursor, ErrorKind, Placement, Plan, PointId, PointSet, Spacing,
     server::{self, Stop},
 };
 
@@ -291,13 +291,8 @@ impl<'a> Planner<'a> {
 
     /// Where points have to be counted row by row, there must not be too many, in so many counts.
     fn check_rows(&self, selection: &Selection, counts: f64) -> Result<(), Error> {
-        let limit = selection.set.limit();
-        let is_near = |bounds: Region| {
-            let mut corners = bounds.min().into_iter().chain(bounds.max());
-            corners.all(|value| value.abs() <= limit)
-        };
-        if !selection.area.bounds().is_some_and(is_near) {
-            // There is nothing to count: that it is too far is told when it is planned.
+        if !selection.is_near() {
+            // There is nothing to count: planning reports that it is too far out.
             return Ok(());
         }
         let limit = self.limits.max_rows;

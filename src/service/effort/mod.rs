@@ -13,7 +13,7 @@ use strew_core::{
 };
 
 use super::{
-    Lane, Ready,
+    Error, Lane, Ready,
     query::{Query, Set},
     resolve::{Resolved, resolve},
 };
@@ -37,9 +37,9 @@ const CANDIDATE: f64 = 30.0;
 const ROW: f64 = 1e3;
 /// How long the number of points in a field is estimated, how long looking up the bounds of a piece takes beside the
 /// look at its field, and the fewest pieces.
-const ESTIMATE: f64 = 1e6;
+const ESTIMATE: f64 = 5e5;
 const BOUNDS: f64 = 100.0;
-const LEAST_PIECES: usize = 64;
+const LEAST_PIECES: usize = 16;
 
 /// About how often an area is counted to find the spacing of a count; in a field less often.
 const COUNTS: f64 = 32.0;
@@ -103,6 +103,15 @@ impl Selection {
         }
     }
 
+    /// Whether the area has an end within the reach of the set.
+    pub(super) fn is_near(&self) -> bool {
+        let limit = self.set.limit();
+        self.area.bounds().is_some_and(|bounds| {
+            let mut corners = bounds.min().into_iter().chain(bounds.max());
+            corners.all(|value| value.abs() <= limit)
+        })
+    }
+
     /// Whether points are looked at one by one whatever the area.
     fn looks_at_all(&self) -> bool {
         self.by_point > 0.0
@@ -123,19 +132,31 @@ pub(super) fn is_plain(query: &Query) -> bool {
         && query.sets.iter().all(is_box)
 }
 
-/// What planning a query takes, in rows of warped sets. Sets with more than `most` rows take none:
-/// they are refused.
-pub(super) fn planning(query: &Query, tables: &[Ready], most: u64) -> f64 {
+/// What planning a query takes, in rows of warped sets.
+///
+/// # Errors
+/// [`Error::TooManyRows`] if all sets together have more than `limit` rows that are counted one by one.
+pub(super) fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f64, Error> {
     // With a cursor nothing is counted.
     if query.window.cursor.is_some() {
-        return 0.0;
+        return Ok(0.0);
     }
     let mut layers = Layers::default();
-    let sets = query.sets.iter().zip(tables);
-    let rows = sets.map(|(set, ready)| counted(query, set, ready, &mut layers));
-    rows.filter(|(rows, _)| *rows <= most as f64)
-        .map(|(rows, weight)| rows * weight)
-        .sum()
+    let (mut all, mut weighted) = (0.0, 0.0);
+    for (i, (set, ready)) in query.sets.iter().zip(tables).enumerate() {
+        let (rows, weight) = counted(query, set, ready, &mut layers);
+        if query.only.is_some_and(|only| only != i) {
+            // Its points are not counted; those of later layers may look at them.
+            continue;
+        }
+        all += rows;
+        weighted += rows * weight;
+        if all > limit as f64 {
+            let rows = all as u128;
+            return Err(Error::TooManyRows { rows, limit });
+        }
+    }
+    Ok(weighted)
 }
 
 /// What counting a period takes, in rows: nothing if it has all points.
@@ -180,6 +201,10 @@ fn counted(query: &Query, set: &Set, ready: &Ready, layers: &mut Layers) -> (f64
         return (0.0, 0.0);
     };
     let selection = Selection::new(set, points, set.area(&query.region), test);
+    if !selection.is_near() {
+        // Planning reports what is too far out.
+        return (0.0, 0.0);
+    }
     let is_plain = selection.set.placement().warp == Warp::OFF && !selection.looks_at_all();
     let is_plain = is_plain && set.field.is_none();
     let weight = if is_plain { PLAIN } else { 1.0 };
@@ -190,8 +215,8 @@ fn counted(query: &Query, set: &Set, ready: &Ready, layers: &mut Layers) -> (f64
 
 /// The points that counting a selection looks at one by one; none without a field.
 pub(super) fn candidates(selection: &Selection) -> u128 {
-    // As many pieces as are looked up in about a millisecond. Planning reports what is too far out.
-    let pieces = (ESTIMATE / (BOUNDS + selection.look)) as usize;
+    // Bounds take longer than a look. Planning reports what is too far out.
+    let pieces = (ESTIMATE / (BOUNDS + 4.0 * selection.look)) as usize;
     let area = selection.area.clone();
     server::candidates(&selection.set, area, pieces.max(LEAST_PIECES)).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! Long work that gives way: after a second it lets other addresses have their turns, then goes on. What is made for
+//! Long work that gives way: after some time it lets other addresses have their turns, then goes on. What is made for
 //! all does not: it would hold its memory meanwhile.
 //!
 //! The work itself is an ordinary function that looks at a [`Stop`] now and then. A look is where it waits.
@@ -16,7 +16,7 @@ use super::{
 };
 
 /// How long work goes on while others wait.
-const SHIFT: Duration = Duration::from_secs(1);
+const SHIFT: Duration = Duration::from_millis(200);
 
 /// The hold of long work on its turn.
 pub(super) struct Shift {
@@ -85,12 +85,8 @@ impl Shift {
             return;
         }
         let mut state = self.lock();
-        if state.since.elapsed() < SHIFT || state.turn.is_none() {
-            return;
-        }
         let address = self.owner.address();
-        if !self.turns.is_wanted_by_others(address) {
-            state.since = Instant::now();
+        if state.since.elapsed() < SHIFT || !self.turns.is_wanted_by_others(address) {
             return;
         }
         let Some(turn) = state.turn.take() else {
