@@ -49,6 +49,7 @@ pub(in crate::service) fn point(set: &Set, looks: f64, test: f64, within: Region
 }
 
 /// The lane in which the blocks of an answer are made.
+#[cfg(feature = "daemon")]
 pub(in crate::service) fn block_lane(planned: &Planned) -> Lane {
     let block = |set: &PlannedSet| set.plan.count().min(BLOCK) as f64 * set.nanoseconds;
     match planned.sets.iter().any(|set| block(set) > SHORT_BLOCK) {

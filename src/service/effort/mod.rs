@@ -19,8 +19,10 @@ use super::{
 };
 pub(super) use layers::Layers;
 use layers::look;
+#[cfg(feature = "daemon")]
+pub(super) use making::block_lane;
 pub use making::considered;
-pub(super) use making::{block_bytes, block_lane, point};
+pub(super) use making::{block_bytes, point};
 pub use neighbors::Neighbors;
 
 /// About how many lattice units a mean spacing has.
