@@ -3,7 +3,9 @@
 use strew_core::Region;
 
 use super::layers::look;
-use crate::service::{Lane, planned::Planned, planned_set::PlannedSet, query::Set};
+#[cfg(feature = "daemon")]
+use crate::service::Lane;
+use crate::service::{planned::Planned, planned_set::PlannedSet, query::Set};
 
 /// A point that is copied and written, in nanoseconds.
 const POINT: f64 = 50.0;
