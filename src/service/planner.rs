@@ -297,10 +297,7 @@ impl<'a> Planner<'a> {
         }
         let limit = self.limits.max_rows;
         let most = limit as f64 / counts;
-        let mut rows = effort::rows(selection);
-        if rows <= most {
-            rows = effort::rows_and_edges(selection);
-        }
+        let rows = effort::rows_and_edges(selection, most);
         if rows > most {
             return Err(Error::TooManyRows {
                 rows: (rows * counts) as u128,

@@ -227,7 +227,7 @@ def test_documents_and_iteration(tmp_path: Path) -> None:
     assert (tmp_path / "points.geojson").read_bytes() == points.document("geojson")
     for format in ("csv", "ndjson", "ply", "npy", "f32", "svg", "png"):
         assert points.document(format)
-    with pytest.raises(strew.StrewError, match="only the daemon"):
+    with pytest.raises(strew.StrewError, match="only `strew sample`"):
         points.document("parquet")
     with pytest.raises(strew.StrewError, match="unknown format"):
         points.document("txt")

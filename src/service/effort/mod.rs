@@ -146,7 +146,7 @@ pub(super) fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f6
     let mut layers = Layers::default();
     let (mut all, mut weighted) = (0.0, 0.0);
     for (i, (set, ready)) in query.sets.iter().zip(tables).enumerate() {
-        let (rows, weight) = counted(query, set, ready, &mut layers);
+        let (rows, weight) = counted(query, set, ready, limit as f64, &mut layers);
         if query.only.is_some_and(|only| only != i) {
             // Its points are not counted; those of later layers may look at them.
             continue;
@@ -180,7 +180,7 @@ pub(super) fn lane(rows: f64) -> Lane {
 }
 
 /// The rows that are counted to plan a set, and how much of a row of a warped set each takes.
-fn counted(query: &Query, set: &Set, ready: &Ready, layers: &mut Layers) -> (f64, f64) {
+fn counted(query: &Query, set: &Set, ready: &Ready, most: f64, layers: &mut Layers) -> (f64, f64) {
     if set.period.is_some() {
         return (rows_of_period(set), 1.0);
     }
@@ -212,7 +212,8 @@ fn counted(query: &Query, set: &Set, ready: &Ready, layers: &mut Layers) -> (f64
     let weight = if is_plain { PLAIN } else { 1.0 };
     // Seeking an offset counts again.
     let seeks = 1.0 + f64::from(u8::from(query.window.offset > 0));
-    (rows_and_edges(&selection) * counts, weight * seeks)
+    let rows = rows_and_edges(&selection, most / counts);
+    (rows * counts, weight * seeks)
 }
 
 /// The points that counting a selection looks at one by one; none without a field.
@@ -225,7 +226,7 @@ pub(super) fn candidates(selection: &Selection) -> u128 {
 
 /// The number of rows that are counted one by one, or points tested, which takes as long: none for a
 /// box without warp.
-pub(super) fn rows(selection: &Selection) -> f64 {
+fn rows(selection: &Selection) -> f64 {
     let area = &selection.area;
     let placement = selection.set.placement();
     let is_box = matches!(area, Area::Region(_));
@@ -251,12 +252,13 @@ pub(super) fn rows(selection: &Selection) -> f64 {
     along + across + cleared + looks
 }
 
-/// The same with what polygons of many edges take; bounded by what [`rows`] says.
-pub(super) fn rows_and_edges(selection: &Selection) -> f64 {
+/// The same with what polygons of many edges take, unless it is more than `most` without them.
+pub(super) fn rows_and_edges(selection: &Selection, most: f64) -> f64 {
     let rows = rows(selection);
     let area = &selection.area;
+    let is_box = matches!(area, Area::Region(_));
     match area.bounds() {
-        Some(bounds) if rows > 0.0 && !matches!(area, Area::Region(_)) => {
+        Some(bounds) if rows > 0.0 && rows <= most && !is_box => {
             let spacing = selection.set.placement().spacing.get();
             let compared = server::comparisons(area, bounds, STRIP * spacing);
             rows + compared * UNITS / spacing * COMPARISON
@@ -297,7 +299,7 @@ pub(super) fn least_spacing(
         if stop.is_raised() || trial.set.limit() < reach {
             return spacing;
         }
-        if rows(&trial) > most || rows_and_edges(&trial) > most {
+        if rows_and_edges(&trial, most) > most {
             return spacing;
         }
     }
