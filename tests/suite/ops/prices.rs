@@ -164,29 +164,25 @@ fn long_work_of_one_address_gives_way_to_that_of_another() {
 fn kinds_are_made_for_who_waits_and_an_address_has_a_few_at_once() {
     let folder = tables();
     let path = folder.path().join("mixes");
-    let daemon = Daemon::with_tables(folder, &[]);
+    let daemon = Daemon::with_tables(folder, &["server.first_byte_seconds=300"]);
     let query = |shares: &str| {
         format!("/v1/points?bbox=0,0,9,9&spacing=1&spread=even&variants={shares}&map=m&format=csv")
     };
-    // The first four are made or wait to be made; their clients leave.
-    let shares: Vec<String> = (1..=9)
-        .map(|i| format!("oak:{},fir:500", 300 + i))
+    // Four of nine are made or wait to be made; then their clients leave.
+    let waiting: Vec<_> = (1..=9)
+        .map(|i| query(&format!("oak:{},fir:500", 300 + i)))
+        .map(|path| attack::get(daemon.address(), &path, "").expect("sent"))
         .collect();
-    let waiting: Vec<_> = shares[..4]
-        .iter()
-        .map(|shares| attack::get(daemon.address(), &query(shares), "").expect("sent"))
-        .collect();
-    let refused = until("one is refused", || {
-        let mut stream = attack::get(daemon.address(), &query(&shares[8]), "").expect("sent");
-        let mut head = [0; 12];
-        stream.set_nonblocking(false).ok()?;
-        stream
-            .set_read_timeout(Some(std::time::Duration::from_millis(200)))
-            .ok()?;
-        stream.read_exact(&mut head).ok()?;
-        Some(head)
+    for stream in &waiting {
+        stream.set_nonblocking(true).expect("a socket");
+    }
+    until("one is refused", || {
+        waiting.iter().find_map(|mut stream| {
+            let mut head = [0; 12];
+            stream.read_exact(&mut head).ok()?;
+            (&head[9..] == b"429").then_some(())
+        })
     });
-    assert_eq!(&refused[9..], b"429");
     let made = || std::fs::read_dir(&path).map_or(0, Iterator::count);
     let before = made();
     drop(waiting);
