@@ -290,7 +290,10 @@ def tidy_query(name, rules, query):
 def before_call(context, case, kwargs):
     raw = case.operation.definition.raw
     name = raw.get("operationId", "")
-    if isinstance(case.body, dict):
+    if name == "sendExcept" and isinstance(case.body, dict):
+        # The grammar of an id is more than its type.
+        case.body = {"ids": [f"{i}:-3" for i in range(len(case.body.get("ids") or []))]}
+    elif isinstance(case.body, dict):
         case.body = (
             tidy_arrangement(dict(case.body), False)
             if name == "findArrangement"
