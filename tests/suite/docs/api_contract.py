@@ -292,7 +292,7 @@ def before_call(context, case, kwargs):
     name = raw.get("operationId", "")
     if name == "sendExcept" and isinstance(case.body, dict):
         # The grammar of an id is more than its type.
-        case.body = {"ids": [f"{i}:-3" for i in range(len(case.body.get("ids") or []))]}
+        case.body = {"ids": [f"{i}:-3" for i in range(max(1, len(case.body.get("ids") or [])))]}
     elif isinstance(case.body, dict):
         case.body = (
             tidy_arrangement(dict(case.body), False)
