@@ -1,4 +1,4 @@
-//! Lists the tables to embed and, for the daemon, compiles the gRPC contract.
+//! Compiles the gRPC contract.
 
 use std::{
     env,
@@ -8,38 +8,26 @@ use std::{
     path::{Path, PathBuf},
 };
 
-#[cfg(feature = "daemon")]
-use {
-    prost::Message as _,
-    prost_types::{
-        FileDescriptorSet,
-        field_descriptor_proto::{Label, Type},
-    },
+use prost::Message as _;
+use prost_types::{
+    FileDescriptorSet,
+    field_descriptor_proto::{Label, Type},
 };
 
-#[cfg(feature = "daemon")]
 #[path = "build/shapes.rs"]
 mod shapes;
 
-#[cfg(feature = "daemon")]
 const CONTRACT: &str = "strew/v1/points.proto";
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let root = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let out = PathBuf::from(env::var("OUT_DIR")?);
-    #[cfg(feature = "daemon")]
-    {
-        let contract = compile_contract(&out)?;
-        convert_sets(&contract, &out.join("point_set.rs"))?;
-        fs::write(out.join("shapes.rs"), shapes::code(&contract)?)?;
-    }
-    let tables = root.join("tables");
-    list_tables([tables.clone(), tables.join("mix")], &out.join("tables.rs"))?;
+    let contract = compile_contract(&out)?;
+    convert_sets(&contract, &out.join("point_set.rs"))?;
+    fs::write(out.join("shapes.rs"), shapes::code(&contract)?)?;
     Ok(())
 }
 
 /// Messages, server and client from the contract, in pure Rust; its descriptor set for reflection.
-#[cfg(feature = "daemon")]
 fn compile_contract(out: &Path) -> Result<FileDescriptorSet, Box<dyn Error>> {
     println!("cargo::rerun-if-changed=proto");
     let descriptors = protox::compile([CONTRACT], ["proto"])?;
@@ -57,7 +45,6 @@ fn compile_contract(out: &Path) -> Result<FileDescriptorSet, Box<dyn Error>> {
 
 /// The conversions between the message of a set and values by name: a field that the contract has
 /// needs no code of its own.
-#[cfg(feature = "daemon")]
 fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<dyn Error>> {
     let mut messages = descriptors.file.iter().flat_map(|file| &file.message_type);
     let set = messages.find(|message| message.name() == "PointSet");
@@ -148,35 +135,10 @@ fn convert_sets(descriptors: &FileDescriptorSet, file: &Path) -> Result<(), Box<
 }
 
 /// `min_distance` as `MinDistance`.
-#[cfg(feature = "daemon")]
 fn camel_case(name: &str) -> String {
     let upper = |word: &str| {
         let (first, rest) = word.split_at(word.len().min(1));
         first.to_uppercase() + rest
     };
     name.split('_').map(upper).collect()
-}
-
-/// A list of (file name, content) of every table in the folder, in the order of their names.
-fn list_tables(folders: [PathBuf; 2], list: &Path) -> Result<(), Box<dyn Error>> {
-    println!("cargo::rerun-if-changed=tables");
-    let mut files: Vec<PathBuf> = vec![];
-    for entries in folders
-        .iter()
-        .filter_map(|folder| fs::read_dir(folder).ok())
-    {
-        for entry in entries {
-            files.push(entry?.path());
-        }
-    }
-    files.retain(|file| file.extension().is_some_and(|e| e == "strew"));
-    files.sort();
-    let mut code = String::from("&[\n");
-    for file in files {
-        let name = file.file_name().unwrap_or_default();
-        writeln!(code, "    ({name:?}, include_bytes!({file:?})),")?;
-    }
-    code.push(']');
-    fs::write(list, code)?;
-    Ok(())
 }

@@ -117,6 +117,6 @@ tables:
         "lloyd (5-sqrt(3))/2 49" "pattern (5-sqrt(3))/2 49"; do \
         set -- $job; \
         target/release/strew forge --profile "$1" --alpha "$2" --radius "$3" \
-            --out-dir tables --force || exit 1; \
+            --out-dir crates/catalog/tables --force || exit 1; \
     done
-    mv tables/blue-5-sqrt3-over-2-m.strew crates/core/tables/
+    mv crates/catalog/tables/blue-5-sqrt3-over-2-m.strew crates/core/tables/

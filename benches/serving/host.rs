@@ -13,11 +13,12 @@ use futures_util::stream;
 use http::header;
 use prost::Message as _;
 use strew::{
-    config::Layers,
     grpc::proto::{PointBlock, StreamPointsResponse, stream_points_response::Message},
     ops::App,
-    service::{Service, encode::Pool},
 };
+use strew_config::Layers;
+use strew_encode::Pool;
+use strew_service::Service;
 use strew_testkit::random::SplitMix;
 
 /// A daemon that serves until it is dropped.

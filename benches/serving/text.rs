@@ -6,11 +6,12 @@
 
 use std::{hint::black_box, time::Instant};
 
-use strew::service::{
-    Answer, Catalog, Encoding, Limits, Output, Planned,
-    query::{Draft, Query, groups, parse_pairs},
-};
+use strew_catalog::Catalog;
+use strew_config::Limits;
 use strew_core::Point;
+use strew_encode::{Encoding, Output};
+use strew_plan::Planned;
+use strew_query::{Draft, Query, groups, parse_pairs};
 
 use super::{
     download,
@@ -22,7 +23,7 @@ use super::{
 const PREPARED: usize = 1024;
 
 fn limits() -> Limits {
-    let layers = strew::config::Layers::new().expect("the defaults");
+    let layers = strew_config::Layers::new().expect("the defaults");
     layers.finish().expect("valid").limits
 }
 
@@ -30,7 +31,7 @@ fn query(catalog: &Catalog, points: u64) -> Query {
     let side = (points as f64).sqrt();
     let text = format!("bbox=0,0,{side},{side}&spacing=1");
     let draft = Draft::of(parse_pairs(&text, groups::POINTS));
-    draft.check(catalog, 1).expect("valid").0
+    draft.check(&catalog.clone().into(), 1).expect("valid").0
 }
 
 /// The text around the three values of a point.
@@ -111,7 +112,9 @@ fn pure(points: &[Point], count: u64, frame: &Frame, number: fn(f64, &mut Vec<u8
 /// Makes an answer and throws it away. Returns seconds per point.
 fn made(planned: &Planned, output: &Output, limits: &Limits) -> f64 {
     let start = Instant::now();
-    let mut answer = Answer::new(planned, output, limits.block_bytes).expect("any format");
+    let mut answer = planned
+        .answer(output, limits.block_bytes)
+        .expect("any format");
     for block in &mut answer {
         black_box(block.expect("whole"));
     }

@@ -4,12 +4,11 @@ use std::sync::{Arc, LazyLock};
 
 use axum::{Extension, Router, body::Body, response::Response};
 use http::{Request, StatusCode, header};
-use strew::{
-    access::Caller,
-    config::Layers,
-    grpc, rest,
-    service::{Catalog, Limits, Service, Workers},
-};
+use strew::{grpc, rest};
+use strew_access::Caller;
+use strew_catalog::Catalog;
+use strew_config::{Layers, Limits};
+use strew_service::{Service, Workers};
 use tokio::runtime::Runtime;
 use tower::ServiceExt as _;
 
@@ -44,8 +43,9 @@ static PROTOCOLS: LazyLock<Protocols> = LazyLock::new(|| {
         .expect("built rightly");
     // There is no gate: everyone is let in.
     let open = |router: Router| router.layer(Extension(Caller::default()));
+    let pages = rest::Pages::default();
     let rest::Routes { router, paths } =
-        rest::Routes::new(rest::endpoints(&service), "", open, open);
+        rest::Routes::new(rest::endpoints(&service), &pages, "", open, open);
     Protocols {
         rest: router.fallback(async move |request| rest::not_found(&request, &paths)),
         grpc: open(grpc.into_axum_router()),

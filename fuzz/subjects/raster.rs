@@ -2,8 +2,8 @@
 
 use std::io::Cursor;
 
-use strew::raster::{Image, Limits, Meaning, RasterError, Samples};
 use strew_core::server::Stop;
+use strew_raster::{Image, Limits, Meaning, RasterError, Samples};
 
 const LIMITS: Limits = Limits {
     side: 256,

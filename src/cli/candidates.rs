@@ -1,21 +1,21 @@
-//! What shells offer for the value of a flag: the words of its parameter, and what is loaded.
+//! Completes the values of flags in shells: the words of their parameters, and the names of loaded things.
 
 use std::{collections::BTreeSet, ffi::OsStr};
 
 use clap_complete::engine::{
     ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter as _,
 };
-
-use super::config;
-use crate::service::{
-    Catalog, Encoding, Worlds,
-    query::{
-        Parameter, Shape,
-        parameters::{ATTRIBUTES, FIELD, TERRAIN},
-    },
+use strew_catalog::Catalog;
+use strew_encode::Encoding;
+use strew_query::{
+    Parameter, Shape,
+    parameters::{ATTRIBUTES, FIELD, TERRAIN},
 };
 
-/// Completes the value of a parameter's flag. Where nothing is known, it offers nothing instead of files.
+use super::config;
+use crate::cli::load::Load as _;
+
+/// Completes the value of a parameter's flag. Without known values it offers nothing, not files.
 pub(super) fn completer(parameter: &'static Parameter) -> ArgValueCompleter {
     ArgValueCompleter::new(move |current: &OsStr| {
         let text = current.to_str().unwrap_or_default();
@@ -27,7 +27,7 @@ pub(super) fn completer(parameter: &'static Parameter) -> ArgValueCompleter {
     })
 }
 
-/// The words that go on with `text`: of a list, with its last item.
+/// The words that begin with `text`, or with the last item of a list.
 fn matching(text: &str, words: &[String], is_list: bool) -> Vec<CompletionCandidate> {
     let (before, last) = match text.rfind(',').filter(|_| is_list) {
         Some(comma) => text.split_at(comma + 1),
@@ -42,23 +42,20 @@ fn matching(text: &str, words: &[String], is_list: bool) -> Vec<CompletionCandid
         .collect()
 }
 
-/// The values that are known.
+/// The known values.
 fn words(parameter: &Parameter) -> Vec<String> {
     let owned = |words: &[&str]| words.iter().map(|&word| word.to_owned()).collect();
     match parameter.shape {
         Shape::Switch => owned(&["on", "off"]),
         Shape::Strength { .. } => owned(&["off", "on"]),
         Shape::Choice(words) => owned(words),
-        Shape::Format => owned(&formats()),
+        Shape::Format => {
+            let all = Encoding::ALL.into_iter().chain(Encoding::FILES);
+            all.map(|encoding| encoding.name().into()).collect()
+        }
         _ if *parameter == ATTRIBUTES => attributes(),
         _ => loaded(parameter).unwrap_or_default(),
     }
-}
-
-fn formats() -> Vec<&'static str> {
-    let of_files = [Encoding::Parquet, Encoding::Feather];
-    let all = Encoding::ALL.into_iter().chain(of_files);
-    all.map(Encoding::name).collect()
 }
 
 fn attributes() -> Vec<String> {
@@ -67,15 +64,15 @@ fn attributes() -> Vec<String> {
     named.into_iter().chain(uniform).collect()
 }
 
-/// The names of what the settings of the environment load; none if they are wrong, which the command
-/// itself reports.
+/// The names of the things that the settings of the environment load. Wrong settings have none; the command
+/// itself reports them.
 fn loaded(parameter: &Parameter) -> Option<Vec<String>> {
     if !["profile", "alpha", "map", "world", "field", "terrain"].contains(&parameter.name) {
         return None;
     }
     let config = config::Args::default().merged(config::Uses::ALL).ok()?;
     let catalog = config.tables().ok()?;
-    let of_tables = |name: fn(&crate::service::Entry) -> String| -> Vec<String> {
+    let of_tables = |name: fn(&strew_catalog::Entry) -> String| -> Vec<String> {
         let names: BTreeSet<String> = catalog.entries().map(|entry| name(entry)).collect();
         names.into_iter().collect()
     };
@@ -84,8 +81,9 @@ fn loaded(parameter: &Parameter) -> Option<Vec<String>> {
         "alpha" => of_tables(|entry| entry.key.alpha.to_string()),
         "map" => of_tables(|entry| entry.key.size.to_string()),
         "world" => {
-            let worlds = Worlds::load(&config.worlds, &catalog, config.limits.max_vertices).ok()?;
-            worlds.iter().map(|world| world.name.clone()).collect()
+            let catalog = config.with_worlds(catalog).ok()?;
+            let worlds = catalog.worlds.iter();
+            worlds.map(|world| world.name.clone()).collect()
         }
         _ => field_names(&catalog),
     })
@@ -99,7 +97,7 @@ fn field_names(catalog: &Catalog) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::service::query::parameters::MAP;
+    use strew_query::parameters::MAP;
 
     fn offered(parameter: &'static Parameter, text: &str) -> Vec<String> {
         let found = completer(parameter).complete(OsStr::new(text));

@@ -1,11 +1,11 @@
-//! `strew completions` and `strew man`: what shells and `man` know of the commands.
+//! `strew completions` and `strew man`: scripts for shells, and manual pages.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use clap_complete::{Shell, env::Shells};
 
-use super::{Failure, output::Output};
+use super::{Failure, output::write};
 
 /// Flags of `strew completions`.
 #[derive(Debug, clap::Args)]
@@ -18,13 +18,13 @@ pub(super) struct CompletionsArgs {
 /// Flags of `strew man`.
 #[derive(Debug, clap::Args)]
 pub(super) struct ManArgs {
-    /// The folder for the pages, one for each command: strew.1, strew-sample.1, … Without it the page of strew
-    /// itself goes to standard output.
+    /// The folder for the pages, one for each command: strew.1, strew-sample.1, … [default: the page of strew itself on
+    /// standard output]
     #[arg(long, value_name = "DIR")]
     out_dir: Option<PathBuf>,
 }
 
-/// Prints a script by which a shell asks the program itself what can follow.
+/// Prints a script by which a shell runs the program itself to complete a line.
 pub(super) fn completions(args: &CompletionsArgs) -> Result<(), Failure> {
     const NAME: &str = "strew";
     let shells = Shells::builtins();
@@ -41,7 +41,7 @@ pub(super) fn man(args: &ManArgs, command: clap::Command) -> Result<(), Failure>
     let Some(folder) = &args.out_dir else {
         return write(None, &page(command)?);
     };
-    // The names of commands within commands begin with those around them.
+    // Building puts the names of outer commands before those of inner ones.
     let mut command = command.disable_help_subcommand(true);
     command.build();
     write_pages(folder, &command)
@@ -61,10 +61,4 @@ fn page(command: clap::Command) -> anyhow::Result<Vec<u8>> {
     let written = clap_mangen::Man::new(command).render(&mut page);
     written.context("a manual page cannot be made")?;
     Ok(page)
-}
-
-fn write(path: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> {
-    let mut output = Output::open(path)?;
-    output.write(bytes)?;
-    Ok(output.finish()?)
 }

@@ -1,4 +1,4 @@
-//! Outputs that are compressed, by the ending of their names.
+//! Compresses outputs, by the endings of their names.
 
 use std::{
     ffi::OsStr,
@@ -8,7 +8,7 @@ use std::{
 
 use flate2::write::GzEncoder;
 
-/// How an output is compressed.
+/// A way to compress an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Compression {
     /// By gzip: `.gz`.
@@ -18,7 +18,7 @@ pub(super) enum Compression {
 }
 
 impl Compression {
-    /// The compression that a name ends with, and the name without that ending.
+    /// The compression that the ending of a name means, and the name without that ending.
     pub(super) fn of(path: &Path) -> Option<(Self, &Path)> {
         let compression = match path.extension().and_then(OsStr::to_str)? {
             "gz" => Self::Gzip,
@@ -28,10 +28,8 @@ impl Compression {
         let stem = path.file_stem()?;
         Some((compression, Path::new(stem)))
     }
-}
 
-impl Compression {
-    /// What names of compressed files end with.
+    /// The ending of names of compressed files.
     pub(super) const fn ending(self) -> &'static str {
         match self {
             Self::Gzip => "gz",
@@ -64,7 +62,20 @@ impl Compression {
     }
 }
 
-/// A writer, behind a compressor where one is wanted.
+/// The names of a file and of its compressed variants, the plain one first.
+pub(super) fn names(
+    plain: &str,
+    variants: &[Compression],
+) -> impl Iterator<Item = (String, Option<Compression>)> {
+    let packed = |&variant: &Compression| {
+        let name = format!("{plain}.{}", variant.ending());
+        (name, Some(variant))
+    };
+    let packed: Vec<_> = variants.iter().map(packed).collect();
+    [(plain.to_owned(), None)].into_iter().chain(packed)
+}
+
+/// A writer, with or without a compressor.
 pub(super) enum Sink {
     Plain(Box<dyn Write + Send>),
     Gzip(GzEncoder<Box<dyn Write + Send>>),
@@ -81,12 +92,12 @@ impl Sink {
             Some(Compression::Gzip) => {
                 Self::Gzip(GzEncoder::new(writer, flate2::Compression::default()))
             }
-            // The level that zstd itself takes if none is named.
+            // 0 is the default level of zstd.
             Some(Compression::Zstd) => Self::Zstd(zstd::stream::write::Encoder::new(writer, 0)?),
         })
     }
 
-    /// Writes what the compressor holds back.
+    /// Writes the rest, which the compressor still holds.
     pub(super) fn finish(self) -> io::Result<()> {
         let mut writer = match self {
             Self::Plain(writer) => writer,

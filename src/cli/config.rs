@@ -3,65 +3,53 @@
 use std::path::PathBuf;
 
 use anyhow::{Context as _, anyhow};
+use strew_config::{Config, ConfigError, Layers};
 
 use super::{Failure, output};
-use crate::config::{Config, ConfigError, Layers};
 
-/// What the settings are called that a command uses: sections with a dot, and keys. Flags for others are refused.
+/// The settings that a command uses: sections with a dot, and keys. Flags for other settings are refused.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Uses(&'static [&'static str]);
+pub(crate) struct Uses(&'static [&'static [&'static str]]);
+
+/// Things that are loaded by name.
+const NAMED: &[&str] = &["tables.", "fields.", "except."];
+const LISTS: &[&str] = &["limits.max_points"];
+const PLANS: &[&str] = &["worlds.", "limits.max_rows", "limits.max_vertices"];
+const BLOCKS: &[&str] = &["limits.block_bytes", "workers.threads"];
 
 impl Uses {
-    /// All settings, which daemons use.
-    pub(crate) const ALL: Self = Self(&[""]);
-    /// What is loaded by name.
-    pub(crate) const LOADED: Self = Self(&["tables.", "fields.", "except."]);
-    /// What lists are made with.
-    pub(crate) const LISTS: Self = Self(&["tables.", "fields.", "except.", "limits.max_points"]);
-    /// What queries are planned with.
-    pub(crate) const QUERIES: Self = Self(&[
-        "tables.",
-        "fields.",
-        "except.",
-        "worlds.",
-        "limits.max_points",
-        "limits.max_rows",
-        "limits.max_vertices",
-    ]);
-    /// What points are made with.
-    pub(crate) const POINTS: Self = Self(&[
-        "tables.",
-        "fields.",
-        "except.",
-        "worlds.",
-        "limits.max_points",
-        "limits.max_rows",
-        "limits.max_vertices",
-        "limits.block_bytes",
-        "workers.threads",
-    ]);
+    /// All settings, for daemons.
+    pub(crate) const ALL: Self = Self(&[&[""]]);
+    /// For commands that load things by name.
+    pub(crate) const LOADED: Self = Self(&[NAMED]);
+    /// For commands that list.
+    pub(crate) const LISTS: Self = Self(&[NAMED, LISTS]);
+    /// For commands that plan queries.
+    pub(crate) const QUERIES: Self = Self(&[NAMED, LISTS, PLANS]);
+    /// For commands that make points.
+    pub(crate) const POINTS: Self = Self(&[NAMED, LISTS, PLANS, BLOCKS]);
 }
 
-/// Flags that change settings, shared by all commands that have any.
+/// The flags that change settings, shared by the commands that use settings.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[group(skip)]
 pub(crate) struct Args {
-    /// A file with settings, in TOML [default: the file that the variable STREW_CONFIG names, if it is set]
+    /// A file with settings, in TOML [default: the file that the variable STREW_CONFIG names]
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// A folder whose *.strew tables are loaded besides the built-in ones.
+    /// A folder with *.strew tables to load beside the built-in ones.
     #[arg(long, value_name = "DIR")]
     tables: Option<String>,
-    /// A setting that the command uses, such as tables.embedded=false; the last one of a key counts.
+    /// A setting that the command uses, such as tables.embedded=false. The last one of a key applies.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 }
 
-/// The flags of commands that serve, or look at what would be served.
+/// The flags of commands that serve, or show what would be served.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[group(skip)]
 pub(crate) struct Served {
-    /// Where to serve: address and port; port 0 for any free one.
+    /// The address and port to serve on; port 0 for any free one.
     #[arg(long, value_name = "ADDR")]
     listen: Option<String>,
     #[command(flatten)]
@@ -72,7 +60,7 @@ impl Served {
     /// The merged settings.
     pub(crate) fn merged(&self) -> Result<Config, Failure> {
         let merged = self.settings.merge(Uses::ALL, self.listen.as_deref());
-        merged.map_err(|error| Failure::Usage(error.into()))
+        merged.map_err(Failure::usage)
     }
 
     /// As [`Args::must_be_unused`].
@@ -83,13 +71,12 @@ impl Served {
 }
 
 impl Args {
-    /// The merged settings, of which flags may set those that are used.
+    /// The merged settings. Flags may set only those that are used.
     pub(crate) fn merged(&self, uses: Uses) -> Result<Config, Failure> {
-        self.merge(uses, None)
-            .map_err(|error| Failure::Usage(error.into()))
+        self.merge(uses, None).map_err(Failure::usage)
     }
 
-    /// Refuses these flags, and one more, where settings have no effect, for a reason.
+    /// Refuses these flags, and one more, where settings have no effect; `why` is the reason.
     fn must_be_unused(&self, more: Option<&str>, why: &str) -> Result<(), Failure> {
         let config = self.config.as_ref().map(|_| "--config");
         let tables = self.tables.as_ref().map(|_| "--tables");
@@ -97,7 +84,7 @@ impl Args {
         match more.or(config).or(tables).or(set) {
             None => Ok(()),
             Some(flag) => Err(Failure::Usage(anyhow!(
-                "{flag} has no effect: {why}; allowed: no flags of settings"
+                "{flag} has no effect: {why}; leave out the flags of settings"
             ))),
         }
     }
@@ -122,7 +109,7 @@ impl Args {
         if let Some(folder) = &self.tables {
             layers = layers.flag("--tables", "tables.folder", folder)?;
         }
-        layers.only(uses.0)?.finish()
+        layers.only(&uses.0.concat())?.finish()
     }
 }
 

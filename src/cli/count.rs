@@ -1,21 +1,19 @@
-//! `strew count`: how many points a query has, exactly, without making them.
-
-use std::io::Read as _;
+//! `strew count`: the number of points of a query, exactly, without making them.
 
 use anyhow::Context as _;
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
+use strew_query::Resolved;
 
 use super::{Failure, config, flags::Counted, output, query::QueryArgs, remote::RemoteArgs};
-use crate::service::query::Resolved;
 
-/// More than the answer with any query as understood.
-const MOST_BYTES: u64 = 16 << 20;
+/// No answer is longer, even with the longest query in it.
+const MOST_BYTES: usize = 16 << 20;
 
 /// Flags of `strew count`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// Print the document of GET /v1/count instead: the count and the query as understood.
+    /// Print the document of GET /v1/count instead: the count, and the query with everything filled in.
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -51,20 +49,16 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     output::print(&format!("{count}\n"))
 }
 
-/// Prints the count of a server.
+/// Prints the count that a server returns.
 fn from_server(args: &Args) -> Result<(), Failure> {
     let body = args.query.for_server()?.to_body();
     let mut answer = args.remote.request("/v1/count", &body)?;
-    let mut text = String::new();
-    let read = (&mut answer.body)
-        .take(MOST_BYTES)
-        .read_to_string(&mut text);
-    read.context("the answer broke off")?;
+    let text = answer.rest(MOST_BYTES).context("the answer broke off")?;
     if args.json {
         let document: Box<RawValue> =
-            serde_json::from_str(&text).context("the answer is not JSON")?;
+            serde_json::from_slice(&text).context("the answer is not JSON")?;
         return output::print(&format!("{document}\n"));
     }
-    let counted: FromServer = serde_json::from_str(&text).context("the answer holds no count")?;
+    let counted: FromServer = serde_json::from_slice(&text).context("the answer holds no count")?;
     output::print(&format!("{}\n", counted.count))
 }

@@ -38,7 +38,7 @@ Examples:
   strew split --bbox 0,0,100000,100000 --spacing 1 --parts 4";
 pub(super) const ARRANGEMENT: &str = "\
 Examples:
-  strew arrangement \"2,1 3,3\" --alpha \"sqrt(3)\" --grid 0 0 1000 1000";
+  strew arrangement \"2,1 3,3\" --alpha \"sqrt(3)\" --grid 0,0,1000,1000";
 pub(super) const FIGURE: &str = "\
 Examples:
   strew figure index --alpha \"sqrt(3)\" --window 48 --output index.svg
@@ -74,6 +74,10 @@ pub(super) const WORLDS: &str = "\
 Examples:
   strew worlds list --config strew.toml
   strew worlds check --config strew.toml";
+pub(super) const PARAMETERS: &str = "\
+Examples:
+  strew parameters --as md
+  strew parameters --as dts > parameters.d.ts";
 pub(super) const COMPLETIONS: &str = "\
 Examples:
   strew completions bash > ~/.local/share/bash-completion/completions/strew

@@ -1,4 +1,4 @@
-//! The field of a command: one that is loaded, a file, or a raster with its place.
+//! The field of a command: a loaded one, a file, or a raster with its place.
 
 use std::{
     path::{Path, PathBuf},
@@ -6,26 +6,23 @@ use std::{
 };
 
 use anyhow::anyhow;
-
-use super::{Failure, flags::WHERE};
-use crate::{
-    config::Config,
-    service::{
-        Catalog,
-        field::{
-            Document, Fields, NamedField,
-            document::{EdgesName, Pixels},
-            from_document, from_file,
-        },
-        query::{Parameter, Shape, Value, Values, parameters},
+use strew_catalog::{
+    Catalog,
+    field::{
+        Document, Fields, NamedField,
+        document::{EdgesName, Pixels},
+        from_document, from_file,
     },
 };
+use strew_query::{Parameter, Shape, Value, Values, parameters};
 
-/// Flags of a field that are no parameters.
+use super::{Failure, flags::WHERE};
+
+/// The flags of a field that are no parameters.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[group(skip)]
 pub(super) struct FieldArgs {
-    /// The field is a raster: a PNG, GeoTIFF or npy file. White is 1, black and what lies beyond is 0.
+    /// The field as a raster: a PNG, GeoTIFF or npy file. White is 1; black and the outside are 0.
     #[arg(
         long,
         value_name = "FILE",
@@ -33,7 +30,7 @@ pub(super) struct FieldArgs {
         conflicts_with = "field"
     )]
     raster: Option<PathBuf>,
-    /// Where the raster lies [default: where its GeoTIFF says, else one unit for each pixel]
+    /// The box of the raster [default: that of its GeoTIFF, else one unit for each pixel]
     #[arg(
         long,
         value_name = "MINX,MINY,MAXX,MAXY",
@@ -44,11 +41,11 @@ pub(super) struct FieldArgs {
     raster_bbox: Option<String>,
 }
 
-/// The name of a field that only a command knows.
+/// The name of a field from the flags.
 const OWN: &str = "file";
 
 impl FieldArgs {
-    /// Adds the field of the flags to what is loaded; in the values it then has a name.
+    /// Adds the field of the flags to the catalog, and its name to the values.
     pub(super) fn load(&self, values: &mut Values, catalog: Catalog) -> Result<Catalog, Failure> {
         let fields = catalog.fields();
         let field = match &self.raster {
@@ -72,7 +69,7 @@ impl FieldArgs {
         Ok(catalog.with_fields(fields))
     }
 
-    /// Refuses files: a server has fields of its own.
+    /// Refuses files: a server has its own fields.
     pub(super) fn must_be_named(&self, values: &Values) -> Result<(), Failure> {
         let raster = self
             .raster
@@ -132,7 +129,7 @@ fn of_file(
     from_file(Path::new(&file), fields).map(Some).map_err(wrong)
 }
 
-/// The file of a parameter, if its value is one instead of the name or the description of a field.
+/// The file of a parameter, if its value is a file instead of the name or the description of a field.
 fn file(parameter: &Parameter, values: &Values, fields: &Fields) -> Option<String> {
     // Values that cannot be read are refused with the query.
     let given = values.get::<Arc<Document>>(parameter).ok()??;
@@ -144,11 +141,4 @@ fn file(parameter: &Parameter, values: &Values, fields: &Fields) -> Option<Strin
     let is_like_one = ending.is_some_and(|ending| endings.iter().any(|known| ending == *known));
     let is_file = fields.get(given).is_none() && (is_like_one || given.contains('/'));
     is_file.then(|| given.clone())
-}
-
-impl Config {
-    /// The fields that the settings ask for; those that are not valid are wrong usage.
-    pub(super) fn loaded_fields(&self) -> Result<Fields, Failure> {
-        Fields::load(&self.fields).map_err(|error| Failure::Usage(error.into()))
-    }
 }

@@ -6,12 +6,9 @@ use anyhow::anyhow;
 use clap::Subcommand;
 use strew_core::Alpha;
 use strew_forge::figure::{self, Drawing, FigureError};
+use strew_query::{Value, patterns::OFFSETS};
 
-use super::{
-    Failure,
-    offsets::{Offsets, Pair},
-    output::Output,
-};
+use super::{Failure, output, refuse};
 
 /// The figures.
 #[derive(Debug, Subcommand)]
@@ -24,7 +21,7 @@ pub(super) enum Command {
         #[arg(long, value_name = "NUMBER", default_value_t = 64)]
         window: u32,
     },
-    /// Where an arrangement of points occurs, its image in index space, and the margin that is left.
+    /// Where an arrangement of points occurs, its image in index space, and the remaining margin.
     Arrangement {
         #[command(flatten)]
         common: Common,
@@ -36,9 +33,10 @@ pub(super) enum Command {
             long,
             value_name = "X,Y …",
             default_value = "2,1 3,3",
-            allow_hyphen_values = true
+            allow_hyphen_values = true,
+            value_parser = pairs
         )]
-        offsets: Offsets,
+        offsets: Pairs,
     },
     /// The shapes of connected clusters, in the plane and in the set region.
     Clusters {
@@ -50,7 +48,7 @@ pub(super) enum Command {
         /// The largest distance of neighbors, 1 to 16 grid units.
         #[arg(long, value_name = "NUMBER", default_value_t = 2.24)]
         distance: f64,
-        /// The number of points up to which clusters are told apart, 1 to 64.
+        /// The number of points up to which clusters are distinguished, 1 to 64.
         #[arg(long, value_name = "NUMBER", default_value_t = 64)]
         most: usize,
     },
@@ -61,10 +59,33 @@ pub(super) enum Command {
         /// The half-width R of the map, 1 to 200 grid units.
         #[arg(long, value_name = "NUMBER", default_value_t = 20)]
         radius: u32,
-        /// The block whose neighbors are drawn: its intervals of dX and dY, from 0.
-        #[arg(long, value_name = "X,Y", default_value = "0,0")]
-        block: Pair<usize>,
+        /// The block whose neighbors are drawn: its intervals of dX and dY, counted from 0.
+        #[arg(long, value_name = "X,Y", default_value = "0,0", value_parser = block)]
+        block: [usize; 2],
     },
+}
+
+/// A list that is one value of a flag.
+type Pairs = Box<[(i64, i64)]>;
+
+/// Reads pairs of integers.
+fn pairs(text: &str) -> Result<Pairs, String> {
+    let numbers = OFFSETS.shape.read(text)?;
+    let Value::Numbers(numbers) = numbers else {
+        return Err("not a list of pairs".into());
+    };
+    // Integers within ±2⁵², so exact.
+    let pairs = numbers.chunks_exact(2);
+    Ok(pairs.map(|pair| (pair[0] as i64, pair[1] as i64)).collect())
+}
+
+/// Reads the intervals of a block.
+fn block(text: &str) -> Result<[usize; 2], String> {
+    let read = || {
+        let (column, row) = text.split_once(',')?;
+        Some([column.trim().parse().ok()?, row.trim().parse().ok()?])
+    };
+    read().ok_or_else(|| "must be two integers joined by a comma, such as 2,1".into())
 }
 
 /// Flags of all figures.
@@ -90,7 +111,7 @@ pub(super) fn run(command: &Command) -> Result<(), Failure> {
             window,
             offsets,
         } => {
-            let drawing = figure::arrangement(common.alpha, offsets.as_slice(), *window);
+            let drawing = figure::arrangement(common.alpha, offsets, *window);
             (common, drawing)
         }
         Command::Clusters {
@@ -106,7 +127,7 @@ pub(super) fn run(command: &Command) -> Result<(), Failure> {
             common,
             radius,
             block,
-        } => (common, figure::map(common.alpha, *radius, block.0)),
+        } => (common, figure::map(common.alpha, *radius, *block)),
     };
     let drawing = drawing.map_err(refused)?;
     write(&drawing, common)
@@ -123,18 +144,25 @@ fn refused(error: FigureError) -> Failure {
 
 fn write(drawing: &Drawing, common: &Common) -> Result<(), Failure> {
     let path = common.output.as_deref();
+    let bytes = encoded(drawing, ("--output", path), common.size)?;
+    output::write(path, &bytes)
+}
+
+/// A drawing as SVG or PNG, by the ending of a path that a flag has; without a path as SVG.
+pub(super) fn encoded(
+    drawing: &Drawing,
+    (flag, path): (&str, Option<&Path>),
+    size: u32,
+) -> Result<Vec<u8>, Failure> {
     let ending = path.and_then(Path::extension).unwrap_or("svg".as_ref());
-    let bytes = if ending.eq_ignore_ascii_case("svg") {
-        drawing.to_svg().into_bytes()
+    if ending.eq_ignore_ascii_case("svg") {
+        Ok(drawing.to_svg().into_bytes())
     } else if ending.eq_ignore_ascii_case("png") {
-        drawing.to_png(common.size).map_err(refused)?
+        drawing.to_png(size).map_err(refused)
     } else {
-        return Err(Failure::Usage(anyhow!(
-            "--output: figures are not drawn as {}; allowed: a file whose name ends in .svg or .png, or -",
+        refuse!(
+            "{flag}: figures are not drawn as {}; allowed: a file whose name ends in .svg or .png",
             ending.display()
-        )));
-    };
-    let mut output = Output::open(path)?;
-    output.write(&bytes)?;
-    Ok(output.finish()?)
+        )
+    }
 }

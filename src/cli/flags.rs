@@ -1,18 +1,17 @@
-//! Flags made of the list of parameters, so that the command line has every one that an address has,
+//! Flags made from the table of parameters, so that the command line has each parameter of the REST API,
 //! under the same name and with the same words.
 
 use std::{fmt, marker::PhantomData};
 
 use clap::{Arg, ArgAction, ArgMatches, Command, FromArgMatches};
+use strew_encode::Encoding;
+use strew_query::{
+    Group, Parameter, Shape, Values, groups,
+    parameters::{BBOX, FIELD, PARAMETERS, TABLE},
+    patterns::PATTERN_PARAMETERS,
+};
 
 use super::candidates;
-use crate::service::{
-    Encoding,
-    query::{
-        Group, Parameter, Shape, Values, groups,
-        parameters::{self, PARAMETERS},
-    },
-};
 
 /// Which parameters a command takes.
 pub(super) trait Takes: fmt::Debug + Send + Sync + 'static {
@@ -23,136 +22,80 @@ pub(super) trait Takes: fmt::Debug + Send + Sync + 'static {
     fn takes(parameter: &Parameter) -> bool {
         Self::GROUPS.contains(&parameter.group)
     }
-}
 
-/// A query with its output, as `GET /v1/points` takes it.
-#[derive(Debug)]
-pub(super) struct Answered;
-/// A query of which only the number of points matters, as for `GET /v1/count`.
-#[derive(Debug)]
-pub(super) struct Counted;
-/// A query and a number of parts.
-#[derive(Debug)]
-pub(super) struct Parted;
-/// A set without a region, as for `GET /v1/points/{id}`.
-#[derive(Debug)]
-pub(super) struct Single;
-/// A table whose periods are listed, as for `GET /v1/periods`.
-#[derive(Debug)]
-pub(super) struct Listed;
-/// A table.
-#[derive(Debug)]
-pub(super) struct Tabled;
-/// A set and a place, as for `GET /v1/nearest`.
-#[derive(Debug)]
-pub(super) struct Near;
-/// A set of points, or a world, in the chunks of a box.
-#[derive(Debug)]
-pub(super) struct Exported;
-/// A box and a set; its table is named by another flag.
-#[derive(Debug)]
-pub(super) struct Measured;
-
-impl Takes for Answered {
-    const GROUPS: &'static [Group] = groups::POINTS;
-}
-
-impl Takes for Counted {
-    const GROUPS: &'static [Group] = groups::COUNT;
-}
-
-impl Takes for Parted {
-    const GROUPS: &'static [Group] = &[
-        Group::Split,
-        Group::Region,
-        Group::Period,
-        Group::Amount,
-        Group::Count,
-        Group::World,
-        Group::WorldPin,
-        Group::Profile,
-        Group::Table,
-        Group::Points,
-        Group::Except,
-        Group::Attributes,
-        Group::Window,
-        Group::Output,
-    ];
-}
-
-impl Takes for Single {
-    const GROUPS: &'static [Group] = groups::SINGLE;
-}
-
-impl Takes for Listed {
-    const GROUPS: &'static [Group] = groups::PERIODS;
-}
-
-impl Takes for Tabled {
-    const GROUPS: &'static [Group] = groups::TABLES;
-}
-
-impl Takes for Near {
-    const GROUPS: &'static [Group] = groups::NEAREST;
-}
-
-impl Takes for Exported {
-    const GROUPS: &'static [Group] = &[
-        Group::Region,
-        Group::Amount,
-        Group::World,
-        Group::WorldPin,
-        Group::Profile,
-        Group::Table,
-        Group::Points,
-        Group::Except,
-        Group::Attributes,
-        Group::Output,
-    ];
-
-    fn takes(parameter: &Parameter) -> bool {
-        let is_box = *parameter == parameters::BBOX;
-        Self::GROUPS.contains(&parameter.group) && (is_box || parameter.group != Group::Region)
+    /// All that it takes, in the order of help texts.
+    fn all() -> impl Iterator<Item = &'static Parameter> {
+        let all = PARAMETERS.iter().chain(PATTERN_PARAMETERS).copied();
+        all.filter(|parameter| Self::takes(parameter))
     }
 }
 
-impl Takes for Measured {
-    const GROUPS: &'static [Group] = groups::MEASURED;
+/// Declares commands by their groups of parameters, and by the exceptions.
+macro_rules! takes {
+    ($($(#[$doc:meta])* $name:ident = $groups:expr $(, $takes:expr)?;)+) => {$(
+        $(#[$doc])*
+        #[derive(Debug)]
+        pub(super) struct $name;
 
-    fn takes(parameter: &Parameter) -> bool {
-        let is_other = *parameter == parameters::TABLE
-            || *parameter == parameters::FIELD
-            || parameter.group == Group::Attributes
-            || parameter.group == Group::Region && *parameter != parameters::BBOX;
-        Self::GROUPS.contains(&parameter.group) && !is_other
-    }
+        impl Takes for $name {
+            const GROUPS: &'static [Group] = $groups;
+
+            $(fn takes(parameter: &Parameter) -> bool {
+                let takes: fn(&Parameter) -> bool = $takes;
+                takes(parameter)
+            })?
+        }
+    )+};
 }
 
-/// The flags of the parameters that `T` takes, as they were given.
+takes! {
+    /// A query with its output, as `GET /v1/points` takes it.
+    Answered = groups::POINTS;
+    /// A query of which only the number of points matters, as for `GET /v1/count`.
+    Counted = groups::COUNT;
+    /// A query and a number of parts.
+    Parted = groups::POINTS, |parameter| {
+        parameter.group == Group::Split || Answered::takes(parameter)
+    };
+    /// A set without a region, as for `GET /v1/points/{id}`.
+    Single = groups::SINGLE;
+    /// A table whose periods are listed, as for `GET /v1/periods`.
+    Listed = groups::PERIODS;
+    /// A table.
+    Tabled = groups::TABLES;
+    /// A set and a place, as for `GET /v1/nearest`.
+    Near = groups::NEAREST;
+    /// A set of points, or a world, in the chunks of a box.
+    Exported = groups::POINTS, |parameter| {
+        let others = [Group::Region, Group::Period, Group::Count, Group::Window];
+        *parameter == BBOX || Answered::takes(parameter) && !others.contains(&parameter.group)
+    };
+    /// A box and a set; its table is named by another flag.
+    Measured = groups::MEASURED, |parameter| {
+        let others = [Group::Region, Group::Attributes].contains(&parameter.group)
+            || [&TABLE, &FIELD].contains(&parameter);
+        *parameter == BBOX || Measured::GROUPS.contains(&parameter.group) && !others
+    };
+    /// An arrangement, as for `GET /v1/pattern/arrangements`.
+    Arranged = groups::ARRANGEMENT;
+}
+
+/// The given flags of the parameters that `T` takes.
+#[derive(Debug)]
 pub(super) struct Flags<T> {
     given: Vec<(&'static Parameter, String)>,
     takes: PhantomData<T>,
 }
 
-impl<T> fmt::Debug for Flags<T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let given = self
-            .given
-            .iter()
-            .map(|(parameter, text)| (parameter.name, text));
-        f.debug_list().entries(given).finish()
-    }
-}
-
 impl<T: Takes> Flags<T> {
-    /// All of them as values.
+    /// All given flags as values.
     pub(super) fn values(&self) -> Values {
         self.values_of(T::GROUPS)
     }
 }
 
 impl<T> Flags<T> {
-    /// Those of some groups as values.
+    /// The given flags of some groups as values.
     pub(super) fn values_of(&self, groups: &'static [Group]) -> Values {
         let mut values = Values::new(groups, "");
         for (parameter, text) in &self.given {
@@ -163,19 +106,19 @@ impl<T> Flags<T> {
         values
     }
 
-    /// Those that are given.
+    /// The given parameters.
     pub(super) fn given(&self) -> impl Iterator<Item = &'static Parameter> {
         self.given.iter().map(|(parameter, _)| *parameter)
     }
 
-    /// Those that are given, with their text.
+    /// The given parameters with their texts.
     pub(super) fn texts(&self) -> impl Iterator<Item = (&'static Parameter, &str)> {
         self.given
             .iter()
             .map(|(parameter, text)| (*parameter, text.as_str()))
     }
 
-    /// Whether one is given.
+    /// Whether a parameter is given.
     pub(super) fn has(&self, wanted: &Parameter) -> bool {
         self.given().any(|parameter| parameter == wanted)
     }
@@ -186,12 +129,13 @@ pub(super) fn flag(name: &str) -> String {
     format!("--{}", name.replace('_', "-"))
 }
 
-/// Under which title `--help` lists the parameters of a group.
+/// The title under which `--help` lists the parameters of a group.
 const fn heading(group: Group) -> &'static str {
     match group {
         Group::Region | Group::Period | Group::Nearest | Group::Path => WHERE,
         Group::Window | Group::Split | Group::Listed => "Which of the points",
         Group::Output => "Output",
+        Group::Pattern | Group::Occurrences => "Pattern",
         _ => "Set of points",
     }
 }
@@ -199,75 +143,59 @@ const fn heading(group: Group) -> &'static str {
 /// The title of the flags that say where.
 pub(super) const WHERE: &str = "Where";
 
-/// What a flag means where it is not quite what the parameter means: about, default.
-fn own_words(name: &str) -> Option<(String, &'static str)> {
-    match name {
-        "format" => Some((
-            format!(
-                "The format of the output: {} or {}.",
-                Encoding::ALL.map(Encoding::name).join(", "),
-                Encoding::Parquet.name()
-            ),
-            "what the output's name ends with, else json",
-        )),
-        "limit" => Some((
-            "The greatest number of points. The cursor of the rest is reported before the points."
-                .into(),
+/// The meaning and the default of a flag that differ from those of its parameter.
+fn own_words(parameter: &Parameter) -> Option<(String, &'static str)> {
+    let (about, default) = match (parameter.name, parameter.group) {
+        ("format", _) => {
+            let formats = Encoding::ALL.map(Encoding::name).join(", ");
+            let parquet = Encoding::Parquet.name();
+            let about = format!("The format of the output: {formats} or {parquet}.");
+            return Some((about, "the ending of the output's name, else json"));
+        }
+        ("offsets", _) => (
+            "The offsets of the other points from the first, in grid units: pairs of integers, such as \"2,1 3,3\".",
+            "",
+        ),
+        ("list", _) => (
+            "List the occurrences instead: column and row of the first point of each, and with an amount the places \
+             of its points. --list alone is --list=csv.",
+            "",
+        ),
+        ("limit", Group::Occurrences) => ("The greatest number of occurrences in the list.", "all"),
+        ("limit", _) => (
+            "The greatest number of points. The cursor of the rest is reported before the points.",
             "all",
-        )),
-        "cursor" => Some((
-            "Where an earlier answer to the same query ended.".into(),
+        ),
+        ("cursor", Group::Occurrences) => (
+            "Where an earlier list ended: the column and the row of the next occurrence.",
             "the beginning",
-        )),
-        "field" => Some((
+        ),
+        ("cursor", _) => (
+            "Where an earlier answer to the same query ended.",
+            "the beginning",
+        ),
+        ("field", _) => (
             "The field that thins the points out, from place to place: the name of one of the settings, or a \
-             file: a document (.json, .toml) or a raster (.png, .tif, .npy)."
-                .into(),
+             file: a document (.json, .toml) or a raster (.png, .tif, .npy).",
             "none",
-        )),
-        "terrain" => Some((
+        ),
+        ("terrain", _) => (
             "The terrain that points stand on, which adds a height z: a field by its name or in a file, whose \
-             share becomes a height between heights."
-                .into(),
+             share becomes a height between heights.",
             "none",
-        )),
-        _ => None,
-    }
+        ),
+        _ => return None,
+    };
+    Some((about.into(), default))
 }
-
-/// Those that `-h` leaves to `--help`, so that it fits a screen.
-const RARE: &[&str] = &[
-    "align",
-    "alpha",
-    "crs",
-    "cursor",
-    "decimals",
-    "except",
-    "heights",
-    "map",
-    "normals",
-    "offset",
-    "only",
-    "polygon",
-    "raster_bbox",
-    "rings",
-    "scale_range",
-    "scale_ranges",
-    "size",
-    "spread",
-    "summary",
-    "table",
-    "terrain",
-    "warp",
-    "world_digest",
-];
 
 fn argument(parameter: &'static Parameter) -> Arg {
     let name = parameter.name;
-    let (about, default) = own_words(name).map_or_else(
+    let (about, default) = own_words(parameter).map_or_else(
         || (parameter.about.to_owned(), parameter.default),
         |(about, default)| (about, Some(default)),
     );
+    let default = default.filter(|text| !text.is_empty());
     let default = default.map_or(String::new(), |text| format!(" [default: {text}]"));
     let short = match about.split_once(". ") {
         Some((first, _)) if name != "format" => first,
@@ -276,17 +204,28 @@ fn argument(parameter: &'static Parameter) -> Arg {
     let allowed = parameter.allowed();
     let long = format!("{about}{default}\n\nAllowed: {allowed}");
     let is_name = parameter.shape.is_of_names() || name == "profile" || name == "map";
-    Arg::new(name)
-        .long(name.replace('_', "-"))
-        .aliases(name.contains('_').then_some(name))
+    let argument = match parameter.group {
+        Group::Arrangement => Arg::new(name).required(true),
+        group => Arg::new(name)
+            .help_heading(heading(group))
+            .long(name.replace('_', "-"))
+            .aliases(name.contains('_').then_some(name)),
+    };
+    let argument = match name {
+        "list" => argument
+            .num_args(0..=1)
+            .require_equals(true)
+            .default_missing_value("csv"),
+        _ => argument,
+    };
+    argument
         .value_name(value_name(parameter))
         .help(format!("{short}{default}"))
         .long_help(long)
-        .help_heading(heading(parameter.group))
-        .hide_short_help(RARE.contains(&name))
+        .hide_short_help(parameter.is_rare)
         .action(ArgAction::Set)
         .add(candidates::completer(parameter))
-        // Negative numbers, also those that are wrong: the query says what is.
+        // Negative numbers, even where none is allowed: the query refuses them in better words.
         .allow_hyphen_values(!is_name)
 }
 
@@ -296,7 +235,7 @@ fn value_name(parameter: &Parameter) -> String {
         Shape::Numbers(names) => names.join(",").to_uppercase().replace('_', ""),
         Shape::Vertices => "X1,Y1,X2,Y2,…".into(),
         Shape::Integers { names, .. } => names.join(",").to_uppercase().replace('_', ""),
-        Shape::Offsets { .. } => "X,Y …".into(),
+        Shape::Offsets { .. } => "OFFSETS".into(),
         Shape::Names { .. } => "NAME,…".into(),
         Shape::Weights => "NAME:WEIGHT,…".into(),
         Shape::Switch => "on|off".into(),
@@ -315,11 +254,7 @@ fn value_name(parameter: &Parameter) -> String {
 
 impl<T: Takes> clap::Args for Flags<T> {
     fn augment_args(command: Command) -> Command {
-        let taken = PARAMETERS
-            .iter()
-            .copied()
-            .filter(|parameter| T::takes(parameter));
-        command.args(taken.map(argument))
+        command.args(T::all().map(argument))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -329,11 +264,7 @@ impl<T: Takes> clap::Args for Flags<T> {
 
 impl<T: Takes> FromArgMatches for Flags<T> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let taken = PARAMETERS
-            .iter()
-            .copied()
-            .filter(|parameter| T::takes(parameter));
-        let given = taken.filter_map(|parameter| {
+        let given = T::all().filter_map(|parameter| {
             let text: &String = matches.get_one(parameter.name)?;
             Some((parameter, text.clone()))
         });
@@ -352,8 +283,10 @@ impl<T: Takes> FromArgMatches for Flags<T> {
 #[cfg(test)]
 mod tests {
     use clap::Args as _;
+    use strew_query::of;
 
     use super::*;
+    use crate::recipe::ADDED;
 
     #[test]
     fn every_parameter_is_a_flag_of_some_command() {
@@ -369,24 +302,19 @@ mod tests {
     }
 
     #[test]
-    fn a_split_query_takes_what_a_query_takes() {
-        let both = || {
-            PARAMETERS
-                .iter()
-                .filter(|parameter| Parted::takes(parameter))
-        };
-        assert!(both().all(|parameter| Answered::takes(parameter) != (parameter.name == "parts")));
-    }
-
-    #[test]
     fn an_added_parameter_is_a_flag_with_help() {
-        let command = Flags::<Answered>::augment_args(clap::Command::new("sample"));
+        let command = clap::Command::new("sample").arg(argument(&ADDED));
         let help = command.clone().render_long_help().to_string();
         assert!(
             help.contains("--added <NUMBER>") && help.contains("an integer from 1 to 9"),
             "{help}"
         );
-        let other = Flags::<Counted>::augment_args(clap::Command::new("count"));
-        assert!(other.get_arguments().all(|flag| flag.get_id() != "added"));
+    }
+
+    #[test]
+    fn flags_are_a_loop_over_the_table() {
+        let command = Flags::<Answered>::augment_args(clap::Command::new("sample"));
+        let flags = command.get_arguments().map(|flag| flag.get_id().as_str());
+        assert!(flags.eq(of(groups::POINTS).map(|parameter| parameter.name)));
     }
 }

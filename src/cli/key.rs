@@ -1,12 +1,10 @@
 //! `strew key`: keys for clients.
 
-use anyhow::{Context as _, anyhow};
+use anyhow::Context as _;
+use strew_access as access;
+use strew_config::name::{ALLOWED, is_name};
 
-use super::{Failure, output};
-use crate::{
-    access,
-    name::{ALLOWED, is_name},
-};
+use super::{Failure, must_be_within, output, refuse};
 
 /// Commands about keys.
 #[derive(Debug, clap::Subcommand)]
@@ -19,19 +17,19 @@ pub(super) enum Command {
 /// Flags of `strew key new`.
 #[derive(Debug, clap::Args)]
 pub(super) struct New {
-    /// What the key is called: 1 to 64 letters, digits, _, - and .
+    /// The name of the key: 1 to 64 letters, digits, _, - and .
     #[arg(value_name = "NAME")]
     name: String,
-    /// Whether it may tell the daemon what to do, such as to read tables again.
+    /// Allow the key to administer the daemon, such as to reload tables.
     #[arg(long)]
     admin: bool,
-    /// The most points of one answer.
+    /// The greatest number of points of an answer.
     #[arg(long, value_name = "POINTS", value_parser = clap::value_parser!(u64).range(1..))]
     max_points: Option<u64>,
-    /// The most answers under way at once.
+    /// The greatest number of answers at a time.
     #[arg(long, value_name = "STREAMS", value_parser = clap::value_parser!(u32).range(1..))]
     max_streams: Option<u32>,
-    /// How many points may be taken in a second, from 0.001 on.
+    /// The greatest number of points per second, 0.001 or more.
     #[arg(long, value_name = "POINTS")]
     points_per_second: Option<f64>,
 }
@@ -40,20 +38,12 @@ pub(super) struct New {
 pub(super) fn run(command: &Command) -> Result<(), Failure> {
     let Command::New(new) = command;
     if !is_name(&new.name) {
-        return Err(Failure::Usage(anyhow!(
-            "NAME is {:?}; allowed: {}",
-            new.name,
-            ALLOWED
-        )));
+        refuse!("NAME is {:?}; allowed: {}", new.name, ALLOWED);
     }
-    if let Some(value) = new.points_per_second
-        && !(1e-3..=1e15).contains(&value)
-    {
-        return Err(Failure::Usage(anyhow!(
-            "--points-per-second is {value}; allowed: 0.001 to 1e15"
-        )));
+    if let Some(rate) = new.points_per_second {
+        must_be_within("--points-per-second", rate, [1e-3, 1e15])?;
     }
-    let (key, hash) = access::new_key().context("the system gives no random numbers")?;
+    let (key, hash) = access::new_key().context("the system has no random numbers")?;
     let mut entry = format!("[[key]]\nname = \"{}\"\nhash = \"{hash}\"\n", new.name);
     let mut line = |name: &str, value: Option<String>| {
         if let Some(value) = value {
@@ -66,6 +56,6 @@ pub(super) fn run(command: &Command) -> Result<(), Failure> {
     let rate = new.points_per_second.map(|v| format!("{v:?}"));
     line("points_per_second", rate);
     output::print(&entry)?;
-    eprintln!("the key, which is kept nowhere and cannot be shown again:\n{key}");
+    eprintln!("the key, which is stored nowhere and cannot be shown again:\n{key}");
     Ok(())
 }

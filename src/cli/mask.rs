@@ -1,20 +1,24 @@
 //! `strew mask`: a tileable threshold mask as a picture.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::anyhow;
+use strew_catalog::Ready;
 use strew_forge::{
     figure,
     mask::{Mask, MaskError},
 };
+use strew_query::chosen;
 
 use super::{
     Failure, config,
+    figure::encoded,
     flags::{Flags, Tabled},
-    output::{Output, must_not_be_terminal},
+    output::{self, Output, must_not_be_terminal},
     refusal::Source,
+    refuse,
 };
-use crate::service::{Ready, query::chosen};
+use crate::cli::load::Load as _;
 
 /// Flags of `strew mask`.
 #[derive(Debug, clap::Args)]
@@ -22,7 +26,7 @@ pub(super) struct Args {
     /// The side of the mask in pixels, 16 to 1024.
     #[arg(long, value_name = "PIXELS", default_value_t = 256)]
     size: u32,
-    /// Which mask: every seed has another one.
+    /// The seed. Each seed makes another mask.
     #[arg(long, value_name = "NUMBER", default_value_t = 0)]
     seed: u64,
     /// The bits of a threshold: 8 or 16.
@@ -47,50 +51,27 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             .extension()
             .is_none_or(|own| own.eq_ignore_ascii_case("png"))
     {
-        return Err(Failure::Usage(anyhow!(
+        refuse!(
             "--output {}: a mask is a PNG; allowed: a file whose name ends in .png",
             path.display()
-        )));
+        );
     }
     must_not_be_terminal(args.output.as_deref(), "a PNG")?;
     let config = args.settings.merged(config::Uses::LOADED)?;
     let catalog = config.tables()?;
     let ready = chosen(&args.table.values(), &catalog).and_then(|entry| Ready::load(&entry));
     let ready = ready.map_err(|error| Source::Flags.refused(error))?;
-    let output = Output::open(args.output.as_deref())?;
+    let mut output = Output::open(args.output.as_deref())?;
     let mask = Mask::new(&ready.table, args.size, args.seed).map_err(refused)?;
     let picture = mask.to_png(args.bits).map_err(refused)?;
     if let Some(path) = &args.spectrum {
-        draw(&mask, path)?;
+        /// The longer side of a PNG.
+        const SIZE: u32 = 1600;
+        let drawing = figure::mask_spectrum(&mask);
+        let drawn = encoded(&drawing, ("--spectrum", Some(path)), SIZE)?;
+        output::write(Some(path), &drawn)?;
     }
-    write(output, &picture)
-}
-
-fn draw(mask: &Mask, path: &Path) -> Result<(), Failure> {
-    /// The longer side of a PNG.
-    const SIZE: u32 = 1600;
-    let drawing = figure::mask_spectrum(mask);
-    let is = |ending: &str| {
-        path.extension()
-            .is_some_and(|own| own.eq_ignore_ascii_case(ending))
-    };
-    let bytes = if is("svg") {
-        drawing.to_svg().into_bytes()
-    } else if is("png") {
-        drawing
-            .to_png(SIZE)
-            .map_err(|error| Failure::Other(error.into()))?
-    } else {
-        return Err(Failure::Usage(anyhow!(
-            "--spectrum {}: allowed: a file whose name ends in .svg or .png",
-            path.display()
-        )));
-    };
-    write(Output::open(Some(path))?, &bytes)
-}
-
-fn write(mut output: Output, bytes: &[u8]) -> Result<(), Failure> {
-    output.write(bytes)?;
+    output.write(&picture)?;
     Ok(output.finish()?)
 }
 

@@ -6,23 +6,28 @@ use anyhow::{Context as _, anyhow, bail};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use strew_core::{F64, Placement, Plan, PointSet, Seed, Table, Twin};
+use strew_error::Error;
 use strew_forge::{
     Aim, Report, Resolution, Target,
     measure::{Shared, Torus, Window, recurrence, twin_set, window_set},
     picture,
 };
+use strew_plan::library::measured::document;
+use strew_query::{Draft, parameters::BBOX};
 
 use super::{
     Failure, config,
     flags::{Flags, Measured},
+    must_be_within,
     output::Output,
     query::described,
     refusal::Source,
+    refuse,
 };
-use crate::service::{Draft, Error, Planned, library::measured::document, query::parameters::BBOX};
+use crate::cli::load::Load as _;
 
-/// Flags of `strew measure`. What is measured: a table file (`--table`), a file of points
-/// (`--points`), or, without either, the points of a query as for `strew sample`.
+/// Flags of `strew measure`. It measures a table file (`--table`), a file of points (`--points`), or,
+/// without either, the points of a query as for `strew sample`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// A table file: measured on periodic twins and on windows of the unbounded pattern.
@@ -32,23 +37,23 @@ pub(super) struct Args {
     /// or more].
     #[arg(long, value_name = "P/Q", requires = "table")]
     twin: Vec<String>,
-    /// With --table: a window of about this many points.
+    /// With --table: the approximate number of points of a window.
     #[arg(long, value_name = "N", requires = "table", default_value_t = 80_000)]
     window_points: u64,
     /// A file of points: csv with the columns x and y, or f64 (little-endian pairs) by its ending;
     /// needs --bbox, the square that the points fill.
     #[arg(long, value_name = "FILE", requires = "bbox")]
     points: Option<PathBuf>,
-    /// With --points: the set repeats beyond the square.
+    /// With --points: the set repeats outside the square.
     #[arg(long, requires = "points")]
     periodic: bool,
-    /// With a query: also compares the sets of this many seeds, from the query's own on: how much of a patch
-    /// of 12 × 12 spacings each of them shows again (boxes of 300 × 300 spacings compare with the
-    /// documentation's), and what each two of them share.
+    /// With a query: also compare the sets of this number of seeds, beginning with the query's own: the share of a patch
+    /// of 12 × 12 spacings that each set repeats (boxes of 300 × 300 spacings compare with those of the
+    /// documentation), and the similarity of each two sets.
     #[arg(long, value_name = "N", default_value_t = 0, conflicts_with_all = ["table", "points"],
         value_parser = clap::value_parser!(u64).range(..=16))]
     seeds: u64,
-    /// Frequencies are measured up to this, in units of the square root of the density.
+    /// The highest frequency to measure, in units of the square root of the density.
     #[arg(long, default_value_t = 4.0)]
     nu_max: f64,
     /// The width of the rings of radial power, in the same units; 0 is one mode [default: 1/64].
@@ -72,19 +77,12 @@ const MAX_POINTS: u128 = 4_000_000;
 
 /// Measures.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    if !(0.5..=8.0).contains(&args.nu_max) {
-        let problem = anyhow!("--nu-max is {}; it must be from 0.5 to 8", args.nu_max);
-        return Err(Failure::Usage(problem));
-    }
-    if !(0.0..=0.5).contains(&args.resolution().ring_width) {
-        let width = args.resolution().ring_width;
-        let problem = anyhow!("--ring-width is {width}; it must be from 0 to 0.5");
-        return Err(Failure::Usage(problem));
-    }
+    must_be_within("--nu-max", args.nu_max, [0.5, 8.0])?;
+    must_be_within("--ring-width", args.resolution().ring_width, [0.0, 0.5])?;
     let nothing = args.table.is_none() && args.points.is_none();
     if nothing && !args.flags.has(&BBOX) {
         let problem = "nothing to measure: --table FILE, --points FILE or --bbox BOX is missing";
-        return Err(Failure::Usage(anyhow!(problem)));
+        refuse!(problem);
     }
     let mut output = Output::open(args.output.as_deref())?;
     let drawing = args.picture.as_deref();
@@ -171,7 +169,7 @@ impl Args {
         }
     }
 
-    /// Only the box: min x, min y, max x, max y.
+    /// The box: min x, min y, max x, max y.
     fn corners(&self) -> anyhow::Result<[f64; 4]> {
         let bbox = self.flags.values().require(&BBOX);
         bbox.map_err(|faults| anyhow!("{}", Error::from(faults)))
@@ -210,7 +208,7 @@ fn square([min_x, min_y, max_x, max_y]: [f64; 4]) -> anyhow::Result<([f64; 2], f
     Ok(([min_x, min_y], width))
 }
 
-/// The sets of several seeds, beside each other.
+/// Compares the sets of several seeds.
 fn compared(plan: &Plan, side: f64, density: f64, seeds: u64) -> anyhow::Result<Value> {
     /// Patches of each set that are looked for.
     const PATCHES: usize = 64;
@@ -259,23 +257,19 @@ type Compared = (Report, Option<Target>, Option<Value>);
 fn of_query(args: &Args) -> Result<Compared, Failure> {
     let config = args.settings.merged(config::Uses::QUERIES)?;
     let catalog = config.tables()?;
-    let checked = Draft::of(args.flags.values()).check(&catalog, 0);
-    let planned = checked.and_then(|(query, _)| Planned::at_once(query, &config.limits));
-    let planned = planned.map_err(|error| Source::Flags.refused(error))?;
+    let planned = config.planned(&Draft::of(args.flags.values()), &catalog.into());
+    let (planned, _) = planned.map_err(|error| Source::Flags.refused(error))?;
     let (corner, side) = square(planned.query.region.bbox()).map_err(Failure::Usage)?;
     if planned.count() > MAX_POINTS || planned.count() < 100 {
-        let problem = anyhow!(
+        refuse!(
             "--bbox holds {} points; from 100 to {MAX_POINTS} are measured",
             planned.count()
         );
-        return Err(Failure::Usage(problem));
     }
     let mut points = vec![[0.0; 2]; planned.count() as usize];
     let set = &planned.sets[0];
     let Some(plan) = set.plan.plane() else {
-        return Err(Failure::Usage(anyhow!(
-            "only points of the plane are measured here"
-        )));
+        refuse!("only points of the plane are measured here");
     };
     plan.blocks_f64().fill(&mut points);
     let name = described(&planned);
@@ -313,19 +307,17 @@ fn of_points(args: &Args, file: &Path) -> Result<Report, Failure> {
     let points = points.with_context(|| format!("{} is not a file of points", file.display()))?;
     let outside = |p: &&[f64; 2]| (0..2).any(|i| !(corner[i]..corner[i] + side).contains(&p[i]));
     if let Some([x, y]) = points.iter().find(outside) {
-        let problem = anyhow!(
+        refuse!(
             "the point ({x}, {y}) of {} is outside --bbox",
             file.display()
         );
-        return Err(Failure::Usage(problem));
     }
     if points.len() < 100 || points.len() as u128 > MAX_POINTS {
-        let problem = anyhow!(
+        refuse!(
             "{} has {} points; from 100 to {MAX_POINTS} are measured",
             file.display(),
             points.len()
         );
-        return Err(Failure::Usage(problem));
     }
     let name = file.display().to_string();
     let subject = if args.periodic {

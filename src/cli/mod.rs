@@ -2,6 +2,7 @@
 
 mod arrangement;
 mod candidates;
+mod client;
 mod completions;
 mod compression;
 mod config;
@@ -14,10 +15,11 @@ mod figure;
 mod flags;
 mod forge;
 mod key;
+mod load;
 mod mask;
 mod measure;
-mod offsets;
 mod output;
+mod parameters;
 mod periods;
 mod point;
 mod probe;
@@ -32,6 +34,7 @@ mod signals;
 mod split;
 mod stipple;
 mod table;
+mod threads;
 mod watcher;
 mod worlds;
 
@@ -40,9 +43,10 @@ use std::process::ExitCode;
 use clap::{CommandFactory as _, Parser, Subcommand};
 use clap_complete::CompleteEnv;
 
-pub(crate) use failure::Failure;
+use crate::rest::Pages;
+pub(crate) use failure::{Failure, must_be_within, refuse};
 
-/// What `strew` does.
+/// The commands of `strew`.
 #[derive(Debug, Parser)]
 #[command(name = "strew", version, about, max_term_width = 100)]
 struct Cli {
@@ -54,17 +58,17 @@ struct Cli {
 enum Command {
     /// Serve points over REST and gRPC on one port.
     #[command(after_long_help = examples::SERVE)]
-    Serve(serve::Args),
+    Serve(config::Served),
     /// Write the points of a region to a file or standard output, without a server.
     #[command(after_long_help = examples::SAMPLE)]
     Sample(sample::Args),
-    /// Write a world of chunks as files that any static server answers with, or as one archive.
+    /// Write a world as files of chunks, which any static server can serve, or as one archive.
     #[command(after_long_help = examples::EXPORT)]
     Export(export::Args),
     /// Turn a picture into dots.
     #[command(after_long_help = examples::STIPPLE)]
     Stipple(stipple::Args),
-    /// Say how many points a query has, exactly, without making them.
+    /// Count the points of a query, exactly, without making them.
     #[command(after_long_help = examples::COUNT)]
     Count(count::Args),
     /// Find a point by its id.
@@ -79,12 +83,11 @@ enum Command {
     /// Split a query into parts for parallel readers.
     #[command(after_long_help = examples::SPLIT)]
     Split(split::Args),
-    /// Say whether an arrangement of points occurs in a pattern, how often, and where.
+    /// Find out whether an arrangement of points occurs in a pattern, how often, and where.
     #[command(after_long_help = examples::ARRANGEMENT)]
     Arrangement(arrangement::Args),
     /// Draw a figure of an AA pattern: its index space, an arrangement, clusters, a neighborhood map.
-    #[command(subcommand)]
-    #[command(after_long_help = examples::FIGURE)]
+    #[command(subcommand, after_long_help = examples::FIGURE)]
     Figure(figure::Command),
     /// Make a tileable threshold mask for dithering.
     #[command(after_long_help = examples::MASK)]
@@ -95,13 +98,11 @@ enum Command {
     /// Measure a table, the points of a region, or a file of points.
     #[command(after_long_help = examples::MEASURE)]
     Measure(measure::Args),
-    /// Look at tables.
-    #[command(subcommand)]
-    #[command(after_long_help = examples::TABLE)]
+    /// Inspect, check, export and import tables.
+    #[command(subcommand, after_long_help = examples::TABLE)]
     Table(table::Command),
     /// Make keys for clients.
-    #[command(subcommand)]
-    #[command(after_long_help = examples::KEY)]
+    #[command(subcommand, after_long_help = examples::KEY)]
     Key(key::Command),
     /// Ask a running daemon whether it is ready: exit code 0 if so, 1 if not.
     #[command(after_long_help = examples::PROBE)]
@@ -109,14 +110,16 @@ enum Command {
     /// Print the merged settings.
     #[command(after_long_help = examples::CONFIG)]
     Config(config::Served),
-    /// List the tables that are loaded: profiles, α, sizes of maps.
+    /// List the loaded tables: profiles, α, sizes of maps.
     #[command(after_long_help = examples::PROFILES)]
-    Profiles(profiles::Args),
-    /// Look at worlds: queries that are described once.
-    #[command(subcommand)]
-    #[command(after_long_help = examples::WORLDS)]
+    Profiles(config::Args),
+    /// List and check worlds: queries that the settings describe by name.
+    #[command(subcommand, after_long_help = examples::WORLDS)]
     Worlds(worlds::Command),
-    /// Print a script that completes commands and flags in a shell.
+    /// Print the table of parameters as types for programs, or as documentation.
+    #[command(after_long_help = examples::PARAMETERS)]
+    Parameters(parameters::Args),
+    /// Print a script that lets a shell complete commands and flags.
     #[command(after_long_help = examples::COMPLETIONS)]
     Completions(completions::CompletionsArgs),
     /// Write manual pages.
@@ -127,13 +130,13 @@ enum Command {
 /// The exit code after an interrupt, as shells have it.
 const INTERRUPTED: u8 = 130;
 
-/// Runs the program.
+/// Runs the program, whose daemon serves these pages.
 #[must_use]
-pub fn main() -> ExitCode {
-    // Shells run the program with COMPLETE=SHELL for what can follow.
+pub fn main(pages: fn() -> Pages) -> ExitCode {
+    // Shells run the program with COMPLETE=SHELL to complete a line.
     CompleteEnv::with_factory(Cli::command).complete();
     let done = match Cli::parse().command {
-        Command::Serve(args) => serve::run(&args),
+        Command::Serve(args) => serve::run(&args, pages),
         Command::Sample(args) => sample::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Stipple(args) => stipple::run(&args),
@@ -153,6 +156,7 @@ pub fn main() -> ExitCode {
         Command::Config(args) => config::run(&args),
         Command::Profiles(args) => profiles::run(&args),
         Command::Worlds(command) => worlds::run(&command),
+        Command::Parameters(args) => parameters::run(&args),
         Command::Completions(args) => completions::completions(&args),
         Command::Man(args) => completions::man(&args, Cli::command()),
     };
@@ -169,7 +173,7 @@ pub fn main() -> ExitCode {
     ExitCode::from(code)
 }
 
-/// An error and its causes, except those whose text an error before them has.
+/// The text of an error and of its causes, each once.
 fn in_full(error: &anyhow::Error) -> String {
     error.chain().fold(String::new(), |text, cause| {
         let cause = cause.to_string();

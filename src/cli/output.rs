@@ -1,8 +1,7 @@
-//! Where a command writes: standard output, a special file, or a file that appears only when it is
+//! The output of a command: standard output, a special file, or a file that appears only when it is
 //! complete.
 
 use std::{
-    fmt,
     fs::{self, File},
     io::{self, IsTerminal as _, Write as _},
     path::{Path, PathBuf},
@@ -14,11 +13,12 @@ use serde::Serialize;
 use super::{
     Failure,
     compression::{Compression, Sink},
+    refuse,
     signals::Incomplete,
 };
 
 /// An open output. Until [`finish`](Self::finish) a regular file is called `NAME.partial`. A command that
-/// fails or is ended by a signal removes it; what is left by one that is killed never looks complete.
+/// fails or that a signal ends removes it, and a killed command leaves no file that looks complete.
 pub(super) struct Output {
     writer: Sink,
     /// The path that was given; `None` for standard output.
@@ -30,26 +30,18 @@ pub(super) struct Output {
 struct Pending {
     file: File,
     incomplete: Incomplete,
-    /// What it will be called: the path, links followed.
+    /// The final path, with links followed.
     target: PathBuf,
 }
 
-/// The reader of the output has closed it: it has all it wanted, so the command ends quietly and in
-/// success.
-#[derive(Debug)]
+/// The reader of the output closed it early. It has all it wanted, so the command succeeds quietly.
+#[derive(Debug, thiserror::Error)]
+#[error("the reader of the output closed it early")]
 pub(super) struct ReaderLeft;
 
-impl fmt::Display for ReaderLeft {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("the reader of the output closed it early")
-    }
-}
-
-impl std::error::Error for ReaderLeft {}
-
 impl Output {
-    /// `None` or `-` is standard output. A file is compressed if its name ends with .gz or .zst; its folder is made if
-    /// there is none. Fails if the path cannot be written.
+    /// Opens a path; `None` or `-` is standard output. A file is compressed if its name ends with .gz or .zst, and
+    /// its folder is made if it is missing. Fails if the path cannot be written.
     pub(super) fn open(path: Option<&Path>) -> anyhow::Result<Self> {
         let Some(path) = path.filter(|path| *path != Path::new("-")) else {
             return Ok(Self {
@@ -85,7 +77,7 @@ impl Output {
         anyhow::Error::new(error).context(format!("cannot write {place}"))
     }
 
-    /// Everything is written: a file gets its name, once the disk has it all.
+    /// Ends the output. A file is renamed to its final name once the disk holds all of it.
     pub(super) fn finish(mut self) -> anyhow::Result<()> {
         let writer = std::mem::replace(&mut self.writer, Sink::Plain(Box::new(io::sink())));
         writer.finish().map_err(|error| self.explained(error))?;
@@ -111,7 +103,7 @@ fn open(path: &Path) -> anyhow::Result<(File, Option<Pending>)> {
     match fs::metadata(&target) {
         Ok(metadata) if metadata.is_dir() => return Err(anyhow!("it is a folder")),
         Ok(metadata) => {
-            // Refuses a file without permission; what is in it stays.
+            // Fails without permission; the content stays.
             let file = File::options().write(true).open(&target)?;
             if !metadata.is_file() {
                 return Ok((file, None));
@@ -139,26 +131,39 @@ fn open(path: &Path) -> anyhow::Result<(File, Option<Pending>)> {
     Ok((file, Some(pending)))
 }
 
-/// Refuses a terminal for what is no text, unless `-` was given as the path.
+/// Refuses to write binary data to a terminal, unless the path is `-`.
 pub(super) fn must_not_be_terminal(path: Option<&Path>, what: &str) -> Result<(), Failure> {
     if path.is_none() && io::stdout().is_terminal() {
-        return Err(Failure::Usage(anyhow!(
+        refuse!(
             "{what} is not written to a terminal; allowed: -o FILE, a pipe, or -o - to write it anyway"
-        )));
+        );
     }
     Ok(())
 }
 
-/// Fails if a file could not be written; nothing is left there.
+/// Refuses to replace a file without `--force`.
+pub(super) fn must_be_new(path: &Path, force: bool) -> Result<(), Failure> {
+    if path.exists() && !force {
+        refuse!("{} exists; --force replaces it", path.display());
+    }
+    Ok(())
+}
+
+/// Fails if a file could not be written. Leaves no file.
 pub(super) fn check(path: &Path) -> anyhow::Result<()> {
     Output::open(Some(path)).map(drop)
 }
 
+/// Writes all of an output: a file, or standard output.
+pub(super) fn write(path: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> {
+    let mut output = Output::open(path)?;
+    output.write(bytes)?;
+    Ok(output.finish()?)
+}
+
 /// Writes a text to standard output.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
-    let mut output = Output::open(None)?;
-    output.write(text.as_bytes())?;
-    Ok(output.finish()?)
+    write(None, text.as_bytes())
 }
 
 /// Writes documents to standard output, one a line.

@@ -1,4 +1,6 @@
-//! `strew periods`: the sizes of periodic sets that a table has.
+//! `strew periods`: lists the sizes of the periodic sets of a table.
+
+use strew_query::Periods;
 
 use super::{
     Failure, config,
@@ -6,7 +8,7 @@ use super::{
     output,
     refusal::Source,
 };
-use crate::service::query::Periods;
+use crate::cli::load::Load as _;
 
 /// Flags of `strew periods`.
 #[derive(Debug, clap::Args)]

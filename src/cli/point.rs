@@ -1,15 +1,32 @@
-//! `strew point` and `strew nearest`: single points, by id and near a place.
+//! `strew point` and `strew nearest`: finds points by id and near a place.
 
 use serde::Serialize;
+use strew_catalog::Catalog;
+use strew_plan::{Found, Placed};
+use strew_query::{Nearest, ResolvedSet, Set, Values};
 
 use super::{
     Failure, config,
     fields::FieldArgs,
-    flags::{Flags, Near, Single},
+    flags::{Flags, Near, Single, Takes},
     output,
     refusal::Source,
 };
-use crate::service::{Found, Nearest, Placed, Set, query::ResolvedSet};
+use crate::cli::load::Load as _;
+
+/// A set without a region.
+#[derive(Debug, clap::Args)]
+pub(super) struct SetArgs<T: Takes> {
+    /// Print the document of the REST API instead: what is found, and the set with everything filled in.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    flags: Flags<T>,
+    #[command(flatten)]
+    field: FieldArgs,
+    #[command(flatten)]
+    settings: config::Args,
+}
 
 /// Flags of `strew point`.
 #[derive(Debug, clap::Args)]
@@ -17,30 +34,12 @@ pub(super) struct PointArgs {
     /// The id of the point: its lattice address, such as -31:52.
     #[arg(value_name = "ID", allow_hyphen_values = true)]
     id: String,
-    /// Print the document of GET /v1/points/{id} instead: the point and the set with everything filled in.
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    flags: Flags<Single>,
-    #[command(flatten)]
-    field: FieldArgs,
-    #[command(flatten)]
-    settings: config::Args,
+    set: SetArgs<Single>,
 }
 
 /// Flags of `strew nearest`.
-#[derive(Debug, clap::Args)]
-pub(super) struct NearestArgs {
-    /// Print the document of GET /v1/nearest instead: the points and the set with everything filled in.
-    #[arg(long)]
-    json: bool,
-    #[command(flatten)]
-    flags: Flags<Near>,
-    #[command(flatten)]
-    field: FieldArgs,
-    #[command(flatten)]
-    settings: config::Args,
-}
+pub(super) type NearestArgs = SetArgs<Near>;
 
 #[derive(Serialize)]
 struct One {
@@ -54,19 +53,25 @@ struct Several {
     query: ResolvedSet,
 }
 
+impl<T: Takes> SetArgs<T> {
+    fn load(&self) -> Result<(Values, Catalog), Failure> {
+        let config = self.settings.merged(config::Uses::LOADED)?;
+        let mut values = self.flags.values();
+        let catalog = self.field.load(&mut values, config.tables()?)?;
+        Ok((values, catalog))
+    }
+}
+
 /// Prints a point.
 pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
-    let config = args.settings.merged(config::Uses::LOADED)?;
-    let mut values = args.flags.values();
-    let catalog = args.field.load(&mut values, config.tables()?)?;
+    let (values, catalog) = args.set.load()?;
     let set = Set::single(&values, &catalog);
     let found = set.and_then(Placed::at_once).and_then(|placed| {
         let point = placed.point(&args.id)?;
-        Ok((placed, point))
+        Ok((placed.resolved, point))
     });
-    let (placed, point) = found.map_err(|error| Source::Flags.refused(error))?;
-    if args.json {
-        let query = placed.resolved;
+    let (query, point) = found.map_err(|error| Source::Flags.refused(error))?;
+    if args.set.json {
         return output::print_json([One { point, query }]);
     }
     output::print_json([point])
@@ -74,18 +79,15 @@ pub(super) fn point(args: &PointArgs) -> Result<(), Failure> {
 
 /// Prints the points near a place.
 pub(super) fn nearest(args: &NearestArgs) -> Result<(), Failure> {
-    let config = args.settings.merged(config::Uses::LOADED)?;
-    let mut values = args.flags.values();
-    let catalog = args.field.load(&mut values, config.tables()?)?;
+    let (values, catalog) = args.load()?;
     let near = Nearest::of_set(&values, &catalog);
     let found = near.and_then(|(set, nearest)| {
         let placed = Placed::at_once(set)?;
         let neighbors = placed.nearest(nearest)?;
-        Ok((placed, neighbors))
+        Ok((placed.resolved, neighbors))
     });
-    let (placed, neighbors) = found.map_err(|error| Source::Flags.refused(error))?;
+    let (query, neighbors) = found.map_err(|error| Source::Flags.refused(error))?;
     if args.json {
-        let query = placed.resolved;
         return output::print_json([Several { neighbors, query }]);
     }
     output::print_json(neighbors)

@@ -1,14 +1,9 @@
-//! `strew profiles`: the tables that would answer.
+//! `strew profiles`: lists the loaded tables.
+
+use strew_catalog::{Catalog, Entry};
 
 use super::{Failure, config, output};
-use crate::service::{Catalog, Entry};
-
-/// Flags of `strew profiles`.
-#[derive(Debug, clap::Args)]
-pub(super) struct Args {
-    #[command(flatten)]
-    settings: config::Args,
-}
+use crate::cli::load::Load as _;
 
 /// The titles of the columns.
 const TITLES: [&str; 5] = ["profile", "alpha", "map", "blocks", "joint kinds"];
@@ -24,8 +19,8 @@ fn cells(entry: &Entry, catalog: &Catalog) -> [String; 5] {
 }
 
 /// Prints the tables.
-pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let catalog = args.settings.merged(config::Uses::LOADED)?.tables()?;
+pub(super) fn run(args: &config::Args) -> Result<(), Failure> {
+    let catalog = args.merged(config::Uses::LOADED)?.tables()?;
     let tables = catalog.entries().map(|entry| cells(entry, &catalog));
     let rows: Vec<[String; 5]> = [TITLES.map(String::from)]
         .into_iter()

@@ -1,4 +1,4 @@
-//! How far long work has come: a bar on a terminal, a line now and then elsewhere.
+//! The progress of long work: a bar on a terminal, elsewhere a line at intervals.
 
 use std::{
     io::IsTerminal as _,
@@ -7,7 +7,7 @@ use std::{
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
-/// How often a line is written where there is no terminal.
+/// The interval between lines where there is no terminal.
 const EVERY: Duration = Duration::from_secs(10);
 
 /// Shows progress on standard error.
@@ -15,7 +15,7 @@ pub(super) struct Progress {
     bar: Option<ProgressBar>,
     what: &'static str,
     total: u64,
-    /// Units that were done before.
+    /// Units that an earlier run did.
     first: u64,
     quiet: bool,
     started: Instant,
@@ -46,18 +46,18 @@ impl Progress {
         }
     }
 
-    /// The same when `first` units were done in an earlier run.
+    /// Starts at `first` units, which an earlier run did.
     pub(super) fn going_on_at(mut self, first: u64) -> Self {
         self.first = first;
         if let Some(bar) = &self.bar {
-            // The time left is told by what this run does.
+            // The time left follows from the work of this run.
             bar.set_position(first);
             bar.reset_eta();
         }
         self
     }
 
-    /// `done` units of the work are behind; `note` says more.
+    /// Shows that `done` units are done, with a note.
     pub(super) fn reach(&mut self, done: u64, note: &str) {
         if let Some(bar) = &self.bar {
             if !note.is_empty() {
@@ -84,7 +84,7 @@ impl Progress {
         )
     }
 
-    /// The work is over, done or not: the bar goes away.
+    /// Removes the bar. The work is over, done or not.
     pub(super) fn finish(self) {
         if let Some(bar) = self.bar {
             bar.finish_and_clear();
@@ -92,7 +92,7 @@ impl Progress {
     }
 }
 
-/// How long the rest takes if it goes on as fast, in words.
+/// The time left at the same speed, in words.
 fn left(elapsed: Duration, done: u64, to_do: u64) -> String {
     const YEAR: f64 = 365.25 * 86_400.0;
     let seconds = elapsed.as_secs_f64() * (to_do as f64 / done as f64);

@@ -6,28 +6,27 @@ use std::{
 };
 
 use anyhow::{Context as _, anyhow};
+use strew_config::Config;
+use strew_error::Faults;
+use strew_plan::{Planned, PlannedSet};
+use strew_query::{
+    Draft, Group, Options, RegionDraft, Set, ShapeDraft, groups, of, read_body, read_region,
+};
 
 use super::{
     Failure, config,
     fields::FieldArgs,
     flags::{Flags, Takes, WHERE, flag},
     refusal::Source,
+    refuse,
 };
-use crate::{
-    config::Config,
-    service::{
-        Catalog, Draft, Options, Planned, PlannedSet, Set, Worlds,
-        catalog::CatalogError,
-        except::Lists,
-        query::{Faults, Group, RegionDraft, ShapeDraft, groups, of, read_body, read_region},
-    },
-};
+use crate::cli::load::Load as _;
 
 /// A query with a region: by flags, or whole in a file.
 #[derive(Debug, clap::Args)]
 pub(super) struct QueryArgs<T: Takes> {
-    /// A whole query as JSON, the body of POST /v1/points:query; - is standard input. Beside it only
-    /// flags of the output may be given.
+    /// A whole query as JSON, the body of POST /v1/points:query; - is standard input. It allows no other flags
+    /// than those of the output.
     #[arg(long, value_name = "FILE")]
     query: Option<PathBuf>,
     /// The region: a chunk of the world grid. Coordinates are relative to its corner,
@@ -59,18 +58,11 @@ impl<T: Takes> QueryArgs<T> {
     pub(super) fn plan(&self, config: &Config) -> Result<PlannedQuery, Failure> {
         let (mut draft, source) = self.read()?;
         let catalog = self.field.load(&mut draft.values, config.tables()?)?;
-        let limits = &config.limits;
-        let worlds = Worlds::load(&config.worlds, &catalog, limits.max_vertices)
-            .map_err(|error| Failure::Usage(error.into()))?;
-        let catalog = catalog.with_worlds(worlds);
-        let checked = draft.check(&catalog, limits.max_vertices);
-        let planned = checked.and_then(|(query, options)| {
-            let planned = Planned::at_once(query, limits)?;
-            Ok((planned, options))
-        });
+        let catalog = config.with_worlds(catalog)?;
+        let planned = config.planned(&draft, &catalog);
         let (planned, options) = planned.map_err(|error| source.refused(error))?;
-        // The parts of a split may be answered where the world is not known.
-        let filled = draft.filled(catalog.worlds());
+        // The parts of a split may be sent to servers that do not have the world.
+        let filled = draft.filled(&catalog.worlds);
         let filled = filled.map_err(|error| source.refused(error))?;
         Ok(PlannedQuery {
             draft: filled.0.into_owned(),
@@ -80,7 +72,7 @@ impl<T: Takes> QueryArgs<T> {
         })
     }
 
-    /// The query for a server, whose tables and names are not known here.
+    /// The query for a server, whose tables and names this program does not know.
     pub(super) fn for_server(&self) -> Result<Draft, Failure> {
         let (draft, source) = self.read()?;
         let refused = |faults: Faults| source.refused(faults.into());
@@ -89,7 +81,7 @@ impl<T: Takes> QueryArgs<T> {
         Ok(draft)
     }
 
-    /// Which parameters a query in a file has.
+    /// The parameters of a query in a file.
     fn in_file() -> &'static [Group] {
         match T::GROUPS.contains(&Group::Output) {
             true => groups::QUERY,
@@ -99,13 +91,11 @@ impl<T: Takes> QueryArgs<T> {
 
     fn read(&self) -> Result<(Draft, Source), Failure> {
         let Some(file) = &self.query else {
-            let draft = Draft::of(
-                self.flags
-                    .values_of(match T::GROUPS.contains(&Group::Output) {
-                        true => groups::POINTS,
-                        false => groups::COUNT,
-                    }),
-            );
+            let groups = match T::GROUPS.contains(&Group::Output) {
+                true => groups::POINTS,
+                false => groups::COUNT,
+            };
+            let draft = Draft::of(self.flags.values_of(groups));
             let draft = match self.region()? {
                 Some(region) => draft.within(Ok(region)),
                 None => draft,
@@ -122,18 +112,18 @@ impl<T: Takes> QueryArgs<T> {
         let others: Vec<String> = others.chain(self.places()).map(flag).collect();
         if !others.is_empty() {
             let allowed = of(groups::OUTPUT).map(|parameter| flag(parameter.name));
-            return Err(Failure::Usage(anyhow!(
+            refuse!(
                 "{} cannot be given beside --query {}, which holds the whole query; allowed beside \
                  it: {}",
                 others.join(", "),
                 file.display(),
                 allowed.collect::<Vec<_>>().join(", ")
-            )));
+            );
         }
         let bytes = read_file("--query", file)?;
         let refused = |faults: Faults| source.refused(faults.into());
         let mut draft = read_body(&bytes, Self::in_file()).map_err(refused)?;
-        // Flags of the output are stronger than what the file says.
+        // Flags of the output override the file.
         let output = self.flags.values_of(groups::OUTPUT);
         let read = output.read();
         read.map_err(|faults| Source::Flags.refused(faults.into()))?;
@@ -159,10 +149,10 @@ impl<T: Takes> QueryArgs<T> {
         let shapes = shapes.map(|parameter| parameter.name);
         let given: Vec<String> = shapes.chain(self.places()).map(flag).collect();
         if given.len() > 1 {
-            return Err(Failure::Usage(anyhow!(
-                "{} are given; a query has one region (several: --query with include and exclude)",
+            refuse!(
+                "{} are given; a query has one region (for several use --query with include and exclude)",
                 given.join(" and ")
-            )));
+            );
         }
         if let Some(file) = &self.region {
             let bytes = read_file("--region", file)?;
@@ -206,7 +196,7 @@ fn read_file(flag: &str, path: &Path) -> Result<Vec<u8>, Failure> {
     read.map_err(Failure::Usage)
 }
 
-/// What a planned query asks for, in a few words.
+/// The sets of a planned query, in a few words.
 pub(super) fn described(planned: &Planned) -> String {
     let sets = planned.query.sets.iter().zip(&planned.sets);
     let one = |(set, planned): (&Set, &PlannedSet)| {
@@ -227,26 +217,4 @@ pub(super) fn described(planned: &Planned) -> String {
         )
     };
     sets.map(one).collect::<Vec<_>>().join("; ")
-}
-
-impl Config {
-    /// The tables that the settings ask for.
-    pub(super) fn catalog(&self) -> Result<Catalog, CatalogError> {
-        Catalog::preloading(
-            self.tables.preload_bytes,
-            self.tables.embedded,
-            self.tables.folder(),
-        )
-    }
-
-    /// The tables and the fields; settings that lead to none are wrong usage.
-    pub(super) fn tables(&self) -> Result<Catalog, Failure> {
-        let catalog = self
-            .catalog()
-            .map_err(|error| Failure::Usage(error.into()))?;
-        let lists = Lists::load(&self.except).map_err(|error| Failure::Usage(error.into()))?;
-        Ok(catalog
-            .with_fields(self.loaded_fields()?)
-            .with_except(lists))
-    }
 }

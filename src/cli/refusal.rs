@@ -1,15 +1,14 @@
-//! Errors of the service in the words of a command line: flags instead of fields, settings instead
+//! Errors of the service in the words of a command line: flags instead of parameters, settings instead
 //! of a server.
 
 use anyhow::anyhow;
+use strew_encode::Encoding;
+use strew_error::{Error, Fault};
+use strew_query::{Parameter, patterns::PATTERN_PARAMETERS};
 
 use super::{Failure, flags::flag};
-use crate::service::{
-    Encoding, Error, Fault,
-    query::{Parameter, patterns::PATTERN_PARAMETERS},
-};
 
-/// Where a query came from, which decides what its fields are called.
+/// The source of a query, which decides how its parameters are written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Source {
     /// Flags.
@@ -19,7 +18,7 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// A failure that says what is wrong.
+    /// The failure for an error of the service.
     pub(super) fn refused(&self, error: Error) -> Failure {
         let text = match &error {
             Error::Invalid(faults) => self.described(faults.as_slice()),
@@ -74,14 +73,14 @@ impl Source {
         let name = if is_flag { flag(field) } else { field.clone() };
         match (value, &**field) {
             (None, "bbox" | "region") => {
-                "a region is missing: give --bbox, --circle, --polygon, --chunk or --region, or a \
+                "a region is missing: use --bbox, --circle, --polygon, --chunk or --region, or a \
                  whole query by --query"
                     .into()
             }
             (None, "spacing") => {
                 let names = allowed.trim_start_matches("one of ").split(", ");
                 let flags: Vec<String> = names.map(flag).collect();
-                format!("an amount is missing: give one of {}", flags.join(", "))
+                format!("an amount is missing: use one of {}", flags.join(", "))
             }
             (None, _) => format!("{name} is missing; allowed: {allowed}"),
             (Some(value), "format") if Encoding::from_name(value).is_none() => {

@@ -5,7 +5,12 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use bytemuck::cast_slice;
 use rayon::prelude::*;
+use strew_config::Config;
 use strew_core::{F32, F64, Plan, Tile};
+use strew_encode::{Answer, Encoding, Output, Plain, Scalars, write_number};
+use strew_error::Error;
+use strew_plan::Planned;
+use strew_query::{options, parameters::FORMAT};
 
 use super::{
     Failure,
@@ -16,15 +21,9 @@ use super::{
     progress::Progress,
     query::{QueryArgs, described},
     refusal::Source,
+    refuse,
     remote::{self, RemoteArgs},
-};
-use crate::{
-    config::Config,
-    service::{
-        Answer, Encoding, Error, Output, Planned,
-        encode::{Plain, Scalars, write_number},
-        query::{options, parameters::FORMAT},
-    },
+    threads,
 };
 
 /// Flags of `strew sample`: a query, and where to write.
@@ -33,7 +32,7 @@ pub(super) struct Args {
     /// The file to write; - is standard output. It is compressed if its name ends with .gz or .zst.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Say nothing on standard error but errors.
+    /// Print nothing but errors on standard error.
     #[arg(long, short)]
     quiet: bool,
     #[command(flatten)]
@@ -42,9 +41,9 @@ pub(super) struct Args {
     remote: RemoteArgs,
 }
 
-/// The format that an output's name asks for; JSON if it has no ending.
+/// The format of an output by the ending of its name; JSON without one.
 pub(super) fn encoding_of(output: Option<&Path>) -> Result<Encoding, Failure> {
-    // What is compressed is named before that: points.csv.gz.
+    // The format stands before the compression: points.csv.gz.
     let inner = output.and_then(|path| Compression::of(path).map(|(_, inner)| inner));
     let Some(ending) = inner.or(output).and_then(Path::extension) else {
         return Ok(Encoding::Json);
@@ -59,7 +58,7 @@ pub(super) fn encoding_of(output: Option<&Path>) -> Result<Encoding, Failure> {
     };
     encoding.ok_or_else(|| {
         Failure::Usage(anyhow!(
-            "--output ends with .{ending}, which names no format: give --format, or one of the endings \
+            "--output ends with .{ending}, which is no format: use --format, or one of the endings \
              {}, arrows, {}",
             Encoding::ALL.map(Encoding::name).join(", "),
             Encoding::FILES.map(Encoding::name).join(", ")
@@ -97,7 +96,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     })
 }
 
-/// Refuses a format that is no text where it would be written to a terminal.
+/// Refuses a binary format on a terminal.
 fn check_terminal(args: &Args, encoding: Encoding) -> Result<(), Failure> {
     match encoding.is_text() {
         true => Ok(()),
@@ -116,10 +115,10 @@ fn from_server(args: &Args) -> Result<(), Failure> {
     };
     if !encoding.is_streamed() {
         let formats = Encoding::ALL.map(Encoding::name).join(", ");
-        return Err(Failure::Usage(anyhow!(
+        refuse!(
             "{}: no server writes it; allowed with --url: {formats}",
             encoding.name()
-        )));
+        );
     }
     check_terminal(args, encoding)?;
     let mut body = draft.to_body();
@@ -132,8 +131,8 @@ fn from_server(args: &Args) -> Result<(), Failure> {
     remote::write(answer, (count, encoding), output)
 }
 
-/// Writes an answer. What the service refuses is returned as it is, because flags have other names than
-/// parameters.
+/// Writes an answer. Errors of the service are returned as they are, because the caller knows the names of its
+/// flags.
 pub(super) fn write(
     planned: &Planned,
     looks: &Output,
@@ -143,7 +142,9 @@ pub(super) fn write(
     what: &'static str,
 ) -> Result<(), Result<Failure, Error>> {
     let encoding = looks.encoding;
-    let answer = Answer::new(planned, looks, config.limits.block_bytes).map_err(Err)?;
+    let answer = planned
+        .answer(looks, config.limits.block_bytes)
+        .map_err(Err)?;
     let count = u64::try_from(planned.count()).map_err(|_| {
         let count = planned.count();
         Ok(Failure::Usage(anyhow!(
@@ -154,7 +155,7 @@ pub(super) fn write(
         announce(planned, encoding, &answer);
     }
     let failed = |error: anyhow::Error| Ok(Failure::from(error));
-    let pool = workers(config).map_err(failed)?;
+    let pool = threads::pool(config.workers.threads).map_err(failed)?;
     let mut progress = Progress::new(what, count, quiet);
     let written = pool.install(|| match answer.plain().cloned() {
         Some(plain) => packed(&plain, &mut output, &mut progress),
@@ -165,7 +166,7 @@ pub(super) fn write(
     output.finish().map_err(failed)
 }
 
-/// Says on standard error what comes, and what the packed formats have no room for.
+/// Announces the answer on standard error, with the facts for which packed formats have no room.
 fn announce(planned: &Planned, encoding: Encoding, answer: &Answer) {
     let size = answer
         .size()
@@ -195,12 +196,6 @@ fn announce(planned: &Planned, encoding: Encoding, answer: &Answer) {
     }
 }
 
-fn workers(config: &Config) -> anyhow::Result<rayon::ThreadPool> {
-    Ok(rayon::ThreadPoolBuilder::new()
-        .num_threads(config.workers.threads)
-        .build()?)
-}
-
 fn blocks(mut answer: Answer, output: &mut Target, progress: &mut Progress) -> anyhow::Result<()> {
     while let Some(block) = answer.next() {
         output.write(&block?)?;
@@ -212,7 +207,7 @@ fn blocks(mut answer: Answer, output: &mut Target, progress: &mut Progress) -> a
 /// Points of a tile: large enough that a tall band's templates are made once for many rows.
 const TILE_POINTS: usize = 1 << 19;
 
-/// Writes what is nothing but packed points on all threads.
+/// Writes plain packed points on all threads.
 fn packed(plain: &Plain, output: &mut Target, progress: &mut Progress) -> anyhow::Result<()> {
     if let Some(head) = &plain.head {
         output.write(head)?;
@@ -257,7 +252,7 @@ where
     }
 }
 
-/// Tiles with their points, in buffers that are used again.
+/// Tiles with their points, in reused buffers.
 struct Filled<F: Scalars> {
     tiles: Vec<Tile>,
     buffers: Vec<(Vec<F::Item>, usize)>,

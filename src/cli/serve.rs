@@ -8,18 +8,14 @@ use std::{
 use anyhow::{Context as _, anyhow};
 
 use super::{Failure, config};
-use crate::ops::{App, ServeError, exposure, files, shutdown, telemetry};
-
-/// Flags of `strew serve`.
-#[derive(Debug, clap::Args)]
-pub(super) struct Args {
-    #[command(flatten)]
-    settings: config::Served,
-}
+use crate::{
+    ops::{App, ServeError, exposure, files, shutdown, telemetry},
+    rest::Pages,
+};
 
 /// Serves until a signal comes.
-pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let config = args.settings.merged()?;
+pub(super) fn run(args: &config::Served, pages: fn() -> Pages) -> Result<(), Failure> {
+    let config = args.merged()?;
     telemetry::start(&config.log.filter, config.log.format).context("log.filter")?;
     let listen = config.server.listen;
     let admin = config
@@ -54,6 +50,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         tracing::warn!("no table is loaded: every query will be refused");
     }
     let listener = bind(listen)?;
+    let app = app.with_pages(pages());
     let app = match admin {
         Some(address) => app.with_admin(bind(address)?),
         None => app,
@@ -63,12 +60,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         .build()
         .context("cannot start the runtime")?;
     let served = runtime.block_on(serve(app, listener, scheme));
-    // A thread that waits for a file system that hangs must not keep the process.
+    // A thread that waits for a hanging file system must not keep the process.
     runtime.shutdown_timeout(LAST_WORK);
     Ok(served?)
 }
 
-/// The time for what still runs when the daemon has stopped.
+/// The time for work that still runs when the daemon has stopped.
 const LAST_WORK: std::time::Duration = std::time::Duration::from_secs(1);
 
 fn bind(listen: SocketAddr) -> anyhow::Result<TcpListener> {
@@ -83,7 +80,7 @@ fn bind(listen: SocketAddr) -> anyhow::Result<TcpListener> {
 
 async fn serve(app: App, listener: TcpListener, scheme: &str) -> anyhow::Result<()> {
     let address = listener.local_addr().context("no address")?;
-    // Listen for signals before saying that we are ready.
+    // Listen for signals before announcing the address.
     let stop = shutdown::Signals::new().context("cannot listen for signals")?;
     let hangups = shutdown::Hangups::new().context("cannot listen for signals")?;
     announce(scheme, address, app.admin_address()).context("cannot write to standard output")?;
@@ -103,7 +100,7 @@ fn announce(scheme: &str, address: SocketAddr, admin: Option<SocketAddr>) -> std
     if let Some(admin) = admin {
         text += &format!("administrators on {scheme}://{admin}\n");
     }
-    // In one piece, for readers that only take the first line.
+    // In one write, for readers that take only the first line.
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes())?;
     out.flush()

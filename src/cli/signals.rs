@@ -1,4 +1,4 @@
-//! The signals that end a command: SIGINT, SIGTERM and SIGHUP. Files that are not complete go first.
+//! The signals that end a command: SIGINT, SIGTERM and SIGHUP. Incomplete files are removed first.
 
 use std::{
     path::{Path, PathBuf},
@@ -9,12 +9,12 @@ use std::{
     },
 };
 
-/// What a signal finds.
+/// The state that a signal acts on.
 #[derive(Debug, Default)]
 struct State {
-    /// Files that are not complete.
+    /// The incomplete files.
     incomplete: Vec<PathBuf>,
-    /// Raised by the first signal, for work that ends in good order; the second one ends the command.
+    /// Set by the first signal, for work that stops in good order. The second signal ends the command.
     stop: Option<Arc<AtomicBool>>,
 }
 
@@ -27,7 +27,7 @@ fn state() -> MutexGuard<'static, State> {
     STATE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The first signal only raises the returned flag.
+/// Returns a flag that the first signal sets, instead of ending the command.
 pub(super) fn stop_flag() -> Arc<AtomicBool> {
     listen();
     let stop = Arc::new(AtomicBool::new(false));
@@ -52,7 +52,7 @@ impl Incomplete {
         Ok((made, Self(path.to_owned())))
     }
 
-    /// Gives the file its name by `rename`; it stays, unless that fails.
+    /// Renames the file by `rename` and keeps it, unless that fails.
     pub(super) fn complete<E>(self, rename: impl FnOnce(&Path) -> Result<(), E>) -> Result<(), E> {
         let mut state = state();
         rename(&self.0)?;
@@ -71,7 +71,7 @@ impl Drop for Incomplete {
     }
 }
 
-/// Ends the command, or the work that has a flag for that.
+/// Ends the command; the first signal only sets the flag, if there is one.
 fn end(signal: i32) {
     let state = state();
     let is_first = |stop: &Arc<AtomicBool>| !stop.swap(true, Ordering::Relaxed);
@@ -81,11 +81,11 @@ fn end(signal: i32) {
     for path in &state.incomplete {
         let _ = std::fs::remove_file(path);
     }
-    // The state stays locked: no file is made or named any more.
+    // The state stays locked, so no file is made or renamed any more.
     std::process::exit(128 + signal);
 }
 
-/// Starts to listen, once. Without a listener signals end the process as ever.
+/// Starts the listener, once. Without it signals end the process as usual.
 fn listen() {
     static LISTENING: Once = Once::new();
     LISTENING.call_once(|| {
@@ -128,8 +128,8 @@ async fn hear(ready: mpsc::Sender<()>) {
     std::future::pending::<()>().await;
 }
 
-/// Whether the parent has this process ignore a signal, as `nohup` does and shells do for what runs in
-/// the background. Where that is unknown, hang-ups are taken for ignored.
+/// Whether the parent made this process ignore a signal, as `nohup` does, and shells for background jobs.
+/// Where that is unknown, hang-ups count as ignored.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

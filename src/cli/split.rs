@@ -1,13 +1,10 @@
-//! `strew split`: a query in parts, each a query for `strew sample --query -`.
+//! `strew split`: splits a query into parts, each a query for `strew sample --query -`.
 
 use serde::Serialize;
 use serde_json::{Map, Value};
+use strew_query::{Token, groups, parts};
 
 use super::{Failure, config, flags::Parted, output, query::QueryArgs, refusal::Source};
-use crate::service::{
-    Token,
-    query::{groups, parts},
-};
 
 /// Flags of `strew split`: those of `strew sample`, and the number of parts.
 #[derive(Debug, clap::Args)]

@@ -7,26 +7,23 @@ use std::{
 };
 
 use anyhow::{Context as _, anyhow};
+use strew_catalog::field::{Document, NamedField};
 use strew_core::{
     Raster, Region,
     field::{Edges, FieldSpec, Pixels},
 };
+use strew_encode::preview::MOST_SIZE;
+use strew_query::{Draft, Value, Values, groups, parameters};
+use strew_raster::{Image, Limits};
 
 use super::{
-    Failure, config,
+    Failure, config, must_be_within,
     output::Output as Target,
     refusal::Source,
+    refuse,
     sample::{encoding_of, write},
 };
-use crate::{
-    raster::{Image, Limits},
-    service::{
-        Draft, Planned,
-        encode::preview::MOST_SIZE,
-        field::{Document, NamedField},
-        query::{Value, Values, groups, parameters},
-    },
-};
+use crate::cli::load::Load as _;
 
 /// Flags of `strew stipple`.
 #[derive(Debug, clap::Args)]
@@ -37,18 +34,18 @@ pub(super) struct Args {
     /// The number of dots, exactly.
     #[arg(long, short = 'n', value_name = "NUMBER")]
     points: u64,
-    /// The file to write; - is standard output. Its ending is the format: svg, png, csv, and all others of
+    /// The file to write; - is standard output. Its ending is the format: svg, png, csv, or another one of
     /// `strew sample`. Coordinates are pixels of the picture, x to the right and y upward.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// The format, if the ending does not say it.
+    /// The format, if the file's ending is not it.
     #[arg(long, value_name = "NAME")]
     format: Option<String>,
-    /// Put dots where the picture is light instead of where it is dark.
+    /// Put dots where the picture is light, not where it is dark.
     #[arg(long)]
     invert: bool,
-    /// The density is darkness to this power: above 1 for more contrast, below 1 for less, 0.01 to 100. At 1
-    /// the dots have the darkness of the picture, in linear light.
+    /// The exponent of darkness for the density, 0.01 to 100: above 1 for more contrast, below 1 for less. At 1
+    /// the dots are as dark as the picture, in linear light.
     #[arg(long, value_name = "NUMBER", default_value_t = 1.0)]
     gamma: f64,
     /// The diameter of dots in svg and png, 0.01 to 10, in spacings of dots where they are densest.
@@ -57,13 +54,13 @@ pub(super) struct Args {
     /// The longer side of svg and png in pixels [default: that of the picture, 512 to 4096]
     #[arg(long, value_name = "NUMBER")]
     size: Option<u32>,
-    /// Another seed places other dots.
+    /// The seed. Another seed places other dots.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
     /// The noise profile of the dots.
     #[arg(long, value_name = "NAME", default_value = "blue")]
     profile: String,
-    /// Say nothing on standard error but errors.
+    /// Print nothing but errors on standard error.
     #[arg(long, short)]
     quiet: bool,
     #[command(flatten)]
@@ -76,19 +73,10 @@ const PICTURE: &str = "picture";
 /// Writes the dots.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let config = args.settings.merged(config::Uses::POINTS)?;
-    for (flag, value, [least, most]) in [
-        ("--gamma", args.gamma, [0.01, 100.0]),
-        ("--dot", args.dot, [0.01, 10.0]),
-    ] {
-        if !(least..=most).contains(&value) {
-            let allowed = format!("a number from {least} to {most}");
-            return Err(Failure::Usage(anyhow!(
-                "{flag} {value}: out of range; allowed: {allowed}"
-            )));
-        }
-    }
+    must_be_within("--gamma", args.gamma, [0.01, 100.0])?;
+    must_be_within("--dot", args.dot, [0.01, 10.0])?;
     let encoding = encoding_of(args.output.as_deref())?;
-    // Before the work: what cannot be written need not be made.
+    // Before the work, which is in vain without an output.
     let output = Target::open(args.output.as_deref())?;
     let image = read(&args.image)?;
     let [width, height] = image.size;
@@ -108,11 +96,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let longer = u32::try_from(width.max(height)).unwrap_or(u32::MAX);
     let size = args.size.unwrap_or_else(|| longer.clamp(512, MOST_SIZE));
-    let checked = Draft::of(values).check(&catalog, config.limits.max_vertices);
-    let planned = checked.and_then(|(query, options)| {
-        let planned = Planned::at_once(query, &config.limits)?;
-        Ok((planned, options))
-    });
+    let planned = config.planned(&Draft::of(values), &catalog.into());
     let (planned, options) = planned.map_err(|error| refused(args, error))?;
     let encoding = options.encoding.unwrap_or(encoding);
     let looks = options.output(encoding).map(|mut looks| {
@@ -130,7 +114,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Errors of the query in the words of this command.
-fn refused(args: &Args, error: crate::service::Error) -> Failure {
+fn refused(args: &Args, error: strew_error::Error) -> Failure {
     if let Some(fault) = error.faults().iter().find(|fault| fault.field == "count") {
         let (detail, allowed) = (&fault.detail, &fault.allowed);
         let text = format!("--points {}: {detail}; allowed: {allowed}", args.points);
@@ -163,10 +147,10 @@ fn darkness(image: &Image, args: &Args) -> Result<FieldSpec, Failure> {
             true => ("black", "without --invert"),
             false => ("white", "with --invert"),
         };
-        return Err(Failure::Usage(anyhow!(
-            "the picture {} is all {is}: no dot has a place; allowed: another picture, or {other}",
+        refuse!(
+            "the picture {} is all {is}, so there is no place for dots; allowed: another picture, or {other}",
             args.image.display()
-        )));
+        );
     }
     let made = || {
         let region = Region::new([0.0, 0.0], [width as f64, height as f64])?;

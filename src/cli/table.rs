@@ -1,4 +1,4 @@
-//! `strew table`: what a table is, whether a file is whole, and its vectors as text.
+//! `strew table`: describes tables, checks their files, writes and reads their vectors as text.
 
 use std::{
     fmt::Write as _,
@@ -7,32 +7,23 @@ use std::{
 
 use anyhow::{Context as _, anyhow};
 use clap::Subcommand;
+use strew_catalog::{Entry, Source};
 use strew_core::{Alpha, Map, Table};
 
-use super::{
-    Failure, config,
-    output::{self, Output},
-};
-use crate::service::catalog::{Entry, Source};
+use super::{Failure, config, output, refuse};
+use crate::cli::load::Load as _;
 
-/// What to do with tables.
+/// Commands about tables.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Tell what a table is, how it was made and what was measured on it.
-    Show(Show),
+    /// Describe a table: its map, its making and its measurements.
+    Show(Which),
     /// Check table files: every byte of them.
     Verify(Verify),
     /// Write a table's vectors.
     Export(Export),
-    /// Make a table of vectors in the published text form.
+    /// Make a table from vectors in the published text form.
     Import(Import),
-}
-
-/// Flags of `strew table show`.
-#[derive(Debug, clap::Args)]
-pub(super) struct Show {
-    #[command(flatten)]
-    which: Which,
 }
 
 /// Flags of `strew table verify`.
@@ -65,10 +56,10 @@ pub(super) struct Import {
     text: PathBuf,
     /// The number alpha.
     #[arg(long, allow_hyphen_values = true)]
-    alpha: Option<String>,
+    alpha: Option<Alpha>,
     /// t/r of the published tables, such as 191861/110771, instead of alpha = 1 + t/(t + r).
-    #[arg(long, value_name = "T/R")]
-    t_over_r: Option<String>,
+    #[arg(long, value_name = "T/R", value_parser = of_published)]
+    t_over_r: Option<Alpha>,
     /// The half-width R of the map in grid units.
     #[arg(long, default_value_t = 49)]
     radius: u32,
@@ -78,33 +69,27 @@ pub(super) struct Import {
     /// The file to write.
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
-    /// Replace a file that is there.
+    /// Replace an existing file.
     #[arg(long)]
     force: bool,
 }
 
-impl Import {
-    fn alpha(&self) -> Result<Alpha, String> {
-        if let Some(text) = &self.t_over_r {
-            let wrong = || format!("--t-over-r is `{text}`; allowed: two positive integers t/r");
-            let (t, r) = text.split_once('/').ok_or_else(wrong)?;
-            let (t, r): (u64, u64) = t.parse().ok().zip(r.parse().ok()).ok_or_else(wrong)?;
-            let q = t
-                .checked_add(r)
-                .filter(|_| t > 0 && r > 0)
-                .ok_or_else(wrong)?;
-            let p = q.checked_add(t).ok_or_else(wrong)?;
-            return Alpha::from_fraction(p, q).map_err(|error| format!("--t-over-r: {error}"));
-        }
-        let text = self.alpha.as_deref().unwrap_or_default();
-        text.parse().map_err(|error| format!("--alpha: {error}"))
-    }
+/// α of the published t/r.
+fn of_published(text: &str) -> Result<Alpha, String> {
+    let read = || {
+        let (t, r) = text.split_once('/')?;
+        let (t, r): (u64, u64) = (t.parse().ok()?, r.parse().ok()?);
+        let q = t.checked_add(r).filter(|_| t > 0 && r > 0)?;
+        Some((q.checked_add(t)?, q))
+    };
+    let (p, q) = read().ok_or("allowed: two positive integers t/r")?;
+    Alpha::from_fraction(p, q).map_err(|error| error.to_string())
 }
 
-/// A table: a file, or one that is loaded.
+/// A table: a file, or a loaded one.
 #[derive(Debug, clap::Args)]
-struct Which {
-    /// A table file; without one the loaded tables are meant.
+pub(super) struct Which {
+    /// A table file [default: the loaded tables]
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// Only loaded tables of this profile.
@@ -112,7 +97,7 @@ struct Which {
     profile: Option<String>,
     /// Only loaded tables of this alpha.
     #[arg(long, conflicts_with = "file", allow_hyphen_values = true)]
-    alpha: Option<String>,
+    alpha: Option<Alpha>,
     /// Only loaded tables with a map of this size: s, m or l.
     #[arg(long, conflicts_with = "file")]
     map: Option<strew_core::map::Size>,
@@ -131,28 +116,19 @@ pub(super) fn run(command: &Command) -> Result<(), Failure> {
 }
 
 impl Which {
-    /// The tables meant, with where each comes from; at least one.
+    /// The chosen tables, each with its source; at least one.
     fn tables(&self) -> Result<Vec<(String, Table)>, Failure> {
         if let Some(file) = &self.file {
             let table = read(file).map_err(Failure::Other)?;
             return Ok(vec![(file.display().to_string(), table)]);
         }
         let config = self.settings.merged(config::Uses::LOADED)?;
-        let catalog = config
-            .catalog()
-            .map_err(|error| Failure::Usage(error.into()))?;
-        let alpha = match &self.alpha {
-            Some(text) => {
-                let parsed = text.parse::<strew_core::Alpha>();
-                Some(parsed.map_err(|error| Failure::Usage(anyhow!("--alpha: {error}")))?)
-            }
-            None => None,
-        };
+        let catalog = config.catalog()?;
         let meant = |entry: &Entry| {
             self.profile
                 .as_ref()
                 .is_none_or(|profile| **profile == *entry.key.profile)
-                && alpha.is_none_or(|alpha| alpha == entry.key.alpha)
+                && self.alpha.is_none_or(|alpha| alpha == entry.key.alpha)
                 && self.map.is_none_or(|size| size == entry.key.size)
         };
         let named = |entry: &Entry| {
@@ -161,9 +137,7 @@ impl Which {
                 Source::File(path) => path.display().to_string(),
                 Source::Memory(_) | Source::Pattern => entry.source.to_string(),
             };
-            let table = entry
-                .table()
-                .map_err(|error| Failure::Other(error.into()))?;
+            let table = entry.table().map_err(Failure::other)?;
             Ok((place, table))
         };
         let tables = catalog
@@ -176,10 +150,7 @@ impl Which {
                 .entries()
                 .map(|entry| entry.key.to_string())
                 .collect();
-            return Err(Failure::Usage(anyhow!(
-                "no such table is loaded; loaded are: {}",
-                loaded.join("; ")
-            )));
+            refuse!("no such table is loaded; loaded are: {}", loaded.join("; "));
         }
         Ok(tables)
     }
@@ -190,17 +161,15 @@ fn read(file: &Path) -> anyhow::Result<Table> {
     Ok(Entry::from_file(file.to_owned())?.table()?)
 }
 
-fn show(args: &Show) -> Result<(), Failure> {
+fn show(which: &Which) -> Result<(), Failure> {
     let mut text = String::new();
-    for (i, (place, table)) in args.which.tables()?.iter().enumerate() {
+    for (i, (place, table)) in which.tables()?.iter().enumerate() {
         if i > 0 {
             text.push('\n');
         }
         describe(&mut text, place, table).context("cannot format")?;
     }
-    let mut output = Output::open(None)?;
-    output.write(text.as_bytes())?;
-    Ok(output.finish()?)
+    output::print(&text)
 }
 
 fn describe(text: &mut String, place: &str, table: &Table) -> std::fmt::Result {
@@ -294,12 +263,11 @@ fn verify(args: &Verify) -> Result<(), Failure> {
 fn export(args: &Export) -> Result<(), Failure> {
     let tables = args.which.tables()?;
     let [(_, table)] = &tables[..] else {
-        return Err(Failure::Usage(anyhow!(
+        refuse!(
             "{} tables are loaded: choose one with --profile, --alpha and --map, or name a file",
             tables.len()
-        )));
+        );
     };
-    let mut output = Output::open(args.output.as_deref())?;
     let bytes = if args.text {
         let mut text = String::new();
         table.write_text(&mut text).context("cannot format")?;
@@ -307,21 +275,16 @@ fn export(args: &Export) -> Result<(), Failure> {
     } else {
         table.to_bytes()
     };
-    output.write(&bytes)?;
-    Ok(output.finish()?)
+    output::write(args.output.as_deref(), &bytes)
 }
 
 fn import(args: &Import) -> Result<(), Failure> {
-    let usage = |problem: String| Failure::Usage(anyhow!(problem));
-    if args.output.exists() && !args.force {
-        let problem = format!(
-            "{} is there already; --force replaces it",
-            args.output.display()
-        );
-        return Err(usage(problem));
-    }
-    let alpha = args.alpha().map_err(usage)?;
-    let map = Map::new(alpha, args.radius).map_err(|error| usage(format!("--radius: {error}")))?;
+    output::must_be_new(&args.output, args.force)?;
+    let Some(alpha) = args.alpha.or(args.t_over_r) else {
+        refuse!("--alpha or --t-over-r is missing");
+    };
+    let map = Map::new(alpha, args.radius)
+        .map_err(|error| Failure::Usage(anyhow!("--radius: {error}")))?;
     let text = std::fs::read_to_string(&args.text)
         .with_context(|| format!("cannot read {}", args.text.display()))?;
     let table = Table::from_text(map, &args.profile, &text)

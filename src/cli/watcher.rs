@@ -1,4 +1,4 @@
-//! Watching a job of the forge: shows how far it is, passes on an interrupt, keeps checkpoints.
+//! Watches a job of the forge: shows its progress, passes on interrupts, writes checkpoints.
 
 use std::{
     path::{Path, PathBuf},
@@ -13,7 +13,7 @@ use strew_forge::{Checkpoint, Stage, Watch};
 
 use super::{progress::Progress, signals};
 
-/// Shows progress on standard error and keeps the last checkpoint in a file.
+/// Shows progress on standard error and keeps the latest checkpoint in a file.
 pub(super) struct Watcher {
     interrupted: Arc<AtomicBool>,
     quiet: bool,
@@ -23,13 +23,13 @@ pub(super) struct Watcher {
     kept: Mutex<Kept>,
 }
 
-/// What is in the file.
+/// The state of the checkpoint's file.
 struct Kept {
     /// When it was written, or the work began.
     at: Instant,
-    /// Whether it holds where the work stands.
+    /// Whether it holds the latest checkpoint.
     good: bool,
-    /// Whether a warning said that it cannot be written.
+    /// Whether the user was warned that it cannot be written.
     warned: bool,
 }
 
@@ -51,7 +51,7 @@ impl Watcher {
         }
     }
 
-    /// The work is over: the bar goes away.
+    /// Removes the bar at the end of the work.
     pub(super) fn finish(&self) {
         let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, progress)) = shown.take() {
@@ -59,7 +59,7 @@ impl Watcher {
         }
     }
 
-    /// Whether the file holds where the work stands.
+    /// Whether the file holds the latest checkpoint.
     pub(super) fn has_kept(&self) -> bool {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         kept.good

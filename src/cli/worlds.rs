@@ -1,45 +1,38 @@
-//! `strew worlds`: the worlds of the settings, and what is wrong with them.
+//! `strew worlds`: lists and checks the worlds of the settings.
 
 use anyhow::anyhow;
+use strew_config::Config;
+use strew_encode::Encoding;
+use strew_error::Error;
+use strew_plan::Planned;
+use strew_query::{
+    Assets, Draft, World, Worlds,
+    world::{by_layer, with_path},
+};
 
 use super::{Failure, config, output};
-use crate::{
-    config::Config,
-    service::{
-        Answer, Catalog, Draft, Encoding, Error, Planned, World, Worlds,
-        world::{by_layer, with_path},
-    },
-};
+use crate::cli::load::Load as _;
 
 /// The commands about worlds.
 #[derive(Debug, clap::Subcommand)]
 pub(super) enum Command {
-    /// List the worlds that are loaded: names, digests, layers.
-    List(Args),
-    /// Check every world against the tables and fields that are loaded.
-    Check(Args),
-}
-
-/// Flags of both.
-#[derive(Debug, clap::Args)]
-pub(super) struct Args {
-    #[command(flatten)]
-    settings: config::Args,
+    /// List the loaded worlds: names, digests, layers.
+    List(config::Args),
+    /// Check every world against the loaded tables and fields.
+    Check(config::Args),
 }
 
 /// Runs one of them.
 pub(super) fn run(command: &Command) -> Result<(), Failure> {
     match command {
-        Command::List(args) => list(&args.settings.merged(config::Uses::QUERIES)?),
-        Command::Check(args) => check(&args.settings.merged(config::Uses::QUERIES)?),
+        Command::List(args) => list(&args.merged(config::Uses::QUERIES)?),
+        Command::Check(args) => check(&args.merged(config::Uses::QUERIES)?),
     }
 }
 
 fn list(config: &Config) -> Result<(), Failure> {
-    let catalog = config.tables()?;
-    let worlds = Worlds::load(&config.worlds, &catalog, config.limits.max_vertices)
-        .map_err(|error| Failure::Usage(error.into()))?;
-    let lines: Vec<String> = worlds.iter().map(|world| line(world)).collect();
+    let catalog = config.with_worlds(config.tables()?)?;
+    let lines: Vec<String> = catalog.worlds.iter().map(|world| line(world)).collect();
     output::print(&lines.concat())
 }
 
@@ -54,21 +47,17 @@ fn line(world: &World) -> String {
     format!("{}\n", line.trim_end())
 }
 
-/// Prints those that are in order, and fails with what is wrong with the others.
+/// Prints the valid worlds, and fails with the faults of the others.
 fn check(config: &Config) -> Result<(), Failure> {
-    let catalog = config.tables()?;
-    let each = Worlds::each(&config.worlds, &catalog, config.limits.max_vertices)
-        .map_err(|error| Failure::Usage(error.into()))?;
+    let assets = Assets::from(config.tables()?);
+    let each = Worlds::each(&config.worlds, &assets, config.limits.max_vertices)
+        .map_err(Failure::usage)?;
     let (mut good, mut wrong) = (String::new(), vec![]);
     for (found, world) in each {
         let checked = world.map_err(|error| error.to_string()).and_then(|world| {
-            let draft = world.draft();
-            let planned = (draft.clone()).and_then(|draft| plan(&draft, &catalog, config));
-            let named = |error| match &draft {
-                Ok(draft) => with_path(by_layer(error, draft), &found.name),
-                Err(_) => error.to_string(),
-            };
-            planned.map_err(named).map(|()| world)
+            let named = |error| with_path(by_layer(error, &world.draft), &found.name);
+            plan(&world.draft, &assets, config).map_err(named)?;
+            Ok(world)
         });
         match checked {
             Ok(world) => good += &line(&world),
@@ -82,16 +71,18 @@ fn check(config: &Config) -> Result<(), Failure> {
     }
 }
 
-/// Plans a chunk of a world, which shows what only its tables know, distances that cannot be kept, and what only its
-/// points show: a format that has no room for their attributes.
-fn plan(draft: &Draft, catalog: &Catalog, config: &Config) -> Result<(), Error> {
+/// Plans a chunk of a world, which finds faults that only its tables show (distances that cannot be kept) or only its
+/// points (a format without room for their attributes).
+fn plan(draft: &Draft, assets: &Assets, config: &Config) -> Result<(), Error> {
     let draft = draft.tried("bbox=0,0,64,64");
-    let (query, options) = draft.check(catalog, config.limits.max_vertices)?;
+    let (query, options) = draft.check(assets, config.limits.max_vertices)?;
     let encoding = options.encoding.unwrap_or(Encoding::Json);
     let output = options.output(encoding)?;
     match Planned::at_once(query, &config.limits) {
-        Ok(planned) => Answer::new(&planned, &output, config.limits.block_bytes).map(|_| ()),
-        // It depends on the region, too.
+        Ok(planned) => planned
+            .answer(&output, config.limits.block_bytes)
+            .map(|_| ()),
+        // These depend on the region, too.
         Err(Error::TooManyPoints { .. } | Error::TooManyRows { .. }) => Ok(()),
         Err(error) => Err(error),
     }

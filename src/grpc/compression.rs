@@ -1,21 +1,21 @@
-//! Which calls are answered compressed: those whose client asks for it.
+//! Compression of answers to calls whose client requests it.
 //!
 //! Many libraries list gzip as accepted in every call, whether their user wants it or not, and
 //! compressing a stream of points costs more than making it. So gzip goes out to those who send
 //! gzip themselves, which is how libraries let a user ask (`compression=Gzip`, `UseCompressor`),
-//! and zstd, which nobody lists unasked, to all who accept it.
+//! and zstd, which clients list only on purpose, to all that accept it.
 
 use http::{HeaderMap, HeaderValue};
 use tonic::{codec::CompressionEncoding, metadata::MetadataMap};
 
-/// What is read and written.
+/// The codings that are read and written.
 pub(super) const COMPRESSIONS: [CompressionEncoding; 2] =
     [CompressionEncoding::Zstd, CompressionEncoding::Gzip];
 
 const ACCEPTED: &str = "grpc-accept-encoding";
 const SENT: &str = "grpc-encoding";
 
-/// Leaves of what a call accepts what it asks for.
+/// Removes codings that a call accepts but does not request.
 pub(super) fn settle(headers: &mut HeaderMap) {
     let text = |name| headers.get(name).and_then(|value| value.to_str().ok());
     let sends_gzip = text(SENT) == Some("gzip");

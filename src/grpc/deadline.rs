@@ -11,7 +11,7 @@ use super::status;
 
 const HEADER: &str = "grpc-timeout";
 
-/// What a timeout may be.
+/// The form of a timeout.
 const ALLOWED: &str = "1 to 8 digits and a unit: H, M, S, m, u or n";
 
 /// When a call must be over.

@@ -1,4 +1,4 @@
-//! What goes past tonic in both directions: messages that are decoded already, and frames that are made already.
+//! The path around tonic in both directions: messages that are decoded already, and frames that are made already.
 
 use std::{
     convert::Infallible,
@@ -8,10 +8,10 @@ use std::{
 };
 
 use http::{Request, Response};
+use strew_service as service;
 use tonic::{body::Body, codegen::Service, server::NamedService};
 
 use super::{frames::Frames, message};
-use crate::service;
 
 /// A service whose requests come with their message decoded (`message`), and whose answers may carry
 /// [`Frames`]: then these are the body.
@@ -45,7 +45,7 @@ where
         // Generated services are always ready.
         let Self { mut inner, service } = self.clone();
         Box::pin(async move {
-            // What the message takes is held until the head of the answer.
+            // The memory of the message is held until the head of the answer.
             let (request, _held) = match message::read(&service, request).await {
                 Ok(read) => read,
                 Err(refused) => return Ok(refused.into_http()),

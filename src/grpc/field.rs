@@ -2,14 +2,14 @@
 
 use base64::{Engine as _, prelude::BASE64_STANDARD};
 use bytes::Bytes;
-
-use super::proto::{self, Field, FieldBox, FieldEdges, FieldFilter, FieldPair, field::Shape};
-use crate::service::field::{
+use strew_catalog::field::{
     Document, NamedField,
     document::{
         Curve, Distance, EdgesName, FilterName, Height, Noise, Parts, Pixels, Radial, Ramp, Slope,
     },
 };
+
+use super::proto::{self, Field, FieldBox, FieldEdges, FieldFilter, FieldPair, field::Shape};
 
 /// The document of a message. One without a shape is a field without a name, of which there is none.
 pub(super) fn document(field: &Field) -> Document {

@@ -1,10 +1,10 @@
 //! Tables made on demand, as messages.
 
-use crate::service::forging::{JobStatus, Request, State};
+use strew_service::forging::{JobStatus, Request, State};
 
 use super::proto::{ForgeTableRequest, ForgeTableResponse, Job, JobState};
 
-/// What a request wants to have made.
+/// The table that a request wants made.
 pub(super) fn request(request: ForgeTableRequest) -> Request {
     Request {
         profile: request.profile,
@@ -14,7 +14,7 @@ pub(super) fn request(request: ForgeTableRequest) -> Request {
     }
 }
 
-/// How a job stands.
+/// The state of a job.
 pub(super) fn response(status: JobStatus) -> ForgeTableResponse {
     let state = match status.state {
         State::Queued => JobState::Queued,

@@ -8,7 +8,7 @@
 use std::{
     fmt,
     pin::Pin,
-    sync::{Arc, Mutex, PoisonError},
+    sync::Arc,
     task::{Context, Poll},
 };
 
@@ -16,10 +16,11 @@ use bytes::Bytes;
 use futures_util::Stream;
 use http::HeaderMap;
 use http_body::Frame;
+use parking_lot::Mutex;
 use prost::Message;
 use tonic::{Status, body::Body};
 
-/// What stands before a message on the wire: whether it is compressed, and its length.
+/// The length of the prefix of a message on the wire: whether it is compressed, and its length.
 pub(super) const PREFIX: usize = 5;
 
 /// The prefix of a message that is not compressed. (Messages are about as long as a block, which
@@ -51,7 +52,7 @@ impl Frames {
 
     /// The body of these frames, which can be taken once.
     pub(super) fn body(&self) -> Option<Body> {
-        let frames = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let frames = self.0.lock().take();
         Some(Body::new(Framed(Some(frames?))))
     }
 }

@@ -1,18 +1,18 @@
 //! Threshold masks as messages.
 
-use super::proto::{GetMaskRequest, GetMaskResponse};
-use crate::{
-    access::Caller,
-    service::{
-        Error, Service,
-        mask::{Drawn, MaskQuery},
-        query::{
-            Parameter, Value, Values, groups,
-            parameters::{ALPHA, MAP, PROFILE, TABLE},
-            patterns::{BITS, MASK_SEED, MASK_SIZE},
-        },
-    },
+use strew_access::Caller;
+use strew_error::Error;
+use strew_query::{
+    Parameter, Value, Values, groups,
+    parameters::{ALPHA, MAP, PROFILE, TABLE},
+    patterns::{BITS, MASK_SEED, MASK_SIZE},
 };
+use strew_service::{
+    Service,
+    mask::{Drawn, MaskQuery},
+};
+
+use super::proto::{GetMaskRequest, GetMaskResponse};
 
 /// The mask that a request describes.
 pub(super) async fn mask(

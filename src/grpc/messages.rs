@@ -1,4 +1,4 @@
-//! A planned query as messages: a header, blocks, a summary, made when they are asked for.
+//! A planned query as messages: a header, blocks, a summary, made on demand.
 
 use std::sync::Arc;
 
@@ -8,6 +8,13 @@ use prost::{
     encoding::{WireType, encode_key, encode_varint},
 };
 use strew_core::{ALGORITHM_VERSION, Cursor, F32, F64};
+use strew_encode as encode;
+use strew_encode::{
+    Batch, Coordinates, Encoding as Format, Output, Packed, Rows, Values, id_text, schema::Kind,
+};
+use strew_error::Error;
+use strew_plan::Planned;
+use strew_service::Record;
 
 use super::{
     frames,
@@ -16,10 +23,6 @@ use super::{
         StreamPointsResponse, StreamSummary, stream_points_response::Message,
     },
     resolved,
-};
-use crate::service::{
-    Encoding as Format, Error, Output, Planned, Record,
-    encode::{self, Batch, Coordinates, Packed, Rows, Values, id_text, schema::Kind},
 };
 
 /// The messages of an answer.
@@ -62,7 +65,7 @@ impl Messages {
             ..Output::new(format)
         };
         let parts = planned.parts()?;
-        let coordinates = Coordinates::of(&output, &parts);
+        let coordinates = Coordinates::of(&output, || encode::Part::corner(&parts));
         let rows = Rows::new(parts, coordinates);
         let heads: Vec<ColumnHead> = own_columns(&rows).iter().map(head).collect();
         let header = StreamHeader {
@@ -112,53 +115,55 @@ impl Messages {
         })
     }
 
-    fn block(&mut self) -> Option<PointBlock> {
-        let mut rest = PointBlock::default();
+    /// The next block of packed coordinates, between what `around` makes of its size and its other fields.
+    fn packed(
+        &mut self,
+        mut around: impl FnMut(usize, PointBlock) -> [Vec<u8>; 2],
+    ) -> Option<Bytes> {
         let (planned, made) = (&self.planned, noting(&self.record));
-        let data = match &mut self.blocks {
-            Blocks::F32(packed) => packed.next_between(|bytes, blocks| {
-                made(bytes / 8);
-                rest = after(planned, 0, blocks.cursor());
-                Default::default()
-            })?,
-            Blocks::F64(packed) => packed.next_between(|bytes, blocks| {
-                made(bytes / 16);
-                rest = after(planned, 0, blocks.cursor());
-                Default::default()
-            })?,
-            Blocks::Rows(table) => {
-                let (points, block) = table.next()?;
-                made(points);
-                let (set, cursor) = table.rows.cursor().unzip();
-                let PointBlock { layer, cursor, .. } =
-                    after(planned, set.unwrap_or_default(), cursor);
-                return Some(PointBlock {
-                    layer,
-                    cursor,
-                    ..block
-                });
-            }
+        let mut noted = |bytes, point, cursor| {
+            made(bytes / point);
+            around(bytes, after(planned, 0, cursor))
         };
-        Some(PointBlock { data, ..rest })
+        match &mut self.blocks {
+            Blocks::F32(packed) => {
+                packed.next_between(|bytes, blocks| noted(bytes, 8, blocks.cursor()))
+            }
+            Blocks::F64(packed) => {
+                packed.next_between(|bytes, blocks| noted(bytes, 16, blocks.cursor()))
+            }
+            Blocks::Rows(_) => None,
+        }
+    }
+
+    fn block(&mut self) -> Option<PointBlock> {
+        let Blocks::Rows(table) = &mut self.blocks else {
+            let mut rest = PointBlock::default();
+            let data = self.packed(|_, block| {
+                rest = block;
+                Default::default()
+            })?;
+            return Some(PointBlock { data, ..rest });
+        };
+        let (points, block) = table.next()?;
+        noting(&self.record)(points);
+        let (set, cursor) = table.rows.cursor().unzip();
+        let PointBlock { layer, cursor, .. } =
+            after(&self.planned, set.unwrap_or_default(), cursor);
+        Some(PointBlock {
+            layer,
+            cursor,
+            ..block
+        })
     }
 
     /// The next message framed: a block of packed coordinates in the buffer that it was made in.
     fn frame(&mut self) -> Option<Bytes> {
-        let (planned, made) = (&self.planned, noting(&self.record));
-        let framed = match &mut self.blocks {
-            _ if self.header.is_some() || self.over => None,
-            Blocks::F32(packed) => packed.next_between(|bytes, blocks| {
-                made(bytes / 8);
-                around(bytes, &after(planned, 0, blocks.cursor()))
-            }),
-            Blocks::F64(packed) => packed.next_between(|bytes, blocks| {
-                made(bytes / 16);
-                around(bytes, &after(planned, 0, blocks.cursor()))
-            }),
-            Blocks::Rows(_) => None,
-        };
-        drop(made);
-        framed.or_else(|| Some(frames::framed(&self.message()?)))
+        let is_block = self.header.is_none() && !self.over;
+        let framed = is_block.then(|| self.packed(|bytes, rest| around(bytes, &rest)));
+        framed
+            .flatten()
+            .or_else(|| Some(frames::framed(&self.message()?)))
     }
 }
 
@@ -171,7 +176,7 @@ fn noting(record: &Option<Arc<Record>>) -> impl Fn(usize) + use<'_> {
     }
 }
 
-/// What stands in a block besides its points: its layer and the place after it.
+/// A block without its points: its layer and the place after it.
 fn after(planned: &Planned, set: usize, cursor: Option<Cursor>) -> PointBlock {
     let token = cursor.and_then(|cursor| planned.token(set, cursor));
     PointBlock {
@@ -185,7 +190,7 @@ fn after(planned: &Planned, set: usize, cursor: Option<Cursor>) -> PointBlock {
 /// longest cursor, 174 digits.
 const ROOM: [usize; 2] = [32, 192];
 
-/// What stands around the data of a block in a message of its own: prefix and tags, and the rest of
+/// The bytes around the data of a block in a message of its own: prefix and tags, and the rest of
 /// its fields, all of which come after the data.
 fn around(data: usize, rest: &PointBlock) -> [Vec<u8>; 2] {
     const BLOCK: u32 = 2;
@@ -212,7 +217,7 @@ impl Iterator for Messages {
     }
 }
 
-/// The same messages, framed.
+/// The messages as frames.
 #[derive(Debug)]
 pub(super) struct Framed(pub(super) Messages);
 
@@ -246,7 +251,7 @@ struct Table {
     rows: Rows,
     heads: Vec<ColumnHead>,
     encoding: Encoding,
-    /// How many points a block has.
+    /// The number of points of a block.
     length: usize,
 }
 

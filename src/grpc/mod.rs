@@ -30,11 +30,12 @@ use http::{HeaderMap, HeaderValue};
 use tonic::{Status, server::NamedService, service::Routes};
 use tonic_health::server::HealthReporter;
 
-use crate::service::{Error, Interrupted, Service};
 pub use deadline::Deadline;
 use direct::Direct;
 use points::Points;
 use proto::point_service_server::PointServiceServer;
+use strew_error::Error;
+use strew_service::{Interrupted, Service};
 
 /// The contract as reflection serves it.
 const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/strew_descriptors.bin"));
@@ -142,7 +143,7 @@ impl Health {
     }
 }
 
-/// What a call asks of its answer, put right before the call: how it may be compressed, and by when
+/// The wishes of a call for its answer, corrected before the call: how it may be compressed, and by when
 /// it must be over.
 ///
 /// # Errors
@@ -209,7 +210,7 @@ pub fn improve(headers: &mut HeaderMap) {
     headers.insert(GRPC_STATUS, HeaderValue::from_static(better));
 }
 
-/// How the libraries begin to tell that bytes are not a message.
+/// Parts of the texts with which the libraries report that bytes are not a message.
 const MALFORMED: [&str; 4] = [
     "failed%20to%20decode%20Protobuf",
     "protocol%20error:%20received%20message",

@@ -3,7 +3,22 @@
 use std::{pin::Pin, sync::Arc};
 
 use futures_util::{Stream, TryStreamExt as _};
+use strew_access::Caller;
 use strew_core::server::Stop;
+use strew_error::{Error, Fault};
+use strew_query::{
+    Parameter, Value, Values, groups,
+    patterns::{
+        ALPHA, BLOCK, CURSOR, DISTANCE, GRID, LIMIT, LIST, MOST, OFFSETS, RADIUS, REFINED, UP_TO,
+    },
+};
+use strew_service::{
+    Record, Service,
+    pattern::{
+        self, ArrangementQuery, ClustersDocument, ClustersQuery, Facts, MapDocument, MapQuery,
+        Occurrences,
+    },
+};
 use tonic::Status;
 
 use super::{
@@ -15,23 +30,6 @@ use super::{
         list_occurrences_response::Message,
     },
     set, status,
-};
-use crate::{
-    access::Caller,
-    service::{
-        Error, Fault, Record, Service,
-        pattern::{
-            self, ArrangementQuery, ClustersDocument, ClustersQuery, Facts, MapDocument, MapQuery,
-            Occurrences,
-        },
-        query::{
-            Parameter, Value, Values, groups,
-            patterns::{
-                ALPHA, BLOCK, CURSOR, DISTANCE, GRID, LIMIT, LIST, MOST, OFFSETS, RADIUS, REFINED,
-                UP_TO,
-            },
-        },
-    },
 };
 
 /// The messages of a list.
@@ -72,7 +70,7 @@ fn named(text: &str) -> Option<Value> {
     (!text.is_empty()).then(|| Value::Text(text.into()))
 }
 
-/// What is known of an arrangement.
+/// The facts about an arrangement.
 pub(super) async fn arrangement(
     service: &Arc<Service>,
     Received { message, effort }: Received<ArrangementRequest>,

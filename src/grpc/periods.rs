@@ -1,13 +1,13 @@
 //! Lists of periods as messages.
 
-use super::proto::{self, ListPeriodsRequest, ListPeriodsResponse};
-use crate::service::{
-    Error, Service,
-    query::{
-        Parameter, PeriodEcho, Periods, Value, Values, groups,
-        parameters::{ALPHA, MAP, MOST, PERIODIC, PROFILE},
-    },
+use strew_error::Error;
+use strew_query::{
+    Parameter, PeriodEcho, Periods, Value, Values, groups,
+    parameters::{ALPHA, MAP, MOST, PERIODIC, PROFILE},
 };
+use strew_service::Service;
+
+use super::proto::{self, ListPeriodsRequest, ListPeriodsResponse};
 
 /// A period.
 pub(super) const fn period(echo: PeriodEcho) -> proto::Period {
@@ -19,7 +19,7 @@ pub(super) const fn period(echo: PeriodEcho) -> proto::Period {
     }
 }
 
-/// The list that a request asks for.
+/// The list for a request.
 pub(super) fn list(
     request: ListPeriodsRequest,
     service: &Service,

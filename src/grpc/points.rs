@@ -3,7 +3,12 @@
 use std::{pin::Pin, sync::Arc};
 
 use futures_util::{Stream, StreamExt as _, TryStreamExt as _, stream};
+use strew_access::Caller;
 use strew_core::{ALGORITHM_VERSION, server::Stop};
+use strew_error::{Error, Fault};
+use strew_plan::{Found, Placed, effort::block_bytes};
+use strew_query::{Draft, Nearest, Query, Set, Values, groups};
+use strew_service::{Record, Service, allowance, forging::Submitted};
 use tonic::{Request, Response, Status};
 
 use super::{
@@ -25,16 +30,10 @@ use super::{
     },
     query, resolved, set, single, split, status,
 };
-use crate::access::Caller;
-use crate::service::forging::Submitted;
-use crate::service::{
-    Draft, Error, Fault, Found, Nearest, Placed, Query, Record, Service, Set, allowance,
-    query::{Values, groups},
-};
 
 /// A query as it was read.
 type Read = (Draft, Result<Encoding, Fault>);
-/// The same with its message.
+/// A query as it was read, with its message.
 type Whole = (StreamPointsRequest, Read);
 
 /// Answers over gRPC.
@@ -74,7 +73,7 @@ impl Points {
     ) -> Result<Response<MessageStream>, Error> {
         let (request, query, encoding) = self.read(request).await?;
         let (permit, planned) = self.service.open(caller, query, None).await?;
-        let block_bytes = planned.block_bytes(self.service.limits().block_bytes);
+        let block_bytes = block_bytes(&planned, self.service.limits().block_bytes);
         let messages = Messages::new(&request, planned, encoding, block_bytes)?;
         Record::in_format(match encoding {
             Encoding::F32Le => "f32",
@@ -353,7 +352,7 @@ impl PointService for Points {
         _request: Request<ListWorldsRequest>,
     ) -> Result<Response<ListWorldsResponse>, Status> {
         let catalog = self.service.catalog();
-        let worlds = catalog.worlds().iter().map(|world| LoadedWorld {
+        let worlds = catalog.worlds.iter().map(|world| LoadedWorld {
             name: world.name.clone(),
             digest: world.digest.clone(),
             layers: world.layers.clone(),

@@ -1,7 +1,8 @@
 //! Loaded tables as messages.
 
+use strew_catalog::{Catalog, Entry};
+
 use super::proto::{Figure, Figures, Parameter, Profile, Provenance};
-use crate::service::{Catalog, Entry};
 
 /// A loaded table.
 pub(super) fn profile(entry: &Entry, catalog: &Catalog) -> Profile {

@@ -1,15 +1,14 @@
 //! Requests as drafts of queries. Nothing is checked here but what drafts cannot hold.
 
+use strew_error::{Checked, Error, Fault};
+use strew_query::{
+    Draft, LayerDraft, Parameter, RegionDraft, Value, Values, groups,
+    parameters::{AT, CURSOR, K, LIMIT, OFFSET, RADIUS, WORLD, WORLD_DIGEST},
+};
+
 use super::{
     proto::{Encoding, FindNearestRequest, Position, Region, StreamPointsRequest},
     region, set,
-};
-use crate::service::{
-    Draft, Error, Fault,
-    query::{
-        Checked, LayerDraft, Parameter, RegionDraft, Value, Values, groups,
-        parameters::{AT, CURSOR, K, LIMIT, OFFSET, RADIUS, WORLD, WORLD_DIGEST},
-    },
 };
 
 /// The encoding of a request, with the default filled in.

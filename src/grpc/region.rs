@@ -1,11 +1,10 @@
 //! Regions of requests as drafts.
 
+use strew_error::{Checked, Fault};
+use strew_query::{MOST_LEVELS, RegionDraft, Rings, ShapeDraft};
+
 use super::proto::{
     BoundingBox, Chunk, Circle, Combined, Polygon, Polygons, Position, Region, region::Shape,
-};
-use crate::service::{
-    Fault,
-    query::{Checked, MOST_LEVELS, RegionDraft, Rings, ShapeDraft},
 };
 
 /// The draft of a region at a path, `depth` lists deep.

@@ -1,13 +1,13 @@
 //! Queries as answers echo them.
 
+use strew_catalog::Entry;
+use strew_plan::{Placed, Planned};
+use strew_query::{Resolved, ResolvedSet, Value, parameters};
+
 use super::{
     periods,
     proto::{self, BoundingBox, Encoding, Region, ResolvedQuery, StreamPointsRequest},
     set,
-};
-use crate::service::{
-    Entry, Placed, Planned,
-    query::{Resolved, ResolvedSet, Value, parameters},
 };
 
 /// The query of a request, planned.
@@ -66,7 +66,7 @@ fn resolved(echo: ResolvedSet, entry: &Entry, region: Option<Region>) -> proto::
         name: echo.name,
         region,
         set: Some(set::message(
-            [spacing, table].into_iter().chain(echo.values),
+            [spacing, table].into_iter().chain(echo.values.0),
         )),
         density: echo.density,
         least_distance: echo.least_distance,

@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
+use strew_error::Faults;
+use strew_query::{Group, Parameter, Value, Values, groups};
+
 use super::{
     field::{document, message_of},
     proto::{Heights, PointSet, ScaleRange, point_set::Amount},
 };
-use crate::service::query::{Faults, Group, Parameter, Value, Values, groups};
 
 // Made by build.rs from the contract: `fields`, the values of a message by name, and `put`, which sets
 // one.
@@ -56,7 +58,7 @@ pub(super) fn in_messages(faults: Faults) -> Faults {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::service::query::of;
+    use strew_query::of;
 
     #[test]
     fn every_parameter_of_a_set_has_its_field() {
@@ -83,7 +85,7 @@ mod tests {
             ("limit", "limit"),
             ("region.bbox", "region.bbox"),
         ] {
-            let fault = crate::service::Fault::new(field, 1, "wrong", "right");
+            let fault = strew_error::Fault::new(field, 1, "wrong", "right");
             let renamed = in_messages(fault.into());
             assert_eq!(renamed.as_slice()[0].field, expected);
         }

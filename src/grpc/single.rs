@@ -1,7 +1,8 @@
 //! Single points as messages.
 
+use strew_plan::Found;
+
 use super::proto::{Block, Point, Value, value};
-use crate::service::Found;
 
 /// A point that was found.
 pub(super) fn point(found: Found) -> Point {

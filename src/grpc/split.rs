@@ -1,17 +1,16 @@
 //! A query in parts, each a request of its own.
 
 use prost::Message as _;
+use strew_error::{Error, Fault};
+use strew_query as query;
+use strew_query::{Token, Value, Values, groups, parameters::PARTS};
 
 use super::proto::{Part, StreamPointsRequest};
-use crate::service::{
-    Error, Fault, Token,
-    query::{self, Value, Values, groups, parameters::PARTS},
-};
 
 /// The most bytes of all requests of an answer: what clients accept in one message by default.
 const MAX_BYTES: usize = 4 << 20;
 
-/// What a part takes besides the query: a cursor, a limit, a count.
+/// The bytes of a part besides the query: a cursor, a limit, a count.
 const PART_BYTES: usize = 256;
 
 /// Checks the number of parts, and that all of them fit into an answer.
@@ -30,7 +29,7 @@ pub(super) fn check(request: &StreamPointsRequest, parts: u32) -> Result<u32, Er
     Err(Fault::new(PARTS.name, parts, detail, allowed).into())
 }
 
-/// The part of a request that begins at a place and has so many points.
+/// The part of a request that begins at a place and has this number of points.
 pub(super) fn part(request: &StreamPointsRequest, (token, count): (Token, u64)) -> Part {
     Part {
         count,

@@ -3,16 +3,12 @@
 use std::{collections::HashMap, time::Duration};
 
 use http::HeaderMap;
+use strew_error::{Denied, Error, Kind};
+use strew_service::{Interrupted, Record};
 use tonic::{Code, Status};
 use tonic_types::{ErrorDetails, StatusExt as _};
 
-use crate::{
-    access::Denied,
-    error_map,
-    service::{Error, Interrupted, Kind, Record},
-};
-
-/// How long a client should wait before it goes on with a stream that the server broke off.
+/// The time that a client should wait before it resumes a stream that the server broke off.
 const RETRY: Duration = Duration::from_secs(1);
 
 /// An error as a status.
@@ -38,20 +34,15 @@ pub(super) fn status(error: &Error) -> Status {
     if let Some(subject) = quota {
         details.add_quota_failure_violation(subject, error.to_string());
     }
-    if let Error::OtherTable { pinned, .. } = error {
-        details.add_precondition_failure_violation("TABLE", pinned, error.to_string());
-    }
-    if let Error::OtherWorld { pinned, .. } = error {
-        details.add_precondition_failure_violation("WORLD", pinned, error.to_string());
+    if let Some((pinned, _)) = error.digests() {
+        let is_table = error.kind() == Kind::OtherTable;
+        let subject = if is_table { "TABLE" } else { "WORLD" };
+        details.add_precondition_failure_violation(subject, pinned, error.to_string());
     }
     if let Some(seconds) = error.retry_seconds() {
         details.set_retry_info(Some(Duration::from_secs(seconds)));
     }
-    Status::with_error_details(
-        error_map::wire(error.kind()).code,
-        error.to_string(),
-        details,
-    )
+    Status::with_error_details(code(error.kind()), error.to_string(), details)
 }
 
 /// An error of a message that is a field of the request.
@@ -74,7 +65,7 @@ pub(super) fn interrupted(why: Interrupted) -> Status {
     if kind != Kind::Internal {
         details.set_retry_info(Some(RETRY));
     }
-    Status::with_error_details(error_map::wire(kind).code, why.to_string(), details)
+    Status::with_error_details(code(kind), why.to_string(), details)
 }
 
 /// A fault of the call rather than of its message.
@@ -83,7 +74,7 @@ pub(super) fn faulty_metadata(name: &str, value: &str, detail: &str) -> Status {
     details.set_error_info(reason(Kind::Invalid), DOMAIN, HashMap::new());
     details.add_bad_request_violation(name, format!("`{value}`: {detail}"));
     let message = format!("`{name}` = `{value}`: {detail}");
-    Status::with_error_details(error_map::wire(Kind::Invalid).code, message, details)
+    Status::with_error_details(code(Kind::Invalid), message, details)
 }
 
 /// A call whose time is over.
@@ -101,51 +92,44 @@ pub(super) fn trailers(status: &Status) -> Option<HeaderMap> {
     added.ok().map(|()| trailers)
 }
 
-/// Whose reasons they are.
+/// The domain of our reasons.
 const DOMAIN: &str = "strew";
 
-/// The same name as of the problem type by REST, as gRPC writes it.
-fn reason(kind: Kind) -> String {
-    error_map::wire(kind).slug.replace('-', "_").to_uppercase()
+fn code(kind: Kind) -> Code {
+    Code::from_i32(kind.wire().code)
 }
 
-/// What a program needs to go on, by name.
+/// The name of a kind as gRPC writes it.
+fn reason(kind: Kind) -> String {
+    kind.slug().replace('-', "_").to_uppercase()
+}
+
+/// The facts that a program needs to go on, by name.
 fn facts(error: &Error) -> HashMap<String, String> {
-    let pairs: Vec<(&str, String)> = match error {
-        Error::TooManyPoints { count, limit } => {
-            vec![("count", count.to_string()), ("limit", limit.to_string())]
+    let mut facts = HashMap::new();
+    let mut put = |name: &str, value: String| facts.insert(name.to_owned(), value);
+    if let Some(limit) = error.limit() {
+        put("limit", limit.to_string());
+    }
+    if let Some((pinned, loaded)) = error.digests() {
+        put("pinned", pinned.into());
+        put("loaded", loaded.into());
+    }
+    match error {
+        Error::TooManyPoints { count, .. } => {
+            put("count", count.to_string());
         }
-        Error::TooManyRows { rows, limit } => {
-            vec![("rows", rows.to_string()), ("limit", limit.to_string())]
+        Error::TooManyRows { rows, .. } => {
+            put("rows", rows.to_string());
         }
-        Error::Busy { limit }
-        | Error::TooManyRequests { limit }
-        | Error::TooManyMixes { limit }
-        | Error::TooManyBytes { limit }
-        | Error::NeedsMoreBytes { limit, .. }
-        | Error::TooManyJobs { limit }
-        | Error::Denied(
-            Denied::TooManyStreams { limit }
-            | Denied::TooManyJobs { limit }
-            | Denied::Address { limit, .. }
-            | Denied::Share { limit, .. },
-        ) => {
-            vec![("limit", limit.to_string())]
+        Error::Denied(Denied::TooFast { points, short }) => {
+            let rate = short.level.rate;
+            put("points", points.to_string());
+            put("left", short.level.left.to_string());
+            put("points_per_second", rate.points_per_second.to_string());
+            put("burst_points", rate.burst_points.to_string());
         }
-        Error::Denied(Denied::TooFast { points, short }) => vec![
-            ("points", points.to_string()),
-            ("left", short.level.left.to_string()),
-            (
-                "points_per_second",
-                short.level.rate.points_per_second.to_string(),
-            ),
-            ("burst_points", short.level.rate.burst_points.to_string()),
-        ],
-        Error::OtherTable { pinned, loaded } | Error::OtherWorld { pinned, loaded, .. } => {
-            vec![("pinned", pinned.clone()), ("loaded", loaded.clone())]
-        }
-        _ => vec![],
-    };
-    let owned = |(name, value): (&str, String)| (name.to_owned(), value);
-    pairs.into_iter().map(owned).collect()
+        _ => {}
+    }
+    facts
 }

@@ -2,17 +2,15 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response, routing};
+use axum::{extract::State, response::Response};
 use http::Method;
+use strew_error::Kind;
 
 use super::reload::{Cause, Done, Reloader};
-use crate::{
-    access::Caller,
-    rest::{
-        api::{Answer, Endpoint, Operation, Tag},
-        json,
-    },
-    service::{Error, Kind},
+use crate::rest::{
+    Context, Refused,
+    api::{Answer, Endpoint, Operation, Tag},
+    json,
 };
 
 /// The path.
@@ -24,27 +22,18 @@ pub(super) fn endpoint(reloader: Arc<Reloader>) -> Endpoint {
         about: "For administrators: takes a key with admin = true, or the address of admin.listen. \
                 Valid files are served from then on. An invalid file is refused, and its previous \
                 content stays in use. Current answers are completed from the tables they began with.",
-        tag: Tag::Operations,
-        path_parameters: &[],
-        parameters: &[],
-        body: None,
-        answers: vec![Answer {
-            status: 200,
-            about: "The result.",
-            headers: vec![],
-            contents: vec![("application/json", |generator| {
-                generator.subschema_for::<Done>()
-            })],
-        }],
         problems: vec![Kind::NotAllowed],
         example: "/v1/tables:reload -X POST".into(),
+        ..Operation::new(Tag::Operations, vec![Answer::json::<Done>("The result.")])
     };
-    let handler = routing::post(reload);
-    Endpoint::new("/v1/tables:reload", reloader, vec![(operation, handler)])
+    Endpoint::only("/v1/tables:reload", reloader, operation, reload)
 }
 
-async fn reload(State(reloader): State<Arc<Reloader>>, caller: Caller) -> Result<Response, Error> {
-    caller.must_be_admin()?;
+async fn reload(
+    State(reloader): State<Arc<Reloader>>,
+    context: Context,
+) -> Result<Response, Refused> {
+    context.caller.must_be_admin()?;
     let reload = reloader.reload(Cause::Request).await?;
-    json(&reload)
+    Ok(json(&reload)?)
 }

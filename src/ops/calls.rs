@@ -12,6 +12,8 @@ use axum::{
 };
 use http::Version;
 use http_body_util::BodyExt as _;
+use strew_access::Gate;
+use strew_service::Record;
 use tonic_web::GrpcWebLayer;
 
 use super::{
@@ -19,7 +21,7 @@ use super::{
     exchange::{Intake, grpc_code},
     gate,
 };
-use crate::{access::Gate, grpc, rest, service::Record};
+use crate::{grpc, rest};
 
 /// The routes of gRPC, behind the gate. (The last layer is the first to see a request.)
 pub(super) fn routes(grpc: Router, gate: Arc<Gate>, intake: &Intake) -> Router {

@@ -14,7 +14,10 @@ use hyper_util::{
     server::conn::auto::Builder,
     service::TowerToHyperService,
 };
-use metrics::Counter;
+use prometheus::IntCounter;
+use strew_access::{Gate, InUse, OneOf, Quota};
+use strew_config::{Server, seconds};
+use strew_error::Error;
 use tokio::{
     io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _},
     net::{TcpListener, TcpStream},
@@ -28,12 +31,7 @@ use super::{
     throttle::LogThrottle,
     tls::Tls,
 };
-use crate::{
-    access::{Gate, InUse, OneOf, Quota},
-    config::{Server, seconds},
-    rest,
-    service::Error,
-};
+use crate::rest;
 
 /// Who asks: every request carries it among its extensions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +55,7 @@ struct Shared {
     refused: LogThrottle,
     failed: LogThrottle,
     unshaken: LogThrottle,
-    handshakes: Counter,
+    handshakes: IntCounter,
     running: TaskTracker,
     /// No more connections are taken, and those that are open end when they are idle.
     closing: CancellationToken,
@@ -65,7 +63,7 @@ struct Shared {
     ended: CancellationToken,
 }
 
-/// How long is waited for what.
+/// The times that connections wait.
 #[derive(Clone, Copy, Debug)]
 struct Patience {
     opening: Duration,
@@ -75,9 +73,9 @@ struct Patience {
 
 /// The most connections beyond the limit that are answered 503 at once; others are just closed.
 const REFUSALS_AT_ONCE: usize = 64;
-/// How long a refusal may take.
+/// The time that a refusal may take.
 const REFUSAL_TIME: Duration = Duration::from_secs(1);
-/// How long to wait when the system gives no more connections.
+/// The wait after the system refused a connection.
 const OUT_OF_FILES: Duration = Duration::from_millis(50);
 /// The most bytes that the system buffers for a reader beyond those being sent. Bounds its memory, and
 /// shows soon that a slow reader has taken something.
@@ -89,7 +87,7 @@ impl Connections {
         settings: &Server,
         tls: Option<Tls>,
         gate: Option<Arc<Gate>>,
-        handshakes: Counter,
+        handshakes: IntCounter,
     ) -> Self {
         let limit = settings.max_connections;
         let shared = Shared {
@@ -221,7 +219,7 @@ impl Shared {
 
     /// Logs a failed handshake: one in a while at a level that is seen, since anyone can cause them.
     fn no_handshake(&self, peer: SocketAddr, error: &str) {
-        self.handshakes.increment(1);
+        self.handshakes.inc();
         match self.unshaken.record() {
             Some(times) => tracing::warn!(%peer, error, times, "a TLS handshake failed"),
             None => tracing::debug!(%peer, error, "a TLS handshake failed"),
@@ -272,10 +270,10 @@ impl Shared {
     }
 }
 
-/// How HTTP is spoken: what one connection may ask of us. (The bound on heads also bounds what
+/// The settings of HTTP: the bounds on one connection. (The bound on heads also bounds what
 /// HTTP/1.1 gathers before it writes; blocks are larger than that and go out as they are.)
 fn http(settings: &Server) -> Builder<TokioExecutor> {
-    /// What an HTTP/2 client may send before it is read, by request and by connection: queries are
+    /// The bytes that an HTTP/2 client may send before they are read, by request and by connection: queries are
     /// short, and thousands of connections may fill their windows at once.
     const REQUEST_WINDOW: u32 = 64 << 10;
     const CONNECTION_WINDOW: u32 = 256 << 10;

@@ -7,12 +7,11 @@ use axum::{
 use bytes::Bytes;
 use http::{HeaderMap, header};
 use http_body::Frame;
+use strew_error::Error;
+use strew_service::Interrupted;
 
 use super::metrics::Protocol;
-use crate::{
-    grpc,
-    service::{Error, Interrupted},
-};
+use crate::{grpc, rest::Refused};
 
 /// The protocol of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +72,7 @@ impl Dialect {
         if self.is_call() {
             grpc::refusal(error).map(Body::new)
         } else {
-            error.clone().into_response()
+            Refused(error.clone()).into_response()
         }
     }
 

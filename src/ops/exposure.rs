@@ -1,6 +1,6 @@
 //! Warnings at the start: who can reach the daemon, and who can read its keys.
 
-use crate::config::Config;
+use strew_config::Config;
 
 /// The warning about a file of keys that every user of the machine can read. Keys are stored as
 /// hashes, but their names and limits are confidential.

@@ -1,10 +1,10 @@
-//! How many files, and so connections, the system lets us have open.
+//! The limit of the system on open files, and so on connections.
 
 /// Files that are no connections: tables, the log, the runtime's own.
 const OTHERS: u64 = 64;
 
-/// Raises the limit on open files as far as `connections` need and the system allows; gives how many
-/// connections there is room for, if that is less.
+/// Raises the limit on open files as far as `connections` need and the system allows. Returns the number of
+/// connections that there is room for, if that is less.
 #[must_use]
 pub fn make_room(connections: usize) -> Option<u64> {
     let wanted = u64::try_from(connections)

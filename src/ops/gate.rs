@@ -13,13 +13,11 @@ use axum::{
     response::{IntoResponse as _, Response},
 };
 use http::{HeaderMap, HeaderName, HeaderValue, header};
+use strew_access::{Caller, Gate, Usage};
+use strew_error::{Denied, Level};
 
 use super::exchange::Client;
-use crate::{
-    access::{Caller, Denied, Gate, Level, Usage},
-    grpc,
-    service::Error,
-};
+use crate::{grpc, rest::Refused};
 
 const API_KEY: HeaderName = HeaderName::from_static("x-api-key");
 const RATE_LIMIT: HeaderName = HeaderName::from_static("ratelimit");
@@ -45,7 +43,7 @@ pub(super) async fn of_rest(
                 Denied::TooFast { short, .. } => Some(short.level),
                 _ => None,
             };
-            (Error::from(denied).into_response(), level)
+            (Refused::from(denied).into_response(), level)
         }
     };
     if let Some(level) = level {
@@ -79,7 +77,7 @@ pub(super) async fn of_admins(mut request: Request, next: Next) -> Response {
         let denied = Denied::NotAdmin {
             name: Some("of a web page".into()),
         };
-        return Error::from(denied).into_response();
+        return Refused::from(denied).into_response();
     }
     request.extensions_mut().insert(Caller::admin());
     next.run(request).await

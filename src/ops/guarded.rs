@@ -16,27 +16,27 @@ use tokio::{
     time::{Instant, Sleep, sleep},
 };
 
-/// No more is read at once. The HTTP library reads into a buffer of 8 KiB, which it doubles each time it
+/// The bytes that are read at once. The HTTP library reads into a buffer of 8 KiB, which it doubles each time it
 /// is filled: a connection would then hold 256 KiB until it is closed.
 const AT_ONCE: usize = (8 << 10) - 1;
-/// As many bytes tell HTTP/1.1 from HTTP/2: from then on the HTTP library keeps the time.
+/// The length of the preface of HTTP/2. After that the timeouts of the HTTP library apply.
 const OPENING: usize = 24;
 
 fn too_late(what: &'static str) -> io::Error {
     io::Error::new(io::ErrorKind::TimedOut, what)
 }
 
-/// A socket whose client must say something soon, and is read in small parts.
+/// A socket whose client must send its first bytes soon, and is read in small parts.
 #[derive(Debug)]
 pub(super) struct FirstWords<S> {
     stream: S,
     read: usize,
-    /// Until the client has said enough, or has been answered.
+    /// Set until the client has sent enough, or has been answered.
     deadline: Option<Pin<Box<Sleep>>>,
 }
 
 impl<S> FirstWords<S> {
-    /// The client has so much time for its first words.
+    /// A socket whose client has this time for its first bytes.
     pub(super) fn new(stream: S, patience: Duration) -> Self {
         Self {
             stream,
@@ -119,7 +119,7 @@ pub(super) struct WriteTimeout<S> {
 }
 
 impl<S> WriteTimeout<S> {
-    /// The receiver may take nothing for so long.
+    /// A socket whose receiver may take nothing for this time.
     pub(super) fn new(stream: S, patience: Duration) -> Self {
         Self {
             stream,
@@ -129,7 +129,7 @@ impl<S> WriteTimeout<S> {
         }
     }
 
-    /// What a write gave, unless the socket has been full for too long.
+    /// The result of a write, unless the socket has been full for too long.
     fn moved<T>(
         &mut self,
         cx: &mut Context<'_>,

@@ -8,16 +8,20 @@ use std::{
     time::Duration,
 };
 
-use axum::{body::Body, extract::State, response::Response, routing::get};
-use http::{HeaderValue, Method, StatusCode, header};
+use axum::{extract::State, response::Response};
+use http::StatusCode;
 use schemars::JsonSchema;
 use serde::Serialize;
+use strew_error::Error;
+use strew_service::{Pulse, Service, Workers};
 use tokio::sync::watch;
 
 use crate::{
     grpc::Health,
-    rest::api::{Answer, Endpoint, Operation, Tag, schemas},
-    service::{Pulse, Service, Workers},
+    rest::{
+        self, Refused,
+        api::{Answer, Endpoint, Operation, Tag},
+    },
 };
 
 /// Whether requests are welcome: until the daemon stops, while its workers answer in time.
@@ -71,18 +75,16 @@ impl Readiness {
 
 /// `/livez` and `/readyz`.
 pub fn endpoints(readiness: Readiness, service: Arc<Service>) -> Vec<Endpoint> {
-    let alive = operation(
+    let alive = operation::<Alive>(
         "getLivez",
         "Whether the daemon lives",
-        |generator| generator.subschema_for::<Alive>(),
-        vec![(200, "It lives.")],
+        &[(200, "It lives.")],
         "/livez",
     );
-    let is_ready = operation(
+    let is_ready = operation::<Ready>(
         "getReadyz",
         "Whether the daemon takes requests",
-        |generator| generator.subschema_for::<Ready>(),
-        vec![
+        &[
             (200, "It takes requests."),
             (
                 503,
@@ -91,45 +93,30 @@ pub fn endpoints(readiness: Readiness, service: Arc<Service>) -> Vec<Endpoint> {
         ],
         "/readyz",
     );
-    let live = get(|| async { typed(StatusCode::OK, &Alive { alive: true }) });
+    let live = || async { Ok::<_, Refused>(momentary(StatusCode::OK, &Alive { alive: true })?) };
     vec![
-        Endpoint::new("/livez", (), vec![(alive, live)]).open(),
-        Endpoint::new(
-            "/readyz",
-            (readiness, service),
-            vec![(is_ready, get(ready))],
-        )
-        .open(),
+        Endpoint::only("/livez", (), alive, live).open(),
+        Endpoint::only("/readyz", (readiness, service), is_ready, ready).open(),
     ]
 }
 
-fn operation(
+fn operation<T: JsonSchema>(
     id: &'static str,
     summary: &'static str,
-    schema: schemas::Content,
-    answers: Vec<(u16, &'static str)>,
+    answers: &[(u16, &'static str)],
     path: &str,
 ) -> Operation {
+    let answer = |&(status, about)| Answer {
+        status,
+        ..Answer::json::<T>(about)
+    };
     Operation {
-        method: Method::GET,
         id,
         summary,
         about: "For probes; never cached.",
-        tag: Tag::Operations,
-        path_parameters: &[],
-        parameters: &[],
-        body: None,
-        answers: answers
-            .into_iter()
-            .map(|(status, about)| Answer {
-                status,
-                about,
-                headers: vec![],
-                contents: vec![("application/json", schema)],
-            })
-            .collect(),
         problems: vec![],
         example: path.into(),
+        ..Operation::new(Tag::Operations, answers.iter().map(answer).collect())
     }
 }
 
@@ -151,7 +138,9 @@ struct Ready {
     streams: usize,
 }
 
-async fn ready(State((readiness, service)): State<(Readiness, Arc<Service>)>) -> Response {
+async fn ready(
+    State((readiness, service)): State<(Readiness, Arc<Service>)>,
+) -> Result<Response, Refused> {
     let ready = readiness.is_ready();
     let status = if ready {
         StatusCode::OK
@@ -163,20 +152,11 @@ async fn ready(State((readiness, service)): State<(Readiness, Arc<Service>)>) ->
         tables: service.catalog().entries().count(),
         streams: service.streams().open(),
     };
-    typed(status, &state)
+    Ok(momentary(status, &state)?)
 }
 
-fn typed(status: StatusCode, value: &impl Serialize) -> Response {
-    let mut body = serde_json::to_vec(value).unwrap_or_default();
-    body.push(b'\n');
-    let mut response = Response::new(Body::from(body));
+fn momentary(status: StatusCode, value: &impl Serialize) -> Result<Response, Error> {
+    let mut response = rest::momentary(rest::json(value)?);
     *response.status_mut() = status;
-    let headers = response.headers_mut();
-    headers.insert(
-        header::CONTENT_TYPE,
-        HeaderValue::from_static("application/json"),
-    );
-    // Probes want to know about now.
-    headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
-    response
+    Ok(response)
 }

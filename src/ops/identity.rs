@@ -1,4 +1,4 @@
-//! What a request is called: its id (`x-request-id`) and its place in a trace (W3C Trace Context).
+//! The names of a request: its id (`x-request-id`) and its place in a trace (W3C Trace Context).
 //!
 //! An id that a client or proxy sends is kept if it is short and plain, so that the same id is in
 //! all logs; others are replaced, so that clients cannot write into our log.
@@ -20,7 +20,7 @@ const TRACEPARENT: HeaderName = HeaderName::from_static("traceparent");
 /// The longest id that is taken over.
 const LONGEST: usize = 128;
 
-/// What one request is called.
+/// The names of one request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Identity {
     /// Its id: visible ASCII without quotes.

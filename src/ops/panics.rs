@@ -9,9 +9,9 @@ use axum::{
     response::Response,
 };
 use futures_util::FutureExt as _;
+use strew_error::Error;
 
 use super::{dialect::Dialect, metrics::Metrics};
-use crate::service::Error;
 
 /// Answers what panics.
 pub(super) async fn answered(
@@ -23,14 +23,14 @@ pub(super) async fn answered(
     let path = request.uri().path().to_owned();
     let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
     answer.unwrap_or_else(|panic| {
-        metrics.panics().increment(1);
+        metrics.panics.inc();
         tracing::error!(path, panic = said(&*panic), "a handler panicked");
         let error = Error::Internal("the request could not be answered");
         dialect.refusal(&error)
     })
 }
 
-/// What a panic says, as far as it is text.
+/// The message of a panic, if it is text.
 fn said(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));

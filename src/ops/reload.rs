@@ -20,11 +20,11 @@ use serde::Serialize;
 use tokio::sync::Mutex;
 
 use super::{metrics::Metrics, shutdown::Hangups, tls::Tls};
-use crate::{
-    access::Gate,
-    service::{Error, Reload, Service, catalog::Refusal},
-};
 pub use fingerprint::{Fingerprint, Watched};
+use strew_access::Gate;
+use strew_catalog::{Refusal, Reload};
+use strew_error::Error;
+use strew_service::Service;
 
 /// Why files are read again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,14 +47,14 @@ impl Cause {
     }
 }
 
-/// What came of reading everything again.
+/// The result of reading everything again.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 #[schemars(rename = "Reloaded")]
 pub struct Done {
     /// The tables; files of keys are among what was refused.
     #[serde(flatten)]
     pub tables: Reload,
-    /// How many keys are let in, where they were read.
+    /// The number of valid keys, where they were read.
     pub keys: Option<usize>,
 }
 
@@ -68,12 +68,12 @@ pub struct Reloader {
     gate: Arc<Gate>,
     tls: Option<Tls>,
     watched: Watched,
-    /// What the files were before they were read for the first time.
+    /// The fingerprint of the files before they were read for the first time.
     first: Fingerprint,
     metrics: Metrics,
     /// Whether files are being read.
     is_reading: Arc<AtomicBool>,
-    /// What came of it the last time.
+    /// The result of the last reload.
     last: Mutex<Done>,
 }
 
@@ -243,7 +243,7 @@ fn differs(before: &Done, now: &Done) -> bool {
 fn log(cause: Cause, done: &Done, metrics: &Metrics) {
     let reload = &done.tables;
     let cause = cause.name();
-    metrics.reloads(cause).increment(1);
+    metrics.reloads(cause).inc();
     for table in &reload.loaded {
         tracing::info!(
             cause,
@@ -278,12 +278,12 @@ fn log(cause: Cause, done: &Done, metrics: &Metrics) {
         }
     }
     for refusal in &reload.refused {
-        metrics.refused_tables().increment(1);
+        metrics.refused_tables.inc();
         tracing::error!(
             cause,
             source = refusal.source,
             serving = refusal.serving,
-            "refused; the loaded one stays in use as far as what it names is still there: {}",
+            "reload refused; the previous version stays in use as far as its files are still there: {}",
             refusal.detail
         );
     }

@@ -1,8 +1,19 @@
-//! Serving: both protocols on one port, until asked to stop, and then not much longer.
+//! Serving: both protocols on one port, until the daemon is stopped, and then not much longer.
 
 use std::{io, net::TcpListener, sync::Arc, time::Duration};
 
 use axum::{Router, extract::Request, middleware, response::Response};
+use strew_access::{Gate, KeysError};
+use strew_catalog::{
+    Catalog, CatalogError,
+    except::Lists,
+    field::{FieldError, Fields},
+    named::NamedError,
+};
+use strew_config as config;
+use strew_config::Config;
+use strew_query::{Assets, Worlds};
+use strew_service::{Service, Workers};
 use tokio_util::task::AbortOnDropHandle;
 
 use super::{
@@ -19,18 +30,7 @@ use super::{
     spans::{Collector, Spans, SpansError},
     tls::{Tls, TlsError},
 };
-use crate::{
-    access::{Gate, KeysError},
-    config::{self, Config},
-    grpc, rest,
-    service::{
-        Catalog, Service, Workers, Worlds,
-        catalog::CatalogError,
-        except::Lists,
-        field::{FieldError, Fields},
-        named::NamedError,
-    },
-};
+use crate::{grpc, rest};
 
 /// Why the daemon cannot start or go on.
 #[derive(Debug, thiserror::Error)]
@@ -65,10 +65,10 @@ pub enum ServeError {
     Socket(#[from] io::Error),
 }
 
-/// What is still sent after streams have been told to end: time to tell their readers.
+/// The time that streams have at a stop to send their last message to their readers.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// How long the forge may take to keep its checkpoints at a stop.
+/// The time that the forge may take to keep its checkpoints at a stop.
 const FORGE_GRACE: Duration = Duration::from_secs(5);
 
 /// A daemon that is ready to serve.
@@ -84,6 +84,7 @@ pub struct App {
     metrics: Metrics,
     collector: Option<Collector>,
     spans: Option<Spans>,
+    pages: rest::Pages,
     more: Router,
 }
 
@@ -91,7 +92,7 @@ impl App {
     /// Reads the certificates and keys, loads the tables and starts the workers.
     ///
     /// # Errors
-    /// If a certificate, key or table is not valid or the system gives no threads.
+    /// If a certificate, key or table is not valid or the system refuses threads.
     pub fn new(config: Config) -> Result<Self, ServeError> {
         let watched = Watched::of(&config);
         // Before anything is read: what changes from here on is noticed.
@@ -112,8 +113,8 @@ impl App {
         let lists = Lists::load(&config.except)?;
         let catalog = catalog.with_except(lists);
         let worlds = Worlds::load(&config.worlds, &catalog, config.limits.max_vertices)?;
-        let catalog = catalog.with_worlds(worlds);
-        let service = Service::new(catalog, config.limits.clone(), workers);
+        let assets = Assets::from(catalog).with_worlds(worlds);
+        let service = Service::new(assets, config.limits.clone(), workers);
         let mixes = config.tables.folder().map(|folder| folder.join("mixes"));
         let service = service.with_mixes(mixes);
         let service = service.with_forge(config.forge.clone(), folder.map(Into::into));
@@ -141,8 +142,16 @@ impl App {
             metrics,
             collector,
             spans: None,
+            pages: rest::Pages::default(),
             more: Router::new(),
         })
+    }
+
+    /// Serves these pages, too.
+    #[must_use]
+    pub fn with_pages(mut self, pages: rest::Pages) -> Self {
+        self.pages = pages;
+        self
     }
 
     /// Serves further routes on the same port, behind the same layers.
@@ -172,14 +181,14 @@ impl App {
         self.admin.as_ref()?.local_addr().ok()
     }
 
-    /// What it serves.
+    /// The routes that it serves.
     #[must_use]
     pub const fn service(&self) -> &Arc<Service> {
         &self.service
     }
 
-    /// Serves until `shutdown` is over, then drains for as long as the settings allow and gives
-    /// how many streams had to be broken off.
+    /// Serves until `shutdown` is over, then drains for as long as the settings allow. Returns
+    /// the number of streams that had to be broken off.
     ///
     /// # Errors
     /// If the socket does not work.
@@ -213,7 +222,7 @@ impl App {
         let watch = watch.watch(self.service.workers().clone(), grpc_health.clone());
         let _pulse = AbortOnDropHandle::new(tokio::spawn(watch));
         let listener = asynchronous(listener)?;
-        let handshakes = self.metrics.failed_handshakes();
+        let handshakes = &self.metrics.failed_handshakes;
         let server = &self.config.server;
         let admins = Connections::new(server, self.tls.clone(), None, handshakes.clone());
         if let Some(listener) = self.admin.take() {
@@ -226,7 +235,7 @@ impl App {
         }
         let _admins = EndOnDrop(admins);
         let gate = Some(self.gate.clone());
-        let connections = Connections::new(server, self.tls.clone(), gate, handshakes);
+        let connections = Connections::new(server, self.tls.clone(), gate, handshakes.clone());
         let taking = tokio::spawn({
             let connections = connections.clone();
             async move { connections.take(listener, router).await }
@@ -284,7 +293,6 @@ impl App {
         endpoints.push(admin::endpoint(self.reloader.clone()));
         if self.config.metrics.enabled {
             endpoints.push(self.metrics_endpoint());
-            tokio::spawn(self.metrics.clone().fold_up());
         }
         let intake = Intake::new(&self.config, self.service.budget().clone());
         // A client without a key takes no place among requests.
@@ -295,8 +303,13 @@ impl App {
         };
         let bounds = intake.clone();
         let open = move |router: Router| bounds.before(router);
-        let rest::Routes { router, paths } =
-            rest::Routes::new(endpoints, &self.config.http.public_url, open, behind_gate);
+        let rest::Routes { router, paths } = rest::Routes::new(
+            endpoints,
+            &self.pages,
+            &self.config.http.public_url,
+            open,
+            behind_gate,
+        );
         let calls = grpc.into_axum_router().reset_fallback();
         let others = Router::new().fallback(move |request| nothing_here(request, paths));
         let router = router
@@ -306,7 +319,7 @@ impl App {
         Ok((self.finished(router), grpc_health))
     }
 
-    /// What administrators reach on their own address.
+    /// The routes of the address for administrators.
     fn admin_router(&self, readiness: Readiness) -> Router {
         let mut endpoints = health::endpoints(readiness, self.service.clone());
         endpoints.push(admin::endpoint(self.reloader.clone()));
@@ -317,6 +330,7 @@ impl App {
         let of_admins = |router: Router| router.layer(middleware::from_fn(gate::of_admins));
         let rest::Routes { router, paths } = rest::Routes::new(
             endpoints,
+            &self.pages,
             &self.config.http.public_url,
             |open| open,
             of_admins,
@@ -324,7 +338,7 @@ impl App {
         self.finished(router.fallback(move |request| nothing_here(request, paths)))
     }
 
-    /// What every answer goes through.
+    /// The layers around every answer.
     fn finished(&self, router: Router) -> Router {
         let panics = middleware::from_fn_with_state(self.metrics.clone(), panics::answered);
         let router = router.layer(panics);

@@ -1,9 +1,9 @@
-//! The signals that a daemon hears: those that ask it to stop, of which the first drains and the second
+//! The signals that a daemon handles: those that stop it, of which the first drains and the second
 //! ends at once, and SIGHUP, which asks it to read files again.
 
 use std::io;
 
-/// What a process ends with that a signal cut short.
+/// The exit status of a process that a signal cut short.
 const CUT_SHORT: i32 = 1;
 
 /// The signals, listened for from the moment this is made.
@@ -31,7 +31,7 @@ impl Signals {
         })
     }
 
-    /// Waits for the next one; gives its name.
+    /// Waits for the next one and returns its name.
     pub async fn next(&mut self) -> &'static str {
         #[cfg(unix)]
         tokio::select! {

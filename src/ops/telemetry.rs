@@ -4,9 +4,8 @@
 
 use std::io::IsTerminal as _;
 
+use strew_config::LogFormat;
 use tracing_subscriber::EnvFilter;
-
-use crate::config::LogFormat;
 
 /// Starts logging. The filter is a level or levels by module; a second call changes nothing.
 ///
@@ -20,7 +19,7 @@ pub fn start(
     let lines = tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_writer(std::io::stderr)
-        // What cannot be logged is lost: telling so on the same stream would fail, too, and panic.
+        // A line that cannot be written is lost: an error about it on the same stream would fail, too, and panic.
         .log_internal_errors(false);
     let _ = match format {
         LogFormat::Text => lines.with_ansi(std::io::stderr().is_terminal()).try_init(),

@@ -1,10 +1,9 @@
 //! Log lines about events that may happen a thousand times a second: one line an interval, with the
 //! number of events.
 
-use std::{
-    sync::{Mutex, PoisonError},
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
+
+use parking_lot::Mutex;
 
 /// The time between two lines.
 const INTERVAL: Duration = Duration::from_secs(10);
@@ -25,7 +24,7 @@ impl LogThrottle {
     /// Records one event. Returns the number of events since the last line if it is time for
     /// another.
     pub(super) fn record(&self) -> Option<u64> {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut state = self.state.lock();
         state.count += 1;
         if state.logged.is_some_and(|at| at.elapsed() < INTERVAL) {
             return None;
@@ -45,7 +44,7 @@ mod tests {
         assert_eq!(throttle.record(), Some(1));
         assert_eq!([throttle.record(), throttle.record()], [None, None]);
         let earlier = Instant::now().checked_sub(INTERVAL);
-        throttle.state.lock().expect("no panic").logged = earlier;
+        throttle.state.lock().logged = earlier;
         let expected = if earlier.is_some() { 3 } else { 4 };
         assert_eq!(throttle.record(), Some(expected));
     }

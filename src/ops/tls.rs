@@ -7,9 +7,10 @@ mod expiry;
 
 use std::{
     path::{Path, PathBuf},
-    sync::{Arc, PoisonError, RwLock},
+    sync::Arc,
 };
 
+use parking_lot::RwLock;
 use rustls::{
     RootCertStore, ServerConfig,
     crypto::ring::default_provider,
@@ -19,9 +20,9 @@ use rustls::{
 use tokio_rustls::TlsAcceptor;
 
 pub use self::expiry::validity;
-use crate::{bounded_file, config::Tls as Settings};
+use strew_config::{Tls as Settings, bounded_file};
 
-/// What is wrong with a certificate, or a file of them.
+/// The fault of a certificate, or of a file of them.
 #[derive(Debug, thiserror::Error)]
 #[error("{setting} = {path:?}: {problem}")]
 pub struct TlsError {
@@ -75,9 +76,9 @@ impl Tls {
         }))
     }
 
-    /// Takes part in a handshake with the certificate of now.
+    /// The acceptor of handshakes with the current certificate.
     pub(super) fn acceptor(&self) -> TlsAcceptor {
-        let current = self.current.read().unwrap_or_else(PoisonError::into_inner);
+        let current = self.current.read();
         TlsAcceptor::from(current.config.clone())
     }
 
@@ -88,13 +89,13 @@ impl Tls {
     pub(super) fn reload(&self) -> Result<bool, TlsError> {
         let files = Files::read(&self.settings)?;
         let content = files.hash();
-        let known = self.current.read().unwrap_or_else(PoisonError::into_inner);
+        let known = self.current.read();
         if known.content == content {
             return Ok(false);
         }
         drop(known);
         let config = files.config(&self.settings)?;
-        let mut current = self.current.write().unwrap_or_else(PoisonError::into_inner);
+        let mut current = self.current.write();
         *current = Current { content, config };
         Ok(true)
     }

@@ -1,4 +1,4 @@
-//! Answers with points, whichever path asks for them: checked, planned, streamed.
+//! Answers with points on every path: checked, planned, streamed.
 
 use std::{collections::BTreeMap, convert::Infallible};
 
@@ -7,6 +7,11 @@ use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
 use schemars::JsonSchema;
 use strew_core::ALGORITHM_VERSION;
+use strew_encode::{Answer, Output, write_number};
+use strew_error::{Error, Kind};
+use strew_plan::{Planned, QueryEcho, TableEcho};
+use strew_query::{Options, Query};
+use strew_service::{Record, Service};
 
 use super::{
     api::{self, schemas},
@@ -15,10 +20,6 @@ use super::{
     freshness::Freshness,
     negotiate::{self, Chosen},
     range::{self, Wanted},
-};
-use crate::service::{
-    Answer, Error, Kind, Options, Output, Planned, Query, Record, Service,
-    encode::{QueryEcho, TableEcho, write_number},
 };
 
 const COUNT: HeaderName = HeaderName::from_static("strew-count");
@@ -35,7 +36,7 @@ const CURSOR: HeaderName = HeaderName::from_static("strew-cursor");
 
 /// The headers of an answer with points, and what they say.
 const HEADERS: [(&str, &str); 12] = [
-    ("strew-count", "Exactly how many points follow."),
+    ("strew-count", "The exact number of points that follow."),
     ("strew-table", "The digest of the table that answers."),
     (
         "strew-world",
@@ -47,7 +48,7 @@ const HEADERS: [(&str, &str); 12] = [
     ),
     (
         "strew-origin",
-        "What coordinates are relative to: with f32 the lower corner of a box around the region, \
+        "The origin of the coordinates: with f32 the lower corner of a box around the region, \
          with a chunk its corner.",
     ),
     (
@@ -66,8 +67,8 @@ const HEADERS: [(&str, &str); 12] = [
     ),
     (
         "strew-kinds",
-        "How many points of the region each variant has, if they are evenly spread: a JSON object by name; \
-         with layers, one for each of those that have such variants.",
+        "The number of points of the region that each variant has, if they are evenly spread: a JSON object by name; \
+         with layers, one for each layer that has such variants.",
     ),
     (
         "accept-ranges",
@@ -76,7 +77,7 @@ const HEADERS: [(&str, &str); 12] = [
     ),
     (
         "strew-warning",
-        "What readers of the format may take wrongly.",
+        "A caution about values that readers of the format may misinterpret.",
     ),
     (
         "content-disposition",
@@ -178,7 +179,7 @@ pub(super) async fn stream(
     let mut output = options.output(chosen.encoding)?;
     output.relative_to = query.region.corner;
     if *method == Method::POST {
-        // A body is not part of the address, so caches do not keep what it asks for.
+        // A body is not part of the address, so caches do not keep its answer.
         return points(service, context, query, chosen, output).await;
     }
     let freshness = freshness(service, context, &query, chosen.content_type).negotiated();
@@ -212,7 +213,7 @@ async fn points(
     } else {
         (None, service.plan(caller, query).await?)
     };
-    let answer = Answer::new(&planned, &output, service.limits().block_bytes)?;
+    let answer = planned.answer(&output, service.limits().block_bytes)?;
     let mut response_headers = describe(&planned, &answer, chosen)?;
     let body = match permit {
         // Without a body there is nothing to stream, and HTTP wants to hear so at once.
@@ -246,7 +247,7 @@ async fn part(
 ) -> Result<Response, Error> {
     let block_bytes = service.limits().block_bytes;
     let planned = service.plan(&context.caller, query.clone()).await?;
-    let whole = Answer::new(&planned, &output, block_bytes)?;
+    let whole = planned.answer(&output, block_bytes)?;
     let (Some(size), Some(record)) = (whole.size(), whole.record_bytes()) else {
         return points(service, context, query, chosen, output).await;
     };
@@ -267,7 +268,7 @@ async fn part(
         some.window.offset = some.window.offset.saturating_add(records.start);
         some.window.limit = Some(records.end - records.start);
         let (permit, planned) = service.open(&context.caller, some, None).await?;
-        let rows = Answer::new(&planned, &output, block_bytes)?;
+        let rows = planned.answer(&output, block_bytes)?;
         if rows.legend() != whole.legend() || rows.origin() != whole.origin() {
             drop(permit);
             return points(service, context, query, chosen, output).await;
@@ -289,8 +290,8 @@ async fn part(
     Ok(response)
 }
 
-/// How fresh the answer to the query of an address is: besides the address, which says all of the
-/// query, it depends on the tables and on a limit.
+/// The freshness of the answer to the query of an address. Besides the address, which has all of the query, the answer
+/// depends on the tables and on a limit.
 pub(super) fn freshness(
     service: &Service,
     context: &Context,

@@ -1,4 +1,4 @@
-//! Bodies of requests: read whole, up to a limit, whatever they are said to be; gzip is unpacked.
+//! Bodies of requests: read whole, up to a limit, whatever their content type; gzip is unpacked.
 //!
 //! The content type is not looked at: a body is read as JSON anyway, and `curl -d` calls everything
 //! a form.
@@ -10,36 +10,34 @@ use bytes::Bytes;
 use futures_util::StreamExt as _;
 use http::{HeaderMap, header};
 use strew_core::server::Stop;
+use strew_error::{Error, Fault};
+use strew_query::{Draft, Group, Options, Query, read_body};
+use strew_service::{Service, segments::Segments, unpack::Coding};
 
-use crate::service::{
-    Draft, Error, Fault, Options, Query, Service,
-    query::{Group, read_body},
-    segments::Segments,
-    unpack::Coding,
-};
+use super::problem::Refused;
 
 /// A whole body.
 #[derive(Debug)]
 pub(super) struct Whole(pub(super) Bytes);
 
 impl FromRequest<Arc<Service>> for Whole {
-    type Rejection = Error;
+    type Rejection = Refused;
 
-    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Error> {
+    async fn from_request(request: Request, service: &Arc<Service>) -> Result<Self, Refused> {
         let limit = service.limits().max_body_bytes;
         let is_packed = is_packed(request.headers())?;
         let length = request.headers().get(header::CONTENT_LENGTH);
         let length = length.and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
-        // What says that it is too long need not even be sent.
+        // A body that announces that it is too long need not even be sent.
         if length.is_some_and(|length| usize::try_from(length).is_ok_and(|length| length > limit)) {
-            return Err(Error::BodyTooLarge { limit });
+            return Err(Error::BodyTooLarge { limit }.into());
         }
         let mut pieces = request.into_body().into_data_stream();
         let mut segments = Segments::default();
         while let Some(piece) = pieces.next().await {
             let piece = piece.map_err(|error| why(&error))?;
             if segments.len() + piece.len() > limit {
-                return Err(Error::BodyTooLarge { limit });
+                return Err(Error::BodyTooLarge { limit }.into());
             }
             segments.append(&piece);
         }
@@ -72,7 +70,7 @@ fn is_packed(headers: &HeaderMap) -> Result<bool, Error> {
 /// The bytes of memory that reading takes for each of a body.
 pub(super) const COPIES: usize = 4;
 
-/// The query that a body asks, as it was read and checked: on the workers if it is long.
+/// The query of a body, read and checked: on the workers if it is long.
 pub(super) async fn query(
     service: &Arc<Service>,
     body: Bytes,

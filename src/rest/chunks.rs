@@ -6,47 +6,37 @@ use std::sync::Arc;
 use axum::{
     extract::{Path, State},
     response::Response,
-    routing,
 };
-use http::Method;
 use strew_core::server::Stop;
+use strew_error::{Checked, Together as _};
+use strew_query::{Draft, Parameter, RegionDraft, Shape, ShapeDraft, groups};
+use strew_service::Service;
 
 use super::{
     answer,
-    api::{self, Endpoint, Operation, Tag},
+    api::{Endpoint, Operation, Tag},
     context::Context,
 };
-use crate::service::{
-    Draft, Error, Service,
-    query::{Checked, Parameter, RegionDraft, Shape, ShapeDraft, Together as _, groups},
-};
+use crate::rest::Refused;
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let operation = Operation {
-        method: Method::GET,
         id: "getChunk",
         summary: "The points of a chunk",
         about: "A chunk is a square of the world grid: size·cx ≤ x < size·(cx + 1), and so for y. \
                 Coordinates are relative to its corner, so that f32 is exact enough at any \
                 distance. Neighbors share no point and lose none.",
-        tag: Tag::Points,
         path_parameters: &[&SIZE, &COLUMN, &ROW],
         parameters: groups::CHUNK,
-        body: None,
-        answers: vec![answer::described(), api::Answer::unchanged()],
         problems: answer::problems(),
         example: "'/v1/chunks/64/-3/2?spacing=16&format=csv'".into(),
+        ..Operation::new(Tag::Points, answer::described().or_unchanged())
     };
-    let handler = routing::get(get);
-    Endpoint::new(
-        "/v1/chunks/{size}/{cx}/{cy}",
-        service,
-        vec![(operation, handler)],
-    )
+    Endpoint::only("/v1/chunks/{size}/{cx}/{cy}", service, operation, get)
 }
 
-/// How far from the origin chunks are counted.
+/// The greatest distance of a chunk from the origin, in chunks.
 const CELLS: Shape = Shape::Signed { limit: 1 << 52 };
 
 pub(super) const SIZE: Parameter = Parameter {
@@ -82,10 +72,10 @@ async fn get(
     State(service): State<Arc<Service>>,
     Path([size, x, y]): Path<[String; 3]>,
     context: Context,
-) -> Result<Response, Error> {
+) -> Result<Response, Refused> {
     let draft = Draft::new(context.values(groups::CHUNK)).within(region([&size, &x, &y]));
     let (query, options) = service.check(&draft, &Stop::NEVER)?;
-    answer::stream(&service, &context, query, options).await
+    Ok(answer::stream(&service, &context, query, options).await?)
 }
 
 /// The region of a path.

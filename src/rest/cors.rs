@@ -6,7 +6,7 @@ use http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 
 use super::vary;
 
-/// Who may ask, from a page.
+/// The origins whose pages may send requests.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Origins {
     /// Every page.
@@ -42,7 +42,7 @@ impl Origins {
 }
 
 /// Why a page of another origin may not send a request, if that is not only for reading: browsers send some with a
-/// body without asking first. What is only read may be sent by any page, which then cannot see the answer.
+/// body without a preflight. Any page may send requests that only read, and then cannot see the answer.
 pub(super) fn refusal(origins: &Origins, request: &Request) -> Option<String> {
     let headers = request.headers();
     let origin = headers.get(header::ORIGIN)?;
@@ -79,10 +79,10 @@ fn is_own(origin: &HeaderValue, request: &Request) -> bool {
         .is_some_and(|(own, host)| own.eq_ignore_ascii_case(host))
 }
 
-/// How long a browser may remember that it is allowed to ask, in seconds; browsers cut it.
+/// The seconds for which a browser may keep the answer to a preflight request; browsers cut it.
 const REMEMBER: &str = "86400";
 
-/// The answer to a browser that asks whether it may ask.
+/// The answer to a preflight request.
 pub(super) fn preflight(
     origins: &Origins,
     method: &Method,

@@ -1,4 +1,4 @@
-//! `GET` and `POST /v1/count`: how many points a query has, exactly, without making them.
+//! `GET` and `POST /v1/count`: the exact number of points of a query, without making them.
 
 use std::sync::Arc;
 
@@ -8,6 +8,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
 use strew_core::server::Stop;
+use strew_error::{Error, Kind};
+use strew_query::{Draft, Query, Resolved, groups};
+use strew_service::Service;
 
 use super::{
     answer,
@@ -15,14 +18,11 @@ use super::{
         self, Endpoint, Operation, Tag,
         schemas::{self, CountQuery},
     },
-    body::{self, Whole},
-    context::Context,
+    body,
+    context::{Context, Sent},
     document, query,
 };
-use crate::service::{
-    Draft, Error, Kind, Query, Service,
-    query::{Resolved, groups},
-};
+use crate::rest::Refused;
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -39,34 +39,27 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         ]
     };
     let given = Operation {
-        method: Method::GET,
         id: "getCount",
-        summary: "How many points a region holds",
+        summary: "The number of points of a region",
         about,
-        tag: Tag::Points,
-        path_parameters: &[],
         parameters: groups::COUNT,
-        body: None,
-        answers: vec![answers(), api::Answer::unchanged()],
         problems: problems(),
         example: "'/v1/count?bbox=-5e8,-5e8,5e8,5e8&spacing=1'".into(),
+        ..Operation::new(Tag::Points, answers().or_unchanged())
     };
     let posted = Operation {
         method: Method::POST,
         id: "countPoints",
-        summary: "How many points a query has",
+        summary: "The number of points of a query",
         about,
-        tag: Tag::Points,
-        path_parameters: &[],
-        parameters: groups::NONE,
         body: Some(query::body(
             schemas::of::<CountQuery>,
             json!({ "region": { "circle": { "center": [0, 0], "radius": 9 } }, "spacing": 1 }),
         )),
-        answers: vec![answers()],
         problems: [problems(), vec![Kind::BodyTooLarge]].concat(),
         example: r#"/v1/count -d '{"region": {"circle": {"center": [0, 0], "radius": 9}}, "spacing": 1}'"#
             .into(),
+        ..Operation::new(Tag::Points, vec![answers()])
     };
     let operations = vec![(given, routing::get(get)), (posted, routing::post(post))];
     Endpoint::new("/v1/count", service, operations)
@@ -81,23 +74,19 @@ struct Count {
     query: Resolved,
 }
 
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let draft = Draft::of(context.values(groups::COUNT));
     let (query, _) = service.check(&draft, &Stop::NEVER)?;
     let freshness = answer::freshness(&service, &context, &query, document::JSON);
-    freshness
+    Ok(freshness
         .answer(&context.headers, counted(&service, &context, query))
-        .await
+        .await?)
 }
 
-async fn post(
-    State(service): State<Arc<Service>>,
-    context: Context,
-    Whole(body): Whole,
-) -> Result<Response, Error> {
-    context.no_parameters()?;
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+    let Sent { context, body } = sent;
     let (_, query, _) = body::query(&service, body, groups::COUNTED).await?;
-    counted(&service, &context, query).await
+    Ok(counted(&service, &context, query).await?)
 }
 
 async fn counted(service: &Service, context: &Context, query: Query) -> Result<Response, Error> {

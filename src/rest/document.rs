@@ -3,8 +3,7 @@
 use axum::{body::Body, response::Response};
 use http::{HeaderValue, header};
 use serde::Serialize;
-
-use crate::service::Error;
+use strew_error::Error;
 
 /// The content type of JSON.
 pub(super) const JSON: &str = "application/json";
@@ -20,6 +19,14 @@ pub(super) fn written(document: &impl Serialize) -> Result<Vec<u8>, Error> {
         .map_err(|_| Error::Internal("a document cannot be written"))?;
     body.push(b'\n');
     Ok(body)
+}
+
+/// An answer that is true for a moment only, and never kept.
+#[must_use]
+pub fn momentary(mut response: Response) -> Response {
+    let value = HeaderValue::from_static("no-store");
+    response.headers_mut().insert(header::CACHE_CONTROL, value);
+    response
 }
 
 /// A file as an answer.

@@ -7,47 +7,38 @@ use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
+use strew_catalog::except::{NamedList, Section};
 use strew_core::server::Stop;
+use strew_error::Kind;
+use strew_query::groups;
+use strew_service::Service;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
-    body::Whole,
-    context::Context,
-    document,
-    freshness::Freshness,
-    query,
+    context::{Context, Sent},
+    document, query,
 };
-use crate::service::{
-    Error, Kind, Service,
-    except::{NamedList, Section},
-    query::groups,
-};
+use crate::rest::Refused;
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let listed = Operation {
-        method: Method::GET,
         id: "listExcept",
         summary: "The lists of points that are left out",
         about: "Lists of the daemon's configuration and of its folder, for the parameter except.",
-        tag: Tag::Worlds,
-        path_parameters: &[],
-        parameters: groups::NONE,
-        body: None,
-        answers: vec![
-            api::Answer::json::<Lists<'_>>("The lists, sorted by name."),
-            api::Answer::unchanged(),
-        ],
-        problems: vec![Kind::Invalid],
         example: "/v1/except".into(),
+        ..Operation::new(
+            Tag::Worlds,
+            api::Answer::json::<Lists<'_>>("The lists, sorted by name.").or_unchanged(),
+        )
     };
     let sent = Operation {
         method: Method::POST,
         id: "sendExcept",
-        summary: "Send a list of points to name it later",
+        summary: "Sends a list of points to be named later",
         about: "Queries name it by its digest: except=DIGEST. The body is an object, or text with an id a line, where \
-                what follows # is a comment. The list is held while there is room; one that is gone is an unknown \
-                list, and is sent again.",
+                what follows # is a comment. The list is held while there is room; a query that names one that is \
+                gone is refused, and the client sends the list again.",
         body: Some(query::body(schemas::of::<Section<'_>>, example())),
         answers: vec![api::Answer::json::<List<'_>>(
             "The list that is held; its name is its digest.",
@@ -64,16 +55,12 @@ fn example() -> serde_json::Value {
     json!({ "ids": ["trees/18:-17", "trees/23:-15"] })
 }
 
-async fn post(
-    State(service): State<Arc<Service>>,
-    context: Context,
-    Whole(body): Whole,
-) -> Result<Response, Error> {
-    context.no_parameters()?;
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+    let Sent { body, .. } = sent;
     let bytes = body.len();
     let hold = move |service: &Service, _: &Stop| service.hold_list(&body);
     let held = service.process(bytes, hold).await??;
-    document::json(&List::new(&held))
+    Ok(document::json(&List::new(&held))?)
 }
 
 /// The lists of points that queries may leave out.
@@ -109,7 +96,7 @@ impl<'a> List<'a> {
     }
 }
 
-async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let lists = Lists {
@@ -117,7 +104,5 @@ async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Re
             .map(|list| List::new(list))
             .collect(),
     };
-    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &lists);
-    let make = async { document::json(&lists) };
-    freshness.answer(&context.headers, make).await
+    Ok(context.document(&lists).await?)
 }

@@ -3,31 +3,28 @@
 use std::sync::Arc;
 
 use axum::{
-    body::Body,
     extract::{Path, State},
     response::Response,
     routing,
 };
-use http::{HeaderValue, Method, header};
+use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
+use strew_catalog::field::{self, Document, NamedField, SIDE};
 use strew_core::server::Stop;
+use strew_error::{Error, Kind, Together as _};
+use strew_query::{Parameter, groups};
+use strew_service::Service;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
-    body::{self, Whole},
+    body,
     chunks::{COLUMN, ROW, SIZE},
-    context::Context,
-    document,
-    freshness::Freshness,
-    query,
+    context::{Context, Sent},
+    document, query,
 };
-use crate::service::{
-    Error, Kind, Service,
-    field::{self, Document, NamedField, SIDE},
-    query::{Parameter, Together as _, groups},
-};
+use crate::rest::Refused;
 
 const NAME: Parameter = Parameter {
     name: "name",
@@ -47,26 +44,28 @@ pub(super) fn list(service: Arc<Service>) -> Endpoint {
         id: "listFields",
         summary: "The fields that are loaded",
         about: "Fields of the daemon's configuration and of its folder, which queries name.",
-        path_parameters: &[],
-        problems: vec![Kind::Invalid],
         example: "/v1/fields".into(),
-        ..operation(api::Answer::json::<Fields<'_>>("The list, sorted by name."))
+        ..Operation::new(
+            Tag::Fields,
+            api::Answer::json::<Fields<'_>>("The list, sorted by name.").or_unchanged(),
+        )
     };
     let sent = Operation {
         method: Method::POST,
         id: "sendField",
         summary: "Sends a field to be named later",
         about: "Queries name it by its digest: field=DIGEST. So a mask is sent once, and used chunk by chunk. \
-                It is held for as long as there is room; one that is gone is \
-                no loaded field, and is sent again.",
-        path_parameters: &[],
+                It is held while there is room; a query that names one that is gone is refused, \
+                and the client sends the field again.",
         body: Some(query::body(schemas::of::<Document>, example())),
-        answers: vec![api::Answer::json::<Summary<'_>>(
-            "What is held; its name is its digest.",
-        )],
         problems: vec![Kind::Invalid, Kind::BodyTooLarge],
         example: format!("/v1/fields -d '{}'", example()),
-        ..operation(api::Answer::unchanged())
+        ..Operation::new(
+            Tag::Fields,
+            vec![api::Answer::json::<Summary<'_>>(
+                "The field that is held; its name is its digest.",
+            )],
+        )
     };
     let operations = vec![(listed, routing::get(all)), (sent, routing::post(post))];
     Endpoint::new("/v1/fields", service, operations)
@@ -76,12 +75,8 @@ fn example() -> serde_json::Value {
     json!({ "radial": { "center": [10, 10], "radii": [5, 20] } })
 }
 
-async fn post(
-    State(service): State<Arc<Service>>,
-    context: Context,
-    Whole(body): Whole,
-) -> Result<Response, Error> {
-    context.no_parameters()?;
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+    let Sent { body, .. } = sent;
     let (bytes, budget) = (body.len(), service.own_budget());
     let read = move || {
         let _held = budget.hold(body::COPIES * body.len())?;
@@ -91,7 +86,7 @@ async fn post(
     let hold =
         |service: &Service, document: Document, stop: &Stop| service.hold_field(document, stop);
     let held = service.read(bytes, read, Document::price, hold).await?;
-    document::json(&Summary::new(&held))
+    Ok(document::json(&Summary::new(&held))?)
 }
 
 /// The path of one field.
@@ -103,11 +98,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         example: "/v1/fields/forest".into(),
         ..operation(api::Answer::json::<Described<'_>>("The field."))
     };
-    Endpoint::new(
-        "/v1/fields/{name}",
-        service,
-        vec![(operation, routing::get(one))],
-    )
+    Endpoint::only("/v1/fields/{name}", service, operation, one)
 }
 
 /// The path of pictures.
@@ -119,34 +110,22 @@ pub(super) fn picture(service: Arc<Service>) -> Endpoint {
                 are those of the points.",
         path_parameters: &[&NAME, &SIZE, &COLUMN, &ROW],
         example: "/v1/fields/forest/chunks/64/0/0 -o field.png".into(),
-        ..operation(api::Answer {
-            status: 200,
-            about: "The picture.",
-            headers: vec![],
-            contents: vec![(PNG, schemas::any)],
-        })
+        ..operation(api::Answer::file("The picture.", PNG, schemas::any))
     };
-    Endpoint::new(
+    Endpoint::only(
         "/v1/fields/{name}/chunks/{size}/{cx}/{cy}",
         service,
-        vec![(operation, routing::get(chunk))],
+        operation,
+        chunk,
     )
 }
 
-/// What the operations share.
+/// The parts that the operations share.
 fn operation(answer: api::Answer) -> Operation {
     Operation {
-        method: Method::GET,
-        id: "",
-        summary: "",
-        about: "",
-        tag: Tag::Fields,
         path_parameters: &[&NAME],
-        parameters: groups::NONE,
-        body: None,
-        answers: vec![answer, api::Answer::unchanged()],
         problems: vec![Kind::Invalid, Kind::NoSuchPath],
-        example: String::new(),
+        ..Operation::new(Tag::Fields, answer.or_unchanged())
     }
 }
 
@@ -197,65 +176,55 @@ impl<'a> Summary<'a> {
     }
 }
 
-async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let fields = || catalog.fields().iter();
     let made_of: Vec<(&str, String)> = fields().map(|f| (f.name.as_str(), f.digest())).collect();
-    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &made_of);
     let make = async {
         document::json(&Fields {
             fields: fields().map(|field| Summary::new(field)).collect(),
         })
     };
-    freshness.answer(&context.headers, make).await
+    Ok(context.answer(document::JSON, &made_of, make).await?)
 }
 
 async fn one(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
     context: Context,
-) -> Result<Response, Error> {
+) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let field = named(&service, &name, &context)?;
     let described = Described {
         summary: Summary::new(&field),
         field: field.document.without_folders(),
     };
-    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &described);
-    let make = async { document::json(&described) };
-    freshness.answer(&context.headers, make).await
+    Ok(context.document(&described).await?)
 }
 
 async fn chunk(
     State(service): State<Arc<Service>>,
     Path([name, size, x, y]): Path<[String; 4]>,
     context: Context,
-) -> Result<Response, Error> {
+) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let field = named(&service, &name, &context)?;
     let (size, x, y) = (SIZE.read(&size), COLUMN.read(&x), ROW.read(&y)).together()?;
-    let freshness = Freshness::of(&context.uri, &context.headers, PNG, &field.digest());
     let parts = field.spec.parts();
+    let digest = field.digest();
     let make = async {
         let draw = move |_: &Service, _: &Stop| field.picture(size, [x, y]);
         let picture = service.process(SIDE * SIDE * parts, draw).await??;
-        let mut response = Response::new(Body::from(picture));
-        let value = HeaderValue::from_static(PNG);
-        response.headers_mut().insert(header::CONTENT_TYPE, value);
-        Ok(response)
+        Ok(document::file(picture, PNG))
     };
-    freshness.answer(&context.headers, make).await
+    Ok(context.answer(PNG, &digest, make).await?)
 }
 
 /// The field of a path.
 fn named(service: &Service, name: &str, context: &Context) -> Result<Arc<NamedField>, Error> {
     let catalog = service.catalog();
-    catalog.field(name).ok_or_else(|| Error::NoSuchPath {
-        path: context.uri.path().into(),
-        available: format!(
-            "/v1/fields/{{name}}, where name is {}",
-            catalog.fields().names()
-        ),
-    })
+    let names = || catalog.fields().names();
+    let field = catalog.field(name);
+    field.ok_or_else(|| context.nothing(format!("/v1/fields/{{name}}, where name is {}", names())))
 }

@@ -1,4 +1,4 @@
-//! What is done to every answer, whoever made it: CORS, problems instead of bare errors, how long
+//! The last step of every answer: CORS, problems instead of bare errors, how long
 //! it may be kept, compression. Answers to calls only get the first.
 
 use std::sync::Arc;
@@ -10,6 +10,8 @@ use axum::{
     response::Response,
 };
 use http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Version, header};
+use strew_config::Http;
+use strew_service::Service;
 
 use super::{
     coding,
@@ -17,9 +19,8 @@ use super::{
     freshness, harden,
     problem::{self, Problem},
 };
-use crate::{config::Http, service::Service};
 
-/// What finishing needs.
+/// The settings that finishing needs.
 #[derive(Clone, Debug)]
 struct Finish {
     origins: Origins,

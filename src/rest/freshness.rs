@@ -1,6 +1,6 @@
 //! Whether a client's copy of an answer is still right (RFC 9110, 13; RFC 9111).
 //!
-//! An answer is a pure function of what was asked, of the table and of the program, so its tag is a
+//! An answer is a pure function of the request, of the table and of the program, so its tag is a
 //! hash of those and is known before a point is made. Tags are strong: equal tags, equal bytes. An
 //! address that pins its table (`table=…`) is answered the same forever.
 
@@ -8,14 +8,14 @@ use axum::{body::Body, response::Response};
 use http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use serde::Serialize;
 use strew_core::ALGORITHM_VERSION;
+use strew_error::Error;
 
 use super::{
     coding::{Coding, Decided},
     vary,
 };
-use crate::service::Error;
 
-/// What is known of an answer before it is made.
+/// The tag of an answer and what else caches need, known before the answer is made.
 #[derive(Clone, Debug)]
 pub(super) struct Freshness {
     tag: HeaderValue,
@@ -32,8 +32,8 @@ impl Freshness {
     /// The freshness of an answer to a request for `uri`, in a content type, `made_of` all that
     /// decides its bytes besides the address: digests of tables, settings.
     ///
-    /// The address goes in as it was written, which is quicker than what was understood by it and
-    /// tells at least as much apart.
+    /// The address goes in as it was written: that is quicker than the query that was read from it, and distinguishes
+    /// at least as much.
     pub(super) fn of(
         uri: &Uri,
         headers: &HeaderMap,
@@ -50,7 +50,7 @@ impl Freshness {
             made_of,
         );
         let mut written = Vec::with_capacity(512);
-        // What goes in are numbers and texts, which always can be written.
+        // Numbers and texts can always be written.
         let _ = serde_json::to_writer(&mut written, &identity);
         let hash = blake3::hash(&written).to_hex();
         let suffix = coding.map_or("", Coding::suffix);
@@ -105,13 +105,12 @@ impl Freshness {
         Ok(response)
     }
 
-    /// The answer to a client that already has what it asks for.
+    /// The answer to a client that has the current copy.
     pub(super) fn unchanged(&self, headers: &HeaderMap) -> Option<Response> {
         self.listed(headers).then(|| self.not_modified())
     }
 
-    /// The answer to a client that wants none if there is any (`If-None-Match: *`); to be asked
-    /// once it is sure that there is one.
+    /// The 304 for `If-None-Match: *`. Call it only once the resource is known to exist.
     pub(super) fn unwanted(&self, headers: &HeaderMap) -> Option<Response> {
         Self::is_any_unwanted(headers).then(|| self.not_modified())
     }
@@ -155,7 +154,7 @@ impl Freshness {
     }
 }
 
-/// Says how long an answer may be kept, where nobody has said so yet.
+/// Sets how long an answer may be kept, unless it says so already.
 pub(super) fn keep(response: &mut Response, seconds: u32, is_private: bool) {
     let pinned = response.extensions().get::<Pinned>().is_some();
     let headers = response.headers_mut();

@@ -1,13 +1,13 @@
-//! Headers that keep browsers from taking an answer for what it is not, whoever made it.
+//! Headers that keep browsers from taking any answer for what it is not.
 
 use http::{HeaderMap, HeaderName, HeaderValue, header};
 
-/// What an answer that is no page may load or run when somebody opens it: nothing. Pictures bring
+/// The policy of an answer that is no page: a browser that opens it loads and runs nothing. Pictures bring
 /// their own style.
 const NO_PAGE: &str =
     "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox";
 
-/// Sets them where nobody has. If all pages may read answers, they may also show them as pictures.
+/// Sets the headers that an answer lacks. If all pages may read answers, they may also show them as pictures.
 pub(super) fn guard(headers: &mut HeaderMap, all_may_read: bool) {
     let resource = if all_may_read {
         "cross-origin"

@@ -1,4 +1,4 @@
-//! `/v1/jobs`: the jobs of the forge, how they stand, their events, and their end.
+//! `/v1/jobs`: the jobs of the forge, their states, their events, and their end.
 
 use std::{convert::Infallible, sync::Arc};
 
@@ -10,20 +10,19 @@ use axum::{
 };
 use bytes::Bytes;
 use futures_util::{StreamExt as _, stream};
-use http::{HeaderMap, HeaderValue, Method, header};
+use http::{HeaderMap, Method, header};
 use schemars::JsonSchema;
 use serde::Serialize;
+use strew_error::Kind;
+use strew_query::{Parameter, groups};
+use strew_service::{Record, Service, forging::JobStatus};
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
     context::Context,
     document,
 };
-use crate::service::{
-    Error, Kind, Record, Service,
-    forging::JobStatus,
-    query::{Parameter, groups},
-};
+use crate::rest::Refused;
 
 /// The content type of server-sent events.
 const EVENTS: &str = "text/event-stream";
@@ -42,12 +41,12 @@ pub(super) fn list(service: Arc<Service>) -> Endpoint {
     let operation = Operation {
         id: "listJobs",
         summary: "The jobs of the forge",
-        about: "Those that wait or run, and those that ended last.",
+        about: "Jobs that wait or run, and those that ended last.",
         path_parameters: &[],
         example: "/v1/jobs".into(),
         ..operation(api::Answer::json::<Jobs>("The jobs, the newest first."))
     };
-    Endpoint::new("/v1/jobs", service, vec![(operation, routing::get(all))])
+    Endpoint::only("/v1/jobs", service, operation, all)
 }
 
 /// The path of one job.
@@ -56,7 +55,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     answer.contents.push((EVENTS, schemas::text));
     let get = Operation {
         id: "getJob",
-        summary: "How a job of the forge stands",
+        summary: "The state of a job of the forge",
         about: "With `Accept: text/event-stream` as server-sent events: an event `job` with the document whenever it \
                 changes, at most five times a second, until the job is over.",
         problems: vec![Kind::NotAllowed, Kind::NoSuchJob, Kind::Invalid, Kind::Busy],
@@ -78,20 +77,12 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     Endpoint::new("/v1/jobs/{id}", service, operations)
 }
 
-/// What the operations share.
+/// The parts that the operations share.
 fn operation(answer: api::Answer) -> Operation {
     Operation {
-        method: Method::GET,
-        id: "",
-        summary: "",
-        about: "",
-        tag: Tag::Tables,
         path_parameters: &[&ID],
-        parameters: groups::NONE,
-        body: None,
-        answers: vec![answer],
         problems: vec![Kind::NotAllowed, Kind::Invalid],
-        example: String::new(),
+        ..Operation::new(Tag::Tables, vec![answer])
     }
 }
 
@@ -103,21 +94,21 @@ struct Jobs {
     jobs: Vec<JobStatus>,
 }
 
-async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let jobs = service.jobs(&context.caller)?;
-    Ok(fresh(document::json(&Jobs { jobs })?))
+    Ok(document::momentary(document::json(&Jobs { jobs })?))
 }
 
 async fn one(
     State(service): State<Arc<Service>>,
     Path(id): Path<String>,
     context: Context,
-) -> Result<Response, Error> {
+) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let job = service.job(&context.caller, &id)?;
     if !wants_events(&context.headers) {
-        return Ok(fresh(document::json(&job.status())?));
+        return Ok(document::momentary(document::json(&job.status())?));
     }
     Record::in_format("events");
     let states = service.follow_job(&context.caller, &job)?;
@@ -125,21 +116,21 @@ async fn one(
         let text = serde_json::to_string(&status).unwrap_or_default();
         Ok::<_, Infallible>(Bytes::from(format!("event: job\ndata: {text}\n\n")))
     });
-    // Clients that see nothing for long would try again.
+    // Clients that receive nothing for long would try again.
     let first = stream::once(async { Ok(Bytes::from_static(b"retry: 2000\n\n")) });
-    let mut response = Response::new(Body::from_stream(first.chain(events)));
-    let value = HeaderValue::from_static(EVENTS);
-    response.headers_mut().insert(header::CONTENT_TYPE, value);
-    Ok(fresh(response))
+    let events = Body::from_stream(first.chain(events));
+    Ok(document::momentary(document::file(events, EVENTS)))
 }
 
 async fn delete(
     State(service): State<Arc<Service>>,
     Path(id): Path<String>,
     context: Context,
-) -> Result<Response, Error> {
+) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
-    document::json(&service.cancel_job(&context.caller, &id).await?)
+    Ok(document::json(
+        &service.cancel_job(&context.caller, &id).await?,
+    )?)
 }
 
 fn wants_events(headers: &HeaderMap) -> bool {
@@ -149,11 +140,4 @@ fn wants_events(headers: &HeaderMap) -> bool {
         let name = part.split(';').next().unwrap_or_default();
         name.trim().eq_ignore_ascii_case(EVENTS)
     })
-}
-
-/// What is true for a moment is not kept.
-fn fresh(mut response: Response) -> Response {
-    let value = HeaderValue::from_static("no-store");
-    response.headers_mut().insert(header::CACHE_CONTROL, value);
-    response
 }

@@ -16,7 +16,6 @@ mod fixed;
 mod freshness;
 mod harden;
 mod jobs;
-mod joined;
 mod mask;
 mod negotiate;
 mod openapi;
@@ -42,11 +41,15 @@ use std::sync::Arc;
 use axum::{Router, extract::Request, response::Response};
 use http::StatusCode;
 
-use crate::service::{Error, Service};
 use api::Endpoint;
-pub use document::json;
+pub(crate) use context::Context;
+pub use document::{file, json, momentary};
 pub use finish::finished;
+pub use page::{Page, Pages};
 use problem::Problem;
+pub use problem::Refused;
+use strew_error::Error;
+use strew_service::Service;
 pub use unknown::not_found;
 pub use worlds::world_document;
 
@@ -103,11 +106,12 @@ impl Routes {
     #[must_use]
     pub fn new(
         mut endpoints: Vec<Endpoint>,
+        pages: &Pages,
         public_url: &str,
         open: impl FnOnce(Router) -> Router,
         gate: impl FnOnce(Router) -> Router,
     ) -> Self {
-        endpoints.extend(page::endpoints(public_url));
+        endpoints.extend(page::endpoints(pages, public_url));
         endpoints.push(openapi::endpoint(&endpoints));
         let paths: Vec<&str> = endpoints.iter().map(Endpoint::path).collect();
         let paths = paths.join(", ");
@@ -116,7 +120,7 @@ impl Routes {
             let routers = endpoints.into_iter().map(Endpoint::into_router);
             routers.fold(Router::new(), Router::merge)
         };
-        let router = open(joined(free).merge(page::icon())).merge(gate(joined(closed)));
+        let router = open(joined(free).merge(page::icon(pages))).merge(gate(joined(closed)));
         Self { router, paths }
     }
 }
@@ -127,7 +131,7 @@ pub fn no_place(error: &Error) -> Vec<u8> {
     Problem::last_words(error)
 }
 
-/// The answer to what asks for a gRPC method, but not as a call.
+/// The answer to a request to a gRPC method that is no call.
 #[must_use]
 pub fn not_a_call(request: &Request) -> Response {
     let detail = format!(

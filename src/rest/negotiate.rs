@@ -1,9 +1,10 @@
 //! Which format a client accepts (RFC 9110, 12.5.1).
 
 use http::{HeaderMap, header::ACCEPT};
+use strew_encode::Encoding;
+use strew_error::Error;
 
 use super::quality;
-use crate::service::{Encoding, Error};
 
 /// A format and the content type to call it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +14,7 @@ pub(super) struct Chosen {
 }
 
 impl Chosen {
-    /// A format that was asked for by name.
+    /// A format that was requested by name.
     pub(super) const fn named(encoding: Encoding) -> Self {
         Self {
             encoding,
@@ -22,87 +23,49 @@ impl Chosen {
     }
 }
 
-/// What is on offer by media type, in the order of preference where a client has none.
-const OFFERS: [(&str, Chosen); 20] = [
-    ("application/json", Chosen::named(Encoding::Json)),
-    ("application/x-ndjson", Chosen::named(Encoding::Ndjson)),
-    (
-        "application/ndjson",
-        Chosen {
-            encoding: Encoding::Ndjson,
-            content_type: "application/ndjson",
-        },
-    ),
-    (
-        "application/jsonl",
-        Chosen {
-            encoding: Encoding::Ndjson,
-            content_type: "application/jsonl",
-        },
-    ),
-    ("text/csv", Chosen::named(Encoding::Csv)),
-    (
-        "application/vnd.strew.f32",
-        Chosen {
-            encoding: Encoding::F32,
-            content_type: "application/vnd.strew.f32",
-        },
-    ),
-    (
-        "application/vnd.strew.f64",
-        Chosen {
-            encoding: Encoding::F64,
-            content_type: "application/vnd.strew.f64",
-        },
-    ),
-    ("application/octet-stream", Chosen::named(Encoding::F64)),
-    ("application/geo+json", Chosen::named(Encoding::Geojson)),
-    (
-        "application/geo+json-seq",
-        Chosen::named(Encoding::Geojsonseq),
-    ),
-    (
-        "application/vnd.apache.arrow.stream",
-        Chosen::named(Encoding::Arrow),
-    ),
-    ("application/x-npy", Chosen::named(Encoding::Npy)),
-    ("application/ply", Chosen::named(Encoding::Ply)),
-    (
-        "model/ply",
-        Chosen {
-            encoding: Encoding::Ply,
-            content_type: "model/ply",
-        },
-    ),
-    ("image/png", Chosen::named(Encoding::Png)),
-    ("image/svg+xml", Chosen::named(Encoding::Svg)),
-    ("model/gltf-binary", Chosen::named(Encoding::Glb)),
-    ("model/vnd.usda", Chosen::named(Encoding::Usda)),
-    (
-        "application/vnd.strew.multimesh",
-        Chosen {
-            encoding: Encoding::Multimesh,
-            content_type: "application/vnd.strew.multimesh",
-        },
-    ),
-    (
-        "application/vnd.strew.instances",
-        Chosen {
-            encoding: Encoding::Instances,
-            content_type: "application/vnd.strew.instances",
-        },
-    ),
+/// The formats by media type, in the order of preference for clients that have none.
+const OFFERS: [(&str, Encoding); 20] = [
+    ("application/json", Encoding::Json),
+    ("application/x-ndjson", Encoding::Ndjson),
+    ("application/ndjson", Encoding::Ndjson),
+    ("application/jsonl", Encoding::Ndjson),
+    ("text/csv", Encoding::Csv),
+    ("application/vnd.strew.f32", Encoding::F32),
+    ("application/vnd.strew.f64", Encoding::F64),
+    ("application/octet-stream", Encoding::F64),
+    ("application/geo+json", Encoding::Geojson),
+    ("application/geo+json-seq", Encoding::Geojsonseq),
+    ("application/vnd.apache.arrow.stream", Encoding::Arrow),
+    ("application/x-npy", Encoding::Npy),
+    ("application/ply", Encoding::Ply),
+    ("model/ply", Encoding::Ply),
+    ("image/png", Encoding::Png),
+    ("image/svg+xml", Encoding::Svg),
+    ("model/gltf-binary", Encoding::Glb),
+    ("model/vnd.usda", Encoding::Usda),
+    ("application/vnd.strew.multimesh", Encoding::Multimesh),
+    ("application/vnd.strew.instances", Encoding::Instances),
 ];
+
+/// A format under the media type that a client accepts.
+fn offered(media_type: &'static str, encoding: Encoding) -> Chosen {
+    let own = Chosen::named(encoding);
+    // The content type of the format may have parameters, too.
+    match own.content_type.starts_with(media_type) {
+        true => own,
+        false => Chosen {
+            encoding,
+            content_type: media_type,
+        },
+    }
+}
 
 /// The content types that a client can be given, each once.
 pub(super) fn content_types() -> Vec<&'static str> {
     let named = Encoding::ALL.map(Encoding::content_type);
     let mut types = vec![];
-    for content_type in OFFERS
-        .iter()
-        .map(|(_, chosen)| chosen.content_type)
-        .chain(named)
-    {
+    let offered = OFFERS.map(|(media_type, encoding)| offered(media_type, encoding).content_type);
+    for content_type in offered.into_iter().chain(named) {
         if !types.contains(&content_type) {
             types.push(content_type);
         }
@@ -119,11 +82,11 @@ pub(super) fn accepted(headers: &HeaderMap) -> Result<Chosen, Error> {
         .collect();
     let accept = lines.join(", ");
     if accept.trim().is_empty() {
-        return Ok(OFFERS[0].1);
+        return Ok(Chosen::named(Encoding::Json));
     }
     let ranges: Vec<Range<'_>> = accept.split(',').filter_map(Range::parse).collect();
     let mut best: Option<(u16, Chosen)> = None;
-    for (media_type, chosen) in OFFERS {
+    for (media_type, encoding) in OFFERS {
         let closest = ranges
             .iter()
             .filter(|range| range.holds(media_type))
@@ -132,7 +95,7 @@ pub(super) fn accepted(headers: &HeaderMap) -> Result<Chosen, Error> {
             continue;
         };
         if quality > best.map_or(0, |(quality, _)| quality) {
-            best = Some((quality, chosen));
+            best = Some((quality, offered(media_type, encoding)));
         }
     }
     best.map(|(_, chosen)| chosen)

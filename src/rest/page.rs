@@ -1,192 +1,52 @@
-//! The daemon's own pages for people: `/`, a view of the plane, and what it leads to. Their parts are embedded and
-//! served under `/page/`; they load nothing from elsewhere and use only the public API.
+//! The daemon's own pages for people: `/`, a view of the plane, and the pages that it leads to. Their parts are served
+//! under `/page/`; they load nothing from elsewhere and use only the public API.
 //!
-//! The list of parts stands in [`PARTS`]; tests/tidy.rs holds it against the folder. The modules and the styles of a
-//! page are joined at the start, because each request takes a round trip; the parts are served as well, for workers
-//! and other pages.
+//! The program hands them in, because an edit of a page then compiles nothing of this crate.
 
 use std::sync::Arc;
 
 use axum::{Router, extract::State, response::Response, routing};
 use bytes::Bytes;
-use http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
+use http::{HeaderMap, HeaderName, HeaderValue, Uri, header};
+use strew_error::{Error, Kind};
+use strew_query::Parameter;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
     fixed::Fixed,
-    joined::joined,
 };
-use crate::service::{
-    Error, Kind,
-    query::{Parameter, groups},
-};
+use crate::rest::Refused;
 
-/// What the page may load: its own parts, and what the daemon answers. Nothing inline.
+/// The policy of pages: they may load their own parts and the answers of the daemon, and nothing inline.
 const POLICY: &str = "default-src 'none'; style-src 'self'; script-src 'self'; worker-src 'self'; \
                       connect-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'";
 
-/// A page: its path, the name of its operation, a summary and a description of it, and its text.
-type Page = (
-    &'static str,
-    &'static str,
-    &'static str,
-    &'static str,
-    &'static str,
-);
-
-/// The pages. The parts of the first are in `page/`, those of each other one in a folder of its own in there.
-const PAGES: &[Page] = &[
-    (
-        "/",
-        "getPage",
-        "The page",
-        "For people: a view of the plane, with controls for its points and the requests for them. Loads nothing from \
-         elsewhere.",
-        include_str!("page/index.html"),
-    ),
-    (
-        "/docs",
-        "getDocs",
-        "The API as a page",
-        "For people: every operation with its parameters and answers, and a form to try it. Loads nothing from \
-         elsewhere.",
-        include_str!("page/docs/index.html"),
-    ),
-    (
-        "/compare",
-        "getComparePage",
-        "The page that compares ways to scatter points",
-        "For people: six ways to scatter points side by side, with spectra, distances and times. Loads nothing from \
-         elsewhere.",
-        include_str!("page/compare/index.html"),
-    ),
-    (
-        "/tile",
-        "getTilePage",
-        "The page of a tile",
-        "For people: a texture of points or a mask for dithering that repeats without a seam, to look at and to save. \
-         Loads nothing from elsewhere.",
-        include_str!("page/tile/index.html"),
-    ),
-    (
-        "/walk",
-        "getWalk",
-        "A walk through the plane, in three dimensions",
-        "For people: a forest whose trees are points of the plane, streamed by chunk. Loads nothing from elsewhere.",
-        include_str!("page/walk/index.html"),
-    ),
-];
-
-macro_rules! parts {
-    ($($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("page/", $name)))),*]
-    };
+/// The pages and their parts.
+#[derive(Clone, Debug, Default)]
+pub struct Pages {
+    /// The pages.
+    pub pages: Vec<Page>,
+    /// Scripts, styles and pictures, each with its name below `/page/`, such as `docs/docs.css`.
+    pub parts: Vec<(String, Bytes)>,
 }
 
-/// The parts of the page by their names.
-const PARTS: &[(&str, &str)] = parts![
-    "api.js",
-    "bar.css",
-    "bar.js",
-    "card.js",
-    "charts.js",
-    "chunks.js",
-    "commands.js",
-    "compare/bridson.js",
-    "compare/cells.js",
-    "compare/compare.css",
-    "compare/compare.js",
-    "compare/halton.js",
-    "compare/hash.js",
-    "compare/joint.js",
-    "compare/made.js",
-    "compare/methods.js",
-    "compare/panel.js",
-    "compare/sheet.js",
-    "compare/sources.js",
-    "compare/tile.js",
-    "compare/worker.js",
-    "controls.js",
-    "digits.js",
-    "docs/attempt.js",
-    "docs/docs.css",
-    "docs/docs.js",
-    "docs/operation.js",
-    "docs/schema.js",
-    "dom.js",
-    "dots.js",
-    "download.js",
-    "faults.js",
-    "fft.js",
-    "form.css",
-    "form.js",
-    "gallery.css",
-    "gallery.js",
-    "gestures.js",
-    "grid.js",
-    "icon.svg",
-    "layout.css",
-    "main.js",
-    "marks.js",
-    "measure.js",
-    "measure_worker.js",
-    "neighbors.js",
-    "paint/brush.js",
-    "paint/message.js",
-    "paint/paint.css",
-    "paint/paint.js",
-    "paint/strokes.js",
-    "paint/world.js",
-    "painter_2d.js",
-    "painter_gl.js",
-    "panel.css",
-    "picture.js",
-    "place.js",
-    "plane.js",
-    "profiles.js",
-    "program.js",
-    "query.js",
-    "sent.js",
-    "session.js",
-    "shade.js",
-    "sheets.js",
-    "spectrum.js",
-    "start.css",
-    "start.js",
-    "state.js",
-    "status.js",
-    "take.js",
-    "theme.css",
-    "theme.js",
-    "tile/mask.js",
-    "tile/period.js",
-    "tile/state.js",
-    "tile/tile.css",
-    "tile/tile.js",
-    "understand.js",
-    "worker.js",
-    "walk/camera.js",
-    "walk/ground.js",
-    "walk/land.js",
-    "walk/leaves.js",
-    "walk/map.js",
-    "walk/move.js",
-    "walk/scene.js",
-    "walk/shaders.js",
-    "walk/shapes.js",
-    "walk/walk.css",
-    "walk/walk.js",
-    "walk/world.js",
-    "works/works.css",
-    "works/works.js",
-    "works/draw.js",
-    "works/modes.js",
-    "works/pattern.js",
-    "works/settings.js",
-];
+/// A page.
+#[derive(Clone, Debug)]
+pub struct Page {
+    /// Its path.
+    pub path: &'static str,
+    /// The name of its operation in the description of the API.
+    pub id: &'static str,
+    /// The summary of that operation.
+    pub summary: &'static str,
+    /// The description of that operation.
+    pub about: &'static str,
+    /// Its text.
+    pub html: String,
+}
 
-/// What is before the address of the picture that a passed-on link to a page shows.
+/// The markup before the address of the picture that previews of links to a page show.
 const PREVIEW: &str = "<meta property=\"og:image\" content=\"";
 
 const HTML: &str = "text/html; charset=utf-8";
@@ -204,18 +64,18 @@ fn content_type(name: &str) -> &'static str {
     }
 }
 
-/// The pages and their parts. `public_url` is where they are seen from outside, or empty.
-pub(super) fn endpoints(public_url: &str) -> Vec<Endpoint> {
-    let parts = PARTS.iter().map(|&(name, text)| {
-        let content = Bytes::from_static(text.as_bytes());
-        (name.to_owned(), Fixed::new(content_type(name), content))
+/// The endpoints of pages and their parts. `public_url` is where they are seen from outside, or empty.
+pub(super) fn endpoints(pages: &Pages, public_url: &str) -> Vec<Endpoint> {
+    let parts = pages.parts.iter().map(|(name, content)| {
+        let document = Fixed::new(content_type(name), content.clone());
+        (name.clone(), document)
     });
-    let mut parts: Vec<(String, Fixed)> = parts.collect();
-    let mut all: Vec<_> = PAGES
+    let parts: Parts = Arc::new(parts.collect());
+    let mut all: Vec<_> = pages
+        .pages
         .iter()
-        .map(|one| page(one, public_url, &mut parts))
+        .map(|one| page(one, public_url))
         .collect();
-    let parts: Parts = Arc::new(parts);
     let of_the_first = ("/page/{file}", "getPagePart", "/page/main.js");
     all.push(parts_at(of_the_first, &[&FILE], &parts));
     let of_a_folder = (
@@ -228,54 +88,29 @@ pub(super) fn endpoints(public_url: &str) -> Vec<Endpoint> {
 }
 
 /// The icon at the address where browsers look for that of an answer that is no page.
-pub(super) fn icon() -> Router {
-    let text = PARTS.iter().find(|(name, _)| *name == "icon.svg");
-    let content = text.map_or(Bytes::new(), |(_, text)| {
-        Bytes::from_static(text.as_bytes())
-    });
-    let icon = Fixed::new(PICTURE, content);
+pub(super) fn icon(pages: &Pages) -> Router {
+    let mut parts = pages.parts.iter();
+    let Some((_, content)) = parts.find(|(name, _)| name == "icon.svg") else {
+        return Router::new();
+    };
+    let icon = Fixed::new(PICTURE, content.clone());
     let answer = move |uri: Uri, headers: HeaderMap| async move { part(&icon, &uri, &headers) };
     Router::new().route("/favicon.ico", routing::get(answer))
 }
 
-/// The name of the joined parts of a page.
-fn name_of(path: &str) -> &str {
-    match path.trim_matches('/') {
-        "" => "page",
-        name => name,
-    }
-}
-
-/// A page, whose joined parts are added to the others.
-fn page(
-    &(path, id, summary, about, text): &Page,
-    public_url: &str,
-    parts: &mut Vec<(String, Fixed)>,
-) -> Endpoint {
-    let operation = operation((id, path, summary, about), &[HTML], &[], vec![]);
-    let mut html = text.to_owned();
-    // A test joins every page; one that could not be joined would work as it is.
-    if let Ok(joined) = joined(name_of(path), text, PARTS) {
-        html = joined.html;
-        for (ending, text) in [("js", joined.script), ("css", joined.style)] {
-            let name = format!("joined/{}.{ending}", name_of(path));
-            let document = Fixed::new(content_type(&name), text.into());
-            parts.push((name, document));
-        }
-    }
+fn page(page: &Page, public_url: &str) -> Endpoint {
+    let described = (page.id, page.path, page.summary, page.about);
+    let operation = operation(described, &[HTML], &[], vec![]);
     let version = concat!(
         "<span id=\"version\">",
         env!("CARGO_PKG_VERSION"),
         "</span>"
     );
-    let html = html.replace("<span id=\"version\"></span>", version);
+    let html = page.html.replace("<span id=\"version\"></span>", version);
     let html = html.replace(PREVIEW, &format!("{PREVIEW}{public_url}"));
     let document = Fixed::new(HTML, html.into());
-    let handler =
-        routing::get(
-            move |uri: Uri, headers: HeaderMap| async move { part(&document, &uri, &headers) },
-        );
-    Endpoint::new(path, (), vec![(operation, handler)]).open()
+    let answer = move |uri: Uri, headers: HeaderMap| async move { part(&document, &uri, &headers) };
+    Endpoint::only(page.path, (), operation, answer).open()
 }
 
 /// Parts at a path, with the name of the operation and an example.
@@ -295,12 +130,12 @@ fn parts_at(
         parameters,
         vec![Kind::NoSuchPath],
     );
-    Endpoint::new(path, parts.clone(), vec![(operation, routing::get(one))]).open()
+    Endpoint::only(path, parts.clone(), operation, one).open()
 }
 
 const FOLDER: Parameter = Parameter {
     name: "folder",
-    about: "What the part belongs to.",
+    about: "The folder of the part.",
     allowed: Some("the name of a folder of parts"),
     example: "works",
     is_required: true,
@@ -323,33 +158,31 @@ fn operation(
     problems: Vec<Kind>,
 ) -> Operation {
     let text = |name: &&'static str| (*name, schemas::text as schemas::Content);
+    let answer = api::Answer {
+        status: 200,
+        about: summary,
+        headers: vec![],
+        contents: content_types.iter().map(text).collect(),
+    };
     Operation {
-        method: Method::GET,
         id,
         summary,
         about,
-        tag: Tag::About,
         path_parameters,
-        parameters: groups::NONE,
-        body: None,
-        answers: vec![
-            api::Answer {
-                status: 200,
-                about: summary,
-                headers: vec![],
-                contents: content_types.iter().map(text).collect(),
-            },
-            api::Answer::unchanged(),
-        ],
         problems,
         example: example.into(),
+        ..Operation::new(Tag::About, answer.or_unchanged())
     }
 }
 
 /// The parts by their names, ready to send.
 type Parts = Arc<Vec<(String, Fixed)>>;
 
-async fn one(State(parts): State<Parts>, uri: Uri, headers: HeaderMap) -> Result<Response, Error> {
+async fn one(
+    State(parts): State<Parts>,
+    uri: Uri,
+    headers: HeaderMap,
+) -> Result<Response, Refused> {
     let name = uri.path().trim_start_matches("/page/");
     let found = parts.iter().find(|(part, _)| part == name);
     let (_, document) = found.ok_or_else(|| Error::NoSuchPath {
@@ -378,34 +211,3 @@ fn part(document: &Fixed, uri: &Uri, headers: &HeaderMap) -> Response {
 
 const CROSS_ORIGIN_OPENER_POLICY: HeaderName =
     HeaderName::from_static("cross-origin-opener-policy");
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_page_is_joined() {
-        for &(path, .., text) in PAGES {
-            let joined = joined(name_of(path), text, PARTS).expect("known forms");
-            assert_eq!(joined.html.matches("/page/joined/").count(), 2, "{path}");
-            for form in ["\nimport {", "\nexport ", "import(\"."] {
-                assert!(!joined.script.contains(form), "{path} has {form}");
-            }
-        }
-    }
-
-    #[test]
-    fn nothing_is_inline_and_nothing_comes_from_elsewhere() {
-        let pages = PAGES.iter().map(|&(path, .., text)| (path, text));
-        for (name, text) in PARTS.iter().copied().chain(pages) {
-            // Links that people follow load nothing.
-            let text = text.replace("<a href=\"https://", "<a href=\"");
-            for word in ["style=\"", "innerHTML", "eval(", "onclick=\"", "https://"] {
-                assert!(!text.contains(word), "{name} has {word}");
-            }
-        }
-        for (.., text) in PAGES {
-            assert!(!text.contains("<style") && !text.contains("<script>"));
-        }
-    }
-}

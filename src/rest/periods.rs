@@ -2,46 +2,38 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response, routing};
-use http::Method;
+use axum::{extract::State, response::Response};
+use strew_error::Kind;
+use strew_query::{Periods, groups};
+use strew_service::Service;
 
 use super::{
     api::{self, Endpoint, Operation, Tag},
     context::Context,
     document,
-    freshness::Freshness,
 };
-use crate::service::{
-    Error, Kind, Service,
-    query::{Periods, groups},
-};
+use crate::rest::Refused;
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let operation = Operation {
-        method: Method::GET,
         id: "listPeriods",
         summary: "The periods of a table",
         about: "The sizes of periodic sets, smallest first: with periodic, from that number of points on.",
-        tag: Tag::Profiles,
-        path_parameters: &[],
         parameters: groups::PERIODS,
-        body: None,
-        answers: vec![
-            api::Answer::json::<Periods>("The list."),
-            api::Answer::unchanged(),
-        ],
         problems: vec![Kind::Invalid, Kind::OtherTable],
         example: "'/v1/periods?periodic=20000&most=3'".into(),
+        ..Operation::new(
+            Tag::Profiles,
+            api::Answer::json::<Periods>("The list.").or_unchanged(),
+        )
     };
-    Endpoint::new("/v1/periods", service, vec![(operation, routing::get(get))])
+    Endpoint::only("/v1/periods", service, operation, get)
 }
 
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let periods = Periods::of(&context.values(groups::PERIODS), &service.catalog())?;
     let made_of = (&periods.alpha, periods.radius);
-    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &made_of);
-    freshness
-        .answer(&context.headers, async { document::json(&periods) })
-        .await
+    let make = async { document::json(&periods) };
+    Ok(context.answer(document::JSON, &made_of, make).await?)
 }

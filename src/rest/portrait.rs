@@ -5,12 +5,15 @@ use std::sync::Arc;
 use axum::{
     extract::{Path, State},
     response::Response,
-    routing,
 };
-use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
+use strew_catalog::Entry;
+use strew_error::{Error, Kind};
 use strew_forge::Aim;
+use strew_query as query;
+use strew_query::{Parameter, groups, parameters};
+use strew_service::Service;
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
@@ -19,27 +22,20 @@ use super::{
     freshness::Freshness,
     profiles::Profile,
 };
-use crate::service::{
-    Entry, Error, Kind, Service,
-    query::{self, Parameter, groups, parameters},
-};
+use crate::rest::Refused;
 
 /// The path of the curves.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let operation = operation(
         "getProfile",
         "One noise profile with its curves",
-        "The table's provenance and figures; what it was made to be, with the radial power curve it \
+        "The table's provenance and figures; the aim that it was made for, with the radial power curve it \
          follows if it follows one; radial power, anisotropy and radial distribution of a window of \
          the unbounded pattern.",
         (document::JSON, schemas::of::<Document<'_>>),
         "'/v1/profiles/blue?alpha=sqrt(3)'",
     );
-    Endpoint::new(
-        "/v1/profiles/{name}",
-        service,
-        vec![(operation, routing::get(get))],
-    )
+    Endpoint::only("/v1/profiles/{name}", service, operation, get)
 }
 
 /// The path of the picture.
@@ -51,11 +47,7 @@ pub(super) fn picture(service: Arc<Service>) -> Endpoint {
         (SVG, schemas::text),
         "/v1/profiles/blue/spectrum.svg -o spectrum.svg",
     );
-    Endpoint::new(
-        "/v1/profiles/{name}/spectrum.svg",
-        service,
-        vec![(operation, routing::get(svg))],
-    )
+    Endpoint::only("/v1/profiles/{name}/spectrum.svg", service, operation, svg)
 }
 
 /// The content type of the picture.
@@ -78,25 +70,17 @@ fn operation(
     example: &str,
 ) -> Operation {
     Operation {
-        method: Method::GET,
         id,
         summary,
         about,
-        tag: Tag::Profiles,
         path_parameters: &[&NAME],
         parameters: groups::TABLE,
-        body: None,
-        answers: vec![
-            api::Answer {
-                status: 200,
-                about: summary,
-                headers: vec![],
-                contents: vec![content],
-            },
-            api::Answer::unchanged(),
-        ],
         problems: vec![Kind::Invalid, Kind::NoSuchPath, Kind::OtherTable],
         example: example.into(),
+        ..Operation::new(
+            Tag::Profiles,
+            api::Answer::file(summary, content.0, content.1).or_unchanged(),
+        )
     }
 }
 
@@ -105,7 +89,7 @@ async fn get(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
     context: Context,
-) -> Result<Response, Error> {
+) -> Result<Response, Refused> {
     let (entry, freshness) = chosen(&service, &name, &context, document::JSON)?;
     let make = async {
         let portrait = service.portrait(&entry).await?;
@@ -126,7 +110,7 @@ async fn get(
             },
         })
     };
-    freshness.answer(&context.headers, make).await
+    Ok(freshness.answer(&context.headers, make).await?)
 }
 
 /// The picture.
@@ -134,13 +118,13 @@ async fn svg(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
     context: Context,
-) -> Result<Response, Error> {
+) -> Result<Response, Refused> {
     let (entry, freshness) = chosen(&service, &name, &context, SVG)?;
     let make = async {
         let portrait = service.portrait(&entry).await?;
         Ok(document::file(portrait.svg.clone(), SVG))
     };
-    freshness.answer(&context.headers, make).await
+    Ok(freshness.answer(&context.headers, make).await?)
 }
 
 /// The table that is wanted, and how fresh what is made of it is.
@@ -152,19 +136,13 @@ fn chosen(
 ) -> Result<(Arc<Entry>, Freshness), Error> {
     let catalog = service.catalog();
     if catalog.alphas(name).is_empty() {
-        return Err(Error::NoSuchPath {
-            path: context.uri.path().into(),
-            available: catalog
-                .profiles()
-                .iter()
-                .map(|profile| format!("/v1/profiles/{profile}"))
-                .collect::<Vec<_>>()
-                .join(", "),
-        });
+        let profiles = catalog.profiles();
+        let paths = profiles.iter().map(|name| format!("/v1/profiles/{name}"));
+        return Err(context.nothing(paths.collect::<Vec<_>>().join(", ")));
     }
     let values = context.values(groups::TABLE);
     let entry = query::entry(&values, name, &catalog)?;
-    let freshness = Freshness::of(&context.uri, &context.headers, content_type, &entry.digest);
+    let freshness = context.freshness(content_type, &entry.digest);
     Ok((entry, freshness.pinned(values.has(&parameters::TABLE))))
 }
 
@@ -174,13 +152,13 @@ fn chosen(
 struct Document<'a> {
     /// The table.
     table: Profile<'a>,
-    /// What it was made to be; null if the table does not say.
+    /// The aim that it was made for; null if the table does not say.
     target: Option<Target<'a>>,
-    /// What was measured.
+    /// The measured curves.
     measured: Measured<'a>,
 }
 
-/// What a table was made to be.
+/// The aim that a table was made for.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Target")]
 struct Target<'a> {
@@ -222,7 +200,7 @@ impl<'a> Target<'a> {
     }
 }
 
-/// What was measured on a window of the unbounded pattern.
+/// The curves of a window of the unbounded pattern.
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Measured")]
 struct Measured<'a> {
@@ -242,7 +220,7 @@ where
     [f64; N]: Serialize,
     [&'static str; N]: Serialize,
 {
-    /// What the columns are.
+    /// The names of the columns.
     #[schemars(with = "Vec<String>")]
     columns: [&'static str; N],
     /// The rows.

@@ -7,26 +7,22 @@ use axum::{
 use http::{HeaderValue, StatusCode, header};
 use schemars::JsonSchema;
 use serde::Serialize;
-
-use crate::{
-    access::{Denied, Short},
-    error_map,
-    service::{Error, Fault, Record},
-};
+use strew_error::{Denied, Error, Fault, Kind, Short};
+use strew_service::Record;
 
 /// Why there is no answer (RFC 9457).
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "Problem")]
 pub(super) struct Problem<'a> {
     /// The type of the problem.
-    #[schemars(extend("enum" = error_map::types()))]
+    #[schemars(extend("enum" = types()))]
     r#type: String,
     /// The title, the same for all problems of a type.
     title: &'a str,
     /// The status of the response.
     #[schemars(range(min = 400, max = 599))]
     status: u16,
-    /// What is wrong, in words.
+    /// The fault in words.
     detail: String,
     /// The faults of an invalid query.
     #[serde(skip_serializing_if = "<[Fault]>::is_empty")]
@@ -56,13 +52,13 @@ pub(super) struct Problem<'a> {
 struct Rate {
     /// The number of points that were requested.
     points: u128,
-    /// How many are left now.
+    /// The number that is left now.
     left: u64,
-    /// How many more there are each second.
+    /// The number that is added each second.
     points_per_second: f64,
-    /// How many there are at most.
+    /// The greatest number there can be.
     burst_points: f64,
-    /// After how long the request is worth another try.
+    /// The time after which the request is worth another try.
     retry_after_seconds: f64,
 }
 
@@ -78,36 +74,26 @@ impl Rate {
     }
 }
 
+/// The problem type of a kind of error.
+pub(super) fn urn(kind: Kind) -> String {
+    format!("urn:strew:problem:{}", kind.slug())
+}
+
+/// Every problem type, and that of errors that a library makes.
+fn types() -> Vec<String> {
+    let types = Kind::ALL.into_iter().map(urn);
+    types.chain(["about:blank".into()]).collect()
+}
+
 fn request_id() -> Option<String> {
     Record::current().map(|record| record.id().to_owned())
 }
 
 impl<'a> Problem<'a> {
     fn new(error: &'a Error) -> Self {
-        let mapped = error_map::wire(error.kind());
-        let (count, limit) = match error {
-            Error::TooManyPoints { count, limit } => (Some(*count), Some(*limit)),
-            Error::TooManyRows { limit, .. } => (None, Some(*limit)),
-            Error::BodyTooLarge { limit }
-            | Error::Busy { limit }
-            | Error::TooManyConnections { limit }
-            | Error::TooManyRequests { limit }
-            | Error::TooManyMixes { limit }
-            | Error::TooManyBytes { limit }
-            | Error::NeedsMoreBytes { limit, .. }
-            | Error::TooManyJobs { limit }
-            | Error::Denied(
-                Denied::TooManyStreams { limit }
-                | Denied::TooManyJobs { limit }
-                | Denied::Address { limit, .. }
-                | Denied::Share { limit, .. },
-            ) => (None, u64::try_from(*limit).ok()),
-            _ => (None, None),
-        };
-        let digests = match error {
-            Error::OtherTable { pinned, loaded } | Error::OtherWorld { pinned, loaded, .. } => {
-                Some((pinned.as_str(), loaded.as_str()))
-            }
+        let wire = error.kind().wire();
+        let count = match error {
+            Error::TooManyPoints { count, .. } => Some(*count),
             _ => None,
         };
         let rate = match error {
@@ -115,15 +101,15 @@ impl<'a> Problem<'a> {
             _ => None,
         };
         Self {
-            r#type: error_map::urn(error.kind()),
-            title: mapped.title,
-            status: mapped.status.as_u16(),
+            r#type: urn(error.kind()),
+            title: wire.title,
+            status: wire.status,
             detail: error.to_string(),
             errors: error.faults(),
             count,
-            limit,
-            pinned: digests.map(|(pinned, _)| pinned),
-            loaded: digests.map(|(_, loaded)| loaded),
+            limit: error.limit(),
+            pinned: error.digests().map(|(pinned, _)| pinned),
+            loaded: error.digests().map(|(_, loaded)| loaded),
             rate,
             request_id: request_id(),
         }
@@ -141,7 +127,7 @@ impl<'a> Problem<'a> {
             // RFC 9110, 12.5.3: what is read.
             headers.insert(header::ACCEPT_ENCODING, HeaderValue::from_static("gzip"));
         }
-        // RFC 6750, 3: what was wrong is only told to those who showed something.
+        // RFC 6750, 3: only clients that sent a key learn that it is wrong.
         let challenge = match error {
             Error::Denied(Denied::NoKey) => "Bearer realm=\"strew\"",
             Error::Denied(Denied::WrongKey) => "Bearer realm=\"strew\", error=\"invalid_token\"",
@@ -171,7 +157,7 @@ impl<'a> Problem<'a> {
     }
 
     /// An error as the bytes of a whole HTTP/1.1 response, after which the connection closes: for
-    /// clients that are not even heard.
+    /// clients whose request is not read.
     pub(super) fn last_words(error: &'a Error) -> Vec<u8> {
         let problem = Self::new(error);
         let body = serde_json::to_string(&problem).unwrap_or_default();
@@ -229,8 +215,25 @@ pub(super) async fn instead_of_bare(response: Response) -> Response {
     problem
 }
 
-impl IntoResponse for Error {
+/// An error on its way to the client, as a problem.
+#[derive(Debug)]
+pub struct Refused(pub Error);
+
+impl IntoResponse for Refused {
     fn into_response(self) -> Response {
-        Problem::response(&self)
+        Problem::response(&self.0)
     }
 }
+
+/// Errors that become problems.
+macro_rules! refused {
+    ($($error:ty),+) => {
+        $(impl From<$error> for Refused {
+            fn from(error: $error) -> Self {
+                Self(error.into())
+            }
+        })+
+    };
+}
+
+refused!(Error, Fault, strew_error::Faults, strew_error::Denied);

@@ -1,52 +1,43 @@
-//! `GET /v1/profiles`: what is loaded.
+//! `GET /v1/profiles`: the profiles that are loaded.
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use axum::{extract::State, response::Response, routing};
-use http::Method;
+use axum::{extract::State, response::Response};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer, ser::SerializeMap as _};
+use strew_catalog::{Catalog, Entry};
 use strew_core::{ALGORITHM_VERSION, table};
+use strew_query::groups;
+use strew_service::Service;
 
 use super::{
     api::{self, Endpoint, Operation, Tag},
     context::Context,
     document,
-    freshness::Freshness,
 };
-use crate::service::{Catalog, Entry, Error, Kind, Service, query::groups};
+use crate::rest::Refused;
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let operation = Operation {
-        method: Method::GET,
         id: "listProfiles",
         summary: "The noise profiles that are loaded",
         about: "Every table with its provenance and its measured figures.",
-        tag: Tag::Profiles,
-        path_parameters: &[],
-        parameters: groups::NONE,
-        body: None,
-        answers: vec![
-            api::Answer::json::<Profiles<'_>>("The list, sorted by profile, then alpha."),
-            api::Answer::unchanged(),
-        ],
-        problems: vec![Kind::Invalid],
         example: "/v1/profiles".into(),
+        ..Operation::new(
+            Tag::Profiles,
+            api::Answer::json::<Profiles<'_>>("The list, sorted by profile, then alpha.")
+                .or_unchanged(),
+        )
     };
-    Endpoint::new(
-        "/v1/profiles",
-        service,
-        vec![(operation, routing::get(get))],
-    )
+    Endpoint::only("/v1/profiles", service, operation, get)
 }
 
 /// Lists the tables.
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let made_of: Vec<&str> = catalog.digests().collect();
-    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &made_of);
     let make = async {
         document::json(&Profiles {
             algorithm: ALGORITHM_VERSION,
@@ -55,7 +46,7 @@ async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Re
                 .collect(),
         })
     };
-    freshness.answer(&context.headers, make).await
+    Ok(context.answer(document::JSON, &made_of, make).await?)
 }
 
 /// The tables that are loaded.
@@ -108,7 +99,7 @@ struct Provenance<'a> {
     seed: u64,
     /// The periodic twins it was optimized on, as fractions p/q.
     twins: Vec<String>,
-    /// What was measured.
+    /// The figures that were measured.
     figures: Vec<Figures<'a>>,
 }
 
@@ -116,11 +107,11 @@ struct Provenance<'a> {
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Figures")]
 struct Figures<'a> {
-    /// What was measured.
+    /// The point set that was measured.
     subject: &'a str,
     /// Whether the table was optimized on it.
     seen: bool,
-    /// How many points it has.
+    /// The number of its points.
     points: u64,
     /// The figures by name.
     #[serde(serialize_with = "as_map")]

@@ -1,10 +1,13 @@
-//! `POST /v1/points:query`: the points of any region and of several layers, asked for in JSON.
+//! `POST /v1/points:query`: the points of any region and of several layers, from a query in JSON.
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response, routing};
+use axum::{extract::State, response::Response};
 use http::Method;
 use serde_json::json;
+use strew_error::Kind;
+use strew_query::groups;
+use strew_service::Service;
 
 use super::{
     answer,
@@ -12,10 +15,10 @@ use super::{
         Body, Endpoint, Operation, Tag,
         schemas::{self, Content, PointsQuery},
     },
-    body::{self, Whole},
-    context::Context,
+    body,
+    context::Sent,
 };
-use crate::service::{Error, Kind, Service, query::groups};
+use crate::rest::Refused;
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -25,16 +28,12 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         summary: "The points of any region, in layers",
         about: "The same as GET /v1/points, with regions of all kinds and several layers at once, \
                 streamed one after another in one answer.",
-        tag: Tag::Points,
-        path_parameters: &[],
-        parameters: groups::NONE,
         body: Some(body(schemas::of::<PointsQuery>, example())),
-        answers: vec![answer::described()],
         problems: [answer::problems(), vec![Kind::BodyTooLarge]].concat(),
         example: format!("/v1/points:query -d '{}'", example()),
+        ..Operation::new(Tag::Points, vec![answer::described()])
     };
-    let handler = routing::post(post);
-    Endpoint::new("/v1/points:query", service, vec![(operation, handler)])
+    Endpoint::only("/v1/points:query", service, operation, post)
 }
 
 /// A query as the body of a request, with its schema and an example.
@@ -57,12 +56,8 @@ fn example() -> serde_json::Value {
     })
 }
 
-async fn post(
-    State(service): State<Arc<Service>>,
-    context: Context,
-    Whole(body): Whole,
-) -> Result<Response, Error> {
-    context.no_parameters()?;
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+    let Sent { context, body } = sent;
     let (_, query, options) = body::query(&service, body, groups::QUERY).await?;
-    answer::stream(&service, &context, query, options).await
+    Ok(answer::stream(&service, &context, query, options).await?)
 }

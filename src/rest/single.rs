@@ -5,11 +5,13 @@ use std::sync::Arc;
 use axum::{
     extract::{Path, State},
     response::Response,
-    routing,
 };
-use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
+use strew_error::Kind;
+use strew_plan::{Found, Placed};
+use strew_query::{Nearest, Parameter, ResolvedSet, Set, Shape, groups};
+use strew_service::Service;
 
 use super::{
     api::{self, Endpoint, Operation, Tag},
@@ -17,10 +19,7 @@ use super::{
     document,
     freshness::Freshness,
 };
-use crate::service::{
-    Error, Found, Kind, Nearest, Placed, Service, Set,
-    query::{Parameter, ResolvedSet, Shape, groups},
-};
+use crate::rest::Refused;
 
 const ID: Parameter = Parameter {
     name: "id",
@@ -35,46 +34,37 @@ const ID: Parameter = Parameter {
 /// The path of points by id.
 pub(super) fn by_id(service: Arc<Service>) -> Endpoint {
     let operation = Operation {
-        method: Method::GET,
         id: "getPoint",
         summary: "A point by its id",
-        about: "The same parameters that gave the id find the point again.",
-        tag: Tag::Points,
+        about: "The parameters of the query that returned the id find the point again.",
         path_parameters: &[&ID],
         parameters: groups::SINGLE,
-        body: None,
-        answers: vec![
-            api::Answer::json::<One>("The point."),
-            api::Answer::unchanged(),
-        ],
         problems: vec![Kind::Invalid, Kind::OtherTable, Kind::NoSuchPoint],
         example: "'/v1/points/0:0?spacing=1&attributes=angle'".into(),
+        ..Operation::new(
+            Tag::Points,
+            api::Answer::json::<One>("The point.").or_unchanged(),
+        )
     };
-    let handler = routing::get(point);
-    Endpoint::new("/v1/points/{id}", service, vec![(operation, handler)])
+    Endpoint::only("/v1/points/{id}", service, operation, point)
 }
 
 /// The path of the points near a place.
 pub(super) fn nearest(service: Arc<Service>) -> Endpoint {
     let operation = Operation {
-        method: Method::GET,
         id: "getNearest",
         summary: "The points nearest to a place",
         about: "Exact, nearest first; of equally near ones the smaller id first. With k and radius \
                 both must hold; at most 10000 points.",
-        tag: Tag::Points,
-        path_parameters: &[],
         parameters: groups::NEAREST,
-        body: None,
-        answers: vec![
-            api::Answer::json::<Several>("The points."),
-            api::Answer::unchanged(),
-        ],
         problems: vec![Kind::Invalid, Kind::OtherTable],
         example: "'/v1/nearest?at=100.5,-3&k=2&spacing=1'".into(),
+        ..Operation::new(
+            Tag::Points,
+            api::Answer::json::<Several>("The points.").or_unchanged(),
+        )
     };
-    let handler = routing::get(near);
-    Endpoint::new("/v1/nearest", service, vec![(operation, handler)])
+    Endpoint::only("/v1/nearest", service, operation, near)
 }
 
 /// A point by its id.
@@ -101,7 +91,7 @@ async fn point(
     State(service): State<Arc<Service>>,
     Path(id): Path<String>,
     context: Context,
-) -> Result<Response, Error> {
+) -> Result<Response, Refused> {
     let values = context.values(groups::SINGLE);
     let set = Set::single(&values, &service.catalog())?;
     let freshness = freshness(&context, &set);
@@ -112,10 +102,10 @@ async fn point(
             query: placed.resolved,
         })
     };
-    freshness.answer(&context.headers, make).await
+    Ok(freshness.answer(&context.headers, make).await?)
 }
 
-async fn near(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+async fn near(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let values = context.values(groups::NEAREST);
     let (set, nearest) = Nearest::of_set(&values, &service.catalog())?;
     let freshness = freshness(&context, &set);
@@ -126,12 +116,12 @@ async fn near(State(service): State<Arc<Service>>, context: Context) -> Result<R
         })
     };
     let make = service.nearest(&context.caller, set, nearest, write);
-    freshness.answer(&context.headers, make).await
+    Ok(freshness.answer(&context.headers, make).await?)
 }
 
 /// The freshness of a document about single points of a set.
 fn freshness(context: &Context, set: &Set) -> Freshness {
     let made_of: Vec<&str> = set.digests().collect();
-    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &made_of);
+    let freshness = context.freshness(document::JSON, &made_of);
     freshness.pinned(set.is_pinned())
 }

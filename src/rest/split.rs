@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response, routing};
+use axum::{extract::State, response::Response};
 use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use strew_core::server::Stop;
+use strew_error::Kind;
+use strew_query::{Token, groups, parts};
+use strew_service::Service;
 
 use super::{
     api::{
@@ -18,10 +21,7 @@ use super::{
     context::Context,
     document, query,
 };
-use crate::service::{
-    Error, Kind, Service, Token,
-    query::{groups, parts},
-};
+use crate::rest::Refused;
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -29,17 +29,14 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         method: Method::POST,
         id: "splitPoints",
         summary: "A query in parts",
-        about: "Queries of as many points, give or take one, that give the points of the query one \
-                after another; each is a body of POST /v1/points:query. Parts without points are \
+        about: "Queries of equal numbers of points, give or take one, that together return the points of the \
+                query in its order; each is a body of POST /v1/points:query. Parts without points are \
                 left out.",
-        tag: Tag::Points,
-        path_parameters: &[],
         parameters: groups::SPLIT,
         body: Some(query::body(
             schemas::of::<PointsQuery>,
             json!({ "region": { "bbox": [0, 0, 9, 9] }, "spacing": 1 }),
         )),
-        answers: vec![api::Answer::json::<Split>("The parts.")],
         problems: vec![
             Kind::Invalid,
             Kind::OtherTable,
@@ -51,9 +48,9 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         example:
             r#"'/v1/points:split?parts=2' -d '{"region": {"bbox": [0, 0, 9, 9]}, "spacing": 1}'"#
                 .into(),
+        ..Operation::new(Tag::Points, vec![api::Answer::json::<Split>("The parts.")])
     };
-    let handler = routing::post(post);
-    Endpoint::new("/v1/points:split", service, vec![(operation, handler)])
+    Endpoint::only("/v1/points:split", service, operation, post)
 }
 
 /// A query in parts.
@@ -70,7 +67,7 @@ struct Split {
 struct Part {
     /// The number of points of the part.
     count: u64,
-    /// The body of POST /v1/points:query that asks for it.
+    /// The body of POST /v1/points:query that requests it.
     #[schemars(with = "PointsQuery")]
     query: Map<String, Value>,
 }
@@ -79,7 +76,7 @@ async fn post(
     State(service): State<Arc<Service>>,
     context: Context,
     Whole(body): Whole,
-) -> Result<Response, Error> {
+) -> Result<Response, Refused> {
     let parts = parts(&context.values(groups::SPLIT));
     let size = body.len();
     let (draft, query, _) = body::query(&service, body, groups::QUERY).await?;
@@ -100,8 +97,8 @@ async fn post(
             parts: places.into_iter().map(part).collect(),
         })
     };
-    service.process(bytes, write).await?
+    Ok(service.process(bytes, write).await??)
 }
 
-/// What a part takes besides the body: a cursor, a limit, a count.
+/// The bytes of a part besides the body: a cursor, a limit, a count.
 const PART_BYTES: usize = 512;

@@ -2,22 +2,22 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response, routing};
+use axum::{extract::State, response::Response};
 use http::{HeaderValue, Method, StatusCode, header};
 use serde_json::json;
 use strew_core::server::Stop;
+use strew_error::{Error, Fault, Kind};
+use strew_service::{
+    Service,
+    forging::{JobStatus, Request, Submitted},
+};
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
-    body::Whole,
-    context::Context,
+    context::Sent,
     document, query,
 };
-use crate::service::{
-    Error, Fault, Kind, Service,
-    forging::{JobStatus, Request, Submitted},
-    query::groups,
-};
+use crate::rest::Refused;
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
@@ -31,17 +31,10 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         method: Method::POST,
         id: "forgeTable",
         summary: "Has a table made",
-        about: "For profiles, alphas and maps that are not loaded. There is one job for a table, for all who send the \
-                request; a job that was rejected is answered as it ended. The finished table is judged, kept and \
-                served. The settings [forge] say who may do this: by default nobody.",
-        tag: Tag::Tables,
-        path_parameters: &[],
-        parameters: groups::NONE,
+        about: "For profiles, alphas and maps that are not loaded. All clients that request a table share one job; the \
+                answer to a rejected one is how it ended. The finished table is judged, kept and served. The \
+                settings [forge] say which clients may do this: by default none.",
         body: Some(query::body(schemas::of::<Request>, example())),
-        answers: vec![
-            job(202, "The job, which waits or runs.", vec![location]),
-            job(200, "The table is loaded, or was rejected before.", vec![]),
-        ],
         problems: vec![
             Kind::Invalid,
             Kind::BodyTooLarge,
@@ -50,24 +43,23 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
             Kind::Busy,
         ],
         example: format!("/v1/tables -d '{}'", example()),
+        ..Operation::new(
+            Tag::Tables,
+            vec![
+                job(202, "The job, which waits or runs.", vec![location]),
+                job(200, "The table is loaded, or was rejected before.", vec![]),
+            ],
+        )
     };
-    Endpoint::new(
-        "/v1/tables",
-        service,
-        vec![(operation, routing::post(post))],
-    )
+    Endpoint::only("/v1/tables", service, operation, post)
 }
 
 fn example() -> serde_json::Value {
     json!({ "profile": "blue", "alpha": "sqrt(2)", "map": "s" })
 }
 
-async fn post(
-    State(service): State<Arc<Service>>,
-    context: Context,
-    Whole(body): Whole,
-) -> Result<Response, Error> {
-    context.no_parameters()?;
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+    let Sent { context, body } = sent;
     service.forging().admit(&context.caller)?;
     let length = body.len();
     let read = move |_: &Service, _: &Stop| serde_json::from_slice::<Request>(&body);
@@ -76,7 +68,7 @@ async fn post(
         Fault::new("body", "", error.to_string(), allowed)
     })?;
     match service.forge(&context.caller, request.spec()?).await? {
-        Submitted::Loaded(status) => document::json(&status),
+        Submitted::Loaded(status) => Ok(document::json(&status)?),
         Submitted::Job(job) => {
             let status = job.status();
             let mut response = document::json(&status)?;

@@ -1,16 +1,16 @@
-//! The answers where nothing is, and to methods that a path does not take.
+//! The answers to unknown paths, and to methods that a path does not take.
 
 use axum::{extract::Request, response::Response};
 use http::{HeaderValue, Method, Uri, header};
+use strew_error::Error;
 
 use super::problem::Problem;
-use crate::service::Error;
 
 /// The most paths that an answer names.
 const MOST: usize = 3;
 /// The least likeness to a path that is worth naming.
 const LIKE: f64 = 0.5;
-/// What a longer path is cut to before it is compared.
+/// The length to which a longer path is cut before it is compared.
 const COMPARED: usize = 80;
 
 /// The answer to an unknown path: the paths that are most like it.

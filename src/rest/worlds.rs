@@ -5,13 +5,14 @@ use std::sync::Arc;
 use axum::{
     extract::{Path, State},
     response::Response,
-    routing,
 };
-use http::Method;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::value::RawValue;
 use strew_core::server::Stop;
+use strew_error::{Error, Kind};
+use strew_query::{Draft, Parameter, Value, World, groups, parameters::WORLD};
+use strew_service::Service;
 
 use super::{
     answer,
@@ -19,12 +20,8 @@ use super::{
     chunks::{self, COLUMN, ROW, SIZE},
     context::Context,
     document,
-    freshness::Freshness,
 };
-use crate::service::{
-    Draft, Error, Kind, Service, World,
-    query::{Parameter, Value, groups, parameters::WORLD},
-};
+use crate::rest::Refused;
 
 const NAME: Parameter = Parameter {
     name: "name",
@@ -41,12 +38,13 @@ pub(super) fn list(service: Arc<Service>) -> Endpoint {
         id: "listWorlds",
         summary: "The worlds that are loaded",
         about: "Worlds of the daemon's configuration and of its folder, which queries name.",
-        path_parameters: &[],
-        problems: vec![Kind::Invalid],
         example: "/v1/worlds".into(),
-        ..operation(api::Answer::json::<List<'_>>("The list, sorted by name."))
+        ..Operation::new(
+            Tag::Worlds,
+            api::Answer::json::<List<'_>>("The list, sorted by name.").or_unchanged(),
+        )
     };
-    Endpoint::new("/v1/worlds", service, vec![(operation, routing::get(all))])
+    Endpoint::only("/v1/worlds", service, operation, all)
 }
 
 /// The path of one world.
@@ -58,11 +56,7 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         example: "/v1/worlds/forest".into(),
         ..operation(api::Answer::json::<Described<'_>>("The world."))
     };
-    Endpoint::new(
-        "/v1/worlds/{name}",
-        service,
-        vec![(operation, routing::get(one))],
-    )
+    Endpoint::only("/v1/worlds/{name}", service, operation, one)
 }
 
 /// The path of chunks.
@@ -79,27 +73,20 @@ pub(super) fn chunks(service: Arc<Service>) -> Endpoint {
         example: "'/v1/worlds/forest/chunks/64/3/-2?format=csv'".into(),
         ..operation(answer::described())
     };
-    Endpoint::new(
+    Endpoint::only(
         "/v1/worlds/{name}/chunks/{size}/{cx}/{cy}",
         service,
-        vec![(operation, routing::get(chunk))],
+        operation,
+        chunk,
     )
 }
 
-/// What the operations share.
+/// The parts that the operations share.
 fn operation(answer: api::Answer) -> Operation {
     Operation {
-        method: Method::GET,
-        id: "",
-        summary: "",
-        about: "",
-        tag: Tag::Worlds,
         path_parameters: &[&NAME],
-        parameters: groups::NONE,
-        body: None,
-        answers: vec![answer, api::Answer::unchanged()],
         problems: vec![Kind::Invalid, Kind::NoSuchPath],
-        example: String::new(),
+        ..Operation::new(Tag::Worlds, answer.or_unchanged())
     }
 }
 
@@ -144,30 +131,26 @@ impl<'a> Summary<'a> {
     }
 }
 
-async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+async fn all(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let catalog = service.catalog();
     let worlds = List {
-        worlds: (catalog.worlds().iter())
+        worlds: (catalog.worlds.iter())
             .map(|world| Summary::new(world))
             .collect(),
     };
-    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &worlds);
-    let make = async { document::json(&worlds) };
-    freshness.answer(&context.headers, make).await
+    Ok(context.document(&worlds).await?)
 }
 
 async fn one(
     State(service): State<Arc<Service>>,
     Path(name): Path<String>,
     context: Context,
-) -> Result<Response, Error> {
+) -> Result<Response, Refused> {
     context.values(groups::NONE).read()?;
     let world = named(&service, &name, &context)?;
     let described = Described::new(&world)?;
-    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &described);
-    let make = async { document::json(&described) };
-    freshness.answer(&context.headers, make).await
+    Ok(context.document(&described).await?)
 }
 
 impl<'a> Described<'a> {
@@ -192,24 +175,19 @@ async fn chunk(
     State(service): State<Arc<Service>>,
     Path([name, size, x, y]): Path<[String; 4]>,
     context: Context,
-) -> Result<Response, Error> {
+) -> Result<Response, Refused> {
     named(&service, &name, &context)?;
     let mut values = context.values(groups::WORLD_CHUNK);
     values.replace(&WORLD, Some(Value::Text(name)));
     let draft = Draft::new(values).within(chunks::region([&size, &x, &y]));
     let (query, options) = service.check(&draft, &Stop::NEVER)?;
-    answer::stream(&service, &context, query, options).await
+    Ok(answer::stream(&service, &context, query, options).await?)
 }
 
 /// The world of a path.
 fn named(service: &Service, name: &str, context: &Context) -> Result<Arc<World>, Error> {
     let catalog = service.catalog();
-    let world = catalog.worlds().get(name).cloned();
-    world.ok_or_else(|| Error::NoSuchPath {
-        path: context.uri.path().into(),
-        available: format!(
-            "/v1/worlds/{{name}}, where name is {}",
-            catalog.worlds().names()
-        ),
-    })
+    let names = || catalog.worlds.names();
+    let world = catalog.worlds.get(name).cloned();
+    world.ok_or_else(|| context.nothing(format!("/v1/worlds/{{name}}, where name is {}", names())))
 }

@@ -1,7 +1,7 @@
 //! Random queries of all kinds, as JSON.
 
 use serde_json::{Value, json};
-use strew::service::Key;
+use strew_catalog::Key;
 use strew_testkit::random::SplitMix;
 
 /// Where regions are: around a center, a few spacings wide.
@@ -137,7 +137,7 @@ fn set(
     set
 }
 
-/// A random query on one of the tables `keys`; `promising` says which of them guarantee a distance.
+/// A random query on one of the tables `keys`; `promising` decides which of them guarantee a distance.
 pub fn query(random: &mut SplitMix, keys: &[Key], promising: &[bool]) -> Value {
     let spacing = 10f64.powf(random.within(-3.0, 3.0));
     let far = if random.once_in(3) { 1e7 } else { 30.0 };

@@ -3,13 +3,11 @@
 use std::{collections::BTreeMap, sync::OnceLock};
 
 use serde_json::Value;
-use strew::{
-    config::Layers,
-    service::{
-        Catalog, Error, Key, Limits, Planned, Query, Ready,
-        query::{groups, read_body},
-    },
-};
+use strew_catalog::{Catalog, Key, Ready};
+use strew_config::{Layers, Limits};
+use strew_error::Error;
+use strew_plan::Planned;
+use strew_query::{Query, groups, read_body};
 
 /// The built-in tables, and what a daemon with default settings makes of a query.
 pub struct Library {
@@ -54,14 +52,14 @@ impl Library {
     /// Checks a query, as JSON.
     pub fn query(&self, body: &Value) -> Result<Query, Error> {
         let draft = read_body(body.to_string().as_bytes(), groups::QUERY)?;
-        let (query, _) = draft.check(&self.catalog, 10_000)?;
+        let (query, _) = draft.check(&self.catalog.clone().into(), 10_000)?;
         Ok(query)
     }
 
     /// Checks and plans a query, as JSON.
     pub fn planned(&self, body: &Value) -> Result<Planned, Error> {
         let query = self.query(body)?;
-        let of = |set: &strew::service::Set| self.ready[&set.entry.key.to_string()].clone();
+        let of = |set: &strew_query::Set| self.ready[&set.entry.key.to_string()].clone();
         let tables: Vec<Ready> = query.sets.iter().map(of).collect();
         Planned::new(query, &tables, &self.limits)
     }

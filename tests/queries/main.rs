@@ -10,7 +10,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use strew::service::{Answer, Encoding, Error, Fault, Output, Planned};
+use strew_encode::{Encoding, Output};
+use strew_error::{Error, Fault};
+use strew_plan::Planned;
 use strew_testkit::random::SplitMix;
 
 use library::{Library, library, with};
@@ -19,7 +21,9 @@ const QUERIES: u64 = 10_000;
 
 /// The lines of an answer as CSV, without the column names.
 fn lines(planned: &Planned, block_bytes: usize) -> Vec<String> {
-    let answer = Answer::new(planned, &Output::new(Encoding::Csv), block_bytes).expect("fits");
+    let answer = planned
+        .answer(&Output::new(Encoding::Csv), block_bytes)
+        .expect("fits");
     let mut text = vec![];
     for block in answer {
         text.extend_from_slice(&block.expect("written"));

@@ -7,13 +7,10 @@ use std::{
 };
 
 use serde_json::{Value, json};
-use strew::{
-    error_map,
-    service::{
-        Answer, Encoding, Error, Output, Planned,
-        query::{groups, read_body},
-    },
-};
+use strew_encode::{Answer, Encoding, Output};
+use strew_error::Error;
+use strew_plan::Planned;
+use strew_query::{groups, read_body};
 use strew_testkit::{
     http1::{self, Response},
     random::SplitMix,
@@ -29,7 +26,7 @@ use crate::{
 pub fn answer(library: &Library, planned: &Planned, encoding: Encoding) -> Result<Answer, Error> {
     let mut output = Output::new(encoding);
     output.relative_to = planned.query.region.corner;
-    Answer::new(planned, &output, library.limits.block_bytes)
+    planned.answer(&output, library.limits.block_bytes)
 }
 
 /// The library's own answer.
@@ -105,7 +102,7 @@ fn compare(library: &Library, opened: Response, body: &Value, encoding: Encoding
                 expected.len()
             )))
         }
-        Err(error) if error_map::wire(error.kind()).status.as_u16() == status => Ok(0),
+        Err(error) if error.kind().wire().status == status => Ok(0),
         Err(error) => Err(wrong(format!(
             "request {id}: status {status} where the library says `{error}`: {body}"
         ))),
@@ -134,7 +131,7 @@ pub fn count(library: &Library, at: SocketAddr, body: &Value) -> Done {
     let answer: Value = serde_json::from_slice(&decoded(opened)?).unwrap_or_default();
     match library.planned(body) {
         Ok(planned) if answer["count"].as_u64().map(u128::from) == Some(planned.count()) => Ok(0),
-        Err(error) if error_map::wire(error.kind()).status.as_u16() == status => Ok(0),
+        Err(error) if error.kind().wire().status == status => Ok(0),
         expected => Err(wrong(format!(
             "count: status {status}, {answer} instead of {:?}: {body}",
             expected.map(|planned| planned.count())
@@ -304,11 +301,13 @@ pub fn spoiled(library: &Library, at: SocketAddr, random: &mut SplitMix, body: &
     let shown = || String::from_utf8_lossy(&text).into_owned();
     let expected = read_body(&text, groups::QUERY)
         .map_err(Error::from)
-        .and_then(|draft| draft.check(&library.catalog, library.limits.max_vertices));
+        .and_then(|draft| {
+            draft.check(&library.catalog.clone().into(), library.limits.max_vertices)
+        });
     match expected {
         // A changed query may be too much to count here: that the server takes it is enough.
         Ok(_) if status == 200 || status == 400 || status == 413 => Ok(0),
-        Err(error) if error_map::wire(error.kind()).status.as_u16() == status => Ok(0),
+        Err(error) if error.kind().wire().status == status => Ok(0),
         expected => Err(wrong(format!(
             "status {status}, {}, where the library says {:?}: {}",
             String::from_utf8_lossy(&answer),

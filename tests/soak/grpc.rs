@@ -3,14 +3,10 @@
 use std::{net::SocketAddr, time::Duration};
 
 use serde_json::Value;
-use strew::{
-    error_map,
-    grpc::proto::{
-        BoundingBox, Chunk, Circle, Combined, Encoding, Layer, PointSet, Polygon, Polygons,
-        Position, Region, Ring, StreamPointsRequest, point_service_client::PointServiceClient,
-        point_set::Amount, region::Shape, stream_points_response::Message,
-    },
-    service,
+use strew::grpc::proto::{
+    BoundingBox, Chunk, Circle, Combined, Encoding, Layer, PointSet, Polygon, Polygons, Position,
+    Region, Ring, StreamPointsRequest, point_service_client::PointServiceClient, point_set::Amount,
+    region::Shape, stream_points_response::Message,
 };
 use strew_testkit::random::SplitMix;
 use tonic::{Code, Status, transport::Endpoint};
@@ -173,7 +169,7 @@ pub async fn stream(library: &Library, at: SocketAddr, body: &Value) -> Done {
                 return Err(trouble);
             }
             return match planned {
-                Err(error) if error_map::wire(error.kind()).code == status.code() => Ok(0),
+                Err(error) if error.kind().wire().code == status.code() as i32 => Ok(0),
                 _ => Err(Trouble::Wrong(format!("{status:?}: {body}"))),
             };
         }
@@ -184,7 +180,7 @@ pub async fn stream(library: &Library, at: SocketAddr, body: &Value) -> Done {
         }
     };
     let planned = planned.expect("not an error");
-    let csv = checks::whole(library, &planned, service::Encoding::Csv).expect("csv holds all");
+    let csv = checks::whole(library, &planned, strew_encode::Encoding::Csv).expect("csv holds all");
     let csv = String::from_utf8(csv).expect("UTF-8");
     let mut lines = csv.lines();
     let head: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();

@@ -108,7 +108,7 @@ fn soak(arguments: &Arguments) -> u64 {
     let shaky = Replica::start(tables.path());
     let start = Instant::now();
     let end = start + Duration::from_secs(arguments.seconds);
-    // Memory is compared with that after a while: what is built on first use is not growth.
+    // Memory is compared with that after a while, since things built on first use are not growth.
     let warm = start + Duration::from_secs((arguments.seconds / 10).min(20));
     let mut memory = None;
     std::thread::scope(|scope| {

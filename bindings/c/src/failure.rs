@@ -8,7 +8,7 @@ use std::{
 };
 
 use serde_json::json;
-use strew::service::{Error, Fault, Kind};
+use strew_error::{Error, Fault, Kind};
 
 /// What a function returns.
 #[repr(C)]

@@ -3,14 +3,14 @@
 #![expect(non_camel_case_types, reason = "the names of C")]
 
 #[cfg(not(target_arch = "wasm32"))]
-use std::path::Path;
 use std::{
     ffi::c_char,
+    path::Path,
     ptr,
     sync::{Arc, OnceLock},
 };
 
-use strew::service::{Columns, Library, Planned};
+use ::strew_plan::{Columns, Library, Planned};
 
 use crate::{
     failure::{Code, Failure, guarded},

@@ -2,12 +2,13 @@
 
 use std::ffi::c_char;
 
-use serde_json::json;
-use strew::service::{
-    Draft, Encoding, Library,
+use ::strew_plan::{
+    Library,
     library::{Further, FurtherValues},
-    query::{RegionDraft, ShapeDraft, Values, groups, options},
 };
+use serde_json::json;
+use strew_encode::Encoding;
+use strew_query::{Draft, RegionDraft, ShapeDraft, Values, groups, options};
 
 use crate::{
     failure::{Code, Failure, guarded},
@@ -93,7 +94,7 @@ pub unsafe extern "C" fn strew_plan_count(plan: *const strew_plan, count: *mut u
         let (plan, out) = unsafe { (borrowed(plan, "plan")?, place(count, "count")?) };
         let (count, limit) = (plan.planned.count(), u64::MAX);
         let few = u64::try_from(count);
-        out.put(few.map_err(|_| strew::service::Error::TooManyPoints { count, limit })?);
+        out.put(few.map_err(|_| strew_error::Error::TooManyPoints { count, limit })?);
         Ok(())
     })
 }
@@ -287,12 +288,12 @@ pub unsafe extern "C" fn strew_plan_document(
             let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
             values.add_text(name, value);
         }
-        values.read().map_err(strew::service::Error::from)?;
-        let chosen = options(&values).map_err(strew::service::Error::from)?;
+        values.read().map_err(strew_error::Error::from)?;
+        let chosen = options(&values).map_err(strew_error::Error::from)?;
         let library = &plan.library;
         let mut whole = vec![];
         for block in library.document(&plan.planned, chosen, Encoding::Json)? {
-            whole.extend_from_slice(&block.map_err(strew::service::Error::from)?);
+            whole.extend_from_slice(&block.map_err(strew_error::Error::from)?);
         }
         // SAFETY: as the caller promises.
         unsafe { strew_bytes::hand_over(whole, document) }
@@ -332,7 +333,7 @@ pub unsafe extern "C" fn strew_plan_split(
         // SAFETY: as the caller promises.
         let plan = unsafe { borrowed(plan, "plan")? };
         let parts = plan.library.split(&plan.planned, &parts.to_string())?;
-        let part = |(cursor, count): (strew::service::Token, u64)| json!({"cursor": cursor.to_string(), "limit": count});
+        let part = |(cursor, count): (strew_query::Token, u64)| json!({"cursor": cursor.to_string(), "limit": count});
         let text = json!(parts.into_iter().map(part).collect::<Vec<_>>()).to_string();
         // SAFETY: as the caller promises.
         unsafe { strew_bytes::hand_over(text.into_bytes(), list) }
@@ -349,7 +350,7 @@ impl strew_plan {
         }
     }
 
-    fn columns(&self) -> Result<&strew::service::Columns, Failure> {
+    fn columns(&self) -> Result<&::strew_plan::Columns, Failure> {
         if let Some(made) = self.columns.get() {
             return Ok(made);
         }

@@ -2,9 +2,10 @@
 
 use std::ffi::c_char;
 
+use ::strew_plan::Found;
 use serde_json::json;
-use strew::service::{Error, Found};
 use strew_core::PointId;
+use strew_error::Error;
 
 use crate::{
     failure::{Code, Failure, guarded},

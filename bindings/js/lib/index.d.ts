@@ -1,56 +1,20 @@
 /// <reference lib="esnext.disposable" />
 
-/** Numbers: a list or a typed array. */
-export type Numbers = ArrayLike<number>;
+import type { Neighbors, Numbers, Output, Parameters, Regions } from "./parameters.js";
+export type { Neighbors, Numbers, Output, Parameters, Regions };
 
-/** The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves. */
-export interface Query {
-    /** min x, min y, max x, max y; points with min ≤ p < max. */
-    bbox?: Numbers | null;
-    /** x, y, radius. */
-    circle?: Numbers | object | null;
-    /** Vertices, or GeoJSON. */
-    polygon?: ArrayLike<Numbers> | object | null;
+/** The regions that are keywords. */
+export interface Shapes extends Regions {
     /** Size, column, row of a square of the world grid; coordinates are relative to its corner. */
     chunk?: Numbers | object | null;
     /** Any region as JSON has it. */
     region?: object | null;
-    /** The mean spacing; or one of the next three. */
-    spacing?: number;
-    /** Points per unit of area. */
-    density?: number;
-    /** No two points are nearer than this. */
-    min_distance?: number;
-    /** The number of points in the region, exactly. */
-    count?: number | bigint;
-    /** Which set of points; 0 is the plain pattern. */
-    seed?: number | bigint;
-    profile?: string;
-    alpha?: string;
-    map?: string;
-    /** The digest of the table that must answer. */
-    table?: string;
-    warp?: "on" | "off" | number | boolean;
-    /** The share of points to keep, those of the lowest rank. */
-    keep?: number;
-    /** What thins the points out: a name, or a field as JSON has it. See `raster`. */
-    field?: string | object;
-    /** Further columns: angle, scale, variant, rank, u1 to u16. */
-    attributes?: string | string[];
-    variants?: Record<string, number>;
-    /** Where points stand: a name, or a field as JSON has it, whose share is a height between `heights`. */
-    terrain?: string | object;
-    /** The heights of the terrain where its field is 0 and where it is 1. */
-    heights?: Numbers;
-    /** Whether there are the columns nx, ny, nz. */
-    normals?: boolean;
-    /** How far things lean from the vertical (0) to the normal (1). Adds the columns qx, qy, qz, qw. */
-    align?: number;
+}
+
+/** The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves. */
+export interface Query extends Shapes, Parameters {
     /** Several sets at once. */
     layers?: object[];
-    offset?: number | bigint;
-    limit?: number | bigint;
-    cursor?: string;
     [member: string]: unknown;
 }
 
@@ -109,20 +73,17 @@ export class PointSet<Where extends "here" | "there" = "here"> implements Iterab
     /** A column of names as indices, −1 where it is lacking. */
     codes(name: string): Answer<Where, { codes: Int32Array; names: string[] }>;
     /** The same set in another region. */
-    within(shape: Pick<Query, "bbox" | "circle" | "polygon" | "chunk" | "region">): PointSet<Where>;
+    within(shape: Shapes): PointSet<Where>;
     /** The points of a square of the world grid. */
     chunk(size: number, x: number, y: number): PointSet<Where>;
     /** The points in at most `parts` parts of the same size, give or take one. */
     split(parts: number): Answer<Where, PointSet<Where>[]>;
     /** The points nearest to a place, nearest first: one, or `k`, or all within `radius`. */
-    nearest(at: Numbers, limits?: { k?: number; radius?: number }): Answer<Where, Point[]>;
+    nearest(at: Numbers, limits?: Neighbors): Answer<Where, Point[]>;
     /** The point of an id. */
     point(id: string): Answer<Where, Point>;
     /** The points in a format of REST, as bytes. */
-    document(
-        format: string,
-        options?: { decimals?: number; size?: number; summary?: boolean; crs?: string },
-    ): Answer<Where, Uint8Array>;
+    document(format: string, options?: Output): Answer<Where, Uint8Array>;
     /** The points one by one; in process only. */
     [Symbol.iterator](): Iterator<Point>;
     /** Releases the memory of the points at once. A set that is used afterwards makes them again. */

@@ -1,6 +1,7 @@
 // Sets of points, over any source: this page, or a daemon. A daemon's answers are promises.
 
-import { OF_ANSWERS, address, body, isObject, text } from "./query.js";
+import { KINDS, WINDOW } from "./parameters.js";
+import { OF_ANSWERS, SHAPES, address, body, isObject, text } from "./query.js";
 import { StrewError } from "./error.js";
 
 /** What comes of a value, now or when it is there. */
@@ -138,8 +139,8 @@ export class PointSet {
     /** The same set in another region: `within({ circle: [0, 0, 5] })`. */
     within(shape) {
         const { region } = body(shape);
-        if (!region) throw new TypeError("within takes one of region, bbox, circle, polygon, chunk");
-        return this.#with({ region, offset: undefined, limit: undefined, cursor: undefined });
+        if (!region) throw new TypeError(`within takes one of region, ${SHAPES.join(", ")}`);
+        return this.#with({ region, ...Object.fromEntries(WINDOW.map((name) => [name, undefined])) });
     }
 
     /** The points of a square of the world grid. Coordinates are relative to its corner, `origin()`. */
@@ -160,7 +161,7 @@ export class PointSet {
         if (isOfRegion) delete values.count;
         let ready = isOfRegion ? after(this.resolved(), ({ spacing }) => void (values.spacing = spacing)) : undefined;
         // An address has no room for fields: it names them.
-        for (const name of ["field", "terrain"].filter((name) => isObject(values[name]))) {
+        for (const name of Object.keys(values).filter((name) => KINDS[name] === "field" && isObject(values[name]))) {
             const hold = () => this.#source.holdField(text(values[name]));
             ready = after(after(ready, hold), (held) => void (values[name] = held));
         }

@@ -1,10 +1,11 @@
 // Queries: keywords as the body, and as the address, that REST takes.
 
-const SHAPES = ["bbox", "circle", "polygon", "chunk"];
-// Members of a query that are about the form of its answer.
-export const OF_DOCUMENTS = ["format", "decimals", "size", "summary", "crs"];
+import { KINDS, OUTPUT, REGIONS, WINDOW } from "./parameters.js";
+
+// Regions that are keywords.
+export const SHAPES = [...REGIONS, "chunk"];
 // Members of a query that are not about its set of points.
-export const OF_ANSWERS = ["region", "offset", "limit", "cursor", ...OF_DOCUMENTS];
+export const OF_ANSWERS = ["region", ...WINDOW, ...OUTPUT];
 
 const isList = (value) => Array.isArray(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView));
 export const isObject = (value) => value !== null && typeof value === "object" && !isList(value);
@@ -33,7 +34,7 @@ export function body(keywords) {
         if (SHAPES.includes(name)) {
             // Several shapes are refused together, with all their names.
             made.region = { ...made.region, [name]: region(name, value) };
-        } else if (name === "attributes" && typeof value === "string") {
+        } else if (KINDS[name] === "names" && typeof value === "string") {
             made[name] = value.split(",").map((word) => word.trim());
         } else {
             made[name] = value;

@@ -1,8 +1,9 @@
 // Points that a daemon makes, or one of several, over HTTP. Everything is a promise.
 
 import { StrewError } from "./error.js";
+import { OUTPUT } from "./parameters.js";
 import { Source } from "./points.js";
-import { OF_DOCUMENTS, parsed, text } from "./query.js";
+import { parsed, text } from "./query.js";
 import { Elsewhere, Later, Replicas, broken, retryAfter } from "./replicas.js";
 
 // The statuses after which a daemon wants to be called again.
@@ -119,7 +120,7 @@ class RemotePlan {
     constructor(daemon, query) {
         this.#daemon = daemon;
         this.#query = { ...query };
-        for (const name of OF_DOCUMENTS) delete this.#query[name];
+        for (const name of OUTPUT) delete this.#query[name];
     }
 
     /** Forgets what is known of the answer. */

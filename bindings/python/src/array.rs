@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::{prelude::*, types::PyDict};
-use strew::service::{Columns, library::FurtherValues};
+use strew_plan::{Columns, library::FurtherValues};
 
 /// What owns the memory.
 #[derive(Clone)]

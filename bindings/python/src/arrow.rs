@@ -15,7 +15,7 @@ use std::{
     sync::Arc,
 };
 
-use strew::service::{
+use strew_plan::{
     Columns,
     library::{Further, FurtherValues},
 };

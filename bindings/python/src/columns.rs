@@ -8,10 +8,7 @@ use pyo3::{
     pybacked::PyBackedBytes,
     types::{PyCapsule, PyDict},
 };
-use strew::service::{
-    self,
-    library::{Further, FurtherValues},
-};
+use strew_plan::library::{Further, FurtherValues};
 
 use crate::{
     array::{Array, Owner},
@@ -20,7 +17,7 @@ use crate::{
 
 /// Points as columns of the same length.
 #[pyclass(frozen, module = "strew._strew")]
-pub struct Columns(pub Arc<service::Columns>);
+pub struct Columns(pub Arc<strew_plan::Columns>);
 
 /// A column as it comes from a daemon: name, whether it may be missing, bytes, names.
 type Received = (String, bool, PyBackedBytes, Option<Vec<String>>);
@@ -64,7 +61,7 @@ impl Columns {
                 values,
             })
         };
-        let columns = service::Columns {
+        let columns = strew_plan::Columns {
             origin,
             ids: paired(numbers(ids, i64::from_ne_bytes)?)?,
             at: pairs(at)?,

@@ -1,7 +1,7 @@
 //! Errors of the library as `strew.StrewError`.
 
 use pyo3::{prelude::*, types::PyDict};
-use strew::service::Error;
+use strew_error::Error;
 
 /// The Python exception of an error.
 pub fn raised(py: Python<'_>, error: &Error) -> PyErr {

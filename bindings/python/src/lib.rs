@@ -17,10 +17,8 @@ use pyo3::{
     prelude::*,
     types::PyBytes,
 };
-use strew::{
-    raster::{Image, Limits},
-    service::Library,
-};
+use strew_plan::Library;
+use strew_raster::{Image, Limits};
 
 use columns::Columns;
 use failure::raised;
@@ -82,7 +80,7 @@ fn darkness<'py>(
         let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_ne_bytes()).collect();
         Ok((image.size, bytes))
     });
-    let read: Result<_, strew::raster::RasterError> = read;
+    let read: Result<_, strew_raster::RasterError> = read;
     let ([width, height], bytes) = read
         .map_err(|error| PyValueError::new_err(format!("the picture cannot be read: {error}")))?;
     Ok((width, height, PyBytes::new(py, &bytes)))

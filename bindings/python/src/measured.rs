@@ -3,8 +3,8 @@
 use std::sync::Mutex;
 
 use pyo3::{exceptions::PyValueError, prelude::*};
-use strew::service::library::measured::{self, Measured, document, drawing};
 use strew_forge::Resolution;
+use strew_plan::library::measured::{self, Measured, document, drawing};
 
 use crate::{failure::raised, json};
 

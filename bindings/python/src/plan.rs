@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use pyo3::{prelude::*, types::PyBytes};
-use strew::service::{
-    Encoding, Planned,
-    query::{Values, groups, options},
-};
+use strew_encode::Encoding;
+use strew_plan::Planned;
+use strew_query::{Values, groups, options};
 
 use crate::{
     array::{Array, Owner},
@@ -93,7 +92,7 @@ impl Plan {
             for block in answer {
                 whole.extend_from_slice(&block?);
             }
-            Ok::<_, strew::service::Error>(whole)
+            Ok::<_, strew_error::Error>(whole)
         };
         let written = py.detach(write).map_err(|error| raised(py, &error))?;
         Ok(PyBytes::new(py, &written))

@@ -10,9 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._query import OF_ANSWERS, SHAPES, Body, address, body
+from ._parameters import KINDS, WINDOW
+from ._query import OF_ANSWERS, SHAPES, Body, Shapes, address, body
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._parameters import Output
     from ._source import Plan, Source
     from ._strew import Columns
 
@@ -122,7 +126,7 @@ class PointSet:
         unknown = set(shape) - set(SHAPES) - {"region"}
         if unknown or not shape:
             raise TypeError(f"within takes one of region, {', '.join(SHAPES)}")
-        return self._with(region=body(shape)["region"], offset=None, limit=None, cursor=None)
+        return self._with(region=body(shape)["region"], **dict.fromkeys(WINDOW))
 
     def chunk(self, size: float, x: int, y: int) -> PointSet:
         """The points of a square of the world grid. Coordinates are relative to its corner, :attr:`origin`."""
@@ -150,9 +154,9 @@ class PointSet:
         if "count" in values and "region" in self._body:
             del values["count"]
             values["spacing"] = self.query["spacing"]
-        for name in ("field", "terrain"):
-            if isinstance(values.get(name), Mapping):
-                values[name] = self._source.hold_field(values[name])
+        for name, value in values.items():
+            if KINDS.get(name) == "field" and isinstance(value, Mapping):
+                values[name] = self._source.hold_field(value)
         return address({name: value for name, value in values.items() if value is not None})
 
     def nearest(self, at: Any, k: int | None = None, radius: float | None = None) -> list[Point]:
@@ -262,10 +266,10 @@ class PointSet:
 
     # -- documents ---------------------------------------------------------------------------------------------
 
-    def document(self, format: str, **options: Any) -> bytes:
+    def document(self, format: str, **options: Unpack[Output]) -> bytes:
         """The points in a format of REST: ``json``, ``csv``, ``geojson``, ``ply``, ``npy``, ``svg``, ``png``, …
 
-        ``options`` are ``decimals``, ``size``, ``summary`` and ``crs``.
+        The options are the members of ``Output``, such as ``decimals`` for texts and ``size`` for pictures.
 
         >>> import strew
         >>> print(strew.points(bbox=(0, 0, 2, 1), spacing=1, seed=1).document("csv", decimals=2).decode())
@@ -279,7 +283,7 @@ class PointSet:
         texts = [(name, "on" if value is True else "off" if value is False else str(value)) for name, value in given.items()]
         return self.plan().document(texts)
 
-    def write(self, path: str | Path, format: str | None = None, **options: Any) -> None:
+    def write(self, path: str | Path, format: str | None = None, **options: Unpack[Output]) -> None:
         """Writes a document; the ending of the path is the format, as of ``strew sample -o``, also with ``.gz``."""
         inner = Path(path)
         is_packed = inner.suffix.lower() == ".gz"

@@ -4,83 +4,42 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypedDict, Union
+from keyword import iskeyword
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 import numpy as np
+
+from ._parameters import KINDS, OUTPUT, REGIONS, WINDOW, Numbers, Parameters, Regions
 
 if TYPE_CHECKING:
     from typing_extensions import TypeAlias
 
 #: A query as the body of ``POST /v1/points:query``.
 Body: TypeAlias = "dict[str, Any]"
-Numbers: TypeAlias = "Union[Sequence[float], np.ndarray[Any, Any]]"
-
-SHAPES = ("bbox", "circle", "polygon", "chunk")
+#: Regions that are keywords.
+SHAPES = (*REGIONS, "chunk")
 #: Members of a query that are not about its set of points.
-OF_ANSWERS = ("region", "offset", "limit", "cursor", "format", "decimals", "size", "summary", "crs")
+OF_ANSWERS = ("region", *WINDOW, *OUTPUT)
 
 
-class Query(TypedDict, total=False):
-    """The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves."""
+class Shapes(Regions, total=False):
+    """The regions that are keywords."""
 
-    #: min x, min y, max x, max y; points with min ≤ p < max.
-    bbox: Numbers
-    #: x, y, radius.
-    circle: Numbers | Mapping[str, Any]
-    #: Vertices, GeoJSON, or an object with ``__geo_interface__``.
-    polygon: Any
     #: size, column, row of a square of the world grid; coordinates are relative to its corner.
     chunk: Numbers | Mapping[str, Any]
+
+
+class Query(Shapes, Parameters, total=False):
+    """The keywords of a query: the members of REST's JSON, and the shapes of regions by themselves.
+
+    ``except`` is a word of Python: its keyword is ``except_``.
+    """
+
     #: Any region as JSON has it, with ``include`` and ``exclude``.
     region: Mapping[str, Any]
-    #: The mean spacing; or one of the next three.
-    spacing: float
-    #: Points per unit of area.
-    density: float
-    #: No two points are nearer than this.
-    min_distance: float
-    #: The number of points in the region, exactly.
-    count: int
-    #: Which set of points; 0 is the plain pattern.
-    seed: int
-    #: The noise profile: ``blue`` by default.
-    profile: str
-    alpha: str
-    map: str
-    #: The digest of the table that must answer.
-    table: str
-    #: ``"off"``, ``"on"`` or a strength.
-    warp: str | float | bool
-    #: The share of points to keep, those of the lowest rank.
-    keep: float
-    #: What thins the points out: a name, or a field as JSON has it. See :func:`strew.raster`.
-    field: str | Mapping[str, Any]
-    #: Further columns: angle, scale, variant, rank, u1 to u16.
-    attributes: str | Sequence[str]
-    scale_range: Numbers
-    scale_ranges: Mapping[str, Any]
-    variant_fields: Mapping[str, Any]
-    variants: Mapping[str, float]
-    spread: str
-    only: str
-    #: Where points stand: a field whose share is a height between ``heights``. Adds the column z.
-    terrain: str | Mapping[str, Any]
-    #: The heights of the terrain where its field is 0 and where it is 1.
-    heights: Numbers
-    #: Whether there are the columns nx, ny, nz.
-    normals: bool
-    #: How far things lean from the vertical (0) to the normal (1). Adds the columns qx, qy, qz, qw.
-    align: float
-    #: Ids of points that are left out, and names of lists: ``except`` without the underscore is a word of Python.
-    except_: str | Sequence[str]
-    world: str
-    world_digest: str
     #: Several sets at once: a list of dicts with a ``name`` each.
     layers: Sequence[Mapping[str, Any]]
-    offset: int
-    limit: int
-    cursor: str
 
 
 def _region(shape: str, value: Any) -> dict[str, Any]:
@@ -108,13 +67,13 @@ def body(keywords: Mapping[str, Any]) -> Body:
     for name, value in keywords.items():
         if value is None:
             continue
-        if name == "except_":
-            name = "except"
+        if iskeyword(name[:-1]) and name.endswith("_"):
+            name = name[:-1]
         if name in SHAPES:
             # Several shapes are refused together, with all their names.
             made.setdefault("region", {})
             made["region"] = {**made["region"], **_region(name, value)}
-        elif name == "attributes" and isinstance(value, str):
+        elif KINDS.get(name) == "names" and isinstance(value, str):
             made[name] = [word.strip() for word in value.split(",")]
         else:
             made[name] = value
@@ -149,10 +108,6 @@ def _plain(value: Any) -> Any:
 
 #: The longest address that is sent, in characters. Proxies and caches refuse much longer ones.
 LONGEST = 2000
-#: Members that are text in an address and in a body.
-TEXTS = frozenset("alpha crs cursor field format map only profile spread table terrain world world_digest".split())
-#: Members that are switches in both.
-SWITCHES = frozenset(("normals", "summary"))
 
 
 def path(query: Body) -> str | None:
@@ -193,13 +148,14 @@ def _is_numbers(value: Any, count: int | None = None) -> bool:
 
 def _is_plain(name: str, value: Any) -> bool:
     """Whether a member is written in an address as in a body. What is wrong is refused in the words of bodies."""
-    if name in TEXTS:
+    kind = KINDS.get(name)
+    if kind in ("text", "field"):
         return isinstance(value, str)
-    if name in SWITCHES:
+    if kind == "switch":
         return isinstance(value, bool)
-    if name == "attributes":
+    if kind == "names":
         return isinstance(value, (list, tuple)) and len(value) > 0 and all(isinstance(one, str) for one in value)
-    if name in ("variants", "scale_ranges"):
+    if kind in ("weights", "ranges"):
         items = value.items() if isinstance(value, Mapping) else ()
         return bool(items) and all(isinstance(key, str) and (_is_number(of) or _is_numbers(of, 2)) for key, of in items)
     return _is_number(value) or _is_numbers(value)

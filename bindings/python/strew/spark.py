@@ -4,8 +4,8 @@
     spark.dataSource.register(StrewDataSource)
     trees = spark.read.format("strew").options(bbox="0,0,1e5,1e5", spacing=1, seed=7).load()
 
-The options are the keywords of :func:`strew.points`, and ``except`` and ``periodic``, with values as in REST's
-addresses, and:
+The options are the keywords of :func:`strew.points`, with ``except`` for ``except_`` and values as in REST's addresses,
+and:
 
 - ``query``: a whole body of REST in JSON, such as one with layers, in place of the keywords;
 - ``url``: a daemon that makes the points; without it the tasks do, each in its own process;
@@ -46,16 +46,18 @@ from pyspark.sql.pandas.types import from_arrow_schema
 from pyspark.sql.types import StructType
 
 from ._local import LOCAL
+from ._parameters import KINDS, OUTPUT, WINDOW
 from ._points import PointSet
-from ._query import Query, body
+from ._query import body
 from ._remote import connect
 from ._source import Source
 from ._tasks import BATCH, batches, schema, split
 
 #: What is an option and no part of a query.
 OWN = ("query", "url", "partitions", "batch", "narrow", "path")
-#: The members of a query: the keywords, one whose name is a word of Python, and one that takes the place of a region.
-MEMBERS = (*Query.__annotations__, "except", "periodic")
+#: The members of a query by the kinds of their values.
+MEMBERS = {name: kind for name, kind in KINDS.items() if name not in OUTPUT}
+MEMBERS |= {"chunk": "numbers", "region": "region", "layers": "layers"}
 
 
 def _number(text: str) -> float:
@@ -92,15 +94,16 @@ def _fields(text: str) -> dict[str, str]:
     return dict((name, field) for name, field in (part.split(":") for part in text.split(",")))
 
 
+#: How an option is read, by the kind of its values. Others are passed on as text.
 READERS: dict[str, Callable[[str], Any]] = {
-    **dict.fromkeys(("bbox", "circle", "chunk", "scale_range", "heights"), _numbers),
-    **dict.fromkeys(("spacing", "density", "min_distance", "keep", "align"), _number),
-    **dict.fromkeys(("count", "seed", "offset", "limit", "periodic"), int),
-    **dict.fromkeys(("attributes", "except"), _names),
-    "polygon": _pairs,
-    "variants": _shares,
-    "scale_ranges": _ranges,
-    "variant_fields": _fields,
+    "number": _number,
+    "integer": int,
+    "numbers": _numbers,
+    "pairs": _pairs,
+    "names": _names,
+    "weights": _shares,
+    "ranges": _ranges,
+    "fields": _fields,
 }
 
 
@@ -108,7 +111,7 @@ def _read(name: str, text: str) -> Any:
     if text.lstrip().startswith(("{", "[")):
         return json.loads(text)
     try:
-        return READERS.get(name, str)(text)
+        return READERS.get(MEMBERS[name], str)(text)
     except ValueError:
         # It is passed on as it is, to be refused in the words of REST.
         return text
@@ -195,7 +198,7 @@ class NarrowedReader(StrewReader):
 
     def _is_box(self) -> bool:
         body = self.points.body
-        windows = any(name in body for name in ("offset", "limit", "cursor"))
+        windows = any(name in body for name in WINDOW)
         return set(body.get("region", {})) == {"bbox"} and len(body["region"]["bbox"]) == 4 and not windows
 
 

@@ -21,6 +21,7 @@ from strew._query import body, path
             {"chunk": (64, 0, 0), "attributes": "angle,scale", "variants": {"oak": 3, "elm": 1}, "normals": True},
             "/v1/chunks/64/0/0?attributes=angle,scale&variants=oak:3,elm:1&normals=on",
         ),
+        ({"bbox": (0, 0, 1, 1), "except_": ["1:2", "a/-3:4"]}, "/v1/points?except=1:2,a%2F-3:4&bbox=0,0,1,1"),
     ],
 )
 def test_short_queries_have_addresses(keywords: dict[str, Any], expected: str) -> None:
@@ -33,7 +34,6 @@ def test_short_queries_have_addresses(keywords: dict[str, Any], expected: str) -
         {"polygon": [(0, 0), (1, 0), (0, 1)]},
         {"bbox": (0, 0, 1, 1), "layers": [{"name": "a", "spacing": 1}]},
         {"bbox": (0, 0, 1, 1), "field": {"constant": 0.5}},
-        {"bbox": (0, 0, 1, 1), "except_": ["1:2"]},
         {"bbox": (0, 0, 1, 1), "variants": {f"name{i}": 1 for i in range(250)}},
         # What an address would take, and a body refuses.
         {"bbox": (0, 0, 1, 1), "spacing": "1"},

@@ -1,4 +1,4 @@
-//! How this compares with other ways to place points.
+//! Strew compared with other ways to place points.
 //!
 //! | | here | Poisson-disk libraries | Wang tiles | jittered grids |
 //! |---|---|---|---|---|

@@ -3,7 +3,7 @@
 use alloc::{borrow::Cow, boxed::Box, string::String, string::ToString};
 use core::fmt;
 
-/// Why a request was refused.
+/// The reason why a request was refused.
 ///
 /// One opaque type serves the whole crate. Every error names the *field* that was wrong, the *value*
 /// it had and what is *allowed*; the four parts can be read one by one, and [`Display`](fmt::Display)
@@ -90,7 +90,7 @@ pub enum ErrorKind {
     Area,
     /// An area that is not bounded, where all of its points are requested.
     Unbounded,
-    /// A place or region so far from the origin that `f64` cannot tell neighbors apart;
+    /// A place or region so far from the origin that `f64` cannot separate neighbors;
     /// [`limit`](Error::limit) is the largest absolute coordinate.
     TooFar,
     /// A text is not a point id.
@@ -194,7 +194,7 @@ impl Error {
         &self.0.value
     }
 
-    /// What is wrong with the value; empty where [`allowed`](Self::allowed) says it all.
+    /// The problem with the value; empty where [`allowed`](Self::allowed) says it all.
     ///
     /// ```
     /// use strew_core::{Variants, Warp};
@@ -208,7 +208,7 @@ impl Error {
         &self.0.problem
     }
 
-    /// What is allowed: `a number from 1e-100 to 1e100`.
+    /// The allowed values: `a number from 1e-100 to 1e100`.
     ///
     /// ```
     /// use strew_core::Warp;

@@ -27,8 +27,8 @@
 //!
 //! An *AA pattern* (Ahmed, Huang, Deussen, "AA Patterns for Point Sets with Controlled Spectral
 //! Properties", SIGGRAPH Asia 2015) is an unbounded, structured subset of the integer grid with random
-//! access. A *displacement table* of some tens of kilobytes moves its points and so gives the set a noise
-//! profile. The modules build on each other: [`pattern`] → [`map`] → [`table`] → the point set.
+//! access. A *displacement table* of some tens of kilobytes moves its points, which determines the noise
+//! profile of the set. The modules build on each other: [`pattern`] → [`map`] → [`table`] → the point set.
 //!
 //! # Features
 //!

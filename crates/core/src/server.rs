@@ -1,4 +1,4 @@
-//! What a server needs beside the points: what a request will cost, before the work, and a way to stop
+//! The needs of a server beside the points: the cost of a request before the work, and a way to stop
 //! counting when its client has left.
 //!
 //! ```
@@ -29,7 +29,7 @@ use crate::{
 
 pub use crate::sample::{Stop, Visits};
 
-/// [`Clusters::new`], whose search stops once the flag is raised. It looks at the flag for each block.
+/// Runs [`Clusters::new`], which stops once the flag is raised. The search looks at the flag for each block.
 ///
 /// # Errors
 /// As [`Clusters::new`], and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
@@ -49,7 +49,7 @@ pub fn clusters(alpha: Alpha, distance: f64, most: usize, stop: &Stop) -> Result
     Clusters::until(alpha, distance, most, stop)
 }
 
-/// [`PointSet::within`], whose counting stops once the flag is raised.
+/// Runs [`PointSet::within`], whose counting stops once the flag is raised.
 ///
 /// # Errors
 /// As [`PointSet::within`], and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
@@ -68,7 +68,7 @@ pub fn within(set: &PointSet, area: impl Into<Area>, stop: &Stop) -> Result<Plan
     set.within_until(area.into(), stop.clone())
 }
 
-/// [`PointSet::exactly`] without spacings below `least`, whose counting stops once the flag is raised.
+/// Runs [`PointSet::exactly`] without spacings below `least`; its counting stops once the flag is raised.
 /// Where counting takes time in proportion to the lattice rows, `least` bounds it.
 ///
 /// # Errors
@@ -97,7 +97,7 @@ pub fn exactly(
     set.exactly_until(count, area, least, stop)
 }
 
-/// [`PointSet::kind_counts`], whose counting stops once the flag is raised.
+/// Runs [`PointSet::kind_counts`], whose counting stops once the flag is raised.
 ///
 /// # Errors
 /// As [`PointSet::kind_counts`], and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
@@ -115,7 +115,7 @@ pub fn kind_counts(set: &PointSet, area: impl Into<Area>, stop: &Stop) -> Result
     set.kind_counts_until(&area.into(), stop)
 }
 
-/// [`PeriodicSet::plan`], whose counting stops once the flag is raised.
+/// Runs [`PeriodicSet::plan`], whose counting stops once the flag is raised.
 ///
 /// # Errors
 /// [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
@@ -149,10 +149,10 @@ pub fn kinds_of_period(set: &PeriodicSet, stop: &Stop) -> Result<Vec<u64>, Error
     set.kind_counts_until(stop)
 }
 
-/// About the number of points that [`within`] visits one by one to count those of a set in a
-/// [field](PointSet::in_field), and that are visited again to make them: the points at full density, times the
-/// greatest share in each of up to `pieces` pieces of the area's box, for each of which the field's bounds are looked
-/// up once. 0 for sets in no field.
+/// Estimates the number of points that [`within`] visits one by one to count the points of a set in a
+/// [field](PointSet::in_field). Making the points visits them again. The estimate cuts the area's box into up to
+/// `pieces` pieces, looks up the field's bounds for each, and multiplies the points at full density there by the
+/// greatest share. It is 0 for sets in no field.
 ///
 /// # Errors
 /// As [`PointSet::within`].
@@ -174,8 +174,8 @@ pub fn candidates(set: &PointSet, area: impl Into<Area>, pieces: usize) -> Resul
     set.candidates(area.into(), pieces)
 }
 
-/// About the nanoseconds that a look at a field takes, the mean over a few places of a region, on a processor of some
-/// years ago. What is looked at is counted and no clock is read, so it is the same on every machine.
+/// Estimates the nanoseconds that a look at a field takes on a processor of some years ago: the mean over a few places
+/// of a region. It counts steps and reads no clock, so every machine returns the same number.
 ///
 /// ```
 /// use strew_core::{Region, field::{FieldSpec, Noise}, server};
@@ -212,7 +212,8 @@ pub fn addresses(set: &PointSet, area: impl Into<Area>) -> Result<[Range<i64>; 2
     set.addresses(area.into())
 }
 
-/// [`PointSet::nearest`], or [`PointSet::nearest_within`] if there is a radius, that visits a bounded number of points.
+/// Runs [`PointSet::nearest`], or [`PointSet::nearest_within`] if there is a radius, and visits a bounded number of
+/// points.
 ///
 /// # Errors
 /// As those, [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) where more points would have to be visited, and
@@ -236,7 +237,7 @@ pub fn nearest(
     set.nearest_visiting(at, k, radius, visits)
 }
 
-/// [`PointSet::around`] that visits a bounded number of points.
+/// Runs [`PointSet::around`] and visits a bounded number of points.
 ///
 /// # Errors
 /// As [`PointSet::around`], [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) where more points would have to be visited,
@@ -260,7 +261,7 @@ pub fn around(
     set.around_visiting(at, radius, limit, visits)
 }
 
-/// [`FieldSpec::slope`], ended early once the flag is raised.
+/// Runs [`FieldSpec::slope`], which ends early once the flag is raised.
 ///
 /// # Errors
 /// As [`FieldSpec::slope`], and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
@@ -286,7 +287,7 @@ pub fn slope(
     FieldSpec::slope_unless(terrain, [slopes, shares], stop)
 }
 
-/// [`Raster::tone`], ended early once the flag is raised.
+/// Runs [`Raster::tone`], which ends early once the flag is raised.
 ///
 /// # Errors
 /// As [`Raster::tone`], and [`ErrorKind::Stopped`](crate::ErrorKind::Stopped).
@@ -306,8 +307,8 @@ pub fn tone(raster: Raster, low: f64, high: f64, gamma: f64, stop: &Stop) -> Res
     raster.tone_unless([low, high, gamma], stop)
 }
 
-/// The plan with another flag: its windows and cursors, which may have to count, stop once that is raised.
-/// What they return then is meaningless.
+/// Returns the plan with another flag. Its windows and cursors may have to count, and stop once that flag is raised.
+/// Their results are then meaningless.
 ///
 /// ```
 /// use strew_core::{Circle, PointSet, Table, server::{self, Stop}};
@@ -326,8 +327,9 @@ pub fn stopped_by(plan: Plan, stop: Stop) -> Plan {
     plan.with_stop(stop)
 }
 
-/// The windows of a plan that begin at some offsets, which ascend, each up to the next and the last one to the end
-/// of the plan. Where places are found in time proportional to the rows, many windows take little longer than one.
+/// Cuts a plan into windows that begin at the given ascending offsets. Each window ends where the next begins, and the
+/// last one at the end of the plan. Where finding a place takes time proportional to the rows, many windows take
+/// little longer than one.
 ///
 /// ```
 /// use strew_core::{Circle, PointSet, Table, server};
@@ -347,7 +349,7 @@ pub fn windows(plan: &Plan, offsets: &[u128]) -> Vec<Plan> {
 /// A sparser or denser set of the same table and seed in the area of a plan, whatever its window and
 /// share, clear of the same other sets. Its points are not counted: [`Plan::count`] is only a bound.
 ///
-/// A picture whose pixels are larger than the spacing shows this as well as the plan itself.
+/// A picture whose pixels are larger than the spacing can show this set in place of the plan.
 ///
 /// # Errors
 /// [`ErrorKind::Spacing`](crate::ErrorKind::Spacing) outside of [`Spacing`]'s range, and as
@@ -392,7 +394,7 @@ pub fn outline(area: &Area, within: Region) -> f64 {
 /// are compared with all of these: a further cost of areas with many edges.
 ///
 /// Takes time in proportion to the edges and to the outline in strips. There are at most 65,536 strips,
-/// higher ones if need be.
+/// and they are higher where that number is not enough.
 ///
 /// ```
 /// use strew_core::{Area, Circle, Region, server::comparisons};

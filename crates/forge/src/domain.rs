@@ -1,4 +1,4 @@
-//! What a table is optimized on: a map, its twins, and the map at other α.
+//! The ground on which a table is optimized: a map, its twins, and the map at other α.
 
 use strew_core::{Alpha, Map, Twin};
 

@@ -4,6 +4,36 @@ use std::{io, path::PathBuf};
 
 use strew_core::table::MAX_FILE_BYTES;
 
+/// A setting of a figure or a mask is out of range.
+///
+/// ```
+/// use strew_forge::figure;
+///
+/// let error = figure::index("sqrt(3)".parse()?, 5000).unwrap_err();
+/// assert_eq!(error.to_string(), "window is 5000; it must be an integer from 8 to 200 grid units");
+/// # Ok::<(), strew_core::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{field} is {value}; it must be {allowed}")]
+pub struct SettingError {
+    /// The name of the setting.
+    pub field: String,
+    /// Its value.
+    pub value: String,
+    /// The allowed values.
+    pub allowed: String,
+}
+
+impl From<strew_core::Error> for SettingError {
+    fn from(error: strew_core::Error) -> Self {
+        Self {
+            field: error.field().into(),
+            value: error.value().into(),
+            allowed: error.allowed().into(),
+        }
+    }
+}
+
 /// An error of the forge. Messages about input state the refused value and what is allowed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -15,7 +45,7 @@ pub enum ForgeError {
         field: &'static str,
         /// The value of the part.
         value: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: String,
     },
     /// The parts of a job do not make a table.
@@ -26,7 +56,7 @@ pub enum ForgeError {
     NotATable {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem with it.
         source: strew_core::Error,
     },
     /// A file is larger than any table.
@@ -42,7 +72,7 @@ pub enum ForgeError {
     NotACheckpoint {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem with it.
         error: Box<ForgeError>,
     },
     /// An operation on a file or folder failed.

@@ -1,4 +1,4 @@
-//! What a job will cost, from a short trial.
+//! The cost of a job, estimated from a short trial.
 
 use std::time::{Duration, Instant};
 
@@ -22,9 +22,9 @@ pub struct Estimate {
     pub time: Duration,
 }
 
-/// How often a phase typically builds its neighbor lists.
+/// The number of times that a phase typically builds its neighbor lists.
 const LIST_BUILDS: u32 = 5;
-/// How long measuring takes per point, up to ν = 4, on two cores.
+/// The time of measuring per point, up to ν = 4, on two cores.
 const MEASURING_A_POINT: Duration = Duration::from_nanos(5000);
 
 impl Job {

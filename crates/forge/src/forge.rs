@@ -22,7 +22,7 @@ pub struct Outcome {
     pub interrupted: bool,
     /// The bounds that the table missed.
     pub complaints: Vec<Complaint>,
-    /// How near the table came to its power curve; `None` if it follows none or was not judged.
+    /// The distance of the table from its power curve; `None` if it follows none or was not judged.
     pub nearness: Option<Nearness>,
 }
 

@@ -1,4 +1,4 @@
-//! A job: which table to make.
+//! A job: the table to make.
 
 use strew_core::Alpha;
 
@@ -13,7 +13,7 @@ pub const DEFAULT_SEED: u64 = 17;
 /// The largest number of optimizer steps.
 pub const MAX_STEPS: u32 = 1_000_000;
 
-/// Which table to make. Equal jobs make the same table, bit for bit, on every machine.
+/// The table to make. Equal jobs make the same table, bit for bit, on every machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Job {
     /// The number α.

@@ -62,7 +62,7 @@ mod watch;
 
 pub use checkpoint::Checkpoint;
 pub use curve::Target;
-pub use error::ForgeError;
+pub use error::{ForgeError, SettingError};
 pub use estimate::Estimate;
 pub use file::{EXTENSION, file_name, read_table, write_table};
 pub use forge::{Outcome, forge, resume};

@@ -1,4 +1,4 @@
-//! What can be known of a table before it is made: how many blocks it has, and whether it can be any good.
+//! The prospect of a table before it is made: its number of blocks, and whether it can be any good.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ use crate::{
 /// `docs/alpha.md` no table is accepted, of the 23 others all but 3.
 pub const FEW_INTERVALS: usize = 43;
 
-/// What can be known of a job's table before it is made. Takes about as long as making its map.
+/// The facts about a job's table that are known before it is made. They take about the time of making its map.
 ///
 /// ```
 /// use strew_forge::Job;
@@ -45,7 +45,7 @@ enum Reason {
     Ties,
 }
 
-/// Why no table can be good.
+/// The reason why no table can be good.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hopeless<'a>(&'a Prospect);
 
@@ -56,7 +56,7 @@ impl Prospect {
         self.intervals * self.intervals
     }
 
-    /// Why no such table can be good, if none can: then it is not begun.
+    /// The reason why no such table can be good, if there is one. The forge then refuses the job.
     #[must_use]
     pub const fn hopeless(&self) -> Option<Hopeless<'_>> {
         match self.reason {
@@ -65,7 +65,7 @@ impl Prospect {
         }
     }
 
-    /// Why the judge will probably reject the table, if it will: the map has too few blocks.
+    /// The reason why the judge will probably reject the table, if there is one: the map has too few blocks.
     #[must_use]
     pub fn doubt(&self) -> Option<String> {
         let is_doubtful = self.displaces && self.intervals < FEW_INTERVALS;
@@ -112,7 +112,7 @@ impl Job {
         Plan::new(self).map(drop)
     }
 
-    /// What can be known before the work.
+    /// The facts about the table that are known before the work.
     #[must_use]
     pub fn prospect(&self) -> Prospect {
         let map = Map::new(self.alpha, self.radius).ok();

@@ -44,7 +44,7 @@ pub(crate) fn farthest(map: &Map) -> Option<[Twin; 2]> {
     Some([*least, *greatest])
 }
 
-/// Of the twins from [`LARGE_TWIN`] to some number of points the nearest to α.
+/// The nearest to α of the twins from [`LARGE_TWIN`] to some number of points.
 pub(crate) fn nearest(map: &Map, most: u64) -> Option<Twin> {
     let alpha = map.alpha().to_f64();
     let twins = next_to_alpha(map).take_while(|twin| twin.points() <= most);

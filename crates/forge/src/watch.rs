@@ -1,4 +1,4 @@
-//! How a caller follows the work and stops it.
+//! The way for a caller to follow the work and stop it.
 //!
 //! The caller implements [`Watch`]. The optimizer and the judge count their steps with a [`Meter`],
 //! which reports [`Progress`] to it.
@@ -16,7 +16,7 @@ pub enum Stage {
     Measuring,
 }
 
-/// How far the work has come.
+/// The progress of the work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// The current stage.

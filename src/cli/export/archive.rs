@@ -1,5 +1,5 @@
-//! One file with all chunks: a zip whose members have the names of a folder's files. It is written from its beginning
-//! to its end, so what a killed run leaves is a whole number of members and a broken one, which is written again.
+//! One file with all chunks: a zip whose members have the names of a folder's files. It is written from beginning to
+//! end, so a killed run leaves complete members and a broken one, which the next run writes again.
 
 use std::{
     collections::HashMap,
@@ -17,11 +17,11 @@ use super::{
     spec::{DEFLATE, Spec},
     zip::{self, Content, Member},
 };
-use crate::cli::Failure;
+use crate::cli::{Failure, refuse};
 
-/// The options, the first member: a run that goes on compares them.
+/// The options, the first member. A run that resumes compares them.
 pub(super) const SPEC: &str = "export.json";
-/// For each chunk in order: where its bytes begin (8 bytes), how many they are (4), how many points it has (4).
+/// For each chunk in order: the offset of its bytes (8 bytes), their number (4), and its number of points (4).
 pub(super) const INDEX: &str = "index.bin";
 
 /// An archive that is being written.
@@ -39,7 +39,7 @@ pub(super) struct Archive {
 
 fn other(path: &Path) -> Failure {
     Failure::Usage(anyhow!(
-        "--archive {}: the file is no export with these options (for --format arrow limits.block_bytes is one of \
+        "--archive {}: the file holds no export with these options (for --format arrow limits.block_bytes is one of \
          them): choose another name",
         path.display()
     ))
@@ -65,9 +65,9 @@ fn is_complete(path: &Path, spec: &Spec) -> Result<Found, Failure> {
     }
 }
 
-/// Whether a file has no more than the beginning of a first member: a run was killed before it had written one.
+/// Whether a file holds only the beginning of a first member: a run was killed before it had written one.
 fn is_torn(file: &mut File) -> io::Result<bool> {
-    // Options are far shorter.
+    // Members with options are far shorter.
     const MOST: u64 = 1 << 20;
     if file.metadata()?.len() > MOST {
         return Ok(false);
@@ -86,12 +86,12 @@ fn is_torn(file: &mut File) -> io::Result<bool> {
     Ok(begins && !has_second)
 }
 
-/// An archive as it is found.
+/// The state of an archive that is opened.
 #[derive(Debug)]
 pub(super) enum Found {
-    /// Everything is there.
+    /// It is complete.
     Complete,
-    /// Nothing is there, or the first chunks.
+    /// It is empty, or holds the first chunks.
     Open(Box<Archive>, Vec<Record>),
 }
 
@@ -109,10 +109,10 @@ impl Archive {
             return Err(no_file(&partial));
         }
         let Some(mut file) = lock(&partial).with_context(unwritable)? else {
-            return Err(Failure::Usage(anyhow!(
+            refuse!(
                 "--archive {}: another process writes this file",
                 path.display()
-            )));
+            );
         };
         // Another process may have ended meanwhile; then the locked file is a new one, without content.
         if path.exists() {
@@ -157,7 +157,7 @@ impl Archive {
         Ok(Found::Open(Box::new(archive), records))
     }
 
-    /// The chunks that are there, as far as they are whole; what follows is cut off.
+    /// The complete chunks. Cuts off the rest of the file.
     fn recover(&mut self, maker: &Maker) -> io::Result<Vec<Record>> {
         let mut records = vec![];
         for i in 0..maker.grid.chunks() {
@@ -168,10 +168,10 @@ impl Archive {
             };
             self.at = zip::end(&member, &expected);
             self.chunks.push(member);
-            records.push(Record {
+            records.push(Record::of(&Chunk {
                 points: member.points.into(),
-                files: vec![(blake3::hash(&bytes), bytes.len() as u64)],
-            });
+                bytes,
+            }));
         }
         self.file.get_ref().set_len(self.at)?;
         self.file.seek(SeekFrom::Start(self.at))?;
@@ -200,17 +200,12 @@ impl Archive {
         format!("cannot write {}", self.partial.display())
     }
 
-    /// Makes what is written of a chunk, on any thread.
+    /// Packs a chunk for [`put`](Self::put), on any thread.
     pub(super) fn pack(chunk: Chunk, is_deflated: bool) -> anyhow::Result<(Record, Content)> {
-        let record = Record {
-            points: chunk.points,
-            files: vec![(blake3::hash(&chunk.bytes), chunk.bytes.len() as u64)],
-        };
+        let record = Record::of(&chunk);
         let content = Content::new(chunk.bytes, is_deflated, chunk.points);
-        Ok((
-            record,
-            content.context("a chunk is too large for an archive")?,
-        ))
+        let content = content.context("a chunk is too large for an archive")?;
+        Ok((record, content))
     }
 
     /// Writes the next chunk.
@@ -220,18 +215,18 @@ impl Archive {
         Ok(())
     }
 
-    /// Hands everything to the system: a run that is interrupted goes on after it.
+    /// Hands everything to the system. An interrupted run resumes after it.
     pub(super) fn flush(&mut self) -> anyhow::Result<()> {
         self.file.flush().with_context(|| self.unwritable())
     }
 
-    /// Takes back the beginning of an export that does not go on, so that another one may.
+    /// Removes the beginning of an export that stops here, so that another one may begin.
     pub(super) fn abandon(self) {
-        // What is left otherwise is an export without chunks.
+        // Without the removal, an export without chunks stays.
         let _ = fs::remove_file(&self.partial);
     }
 
-    /// The files of an archive beside the chunks and those of every export.
+    /// The files that only archives have beside the chunks.
     pub(super) fn extra(
         &self,
         spec: &Spec,
@@ -259,7 +254,7 @@ impl Archive {
         for (name, bytes) in documents {
             let member = match &*name {
                 SPEC => self.spec,
-                // Read by ranges.
+                // Readers take ranges of these.
                 INDEX | MANIFEST => {
                     let content =
                         Content::new(bytes, false, 0).with_context(|| self.unwritable())?;
@@ -288,11 +283,11 @@ impl Archive {
     }
 }
 
-/// An archive that is read.
+/// An archive to read.
 #[derive(Debug)]
 pub(super) struct Reader {
     file: File,
-    /// Where members begin, by name.
+    /// The offsets of members, by name.
     members: HashMap<String, u64>,
     path: PathBuf,
 }
@@ -300,7 +295,7 @@ pub(super) struct Reader {
 impl Reader {
     pub(super) fn open(path: &Path) -> anyhow::Result<Self> {
         let unreadable = || format!("cannot read {}", path.display());
-        // Devices can be read without end, and pipes block.
+        // Devices have no end, and pipes block.
         let kind = fs::metadata(path).with_context(unreadable)?;
         ensure!(kind.is_file(), "{} is not a regular file", path.display());
         let mut file = File::open(path).with_context(unreadable)?;

@@ -1,5 +1,5 @@
-//! Checks an export: every file's digest, that none is missing and none is foreign, and that points are what is made
-//! today.
+//! Checks an export: the digests of all files, missing and foreign files, and whether this program still makes the same
+//! points.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -10,6 +10,7 @@ use std::{
 
 use anyhow::{Context as _, anyhow};
 use rayon::prelude::*;
+use strew_config::Config;
 
 use super::{
     archive::Reader,
@@ -17,26 +18,28 @@ use super::{
     folder::WORK,
     record::{DIGESTS, MANIFEST, Manifest},
 };
-use crate::{
-    cli::{Failure, compression::Compression, progress::Progress},
-    config::Config,
+use crate::cli::{
+    Failure,
+    compression::{Compression, names},
+    load::Load as _,
+    progress::Progress,
 };
 
-/// How many chunks are made again, unless all are.
+/// The number of chunks that are made again, unless all are.
 const SAMPLE: usize = 100;
-/// How many faults are named.
+/// The most faults that are named.
 const NAMED: usize = 20;
-/// How many files are looked at between two lines of progress.
+/// The number of files between two lines of progress.
 const BATCH: usize = 256;
 
-/// What is checked.
+/// The export to check.
 enum Tree {
     Folder(PathBuf),
-    /// Its file has one place at which it is read.
+    /// The lock is for the file, which has one reading position.
     Archive(Mutex<Reader>),
 }
 
-/// What is wrong, by the names of files.
+/// The faults, by the names of files.
 #[derive(Default)]
 struct Faults(BTreeMap<String, &'static str>);
 
@@ -45,7 +48,7 @@ pub(super) fn run(path: &Path, all: bool, quiet: bool, config: &Config) -> Resul
     let tree = Tree::open(path)?;
     let manifest = tree.read(MANIFEST).with_context(|| {
         format!(
-            "{} has no {MANIFEST}: it is no export, or not complete",
+            "{} has no {MANIFEST}: it is no export, or incomplete",
             path.display()
         )
     });
@@ -66,14 +69,14 @@ pub(super) fn run(path: &Path, all: bool, quiet: bool, config: &Config) -> Resul
         progress.reach((k * BATCH + batch.len()) as u64, "");
     }
     progress.finish();
-    // What has changed needs no second look.
+    // Changed files need no further check.
     faults.report(path)?;
     let made = made_again(&tree, &manifest, all, quiet, config, &mut faults)?;
     faults.report(path)?;
     let total = manifest.total;
     if !quiet {
         eprintln!(
-            "{} is whole: {} files, {} chunks, {} points; {made} chunks made again",
+            "{} is complete: {} files, {} chunks, {} points; {made} chunks made again",
             path.display(),
             digests.len() + 2,
             total.chunks,
@@ -83,7 +86,7 @@ pub(super) fn run(path: &Path, all: bool, quiet: bool, config: &Config) -> Resul
     Ok(())
 }
 
-/// Makes chunks again and compares them, also what is compressed; returns how many.
+/// Makes chunks again and compares all their files; returns the number of chunks.
 fn made_again(
     tree: &Tree,
     manifest: &Manifest,
@@ -93,33 +96,29 @@ fn made_again(
     faults: &mut Faults,
 ) -> Result<usize, Failure> {
     let spec = &manifest.export;
-    let maker = Maker::new(spec, &super::spec::catalog(config)?, config)?;
+    let maker = Maker::new(spec, &config.with_worlds(config.tables()?)?, config)?;
     let (chunks, compressions) = (maker.grid.chunks(), spec.compressions());
     let number = if all { chunks } else { SAMPLE.min(chunks) };
     let picked = |k: usize| (2 * k + 1) * chunks / (2 * number);
     let mut progress = Progress::new("chunks", number as u64, quiet);
     for first in (0..number).step_by(BATCH) {
         let batch: Vec<usize> = (first..number.min(first + BATCH)).map(picked).collect();
-        // Chunks are dropped as they are compared: as many are in memory as there are threads.
+        // Compared chunks are dropped, so memory holds one for each thread.
         let differ = batch.par_iter().map(|&i| {
             let chunk = maker.make(i)?;
             let plain = maker.grid.name(maker.grid.place(i));
-            let packed = compressions.iter();
-            let packed =
-                packed.map(|packed| (format!("{plain}.{}", packed.ending()), Some(*packed)));
-            let names = [(plain.clone(), None)].into_iter().chain(packed);
-            // What cannot be read is known already.
+            // Unreadable files are reported already.
             let differs = |(name, packed): &(String, _)| {
                 let read = tree.read(name);
                 read.is_ok_and(|bytes| unpacked(bytes, *packed).as_ref() != Some(&chunk.bytes))
             };
-            Ok(names
+            Ok(names(&plain, &compressions)
                 .filter(differs)
                 .map(|(name, _)| name)
                 .collect::<Vec<_>>())
         });
         for name in differ.collect::<Result<Vec<_>, Failure>>()?.concat() {
-            faults.add(&name, "has other points than are made now");
+            faults.add(&name, "has other points than this program makes now");
         }
         progress.reach((first + batch.len()) as u64, "");
     }
@@ -169,7 +168,7 @@ impl Tree {
         lines.with_context(|| format!("{DIGESTS} is no list of digests"))
     }
 
-    /// Notes files that are not in the list.
+    /// Reports files that are not in the list.
     fn compare_names(
         &self,
         digests: &BTreeMap<String, blake3::Hash>,
@@ -188,7 +187,7 @@ impl Tree {
         Ok(())
     }
 
-    /// The digests of some files; none for one that cannot be read.
+    /// The digests of some files, `None` for an unreadable one.
     fn hash(&self, names: &[&String]) -> Vec<(String, Option<blake3::Hash>)> {
         let hash = |name: &&String| {
             let bytes = self.read(name).ok();
@@ -224,7 +223,7 @@ fn below(root: &Path) -> anyhow::Result<BTreeSet<String>> {
         .any(|name| name.starts_with(&format!("{WORK}/")))
     {
         return Err(anyhow!(
-            "{} is not complete: run the export again",
+            "{} is incomplete: run the export again",
             root.display()
         ));
     }
@@ -249,10 +248,13 @@ impl Faults {
             0 => String::new(),
             more => format!("\n  and {more} more"),
         };
+        let differ = match self.0.len() {
+            1 => "1 file differs".into(),
+            number => format!("{number} files differ"),
+        };
         Err(Failure::Other(anyhow!(
-            "{} differs from what was written in {} files:{}{more}",
+            "{}: {differ} from the export:{}{more}",
             path.display(),
-            self.0.len(),
             named.collect::<String>()
         )))
     }

@@ -1,17 +1,19 @@
-//! Makes the bytes of chunks: those of the daemon's answers.
+//! Makes the bytes of chunks, the same as the daemon's answers.
 
-use anyhow::{Context as _, anyhow};
+use anyhow::Context as _;
 use rayon::prelude::*;
+use strew_catalog::Ready;
+use strew_config::Config;
+use strew_encode::{Answer, Output};
+use strew_error::Error;
+use strew_plan::Planned;
+use strew_query::{Assets, Query, RegionDraft, ShapeDraft};
 
 use super::{
     grid::{Grid, Place},
     spec::{Checked, Spec, chunk},
 };
-use crate::{
-    cli::{Failure, compression::Compression, refusal::Source},
-    config::Config,
-    service::{Answer, Catalog, Error, Output, Planned, Query, Ready},
-};
+use crate::cli::{Failure, compression::Compression, refusal::Source, refuse};
 
 /// Makes chunks.
 #[derive(Debug)]
@@ -30,12 +32,12 @@ pub(super) struct Chunk {
 }
 
 impl Maker {
-    pub(super) fn new(spec: &Spec, catalog: &Catalog, config: &Config) -> Result<Self, Failure> {
+    pub(super) fn new(spec: &Spec, catalog: &Assets, config: &Config) -> Result<Self, Failure> {
         let (levels, tables) = spec.checked(catalog, config)?;
         if !spec.is_of(&levels[0].query) {
-            return Err(Failure::Usage(anyhow!(
+            refuse!(
                 "the export was made with another version, world, table, field or list: use those, or export anew"
-            )));
+            );
         }
         Ok(Self {
             grid: spec.grid()?,
@@ -90,7 +92,7 @@ impl Maker {
         let (count, limit) = (planned.count(), limits.max_points);
         let points = u64::try_from(count).ok().filter(|few| *few <= limit);
         let points = points.ok_or(Error::TooManyPoints { count, limit })?;
-        Ok((points, Answer::new(&planned, &output, limits.block_bytes)?))
+        Ok((points, planned.answer(&output, limits.block_bytes)?))
     }
 
     /// The columns of files without names in them, as the header `strew-columns` has them.
@@ -102,7 +104,7 @@ impl Maker {
         Ok(answer.1.legend().map(Into::into))
     }
 
-    /// How many points all chunks have, where that is known by counting boxes.
+    /// The number of points of all chunks, if counting boxes is enough to know it.
     pub(super) fn count(&self) -> Option<u128> {
         let is_plain = |checked: &Checked| {
             let window = &checked.query.window;
@@ -120,9 +122,9 @@ impl Maker {
             .iter()
             .zip(&self.grid.levels)
             .map(|(checked, level)| {
-                let region = crate::service::query::RegionDraft {
+                let region = RegionDraft {
                     path: "bbox".into(),
-                    shape: crate::service::query::ShapeDraft::Box(level.bbox()),
+                    shape: ShapeDraft::Box(level.bbox()),
                 };
                 let query = Query {
                     region: region.check().ok()?,
@@ -135,7 +137,7 @@ impl Maker {
     }
 }
 
-/// A file compressed in some ways, each with its ending; the plain one first.
+/// A file and its compressed variants, each with its ending; the plain one first.
 pub(super) fn variants(
     bytes: Vec<u8>,
     compressions: &[Compression],

@@ -1,5 +1,5 @@
-//! What an export costs, reported before it begins: chunks, points, bytes and time, from a short trial; and whether the
-//! disk has room.
+//! The cost of an export, reported before it begins: chunks, points, bytes and time, from a short trial; and whether
+//! the disk has room.
 
 use std::{
     path::Path,
@@ -17,31 +17,31 @@ use super::{
 };
 use crate::cli::{Failure, compression::Compression};
 
-/// How many chunks are tried at most, evenly spread over all of them.
+/// The most chunks of a trial, evenly spread over all of them.
 const TRIED: usize = 32;
-/// Of few chunks one in this number is tried.
+/// A trial of few chunks takes one in this number.
 const SHARE: usize = 8;
-/// No chunk is begun after this time.
+/// A trial begins no chunk after this time.
 const TRIAL: Duration = Duration::from_secs(2);
-/// What a file takes on a disk is a multiple of this.
+/// Files occupy multiples of this on a disk.
 const BLOCK: u64 = 4096;
 
-/// The disk is tried for exports of more bytes than this,
+/// A trial of the disk is worth its time for more bytes than this,
 const WORTH: f64 = (1u64 << 20) as f64;
 /// and if it has more free.
 const ROOM: u64 = 1 << 30;
 
-/// What is expected.
+/// The expected cost.
 #[derive(Clone, Debug)]
 pub(super) struct Cost {
     chunks: usize,
-    /// The number of chunks that are there already.
+    /// The number of existing chunks.
     done: usize,
     points: f64,
     /// Whether the number of points was counted, not estimated.
     is_counted: bool,
     bytes: f64,
-    /// What is still to be written, on the disk.
+    /// The bytes that are still to be written, on the disk.
     disk: f64,
     files: f64,
     time: Duration,
@@ -56,7 +56,7 @@ struct Tried {
 }
 
 impl Cost {
-    /// Tries some chunks, and counts points where that is quick. `done` chunks are there already; in an archive
+    /// Tries some chunks, and counts points where that is quick. `done` chunks exist; in an archive
     /// files lie side by side.
     pub(super) fn of(maker: &Maker, spec: &Spec, done: usize) -> Result<Self, Failure> {
         let is_archive = spec.archive.is_some();
@@ -71,7 +71,7 @@ impl Cost {
             if k > 0 && began.elapsed() > TRIAL {
                 return Ok(None);
             }
-            // The middle of each of as many parts.
+            // The middle chunk of each of `number` parts.
             let i = (2 * k + 1) * chunks / (2 * number);
             try_out(maker, &compressions, i, is_archive).map(Some)
         });
@@ -101,7 +101,7 @@ impl Cost {
         })
     }
 
-    /// The same with the time that the disk of a folder takes, where it has ample room for a trial.
+    /// Adds the time that the disk of a folder takes, if it has ample room for a trial.
     pub(super) fn written_to(self, folder: &Path) -> Self {
         let has_room = free(folder).is_some_and(|(bytes, _)| bytes > ROOM);
         let speed = (has_room && self.disk > WORTH).then(|| Speed::of(folder));
@@ -130,14 +130,14 @@ impl Cost {
         )
     }
 
-    /// Refuses what does not fit the disk of a folder.
+    /// Refuses an export that does not fit the disk of a folder.
     pub(super) fn check(&self, folder: &Path, is_archive: bool) -> Result<(), Failure> {
         let Some((bytes, files)) = free(folder) else {
             return Ok(());
         };
         let place = folder.display();
         let more = if self.done > 0 { " more" } else { "" };
-        // The options of an export that has begun are settled.
+        // An export that has begun keeps its options.
         let advise = |otherwise: &str| match self.done {
             0 => format!(": {otherwise}"),
             done => format!("; {}", go_on(done, self.chunks)),
@@ -162,9 +162,9 @@ impl Cost {
     }
 }
 
-/// How an export goes on that lacks room.
+/// The advice for an export that lacks room.
 pub(super) fn go_on(done: usize, chunks: usize) -> String {
-    format!("{done} of {chunks} chunks are there: make room, and the same command goes on there")
+    format!("{done} of {chunks} chunks exist: make room, and the same command resumes there")
 }
 
 fn try_out(
@@ -179,7 +179,7 @@ fn try_out(
     let files = variants(chunk.bytes, compressions)?;
     let sizes: Vec<u64> = files.iter().map(|(_, bytes)| bytes.len() as u64).collect();
     let (bytes, disk) = match is_archive {
-        // One of them is stored; the rest is heads and indices.
+        // One file is stored; the rest is heads and indices.
         true => {
             let stored = sizes.last().copied().unwrap_or(0);
             (stored, stored + 512)
@@ -197,7 +197,7 @@ fn try_out(
     })
 }
 
-/// The bytes and the files that the disk of a folder has room for, where that is known.
+/// The free bytes and files of the disk of a folder, if known.
 #[cfg(unix)]
 fn free(folder: &Path) -> Option<(u64, u64)> {
     let disk = rustix::fs::statvfs(folder).ok()?;

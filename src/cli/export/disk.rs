@@ -1,4 +1,4 @@
-//! How fast a disk takes files, by a short trial: what is made in memory waits for the disk in the end.
+//! The speed of a disk, by a short trial: in the end an export waits for the disk.
 
 use std::{
     fs::{self, File},
@@ -9,14 +9,14 @@ use std::{
 
 use crate::cli::signals::Incomplete;
 
-/// The bytes that are written at most.
+/// The most bytes of the trial.
 const BYTES: u64 = 32 << 20;
-/// No more is written after this time.
+/// The trial writes nothing more after this time.
 const TRIAL: Duration = Duration::from_millis(300);
-/// The files that are made.
+/// The number of files of the trial.
 const FILES: u32 = 32;
 
-/// What a disk takes, in seconds.
+/// The seconds that a disk takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Speed {
     per_byte: f64,

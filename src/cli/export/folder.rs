@@ -1,5 +1,5 @@
-//! A folder of chunks: each written under a temporary name and renamed, and noted in a journal, so that a run that
-//! was killed goes on where it was.
+//! A folder of chunks. Each chunk is written under a temporary name, renamed, and noted in a journal, so that a killed
+//! run resumes where it was.
 
 use std::{
     collections::HashMap,
@@ -17,9 +17,13 @@ use super::{
     record::{MANIFEST, Manifest, Record},
     spec::Spec,
 };
-use crate::cli::{Failure, compression::Compression};
+use crate::cli::{
+    Failure,
+    compression::{Compression, names},
+    refuse,
+};
 
-/// What is not complete: the spec, the journal, files under temporary names.
+/// The folder of an incomplete export: the spec, the journal, files under temporary names.
 pub(super) const WORK: &str = ".partial";
 
 /// A folder that is being written.
@@ -55,12 +59,12 @@ fn other(root: &Path) -> Failure {
     ))
 }
 
-/// A folder as it is found.
+/// The state of a folder that is opened.
 #[derive(Debug)]
 pub(super) enum Found {
-    /// Everything is there.
+    /// It is complete.
     Complete,
-    /// Nothing is there, or what an earlier run has made.
+    /// It is empty, or holds chunks of an earlier run.
     Open(Folder, HashMap<usize, Record>),
 }
 
@@ -75,17 +79,17 @@ impl Folder {
         }
         let is_empty = || -> io::Result<bool> { Ok(fs::read_dir(root)?.next().is_none()) };
         if !work.exists() && !is_empty().with_context(unwritable)? {
-            return Err(Failure::Usage(anyhow!(
-                "--output {}: the folder is not empty; allowed: a new folder, or one whose export was interrupted",
+            refuse!(
+                "--output {}: the folder is not empty; allowed: a new folder, or that of an interrupted export",
                 root.display()
-            )));
+            );
         }
         fs::create_dir_all(&work).with_context(unwritable)?;
         let Some(lock) = lock(&work.join("lock")).with_context(unwritable)? else {
-            return Err(Failure::Usage(anyhow!(
+            refuse!(
                 "--output {}: another process writes this folder",
                 root.display()
-            )));
+            );
         };
         // Another process may have ended meanwhile, or was killed after it had written the manifest.
         if is_complete(root, spec)? {
@@ -121,7 +125,7 @@ impl Folder {
             _lock: lock,
         };
         let done = folder.done(&path, maker).with_context(unwritable)?;
-        // Without the line that is broken off, and with each chunk once.
+        // Without a broken last line, and with each chunk once.
         let mut lines = String::new();
         for (i, record) in &done {
             lines += &record.line(*i);
@@ -138,7 +142,7 @@ impl Folder {
         Ok(Found::Open(folder, done))
     }
 
-    /// The chunks of the journal whose files are there with the length that they had.
+    /// The chunks of the journal whose files exist and have their lengths.
     fn done(&self, journal: &Path, maker: &Maker) -> io::Result<HashMap<usize, Record>> {
         let mut done = HashMap::new();
         let mut lines = BufReader::new(File::open(journal)?);
@@ -149,12 +153,11 @@ impl Folder {
                 .filter(|(i, record)| *i < chunks && record.files.len() == files);
             if let Some((i, record)) = known {
                 let name = maker.grid.name(maker.grid.place(i));
-                let is_there = self
-                    .names(&name)
-                    .zip(&record.files)
-                    .all(|(name, (_, length))| {
+                let is_there = names(&name, &self.compressions).zip(&record.files).all(
+                    |((name, _), (_, length))| {
                         fs::metadata(self.root.join(name)).is_ok_and(|file| file.len() == *length)
-                    });
+                    },
+                );
                 if is_there {
                     done.insert(i, record);
                 }
@@ -162,15 +165,6 @@ impl Folder {
             line.clear();
         }
         Ok(done)
-    }
-
-    /// The names of a chunk's files.
-    fn names(&self, name: &str) -> impl Iterator<Item = String> {
-        let packed = self.compressions.iter();
-        let packed: Vec<String> = packed
-            .map(|packed| format!("{name}.{}", packed.ending()))
-            .collect();
-        [name.to_owned()].into_iter().chain(packed)
     }
 
     /// Writes a chunk.
@@ -191,7 +185,7 @@ impl Folder {
         Ok(record)
     }
 
-    /// Writes a file, which has its name only when it is whole.
+    /// Writes a file under a temporary name, and renames it.
     pub(super) fn file(&self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
         let thread = rayon::current_thread_index().unwrap_or(usize::MAX);
         let (fresh, path) = (self.work.join(format!("{thread}")), self.root.join(name));
@@ -208,13 +202,13 @@ impl Folder {
         write().with_context(|| format!("cannot write {}", path.display()))
     }
 
-    /// Takes back what holds the place of an export that does not begin, so that another one may.
+    /// Removes the traces of an export that does not begin, so that another one may.
     pub(super) fn abandon(self) {
-        // What is left otherwise is an export without chunks.
+        // Without the removal, an export without chunks stays.
         let _ = fs::remove_dir_all(&self.work);
     }
 
-    /// Everything is written but these documents, the last of which says that it is complete.
+    /// Writes the documents. The last one marks the export as complete.
     pub(super) fn finish(self, documents: &[(String, Vec<u8>)]) -> anyhow::Result<()> {
         let Some((last, others)) = documents.split_last() else {
             return Ok(());
@@ -229,7 +223,7 @@ impl Folder {
             .with_context(|| format!("cannot remove {}", self.work.display()))
     }
 
-    /// Waits until the disk has what was written.
+    /// Waits until the disk holds all files.
     #[cfg(target_os = "linux")]
     fn sync(&self) -> anyhow::Result<()> {
         let all = File::open(&self.root).and_then(|root| Ok(rustix::fs::syncfs(root)?));

@@ -1,4 +1,4 @@
-//! Which chunks an export has: levels of detail, each a rectangle of the world grid, and the addresses of chunks.
+//! The chunks of an export: levels of detail, each a rectangle of the world grid, and the addresses of chunks.
 
 use std::ops::Range;
 
@@ -20,7 +20,7 @@ pub(super) struct Level {
     pub(super) size: f64,
     /// The share of the points.
     pub(super) keep: f64,
-    /// What addresses have after `?`, without which the daemon's answer may be another one.
+    /// The query of addresses, which the daemon needs for the same answer.
     pub(super) query: String,
     /// The columns of its chunks.
     pub(super) columns: [i64; 2],
@@ -38,7 +38,7 @@ pub(super) struct Place {
 /// All chunks, in the order of levels, columns and rows.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Grid {
-    /// What paths begin with.
+    /// The beginning of paths.
     path: String,
     pub(super) levels: Vec<Level>,
 }
@@ -72,10 +72,10 @@ impl Level {
         })
     }
 
-    /// Whether it can be a level: what is read may be damaged.
+    /// Checks a level that was read from a file, which may be damaged.
     ///
     /// # Errors
-    /// The member that cannot be, its value and what is allowed.
+    /// The invalid member, its value, and the allowed values.
     pub(super) fn validate(&self) -> anyhow::Result<()> {
         let Self { size, keep, .. } = self;
         if !(size.is_finite() && *size > 0.0) {
@@ -104,7 +104,7 @@ impl Level {
         [self.columns, self.rows].map(|[first, end]| first..end)
     }
 
-    /// How many chunks there are.
+    /// The number of chunks.
     pub(super) fn chunks(&self) -> u128 {
         let [columns, rows] = self.ranges().map(|range| range.end.abs_diff(range.start));
         u128::from(columns) * u128::from(rows)
@@ -122,7 +122,7 @@ impl Level {
     }
 }
 
-/// How far from the origin chunks are counted.
+/// The greatest column or row of chunks.
 const FARTHEST: f64 = (1u64 << 52) as f64;
 
 impl Grid {
@@ -144,7 +144,7 @@ impl Grid {
         }
     }
 
-    /// How many chunks there are.
+    /// The number of chunks.
     pub(super) fn chunks(&self) -> usize {
         self.levels
             .iter()
@@ -170,7 +170,7 @@ impl Grid {
         unreachable!("chunks are counted")
     }
 
-    /// What paths of chunks begin with, without the first slash.
+    /// The beginning of the paths of chunks, without the first slash.
     pub(super) fn path(&self) -> &str {
         &self.path
     }

@@ -6,13 +6,13 @@ use std::{
     path::Path,
 };
 
-/// Opens and locks a file, which is made if need be; none if another process holds it.
+/// Opens and locks a file, and makes it if it is missing; `None` if another process holds it.
 ///
 /// The process that held it may have renamed or removed it between the opening and the lock. Then the name is opened
 /// again, so the file that is returned is the one that has the name now.
 ///
 /// # Errors
-/// What the file system reports.
+/// The error of the file system.
 pub(super) fn lock(path: &Path) -> io::Result<Option<File>> {
     loop {
         let mut options = File::options();

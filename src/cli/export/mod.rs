@@ -1,4 +1,4 @@
-//! `strew export`: a world of chunks as files, under the daemon's own paths, in a folder or one archive.
+//! `strew export`: writes a world as files of chunks, under the daemon's paths, in a folder or one archive.
 
 mod archive;
 mod check;
@@ -23,7 +23,10 @@ use std::{
 };
 
 use anyhow::anyhow;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use rayon::prelude::*;
+use strew_config::Config;
+use strew_query::Assets;
 
 use self::{
     archive::Archive,
@@ -39,42 +42,44 @@ use super::{
     config,
     flags::{Exported, Flags, WHERE},
     progress::Progress,
+    refuse,
     signals::stop_flag,
+    threads,
 };
-use crate::{config::Config, service::Catalog};
+use crate::cli::load::Load as _;
 
-/// Flags of `strew export`: a query, how it is cut into chunks, and where to write.
+/// Flags of `strew export`: a query, its chunks, and the output.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The folder to write: a new one, or one whose export was interrupted.
+    /// The folder to write: a new one, or that of an interrupted export.
     #[arg(long, short, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// One file instead of a folder: a zip, read by ranges.
+    /// A zip file to write instead of a folder; readers take ranges of it.
     #[arg(long, value_name = "FILE", conflicts_with = "output")]
     archive: Option<PathBuf>,
-    /// Check an export instead: digests, names, and points that are made again.
+    /// Check an export instead: its digests, its names, and points of chunks made again.
     #[arg(long, value_name = "DIR|FILE", conflicts_with_all = ["output", "archive", "chunk", "levels", "compress"])]
     check: Option<PathBuf>,
-    /// With --check: make all chunks again, not 100 of them.
+    /// With --check: make all chunks again instead of 100.
     #[arg(long, requires = "check")]
     all: bool,
     /// The side of a chunk.
     #[arg(long, value_name = "SIDE", help_heading = WHERE)]
     chunk: Option<f64>,
-    /// Levels of detail: level k has chunks that are 2ᵏ times as wide, with the share 4⁻ᵏ of the points.
+    /// Levels of detail: chunks of level k are 2ᵏ times as wide and have the share 4⁻ᵏ of the points.
     #[arg(long, value_name = "NUMBER", default_value_t = 1, help_heading = WHERE,
           value_parser = clap::value_parser!(u32).range(1..=i64::from(grid::MOST_LEVELS)))]
     levels: u32,
-    /// Compressed files beside the plain ones: gz, zst, both or none [default: gz for formats of text, else none]
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
-    compress: Option<Vec<Packing>>,
+    /// Compressed files beside the plain ones: gz, zst, both or none [default: gz for text formats, else none]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = packing())]
+    compress: Option<Vec<Option<Compression>>>,
     /// The number of threads [default: one for each core]
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=1024))]
     threads: Option<u32>,
-    /// Say what it costs, and write nothing.
+    /// Print the cost and write nothing.
     #[arg(long)]
     dry_run: bool,
-    /// Say nothing on standard error but errors.
+    /// Print nothing but errors on standard error.
     #[arg(long, short)]
     quiet: bool,
     #[command(flatten)]
@@ -83,26 +88,15 @@ pub(super) struct Args {
     settings: config::Args,
 }
 
-/// About how many bytes of chunks of an archive wait to be written in order: as many chunks as have this size if all
-/// are as large as the largest so far, but one for each thread.
+/// The approximate bytes of an archive's chunks that wait to be written in order, if all are as large as the largest so
+/// far; but at least one chunk for each thread.
 const BATCH: u64 = 64 << 20;
 
-/// How files are compressed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Packing {
-    /// Not at all.
-    None,
-    /// By gzip.
-    Gz,
-    /// By zstd.
-    Zst,
-}
-
-/// What an export is made with.
+/// The parts of an export.
 struct Job<'a> {
     spec: Spec,
     maker: Maker,
-    catalog: Catalog,
+    catalog: Assets,
     args: &'a Args,
 }
 
@@ -112,9 +106,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let threads = args
         .threads
         .map_or(config.workers.threads, |threads| threads as usize);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| Failure::Other(error.into()))?;
-    pool.install(|| match &args.check {
+    threads::pool(threads)?.install(|| match &args.check {
         Some(path) => check::run(path, args.all, args.quiet, &config),
         None => export(args, &config),
     })
@@ -122,25 +114,19 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
 
 fn export(args: &Args, config: &Config) -> Result<(), Failure> {
     let Some(size) = args.chunk else {
-        return Err(Failure::Usage(anyhow!(
-            "the side of a chunk is missing: give --chunk, such as --chunk 64"
-        )));
+        refuse!("the side of a chunk is missing: use --chunk, such as --chunk 64");
     };
     if !(size.is_finite() && size > 0.0) {
-        return Err(Failure::Usage(anyhow!(
-            "--chunk {size}: out of range; allowed: a finite number above 0"
-        )));
+        refuse!("--chunk {size}: out of range; allowed: a finite number above 0");
     }
     if args.output.is_none() && args.archive.is_none() && !args.dry_run {
-        return Err(Failure::Usage(anyhow!(
-            "a place to write is missing: give --output DIR or --archive FILE, or --dry-run"
-        )));
+        refuse!("a place to write is missing: use --output DIR or --archive FILE, or --dry-run");
     }
-    let catalog = spec::catalog(config)?;
+    let catalog = config.with_worlds(config.tables()?)?;
     let shape = Shape {
         size,
         levels: args.levels,
-        compressed: args.compress.as_deref().map(Packing::all).transpose()?,
+        compressed: args.compress.as_deref().map(compressions).transpose()?,
         is_archive: args.archive.is_some(),
     };
     let spec = Spec::new(&args.flags, &shape, &catalog, config)?;
@@ -159,7 +145,7 @@ fn export(args: &Args, config: &Config) -> Result<(), Failure> {
 }
 
 impl Job<'_> {
-    /// Says what is to come, unless the disk has no room for it.
+    /// Reports the cost. Fails if the disk has no room for it.
     fn cost(&self, done: usize, place: Option<&Path>) -> Result<(), Failure> {
         let is_archive = self.args.archive.is_some();
         let mut cost = Cost::of(&self.maker, &self.spec, done)?;
@@ -169,7 +155,7 @@ impl Job<'_> {
         if !self.args.quiet {
             eprintln!("{}", cost.line());
             if done > 0 {
-                eprintln!("{done} chunks are there already");
+                eprintln!("{done} chunks exist already");
             }
         }
         place.map_or(Ok(()), |place| cost.check(place, is_archive))
@@ -253,7 +239,7 @@ impl Job<'_> {
         progress.finish();
         let (count, chunks) = (records.len(), self.maker.grid.chunks());
         let no_room = |failure| no_room(failure, count, chunks);
-        // What was made is written also where the run ends early.
+        // Also a run that ends early writes the chunks that it made.
         let flushed = archive.flush().map_err(Failure::from);
         written.and(flushed).map_err(no_room)?;
         let extra = archive.extra(&self.spec, &self.maker)?;
@@ -264,7 +250,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Writes the chunks after those that are there, a batch while the next one is being made.
+    /// Writes the missing chunks in order: a batch while the next one is being made.
     fn in_order(
         &self,
         archive: &mut Archive,
@@ -334,18 +320,18 @@ impl Job<'_> {
 
 fn stopped(done: usize, chunks: usize) -> Failure {
     Failure::Interrupted(anyhow!(
-        "interrupted after {done} of {chunks} chunks; the same command goes on there"
+        "interrupted after {done} of {chunks} chunks; the same command resumes there"
     ))
 }
 
-/// What to do where the disk is full, or a quota or a limit of files is reached.
+/// Adds advice if the disk is full, or a quota or a limit of files is reached.
 fn no_room(failure: Failure, done: usize, chunks: usize) -> Failure {
     with_advice(failure, &cost::go_on(done, chunks))
 }
 
-/// The same where it is not known yet which chunks are there.
+/// Adds advice before the existing chunks are counted.
 fn no_room_to_open(failure: Failure) -> Failure {
-    with_advice(failure, "make room, and the same command goes on there")
+    with_advice(failure, "make room, and the same command resumes there")
 }
 
 fn with_advice(failure: Failure, advice: &str) -> Failure {
@@ -362,22 +348,22 @@ fn with_advice(failure: Failure, advice: &str) -> Failure {
     Failure::Other(anyhow!("{error:#}; {advice}"))
 }
 
-impl Packing {
-    /// The compressions of some names; none may not stand beside others.
-    fn all(names: &[Self]) -> Result<Vec<Compression>, Failure> {
-        if names.len() > 1 && names.contains(&Self::None) {
-            return Err(Failure::Usage(anyhow!(
-                "--compress none stands alone; allowed: none, gz, zst, gz,zst"
-            )));
-        }
-        let all = [
-            (Self::Gz, Compression::Gzip),
-            (Self::Zst, Compression::Zstd),
-        ];
-        Ok(all
-            .into_iter()
-            .filter(|(name, _)| names.contains(name))
-            .map(|(_, packed)| packed)
-            .collect())
+/// Reads compressions by name; `None` for none.
+fn packing() -> impl TypedValueParser<Value = Option<Compression>> {
+    PossibleValuesParser::new(["none", "gz", "zst"]).map(|name| match &*name {
+        "gz" => Some(Compression::Gzip),
+        "zst" => Some(Compression::Zstd),
+        _ => None,
+    })
+}
+
+/// The compressions of some names. `none` stands alone.
+fn compressions(names: &[Option<Compression>]) -> Result<Vec<Compression>, Failure> {
+    if names.len() > 1 && names.contains(&None) {
+        refuse!("--compress none stands alone; allowed: none, gz, zst, gz,zst");
     }
+    let all = [Compression::Gzip, Compression::Zstd];
+    Ok({ all.into_iter() }
+        .filter(|one| names.contains(&Some(*one)))
+        .collect())
 }

@@ -1,20 +1,20 @@
-//! What is known of files that are written, and the documents that close an export.
+//! Records of written files, and the documents that complete an export.
 
 use std::fmt::Write as _;
 
 use anyhow::{Context as _, anyhow};
 use serde::{Deserialize, Serialize};
+use strew_query::{Assets, World};
 
 use super::{
-    chunks::Maker,
+    chunks::{Chunk, Maker},
     grid::{Level, MOST_LEVELS},
     servers,
     spec::Spec,
 };
 use crate::{
-    cli::Failure,
+    cli::{Failure, compression::names},
     rest::world_document,
-    service::{Catalog, World},
 };
 
 /// The manifest, which comes last: an export without it is not complete.
@@ -22,7 +22,7 @@ pub(super) const MANIFEST: &str = "manifest.json";
 /// The digests of all other files, as `b3sum` writes them.
 pub(super) const DIGESTS: &str = "files.b3";
 
-/// A chunk that is written.
+/// A written chunk.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Record {
     pub(super) points: u64,
@@ -31,6 +31,14 @@ pub(super) struct Record {
 }
 
 impl Record {
+    /// A chunk whose plain file has these bytes.
+    pub(super) fn of(chunk: &Chunk) -> Self {
+        Self {
+            points: chunk.points,
+            files: vec![(blake3::hash(&chunk.bytes), chunk.bytes.len() as u64)],
+        }
+    }
+
     /// A line of a journal.
     pub(super) fn line(&self, i: usize) -> String {
         let mut line = format!("{i} {}", self.points);
@@ -41,7 +49,7 @@ impl Record {
         line
     }
 
-    /// Reads a line of a journal; none if it is broken off.
+    /// Reads a line of a journal; `None` for a broken one.
     pub(super) fn read(line: &str) -> Option<(usize, Self)> {
         let mut words = line.strip_suffix('\n')?.split(' ');
         let (i, points) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
@@ -54,7 +62,7 @@ impl Record {
     }
 }
 
-/// What an export is and has.
+/// The options and the content of an export.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Manifest {
     /// The options that decide its bytes.
@@ -63,9 +71,9 @@ pub(super) struct Manifest {
     pub(super) path: String,
     /// For formats without names in them: the columns.
     pub(super) columns: Option<serde_json::Value>,
-    /// What each level has.
+    /// The sums of each level.
     pub(super) levels: Vec<Total>,
-    /// What all of them have.
+    /// The sums of all levels.
     pub(super) total: Total,
     /// The digest of the list of digests.
     pub(super) files: String,
@@ -92,7 +100,7 @@ impl Total {
 pub(super) fn documents(
     spec: &Spec,
     maker: &Maker,
-    catalog: &Catalog,
+    catalog: &Assets,
     records: &[Record],
     extra: Vec<(String, Vec<u8>)>,
 ) -> Result<Vec<(String, Vec<u8>)>, Failure> {
@@ -101,7 +109,7 @@ pub(super) fn documents(
     let world = spec
         .world
         .as_ref()
-        .and_then(|world| catalog.worlds().get(&world.name));
+        .and_then(|world| catalog.worlds.get(&world.name));
     if let Some(world) = world {
         files.push((
             world_path(world),
@@ -153,14 +161,11 @@ pub(super) fn world_path(world: &World) -> String {
 
 fn digests(spec: &Spec, maker: &Maker, records: &[Record], files: &[(String, Vec<u8>)]) -> String {
     let mut text = String::new();
-    let endings = spec.compressions();
+    let compressions = spec.compressions();
     for (i, record) in records.iter().enumerate() {
-        let name = maker.grid.name(maker.grid.place(i));
-        let names = endings
-            .iter()
-            .map(|ending| format!("{name}.{}", ending.ending()));
-        let names = [name.clone()].into_iter().chain(names);
-        for ((digest, _), name) in record.files.iter().zip(names) {
+        let plain = maker.grid.name(maker.grid.place(i));
+        let names = names(&plain, &compressions);
+        for ((digest, _), (name, _)) in record.files.iter().zip(names) {
             let _ = writeln!(text, "{digest}  {name}");
         }
     }
@@ -174,7 +179,7 @@ impl Manifest {
     /// Reads a manifest.
     ///
     /// # Errors
-    /// The member that cannot be: files may be damaged.
+    /// The invalid member, if the file is damaged.
     pub(super) fn read(bytes: &[u8]) -> anyhow::Result<Self> {
         let manifest: Self = serde_json::from_slice(bytes)
             .map_err(|error| anyhow!("{MANIFEST} is no manifest of an export: {error}"))?;

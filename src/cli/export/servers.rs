@@ -1,21 +1,21 @@
-//! Settings for static servers, so that they answer as the daemon does: content types, headers, and no other query.
+//! Settings with which static servers answer as the daemon does: content types, headers, and no other query.
 
 use std::fmt::Write as _;
 
 use strew_core::ALGORITHM_VERSION;
+use strew_query::parameters::FORMAT;
 
 use super::{
     grid::{Grid, Level},
     spec::Spec,
 };
-use crate::service::query::parameters::FORMAT;
 
 /// Settings for nginx, to be included in a server whose root is the export.
 pub(super) const NGINX: &str = "strew.nginx.conf";
 /// Headers for hosts of static pages (Netlify, Cloudflare Pages).
 pub(super) const HEADERS: &str = "_headers";
 
-/// Pages of all origins may read answers and their headers, as those of the daemon with its default settings.
+/// Headers that let pages of all origins read answers, as the daemon's default settings do.
 const ORIGINS: [(&str, &str); 2] = [
     ("access-control-allow-origin", "*"),
     ("access-control-expose-headers", "*"),
@@ -31,7 +31,7 @@ pub(super) struct Served<'a> {
 }
 
 impl Served<'_> {
-    /// The headers that are the same for all chunks.
+    /// The headers of all chunks.
     fn constant(&self) -> Vec<(&'static str, String)> {
         let mut headers = ORIGINS
             .map(|(name, value)| (name, value.to_owned()))
@@ -76,7 +76,7 @@ impl Served<'_> {
         text
     }
 
-    /// Whether addresses may leave a parameter out: the format of a world's files, because points do not depend on it.
+    /// Whether addresses may omit a parameter. They may omit the format of a world's files, on which points do not depend.
     fn may_lack(&self, name: &str) -> bool {
         self.spec.world.is_some() && name == FORMAT.name
     }

@@ -1,25 +1,24 @@
-//! What an export is: the options that decide its bytes. Two exports of the same spec are the same, bit for bit.
+//! The options that decide the bytes of an export. Two exports of the same spec are equal, bit for bit.
 
 use anyhow::anyhow;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::{Deserialize, Serialize};
+use strew_catalog::Ready;
+use strew_config::Config;
 use strew_core::{ALGORITHM_VERSION, Keep};
-
-use super::grid::{Grid, Level};
-use crate::{
-    cli::{Failure, compression::Compression, flags::Flags, refusal::Source},
-    config::Config,
-    service::{
-        Catalog, Draft, Encoding, Error, Options, Output, Planned, Query, Ready, Worlds,
-        query::{
-            Parameter, RegionDraft, ShapeDraft, Value, groups,
-            parameters::{BBOX, KEEP, WORLD},
-            parse_pairs,
-        },
-    },
+use strew_encode::{Encoding, Output};
+use strew_error::Error;
+use strew_plan::Planned;
+use strew_query::{
+    Assets, Draft, Options, Parameter, Query, RegionDraft, ShapeDraft, Value, groups,
+    parameters::{BBOX, KEEP, WORLD},
+    parse_pairs,
 };
 
-/// What stays as it is in addresses: what neither addresses nor the settings of servers understand otherwise.
+use super::grid::{Grid, Level};
+use crate::cli::{Failure, compression::Compression, flags::Flags, refusal::Source, refuse};
+
+/// The characters that need no escaping in addresses or in the settings of servers.
 const PLAIN: &AsciiSet = &NON_ALPHANUMERIC
     .remove(b'-')
     .remove(b'.')
@@ -27,27 +26,27 @@ const PLAIN: &AsciiSet = &NON_ALPHANUMERIC
     .remove(b',')
     .remove(b':');
 
-/// What an export is.
+/// The options of an export.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Spec {
-    /// The program's version and that of the algorithm: others may write other bytes.
+    /// The versions of the program and of the algorithm, on which the bytes depend.
     pub(super) strew: String,
     pub(super) algorithm: u32,
     /// The world.
     pub(super) world: Option<WorldName>,
     /// The digests of the tables, fields and lists that points depend on.
     pub(super) digests: Vec<String>,
-    /// The parameters of addresses, but for `keep`.
+    /// The parameters of addresses without `keep`.
     pub(super) query: String,
     /// The format of the files and its content type.
     pub(super) format: String,
     pub(super) content_type: String,
-    /// What was wanted of the world.
+    /// The exported box.
     pub(super) bbox: [f64; 4],
     /// The endings of compressed files beside the plain ones.
     pub(super) compressed: Vec<String>,
-    /// How members of an archive are packed; none for a folder.
+    /// The packing of members of an archive; `None` for a folder.
     pub(super) archive: Option<String>,
     /// The setting `limits.block_bytes`, in formats whose bytes depend on it; else none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -64,35 +63,27 @@ pub(super) struct WorldName {
     pub(super) digest: String,
 }
 
-/// A query of chunks, checked, with its tables: what a level is made with.
+/// The checked query of a level's chunks.
 #[derive(Clone, Debug)]
 pub(super) struct Checked {
     pub(super) query: Query,
-    /// The share of its points, or the common one beside layers.
+    /// The share of its points; of a world with layers, the share of all layers.
     keep: f64,
     pub(super) output: Output,
 }
 
-/// The tables, fields, lists and worlds of the settings.
-pub(super) fn catalog(config: &Config) -> Result<Catalog, Failure> {
-    let catalog = config.tables()?;
-    let worlds = Worlds::load(&config.worlds, &catalog, config.limits.max_vertices)
-        .map_err(|error| Failure::Usage(error.into()))?;
-    Ok(catalog.with_worlds(worlds))
-}
-
-/// What flags say beside the query.
+/// The options that are not part of the query.
 #[derive(Clone, Debug)]
 pub(super) struct Shape {
     pub(super) size: f64,
     pub(super) levels: u32,
-    /// How files are compressed, if flags say so.
+    /// The compressions, if flags name them.
     pub(super) compressed: Option<Vec<Compression>>,
     pub(super) is_archive: bool,
 }
 
 impl Shape {
-    /// How files of a format are compressed: those beside the plain ones, and how members of an archive are packed.
+    /// The endings of compressed files beside the plain ones, and the packing of members of an archive.
     fn packing(&self, encoding: Encoding) -> Result<(Vec<String>, Option<String>), Failure> {
         let otherwise = || {
             if encoding.is_text() {
@@ -115,7 +106,7 @@ impl Shape {
     }
 }
 
-/// How members of an archive are packed.
+/// The packings of members of an archive.
 pub(super) const STORED: &str = "stored";
 pub(super) const DEFLATE: &str = "deflate";
 
@@ -124,7 +115,7 @@ impl Spec {
     pub(super) fn new<T>(
         flags: &Flags<T>,
         shape: &Shape,
-        catalog: &Catalog,
+        catalog: &Assets,
         config: &Config,
     ) -> Result<Self, Failure> {
         let bbox = bbox(flags)?;
@@ -164,10 +155,10 @@ impl Spec {
         let encoding = first.output.encoding;
         if !encoding.is_streamed() {
             let formats = Encoding::ALL.map(Encoding::name).join(", ");
-            return Err(Failure::Usage(anyhow!(
+            refuse!(
                 "--format {}: no daemon writes it; allowed: {formats}",
                 encoding.name()
-            )));
+            );
         }
         let (compressed, archive) = shape.packing(encoding)?;
         let share = first.keep;
@@ -178,12 +169,12 @@ impl Spec {
         for k in 1..shape.levels {
             let keep = share * 0.25_f64.powi(k as i32);
             if keep < Keep::MIN {
-                return Err(Failure::Usage(anyhow!(
+                refuse!(
                     "--levels {}: level {k} has the share {keep:e} of the points; allowed with keep = {share}: at most \
                      {k} levels, because the smallest share is {:e}",
                     shape.levels,
                     Keep::MIN
-                )));
+                );
             }
             let size = shape.size * f64::from(k).exp2();
             levels.push(Level::new(
@@ -218,7 +209,7 @@ impl Spec {
         Grid::new(world, self.levels.clone())
     }
 
-    /// How files are compressed beside the plain ones.
+    /// The compressions of files beside the plain ones.
     pub(super) fn compressions(&self) -> Vec<Compression> {
         let all = [Compression::Gzip, Compression::Zstd];
         let is_wanted =
@@ -226,13 +217,13 @@ impl Spec {
         all.into_iter().filter(is_wanted).collect()
     }
 
-    /// What each level is made with, and the tables of all.
+    /// The checked query of each level, and the tables of all.
     ///
     /// # Errors
-    /// A query that is not valid with these tables, or has become another one.
+    /// The query is invalid with these tables, or has become another one.
     pub(super) fn checked(
         &self,
-        catalog: &Catalog,
+        catalog: &Assets,
         config: &Config,
     ) -> Result<(Vec<Checked>, Vec<Ready>), Failure> {
         let world = self.world.as_ref().map(|world| world.name.as_str());
@@ -250,19 +241,19 @@ impl Spec {
         if self.block_bytes != now {
             let shown =
                 |bytes: Option<usize>| bytes.map_or("none".into(), |bytes| bytes.to_string());
-            return Err(Failure::Usage(anyhow!(
+            refuse!(
                 "limits.block_bytes {}: the export was made with {}, and the bytes of --format {} depend on it",
                 shown(now),
                 shown(self.block_bytes),
                 self.format
-            )));
+            );
         }
         let query = &levels[0].query;
         let tables = Planned::tables(query).map_err(|error| Source::Flags.refused(error))?;
         Ok((levels, tables))
     }
 
-    /// Whether points still come from what they came from when it was made.
+    /// Whether the points still depend on the same program, world, tables, fields and lists.
     pub(super) fn is_of(&self, first: &Query) -> bool {
         let world = first.world.as_ref().map(|world| &world.digest);
         let program = (env!("CARGO_PKG_VERSION"), ALGORITHM_VERSION);
@@ -282,7 +273,7 @@ fn bbox<T>(flags: &Flags<T>) -> Result<[f64; 4], Failure> {
     let values = flags.values_of(groups::POINTS);
     let region = RegionDraft::of(&values).map_err(|faults| Source::Flags.refused(faults.into()))?;
     let Some(region) = region else {
-        return Err(Failure::Usage(anyhow!("a region is missing: give --bbox")));
+        refuse!("a region is missing: use --bbox");
     };
     let checked = region
         .check()
@@ -295,7 +286,7 @@ fn check(
     world: Option<&str>,
     level: &Level,
     at: [i64; 2],
-    catalog: &Catalog,
+    catalog: &Assets,
     config: &Config,
 ) -> Result<Checked, Failure> {
     let mut values = parse_pairs(&level.query, groups::CHUNK);
@@ -304,9 +295,9 @@ fn check(
     }
     let draft = Draft::new(values).within(Ok(chunk(level.size, at)));
     let checked = draft.check(catalog, config.limits.max_vertices);
-    // Flags or the world's document have it.
+    // It comes from flags or from the world's document.
     let keep = || -> Result<f64, Error> {
-        let (whole, _) = draft.filled(catalog.worlds())?;
+        let (whole, _) = draft.filled(&catalog.worlds)?;
         Ok(whole.values.get(&KEEP)?.unwrap_or(1.0))
     };
     let looks = |(query, options): (Query, Options)| -> Result<Checked, Error> {

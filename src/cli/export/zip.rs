@@ -1,4 +1,4 @@
-//! Zip files, as far as archives need them: members one after another, stored or deflated, then the central
+//! The part of the zip format that archives need: members one after another, stored or deflated, then the central
 //! directory, with the fields for more than 65,534 members and 4 GiB where they are needed (APPNOTE 6.3).
 
 use std::{
@@ -8,7 +8,7 @@ use std::{
 
 use flate2::{Crc, read::DeflateDecoder, write::DeflateEncoder};
 
-/// A member that is written.
+/// A written member.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Member {
     /// Whether its content is deflated, else stored.
@@ -32,7 +32,7 @@ pub(super) struct Content {
 
 /// The length of a head without the name: with our field.
 const HEAD: u64 = 30 + 8;
-/// What a member begins with.
+/// The signature of a member.
 pub(super) const MEMBER: &[u8] = b"PK\x03\x04";
 /// Our field, `SP`: the number of points.
 const POINTS: u16 = 0x5053;
@@ -84,23 +84,19 @@ fn crc(bytes: &[u8]) -> u32 {
 /// Puts numbers into a head.
 struct Fields(Vec<u8>);
 
+macro_rules! put {
+    ($($kind:ident)+) => {$(
+        fn $kind(mut self, value: $kind) -> Self {
+            self.0.extend(value.to_le_bytes());
+            self
+        }
+    )+};
+}
+
 impl Fields {
-    fn u16(mut self, value: u16) -> Self {
-        self.0.extend(value.to_le_bytes());
-        self
-    }
+    put! { u16 u32 u64 }
 
-    fn u32(mut self, value: u32) -> Self {
-        self.0.extend(value.to_le_bytes());
-        self
-    }
-
-    fn u64(mut self, value: u64) -> Self {
-        self.0.extend(value.to_le_bytes());
-        self
-    }
-
-    /// What heads in both places have in common, up to the length of the name.
+    /// The common part of heads in both places, up to the length of the name.
     fn member(self, member: &Member, name: &str) -> Self {
         let method = if member.is_deflated { 8 } else { 0 };
         // Names are UTF-8; the first day of the calendar.
@@ -203,7 +199,7 @@ impl Head<'_> {
         u64::from(self.u32(at)) | u64::from(self.u32(at + 4)) << 32
     }
 
-    /// What heads in both places have in common, from the flags on.
+    /// The common part of heads in both places, beginning with the flags.
     fn member(self, at: usize, offset: u64) -> Member {
         Member {
             is_deflated: self.u16(at + 2) == 8,
@@ -216,7 +212,7 @@ impl Head<'_> {
     }
 }
 
-/// The name, the head and the content of the member that begins at a place; none if it is not whole.
+/// The name, the head and the content of the member at an offset; `None` if it is incomplete.
 pub(super) fn next(file: &mut File, offset: u64) -> io::Result<Option<(String, Member, Vec<u8>)>> {
     file.seek(SeekFrom::Start(offset))?;
     let Some(bytes) = exactly(file, 30)? else {
@@ -259,14 +255,14 @@ fn unpacked(member: &Member, packed: Vec<u8>) -> io::Result<Option<Vec<u8>>> {
     }
     let mut content = vec![];
     let decoder = DeflateDecoder::new(&*packed);
-    // No more than it says.
+    // No more than the announced size.
     let read = decoder
         .take(u64::from(member.size) + 1)
         .read_to_end(&mut content);
     Ok(read.is_ok().then_some(content))
 }
 
-/// Some bytes of a file; none if it ends before.
+/// Some bytes of a file; `None` if it ends before.
 fn exactly(file: &mut File, length: u64) -> io::Result<Option<Vec<u8>>> {
     let mut bytes = vec![];
     io::Read::by_ref(file)
@@ -275,7 +271,7 @@ fn exactly(file: &mut File, length: u64) -> io::Result<Option<Vec<u8>>> {
     Ok((bytes.len() as u64 == length).then_some(bytes))
 }
 
-/// The members of the central directory, in its order; none if there is none.
+/// The members of the central directory, in its order; `None` without one.
 pub(super) fn members(file: &mut File) -> io::Result<Option<Vec<(String, Member)>>> {
     let length = file.seek(SeekFrom::End(0))?;
     // Our files have no comment, so the end is the last 22 bytes, and what it cannot say is in the 76 before.
@@ -370,7 +366,7 @@ mod tests {
         [wide.u64(32), wide.u64(40), wide.u64(48)]
     }
 
-    /// What Python's `zipfile` reads: the number of members, and the last one with its content.
+    /// The number of members and the last one with its content, as Python's `zipfile` reads them.
     fn python(path: &std::path::Path) -> Option<String> {
         let Some(python) = std::env::var_os("STREW_TEST_PYTHON") else {
             eprintln!("skipped: STREW_TEST_PYTHON names no Python");

@@ -1,77 +1,63 @@
 //! `strew forge --ladder-of TABLE`: makes a ladder for a table, judges it, writes the table with it.
 
-use std::{fs, path::Path, time::Duration};
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, anyhow};
-use strew_forge::{Checkpoint, ForgeError, LadderJob, file_name, ladder, read_table, write_table};
+use anyhow::anyhow;
+use strew_forge::{Checkpoint, LadderJob, file_name, ladder, read_table};
 
-use super::{Args, checkpoint_path, gravest};
-use crate::cli::{Failure, output, watcher::Watcher};
+use super::work::{Checkpoints, Work};
+use crate::cli::Failure;
+
+/// Flags of a ladder.
+#[derive(Debug, clap::Args)]
+#[group(skip)]
+pub(super) struct LadderArgs {
+    /// Make a ladder for this table instead of a new table: displacements for thinned sets. Its vectors
+    /// do not change.
+    #[arg(long, value_name = "TABLE", conflicts_with_all = ["profile", "alpha", "radius", "seed", "target"])]
+    pub(super) ladder_of: Option<PathBuf>,
+    /// Levels of the ladder for each halving of the share of points.
+    #[arg(long, default_value_t = 16, requires = "ladder_of")]
+    per_octave: u32,
+    /// How often the share halves along the ladder.
+    #[arg(long, default_value_t = 6, requires = "ladder_of")]
+    octaves: u32,
+}
 
 /// Makes the ladder of a table file.
-pub(super) fn run(args: &Args, of: &Path) -> Result<(), Failure> {
-    let usage = |error: ForgeError| Failure::Usage(error.into());
-    let table = read_table(of).map_err(usage)?;
+pub(super) fn run(
+    args: &LadderArgs,
+    of: &Path,
+    steps: Option<u32>,
+    work: &Work,
+    checkpoints: &Checkpoints,
+) -> Result<(), Failure> {
+    let table = read_table(of).map_err(Failure::usage)?;
     let job = LadderJob {
         per_octave: args.per_octave,
         octaves: args.octaves,
-        steps: args.steps.unwrap_or(LadderJob::default().steps),
+        steps: steps.unwrap_or(LadderJob::default().steps),
     };
-    let name = file_name(table.profile(), table.alpha(), table.map().radius());
-    let usual = || args.out_dir.clone().unwrap_or_default().join(name);
-    let path = args.output.clone().unwrap_or_else(usual);
-    if path.exists() && !args.force {
-        let problem = anyhow!("{} is there already; --force replaces it", path.display());
-        return Err(Failure::Usage(problem));
-    }
-    output::check(&path)?;
-    let kept = checkpoint_path(&path);
-    let found = match args.restart {
+    let usual = file_name(table.profile(), table.alpha(), table.map().radius());
+    let path = work.path(&usual)?;
+    let kept = Checkpoints::path(&path);
+    let found = match checkpoints.restart {
         true => None,
-        false => Checkpoint::read_file(&kept).map_err(usage)?,
+        false => Checkpoint::read_file(&kept).map_err(Failure::usage)?,
     };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads);
-    let pool = pool.build().context("cannot start threads")?;
-    let every = Duration::from_secs(args.checkpoint_every);
-    let watcher = Watcher::new(&kept, every, args.quiet);
-    let outcome = pool.install(|| ladder(&table, &job, found, &watcher));
+    let watcher = checkpoints.watcher(&kept, work);
+    let outcome = work
+        .pool()?
+        .install(|| ladder(&table, &job, found, &watcher));
     watcher.finish();
-    let outcome = outcome.map_err(usage)?;
+    let outcome = outcome.map_err(Failure::usage)?;
     if outcome.interrupted {
-        let goes_on = format!("; the same command goes on from {}", kept.display());
-        let goes_on = if watcher.has_kept() { &*goes_on } else { "" };
-        return Err(Failure::Interrupted(anyhow!("interrupted{goes_on}")));
+        let resumes = format!("; the same command resumes from {}", kept.display());
+        let resumes = if watcher.has_kept() { &*resumes } else { "" };
+        return Err(Failure::Interrupted(anyhow!("interrupted{resumes}")));
     }
-    let complaints = gravest(&outcome.complaints);
-    if !outcome.accepted && !args.keep_rejected {
-        return Err(Failure::Other(anyhow!(
-            "the ladder is rejected and not written (the same command with --keep-rejected writes it): \
-             {}",
-            complaints.join("; ")
-        )));
-    }
-    write_table(&path, &outcome.table).map_err(|error| Failure::Other(error.into()))?;
-    println!("{}  {}", outcome.table.digest(), path.display());
-    if !args.quiet {
-        for figures in &outcome.figures {
-            let values = figures.values.iter();
-            let values = values.map(|(name, value)| format!("{name} {value:.3e}"));
-            eprintln!(
-                "{}: {}",
-                figures.subject,
-                values.collect::<Vec<_>>().join(", ")
-            );
-        }
-    }
-    for complaint in complaints {
-        eprintln!("kept although rejected: {complaint}");
-    }
-    // The table is there, so the checkpoint is of no more use.
-    match fs::remove_file(&kept) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            let problem = anyhow!(error).context(format!("cannot remove {}", kept.display()));
-            Err(Failure::Other(problem))
-        }
-        _ => Ok(()),
-    }
+    let made = ("ladder", &outcome.table);
+    work.conclude(&path, made, outcome.accepted, None, &outcome.complaints)?;
+    work.show(&outcome.figures);
+    Checkpoints::remove(&kept)
 }

@@ -1,55 +1,53 @@
 //! `--url`: a server answers the query of a command.
 //!
-//! The flags become the body that they would be in a file, and the answer is written as it comes. What the server
-//! refuses is shown in its words. An answer that is cut off is an error, and leaves no file.
+//! The flags are sent as the JSON body of a query, and the answer is written as it arrives. Refusals are shown in
+//! the server's words. An answer that breaks off is an error and leaves no file.
 
-mod http;
 mod shown;
 mod tally;
 
-use std::{
-    io::{ErrorKind, Read as _},
-    net::IpAddr,
-    path::PathBuf,
-    time::{Duration, Instant},
-};
+use std::{path::PathBuf, time::Duration};
 
-use anyhow::{Context as _, anyhow, bail};
+use anyhow::{Context as _, anyhow, bail, ensure};
+use http::{Request, header};
 use serde_json::{Map, Value};
+use strew_config::bounded_file;
+use strew_encode::Encoding;
 
-use self::{http::Answer, shown::shown, tally::Tally};
+use self::{shown::shown, tally::Tally};
 use super::{
     Failure,
+    client::{Address, Answer, TrustArgs, send},
     output::Output,
-    probe::{OVER_HTTP, TrustArgs, connect, explained, host},
 };
-use crate::{bounded_file, service::Encoding};
 
-/// Flags of a server that answers instead of this program.
+/// Flags that let a server answer instead of this program.
 #[derive(Debug, clap::Args)]
 pub(super) struct RemoteArgs {
-    /// Let the daemon at this address answer, such as http://127.0.0.1:8080, or https://strew.example with --ca: its
-    /// tables, fields, worlds, lists and limits count.
+    /// Send the query to the daemon at this address, such as http://127.0.0.1:8080, or https://strew.example with
+    /// --ca. Its tables, fields, worlds, lists and limits apply.
     #[arg(long, value_name = "URL", conflicts_with_all = ["config", "tables", "set"])]
     url: Option<String>,
-    /// A file with the key for that daemon [default: the key in the variable STREW_API_KEY, if it is set]
+    /// A file with the key for that daemon [default: the variable STREW_API_KEY]
     #[arg(long, value_name = "FILE", requires = "url", hide_short_help = true)]
     key_file: Option<PathBuf>,
     #[command(flatten)]
     trust: TrustArgs,
 }
 
-/// The variable with a key.
+/// The environment variable with a key.
 const KEY: &str = "STREW_API_KEY";
 /// The most bytes of a file with a key.
 const MOST_KEY: u64 = 64 << 10;
-/// How long a connection may take, and how long an answer may pause.
+/// The longest time until an answer begins, and the longest pause within it.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// More than any problem document.
-const MOST_BYTES: u64 = 1 << 20;
+/// The bytes per second that even a slow network can send: a longer query has more time.
+const SLOWEST: u64 = 16 << 10;
+/// No problem document is longer.
+const MOST_BYTES: usize = 1 << 20;
 
 impl RemoteArgs {
-    /// Whether a server is to answer. Without one, flags of a connection mean nothing.
+    /// Whether a server shall answer. Refuses flags of a connection without a server.
     pub(super) fn is_given(&self) -> Result<bool, Failure> {
         if self.url.is_none() {
             let unused = self.trust.must_be_unused("there is no --url");
@@ -58,46 +56,40 @@ impl RemoteArgs {
         Ok(self.url.is_some())
     }
 
-    /// The answer of the server to a body.
+    /// Sends a body to a path of the server, and returns its answer.
     pub(super) fn request(&self, path: &str, body: &Map<String, Value>) -> Result<Answer, Failure> {
-        let url = self.url.as_deref().unwrap_or_default();
         let usage = Failure::Usage;
-        let (is_tls, host) = host(url).map_err(usage)?;
-        let trust = match is_tls {
-            true => self.trust.trust(&host, false).map(Some),
-            false => self.trust.must_be_unused(OVER_HTTP).map(|()| None),
-        };
-        let trust = trust.map_err(usage)?;
+        let address = Address::read(self.url.as_deref().unwrap_or_default()).map_err(usage)?;
+        let tls = self.trust.tls(&address, false).map_err(usage)?;
         let key = self.key().map_err(usage)?;
-        if key.is_some() && !is_tls && !is_here(&host) {
-            eprintln!("warning: {url}: the key is sent unencrypted; allowed: https, with --ca");
+        if key.is_some() && !address.is_tls && !address.is_here() {
+            eprintln!("warning: {address}: the key is sent unencrypted; allowed: https, with --ca");
         }
-        let text = Value::Object(body.clone()).to_string();
-        let response = connect(&host, Instant::now() + PATIENCE).and_then(|stream| {
-            stream.set_read_timeout(Some(PATIENCE))?;
-            stream.set_write_timeout(Some(PATIENCE))?;
-            http::post(
-                stream,
-                trust,
-                (&host, path),
-                key.as_deref(),
-                text.as_bytes(),
-            )
-        });
-        let response = response.map_err(|error| explained(error, PATIENCE));
-        let mut answer = response.with_context(|| format!("{url}{path}"))?;
-        if answer.status == 200 {
+        let mut request = Request::post(path)
+            .header(header::CONTENT_TYPE, "application/json")
+            .header(header::ACCEPT_ENCODING, "identity");
+        if let Some(key) = key {
+            request = request.header(header::AUTHORIZATION, format!("Bearer {key}"));
+        }
+        let body = Value::Object(body.clone()).to_string().into_bytes();
+        let patience = PATIENCE + Duration::from_secs(body.len() as u64 / SLOWEST);
+        let url = format!("{address}{path}");
+        let mut answer = send(&address, tls, request, body, patience)
+            .and_then(plain)
+            .with_context(|| url.clone())?;
+        let status = answer.head.status.as_u16();
+        if status == 200 {
             return Ok(answer);
         }
-        let problem = problem(&mut answer).with_context(|| format!("{url}{path}"))?;
-        let error = anyhow!("{url}{path}: status {}: {problem}", answer.status);
-        Err(match answer.status {
+        let problem = problem(&mut answer).with_context(|| url.clone())?;
+        let error = anyhow!("{url}: status {status}: {problem}");
+        Err(match status {
             400 | 404 | 409 | 413 => Failure::Usage(error),
             _ => Failure::Other(error),
         })
     }
 
-    /// The key to show, if there is one.
+    /// The key for the server, if there is one.
     fn key(&self) -> anyhow::Result<Option<String>> {
         let (source, key) = match &self.key_file {
             Some(file) => {
@@ -118,17 +110,30 @@ impl RemoteArgs {
     }
 }
 
-/// Whether a host, with its port, is this machine by its name.
-fn is_here(host: &str) -> bool {
-    let name = host.rsplit_once(':').map_or(host, |(name, _)| name);
-    let address = name.trim_matches(['[', ']']).parse::<IpAddr>();
-    name == "localhost" || address.is_ok_and(|address| address.is_loopback())
+/// Refuses an answer without a length, whose end would look like a broken connection, and a compressed one.
+fn plain(answer: Answer) -> anyhow::Result<Answer> {
+    let headers = &answer.head.headers;
+    let has_end = match headers.get(header::TRANSFER_ENCODING) {
+        Some(coding) => coding.as_bytes().eq_ignore_ascii_case(b"chunked"),
+        None => headers.contains_key(header::CONTENT_LENGTH),
+    };
+    ensure!(has_end, "the answer has no length");
+    let coding = headers.get(header::CONTENT_ENCODING);
+    if let Some(coding) = coding.filter(|coding| *coding != "identity") {
+        let coding = shown(&String::from_utf8_lossy(coding.as_bytes()));
+        bail!("the answer is coded as {coding}; allowed: identity, which was requested");
+    }
+    Ok(answer)
+}
+
+/// The value of a header.
+fn text<'a>(answer: &'a Answer, name: &str) -> Option<&'a str> {
+    str::from_utf8(answer.head.headers.get(name)?.as_bytes()).ok()
 }
 
 /// The text of a refusal.
 fn problem(answer: &mut Answer) -> anyhow::Result<String> {
-    let mut text = vec![];
-    (&mut answer.body).take(MOST_BYTES).read_to_end(&mut text)?;
+    let text = answer.rest(MOST_BYTES)?;
     let document: Option<Value> = serde_json::from_slice(&text).ok();
     let member = |name: &str| Some(document.as_ref()?.get(name)?.as_str()?.to_owned());
     Ok(shown(&match (member("title"), member("detail")) {
@@ -138,9 +143,9 @@ fn problem(answer: &mut Answer) -> anyhow::Result<String> {
     }))
 }
 
-/// The points that the head of an answer promises.
+/// The number of points that the head of an answer promises.
 pub(super) fn promised(answer: &Answer) -> Result<u64, Failure> {
-    let count = answer.header(COUNT).ok_or_else(|| {
+    let count = text(answer, COUNT).ok_or_else(|| {
         let problem =
             "the answer has no header strew-count; allowed: the address of a strew daemon";
         anyhow!("--url: {problem}")
@@ -152,28 +157,21 @@ pub(super) fn promised(answer: &Answer) -> Result<u64, Failure> {
     Ok(number?)
 }
 
-/// Writes the body of an answer as it comes. Fails if it does not hold the points that its head promises.
+/// Writes the body of an answer as it arrives. Fails if it holds another number of points than its head promises.
 pub(super) fn write(
     mut answer: Answer,
     (count, encoding): (u64, Encoding),
     mut output: Output,
 ) -> Result<(), Failure> {
-    let mut tally = Tally::new(encoding, answer.header("strew-columns"));
-    let mut part = vec![0; 1 << 16];
-    loop {
-        let read = match answer.body.read(&mut part) {
-            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
-            read => read.map_err(|error| explained(error.into(), PATIENCE)),
-        };
-        let read = read.context("the answer broke off")?;
-        if read == 0 {
-            break;
-        }
-        tally.add(&part[..read]);
-        output.write(&part[..read])?;
+    let mut tally = Tally::new(encoding, text(&answer, "strew-columns"));
+    while let Some(part) = answer.next().context("the answer broke off")? {
+        tally.add(&part);
+        output.write(&part)?;
     }
     tally.check(count).map_err(|held| {
-        anyhow!("the answer holds {held}, and its header strew-count says {count}: it is not whole")
+        anyhow!(
+            "the answer is incomplete: it holds {held}, and its header strew-count says {count}"
+        )
     })?;
     Ok(output.finish()?)
 }
@@ -183,7 +181,7 @@ const COUNT: &str = "strew-count";
 
 /// Announces the answer on standard error.
 pub(super) fn announce(answer: &Answer, format: &str) {
-    let header = |name: &str| answer.header(name).map(shown);
+    let header = |name: &str| text(answer, name).map(shown);
     eprintln!("{} points as {format}", header(COUNT).unwrap_or("?".into()));
     for (name, text) in [
         ("strew-next", "the rest begins at the cursor "),

@@ -1,7 +1,6 @@
-//! What a server says, as a terminal may show it.
+//! Makes the texts of a server safe for a terminal.
 
-/// Text without characters that move the cursor, end the line or turn the direction of writing: they appear as
-/// escapes.
+/// Replaces characters that move the cursor, end the line or change the direction of writing by escapes.
 pub(super) fn shown(text: &str) -> String {
     let is_odd = |c: char| {
         c.is_control()

@@ -1,53 +1,43 @@
-//! How many points an answer holds, counted as it passes, where its format shows it.
+//! Counts the points of an answer as it passes, where its format shows them.
 
-use crate::service::Encoding;
+use serde_json::Value;
+use strew_encode::Encoding;
 
-/// The longest beginning of a line that says what the line is.
+/// The longest beginning of a line that tells lines of points from others.
 const BEGINNING: usize = 18;
 
 /// Counts the points of an answer.
 pub(super) enum Tally {
-    /// A point a line, for lines of a kind.
-    Lines(Lines),
-    /// A point every so many bytes.
-    Bytes {
-        /// Of one point.
-        each: u64,
-        /// So far.
-        read: u64,
+    /// By lines, where a line is a point if its beginning says so.
+    Lines {
+        is_point: fn(&[u8]) -> bool,
+        points: u64,
+        /// The first bytes of the line that is read.
+        beginning: Vec<u8>,
     },
-    /// The format does not show it without being read.
+    /// By bytes: those of a point, and those so far.
+    Bytes { each: u64, read: u64 },
+    /// The format does not show points without being decoded.
     Unknown,
-}
-
-pub(super) struct Lines {
-    is_point: fn(&[u8]) -> bool,
-    points: u64,
-    /// The first bytes of the line that is read.
-    beginning: Vec<u8>,
 }
 
 impl Tally {
     /// For an answer in a format; `columns` is its header with that name.
     pub(super) fn new(encoding: Encoding, columns: Option<&str>) -> Self {
-        let lines = |is_point| {
-            Self::Lines(Lines {
-                is_point,
-                points: 0,
-                beginning: vec![],
-            })
+        let lines = |is_point| Self::Lines {
+            is_point,
+            points: 0,
+            beginning: vec![],
         };
-        let columns = || {
-            let list = columns.unwrap_or("[0,0]");
-            let list: Vec<serde_json::Value> = serde_json::from_str(list).ok()?;
-            Some(list.len() as u64).filter(|columns| *columns > 0)
-        };
-        let bytes = |width: u64| match columns() {
-            Some(columns) => Self::Bytes {
-                each: width * columns,
-                read: 0,
-            },
-            None => Self::Unknown,
+        let bytes = |width: u64| {
+            let list: Result<Vec<Value>, _> = serde_json::from_str(columns.unwrap_or("[0,0]"));
+            match list {
+                Ok(list) if !list.is_empty() => Self::Bytes {
+                    each: width * list.len() as u64,
+                    read: 0,
+                },
+                _ => Self::Unknown,
+            }
         };
         match encoding {
             Encoding::Csv => lines(|line| !line.starts_with(b"id,")),
@@ -63,35 +53,36 @@ impl Tally {
     /// Counts a part of the answer.
     pub(super) fn add(&mut self, part: &[u8]) {
         match self {
-            Self::Lines(lines) => lines.add(part),
+            Self::Lines {
+                is_point,
+                points,
+                beginning,
+            } => {
+                for line in part.split_inclusive(|byte| *byte == b'\n') {
+                    let end = line.strip_suffix(b"\n");
+                    let room = BEGINNING - beginning.len();
+                    beginning.extend(end.unwrap_or(line).iter().take(room));
+                    if end.is_some() {
+                        *points += u64::from(is_point(beginning));
+                        beginning.clear();
+                    }
+                }
+            }
             Self::Bytes { read, .. } => *read += part.len() as u64,
             Self::Unknown => {}
         }
     }
 
-    /// Whether all parts together are this many points, and how many they are if not.
-    pub(super) fn check(self, points: u64) -> Result<(), String> {
+    /// Fails with what the parts hold together if it is another number of points.
+    pub(super) fn check(self, expected: u64) -> Result<(), String> {
         match self {
-            Self::Lines(lines) if lines.points != points => Err(format!("{} points", lines.points)),
-            Self::Bytes { each, read } if u128::from(points) * u128::from(each) != read.into() => {
+            Self::Lines { points, .. } if points != expected => Err(format!("{points} points")),
+            Self::Bytes { each, read }
+                if u128::from(expected) * u128::from(each) != read.into() =>
+            {
                 Err(format!("{read} bytes, {each} a point"))
             }
             _ => Ok(()),
-        }
-    }
-}
-
-impl Lines {
-    fn add(&mut self, part: &[u8]) {
-        for line in part.split_inclusive(|byte| *byte == b'\n') {
-            let room = BEGINNING - self.beginning.len();
-            let text = line.strip_suffix(b"\n");
-            let more = text.unwrap_or(line);
-            self.beginning.extend(more.iter().take(room));
-            if text.is_some() {
-                self.points += u64::from((self.is_point)(&self.beginning));
-                self.beginning.clear();
-            }
         }
     }
 }

@@ -7,19 +7,21 @@
 mod most;
 mod walk;
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use bytes::Bytes;
 use http::HeaderMap;
 use http_body_util::{BodyExt as _, Full};
+use parking_lot::Mutex;
 use strew_core::server::Stop;
+use strew_error::Error;
+use strew_service::{Held, Service, segments::Segments, unpack::Coding};
 use tonic::{Status, body::Body};
 
 use super::{
     frames::{PREFIX, prefix},
     status,
 };
-use crate::service::{Error, Held, Service, segments::Segments, unpack::Coding};
 use walk::{Decoded, METHODS, Method, no_message};
 
 /// Reading a byte of a picture may take as long as reading this many of text.
@@ -46,10 +48,7 @@ pub(super) fn received<T: 'static>(request: tonic::Request<T>) -> Received<T> {
     let (_, extensions, empty) = request.into_parts();
     let carried = extensions.get::<Carried>();
     let message = carried.and_then(|carried| {
-        let mut message = carried
-            .message
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+        let mut message = carried.message.lock();
         message.take()?.downcast::<T>().ok()
     });
     Received {
@@ -98,7 +97,7 @@ pub(super) async fn read(
     Ok((http::Request::from_parts(parts, body), Some(held)))
 }
 
-/// How messages of a call are packed, if they are; nothing if that is not known here.
+/// The coding of the messages of a call, if they have one; nothing if it is unknown here.
 fn coding(headers: &HeaderMap) -> Option<Option<Coding>> {
     match headers.get("grpc-encoding").map(|value| value.as_bytes()) {
         None | Some(b"identity") => Some(None),

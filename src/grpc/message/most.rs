@@ -1,18 +1,15 @@
-//! How often each field of a request may occur, before its message is decoded.
+//! The bounds on repeated fields of a request, checked before its message is decoded.
 //!
 //! The names are those of the contract: `Layer.clear_of` is `LAYER_CLEAR_OF`. build.rs names one for every
 //! field that is repeated, so a new one does not compile without its limit. Queries are checked against the
 //! same limits once they are read; here they bound the memory of reading.
 
+use strew_catalog::except::MOST_GIVEN;
+use strew_config::Limits;
 use strew_core::{Variants, field::FieldSpec, pattern::Arrangement, table::Shares};
+use strew_query::{MOST_LAYERS, MOST_NAMES, MOST_REGIONS};
 
-use crate::service::{
-    Limits,
-    except::MOST_GIVEN,
-    query::{MOST_LAYERS, MOST_NAMES, MOST_REGIONS},
-};
-
-/// How often a field may occur, and what its values are called.
+/// The bound on a field, and the name of its values.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Most {
     pub(super) among: Among,
@@ -27,7 +24,7 @@ impl Most {
     }
 }
 
-/// What is counted together.
+/// The items that are counted together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Among {
     /// Each list for itself.
@@ -38,7 +35,7 @@ pub(super) enum Among {
     Field(Tally),
 }
 
-/// What is counted over several lists.
+/// The items that are counted over several lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tally {
     Regions,
@@ -55,7 +52,7 @@ pub(super) const TALLIES: usize = 6;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Limit {
     Fixed(usize),
-    /// As many as regions may have vertices.
+    /// The most vertices that regions may have.
     Vertices,
 }
 

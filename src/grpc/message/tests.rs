@@ -1,10 +1,12 @@
 //! Every limit of the contract, from its descriptors.
 
+use strew_config::Limits;
+use strew_error::Error;
+
 use super::{
     most::Most,
     walk::{Cost, Kind, METHODS, SHAPES, cost},
 };
-use crate::service::{Error, Limits};
 
 /// A field of bytes.
 fn field(number: u32, bytes: &[u8]) -> Vec<u8> {

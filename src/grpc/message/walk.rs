@@ -8,12 +8,13 @@ use std::any::Any;
 
 use bytes::Bytes;
 use prost::{DecodeError, Message};
+use strew_config::Limits;
+use strew_error::{Error, Fault};
 
 use super::{
     super::proto,
     most::{self, Among, Limit, Most, TALLIES, Tally},
 };
-use crate::service::{Error, Fault, Limits};
 
 /// A message of the contract.
 #[derive(Debug)]
@@ -34,7 +35,7 @@ pub(super) struct Field {
     pub(super) most: Most,
 }
 
-/// What a field holds, as far as it takes memory of its own.
+/// The content of a field, as far as it takes memory of its own.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
     /// Text.
@@ -63,7 +64,7 @@ fn decoded<M: Message + Default + 'static>(bytes: Bytes) -> Result<Decoded, Deco
 // Made by build.rs from the contract: `SHAPES`, the messages that requests are made of, and `METHODS`.
 include!(concat!(env!("OUT_DIR"), "/shapes.rs"));
 
-/// What a message takes.
+/// The price of a message.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Cost {
     /// The bytes of memory once it is decoded.
@@ -119,7 +120,7 @@ pub(super) fn no_message(detail: &str) -> Error {
     Fault::new("message", "", detail, "one whole message of the contract").into()
 }
 
-/// As many messages may lie in one another; the decoder has the same limit.
+/// The greatest depth of messages in one another; the decoder has the same limit.
 const DEEPEST: usize = 100;
 
 enum Stopped {
@@ -247,7 +248,7 @@ fn within(stopped: Stopped, field: &Field, index: usize) -> Stopped {
     }
 }
 
-/// How often a field occurs in a message.
+/// The number of times that a field occurs in a message.
 fn occurrences(field: &Field, mut rest: &[u8]) -> usize {
     let fields = std::iter::from_fn(|| next(&mut rest));
     fields.filter(|(number, _)| *number == field.number).count()

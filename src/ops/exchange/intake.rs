@@ -1,4 +1,4 @@
-//! What is taken on: the number of requests at once, the bytes of their bodies, and the time for each
+//! The limits on requests that are taken on: the number at once, the bytes of their bodies, and the time for each
 //! step to the head of the answer.
 //!
 //! A body must arrive in time; what arrives takes bytes of the budget and no place. From the end of its body to the
@@ -8,7 +8,7 @@
 
 use std::{
     pin::Pin,
-    sync::{Arc, Mutex, PoisonError},
+    sync::Arc,
     task::{Context, Poll},
     time::Duration,
 };
@@ -22,20 +22,20 @@ use axum::{
 };
 use bytes::Bytes;
 use http_body::{Body as HttpBody, Frame, SizeHint};
+use parking_lot::Mutex;
+use strew_access::{InUse, OneOf, Quota, Usage};
+use strew_config::{Config, seconds};
+use strew_error::Error;
+use strew_service::{Budget, Held, Record};
 use tokio::{
     sync::Notify,
     time::{Instant, Sleep, sleep, sleep_until},
 };
 
 use super::{Client, Probe, Refused};
-use crate::{
-    access::{InUse, OneOf, Quota, Usage},
-    config::{Config, seconds},
-    ops::{
-        dialect::{BoxError, Dialect},
-        throttle::LogThrottle,
-    },
-    service::{Budget, Error, Held, Record},
+use crate::ops::{
+    dialect::{BoxError, Dialect},
+    throttle::LogThrottle,
 };
 
 /// The bounds that all requests share. Cheap to clone.
@@ -168,13 +168,13 @@ impl Shared {
 /// A body that is being received.
 #[derive(Debug)]
 struct Receiving {
-    /// What has come of it: it is kept until there is an answer.
+    /// The memory of the body so far, held until there is an answer.
     held: Mutex<Held>,
     /// The place of the request, once all of it has come.
     place: Mutex<Option<(OneOf, InUse)>>,
     /// Where it takes its place; health checks need none.
     places: Option<Places>,
-    /// Told when the last of it has come, or is not wanted any more.
+    /// Notified when the last of it has come, or is not wanted any more.
     done: Notify,
 }
 
@@ -191,7 +191,7 @@ impl Receiving {
         let Some(Places { all, address }) = &self.places else {
             return Ok(());
         };
-        let mut place = self.place.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut place = self.place.lock();
         if place.is_none() {
             let limit = all.limit();
             let of_address = address.place(all)?;
@@ -202,7 +202,7 @@ impl Receiving {
     }
 }
 
-/// As much is read before other requests have their turn: clients that send fast would keep the
+/// The bytes that are read before other requests have their turn: clients that send fast would keep the
 /// thread.
 const AT_ONCE: usize = 64 << 10;
 /// The bytes of a health check that are taken although the budget is used up: it names a service.
@@ -241,10 +241,7 @@ impl HttpBody for Received {
                 self.at_once += bytes;
                 let counted = bytes.saturating_sub(self.free);
                 self.free -= bytes - counted;
-                let held = self.receiving.held.lock();
-                held.unwrap_or_else(PoisonError::into_inner)
-                    .grow(counted)
-                    .err()
+                self.receiving.held.lock().grow(counted).err()
             }
             Poll::Ready(None) => self.receiving.take_place().err(),
             Poll::Ready(_) => None,
@@ -272,7 +269,7 @@ impl HttpBody for Received {
 
 impl Drop for Received {
     fn drop(&mut self) {
-        // What is not read to its end counts all the same, where there is a place.
+        // A body that is not read to its end counts as well, where there is a place.
         let _ = self.receiving.take_place();
         self.receiving.done.notify_one();
     }

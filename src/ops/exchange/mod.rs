@@ -25,19 +25,18 @@ use http::{HeaderName, HeaderValue, StatusCode, header};
 use tracing::Instrument as _;
 
 use super::{Peer, dialect::Dialect, identity::REQUEST_ID, metrics::Metrics, spans::Spans};
-use crate::{
-    access::{Denied, Gate, Usage},
-    config::{Server, seconds},
-    service::{Budget, Error, Record},
-};
 pub(super) use intake::Intake;
 pub(super) use open::{Fate, OpenExchanges};
 use progress::Terms;
 use reply::{Exchange, Places};
 use report::Report;
 pub(super) use report::code as grpc_code;
+use strew_access::{Gate, Usage};
+use strew_config::{Server, seconds};
+use strew_error::{Denied, Error};
+use strew_service::{Budget, Record};
 
-/// What every exchange shares. Cheap to clone.
+/// The state that all exchanges share. Cheap to clone.
 #[derive(Clone, Debug)]
 pub(super) struct Exchanges {
     pub(super) metrics: Metrics,
@@ -47,7 +46,7 @@ pub(super) struct Exchanges {
     pub(super) terms: Terms,
 }
 
-/// What an exchange takes besides the bytes of its request and its answer: its state, that of HTTP, and
+/// The memory of an exchange besides the bytes of its request and its answer: its state, that of HTTP, and
 /// headers.
 const BASE: usize = 16 << 10;
 

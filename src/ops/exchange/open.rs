@@ -3,12 +3,13 @@
 use std::{
     fmt,
     sync::{
-        Arc, Mutex, MutexGuard, PoisonError, Weak,
+        Arc, Weak,
         atomic::{AtomicU64, Ordering},
     },
     time::Duration,
 };
 
+use parking_lot::Mutex;
 use tokio::time::Instant;
 
 /// An exchange whose time can be over.
@@ -25,7 +26,7 @@ pub(in crate::ops) struct OpenExchanges {
     changed: Mutex<Instant>,
 }
 
-/// What should become of a connection.
+/// The fate of a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::ops) enum Fate {
     /// It goes on.
@@ -45,7 +46,7 @@ const LONGEST: Duration = Duration::from_secs(5);
 impl fmt::Debug for OpenExchanges {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("OpenExchanges")
-            .field("open", &lock(&self.all).len())
+            .field("open", &self.all.lock().len())
             .finish_non_exhaustive()
     }
 }
@@ -87,12 +88,14 @@ impl OpenExchanges {
     }
 
     fn fate(&self, now: Instant, idle: Duration, patience: Duration) -> Fate {
-        let all: Vec<_> = lock(&self.all)
+        let all: Vec<_> = self
+            .all
+            .lock()
             .iter()
             .filter_map(|(_, exchange)| exchange.upgrade())
             .collect();
         if all.is_empty() {
-            let quiet = now.saturating_duration_since(*lock(&self.changed));
+            let quiet = now.saturating_duration_since(*self.changed.lock());
             return if quiet >= idle {
                 Fate::Retire
             } else {
@@ -113,10 +116,6 @@ impl OpenExchanges {
     }
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// The place of an exchange among those of its connection, until dropped.
 #[derive(Debug)]
 pub(super) struct Entry {
@@ -127,19 +126,19 @@ pub(super) struct Entry {
 impl Entry {
     /// Takes the place for an exchange.
     pub(super) fn of(self, exchange: Weak<dyn Timed>) -> Self {
-        lock(&self.open.all).push((self.number, exchange));
-        *lock(&self.open.changed) = Instant::now();
+        self.open.all.lock().push((self.number, exchange));
+        *self.open.changed.lock() = Instant::now();
         self
     }
 }
 
 impl Drop for Entry {
     fn drop(&mut self) {
-        let mut all = lock(&self.open.all);
+        let mut all = self.open.all.lock();
         if let Some(at) = all.iter().position(|(number, _)| *number == self.number) {
             all.swap_remove(at);
         }
         drop(all);
-        *lock(&self.open.changed) = Instant::now();
+        *self.open.changed.lock() = Instant::now();
     }
 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-/// How long an answer may take.
+/// The time that an answer may take.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::ops) struct Terms {
     /// The time in which a client must take something.

@@ -12,13 +12,16 @@
 use std::{
     fmt,
     pin::Pin,
-    sync::{Arc, Mutex, MutexGuard, PoisonError, Weak},
+    sync::{Arc, Weak},
     task::{Context, Poll, Waker},
 };
 
 use axum::{body::Body, response::Response};
 use bytes::Bytes;
 use http_body::{Body as HttpBody, Frame, SizeHint};
+use parking_lot::Mutex;
+use strew_access::InUse;
+use strew_service::{Budget, Held, Interrupted};
 use tokio::time::{Instant, Sleep, sleep_until};
 
 use super::{
@@ -27,10 +30,8 @@ use super::{
     report::Report,
 };
 use crate::{
-    access::InUse,
     grpc,
     ops::dialect::{Dialect, Ending},
-    service::{Budget, Held, Interrupted},
 };
 
 /// The most bytes of a frame of a whole document: its share of the budget comes back with each.
@@ -48,7 +49,7 @@ pub(super) struct Exchange {
     _places: Places,
 }
 
-/// What is given back when an exchange is over.
+/// The places that are free again when an exchange is over.
 #[derive(Debug)]
 pub(super) struct Places {
     pub(super) _request: InUse,
@@ -64,7 +65,7 @@ struct End {
 
 struct State {
     report: Report,
-    /// What makes the answer; nothing before the head, after the end, and once it was broken off.
+    /// The body that makes the answer; none before the head, after the end, and once it was broken off.
     body: Option<Body>,
     /// The rest of a frame of a whole document.
     rest: Bytes,
@@ -128,7 +129,7 @@ impl Exchange {
         let deadline = extensions.remove::<grpc::Deadline>();
         let held = extensions.remove::<Arc<Held>>();
         let end = {
-            let mut end = lock(&self.end);
+            let mut end = self.end.lock();
             if let Some(deadline) = deadline
                 && end.at.is_none_or(|at| deadline.end() < at)
             {
@@ -139,11 +140,11 @@ impl Exchange {
             }
             *end
         };
-        self.lock().report.head(&response);
+        self.state.lock().report.head(&response);
         response.map(|body| {
             let whole = body.size_hint().exact();
             let whole = whole.and_then(|bytes| usize::try_from(bytes).ok());
-            let mut state = self.lock();
+            let mut state = self.state.lock();
             state.whole = whole
                 .filter(|&bytes| bytes > 0)
                 .map(|bytes| held.unwrap_or_else(|| Arc::new(self.budget.hold_anyway(bytes))));
@@ -161,7 +162,7 @@ impl Exchange {
     /// The socket took bytes, or the connection is gone.
     fn written(&self, bytes: usize) {
         let now = Instant::now();
-        let mut state = self.lock();
+        let mut state = self.state.lock();
         state.in_flight -= bytes;
         state.progress.taken(bytes, now);
         // The reader is only set while the body has nothing to give.
@@ -169,16 +170,12 @@ impl Exchange {
             state.progress.pause(now);
         }
     }
-
-    fn lock(&self) -> MutexGuard<'_, State> {
-        lock(&self.state)
-    }
 }
 
 impl Timed for Exchange {
     fn check(&self, now: Instant) -> Option<Instant> {
-        let end = *lock(&self.end);
-        let mut state = self.lock();
+        let end = *self.end.lock();
+        let mut state = self.state.lock();
         if state.broken.is_some() {
             return state.broken;
         }
@@ -194,7 +191,7 @@ impl Timed for Exchange {
         let body = state.body.take();
         state.unreported = body.is_some().then_some(why);
         state.rest = Bytes::new();
-        // What has left holds its share of a whole document until it is written or dropped.
+        // Bytes that have left hold their share of a whole document until they are written or dropped.
         state.whole = None;
         state.report.broken_off();
         let reader = state.reader.take();
@@ -205,10 +202,6 @@ impl Timed for Exchange {
         }
         Some(now)
     }
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The body of every answer.
@@ -269,7 +262,7 @@ impl HttpBody for Reply {
         if this.is_late(now) {
             exchange.check(now);
         }
-        let mut guard = exchange.lock();
+        let mut guard = exchange.state.lock();
         let state = &mut *guard;
         state.reader = None;
         if let Some(why) = state.unreported.take() {
@@ -300,7 +293,7 @@ impl HttpBody for Reply {
                 let sleep = this.sleep.get_or_insert_with(|| Box::pin(sleep_until(at)));
                 if sleep.as_mut().poll(cx).is_ready() {
                     exchange.check(Instant::now());
-                    let unreported = exchange.lock().unreported.take();
+                    let unreported = exchange.state.lock().unreported.take();
                     return Poll::Ready(unreported.and_then(|why| exchange.dialect.ending(why)));
                 }
                 Poll::Pending
@@ -325,13 +318,13 @@ impl HttpBody for Reply {
     }
 
     fn is_end_stream(&self) -> bool {
-        let state = self.exchange.lock();
+        let state = self.exchange.state.lock();
         let is_over = state.body.as_ref().is_none_or(Body::is_end_stream);
         is_over && state.rest.is_empty() && state.unreported.is_none()
     }
 
     fn size_hint(&self) -> SizeHint {
-        let state = self.exchange.lock();
+        let state = self.exchange.state.lock();
         let body = state.body.as_ref().map(Body::size_hint);
         let body = body.unwrap_or_else(|| SizeHint::with_exact(0));
         let rest = state.rest.len() as u64;
@@ -347,7 +340,7 @@ impl HttpBody for Reply {
 impl Drop for Reply {
     /// Frees what makes the answer, also while frames of it are still to be written.
     fn drop(&mut self) {
-        let mut state = self.exchange.lock();
+        let mut state = self.exchange.state.lock();
         let body = state.body.take();
         (state.rest, state.whole, state.unreported) = (Bytes::new(), None, None);
         drop(state);

@@ -12,10 +12,12 @@ use axum::{
 use bytes::Bytes;
 use http::{HeaderMap, Method, StatusCode, header};
 use http_body::{Body as _, Frame};
+use strew_error::Kind;
+use strew_service::{Budget, Record};
 use tracing::Span;
 
 use crate::{
-    error_map, grpc,
+    grpc,
     ops::{
         Peer,
         dialect::Dialect,
@@ -23,10 +25,9 @@ use crate::{
         metrics::{Broken, Metrics, NO_FORMAT, Protocol, since},
         spans::{Answered, Spans},
     },
-    service::{Budget, Record},
 };
 
-/// How an answer stands.
+/// The state of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stand {
     Open,
@@ -34,7 +35,7 @@ enum Stand {
     BrokenOff,
 }
 
-/// What is known of a request and its answer; reported when dropped.
+/// The facts about a request and its answer; reported when dropped.
 #[derive(Debug)]
 pub(super) struct Report {
     metrics: Metrics,
@@ -50,11 +51,11 @@ pub(super) struct Report {
     client: Option<SocketAddr>,
     status: Option<StatusCode>,
     stand: Stand,
-    /// How many bytes the answer has, where it said so.
+    /// The length of the answer in bytes, if it was announced.
     expected: Option<u64>,
     bytes: u64,
     first_byte: Option<f64>,
-    /// How many points are in the metrics already.
+    /// The number of points that the metrics have already.
     counted: u64,
 }
 
@@ -71,7 +72,7 @@ impl Report {
         let begins_one = || spans.as_ref().is_some_and(Spans::begins_one);
         let identity = Identity::of(request.headers(), begins_one);
         let protocol = Dialect::of(request.headers()).protocol();
-        metrics.protocol(protocol).in_flight.increment(1.0);
+        metrics.in_flight(protocol).inc();
         let asked = request.uri().path_and_query();
         let asked = asked.map_or("", |asked| asked.as_str());
         let trace = identity.trace.as_ref().map(|trace| &*trace.trace);
@@ -98,7 +99,7 @@ impl Report {
         }
     }
 
-    /// What the answering code writes about the request.
+    /// The record that the answering code writes about the request.
     pub(super) const fn record(&self) -> &Arc<Record> {
         &self.record
     }
@@ -135,7 +136,7 @@ impl Report {
         let length = response.headers().get(header::CONTENT_LENGTH);
         let length = length.and_then(|length| length.to_str().ok()?.parse().ok());
         self.expected = length.or_else(|| response.body().size_hint().exact());
-        // Nobody reads the body of such an answer.
+        // Such an answer has no body to read.
         let is_bodiless = self.method == Method::HEAD
             || response.body().is_end_stream()
             || response.status() == StatusCode::NOT_MODIFIED;
@@ -151,7 +152,7 @@ impl Report {
             self.first_byte = Some(since(self.start));
         }
         self.bytes += bytes;
-        // A reader who has all that was announced does not ask for an end.
+        // A reader that has all that was announced does not poll for an end.
         if self.expected.is_some_and(|expected| self.bytes >= expected) {
             self.stand = Stand::Whole;
         }
@@ -161,14 +162,13 @@ impl Report {
     /// Brings the counters of bytes and points up to date, so that long answers show while they run.
     fn count(&mut self, bytes: u64) {
         let format = self.record.format().unwrap_or(NO_FORMAT);
-        let format = self.metrics.format(self.protocol, format);
-        format.bytes.increment(bytes);
         let points = self.record.points();
-        format.points.increment(points - self.counted);
+        self.metrics
+            .made(self.protocol, format, points - self.counted, bytes);
         self.counted = points;
     }
 
-    /// Who broke the answer off, if somebody did.
+    /// Who broke the answer off, if it is incomplete.
     fn broken(&self) -> Option<Broken> {
         match self.stand {
             Stand::Open => Some(Broken::Client),
@@ -181,7 +181,7 @@ impl Report {
         }
     }
 
-    /// How it ended, as a label: few values.
+    /// The outcome as a label, which has few values.
     fn outcome(&self) -> &'static str {
         match (self.protocol, self.record.code(), self.status) {
             (Protocol::Grpc, Some(code), _) => grpc::code_name(code),
@@ -211,28 +211,25 @@ impl Drop for Report {
         let first = self.first_byte.unwrap_or(total);
         let broken = self.broken();
         let outcome = self.outcome();
-        let counters = self.metrics.protocol(self.protocol);
-        counters.in_flight.decrement(1.0);
+        let (metrics, protocol) = (&self.metrics, self.protocol);
+        metrics.in_flight(protocol).dec();
         if self.is_refused() {
-            counters.refused(self.record.refused()).increment(1);
+            metrics.rejected(protocol, self.record.refused()).inc();
         }
         if let Some(by) = broken {
-            counters.broken(by).increment(1);
+            metrics.broken(protocol, by).inc();
         }
         let format = self.record.format();
-        let of_format = self
-            .metrics
-            .format(self.protocol, format.unwrap_or(NO_FORMAT));
-        of_format.first_byte.record(first);
-        of_format.whole.record(total);
+        let latencies = metrics.latencies(protocol, format.unwrap_or(NO_FORMAT));
+        for (latency, seconds) in latencies.into_iter().zip([first, total]) {
+            latency.observe(seconds);
+        }
         let method = method_name(&self.method);
-        let requests = self
-            .metrics
-            .requests(self.protocol, &self.route, method, outcome);
-        requests.increment(1);
+        let requests = metrics.requests(protocol, &self.route, method, outcome);
+        requests.inc();
 
         let trace = self.identity.trace.as_ref();
-        let reason = self.record.refused().map(|kind| error_map::wire(kind).slug);
+        let reason = self.record.refused().map(Kind::slug);
         let client = self.client.map(|client| client.to_string());
         macro_rules! line {
             ($level:ident) => {

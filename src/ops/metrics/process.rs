@@ -1,4 +1,4 @@
-//! What the system knows of this process, where it is Linux.
+//! Figures of this process, on Linux.
 
 use std::fs;
 
@@ -6,40 +6,40 @@ use std::fs;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Process {
     /// Resident memory in bytes.
-    pub(super) memory: Option<u64>,
+    pub(super) memory: Option<f64>,
     /// Processor time in seconds.
     pub(super) cpu: Option<f64>,
     /// Threads.
-    pub(super) threads: Option<u64>,
+    pub(super) threads: Option<f64>,
     /// Open files.
-    pub(super) files: Option<u64>,
+    pub(super) files: Option<f64>,
 }
 
-/// Ticks a second in `/proc`: the same on every Linux that Rust runs on.
+/// Ticks per second in `/proc`, on every Linux that Rust supports.
 const TICKS: f64 = 100.0;
 
 impl Process {
     /// As of now.
     pub(super) fn now() -> Self {
         let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-        let of = |name: &str| -> Option<u64> {
+        let of = |name: &str| -> Option<f64> {
             let rest = status.lines().find_map(|line| line.strip_prefix(name))?;
             rest.split_whitespace().next()?.parse().ok()
         };
         Self {
-            memory: of("VmRSS:").map(|kibibytes| kibibytes * 1024),
+            memory: of("VmRSS:").map(|kibibytes| kibibytes * 1024.0),
             cpu: cpu(),
             threads: of("Threads:"),
             files: fs::read_dir("/proc/self/fd")
                 .ok()
-                .map(|all| all.count() as u64),
+                .map(|all| all.count() as f64),
         }
     }
 }
 
 fn cpu() -> Option<f64> {
     let stat = fs::read_to_string("/proc/self/stat").ok()?;
-    // What stands before may hold blanks: it is the program's name, in parentheses.
+    // The name of the program comes first, in parentheses, and may hold blanks.
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = |at: usize| -> Option<f64> { fields.get(at)?.parse().ok() };
     Some((ticks(11)? + ticks(12)?) / TICKS)
@@ -50,11 +50,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_system_tells() {
+    fn figures_are_read() {
         let now = Process::now();
-        assert!(now.memory.is_some_and(|bytes| bytes > 1 << 20));
-        assert!(now.threads.is_some_and(|threads| threads > 0));
-        assert!(now.files.is_some_and(|files| files > 2));
+        assert!(now.memory.is_some_and(|bytes| bytes > 1e6));
+        assert!(now.threads.is_some_and(|threads| threads > 0.0));
+        assert!(now.files.is_some_and(|files| files > 2.0));
         assert!(now.cpu.is_some());
     }
 }

@@ -1,132 +1,198 @@
-//! `GET /metrics`: what was counted, and what is known only now.
+//! `GET /metrics`: the counters, and the figures of the moment.
 
-use std::{fmt::Write as _, sync::Arc, time::UNIX_EPOCH};
+use std::{sync::Arc, time::UNIX_EPOCH};
 
-use axum::{body::Body, extract::State, response::Response, routing};
-use http::{HeaderValue, Method, header};
+use axum::{extract::State, response::Response};
+use prometheus::{Counter, Gauge, Opts, Registry, TextEncoder, core::Collector};
+use strew_service::{Service, forging};
 
-use super::{
-    CACHE_BYTES, CACHE_HITS, CACHE_MISSES, FORGE_ENDED, FORGE_JOBS, MEMORY, MOST_STREAMS, Metrics,
-    OPEN_FILES, POINTS_IN_FLIGHT, STARTED, STREAMS, TABLE_LOADS, THREADS, labels, process::Process,
-};
-use crate::{
-    rest::api::{Answer, Endpoint, Operation, Tag, schemas},
-    service::{Service, forging},
+use super::{Metrics, process::Process};
+use crate::rest::{
+    self,
+    api::{Answer, Endpoint, Operation, Tag, schemas},
 };
 
 /// The format of Prometheus.
 const CONTENT_TYPE: &str = "text/plain; version=0.0.4; charset=utf-8";
 
-const CPU: &str = "process_cpu_seconds_total";
-
 /// The path.
 pub(in crate::ops) fn endpoint(metrics: Metrics, service: Arc<Service>) -> Endpoint {
     let operation = Operation {
-        method: Method::GET,
         id: "getMetrics",
         summary: "Metrics for Prometheus",
-        about: "Counts, gauges and latencies of this process; never cached. docs/operations.md tells \
-                what they mean.",
-        tag: Tag::Operations,
-        path_parameters: &[],
-        parameters: &[],
-        body: None,
-        answers: vec![Answer {
-            status: 200,
-            about: "The metrics in Prometheus' text format.",
-            headers: vec![],
-            contents: vec![(CONTENT_TYPE, schemas::text)],
-        }],
+        about: "Counts, gauges and latencies of this process; never cached. docs/operations.md \
+                explains them.",
         problems: vec![],
         example: "/metrics".into(),
+        ..Operation::new(
+            Tag::Operations,
+            vec![Answer::file(
+                "The metrics in Prometheus' text format.",
+                CONTENT_TYPE,
+                schemas::text,
+            )],
+        )
     };
     let state = (metrics, service);
-    Endpoint::new("/metrics", state, vec![(operation, routing::get(get))])
+    Endpoint::only("/metrics", state, operation, get)
 }
 
 async fn get(State((metrics, service)): State<(Metrics, Arc<Service>)>) -> Response {
-    let mut response = Response::new(Body::from(metrics.scrape(&service).await));
-    let headers = response.headers_mut();
-    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(CONTENT_TYPE));
-    headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
-    response
+    rest::momentary(rest::file(metrics.scrape(&service).await, CONTENT_TYPE))
 }
 
 impl Metrics {
     /// All metrics as text.
     async fn scrape(&self, service: &Service) -> String {
-        let gauge = |name, value: Option<f64>| {
-            if let Some(value) = value {
-                self.gauge(name, vec![]).set(value);
-            }
+        let mut families = self.registry.gather();
+        families.extend(self.now(service).await.gather());
+        // Only metrics without a name or a value are refused.
+        TextEncoder::new()
+            .encode_to_string(&families)
+            .unwrap_or_default()
+    }
+
+    /// The figures that are read at each scrape, in a registry of their own: a table that is no longer loaded must not
+    /// show.
+    async fn now(&self, service: &Service) -> Registry {
+        let now = Registry::new();
+        let gauge = |name, help, labels: &[Label<'_>], value| {
+            let gauge = Gauge::with_opts(labeled(name, help, labels));
+            put(&now, gauge, |gauge| gauge.set(value));
         };
+        let counter = |name, help, labels: &[Label<'_>], value| {
+            let counter = Counter::with_opts(labeled(name, help, labels));
+            put(&now, counter, |counter| counter.inc_by(value));
+        };
+
         let cache = service.cache().await;
-        self.counter(CACHE_HITS, vec![]).absolute(cache.hits);
-        self.counter(CACHE_MISSES, vec![]).absolute(cache.misses);
-        self.counter(TABLE_LOADS, vec![]).absolute(cache.loads);
-        gauge(CACHE_BYTES, Some(cache.bytes as f64));
         let forge = service.forge_state();
-        for (state, jobs) in [("queued", forge.queued), ("running", forge.running)] {
-            let labels = labels([("state", state.into())]);
-            self.gauge(FORGE_JOBS, labels).set(jobs as f64);
+        for (name, help, value) in [
+            (
+                "strew_sampler_cache_hits_total",
+                "Requested tables that were ready",
+                cache.hits,
+            ),
+            (
+                "strew_sampler_cache_misses_total",
+                "Requested tables that had to be loaded",
+                cache.misses,
+            ),
+            (
+                "strew_table_loads_total",
+                "Requested tables whose files were read for the request: those beyond tables.preload_bytes",
+                cache.loads,
+            ),
+        ] {
+            counter(name, help, &[], value as f64);
         }
         for (state, ended) in forging::State::ENDED.into_iter().zip(forge.ended) {
-            let labels = labels([("outcome", state.name().into())]);
-            self.counter(FORGE_ENDED, labels).absolute(ended);
-        }
-        gauge(STREAMS, Some(service.streams().open() as f64));
-        let points = service.points_in_flight().get();
-        gauge(POINTS_IN_FLIGHT, Some(points as f64));
-        gauge(MOST_STREAMS, Some(service.limits().max_streams as f64));
-        let process = Process::now();
-        gauge(MEMORY, process.memory.map(|bytes| bytes as f64));
-        gauge(THREADS, process.threads.map(|threads| threads as f64));
-        gauge(OPEN_FILES, process.files.map(|files| files as f64));
-        let started = self.inner.started.duration_since(UNIX_EPOCH);
-        gauge(STARTED, started.ok().map(|since| since.as_secs_f64()));
-        let mut text = self.inner.handle.render();
-        if let Some(seconds) = process.cpu {
-            // Counters of the registry are integers; this one is not.
-            let _ = writeln!(
-                text,
-                "# HELP {CPU} Processor time used\n# TYPE {CPU} counter\n{CPU} {seconds}\n"
+            counter(
+                "strew_forge_jobs_ended_total",
+                "Jobs of the forge that ended, by outcome",
+                &[("outcome", state.name())],
+                ended as f64,
             );
         }
-        text.push_str(&info(service));
-        text
+        for (state, jobs) in [("queued", forge.queued), ("running", forge.running)] {
+            gauge(
+                "strew_forge_jobs",
+                "Jobs of the forge that wait or run",
+                &[("state", state)],
+                jobs as f64,
+            );
+        }
+        let process = Process::now();
+        if let Some(seconds) = process.cpu {
+            counter(
+                "process_cpu_seconds_total",
+                "Processor time used",
+                &[],
+                seconds,
+            );
+        }
+        let started = self.started.duration_since(UNIX_EPOCH).ok();
+        for (name, help, value) in [
+            (
+                "strew_sampler_cache_bytes",
+                "Memory of the tables that are ready",
+                Some(cache.bytes as f64),
+            ),
+            (
+                "strew_streams_in_flight",
+                "Current answers with points",
+                Some(service.streams().open() as f64),
+            ),
+            (
+                "strew_streams_limit",
+                "The most answers with points at once",
+                Some(service.limits().max_streams as f64),
+            ),
+            (
+                "strew_points_in_flight",
+                "Points that current answers have announced and not made yet",
+                Some(service.points_in_flight().get() as f64),
+            ),
+            (
+                "process_resident_memory_bytes",
+                "Resident memory",
+                process.memory,
+            ),
+            ("process_threads", "Threads of the process", process.threads),
+            ("process_open_fds", "Open files and sockets", process.files),
+            (
+                "process_start_time_seconds",
+                "When the process began, in seconds since 1970",
+                started.map(|since| since.as_secs_f64()),
+            ),
+        ] {
+            if let Some(value) = value {
+                gauge(name, help, &[], value);
+            }
+        }
+        for entry in service.catalog().entries() {
+            let labels = [
+                ("profile", &*entry.key.profile),
+                ("alpha", &entry.key.alpha.to_string()),
+                ("map", &entry.key.size.to_string()),
+                ("digest", &entry.digest),
+            ];
+            gauge(
+                "strew_table_info",
+                "The tables that are loaded",
+                &labels,
+                1.0,
+            );
+        }
+        let build = [
+            ("version", env!("CARGO_PKG_VERSION")),
+            (
+                "revision",
+                option_env!("STREW_BUILD_REVISION").unwrap_or("unknown"),
+            ),
+            ("algorithm", &strew_core::ALGORITHM_VERSION.to_string()),
+        ];
+        gauge("strew_build_info", "The program that runs", &build, 1.0);
+        now
     }
 }
 
-/// What is loaded and what runs. Not of the registry, which keeps what was said once: a table that is
-/// not loaded any more must not show.
-fn info(service: &Service) -> String {
-    let mut text = String::from(
-        "# HELP strew_table_info The tables that are loaded\n# TYPE strew_table_info gauge\n",
-    );
-    for entry in service.catalog().entries() {
-        let _ = writeln!(
-            text,
-            "strew_table_info{{profile=\"{}\",alpha=\"{}\",map=\"{}\",digest=\"{}\"}} 1",
-            escaped(&entry.key.profile),
-            escaped(&entry.key.alpha.to_string()),
-            entry.key.size,
-            escaped(&entry.digest),
-        );
-    }
-    let revision = option_env!("STREW_BUILD_REVISION").unwrap_or("unknown");
-    let _ = writeln!(
-        text,
-        "\n# HELP strew_build_info The program that runs\n# TYPE strew_build_info gauge\n\
-         strew_build_info{{version=\"{}\",revision=\"{}\",algorithm=\"{}\"}} 1",
-        env!("CARGO_PKG_VERSION"),
-        escaped(revision),
-        strew_core::ALGORITHM_VERSION,
-    );
-    text
+/// A label and its value.
+type Label<'a> = (&'static str, &'a str);
+
+fn labeled(name: &str, help: &str, labels: &[Label<'_>]) -> Opts {
+    let label = |&(name, value): &Label<'_>| (name.to_owned(), value.to_owned());
+    Opts::new(name, help).const_labels(labels.iter().map(label).collect())
 }
 
-/// A label's value.
-fn escaped(text: &str) -> String {
-    let text = text.replace('\\', "\\\\").replace('"', "\\\"");
-    text.replace('\n', "\\n")
+/// Adds a metric with its value. Of two equal names and labels the first stays.
+fn put<M: Collector + Clone + 'static>(
+    now: &Registry,
+    metric: prometheus::Result<M>,
+    set: impl Fn(&M),
+) {
+    if let Ok(metric) = metric {
+        set(&metric);
+        let _ = now.register(Box::new(metric));
+    }
 }

@@ -8,13 +8,9 @@ use std::{
     time::UNIX_EPOCH,
 };
 
+use strew_catalog::field::{self, Stamp};
+use strew_config::{Config, bounded_file};
 use strew_core::table::MAX_FILE_BYTES;
-
-use crate::{
-    bounded_file,
-    config::Config,
-    service::field::{self, Stamp},
-};
 
 /// The files that are watched.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +101,7 @@ impl Fingerprint {
             }
         }
         for stamp in stamps {
-            stamp.hash(&mut hasher);
+            stamp.add_to(&mut hasher);
         }
         Self(hasher.finalize())
     }
@@ -143,12 +139,12 @@ mod tests {
             let file = fs::File::options().write(true).open(&path).expect("there");
             file.set_modified(then).expect("settable");
         };
-        let layers = crate::config::Layers::new().expect("built in");
+        let layers = strew_config::Layers::new().expect("built in");
         let folder = folder.path();
         let tables = folder.display().to_string();
         let layers = layers.flag("--tables", "tables.folder", &tables);
         let mut config = layers
-            .and_then(crate::config::Layers::finish)
+            .and_then(strew_config::Layers::finish)
             .expect("valid");
         config.file = Some(folder.join("keys.toml"));
         let watched = Watched::of(&config);
@@ -173,8 +169,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let file = folder.path().join("strew.toml");
         fs::write(&file, "").expect("writable");
-        let layers = crate::config::Layers::new().and_then(|layers| layers.file(&file));
-        let config = layers.and_then(crate::config::Layers::finish);
+        let layers = strew_config::Layers::new().and_then(|layers| layers.file(&file));
+        let config = layers.and_then(strew_config::Layers::finish);
         let watched = Watched::of(&config.expect("valid"));
         let picture = folder.path().join("hill.png");
         let place = "bbox = [0, 0, 1, 1]";

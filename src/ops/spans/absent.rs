@@ -1,8 +1,10 @@
 //! In the place of an exporter, in a program without the feature `otlp`: a collector is refused at the
 //! start, and so there are never any spans.
 
+use strew_config::Telemetry as Settings;
+
 use super::{Answered, SpansError};
-use crate::{config::Telemetry as Settings, ops::metrics::Metrics};
+use crate::ops::metrics::Metrics;
 
 /// There is none.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 
 use crate::ops::{identity::Trace, metrics::Broken};
 
-/// What is known of a request and its answer.
+/// The facts about a request and its answer.
 #[derive(Clone, Debug)]
 #[cfg_attr(
     not(feature = "otlp"),

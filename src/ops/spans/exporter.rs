@@ -14,25 +14,19 @@ use opentelemetry_sdk::{
     Resource,
     trace::{SpanData, SpanExporter as _},
 };
+use prometheus::IntCounter;
+use strew_config as config;
+use strew_config::{Telemetry as Settings, bounded_file};
 use tokio::sync::mpsc;
 use tokio_util::{sync::CancellationToken, task::AbortOnDropHandle};
 
 use super::{Answered, SpansError};
-use crate::{
-    bounded_file,
-    config::{self, Telemetry as Settings},
-    ops::{
-        identity,
-        metrics::{Metrics, OfSpans},
-        throttle::LogThrottle,
-        tls::certificates,
-    },
-};
+use crate::ops::{identity, metrics::Metrics, throttle::LogThrottle, tls::certificates};
 
 /// The most spans of one message: some 0.5 MB, where collectors take 4 MiB.
 const MOST: usize = 512;
 
-/// How long the first span of a message waits for more.
+/// The time that the first span of a message waits for more.
 const DELAY: Duration = Duration::from_secs(1);
 
 /// A collector that has not been spoken to yet.
@@ -78,19 +72,20 @@ impl Collector {
         })?;
         exporter.set_resource(&resource(&settings.service_name));
         let (sender, queue) = mpsc::channel(settings.max_queued_spans);
-        let counted = Arc::new(metrics.spans());
+        let lost = metrics.spans("lost");
         let stop = CancellationToken::new();
         let task = Task {
             exporter,
             queue,
-            counted: counted.clone(),
+            sent: metrics.spans("sent"),
+            lost: lost.clone(),
             failed: LogThrottle::default(),
         };
         let task = AbortOnDropHandle::new(tokio::spawn(task.run(stop.clone())));
         let spans = Spans {
             sender,
             sample_ratio: settings.sample_ratio,
-            counted,
+            lost,
             full: Arc::default(),
         };
         Ok((
@@ -119,7 +114,7 @@ fn read_authorities(settings: &Settings) -> Result<Vec<u8>, SpansError> {
     Ok(pem)
 }
 
-/// Who sends: what OTEL_RESOURCE_ATTRIBUTES says, and our name and version.
+/// The sender: the attributes of OTEL_RESOURCE_ATTRIBUTES, and our name and version.
 fn resource(service_name: &str) -> Resource {
     Resource::builder()
         .with_service_name(service_name.to_owned())
@@ -132,7 +127,7 @@ fn resource(service_name: &str) -> Resource {
 pub(in crate::ops) struct Spans {
     sender: mpsc::Sender<SpanData>,
     sample_ratio: f64,
-    counted: Arc<OfSpans>,
+    lost: IntCounter,
     full: Arc<LogThrottle>,
 }
 
@@ -150,7 +145,7 @@ impl Spans {
             return;
         };
         if self.sender.try_send(span).is_err() {
-            self.counted.lost.increment(1);
+            self.lost.inc();
             if let Some(spans) = self.full.record() {
                 tracing::warn!(
                     spans,
@@ -182,7 +177,8 @@ impl Sending {
 struct Task {
     exporter: SpanExporter,
     queue: mpsc::Receiver<SpanData>,
-    counted: Arc<OfSpans>,
+    sent: IntCounter,
+    lost: IntCounter,
     failed: LogThrottle,
 }
 
@@ -210,9 +206,9 @@ impl Task {
         }
         let spans = batch.len() as u64;
         match self.exporter.export(std::mem::take(batch)).await {
-            Ok(()) => self.counted.sent.increment(spans),
+            Ok(()) => self.sent.inc_by(spans),
             Err(error) => {
-                self.counted.lost.increment(spans);
+                self.lost.inc_by(spans);
                 if let Some(times) = self.failed.record() {
                     tracing::warn!(%error, times, "spans could not be sent to the collector");
                 }

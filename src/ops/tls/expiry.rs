@@ -6,7 +6,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 const SOON: u64 = 14 * DAY;
 const DAY: u64 = 86_400;
 
-/// What to warn about a certificate in DER, if anything.
+/// The warning about a certificate in DER, if there is one.
 pub(super) fn warning(certificate: &[u8]) -> Option<String> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH);
     let now = now.as_ref().map_or(0, Duration::as_secs);

@@ -1,17 +1,14 @@
 //! The OpenAPI document (3.1), from the endpoints' own descriptions.
 
+use std::collections::BTreeMap;
+
 use schemars::SchemaGenerator;
 use serde_json::{Map, Value, json};
+use strew_error::Kind;
+use strew_query::{Parameter, of};
 
-use super::{Answer, Endpoint, Operation, Tag, examples, rules, schemas, sets};
-use crate::{
-    error_map,
-    rest::problem::Problem,
-    service::{
-        Encoding, Kind,
-        query::{Parameter, Shape, of},
-    },
-};
+use super::{Answer, Endpoint, Operation, Tag, examples, rules, schemas, shape};
+use crate::rest::problem::{self, Problem};
 
 const ABOUT: &str = "Strew scatters points: any region of an unbounded plane, at any density, the \
                      same points for the same query, forever. Every GET answers HEAD, too. \
@@ -26,19 +23,45 @@ const EVERYWHERE: [Kind; 4] = [
     Kind::Internal,
 ];
 
-/// Those of a request that is not let in.
+/// The problems that the gate answers with.
 const AT_THE_GATE: [Kind; 2] = [Kind::Unauthenticated, Kind::TooFast];
 
-/// The document.
-pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
-    let mut generator = schemas::generator();
+/// The parts of the document that operations refer to.
+struct Components {
+    generator: SchemaGenerator,
+    /// By section, then by name.
+    sections: Map<String, Value>,
+}
+
+impl Components {
+    /// Adds a part to a section and returns a reference to it. If another part has the name already, a number is added.
+    fn share(&mut self, section: &str, name: &str, part: Value) -> Value {
+        let known = self.sections.entry(section).or_insert_with(|| json!({}));
+        let mut key = name.to_owned();
+        let mut number = 1;
+        while known.get(&key).is_some_and(|other| *other != part) {
+            number += 1;
+            key = format!("{name}-{number}");
+        }
+        let reference = json!({ "$ref": format!("#/components/{section}/{key}") });
+        known[key] = part;
+        reference
+    }
+}
+
+/// The document of some endpoints.
+pub(in crate::rest) fn document<'a>(endpoints: impl IntoIterator<Item = &'a Endpoint>) -> Value {
+    let mut components = Components {
+        generator: schemas::generator(),
+        sections: Map::new(),
+    };
     let mut paths = Map::new();
     let answers = examples::all();
     for endpoint in endpoints {
         let mut item = Map::new();
         for operation in endpoint.operations() {
             let method = operation.method.as_str().to_lowercase();
-            let mut described = described(operation, endpoint.is_open(), &mut generator);
+            let mut described = described(operation, endpoint.is_open(), &mut components);
             if let Some(example) = answers.get(operation.id) {
                 examples::put(example, &mut described["responses"]);
             }
@@ -46,6 +69,18 @@ pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
         }
         paths.insert(endpoint.path().into(), Value::Object(item));
     }
+    let sections = &mut components.sections;
+    let schemas = components.generator.take_definitions(true);
+    sections.insert("schemas".into(), Value::Object(schemas));
+    let schemes = json!({
+        "bearer": { "type": "http", "scheme": "bearer" },
+        "header": { "type": "apiKey", "in": "header", "name": "x-api-key" },
+    });
+    sections.insert("securitySchemes".into(), schemes);
+    let tags = Tag::ALL.iter().map(|tag| {
+        let (name, description) = tag.words();
+        json!({ "name": name, "description": description })
+    });
     json!({
         "openapi": "3.1.0",
         "info": {
@@ -55,34 +90,27 @@ pub(in crate::rest) fn document(endpoints: &[Endpoint]) -> Value {
             "license": { "name": "MIT OR Apache-2.0", "identifier": "MIT OR Apache-2.0" },
         },
         "servers": [{ "url": "/" }],
-        "tags": Tag::ALL.map(|tag| json!({ "name": tag.name(), "description": tag.about() })),
+        "tags": tags.collect::<Vec<_>>(),
         "paths": paths,
         // Whether a key is needed is a setting of the server.
         "security": [{}, { "bearer": [] }, { "header": [] }],
-        "components": {
-            "schemas": generator.take_definitions(true),
-            "securitySchemes": {
-                "bearer": { "type": "http", "scheme": "bearer" },
-                "header": { "type": "apiKey", "in": "header", "name": "x-api-key" },
-            },
-        },
+        "components": sections,
     })
 }
 
-fn described(operation: &Operation, is_open: bool, generator: &mut SchemaGenerator) -> Value {
-    let in_path = operation.path_parameters.iter();
-    let in_query = of(operation.parameters);
+fn described(operation: &Operation, is_open: bool, components: &mut Components) -> Value {
     let rules = rules::of(operation.parameters);
-    let parameters: Vec<Value> = in_path
-        .map(|parameter| parameter_in("path", parameter, &[], true))
-        .chain(in_query.map(|parameter| {
-            let with_example = rules::is_first_of_its_kind(parameter);
-            parameter_in("query", parameter, &rules, with_example)
-        }))
-        .collect();
+    let in_path = operation.path_parameters.iter();
+    let in_path = in_path.map(|&parameter| parameter_in("path", parameter, &[], true));
+    let in_query = of(operation.parameters).map(|parameter| {
+        let with_example = rules::is_first_of_its_kind(parameter);
+        parameter_in("query", parameter, &rules, with_example)
+    });
+    let shared = |(name, parameter)| components.share("parameters", name, parameter);
+    let parameters: Vec<Value> = in_path.chain(in_query).map(shared).collect();
     let mut responses = Map::new();
     for answer in &operation.answers {
-        responses.insert(answer.status.to_string(), answered(answer, generator));
+        responses.insert(answer.status.to_string(), answered(answer, components));
     }
     let mut problems: Vec<Kind> = operation.problems.clone();
     problems.extend(EVERYWHERE);
@@ -92,13 +120,15 @@ fn described(operation: &Operation, is_open: bool, generator: &mut SchemaGenerat
     if !is_open {
         problems.extend(AT_THE_GATE);
     }
-    for (status, response) in refused(&problems, generator) {
+    for (status, kinds) in by_status(problems) {
         // A status may be shared with an answer that is not a problem, which is described then.
-        responses.entry(status).or_insert(response);
+        responses
+            .entry(status.to_string())
+            .or_insert_with(|| refused(&kinds, components));
     }
     let mut described = json!({
         "operationId": operation.id,
-        "tags": [operation.tag.name()],
+        "tags": [operation.tag.words().0],
         "summary": operation.summary,
         "description": operation.about,
         "parameters": parameters,
@@ -115,20 +145,20 @@ fn described(operation: &Operation, is_open: bool, generator: &mut SchemaGenerat
     if let Some(body) = &operation.body {
         described["requestBody"] = json!({
             "required": true,
-            "content": { body.media_type: { "schema": (body.schema)(generator), "example": body.example } },
+            "content": { body.media_type: { "schema": (body.schema)(&mut components.generator), "example": body.example } },
         });
     }
     described
 }
 
-/// A parameter. Those that exclude each other do not all have an example: examples are valid
+/// A parameter with its name. Those that exclude each other do not all have an example: examples are valid
 /// together.
 fn parameter_in(
     place: &str,
     parameter: &Parameter,
     rules: &[rules::Rule],
     with_example: bool,
-) -> Value {
+) -> (&'static str, Value) {
     let default = parameter.default;
     let default = default.map_or_else(String::new, |default| format!(" Default: {default}."));
     let text = format!(
@@ -142,225 +172,105 @@ fn parameter_in(
         "in": place,
         "required": parameter.is_required,
         "description": text,
-        "schema": as_text(parameter.shape),
+        "schema": shape::as_text(parameter.shape),
     });
     if with_example {
-        described["example"] = sample(parameter.shape, parameter.example);
+        described["example"] = shape::sample(parameter.shape, parameter.example);
     }
-    described
+    (parameter.name, described)
 }
 
-/// The JSON Schema of a parameter in an address.
-fn as_text(shape: Shape) -> Value {
-    match shape {
-        Shape::Numbers(names) => {
-            let more = names.len().saturating_sub(1);
-            json!({ "type": "string", "pattern": format!("^{NUMBER}(,{NUMBER}){{{more}}}$") })
-        }
-        Shape::Integers { names, .. } => {
-            let pattern = vec![INTEGER; names.len()].join(",");
-            json!({ "type": "string", "pattern": format!("^{pattern}$") })
-        }
-        Shape::Offsets { .. } => {
-            let pair = format!("{INTEGER},{INTEGER}");
-            json!({ "type": "string", "pattern": format!("^{pair}([ +]{pair})*$") })
-        }
-        Shape::Vertices => {
-            json!({ "type": "string", "pattern": format!("^{NUMBER},{NUMBER}(,{NUMBER},{NUMBER}){{2,}}$") })
-        }
-        Shape::Names { pattern } => {
-            let name = pattern.trim_start_matches('^').trim_end_matches('$');
-            json!({ "type": "string", "pattern": format!("^{name}(,{name})*$") })
-        }
-        Shape::Weights => {
-            let pair = format!("{}(:{NUMBER})?", sets::NAME);
-            json!({ "type": "string", "pattern": format!("^{pair}(,{pair})*$") })
-        }
-        Shape::Ranges => {
-            let range = format!("{}:{NUMBER}:{NUMBER}", sets::NAME);
-            json!({ "type": "string", "pattern": format!("^{range}(,{range})*$") })
-        }
-        Shape::Switch => json!({ "type": "string", "enum": ["on", "off"] }),
-        Shape::Field => json!({ "type": "string", "pattern": format!("^{}$", sets::NAME) }),
-        Shape::Fields => {
-            let pair = format!("{}:{}", sets::NAME, sets::NAME);
-            json!({ "type": "string", "pattern": format!("^{pair}(,{pair})*$") })
-        }
-        other => schema(other),
-    }
-}
-
-/// An integer of up to 15 digits, which is within all bounds.
-const INTEGER: &str = r"-?\d{1,15}";
-
-/// A decimal number.
-const NUMBER: &str = r"-?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?";
-
-/// The JSON Schema of a parameter in JSON.
-pub(super) fn schema(shape: Shape) -> Value {
-    match shape {
-        Shape::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
-        Shape::Integer { min, max } => {
-            json!({ "type": "integer", "minimum": min, "maximum": max })
-        }
-        Shape::Signed { limit } => {
-            json!({ "type": "integer", "minimum": -limit, "maximum": limit })
-        }
-        Shape::Switch => json!({ "type": "boolean" }),
-        Shape::Strength { max } => json!({ "anyOf": [
-            { "type": "string", "enum": ["off", "on"] },
-            { "type": "number", "minimum": 0, "maximum": max },
-        ] }),
-        Shape::Numbers(names) => json!({
-            "type": "array", "items": { "type": "number" },
-            "minItems": names.len(), "maxItems": names.len(),
-        }),
-        Shape::Integers { names, limit } => json!({
-            "type": "array", "items": { "type": "integer", "minimum": -limit, "maximum": limit },
-            "minItems": names.len(), "maxItems": names.len(),
-        }),
-        Shape::Offsets { limit } => json!({
-            "type": "array", "minItems": 1,
-            "items": {
-                "type": "array", "items": { "type": "integer", "minimum": -limit, "maximum": limit },
-                "minItems": 2, "maxItems": 2,
-            },
-        }),
-        Shape::Vertices => json!({ "type": "array", "items": { "type": "number" }, "minItems": 6 }),
-        Shape::Names { pattern } => json!({
-            "type": "array", "items": { "type": "string", "pattern": pattern },
-            "uniqueItems": true,
-        }),
-        Shape::Weights => json!({
-            "type": "object",
-            "propertyNames": { "pattern": format!("^{}$", sets::NAME) },
-            "additionalProperties": { "type": "number", "minimum": 1e-9, "maximum": 1e9 },
-            "minProperties": 1, "maxProperties": 256,
-        }),
-        Shape::Ranges => json!({
-            "type": "object",
-            "propertyNames": { "pattern": format!("^{}$", sets::NAME) },
-            "additionalProperties": {
-                "type": "array", "items": { "type": "number", "minimum": 0, "maximum": 1e9 },
-                "minItems": 2, "maxItems": 2,
-            },
-            "minProperties": 1, "maxProperties": 256,
-        }),
-        Shape::Choice(words) => json!({ "type": "string", "enum": words }),
-        Shape::Format => {
-            json!({ "type": "string", "enum": Encoding::ALL.map(Encoding::name) })
-        }
-        Shape::Pattern(pattern) => json!({ "type": "string", "pattern": pattern }),
-        Shape::Fields => json!({
-            "type": "object",
-            "propertyNames": { "pattern": format!("^{}$", sets::NAME) },
-            "additionalProperties": schema(Shape::Field),
-            "minProperties": 1, "maxProperties": 32,
-        }),
-        Shape::Field => json!({ "anyOf": [
-            { "type": "string", "pattern": format!("^{}$", sets::NAME) },
-            { "$ref": "#/components/schemas/Field" },
-        ] }),
-        Shape::Quadratic | Shape::Text => json!({ "type": "string" }),
-    }
-}
-
-/// An example in the type of its schema.
-fn sample(shape: Shape, text: &str) -> Value {
-    match shape {
-        Shape::Number { .. } | Shape::Integer { .. } | Shape::Signed { .. } => {
-            serde_json::from_str(text).unwrap_or_else(|_| text.into())
-        }
-        _ => text.into(),
-    }
-}
-
-fn answered(answer: &Answer, generator: &mut SchemaGenerator) -> Value {
-    let headers: Map<String, Value> = answer
-        .headers
-        .iter()
-        .map(|&(name, about)| {
-            let header = json!({ "description": about, "schema": { "type": "string" } });
-            (name.to_owned(), header)
-        })
-        .collect();
-    let contents: Map<String, Value> = answer
-        .contents
-        .iter()
-        .map(|&(media_type, schema)| {
-            (
-                media_type.to_owned(),
-                json!({ "schema": schema(generator) }),
-            )
-        })
-        .collect();
+/// An answer. One that has no content is shared.
+fn answered(answer: &Answer, components: &mut Components) -> Value {
     let mut described = json!({ "description": answer.about });
-    if !headers.is_empty() {
-        described["headers"] = Value::Object(headers);
+    for &(name, about) in &answer.headers {
+        let header = json!({ "description": about, "schema": { "type": "string" } });
+        described["headers"][name] = components.share("headers", name, header);
     }
-    if !contents.is_empty() {
-        described["content"] = Value::Object(contents);
+    for &(media_type, schema) in &answer.contents {
+        described["content"][media_type] = json!({ "schema": schema(&mut components.generator) });
+    }
+    if answer.status == 304 {
+        return components.share("responses", "unchanged", described);
     }
     described
 }
 
-/// The problems by status: several kinds can share one.
-fn refused(kinds: &[Kind], generator: &mut SchemaGenerator) -> Vec<(String, Value)> {
-    let mut by_status: Vec<(String, Vec<String>)> = vec![];
-    for &kind in kinds {
-        let problem = error_map::wire(kind);
-        let status = problem.status.as_u16().to_string();
-        let text = format!("{} (`{}`)", problem.title, error_map::urn(kind));
-        match by_status.iter_mut().find(|(known, _)| *known == status) {
-            Some((_, texts)) if texts.contains(&text) => {}
-            Some((_, texts)) => texts.push(text),
-            None => by_status.push((status, vec![text])),
+/// The kinds of problems by status, each once.
+fn by_status(problems: Vec<Kind>) -> BTreeMap<u16, Vec<Kind>> {
+    let mut by_status = BTreeMap::<_, Vec<_>>::new();
+    for kind in problems {
+        let same = by_status.entry(kind.wire().status).or_default();
+        if !same.contains(&kind) {
+            same.push(kind);
         }
     }
-    let schema = schemas::of::<Problem<'_>>(generator);
     by_status
-        .into_iter()
-        .map(|(status, texts)| {
-            let response = json!({
-                "description": format!("{}.", texts.join(", or: ")),
-                "content": {
-                    "application/problem+json": { "schema": schema },
-                },
-            });
-            (status, response)
-        })
-        .collect()
+}
+
+/// The problems of one status.
+fn refused(kinds: &[Kind], components: &mut Components) -> Value {
+    let text = |kind: &Kind| format!("{} (`{}`)", kind.wire().title, problem::urn(*kind));
+    let texts: Vec<String> = kinds.iter().map(text).collect();
+    let schema = schemas::of::<Problem<'_>>(&mut components.generator);
+    let response = json!({
+        "description": format!("{}.", texts.join(", or: ")),
+        "content": { "application/problem+json": { "schema": schema } },
+    });
+    let slugs: Vec<&str> = kinds.iter().map(|kind| kind.slug()).collect();
+    components.share("responses", &slugs.join("."), response)
 }
 
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
 
+    use strew_catalog::Catalog;
+    use strew_config::Layers;
+    use strew_query::{groups, parameters::PARAMETERS};
+    use strew_service::{Service, Workers};
+
     use super::*;
-    use crate::{
-        config::Layers,
-        service::{Catalog, Service, Workers},
-    };
+    use crate::recipe::ADDED;
 
     #[test]
     fn an_added_parameter_is_described() {
+        let (name, described) = parameter_in("query", &ADDED, &[], true);
+        assert_eq!(name, "added");
+        assert_eq!(described["schema"]["maximum"], json!(9));
+        assert_eq!(described["example"], json!(3));
+    }
+
+    #[test]
+    fn parameters_and_members_are_loops_over_the_table() {
         let catalog = Catalog::load(true, None).expect("built in");
         let settings = Layers::new().and_then(Layers::finish).expect("valid");
         let workers = Workers::new(1).expect("threads");
         let service = Arc::new(Service::new(catalog, settings.limits, workers));
         let document = document(&crate::rest::endpoints(&service));
-        let parameters = &document["paths"]["/v1/points"]["get"]["parameters"];
-        let names = parameters
-            .as_array()
-            .expect("a list")
-            .iter()
-            .map(|p| &p["name"]);
-        assert!(names.clone().any(|name| name == "added"), "{parameters}");
-        let schemas = &document["components"]["schemas"];
-        assert_eq!(
-            schemas["PointsQuery"]["properties"]["added"]["maximum"],
-            json!(9)
+        let listed = &document["paths"]["/v1/points"]["get"]["parameters"];
+        let listed = listed.as_array().expect("a list").iter();
+        let references = listed.map(|parameter| parameter["$ref"].as_str().expect("shared"));
+        assert!(
+            references.eq(of(groups::POINTS)
+                .map(|parameter| format!("#/components/parameters/{}", parameter.name)))
         );
-        assert_eq!(schemas["Set"]["properties"]["added"]["maximum"], json!(9));
+        let members = |schema: &str| {
+            let properties = &document["components"]["schemas"][schema]["properties"];
+            let properties = properties.as_object().expect("an object").keys();
+            properties.map(String::as_str).collect::<Vec<_>>()
+        };
+        for (schema, groups) in [
+            ("PointsQuery", groups::QUERY),
+            ("CountQuery", groups::COUNTED),
+        ] {
+            let named = of(groups).map(|parameter| parameter.name);
+            let expected: Vec<&str> = named.chain(["region", "layers"]).collect();
+            assert_eq!(members(schema), expected);
+        }
+        let echoed = members("Set");
+        for parameter in PARAMETERS.iter().filter(|parameter| parameter.is_echoed) {
+            assert!(echoed.contains(&parameter.name), "{}", parameter.name);
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! What REST offers, described once: an [`Endpoint`] is a path with its handlers and their
+//! The description of REST: an [`Endpoint`] is a path with its handlers and their
 //! description, so that nothing is routed that `/openapi.json` does not describe.
 //!
 //! To add a path, write a module with `pub(super) fn endpoint(service) -> Endpoint` and list it in
@@ -9,17 +9,20 @@ mod examples;
 mod rules;
 pub mod schemas;
 mod sets;
+mod shape;
 
-use axum::{Router, routing::MethodRouter};
+use axum::{
+    Router,
+    handler::Handler,
+    routing::{self, MethodFilter, MethodRouter},
+};
 use http::Method;
 use schemars::JsonSchema;
 use serde_json::Value;
+use strew_error::Kind;
+use strew_query::{Group, Parameter};
 
 use super::unknown::wrong_method;
-use crate::service::{
-    Kind,
-    query::{Group, Parameter},
-};
 use schemas::Content;
 
 pub(super) use document::document;
@@ -40,11 +43,11 @@ pub struct Operation {
     pub method: Method,
     /// A name for programs, in camel case.
     pub id: &'static str,
-    /// What it does, in a few words.
+    /// A summary in a few words.
     pub summary: &'static str,
-    /// What else is to know.
+    /// The description below the summary.
     pub about: &'static str,
-    /// What the operation belongs to.
+    /// The subject that the operation belongs to.
     pub tag: Tag,
     /// The parameters of the path, in its order.
     pub path_parameters: &'static [&'static Parameter],
@@ -61,69 +64,39 @@ pub struct Operation {
     pub example: String,
 }
 
-/// What operations belong to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tag {
-    /// Points of regions.
-    Points,
-    /// Noise profiles.
-    Profiles,
-    /// Fields.
-    Fields,
-    /// Worlds.
-    Worlds,
-    /// Tables made on demand.
-    Tables,
-    /// Patterns without displacements.
-    Patterns,
-    /// Pages and documents about the daemon.
-    About,
-    /// What operators use.
-    Operations,
+/// Makes the list of subjects, each with its name and its description.
+macro_rules! tags {
+    ($($tag:ident: $name:literal, $about:literal;)+) => {
+        /// The subjects of operations.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Tag {
+            $(#[doc = $about] $tag,)+
+        }
+
+        impl Tag {
+            /// All of them, in their order.
+            pub const ALL: &[Self] = &[$(Self::$tag),+];
+
+            /// The name and the description of the subject.
+            #[must_use]
+            pub const fn words(self) -> (&'static str, &'static str) {
+                match self {
+                    $(Self::$tag => ($name, $about),)+
+                }
+            }
+        }
+    };
 }
 
-impl Tag {
-    /// All of them.
-    pub const ALL: [Self; 8] = [
-        Self::Points,
-        Self::Profiles,
-        Self::Fields,
-        Self::Worlds,
-        Self::Tables,
-        Self::Patterns,
-        Self::About,
-        Self::Operations,
-    ];
-
-    /// The name.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Points => "points",
-            Self::Profiles => "profiles",
-            Self::Fields => "fields",
-            Self::Worlds => "worlds",
-            Self::Tables => "tables",
-            Self::Patterns => "patterns",
-            Self::About => "about",
-            Self::Operations => "operations",
-        }
-    }
-
-    /// What is in it.
-    #[must_use]
-    pub const fn about(self) -> &'static str {
-        match self {
-            Self::Points => "Points of regions, counts, and single points.",
-            Self::Profiles => "The noise profiles that are loaded.",
-            Self::Fields => "The fields that are loaded.",
-            Self::Worlds => "The worlds that are loaded: queries that are described once.",
-            Self::Tables => "Tables made on demand, and the jobs that make them.",
-            Self::Patterns => "The AA pattern of any α: arrangements, clusters, maps, figures.",
-            Self::About => "Pages for people and this document.",
-            Self::Operations => "Health, metrics and administration.",
-        }
-    }
+tags! {
+    Points: "points", "Points of regions, counts, and single points.";
+    Profiles: "profiles", "The noise profiles that are loaded.";
+    Fields: "fields", "The fields that are loaded.";
+    Worlds: "worlds", "The worlds that are loaded: queries that are described once.";
+    Tables: "tables", "Tables made on demand, and the jobs that make them.";
+    Patterns: "patterns", "The AA pattern of any α: arrangements, clusters, maps, figures.";
+    About: "about", "Pages for people and this document.";
+    Operations: "operations", "Health, metrics and administration.";
 }
 
 /// The body of a request.
@@ -142,7 +115,7 @@ pub struct Body {
 pub struct Answer {
     /// Its status.
     pub status: u16,
-    /// What it is.
+    /// Its description.
     pub about: &'static str,
     /// Its headers by name, with what they say.
     pub headers: Vec<(&'static str, &'static str)>,
@@ -152,28 +125,70 @@ pub struct Answer {
 
 impl Answer {
     /// A JSON document of a type.
-    pub(super) fn json<T: JsonSchema>(about: &'static str) -> Self {
+    #[must_use]
+    pub fn json<T: JsonSchema>(about: &'static str) -> Self {
+        Self::file(about, "application/json", schemas::of::<T>)
+    }
+
+    /// A file of a media type.
+    #[must_use]
+    pub fn file(about: &'static str, media_type: &'static str, schema: Content) -> Self {
         Self {
             status: 200,
             about,
             headers: vec![],
-            contents: vec![("application/json", schemas::of::<T>)],
+            contents: vec![(media_type, schema)],
         }
     }
 
-    /// The answer to a client whose copy is still right.
-    #[must_use]
-    pub const fn unchanged() -> Self {
-        Self {
+    /// This answer, and the one to a client whose copy is still right.
+    pub(super) fn or_unchanged(self) -> Vec<Self> {
+        let unchanged = Self {
             status: 304,
-            about: "What the client has (If-None-Match) is still the answer.",
+            about: "The copy that the client has (If-None-Match) is still the answer.",
             headers: vec![],
             contents: vec![],
+        };
+        vec![self, unchanged]
+    }
+}
+
+impl Operation {
+    /// A GET without parameters, whose only problem of its own is an invalid query. Descriptions of operations state
+    /// how they differ from it.
+    #[must_use]
+    pub fn new(tag: Tag, answers: Vec<Answer>) -> Self {
+        Self {
+            method: Method::GET,
+            id: "",
+            summary: "",
+            about: "",
+            tag,
+            path_parameters: &[],
+            parameters: &[],
+            body: None,
+            answers,
+            problems: vec![Kind::Invalid],
+            example: String::new(),
         }
     }
 }
 
 impl Endpoint {
+    /// A path with one operation and its handler.
+    ///
+    /// # Panics
+    /// For a method that is not one of HTTP's own.
+    pub fn only<S, T, H>(path: &'static str, state: S, operation: Operation, handler: H) -> Self
+    where
+        S: Clone + Send + Sync + 'static,
+        T: 'static,
+        H: Handler<T, S>,
+    {
+        let method = MethodFilter::try_from(operation.method.clone()).expect("a method of HTTP");
+        Self::new(path, state, vec![(operation, routing::on(method, handler))])
+    }
+
     /// A path with a handler for each of its operations, in the same order. Other methods are
     /// answered with a problem.
     pub fn new<S: Clone + Send + Sync + 'static>(
@@ -226,7 +241,7 @@ impl Endpoint {
         self.path
     }
 
-    /// What it answers.
+    /// Its operations.
     #[must_use]
     pub fn operations(&self) -> &[Operation] {
         &self.operations

@@ -2,25 +2,16 @@
 //! operation, and in words: in its description, or in that of the parameter.
 
 use serde::Serialize;
-
-use crate::service::{
-    Encoding,
-    query::{
-        Group, Parameter, Spread, of as parameters_of,
-        parameters::{
-            ALIGN, ATTRIBUTES, COUNT, CRS, DECIMALS, EXCEPT, FORMAT, HEIGHTS, MIN_DISTANCE,
-            NORMALS, ONLY, PARAMETERS, PERIODIC, PROFILE, SCALE_RANGE, SCALE_RANGES, SIZE, SPREAD,
-            SUMMARY, TERRAIN, VARIANT_FIELDS, VARIANTS, WORLD, WORLD_DIGEST,
-        },
-        patterns::{
-            CURSOR as PATTERN_CURSOR, GRID, LIMIT as PATTERN_LIMIT, LIST, MAP as PATTERN_MAP,
-            WARP as PATTERN_WARP,
-        },
+use strew_encode::Encoding;
+use strew_query::{
+    Group, Parameter, of as parameters_of,
+    parameters::{FORMAT, ONLY, PARAMETERS, PROFILE, WORLD, WORLD_DIGEST},
+    patterns::{
+        CURSOR as PATTERN_CURSOR, GRID, LIMIT as PATTERN_LIMIT, LIST, MAP as PATTERN_MAP,
+        WARP as PATTERN_WARP,
     },
+    rules::{self, Condition, RULES},
 };
-
-/// The spreads of kinds.
-const EVEN: &[&str] = &[Spread::Even.name(), Spread::Joint.name()];
 
 /// A rule between parameters.
 #[derive(Clone, Debug, Serialize)]
@@ -128,34 +119,13 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
         .filter(|(parameters, _)| !parameters.is_empty())
         .map(|(parameters, unless)| Rule::ExactlyOneOf { parameters, unless })
         .collect();
-    let only_with =
-        |parameter: &Parameter, other: &Parameter, values: Vec<&'static str>| Rule::OnlyWith {
-            parameter: parameter.name,
-            other: other.name,
-            values,
-        };
-    if groups.contains(&Group::Period) && groups.contains(&Group::Amount) {
-        let amounts = [&MIN_DISTANCE, &COUNT].map(|parameter| parameter.name);
-        let taken = names(&[Group::Amount, Group::Count]);
-        rules.push(Rule::NotWith {
-            parameter: PERIODIC.name,
-            others: amounts
-                .into_iter()
-                .filter(|name| taken.contains(name))
-                .chain(
-                    names(&[Group::Attributes])
-                        .into_iter()
-                        .filter(|name| *name == VARIANT_FIELDS.name),
-                )
-                .collect(),
-        });
-    }
-    if groups.contains(&Group::Except) {
-        let others = names(&[Group::Count, Group::Period]);
-        rules.push(Rule::NotWith {
-            parameter: EXCEPT.name,
-            others,
-        });
+    let mut shared = RULES
+        .iter()
+        .filter_map(|rule| published(rule, groups))
+        .peekable();
+    // Those about places and amounts come first.
+    while let Some(rule) = shared.next_if(|rule| matches!(rule, Rule::NotWith { .. })) {
+        join(&mut rules, rule);
     }
     if is_of_world {
         rules.push(Rule::AtMostOneOf {
@@ -189,69 +159,83 @@ pub(super) fn of(groups: &'static [Group]) -> Vec<Rule> {
             parameters: amounts,
         });
     }
-    if groups.contains(&Group::Attributes) {
-        rules.push(only_with(&SCALE_RANGE, &ATTRIBUTES, vec!["scale"]));
-        rules.push(only_with(&SCALE_RANGES, &ATTRIBUTES, vec!["scale"]));
-        rules.extend(
-            [&HEIGHTS, &NORMALS, &ALIGN].map(|given| Rule::OnlyWithOneOf {
-                parameter: given.name,
-                others: vec![Other {
-                    parameter: TERRAIN.name,
-                    values: vec![],
-                }],
-            }),
-        );
-        let other = |parameter: &Parameter, values: &[&'static str]| Other {
-            parameter: parameter.name,
-            values: values.into(),
-        };
-        rules.push(Rule::OnlyWithOneOf {
-            parameter: VARIANTS.name,
-            others: vec![
-                other(&ATTRIBUTES, &["variant"]),
-                other(&SPREAD, EVEN),
-                other(&SCALE_RANGES, &[]),
-            ],
-        });
+    for mut rule in shared {
         // Beside layers, which a world may have, it is one of them.
-        let layers = world.into_iter().chain(is_body.then_some("layers"));
-        let layers = layers.map(|parameter| Other {
-            parameter,
-            values: vec![],
-        });
-        if !is_of_world {
-            rules.push(Rule::OnlyWithOneOf {
-                parameter: ONLY.name,
-                others: [other(&SPREAD, EVEN)].into_iter().chain(layers).collect(),
-            });
+        if let Rule::OnlyWithOneOf { parameter, others } = &mut rule
+            && *parameter == ONLY.name
+        {
+            let layers = world.into_iter().chain(is_body.then_some("layers"));
+            others.extend(layers.map(|parameter| Other {
+                parameter,
+                values: vec![],
+            }));
         }
-        rules.push(only_with(
-            &VARIANT_FIELDS,
-            &SPREAD,
-            vec![Spread::Even.name()],
-        ));
-        rules.extend(EVEN.iter().map(|value| Rule::Needs {
-            parameter: SPREAD.name,
-            value,
-            needs: VARIANTS.name,
-        }));
-        rules.push(Rule::Needs {
-            parameter: ATTRIBUTES.name,
-            value: "variant",
-            needs: VARIANTS.name,
-        });
-    }
-    if groups.contains(&Group::Output) {
-        let formats = |fits: fn(Encoding) -> bool| {
-            let fitting = Encoding::ALL.into_iter().filter(|encoding| fits(*encoding));
-            fitting.map(Encoding::name).collect()
-        };
-        rules.push(only_with(&DECIMALS, &FORMAT, formats(Encoding::is_text)));
-        rules.push(only_with(&SIZE, &FORMAT, formats(Encoding::is_picture)));
-        rules.push(only_with(&SUMMARY, &FORMAT, formats(Encoding::has_summary)));
-        rules.push(only_with(&CRS, &FORMAT, formats(Encoding::has_crs)));
+        if !(is_of_world && rule.parameter() == Some(ONLY.name)) {
+            join(&mut rules, rule);
+        }
     }
     rules
+}
+
+/// Adds a rule; what a parameter may not be given beside is listed in one.
+fn join(rules: &mut Vec<Rule>, rule: Rule) {
+    if let (
+        Some(Rule::NotWith { parameter, others }),
+        Rule::NotWith {
+            parameter: same,
+            others: more,
+        },
+    ) = (rules.last_mut(), &rule)
+        && parameter == same
+    {
+        others.extend(more);
+        return;
+    }
+    rules.push(rule);
+}
+
+/// A rule of the table for a request that takes some groups.
+fn published(rule: &rules::Rule, groups: &'static [Group]) -> Option<Rule> {
+    let is_taken = |parameter: &Parameter| groups.contains(&parameter.group);
+    let parameter = Some(rule.parameter)
+        .filter(|parameter| is_taken(parameter))?
+        .name;
+    Some(match rule.condition {
+        Condition::With([only], _) if !only.values.is_empty() && parameter != ONLY.name => {
+            Rule::OnlyWith {
+                parameter,
+                other: only.parameter.name,
+                values: only.values.into(),
+            }
+        }
+        Condition::With(others, _) => Rule::OnlyWithOneOf {
+            parameter,
+            others: others
+                .iter()
+                .map(|other| Other {
+                    parameter: other.parameter.name,
+                    values: other.values.into(),
+                })
+                .collect(),
+        },
+        Condition::Without(other, ..) => Rule::NotWith {
+            parameter,
+            others: vec![Some(other).filter(|other| is_taken(other))?.name],
+        },
+        Condition::Needs(value, needed) => Rule::Needs {
+            parameter,
+            value,
+            needs: needed.name,
+        },
+        Condition::Format(fits) => Rule::OnlyWith {
+            parameter,
+            other: FORMAT.name,
+            values: (Encoding::ALL.into_iter())
+                .filter(|encoding| fits(*encoding))
+                .map(Encoding::name)
+                .collect(),
+        },
+    })
 }
 
 /// The rules that are about no single parameter, as a list in Markdown below a description.
@@ -271,6 +255,17 @@ pub(super) fn at(parameter: &str, rules: &[Rule]) -> String {
 }
 
 impl Rule {
+    /// The parameter that it is about, if it is one.
+    const fn parameter(&self) -> Option<&'static str> {
+        match self {
+            Self::ExactlyOneOf { .. } | Self::AtMostOneOf { .. } => None,
+            Self::OnlyWith { parameter, .. }
+            | Self::OnlyWithOneOf { parameter, .. }
+            | Self::NotWith { parameter, .. }
+            | Self::Needs { parameter, .. } => Some(*parameter),
+        }
+    }
+
     fn of_several(&self) -> Option<String> {
         match self {
             Self::ExactlyOneOf { parameters, unless } => {

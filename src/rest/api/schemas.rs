@@ -3,13 +3,11 @@
 use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, generate::SchemaSettings, json_schema};
-use serde_json::{Value, json};
+use serde_json::Value;
+use strew_catalog::field::Document;
+use strew_query::{RegionSchema, groups};
 
 use super::sets;
-use crate::service::{
-    field::Document,
-    query::{RegionSchema, Resolved, ResolvedSet, groups},
-};
 
 /// Makes the schema of a content, with what it refers to among the generator's definitions.
 pub type Content = fn(&mut SchemaGenerator) -> Schema;
@@ -41,11 +39,6 @@ pub fn any(_: &mut SchemaGenerator) -> Schema {
 /// The schema of any object.
 pub fn object(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "object" })
-}
-
-/// A reference to a schema of the document.
-pub(super) fn reference(name: &str) -> Value {
-    json!({ "$ref": format!("#/components/schemas/{name}") })
 }
 
 /// The body of `POST /v1/points:query`.
@@ -92,35 +85,6 @@ from_table! {
         sets::body(groups::ARRANGEMENT, "An arrangement, and where its occurrences are wanted.")
     };
     Layer = "Layer", |_| sets::layer();
-    ResolvedSet = "Set", |generator| {
-        of::<RegionSchema>(generator);
-        of::<Document>(generator);
-        let (required, properties) = sets::echo();
-        json!({
-            "type": "object",
-            "description": "A set of points with everything filled in.",
-            "required": required,
-            "properties": properties,
-        })
-    };
-    Resolved = "Query", |generator| {
-        of::<ResolvedSet>(generator);
-        let (_, mut properties) = sets::echo();
-        let count = json!({ "type": "integer", "minimum": 0 });
-        let number = json!({ "type": "number" });
-        let bbox = json!({ "type": "array", "items": number, "minItems": 4, "maxItems": 4 });
-        properties.insert("bbox".into(), bbox);
-        let layers = json!({ "type": "array", "items": reference("Set") });
-        properties.insert("layers".into(), layers);
-        properties.insert("offset".into(), count.clone());
-        properties.insert("limit".into(), count);
-        json!({
-            "type": "object",
-            "description": "A query with everything filled in: of one set of points, or of layers.",
-            "required": ["bbox"],
-            "properties": properties,
-        })
-    };
 }
 
 /// Defines what queries refer to.

@@ -2,15 +2,13 @@
 //! parameters.
 
 use serde_json::{Map, Value, json};
-
-use super::{document::schema, rules, schemas::reference};
-use crate::service::query::{
-    Group, MOST_LAYERS, Parameter, groups, of,
-    parameters::{COUNT, EXCEPT, KEEP, ONLY, PARAMETERS, PERIODIC, SEED, WORLD},
+use strew_query::{
+    Group, MOST_LAYERS, NAME, Parameter, groups, of,
+    parameters::{COUNT, EXCEPT, KEEP, ONLY, PERIODIC, SEED, WORLD},
+    schema,
 };
 
-/// The names of layers and variants.
-pub(super) const NAME: &str = "[A-Za-z0-9_.-]{1,64}";
+use super::{rules, shape::reference};
 
 /// A body whose members are all parameters.
 pub(super) fn body(groups: &'static [Group], about: &str) -> Value {
@@ -35,12 +33,12 @@ fn members(groups: &'static [Group]) -> Map<String, Value> {
     of(groups).map(member).collect()
 }
 
-/// What no value fulfills. Not every generator of clients reads `false`.
+/// A schema that no value fulfills. Not every generator of clients reads `false`.
 fn nothing() -> Value {
     json!({ "not": {} })
 }
 
-/// What the members of a set must fulfill together, with what may stand for the amount.
+/// The conditions on the members of a set, with a schema that may stand for the amount.
 fn rules_of_set(instead: Option<Value>) -> Vec<Value> {
     let is_amount = |group: Group| [Group::Amount, Group::Count].contains(&group);
     let amounts = of(groups::SET).filter(|parameter| is_amount(parameter.group));
@@ -66,8 +64,8 @@ fn rules_of_set(instead: Option<Value>) -> Vec<Value> {
     ]
 }
 
-/// What region, periodic, spread, only, scale_ranges, decimals, size, summary and crs are for stands in `x-rules` only: programs that make queries from
-/// the schema give up on so many conditions.
+/// The schema of a query. The conditions of region, periodic, spread, only, scale_ranges, decimals, size, summary and
+/// crs are in `x-rules` only: schema-based test generators cannot satisfy that many.
 fn query(groups: &'static [Group], about: &str) -> Value {
     let mut properties = members(groups);
     properties.insert("region".into(), reference("Region"));
@@ -142,104 +140,4 @@ pub(super) fn layer() -> Value {
         "additionalProperties": false,
         "allOf": rules,
     })
-}
-
-/// A set as answers echo it: what is always there, and all members.
-pub(super) fn echo() -> (Vec<&'static str>, Map<String, Value>) {
-    let number = |about: &str| json!({ "type": "number", "description": about });
-    let mut members = Map::new();
-    let mut put = |name: &str, schema: Value| members.insert(name.into(), schema);
-    put(
-        "name",
-        json!({ "type": "string", "description": "The name of the layer." }),
-    );
-    put("region", reference("Region"));
-    put(
-        "density",
-        number("Points per unit of area, before keep and clear_of."),
-    );
-    put("spacing", number("The mean spacing: density^-1/2."));
-    put(
-        "least_distance",
-        number("No two points are nearer, in world units, by their f64 coordinates."),
-    );
-    let mut always = vec!["density", "spacing", "least_distance"];
-    for parameter in PARAMETERS
-        .iter()
-        .filter(|parameter| parameter.echo.is_some())
-    {
-        let mut echoed = match parameter.name {
-            // Text in requests, too, but always a number in answers.
-            "warp" => json!({ "type": "number" }),
-            // Described ones are known by their digests.
-            "field" | "terrain" => json!({ "type": "string" }),
-            _ => schema(parameter.shape),
-        };
-        echoed["description"] = parameter.about.into();
-        put(parameter.name, echoed);
-        let is_always = [Group::Profile, Group::Table].contains(&parameter.group)
-            || ["seed", "warp"].contains(&parameter.name);
-        always.extend(is_always.then_some(parameter.name));
-    }
-    put(
-        "field_digest",
-        json!({ "type": "string", "description": "The digest of the field, if there is one." }),
-    );
-    put(
-        "except_digest",
-        json!({ "type": "string", "description": "The digest of the ids that are left out, if there are any." }),
-    );
-    put(
-        "terrain_digest",
-        json!({ "type": "string", "description": "The digest of the terrain's field." }),
-    );
-    put(
-        "variant_field_digests",
-        json!({
-            "type": "object", "additionalProperties": { "type": "string" },
-            "description": "The digests of the fields of variants.",
-        }),
-    );
-    put(
-        "clear_of",
-        json!({ "type": "object", "additionalProperties": { "type": "number" } }),
-    );
-    put(
-        "kinds",
-        json!({
-            "type": "object", "additionalProperties": { "type": "integer", "minimum": 0 },
-            "description": "How many points of the region each variant has, if they are evenly spread.",
-        }),
-    );
-    put(
-        "kind_distances",
-        json!({
-            "type": "array",
-            "items": {
-                "type": "object",
-                "properties": {
-                    "kinds": { "type": "array", "items": { "type": "string" }, "minItems": 2, "maxItems": 2 },
-                    "least_distance": { "type": "number" },
-                },
-                "required": ["kinds", "least_distance"],
-            },
-            "description": "The distances that the points of two evenly spread variants, or of one, keep.",
-        }),
-    );
-    put(
-        "period",
-        json!({
-            "type": "object",
-            "properties": {
-                "p": { "type": "integer" },
-                "q": { "type": "integer" },
-                "points": { "type": "integer" },
-                "side": { "type": "number" },
-            },
-            "required": ["p", "q", "points", "side"],
-            "description": "The period that the points are of: the fraction p/q near alpha, the number of points \
-                            before any are left out, and the side L.",
-        }),
-    );
-    (always, members)
 }

@@ -1,10 +1,10 @@
-//! The coding that a client and the content of an answer ask for.
+//! The coding that fits the client and the content of an answer.
 
 use http::{HeaderMap, header};
 
 use crate::rest::quality;
 
-/// How an answer is compressed.
+/// The coding that compresses an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::rest) enum Coding {
     /// `zstd` (RFC 8878): smaller and several times as fast as gzip.
@@ -24,7 +24,7 @@ impl Coding {
         }
     }
 
-    /// What tells the tag of a compressed answer from that of a plain one.
+    /// The suffix that the tag of a compressed answer has.
     pub(in crate::rest) const fn suffix(self) -> &'static str {
         match self {
             Self::Zstd => "-zstd",

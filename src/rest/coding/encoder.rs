@@ -1,6 +1,6 @@
 //! Compressing a stream of blocks, each to its last byte before the next one comes.
 
-use std::{io, io::Write as _};
+use std::io::{self, Write as _};
 
 use bytes::Bytes;
 
@@ -43,7 +43,7 @@ impl Encoder {
         Ok(encoder.encode(None)?.1)
     }
 
-    /// What goes out for a block, all of which can be read from it; after the last one, the end.
+    /// The compressed bytes of a block, from which all of it can be read; after the last one, the end.
     pub(super) fn encode(mut self, block: Option<Bytes>) -> io::Result<(Self, Bytes)> {
         match &mut self {
             Self::Zstd(encoder) => match block {
@@ -76,7 +76,7 @@ mod tests {
             Coding::Zstd => Box::new(zstd::stream::read::Decoder::new(bytes).expect("a decoder")),
             Coding::Gzip => Box::new(flate2::read::GzDecoder::new(bytes)),
         };
-        // What has not ended reads as an error once it is used up.
+        // A stream that was cut reads as an error at its end.
         while let Ok(1..) = reader.read(&mut text[read..]).inspect(|n| read += n) {}
         text.truncate(read);
         text

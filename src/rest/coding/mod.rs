@@ -16,9 +16,11 @@ use futures_util::{StreamExt as _, stream};
 use http::{HeaderMap, HeaderValue, header};
 
 use super::vary;
-use crate::service::{Error, Held, Lane, Owner, Service, Workers};
 pub(super) use choice::Coding;
 pub(super) use encoder::Encoder;
+use strew_error::Error;
+use strew_plan::Lane;
+use strew_service::{Held, Owner, Service, Workers};
 
 /// The coding of an answer whose tag says it.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +50,7 @@ pub(super) async fn apply(
         return Ok(response);
     };
     let whole = http_body::Body::size_hint(response.body()).exact();
-    // Without a tag, which tells the coding, an answer may stay plain: where that is shorter, and where
+    // Without a tag, which names the coding, an answer may stay plain: where that is shorter, and where
     // there is no room for a compressor.
     if decided.is_none() {
         let length = response.headers().get(header::CONTENT_LENGTH);

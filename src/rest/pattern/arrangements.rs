@@ -4,34 +4,31 @@ use std::sync::Arc;
 
 use axum::{body::Body, extract::State, response::Response, routing};
 use futures_util::StreamExt as _;
-use http::{HeaderName, HeaderValue, Method, header};
+use http::{HeaderName, HeaderValue, Method};
 use schemars::JsonSchema;
 use serde_json::json;
 use strew_core::server::Stop;
+use strew_error::{Error, Kind};
+use strew_query::{groups, read_members};
+use strew_service::{
+    Interrupted, Record, Service,
+    pattern::{ArrangementQuery, Facts},
+};
 
 use super::{
     api::{
         self, Endpoint, Operation, Tag,
         schemas::{self, ArrangementQuery as ArrangementBody},
     },
-    context::Context,
-    document,
-    freshness::Freshness,
-    query,
+    context::{Context, Sent},
+    document, query,
 };
-use crate::{
-    rest::body::Whole,
-    service::{
-        Error, Interrupted, Kind, Record, Service,
-        pattern::{ArrangementQuery, Facts},
-        query::{groups, read_members},
-    },
-};
+use crate::rest::Refused;
 
 const COUNT: HeaderName = HeaderName::from_static("strew-count");
 const NEXT: HeaderName = HeaderName::from_static("strew-next");
 
-/// What an arrangement is, for the description.
+/// The definition of an arrangement, for the description.
 const ABOUT: &str = "An arrangement is a point of the pattern with others at some offsets from it. It exists iff its image in \
      index space fits the set region, and the area of the margin that is left is the exact density of its \
      occurrences. In a box of the grid occurrences are counted in closed form, whatever its size; list returns \
@@ -50,17 +47,13 @@ pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
         ]
     };
     let given = Operation {
-        method: Method::GET,
         id: "getArrangement",
         summary: "An arrangement, and where it occurs",
         about: ABOUT,
-        tag: Tag::Patterns,
-        path_parameters: &[],
         parameters: groups::ARRANGEMENT,
-        body: None,
-        answers: vec![described(), api::Answer::unchanged()],
         problems: problems(),
         example: "'/v1/pattern/arrangements?alpha=sqrt(3)&offsets=2,0+1,2&grid=0,0,40,40'".into(),
+        ..Operation::new(Tag::Patterns, described().or_unchanged())
     };
     let posted = Operation {
         method: Method::POST,
@@ -84,7 +77,7 @@ fn described() -> api::Answer {
         headers: vec![
             (
                 "strew-count",
-                "With list: exactly how many occurrences follow.",
+                "With list: the exact number of occurrences that follow.",
             ),
             (
                 "strew-next",
@@ -138,31 +131,27 @@ struct Occurrence {
     places: Option<Vec<[f64; 2]>>,
 }
 
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let query = ArrangementQuery::check(&context.values(groups::ARRANGEMENT), &service.catalog())?;
     let content_type = query
         .list
         .map_or(document::JSON, |list| list.content_type());
     let digest = query.set.as_ref().map(|set| &set.entry.digest);
     let made_of = (digest, service.limits().max_points);
-    let freshness = Freshness::of(&context.uri, &context.headers, content_type, &made_of);
+    let freshness = context.freshness(content_type, &made_of);
     let make = answer(&service, &context, query);
-    freshness.answer(&context.headers, make).await
+    Ok(freshness.answer(&context.headers, make).await?)
 }
 
-async fn post(
-    State(service): State<Arc<Service>>,
-    context: Context,
-    Whole(body): Whole,
-) -> Result<Response, Error> {
-    context.no_parameters()?;
+async fn post(State(service): State<Arc<Service>>, sent: Sent) -> Result<Response, Refused> {
+    let Sent { context, body } = sent;
     let bytes = body.len();
     let read = move |service: &Service, _: &Stop| {
         let values = read_members(&body, groups::ARRANGEMENT)?;
         ArrangementQuery::check(&values, &service.catalog())
     };
     let query = service.process(bytes, read).await??;
-    answer(&service, &context, query).await
+    Ok(answer(&service, &context, query).await?)
 }
 
 async fn answer(
@@ -189,12 +178,8 @@ async fn answer(
             }))
         }
     };
-    let mut response = Response::new(body);
+    let mut response = document::file(body, list.content_type());
     let headers = response.headers_mut();
-    headers.insert(
-        header::CONTENT_TYPE,
-        HeaderValue::from_static(list.content_type()),
-    );
     headers.insert(COUNT, count.into());
     if let Some(next) = next.and_then(|next| HeaderValue::from_str(&next).ok()) {
         headers.insert(NEXT, next);

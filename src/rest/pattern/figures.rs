@@ -2,21 +2,21 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response, routing};
-use http::Method;
+use axum::{extract::State, response::Response};
+use strew_error::Error;
+use strew_service::{
+    Service,
+    pattern::{Figure, FigureQuery, Format},
+};
 
 use super::{
     api::{self, Endpoint, Operation, Tag, schemas},
     context::Context,
     document,
-    freshness::Freshness,
 };
-use crate::service::{
-    Error, Kind, Service,
-    pattern::{Figure, FigureQuery, Format},
-};
+use crate::rest::Refused;
 
-/// What is said of a figure: itself, its paths as a drawing and as pixels, their names for programs, a few words,
+/// A figure as it is described: itself, its paths as a drawing and as pixels, their names for programs, a few words,
 /// the rest of its address.
 type Described = (
     Figure,
@@ -81,32 +81,20 @@ fn endpoint(service: Arc<Service>, described: Described, format: Format) -> Endp
         Format::Png => (1, schemas::any as schemas::Content, "png", "&size=800"),
     };
     let operation = Operation {
-        method: Method::GET,
         id: ids[number],
         summary,
         about: "As strew figure draws it, for any α.",
-        tag: Tag::Patterns,
-        path_parameters: &[],
         parameters: figure.groups(format),
-        body: None,
-        answers: vec![
-            api::Answer {
-                status: 200,
-                about: "The figure.",
-                headers: vec![],
-                contents: vec![(format.content_type(), content)],
-            },
-            api::Answer::unchanged(),
-        ],
-        problems: vec![Kind::Invalid],
         example: format!("'{}?{query}{more}' -o figure.{ending}", paths[number]),
+        ..Operation::new(
+            Tag::Patterns,
+            api::Answer::file("The figure.", format.content_type(), content).or_unchanged(),
+        )
     };
-    let handler = routing::get(
-        move |State(service): State<Arc<Service>>, context: Context| async move {
-            draw(&service, &context, figure, format).await
-        },
-    );
-    Endpoint::new(paths[number], service, vec![(operation, handler)])
+    let handler = move |State(service): State<Arc<Service>>, context: Context| async move {
+        Ok::<_, Refused>(draw(&service, &context, figure, format).await?)
+    };
+    Endpoint::only(paths[number], service, operation, handler)
 }
 
 async fn draw(
@@ -117,10 +105,9 @@ async fn draw(
 ) -> Result<Response, Error> {
     let query = FigureQuery::check(figure, &context.values(figure.groups(format)))?;
     let content_type = format.content_type();
-    let freshness = Freshness::of(&context.uri, &context.headers, content_type, &());
     let make = async {
         let file = service.figure(&context.caller, query, format).await?;
         Ok(document::file(file, content_type))
     };
-    freshness.answer(&context.headers, make).await
+    context.answer(content_type, &(), make).await
 }

@@ -2,48 +2,40 @@
 
 use std::sync::Arc;
 
-use axum::{extract::State, response::Response, routing};
-use http::Method;
+use axum::{extract::State, response::Response};
+use strew_query::groups;
+use strew_service::{
+    Service,
+    pattern::{MapDocument, MapQuery},
+};
 
 use super::{
     api::{self, Endpoint, Operation, Tag},
     context::Context,
     document,
-    freshness::Freshness,
 };
-use crate::service::{
-    Error, Kind, Service,
-    pattern::{MapDocument, MapQuery},
-    query::groups,
-};
+use crate::rest::Refused;
 
 /// The path.
 pub(super) fn endpoint(service: Arc<Service>) -> Endpoint {
     let operation = Operation {
-        method: Method::GET,
         id: "getMap",
         summary: "A neighborhood map",
         about: "The intervals of index space along each axis, whose pairs are the blocks; all points of a block \
                 have the same neighbors up to the half-width R. A larger R refines the map. The number of \
                 intervals grows linearly, by 2(α − 1) for each grid unit.",
-        tag: Tag::Patterns,
-        path_parameters: &[],
         parameters: groups::MAP,
-        body: None,
-        answers: vec![
-            api::Answer::json::<MapDocument>("The map."),
-            api::Answer::unchanged(),
-        ],
-        problems: vec![Kind::Invalid],
         example: "'/v1/pattern/map?alpha=sqrt(3)&radius=10&refined=20&block=3,4'".into(),
+        ..Operation::new(
+            Tag::Patterns,
+            api::Answer::json::<MapDocument>("The map.").or_unchanged(),
+        )
     };
-    let handler = routing::get(get);
-    Endpoint::new("/v1/pattern/map", service, vec![(operation, handler)])
+    Endpoint::only("/v1/pattern/map", service, operation, get)
 }
 
-async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Error> {
+async fn get(State(service): State<Arc<Service>>, context: Context) -> Result<Response, Refused> {
     let query = MapQuery::check(&context.values(groups::MAP))?;
-    let freshness = Freshness::of(&context.uri, &context.headers, document::JSON, &());
     let make = service.map(&context.caller, query, |map| document::json(&map));
-    freshness.answer(&context.headers, make).await
+    Ok(context.answer(document::JSON, &(), make).await?)
 }

@@ -7,8 +7,12 @@ mod map;
 
 use std::sync::Arc;
 
-use super::{api, api::Endpoint, context, document, freshness, query};
-use crate::service::Service;
+use strew_service::Service;
+
+use super::{
+    api::{self, Endpoint},
+    context, document, query,
+};
 
 /// The paths.
 pub(super) fn endpoints(service: &Arc<Service>) -> Vec<Endpoint> {

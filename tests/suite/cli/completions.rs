@@ -1,4 +1,4 @@
-//! What shells offer after Tab: commands, flags and known values. Shells that are missing are skipped.
+//! The completions that shells offer after Tab: commands, flags and known values. Shells that are missing are skipped.
 
 use std::{
     path::Path,

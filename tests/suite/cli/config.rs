@@ -26,7 +26,7 @@ fn file(text: &str) -> tempfile::NamedTempFile {
 fn the_defaults_are_those_of_the_commented_file() {
     let (code, settings, _) = config(|_| {});
     assert_eq!(code, Some(0));
-    let default: toml::Table = strew::config::DEFAULTS.parse().expect("TOML");
+    let default: toml::Table = strew_config::DEFAULTS.parse().expect("TOML");
     assert_eq!(settings.len(), default.len());
     for (section, table) in &default {
         let table = table.as_table().expect("a section");
@@ -40,7 +40,7 @@ fn the_defaults_are_those_of_the_commented_file() {
     }
     // Every setting has a comment.
     let mut explained = false;
-    for line in strew::config::DEFAULTS.lines() {
+    for line in strew_config::DEFAULTS.lines() {
         assert!(
             !line.contains('=') || line.starts_with('#') || explained,
             "{line}"

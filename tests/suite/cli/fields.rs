@@ -2,28 +2,12 @@
 
 use std::{fs, path::Path};
 
+use super::{printed, refused};
 use crate::support::{
     command::{errors, run},
     daemon::Daemon,
     fields::{folder, left_half, png},
 };
-
-/// What a command prints.
-fn printed(arguments: &[&str]) -> String {
-    let output = run(arguments, "");
-    assert!(
-        output.status.success(),
-        "{arguments:?}: {}",
-        errors(&output)
-    );
-    String::from_utf8(output.stdout).expect("UTF-8")
-}
-
-fn refused(arguments: &[&str]) -> String {
-    let output = run(arguments, "");
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    errors(&output)
-}
 
 fn text(path: &Path) -> &str {
     path.to_str().expect("Unicode")
@@ -112,7 +96,7 @@ fn bad_fields_name_the_file_and_what_is_allowed() {
     let folder = folder();
     let bad = folder.path().join("bad.json");
     fs::write(&bad, r#"{"noise": {"wavelength": 9, "octaves": 20}}"#).expect("writable");
-    let query = |more: &[&str]| refused(&[&SAMPLE, &["csv"][..], more].concat());
+    let query = |more: &[&str]| refused(&[&SAMPLE, &["csv"][..], more].concat(), 2);
     let error = query(&["--field", text(&bad)]);
     assert!(
         error.contains("bad.json") && error.contains("field.noise.octaves"),
@@ -253,7 +237,7 @@ fn dots_are_written_as_pictures() {
     printed(&arguments);
     let small = fs::read_to_string(output).expect("written");
     assert!((radius(&svg) / radius(&small) - 2.0).abs() < 0.05);
-    // The same command, the same bytes.
+    // A repeated command writes the same bytes.
     let again = file("again.svg");
     printed(&[
         "stipple",
@@ -321,7 +305,7 @@ fn what_cannot_be_done_is_told_before_the_work() {
         ),
         (&picture, &["-n", "9", "-o", "x.gif"], "ends with .gif"),
     ] {
-        let error = refused(&[&["stipple", text(picture)], more].concat());
+        let error = refused(&[&["stipple", text(picture)], more].concat(), 2);
         assert!(error.contains(expected), "{more:?}: {error}");
     }
 }

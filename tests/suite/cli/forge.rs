@@ -56,7 +56,7 @@ fn killed_work_resumes_to_the_same_table() {
     let again = run(folder, &flags);
     let text = errors(&again);
     assert!(again.status.success(), "{text}");
-    assert!(text.contains("going on at step"), "{text}");
+    assert!(text.contains("resuming at step"), "{text}");
     let table = |folder: &Path| fs::read(folder.join("t.strew")).expect("written");
     assert_eq!(table(folder), table(whole.path()));
     assert!(!kept.exists(), "a finished job leaves no checkpoint");
@@ -75,7 +75,7 @@ fn an_interrupt_keeps_a_checkpoint() {
     let output = child.end();
     assert_eq!(output.status.code(), Some(130));
     let text = errors(&output);
-    assert!(text.contains("the same command goes on from"), "{text}");
+    assert!(text.contains("the same command resumes from"), "{text}");
     assert!(kept.exists() && !folder.join("t.strew").exists());
     // A damaged checkpoint is refused with a message; --restart ignores it.
     fs::write(&kept, "strewck1 and no more").expect("writable");
@@ -102,7 +102,7 @@ fn a_rejected_table_can_be_kept_without_repeating_the_work() {
     let kept = run(folder, &["--steps", "5", "--keep-rejected"]);
     assert!(kept.status.success());
     assert!(
-        errors(&kept).contains("going on at step 5 of 5"),
+        errors(&kept).contains("resuming at step 5 of 5"),
         "{}",
         errors(&kept)
     );

@@ -23,28 +23,24 @@ fn sample(output: &Path) -> Output {
         .expect("the program runs")
 }
 
+/// A device that takes nothing.
+fn full() -> fs::File {
+    let device = fs::File::options().write(true).open("/dev/full");
+    device.expect("Linux")
+}
+
 #[test]
 fn a_full_device_is_reported_as_a_failure() {
     for output in [
         sample(Path::new("/dev/full")),
         strew()
             .args(["sample", "--bbox", "0,0,99,99", "--spacing", "1", "-q"])
-            .stdout(
-                fs::File::options()
-                    .write(true)
-                    .open("/dev/full")
-                    .expect("Linux"),
-            )
+            .stdout(full())
             .output()
             .expect("the program runs"),
         strew()
             .arg("config")
-            .stdout(
-                fs::File::options()
-                    .write(true)
-                    .open("/dev/full")
-                    .expect("Linux"),
-            )
+            .stdout(full())
             .output()
             .expect("the program runs"),
     ] {

@@ -53,7 +53,7 @@ fn labels_are_those_of_the_library_whatever_the_order_of_shares() {
     assert_eq!(Some(&made), expected.as_ref());
     let printed = String::from_utf8(kept.stdout).expect("text");
     assert_eq!(printed, format!("{}  {name}\n", made.digest()));
-    // A file that is there is left alone.
+    // An existing file is left alone.
     let again = run(folder, &flags);
     assert_eq!(again.status.code(), Some(2));
     assert!(errors(&again).contains("--force"), "{}", errors(&again));

@@ -103,7 +103,7 @@ fn places_that_cannot_be_written_are_refused_before_the_work() {
     let (inside, missing) = (folder.path().join("d"), folder.path().join("f/x.csv"));
     fs::write(folder.path().join("f"), "a file").expect("writable");
     fs::create_dir(&inside).expect("a folder");
-    // So many points that the work would not end.
+    // This number of points would keep the program at work without end.
     let long = [
         "--bbox",
         "0,0,1e7,1e7",

@@ -2,25 +2,8 @@
 
 use serde_json::Value;
 
-use crate::support::{command, daemon::Daemon};
-
-/// What a command that succeeds prints.
-fn run(arguments: &[&str]) -> String {
-    let output = command::run(arguments, "");
-    assert!(
-        output.status.success(),
-        "{arguments:?}: {}",
-        command::errors(&output)
-    );
-    String::from_utf8(output.stdout).expect("UTF-8")
-}
-
-/// What a command that is refused for its flags prints.
-fn errors(arguments: &[&str]) -> String {
-    let output = command::run(arguments, "");
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    command::errors(&output)
-}
+use super::{printed, refused};
+use crate::support::daemon::Daemon;
 
 #[test]
 fn figures_are_files_and_standard_output() {
@@ -28,13 +11,17 @@ fn figures_are_files_and_standard_output() {
     for name in ["index", "arrangement", "clusters", "map"] {
         let file = folder.path().join(name).with_extension("svg");
         let path = file.to_str().expect("UTF-8");
-        run(&["figure", name, "--alpha", "13/8", "--output", path]);
+        printed(&["figure", name, "--alpha", "13/8", "--output", path]);
         let drawn = std::fs::read_to_string(&file).expect("written");
         assert!(drawn.contains("α = 13/8"), "{name}");
-        assert_eq!(run(&["figure", name, "--alpha", "1.625"]), drawn, "{name}");
+        assert_eq!(
+            printed(&["figure", name, "--alpha", "1.625"]),
+            drawn,
+            "{name}"
+        );
         let picture = file.with_extension("png");
         let path = picture.to_str().expect("UTF-8");
-        run(&["figure", name, "--size", "300", "--output", path]);
+        printed(&["figure", name, "--size", "300", "--output", path]);
         let decoder = png::Decoder::new(std::io::BufReader::new(
             std::fs::File::open(&picture).expect("written"),
         ));
@@ -51,7 +38,7 @@ fn masks_have_each_threshold_as_often() {
     let flags = [
         "mask", "--map", "s", "--size", "64", "--seed", "3", "-o", &mask,
     ];
-    run(&[&flags[..], &["--spectrum", &spectrum]].concat());
+    printed(&[&flags[..], &["--spectrum", &spectrum]].concat());
     let decoder = png::Decoder::new(std::io::BufReader::new(
         std::fs::File::open(&mask).expect("written"),
     ));
@@ -63,25 +50,27 @@ fn masks_have_each_threshold_as_often() {
     assert_eq!(counts, [16; 256]);
     let drawn = std::fs::read_to_string(&spectrum).expect("written");
     assert!(drawn.contains("low power 0.0"), "{drawn}");
-    assert!(errors(&["mask", "--size", "5000"]).contains("16 to 1024"));
-    assert!(errors(&["mask", "--bits", "4"]).contains("8 or 16"));
-    assert!(errors(&["mask", "--spectrum", "a.txt", "-o", &mask]).contains(".svg or .png"));
+    assert!(refused(&["mask", "--size", "5000"], 2).contains("16 to 1024"));
+    assert!(refused(&["mask", "--bits", "4"], 2).contains("8 or 16"));
+    assert!(refused(&["mask", "--spectrum", "a.txt", "-o", &mask], 2).contains(".svg or .png"));
 }
 
 #[test]
 fn arrangements_have_facts_counts_and_places() {
-    let grid = ["--grid", "-300", "-200", "400", "500"];
+    let grid = ["--grid", "-300,-200,400,500"];
     let facts = |more: &[&str]| -> Value {
         let args = [&["arrangement", "2,1 3,3", "--seed", "7"], more].concat();
-        serde_json::from_str(&run(&args)).expect("JSON")
+        serde_json::from_str(&printed(&args)).expect("JSON")
     };
     assert_eq!(facts(&[])["exists"], true);
     let count = facts(&grid)["count"].as_u64().expect("a number");
-    let listed = run(&[
-        &["arrangement", "2,1 3,3", "--seed", "7", "--list"],
-        &grid[..],
-    ]
-    .concat());
+    let listed = printed(
+        &[
+            &["arrangement", "2,1 3,3", "--seed", "7", "--list"],
+            &grid[..],
+        ]
+        .concat(),
+    );
     assert_eq!(listed.lines().count() as u64, count + 1);
     let expected = facts(&[])["density"].as_f64().expect("a number") * 490_000.0;
     assert!(
@@ -100,7 +89,7 @@ fn arrangements_have_facts_counts_and_places() {
     );
     for (i, j) in [(0, 0), (2, 1), (3, 3)] {
         let id = format!("{}:{}", x + i, y + j);
-        run(&["point", &id, "--seed", "7", "--spacing", "1"]);
+        printed(&["point", &id, "--seed", "7", "--spacing", "1"]);
     }
     // With an amount the places are those of the points.
     let placed = [
@@ -115,19 +104,19 @@ fn arrangements_have_facts_counts_and_places() {
         ],
         &grid[..],
     ];
-    let placed = run(&placed.concat());
+    let placed = printed(&placed.concat());
     let columns = |text: &str| text.lines().next().map(|line| line.split(',').count());
     assert_eq!(columns(&placed), Some(8));
     let first = placed.lines().nth(1).expect("an occurrence");
     let id = format!("{x}:{y}");
     let point: Value =
-        serde_json::from_str(&run(&["point", &id, "--seed", "7", "--spacing", "0.5"]))
+        serde_json::from_str(&printed(&["point", &id, "--seed", "7", "--spacing", "0.5"]))
             .expect("JSON");
     assert!(
         first.starts_with(&format!("{x},{y},{},{},", point["x"], point["y"])),
         "{first} {point}"
     );
-    let lone: Value = serde_json::from_str(&run(&["arrangement", "1,0"])).expect("JSON");
+    let lone: Value = serde_json::from_str(&printed(&["arrangement", "1,0"])).expect("JSON");
     assert_eq!(
         (&lone["exists"], &lone["margin"]),
         (&Value::Bool(false), &Value::Null)
@@ -156,8 +145,8 @@ fn lists_are_those_of_the_daemon_byte_for_byte() {
                 "sqrt(3)",
                 &given,
             ];
-            let grid = ["--grid", "-30", "-20", "40", "50"];
-            let printed = run(&[&own[..], &grid, flags].concat());
+            let grid = ["--grid", "-30,-20,40,50"];
+            let printed = printed(&[&own[..], &grid, flags].concat());
             let address = format!(
                 "/v1/pattern/arrangements?offsets=2,1+3,3&seed=7&alpha=sqrt(3)&list={list}&grid=-30,-20,40,50{parameters}"
             );
@@ -188,17 +177,14 @@ fn wrong_settings_are_refused_by_name() {
         ),
         (&["arrangement", "2"], "two integers joined by a comma"),
         (&["arrangement", "2,9007199254740994"], "out of range"),
-        (
-            &["arrangement", "2,1", "--grid", "5", "0", "4", "9"],
-            "--grid",
-        ),
+        (&["arrangement", "2,1", "--grid", "5,0,4,9"], "--grid"),
         (&["arrangement", "2,1", "--list"], "beside grid"),
         (&["arrangement", ""], "has no offsets"),
         (&["arrangement", "2,1.5"], "1.5 must be an integer"),
         (&["arrangement", "2,1", "--alpha", "2"], "--alpha"),
         (&["arrangement", "2,1", "--warp", "on"], "beside density"),
     ] {
-        let text = errors(args);
+        let text = refused(args, 2);
         assert!(text.contains(expected), "{args:?}: {text}");
     }
 }

@@ -76,8 +76,11 @@ fn an_address_without_a_daemon_is_reported_in_time() {
 fn wrong_flags_are_reported() {
     for (arguments, part) in [
         (&["--url", "https:/x"][..], "allowed: http://host:port"),
-        (&["--timeout", "0"], "allowed: 0.001 to 3600"),
-        (&["--timeout", "NaN"], "allowed: 0.001 to 3600"),
+        (&["--timeout", "0"], "allowed: a number from 0.001 to 3600"),
+        (
+            &["--timeout", "NaN"],
+            "allowed: a number from 0.001 to 3600",
+        ),
         (&["--listen", "127.0.0.1:0"], "name it with --url"),
         (&["--live", "--ready"], "cannot be used with"),
         (&["--insecure"], "--insecure: the URL is http"),
@@ -138,7 +141,11 @@ fn the_probe_speaks_tls() {
             "else.example",
         ),
         // Plain HTTP gets no answer from a TLS port.
-        (&["--url", &daemon.url("")], 1, "the connection ended"),
+        (
+            &["--url", &daemon.url("")],
+            1,
+            "a daemon with TLS needs https",
+        ),
         (&["--url", &named], 2, "https needs --ca FILE"),
     ] {
         let (ended, message) = probe(arguments);

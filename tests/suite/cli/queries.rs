@@ -7,15 +7,8 @@ use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use serde_json::{Value, json};
 use strew_testkit::http1;
 
+use super::output;
 use crate::support::{command::run, daemon::Daemon};
-
-/// The output of a command, which must succeed.
-fn printed(arguments: &[&str], input: &str) -> Vec<u8> {
-    let output = run(arguments, input);
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {message}");
-    output.stdout
-}
 
 fn lines(bytes: &[u8]) -> Vec<String> {
     let text = std::str::from_utf8(bytes).expect("UTF-8");
@@ -112,6 +105,10 @@ fn the_flags_are_the_parameters_of_rest() {
         let documented: BTreeSet<String> = parameters
             .expect("a list")
             .iter()
+            .map(|parameter| {
+                let reference = parameter["$ref"].as_str().expect("a reference");
+                document.pointer(&reference[1..]).expect("a component")
+            })
             .filter(|parameter| parameter["in"] == "query")
             .map(|parameter| {
                 parameter["name"]
@@ -120,7 +117,7 @@ fn the_flags_are_the_parameters_of_rest() {
                     .replace('_', "-")
             })
             .collect();
-        let help = lines(&printed(&[command, "--help"], ""));
+        let help = lines(&output(&[command, "--help"], ""));
         let flags = help.iter().filter_map(|line| line.split_once("--"));
         let flags = flags.filter(|(before, _)| before.trim().is_empty() || before.ends_with(", "));
         let names = flags.map(|(_, rest)| {
@@ -181,9 +178,9 @@ fn count_point_and_nearest_print_the_documents_of_rest() {
         let document = daemon.get(&format!("/v1/count?{query}"));
         let mut arguments = vec!["count", "--json"];
         arguments.extend(flags.split_whitespace());
-        assert_eq!(printed(&arguments, ""), document.body, "{flags}");
+        assert_eq!(output(&arguments, ""), document.body, "{flags}");
         arguments.remove(1);
-        let count = lines(&printed(&arguments, ""));
+        let count = lines(&output(&arguments, ""));
         assert_eq!(count, [document.json()["count"].to_string()]);
     }
     let set = "--spacing 1 --seed 2 --attributes angle,u1";
@@ -191,9 +188,9 @@ fn count_point_and_nearest_print_the_documents_of_rest() {
     let nearest = daemon.get(&format!("/v1/nearest?at=-3,4&k=3&radius=2&{same}"));
     let mut arguments = vec!["nearest", "--at", "-3,4", "--k=3", "--radius=2"];
     arguments.extend(set.split_whitespace());
-    let listed = lines(&printed(&arguments, ""));
+    let listed = lines(&output(&arguments, ""));
     arguments.push("--json");
-    assert_eq!(printed(&arguments, ""), nearest.body);
+    assert_eq!(output(&arguments, ""), nearest.body);
     let neighbors = nearest.json()["neighbors"].clone();
     let listed: Vec<Value> = listed.iter().map(|line| read(line.as_bytes())).collect();
     assert_eq!(neighbors, Value::Array(listed));
@@ -202,9 +199,9 @@ fn count_point_and_nearest_print_the_documents_of_rest() {
     let point = daemon.get(&format!("/v1/points/{id}?{same}"));
     let mut arguments = vec!["point", id];
     arguments.extend(set.split_whitespace());
-    let line = read(&printed(&arguments, ""));
+    let line = read(&output(&arguments, ""));
     arguments.push("--json");
-    assert_eq!(printed(&arguments, ""), point.body);
+    assert_eq!(output(&arguments, ""), point.body);
     assert_eq!(line, point.json()["point"]);
 }
 
@@ -254,9 +251,9 @@ fn a_query_file_is_a_rest_body_and_flags_override_its_format() {
         let (expected, _) = answer.finish();
         let mut arguments = vec!["sample", "--query", name];
         arguments.extend(&flags);
-        assert!(printed(&arguments, "") == expected, "{flags:?}");
+        assert!(output(&arguments, "") == expected, "{flags:?}");
         assert!(
-            printed(&["sample", "--query", "-"], &body) == expected,
+            output(&["sample", "--query", "-"], &body) == expected,
             "{body}"
         );
     }
@@ -266,14 +263,14 @@ fn a_query_file_is_a_rest_body_and_flags_override_its_format() {
 fn parquet_holds_layers_and_attributes() {
     let folder = tempfile::tempdir().expect("a folder");
     let query = layered().to_string();
-    let csv = printed(&["sample", "--query=-", "--format=csv"], &query);
+    let csv = output(&["sample", "--query=-", "--format=csv"], &query);
     let csv = lines(&csv);
     let file = folder.path().join("points.parquet");
     let name = file.to_str().expect("Unicode");
-    printed(&["sample", "--query=-", "-o", name], &query);
+    output(&["sample", "--query=-", "-o", name], &query);
     let mut by_name = layered();
     by_name["format"] = "parquet".into();
-    let named = printed(&["sample", "--query=-"], &by_name.to_string());
+    let named = output(&["sample", "--query=-"], &by_name.to_string());
     assert!(std::fs::read(&file).expect("written") == named);
 
     let file = std::fs::File::open(&file).expect("written");
@@ -304,16 +301,16 @@ fn the_parts_of_a_split_make_the_whole() {
     let mut whole = layered();
     whole["format"] = "csv".into();
     let body = whole.to_string();
-    let expected = printed(&["sample", "--query=-"], &body);
-    let parts = lines(&printed(&["split", "--parts=5", "--query=-"], &body));
+    let expected = output(&["sample", "--query=-"], &body);
+    let parts = lines(&output(&["split", "--parts=5", "--query=-"], &body));
     assert_eq!(parts.len(), 5);
-    let sampled = |part: &String| lines(&printed(&["sample", "--query=-"], part))[1..].to_vec();
+    let sampled = |part: &String| lines(&output(&["sample", "--query=-"], part))[1..].to_vec();
     let joined: Vec<String> = parts.iter().flat_map(sampled).collect();
     assert_eq!(joined, lines(&expected)[1..]);
 
     let path = "/v1/points:split?parts=5";
     let (answer, _) = http1::open_post(daemon.address(), path, &[], body.as_bytes()).finish();
-    let document = read(&printed(
+    let document = read(&output(
         &["split", "--parts=5", "--query=-", "--json"],
         &body,
     ));
@@ -331,8 +328,8 @@ fn the_parts_of_a_split_make_the_whole() {
     let odd = "--circle=0.1,-1e-7,7.3000000000000025 --density=1.1000000000000003 --seed=9";
     let mut arguments = vec!["split", "--parts=2"];
     arguments.extend(odd.split_whitespace());
-    for part in lines(&printed(&arguments, "")) {
-        printed(&["sample", "--query=-"], &part);
+    for part in lines(&output(&arguments, "")) {
+        output(&["sample", "--query=-"], &part);
     }
 }
 
@@ -355,7 +352,7 @@ fn regions_are_read_from_geojson() {
             "--seed=4",
             "--format=csv",
         ];
-        let rows = lines(&printed(&arguments, &region))[1..].to_vec();
+        let rows = lines(&output(&arguments, &region))[1..].to_vec();
         rows.into_iter().collect::<BTreeSet<_>>()
     };
     let [left, right] = [feature(&left), feature(&right)].map(|region| sample(&region));
@@ -367,7 +364,7 @@ fn regions_are_read_from_geojson() {
 fn chunks_are_relative_to_their_corner() {
     let sample = |chunk: &str| {
         let arguments = ["sample", "--spacing=8", "--format=csv", "--chunk", chunk];
-        let rows = lines(&printed(&arguments, ""));
+        let rows = lines(&output(&arguments, ""));
         let x = |row: &String| row.split(',').nth(1)?.parse::<f64>().ok();
         rows[1..].iter().filter_map(x).collect::<Vec<_>>()
     };

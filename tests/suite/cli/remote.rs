@@ -4,10 +4,10 @@ use std::{
     fs,
     io::{Read as _, Write as _},
     net::TcpListener,
-    process::Output,
     thread,
 };
 
+use super::{output, refused};
 use crate::support::{
     command::{errors, run},
     daemon::{Daemon, strew},
@@ -24,22 +24,6 @@ const QUERY: [&str; 7] = [
     "--seed=7",
 ];
 
-fn printed(arguments: &[&str]) -> Vec<u8> {
-    let output = run(arguments, "");
-    assert!(
-        output.status.success(),
-        "{arguments:?}: {}",
-        errors(&output)
-    );
-    output.stdout
-}
-
-fn refused(arguments: &[&str], code: i32) -> String {
-    let output: Output = run(arguments, "");
-    assert_eq!(output.status.code(), Some(code), "{}", errors(&output));
-    errors(&output)
-}
-
 #[test]
 fn a_daemon_answers_what_the_program_would() {
     let daemon = Daemon::built_in();
@@ -47,21 +31,21 @@ fn a_daemon_answers_what_the_program_would() {
     for format in ["csv", "json", "f32", "npy", "ndjson", "arrow", "svg"] {
         let here = [&QUERY[..], &["--format", format]].concat();
         let there = [&here[..], &["--url", &url]].concat();
-        assert!(printed(&there) == printed(&here), "{format}");
+        assert!(output(&there, "") == output(&here, ""), "{format}");
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("points.csv.gz");
     let file = file.to_str().expect("Unicode");
-    printed(&[&QUERY[..], &["--url", &url, "-o", file]].concat());
+    output(&[&QUERY[..], &["--url", &url, "-o", file]].concat(), "");
     let mut text = String::new();
     let packed = fs::File::open(file).expect("written");
     let mut unpacked = flate2::read::GzDecoder::new(packed);
     unpacked.read_to_string(&mut text).expect("gzip");
-    let csv = printed(&[&QUERY[..], &["--format", "csv"]].concat());
+    let csv = output(&[&QUERY[..], &["--format", "csv"]].concat(), "");
     assert_eq!(text.into_bytes(), csv);
     let count = ["count", "--bbox", "0,0,1e6,1e6", "--spacing", "1"];
     let there = [&count[..], &["--url", &url]].concat();
-    assert_eq!(printed(&there), printed(&count));
+    assert_eq!(output(&there, ""), output(&count, ""));
     let body = r#"{ "region": { "circle": { "center": [0, 0], "radius": 9 } }, "format": "csv",
         "layers": [ { "name": "a", "spacing": 2 }, { "name": "b", "density": 1, "clear_of": { "a": 1 } } ] }"#;
     let here = run(&["sample", "-q", "--query", "-"], body);
@@ -78,8 +62,14 @@ fn names_are_those_of_the_daemon_and_its_refusals_are_shown() {
     let daemon = Daemon::with_config("[worlds.heath]\nspacing = 2\nseed = 3\n");
     let url = daemon.url("");
     let chunk = ["sample", "-q", "--chunk", "16/0/0", "--format", "csv"];
-    let heath = printed(&[&chunk[..], &["--world", "heath", "--url", &url]].concat());
-    let known = printed(&[&chunk[..], &["--spacing", "2", "--seed", "3"]].concat());
+    let heath = output(
+        &[&chunk[..], &["--world", "heath", "--url", &url]].concat(),
+        "",
+    );
+    let known = output(
+        &[&chunk[..], &["--spacing", "2", "--seed", "3"]].concat(),
+        "",
+    );
     assert_eq!(heath, known);
     let error = refused(
         &[&chunk[..], &["--world", "heat", "--url", &url]].concat(),
@@ -90,7 +80,7 @@ fn names_are_those_of_the_daemon_and_its_refusals_are_shown() {
         "{error}"
     );
     assert!(error.contains("did you mean `heath`?"), "{error}");
-    // What no server could take is refused before it is sent.
+    // Flags that no server could accept are refused before anything is sent.
     let nowhere = ["--url", "http://127.0.0.1:1"];
     for (flags, expected) in [
         (["--spacing", "-1"], "--spacing -1"),
@@ -153,7 +143,7 @@ fn a_key_opens_what_is_behind_one() {
     let file = folder.path().join("key");
     fs::write(&file, format!("{key}\n")).expect("writable");
     let file = file.to_str().expect("Unicode");
-    let by_file = printed(&[&all[..], &["--key-file", file]].concat());
+    let by_file = output(&[&all[..], &["--key-file", file]].concat(), "");
     let by_variable = strew().args(&all).env("STREW_API_KEY", key).output();
     assert_eq!(by_variable.expect("it runs").stdout, by_file);
     assert!(by_file.len() > 1000);
@@ -172,6 +162,7 @@ fn an_answer_that_is_cut_leaves_no_file() {
         stream
             .write_all(format!("{head}{body}").as_bytes())
             .expect("writable");
+        drop(stream);
         // Another server than a daemon.
         let (mut stream, _) = server.accept().expect("a client");
         let _ = stream.read(&mut part);
@@ -207,12 +198,15 @@ fn serving(answers: Vec<String>) -> (String, thread::JoinHandle<()>) {
 #[test]
 fn what_a_server_says_does_not_reach_the_terminal_raw() {
     let evil = "\u{1b}[2J\u{9b}1m\u{202e}";
+    // No header holds ASCII controls.
+    let raw = format!("HTTP/1.1 200 OK\r\nstrew-count: {evil}\r\ncontent-length: 0\r\n\r\n");
+    let odd = "\u{9b}1m\u{202e}";
     let head = format!(
-        "HTTP/1.1 200 OK\r\nstrew-count: 0\r\nstrew-next: a{evil}\r\nstrew-origin: {evil}\r\n\
-         strew-columns: {evil}\r\nstrew-warning: {evil}\r\ncontent-length: 7\r\n\r\nid,x,y\n"
+        "HTTP/1.1 200 OK\r\nstrew-count: 0\r\nstrew-next: a{odd}\r\nstrew-origin: {odd}\r\n\
+         strew-columns: {odd}\r\nstrew-warning: {odd}\r\ncontent-length: 7\r\n\r\nid,x,y\n"
     );
-    let count = format!("HTTP/1.1 200 OK\r\nstrew-count: 1{evil}\r\ncontent-length: 0\r\n\r\n");
-    let coded = format!("HTTP/1.1 200 OK\r\ncontent-encoding: {evil}\r\ncontent-length: 0\r\n\r\n");
+    let count = format!("HTTP/1.1 200 OK\r\nstrew-count: 1{odd}\r\ncontent-length: 0\r\n\r\n");
+    let coded = format!("HTTP/1.1 200 OK\r\ncontent-encoding: {odd}\r\ncontent-length: 0\r\n\r\n");
     let problem = serde_json::json!({ "title": evil, "detail": format!("a\nb{evil}") }).to_string();
     let (problem, length) = (&problem, problem.len());
     let problem = format!("HTTP/1.1 400 No\r\ncontent-length: {length}\r\n\r\n{problem}");
@@ -220,9 +214,16 @@ fn what_a_server_says_does_not_reach_the_terminal_raw() {
         "HTTP/1.1 503 No\r\ncontent-length: {}\r\n\r\n{evil}",
         evil.len()
     );
-    let codes = [(head, 0), (count, 1), (coded, 1), (problem, 2), (plain, 1)];
-    let (url, served) = serving(codes.iter().map(|(answer, _)| answer.clone()).collect());
-    for (answer, code) in &codes {
+    let codes = [
+        (head, 0, "\\u{9b}1m"),
+        (count, 1, "\\u{9b}1m"),
+        (coded, 1, "\\u{9b}1m"),
+        (raw, 1, "not HTTP"),
+        (problem, 2, "\\u{1b}[2J"),
+        (plain, 1, "\\u{1b}[2J"),
+    ];
+    let (url, served) = serving(codes.iter().map(|(answer, ..)| answer.clone()).collect());
+    for (answer, code, part) in &codes {
         let flags = [
             "sample",
             "--chunk",
@@ -237,7 +238,7 @@ fn what_a_server_says_does_not_reach_the_terminal_raw() {
         assert_eq!(output.status.code(), Some(*code), "{answer}: {text}");
         let is_odd = |c: char| c.is_control() && c != '\n' || c == '\u{202e}';
         assert!(!text.contains(is_odd), "{text:?}");
-        assert!(text.contains("\\u{1b}[2J"), "{text}");
+        assert!(text.contains(part), "{text}");
     }
     served.join().expect("served");
 }
@@ -275,6 +276,6 @@ fn an_answer_with_other_points_than_promised_leaves_no_file() {
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0);
     }
     let flags = ["--format", "csv", "--url", &url, "-o", file];
-    printed(&[&QUERY[..], &flags].concat());
+    output(&[&QUERY[..], &flags].concat(), "");
     served.join().expect("served");
 }

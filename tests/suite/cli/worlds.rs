@@ -1,7 +1,6 @@
 //! Worlds on the command line.
 
-use std::fs;
-
+use super::{printed, settings};
 use crate::support::command::{errors, run};
 
 const WORLDS: &str = "\
@@ -14,21 +13,6 @@ name = 'rock'
 spacing = 2
 clear_of = { oak = 1 }
 ";
-
-/// A file of settings with these worlds.
-fn settings(text: &str) -> (tempfile::TempDir, String) {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let file = folder.path().join("strew.toml");
-    fs::write(&file, text).expect("writable");
-    let file = file.display().to_string();
-    (folder, file)
-}
-
-fn printed(arguments: &[&str]) -> String {
-    let output = run(arguments, "");
-    assert!(output.status.success(), "{}", errors(&output));
-    String::from_utf8(output.stdout).expect("UTF-8")
-}
 
 #[test]
 fn a_sample_of_a_world_has_its_layers() {

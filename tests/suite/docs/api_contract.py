@@ -7,8 +7,8 @@ these hooks next to no answer would have points; with them every query must be a
 
 import schemathesis
 
-AMOUNTS = ["density", "spacing", "min_distance", "count"]
-REGIONS = ["bbox", "circle", "polygon"]
+# Members that name what a server may lack.
+NAMED = ["alpha", "map", "table", "cursor", "world", "world_digest", "field", "variant_fields", "except"]
 PROFILES = ["blue", "spaced", "step", "pink"]
 NAMES = ["angle", "scale", "variant", "rank", "u1", "u16"]
 
@@ -23,24 +23,59 @@ def choose(value, among):
     return among[len(str(value)) % len(among)]
 
 
+def drop(query, names):
+    for name in names:
+        query.pop(name, None)
+
+
+def has(query, name, values):
+    """Whether a member has one of some values, or a list one among its items; of no values, any."""
+    given = query.get(name)
+    items = given.split(",") if isinstance(given, str) else given if isinstance(given, list) else [given]
+    return name in query and (not values or any(value in items for value in values))
+
+
+def obey(query, rules):
+    """Drops members whose rules others do not fulfill."""
+    for rule in rules:
+        if rule["rule"] == "only-with":
+            fits = has(query, rule["other"], rule["values"])
+        elif rule["rule"] == "only-with-one-of":
+            fits = any(has(query, other["parameter"], other["values"]) for other in rule["others"])
+        elif rule["rule"] == "not-with":
+            fits = not any(other in query for other in rule["others"])
+        else:
+            continue
+        if not fits:
+            query.pop(rule["parameter"], None)
+
+
+def amounts_of(rules):
+    """The amounts of a query: one is required, or at most one may be given."""
+    rules = (rule["parameters"] for rule in rules if rule["rule"] in ["exactly-one-of", "at-most-one-of"])
+    return next((names for names in rules if "density" in names), [])
+
+
+def not_with(rules, name):
+    rules = (rule["others"] for rule in rules if rule["rule"] == "not-with" and rule["parameter"] == name)
+    return next(rules, [])
+
+
 def one_of(query, among, default):
     """Keeps one member of some, chosen by the query itself."""
     given = [name for name in among if name in query] or [default]
     chosen = choose(query, given)
-    for name in among:
-        if name != chosen:
-            query.pop(name, None)
+    drop(query, [name for name in among if name != chosen])
     query.setdefault(chosen, 1)
     return chosen
 
 
-def tidy_set(query, is_text, amounts=AMOUNTS):
+def tidy_set(query, is_text, rules, amounts):
     amount = one_of(query, amounts, "spacing")
     query[amount] = 1 + int(number(query[amount], 0, 300)) if amount == "count" else number(
         query[amount], 0.5, 4
     )
-    for name in ["alpha", "map", "table", "cursor", "world", "world_digest", "field", "variant_fields", "except"]:
-        query.pop(name, None)
+    drop(query, NAMED)
     if "profile" in query:
         query["profile"] = "blue" if amount == "min_distance" else choose(query["profile"], PROFILES)
     if "keep" in query:
@@ -59,18 +94,16 @@ def tidy_set(query, is_text, amounts=AMOUNTS):
     if has_ranges:
         ranges = {"oak": [0.5, 2], "birch": [0, 1]}
         query["scale_ranges"] = "oak:0.5:2,birch:0:1" if is_text else ranges
+        query.pop("scale_range", None)
     else:
         query.pop("scale_ranges", None)
-    if "scale_range" in query:
-        query["scale_range"] = "0.5,2" if is_text else [0.5, 2]
-    if "scale" not in names or has_ranges:
-        query.pop("scale_range", None)
+        if "scale_range" in query:
+            query["scale_range"] = "0.5,2" if is_text else [0.5, 2]
     if "terrain" in query and not is_text:
         query["terrain"] = {"constant": 0.5}
     else:
         # No field is loaded that an address could name.
-        for name in ["terrain", "heights", "normals", "align"]:
-            query.pop(name, None)
+        query.pop("terrain", None)
     query.pop("variants", None)
     if is_mixed:
         query["variants"] = "oak:3,birch" if is_text else {"oak": 3, "birch": 1}
@@ -81,32 +114,24 @@ def tidy_set(query, is_text, amounts=AMOUNTS):
         query["map"] = "s"
     if "only" in query:
         query["only"] = choose(query["only"], ["oak", "birch"])
-        if spread != "even":
-            query.pop("only")
+    obey(query, rules)
 
 
-def tidy_output(query):
+def tidy_output(query, rules):
     # Records without room for some attributes are refused.
     if query.get("format") in ["multimesh", "instances"]:
         query["format"] = "glb"
     if "decimals" in query:
         query["decimals"] = int(number(query["decimals"], 0, 17))
-        if query.get("format") not in ["json", "ndjson", "csv", "geojson"]:
-            query.pop("decimals")
     if "size" in query:
         query["size"] = 16 + int(number(query["size"], 0, 500))
-        if query.get("format") not in ["png", "svg"]:
-            query.pop("size")
-    if "summary" in query and query.get("format") != "ndjson":
-        query.pop("summary")
     if "crs" in query:
         query["crs"] = "EPSG:3857"
-        if query.get("format") not in ["geojson", "geojsonseq"]:
-            query.pop("crs")
     if "limit" in query:
         query["limit"] = 1 + int(number(query["limit"], 0, 200))
     if "offset" in query:
         query["offset"] = int(number(query["offset"], 0, 50))
+    obey(query, rules)
 
 
 def region(value, depth=0):
@@ -136,25 +161,24 @@ def region(value, depth=0):
     return {"bbox": [-shift, 0, 4, 9 + shift]}
 
 
-def tidy_body(name, body):
+def tidy_body(schema, body):
     body = dict(body)
+    rules = schema["x-rules"]
+    amounts = amounts_of(rules)
     layers = body.get("layers")
     is_layered = isinstance(layers, list) and bool(layers)
     is_periodic = "periodic" in body and not is_layered
     body.pop("periodic", None)
     body["region"] = region(body.get("region"))
     if is_layered:
-        for member in AMOUNTS + ["profile", "alpha", "map", "table", "seed", "warp", "keep"]:
-            body.pop(member, None)
-        for member in ["attributes", "variants", "scale_range", "scale_ranges", "spread", "only", "variant_fields"]:
-            body.pop(member, None)
-        for member in ["cursor", "world", "world_digest", "except", "field", "terrain", "heights", "normals", "align"]:
-            body.pop(member, None)
+        either = schema["allOf"][0]["oneOf"]
+        excluded = next(one["properties"] for one in either if "layers" in one.get("required", []))
+        drop(body, [*excluded, *NAMED, "seed", "keep", "only"])
         tidy = []
         for i, layer in enumerate(layers[:4]):
             layer = dict(layer) if isinstance(layer, dict) else {}
             is_clear = "clear_of" in layer and i > 0
-            tidy_set(layer, False, AMOUNTS[:3] if is_clear else AMOUNTS)
+            tidy_set(layer, False, rules, [name for name in amounts if not is_clear or name != "count"])
             layer["name"] = f"layer-{i}"
             layer.pop("count" if is_clear else "clear_of", None)
             if is_clear:
@@ -167,39 +191,30 @@ def tidy_body(name, body):
         body["layers"] = tidy
     else:
         body.pop("layers", None)
-        tidy_set(body, False, AMOUNTS[:2] if is_periodic else AMOUNTS)
+        others = not_with(rules, "periodic") if is_periodic else []
+        tidy_set(body, False, rules, [name for name in amounts if name not in others])
         if is_periodic:
-            for member in ["min_distance", "count", "region"]:
-                body.pop(member, None)
+            drop(body, [*others, "region"])
             body["periodic"] = 900
-    tidy_output(body)
-    if name == "countPoints":
-        for member in ["format", "decimals", "size", "summary", "crs", "offset", "limit"]:
-            body.pop(member, None)
+    tidy_output(body, rules)
     return body
 
 
-def tidy_arrangement(query, is_text):
+def tidy_arrangement(query, rules, is_text):
     offsets = [[2, 1], [-3, 5 + len(str(query.get("offsets"))) % 4]]
     query["offsets"] = " ".join(f"{x},{y}" for x, y in offsets) if is_text else offsets
     if "grid" in query or "list" in query:
         query["grid"] = "-20,3,31,40" if is_text else [-20, 3, 31, 40]
-    for name in ["alpha", "map", "cursor"]:
-        query.pop(name, None)
-    if "list" not in query:
-        query.pop("limit", None)
+    drop(query, NAMED)
     if "limit" in query:
         query["limit"] = 1 + int(number(query["limit"], 0, 200))
     if "seed" in query:
         query["seed"] = int(number(query["seed"], 0, 2**53))
-    given = [name for name in AMOUNTS[:3] if name in query]
-    for name in given[1:]:
-        query.pop(name)
+    given = [name for name in amounts_of(rules) if name in query]
+    drop(query, given[1:])
     if given:
         query[given[0]] = number(query[given[0]], 0.5, 4)
-    for name in ["profile", "warp"]:
-        if not given:
-            query.pop(name, None)
+    obey(query, rules)
     if "profile" in query:
         query["profile"] = "blue"
     if "warp" in query:
@@ -209,7 +224,7 @@ def tidy_arrangement(query, is_text):
 
 def tidy_pattern(query):
     """Parameters of clusters, maps and figures: small ones of one pattern."""
-    query.pop("alpha", None)
+    drop(query, NAMED)
     if "offsets" in query:
         query["offsets"] = "2,1 3,3"
     if "distance" in query:
@@ -231,8 +246,7 @@ def tidy_pattern(query):
 
 def tidy_mask(query):
     """Parameters of masks: small ones of loaded tables."""
-    for member in ["alpha", "map", "table"]:
-        query.pop(member, None)
+    drop(query, NAMED)
     if "profile" in query:
         query["profile"] = choose(query["profile"], PROFILES)
     if "seed" in query:
@@ -249,7 +263,7 @@ MASKS = ["getMask", "getMaskSpectrum"]
 def tidy_query(name, rules, query):
     query = dict(query)
     if name == "getArrangement":
-        return tidy_arrangement(query, True)
+        return tidy_arrangement(query, rules, True)
     if name in PATTERNS:
         return tidy_pattern(query)
     if name in MASKS:
@@ -260,13 +274,11 @@ def tidy_query(name, rules, query):
             shapes = {"bbox": "-5,0,7,9", "circle": "1,2,6", "polygon": "0,0,9,1,3,12", "periodic": 900}
             query[shape] = shapes[shape]
         elif rule["rule"] == "exactly-one-of":
-            amounts = rule["parameters"]
+            others = not_with(rules, "periodic") if "periodic" in query else []
             if "periodic" in query:
                 query["periodic"] = 900
-                amounts = [name for name in amounts if name not in ["min_distance", "count"]]
-            tidy_set(query, True, amounts)
-            for name in set(rule["parameters"]) - set(amounts):
-                query.pop(name, None)
+            drop(query, others)
+            tidy_set(query, True, rules, [name for name in rule["parameters"] if name not in others])
     if name == "getNearest":
         query["at"] = "3,-2.5"
         if "k" in query:
@@ -276,13 +288,12 @@ def tidy_query(name, rules, query):
     if name in ["getProfile", "getSpectrum"]:
         query.clear()
     if name == "listPeriods":
-        for member in ["alpha", "map", "table"]:
-            query.pop(member, None)
+        drop(query, NAMED)
         if "profile" in query:
             query["profile"] = choose(query["profile"], PROFILES)
     if name == "splitPoints":
         query["parts"] = 1 + int(number(query.get("parts"), 0, 50))
-    tidy_output(query)
+    tidy_output(query, rules)
     return query
 
 
@@ -290,14 +301,15 @@ def tidy_query(name, rules, query):
 def before_call(context, case, kwargs):
     raw = case.operation.definition.raw
     name = raw.get("operationId", "")
+    schemas = case.operation.schema.raw_schema["components"]["schemas"]
     if name == "sendExcept" and isinstance(case.body, dict):
         # The grammar of an id is more than its type.
         case.body = {"ids": [f"{i}:-3" for i in range(max(1, len(case.body.get("ids") or [])))]}
     elif isinstance(case.body, dict):
         case.body = (
-            tidy_arrangement(dict(case.body), False)
+            tidy_arrangement(dict(case.body), schemas["ArrangementQuery"]["x-rules"], False)
             if name == "findArrangement"
-            else tidy_body(name, case.body)
+            else tidy_body(schemas["CountQuery" if name == "countPoints" else "PointsQuery"], case.body)
         )
     if "x-rules" in raw or name in ["getProfile", "getSpectrum", "listPeriods", "splitPoints"] + PATTERNS + MASKS:
         case.query = tidy_query(name, raw.get("x-rules", []), case.query or {})

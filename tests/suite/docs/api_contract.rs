@@ -91,7 +91,14 @@ fn without_fields(mut document: Value) -> Value {
             schemas[name] = constant.clone();
         }
     }
-    without_parts_of_terrains(&mut document);
+    let rules = document["paths"]["/v1/points"]["get"]["x-rules"].clone();
+    let terrain = json!([{ "parameter": "terrain", "values": [] }]);
+    let rules = rules.as_array().expect("a list").iter();
+    let parts: Vec<&str> = rules
+        .filter(|rule| rule["others"] == terrain)
+        .filter_map(|rule| rule["parameter"].as_str())
+        .collect();
+    without_parts_of_terrains(&mut document, &parts);
     let schemas = &mut document["components"]["schemas"];
     // Answers have all shapes.
     schemas["DescribedField"]["properties"]["field"] = json!({});
@@ -99,20 +106,23 @@ fn without_fields(mut document: Value) -> Value {
 }
 
 /// Takes what only goes with a terrain out of bodies: the generator fails on that many members.
-fn without_parts_of_terrains(value: &mut Value) {
+fn without_parts_of_terrains(value: &mut Value, parts: &[&str]) {
     match value {
         Value::Object(members) => {
             if let Some(Value::Object(properties)) = members.get_mut("properties")
                 && let Some(terrain) = properties.get("terrain")
                 && terrain["type"] != "string"
             {
-                for name in ["heights", "normals", "align"] {
-                    properties.remove(name);
+                for name in parts {
+                    properties.remove(*name);
                 }
             }
-            members.values_mut().for_each(without_parts_of_terrains);
+            let inner = members.values_mut();
+            inner.for_each(|member| without_parts_of_terrains(member, parts));
         }
-        Value::Array(items) => items.iter_mut().for_each(without_parts_of_terrains),
+        Value::Array(items) => items
+            .iter_mut()
+            .for_each(|item| without_parts_of_terrains(item, parts)),
         _ => {}
     }
 }

@@ -194,7 +194,7 @@ fn check(name: &str) {
     check_in(name, folder.path(), &Daemon::built_in());
 }
 
-/// The same with a folder and a daemon that the examples find.
+/// Checks the examples of a file with a folder and a daemon that they find.
 fn check_in(name: &str, folder: &Path, daemon: &Daemon) {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
     let text = std::fs::read_to_string(&file).expect("readable");
@@ -234,6 +234,11 @@ fn the_api_document_shows_what_its_examples_print() {
 #[test]
 fn the_readme_shows_what_its_examples_print() {
     check("README.md");
+}
+
+#[test]
+fn the_algorithm_shows_what_its_example_prints() {
+    check("docs/algorithm.md");
 }
 
 #[test]

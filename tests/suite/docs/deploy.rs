@@ -24,7 +24,7 @@ fn variables(text: &str) -> BTreeSet<String> {
 
 #[test]
 fn every_setting_in_the_files_exists() {
-    let known: toml::Table = strew::config::DEFAULTS.parse().expect("TOML");
+    let known: toml::Table = strew_config::DEFAULTS.parse().expect("TOML");
     let mut seen = 0;
     for path in [
         "Dockerfile",

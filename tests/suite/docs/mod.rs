@@ -1,5 +1,5 @@
-//! What is written about the daemon is true: the examples of docs/api.md, the OpenAPI document, and
-//! the settings, metrics and commands named in `deploy/`.
+//! The documentation of the daemon is true: the examples of docs/api.md, the OpenAPI document, and the settings,
+//! metrics and commands named in `deploy/`.
 
 mod api_contract;
 mod api_examples;

@@ -1,5 +1,5 @@
-//! What a call carries besides its query: a deadline, compression, a pinned table. What ends it:
-//! cancellation, and requests that are not gRPC.
+//! The parts of a call besides its query (a deadline, compression, a pinned table), and its ends: cancellation, and
+//! requests that are not gRPC.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! What a client can find out before it sends a query: profiles, health, reflection.
+//! Discovery before the first query: profiles, health, reflection.
 
 use strew::grpc::proto::{ListProfilesRequest, point_service_client::PointServiceClient};
 use tonic_health::pb::{HealthCheckRequest, health_client::HealthClient};

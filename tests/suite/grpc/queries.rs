@@ -21,7 +21,7 @@ fn daemon() -> Daemon {
     Daemon::start(&["limits.block_bytes=4096"])
 }
 
-/// What the attribute `variant` chooses from.
+/// The choices of the attribute `variant`.
 fn variants(weights: [(&str, f64); 2]) -> BTreeMap<String, f64> {
     weights.map(|(name, weight)| (name.into(), weight)).into()
 }

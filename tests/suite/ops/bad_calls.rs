@@ -1,4 +1,4 @@
-//! gRPC calls that are not what the contract says: each ends with the status of its fault.
+//! gRPC calls that break the contract: each ends with the status of its fault.
 
 use bytes::Bytes;
 use strew_testkit::wait::PATIENCE;

@@ -1,4 +1,4 @@
-//! Behind real caches, nginx and Varnish with the settings of `deploy/`: what is pinned is made once.
+//! Behind real caches, nginx and Varnish with the settings of `deploy/`: a pinned answer is made once.
 
 use strew_testkit::http1::{self, Answer};
 
@@ -66,7 +66,7 @@ fn a_pinned_answer_is_made_once_and_its_tag_is_enough(program: &str) {
     let known = get(&path, &[("if-none-match", first.header("etag"))]);
     assert_eq!((known.status, status(&known).as_str()), (304, "HIT"));
     assert!(known.body.is_empty());
-    // What a program got first, pages of other origins may read.
+    // Pages of other origins may read an answer that a program requested first.
     let page = get(&path, &[("origin", "https://page.example")]);
     for answer in [&first, &page] {
         assert_eq!(answer.header("access-control-allow-origin"), "*");
@@ -149,7 +149,7 @@ fn large_answers_are_not_kept_and_their_slow_readers_hold_up_none(program: &str,
             assert_eq!(known.status, 304);
         }
     }
-    // What was read slowly goes on, and ends with its reader.
+    // Slow answers go on, and end with their readers.
     for reader in &mut slow {
         let mut left = 24 << 20;
         while left > 0 {

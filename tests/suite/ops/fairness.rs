@@ -1,5 +1,4 @@
-//! What clients of other addresses notice of an attack. How much depends on the machine, so that is
-//! measured:
+//! The effect of an attack on clients of other addresses. It depends on the machine, so it is measured:
 //!
 //! ```sh
 //! cargo test --release --test suite fairness -- --ignored --nocapture

@@ -32,7 +32,7 @@ const PATIENCE: Duration = Duration::from_secs(600);
 fn start(folder: &Path, settings: &[&str]) -> Daemon {
     let launcher = Launcher::new(PROGRAM)
         .tables(folder)
-        .settings(&["forge.allow=anyone", "log.filter=info,strew::access=warn"]);
+        .settings(&["forge.allow=anyone", "log.filter=info,strew_access=warn"]);
     launcher.settings(settings).start().expect("ready")
 }
 
@@ -170,7 +170,7 @@ async fn a_job_that_is_killed_goes_on_and_is_followed_by_grpc() {
     assert!(folder.path().join(&checkpoint).exists());
 
     let daemon = start(folder.path(), &every_step);
-    let line = daemon.log_line("forged on");
+    let line = daemon.log_line("forging resumes");
     let step = line.split("step=").nth(1).expect("a step");
     let step: u32 = step
         .split_whitespace()
@@ -210,7 +210,7 @@ async fn a_job_that_is_killed_goes_on_and_is_followed_by_grpc() {
         .await
         .expect("no panic");
     assert_eq!(used.header("strew-table"), last.digest);
-    // The same table as without the interruption: another test's, made in one go, has this digest too.
+    // This table has the digest of another test's, which was made without an interruption.
     until("the checkpoint is gone", || {
         let files = std::fs::read_dir(folder.path().join("forge")).expect("a folder");
         (files.count() == 1).then_some(())
@@ -381,7 +381,7 @@ fn only_those_who_may_have_tables_made_and_only_so_many() {
     assert_eq!(over.status, 429, "{}", over.text());
     assert_eq!(over.json()["type"], "urn:strew:problem:too-many-jobs");
     assert_eq!(over.json()["limit"], 1);
-    // The same table is no second job, and another's job is not cancelled.
+    // A repeated request for a table starts no second job, and clients cannot cancel jobs of others.
     assert_eq!(
         accepted(&send(&daemon, &plain, "POST", "/v1/tables", &of("1.41421"))),
         first
@@ -426,7 +426,7 @@ async fn grpc_refuses_with_the_same_words() {
 #[test]
 fn a_forge_without_a_folder_is_a_fault_of_the_settings() {
     let launcher = Launcher::new(PROGRAM)
-        .settings(&["forge.allow=anyone", "log.filter=info,strew::access=warn"]);
+        .settings(&["forge.allow=anyone", "log.filter=info,strew_access=warn"]);
     let refused = launcher.start().err().expect("refused").to_string();
     assert!(
         refused.contains("forge.allow needs tables.folder"),

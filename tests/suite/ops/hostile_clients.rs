@@ -111,7 +111,7 @@ fn bodies_take_their_length_and_leave_nothing_to_their_connections() {
         assert_eq!(&head[9..], b"400");
         stream
     };
-    // What the first ones load of the program stays.
+    // The first connections load parts of the program that stay in memory.
     let mut open: Vec<_> = (0..10).map(|_| answered()).collect();
     let before = daemon.memory_kib("VmRSS");
     open.extend((0..100).map(|_| answered()));

@@ -11,7 +11,7 @@ use crate::support::{daemon::Daemon, problem::assert_fault};
 
 const STREAM: &str = "/strew.v1.PointService/StreamPoints";
 const QUERY: &str = "/v1/points:query";
-/// What reading 4 MB may take at most, with all copies, in KiB.
+/// The most memory for reading 4 MB, with all copies, in KiB.
 const MOST_KIB: u64 = 64 << 10;
 
 /// A field of bytes.

@@ -183,7 +183,7 @@ async fn points_in_flight_rise_with_answers_and_return_to_zero() {
     drop(stream);
     until_none("the call is canceled");
 
-    // What is read to its end leaves nothing either; nor do answers that are made at once, or refused.
+    // Answers that are read to their end leave nothing either; nor do those made at once, or refused.
     collect(&mut client, square(300.0)).await;
     daemon.get(&format!("{POINTS}csv"));
     daemon.get("/v1/points?bbox=0,0,300,300&density=1&profile=test&format=png");

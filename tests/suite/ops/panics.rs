@@ -3,7 +3,8 @@
 use std::net::TcpListener;
 
 use axum::{Router, routing};
-use strew::{config::Layers, ops::App};
+use strew::ops::App;
+use strew_config::Layers;
 use strew_testkit::http1;
 
 #[tokio::test(flavor = "multi_thread")]

@@ -1,4 +1,4 @@
-//! Pictures that queries bring along: what they take is known before they are decoded, and bounded.
+//! Pictures that queries include: their cost is known before they are decoded, and bounded.
 
 use serde_json::{Value, json};
 use strew::grpc::proto::{

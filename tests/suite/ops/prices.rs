@@ -53,7 +53,7 @@ fn what_takes_too_long_to_count_is_refused_before() {
     refused_rows(&daemon, &with("field", costly_field()));
     let noise = json!({ "noise": { "wavelength": 50, "octaves": 3 } });
     assert_eq!(daemon.post("/v1/count", &with("field", noise)).status, 200);
-    // A line that crosses everything, everywhere: boxes tell nothing of which part is near.
+    // A line that crosses everything, everywhere, so that boxes do not show which part is near.
     let line: Vec<[u32; 2]> = (0..9_999)
         .map(|i| [i * 617 % 1000, i * 367 % 1009])
         .collect();
@@ -62,7 +62,7 @@ fn what_takes_too_long_to_count_is_refused_before() {
     let street: Vec<[f64; 2]> = (0..9_999).map(|i| [0.1 * f64::from(i), 500.0]).collect();
     let street = json!({ "distance": { "distances": [0, 5], "lines": [street] } });
     assert_eq!(daemon.post("/v1/count", &with("field", street)).status, 200);
-    // Whether a point is there depends on points of all layers before it, and so on.
+    // Whether a point exists depends on points of all layers before it, and so on.
     let chain = |number: usize| {
         let layers = (0..number).map(|i| {
             let clear: serde_json::Map<_, _> = (0..i).map(|j| (format!("l{j}"), json!(1.5))).collect();
@@ -186,7 +186,7 @@ fn kinds_are_made_for_who_waits_and_an_address_has_a_few_at_once() {
     let made = || std::fs::read_dir(&path).map_or(0, Iterator::count);
     let before = made();
     drop(waiting);
-    // Another address does not wait for what nobody wants.
+    // Another address does not wait for work that no client wants any more.
     let answer = daemon.get(&query("oak:1,fir:3"));
     assert_eq!(answer.status, 200, "{}", answer.text());
     // Its own, and at most one that was nearly made.
@@ -230,7 +230,7 @@ fn four_addresses_leave_places_for_a_fifth() {
         open.push((stream, String::from_utf8_lossy(&head[9..]).into_owned()));
     }
     let number = |status: &str| open.iter().filter(|(_, own)| own == status).count();
-    // 4, 4, 4 and half of what is left.
+    // 4, 4, 4 and half of the rest.
     assert_eq!((number("200"), number("429")), (14, 2));
     assert_eq!(daemon.get(CSV).status, 200);
 }

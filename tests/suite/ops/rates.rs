@@ -106,7 +106,7 @@ fn rows_that_are_counted_one_by_one_are_charged() {
     until("the rate is exceeded", || {
         (daemon.get(count).status == 429).then_some(())
     });
-    // What is refused for its size costs the request only.
+    // A request that is refused for its size costs the request only.
     let before = left(&daemon.get("/v1/profiles"));
     let large = daemon.get("/v1/count?circle=0,0,1e8&density=1&profile=test");
     assert_eq!(large.status, 413, "{}", large.text());

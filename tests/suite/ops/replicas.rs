@@ -6,10 +6,10 @@
 
 use std::net::SocketAddr;
 
-use strew::service::{
-    Answer, Catalog, Encoding, Output, Planned,
-    query::{groups, read_body},
-};
+use strew_catalog::Catalog;
+use strew_encode::{Encoding, Output};
+use strew_plan::Planned;
+use strew_query::{groups, read_body};
 use strew_testkit::{http1, wait::until};
 
 use crate::support::{
@@ -28,11 +28,13 @@ fn expected() -> Vec<String> {
         r#"{{"region": {{"bbox": [-200, -200, 200, 200]}}, "spacing": 1, "seed": 5, "profile": "{PROFILE}"}}"#
     );
     let draft = read_body(body.as_bytes(), groups::QUERY).expect("JSON");
-    let (query, _) = draft.check(&catalog, 100).expect("valid");
-    let settings = strew::config::Layers::new().and_then(strew::config::Layers::finish);
+    let (query, _) = draft.check(&catalog.into(), 100).expect("valid");
+    let settings = strew_config::Layers::new().and_then(strew_config::Layers::finish);
     let limits = settings.expect("valid").limits;
     let planned = Planned::at_once(query, &limits).expect("planned");
-    let answer = Answer::new(&planned, &Output::new(Encoding::Csv), 1 << 16).expect("fits");
+    let answer = planned
+        .answer(&Output::new(Encoding::Csv), 1 << 16)
+        .expect("fits");
     let blocks: Vec<u8> = answer.flat_map(|block| block.expect("encoded")).collect();
     let text = String::from_utf8(blocks).expect("UTF-8");
     text.lines().skip(1).map(Into::into).collect()

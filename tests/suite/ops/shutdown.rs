@@ -96,7 +96,7 @@ async fn a_grpc_stream_that_does_not_end_in_time_gets_a_status() {
         }
     };
     assert_eq!(status.code(), Code::Unavailable, "{status:?}");
-    assert!(status.message().contains("not complete"), "{status:?}");
+    assert!(status.message().contains("incomplete"), "{status:?}");
     let ended = tokio::task::spawn_blocking(move || daemon.wait());
     assert_eq!(ended.await.expect("no panic").code(), Some(0));
 }

@@ -223,7 +223,7 @@ fn a_daemon_that_cannot_start_reports_why() {
     }
 }
 
-/// The log of a daemon up to the line that says that it serves.
+/// The log of a daemon up to the line that announces that it serves.
 fn first_log(listen: &str, settings: &[&str]) -> String {
     let folder = tables();
     let daemon = Launcher::new(PROGRAM)

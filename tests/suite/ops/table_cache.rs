@@ -13,7 +13,7 @@ use crate::support::{
 
 /// The files of the folder.
 const FILES: usize = 2000;
-/// What the cache may hold.
+/// The most bytes that the cache may hold.
 const CACHE: u64 = 8 << 20;
 
 /// The alpha of a file.
@@ -88,7 +88,7 @@ fn two_thousand_files_under_a_small_bound() {
         figure("strew_sampler_cache_misses_total"),
         many.len() as f64
     );
-    // What leaves is read again, what is there is not.
+    // A table that has left the cache is read again; a cached one is not.
     let last = *many.last().expect("some");
     for _ in 0..20 {
         assert_eq!(daemon.get(&query(last)).status, 200);
@@ -151,7 +151,7 @@ fn damage_beyond_the_head_shows_at_the_first_use_and_ends_with_it() {
         "files are the operator's"
     );
     daemon.log_line("a.strew");
-    // The same table whole: nothing need be reloaded.
+    // The file is whole again with the same content: nothing need be reloaded.
     fs::write(&path, &good).expect("writable");
     assert_eq!(daemon.get(&query(0)).status, 200);
     // One that is cut is refused at the start already.

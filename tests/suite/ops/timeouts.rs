@@ -165,7 +165,7 @@ async fn a_grpc_stream_that_takes_too_long_gets_a_status() {
         }
     };
     assert_eq!(status.code(), Code::ResourceExhausted, "{status:?}");
-    assert!(status.message().contains("not complete"), "{status:?}");
+    assert!(status.message().contains("incomplete"), "{status:?}");
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -202,7 +202,7 @@ async fn a_stalled_stream_ends_although_its_connection_lives() {
                 .expect("held");
         }
     }
-    // What was sent before arrives, then the reset.
+    // The data sent before arrives first, then the reset.
     let broken = loop {
         match untouched.data().await {
             Some(Ok(data)) => {

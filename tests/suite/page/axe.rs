@@ -31,7 +31,7 @@ fn assert_clean(browser: &Browser, what: &str) {
     assert_eq!(found, json!([]), "{what}");
 }
 
-/// Looks at what is open in both themes.
+/// Checks the open page in both themes.
 fn assert_clean_in_both(browser: &Browser, what: &str) {
     for theme in ["light", "dark"] {
         browser.value(&format!(

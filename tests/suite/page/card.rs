@@ -38,7 +38,7 @@ fn the_card_is_beside_its_point_and_escape_closes_it() {
         browser.keys(&["\u{E00C}"]);
         browser.until("document.querySelector('#card').hidden");
     }
-    // By keys alone; where no point is near, that is said.
+    // Keys alone can do it; the page reports where no point is near.
     browser.value("(document.querySelector('#plane').focus(), 0)");
     browser.keys(&["\u{E007}"]);
     pinned(&browser);

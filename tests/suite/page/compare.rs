@@ -1,4 +1,4 @@
-//! The page `/compare`: its methods are what they say, one view moves all of them, and all of them are measured.
+//! The page `/compare`: its methods keep their definitions, one view moves all of them, and all of them are measured.
 
 use serde_json::Value;
 
@@ -25,7 +25,7 @@ fn figure(browser: &Browser, id: &str) -> f64 {
         .unwrap_or_else(|_| panic!("{id} is “{text}”, no number"))
 }
 
-/// What of the methods is not as they say: their modules are run in the page, on the seeds 1 to 3.
+/// The faults of the methods: their modules run in the page, on the seeds 1 to 3.
 const FAULTS: &str = "(async () => {
   const load = (name) => import(`/page/compare/${name}.js`);
   const [{ bridson, LEAST }, { jittered, white }, { halton, mirrored }, { made }] =
@@ -184,7 +184,7 @@ fn far_away_on_a_phone_bounded_methods_say_that_they_end() {
     browser.value("document.querySelector('#jump').requestSubmit()");
     browser.until("!document.querySelector('#banner').hidden");
     assert!(browser.text("#banner").contains("no place here"));
-    // A hash that says nonsense leaves the defaults.
+    // A meaningless hash leaves the defaults.
     open(
         &browser,
         &daemon,

@@ -22,7 +22,7 @@ fn an_operation_has_an_address_is_found_and_can_be_tried() {
         "points",
         "points come before all else"
     );
-    // A search looks at parameters, too, and says which.
+    // A search also looks at parameters, and names them.
     browser.choose("#search", "heights");
     let hits = browser.text("#hits");
     assert!(hits.ends_with("operations"), "{hits}");

@@ -1,5 +1,4 @@
-//! What everybody needs of the pages: contrast, pictures that come at once, links that skip parts, and no motion of
-//! its own.
+//! Accessibility of the pages: contrast, pictures that come at once, links that skip parts, and no motion of its own.
 
 use crate::support::browser::{
     key::{ENTER, TAB},

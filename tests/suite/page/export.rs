@@ -1,4 +1,4 @@
-//! What the page offers to take away: requests that return exactly the points in view, and files.
+//! The exports that the page offers: requests that return exactly the points in view, and files.
 
 use std::process::Command;
 

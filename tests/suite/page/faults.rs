@@ -1,4 +1,4 @@
-//! What is wrong with a choice is said at its field, in words for people, and the panel stays as it is.
+//! The page reports a faulty choice at its field, in words for people, and leaves the panel as it is.
 
 use crate::support::{
     browser::{Browser, looking},

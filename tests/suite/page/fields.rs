@@ -33,7 +33,7 @@ fn a_field_thins_the_points_and_is_shaded_under_them() {
     browser.look(&daemon, &hash);
     assert_eq!((browser.hash(), browser.ready()), (hash, count));
     assert_eq!(browser.errors(), Vec::<String>::new());
-    // A field that is not there is told.
+    // The page reports a field that does not exist.
     browser.go("about:blank");
     browser.go(&daemon.url("/#at=0,0&span=100&field=nothing"));
     browser.until("document.documentElement.dataset.state === 'failed'");
@@ -66,7 +66,7 @@ fn a_picture_is_sent_once_and_becomes_dots_where_it_is_dark() {
     assert!(right < 50, "{right}");
     browser.until(SHADED);
     assert_eq!(browser.errors(), Vec::<String>::new());
-    // What is no picture is told.
+    // The page reports a file that is no picture.
     browser.value("(strew.stipple(new File(['GIF'], 'other.gif')), 0)");
     browser.until("document.querySelector('#banner').textContent.includes('is no picture')");
 }

@@ -1,4 +1,4 @@
-//! Links and choices that cannot be shown: the page says why and shows what it can.
+//! Links and choices that cannot be shown: the page states why and shows the rest.
 
 use crate::support::browser::looking;
 
@@ -31,7 +31,7 @@ fn places_without_points_are_said_and_left() {
     browser.click("#jump button");
     browser.until("strew.plane.view.x.i === 1e15");
     assert!(browser.ready() > 500);
-    // Home forgets what was typed.
+    // Home forgets typed values.
     browser.click("#home");
     browser.until("strew.plane.view.x.i === 0");
     assert_eq!(

@@ -82,7 +82,7 @@ fn what_is_painted_is_followed_and_comes_back() {
     browser.look(&other, &hash);
     assert_eq!((browser.hash(), browser.ready()), (hash, count));
     assert_eq!(browser.value("strew.paint.work.strokes.length"), 2);
-    // What is undone is gone, and Back brings it again.
+    // An undone stroke is gone, and Back brings it again.
     browser.click("#paint-open");
     let without = changed(&browser, || browser.click("#paint-undo"));
     assert!(without > count);

@@ -56,7 +56,7 @@ fn a_tile_repeats_and_is_saved_as_it_is_shown() {
     browser.until(READY);
     browser.until("document.querySelector('#about').textContent.startsWith('101 points')");
     assert!(browser.text("#command").contains("keep=0.02"));
-    // Back restores what was chosen before.
+    // Back restores the earlier choices.
     browser.value("(document.querySelector('#points').value = '9409', document.querySelector('#points').dispatchEvent(new Event('change')), 0)");
     browser.until(&format!(
         "{READY} && document.querySelector('#about').textContent.includes('97 × 97')"
@@ -66,7 +66,7 @@ fn a_tile_repeats_and_is_saved_as_it_is_shown() {
         "{READY} && document.querySelector('#about').textContent.includes('71 × 71')"
     ));
     assert_eq!(browser.errors(), Vec::<String>::new());
-    // A seed that is none is said at its field.
+    // The page reports an invalid seed at its field.
     browser.value("(document.querySelector('#seed').value = 'x', document.querySelector('#seed').dispatchEvent(new Event('input')), 0)");
     browser.until("!document.querySelector('#wrong-seed').hidden");
     assert!(browser.text("#wrong-seed").contains("whole number"));
@@ -98,7 +98,7 @@ fn a_mask_is_the_servers_and_dithers_a_ramp() {
     assert!(line.contains("/v1/mask.png?size=64&seed=5"), "{line}");
     browser.click("#what-points");
     browser.until("document.querySelector('#about').textContent.includes('points on a square')");
-    // A profile that is not loaded is said, and another one is shown.
+    // The page reports a profile that is not loaded, and shows another one.
     browser.go(&daemon.url("/livez"));
     browser.go(&daemon.url("/tile#what=points&profile=nothing"));
     browser.until(READY);

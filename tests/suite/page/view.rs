@@ -37,7 +37,7 @@ fn dragging_zooming_and_keys_move_the_view_and_its_url() {
     browser.keys(&["\u{E014}", "\u{E013}", "+"]);
     browser.until("strew.plane.span < 60 && strew.plane.view.x.i > 25");
     browser.ready();
-    // After all of that, the page shows as many points as the server counts.
+    // After all of that, the page shows the number of points that the server counts.
     let count = browser.ready();
     let shown = browser.in_view().len() as u64;
     assert!(count.abs_diff(shown) <= 1, "{count} {shown}");

@@ -1,4 +1,4 @@
-//! The walk at `/walk`: what is drawn is what the server has, it is the same on the way back, and keys do all of it.
+//! The walk at `/walk`: it draws the server's points, the same on the way back, and keys do all of it.
 
 use crate::support::{
     browser::{Browser, looking},
@@ -14,7 +14,7 @@ fn walk(daemon: &Daemon, browser: &Browser, more: &str) {
     browser.until(READY);
 }
 
-/// Goes where the button leads, and waits until what is there surrounds the first coordinate `x`.
+/// Goes where the button leads, and waits until points surround the first coordinate `x`.
 fn jump(browser: &Browser, x: f64) {
     browser.click("#jump");
     browser.until(&format!("Math.abs(strew.world.around.x.i - {x}) < 2"));
@@ -95,7 +95,7 @@ fn keys_walk_and_pick_and_the_same_trees_stand_there_on_the_way_back() {
     let here = picked(&browser);
     let path = format!("/v1/points/{here}?spacing=2&seed=7");
     assert_eq!(daemon.get(&path).status, 200, "{path}");
-    // Far away all is as it is here; the address says where that is.
+    // Far away the walk works as it does here; the address has the place.
     jump(&browser, 1e9);
     let there = picked(&browser);
     assert_ne!(there, here);

@@ -67,7 +67,7 @@ fn a_count_where_nothing_can_be_is_refused_with_the_reason() {
         let texts = ["the field is 0 in all of the region", "leaves points"];
         assert_fault(&answer, &body.to_string(), "count", &texts);
     }
-    // Bounds over the box around the region do not tell.
+    // Bounds over the box around the region do not suffice.
     let body = json!({
         "region": { "polygon": { "type": "Polygon", "coordinates": [[[0, 0], [20, 0], [0, 20], [0, 0]]] } },
         "count": 5, "field": { "ramp": { "from": [10.5, 10.5], "to": [20, 20] } },

@@ -141,7 +141,7 @@ fn wrong_alphas_and_maps_of_patterns_are_named() {
         let query = format!("/v1/count?bbox=0,0,9,9&spacing=1&profile=pattern&{rest}");
         assert_fault(&daemon.get(&query), &query, field, &texts);
     }
-    // Of other profiles the answer says what to do, or why nothing can be done.
+    // For other profiles the answer states the remedy, or that there is none.
     for (rest, texts) in [
         (
             "profile=blue&alpha=1.7123",

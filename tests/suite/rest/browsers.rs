@@ -140,7 +140,7 @@ fn pages_that_are_not_allowed_send_nothing_but_requests_for_reading() {
         post(&closed, &[page, ("sec-fetch-site", "same-origin")]),
         200
     );
-    // What is only read is answered, and browsers keep it from the page.
+    // A request that only reads is answered, and browsers keep the answer from the page.
     let read = http1::get(closed.address(), "/livez", &[page]);
     assert_eq!(
         (read.status, read.header("access-control-allow-origin")),

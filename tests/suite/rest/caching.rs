@@ -91,7 +91,7 @@ fn different_answers_have_different_tags() {
         tag(&format!("{POINTS}&seed=1"), &[]),
         tag(&format!("{POINTS}&alpha=sqrt(3)"), &[]),
     ];
-    // The same path, answered by another table.
+    // Another table answers the same path with another tag.
     let tables = tempfile::tempdir().expect("a temporary folder");
     let other = random("(5-sqrt(3))/2", "test", 21);
     write(tables.path(), "a.strew", &other);

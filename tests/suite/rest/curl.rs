@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use strew::service::Encoding;
+use strew_encode::Encoding;
 
 use crate::support::{clients, daemon::Daemon};
 

@@ -19,7 +19,7 @@ const ORIGIN: [f64; 2] = [-3.5, 1.0];
 /// The last bit of an `f32` below 128.
 const ROUNDED: f64 = 1.0 / (1 << 17) as f64;
 
-/// What stands at a point: its id, place, turn, size and variant.
+/// A thing at a point: its id, place, turn, size and variant.
 #[derive(Clone, Debug)]
 struct Stand {
     id: String,
@@ -44,7 +44,7 @@ fn stands(text: &str) -> Vec<Stand> {
     text.lines().map(stand).collect()
 }
 
-/// The same from csv, whose columns are id, x, y, angle, scale, variant, u1.
+/// The things of the csv answer, whose columns are id, x, y, angle, scale, variant, u1.
 fn expected(daemon: &Daemon) -> Vec<Stand> {
     let csv = daemon.get(&format!("{QUERY}&format=csv"));
     let stand = |line: &str| {
@@ -75,7 +75,7 @@ fn written(daemon: &Daemon, format: &str, folder: &Path) -> PathBuf {
     file
 }
 
-/// What a program prints; `None` if it lacks what it needs.
+/// The output of a program; `None` if the program lacks a module.
 fn output(command: &mut Command, what: &str) -> Option<String> {
     let output = command.output().expect("the program runs");
     let (text, message) = (

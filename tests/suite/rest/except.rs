@@ -1,4 +1,4 @@
-//! What was taken away stays away: in every region, format and part, and nothing appears in its place.
+//! Excepted points stay away in every region, format and part, and no point appears in their place.
 
 use std::fs;
 
@@ -58,7 +58,7 @@ fn answers_are_those_of_before_without_the_points() {
         );
         let count = daemon.get(&format!("/v1/count?{query}{except}")).json();
         assert_eq!(count["count"], left.len(), "{query}");
-        // Packed formats say how long they are before the first byte.
+        // Packed formats announce their length before the first byte.
         let packed = daemon.get(&format!("/v1/points?{query}{except}&format=f64"));
         assert_eq!(packed.body.len(), 16 * left.len(), "{query}");
         let page = rows(&daemon, &format!("{address}{except}&offset=9&limit=20"));
@@ -270,7 +270,7 @@ async fn a_list_is_sent_once_and_named_by_its_digest() {
     let streamed: Vec<&str> = points.iter().filter_map(|p| p["id"].as_str()).collect();
     let expected: Vec<&str> = left.iter().map(|row| id(row, 0)).collect();
     assert_eq!(streamed, expected);
-    // The digest says what the list has, so caches may keep the answer.
+    // The digest pins the content of the list, so caches may keep the answer.
     let table = daemon.get(&named).header("strew-table").to_owned();
     let pinned = daemon.get(&format!("{named}&table={table}"));
     assert!(pinned.header("cache-control").contains("immutable"));
@@ -328,7 +328,7 @@ fn lists_that_cannot_be_held_or_are_gone_are_refused() {
         let answer = http1::post(daemon.address(), "/v1/except", &[], list.as_bytes());
         assert_fault(&answer, list, field, &texts);
     }
-    // Others make it go, and the fault says what to do.
+    // Other lists displace it, and the fault names the remedy.
     for i in 0..3 {
         sent(&daemon, &format!("{i}:5"));
     }

@@ -29,7 +29,7 @@ fn by_name(csv: &Csv) -> BTreeMap<String, Vec<Point>> {
     all
 }
 
-/// What the header says of them.
+/// The counts of the header.
 fn counts(csv: &Csv) -> Value {
     serde_json::from_str(csv.answer.header("strew-kinds")).expect("JSON")
 }

@@ -5,8 +5,8 @@ use std::io::Cursor;
 use arrow_array::{cast::AsArray as _, types::Float64Type};
 use arrow_ipc::reader::StreamReader;
 use serde_json::{Value, json};
-use strew::service::Encoding;
 use strew_core::Point;
+use strew_encode::Encoding;
 
 use crate::support::{
     csv::{Csv, least_distance, sorted},

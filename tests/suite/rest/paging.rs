@@ -11,7 +11,7 @@ fn queries() -> Vec<Value> {
     vec![
         json!({ "region": { "bbox": [-7, 1, 12, 15] }, "spacing": 0.6 }),
         json!({ "region": region, "spacing": 0.6, "seed": 8, "keep": 0.7 }),
-        // The cursor carries what is needed to find the same spacing again.
+        // The cursor carries the spacing, which need not be found again.
         json!({ "region": region, "count": 700, "seed": 8 }),
         json!({ "region": region, "layers": [
             { "name": "trees", "count": 90, "seed": 1 },

@@ -251,7 +251,7 @@ async fn calls_and_commands_agree() {
     let lines = run("periods --map s --periodic 6000 --most 3");
     let first: Value = serde_json::from_str(lines.lines().next().expect("a line")).expect("JSON");
     assert_eq!(first, listed["periods"][0]);
-    // The same points by all.
+    // REST and the command line return the same points.
     let csv = Csv::get(&daemon, TILE);
     let sampled = run("sample --periodic 5000 --map s --spacing 2 --seed 7 --format csv -o -");
     assert_eq!(sampled, csv.answer.text());

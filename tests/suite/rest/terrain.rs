@@ -38,7 +38,7 @@ fn heights_normals_and_rotations_follow_the_ground() {
         assert!((z[i] - (10.0 + point.x / 2.0)).abs() < 1e-12, "{point:?}");
         assert!((nx[i] + 0.5 / length).abs() < 1e-12 && ny[i] == 0.0);
         assert!((nz[i] - 1.0 / length).abs() < 1e-12);
-        // What is up for a thing is the normal.
+        // The up direction of a thing is the normal.
         let up = [
             2.0 * (qx[i] * qz[i] + qy[i] * qw[i]),
             2.0 * (qy[i] * qz[i] - qx[i] * qw[i]),

@@ -116,7 +116,7 @@ fn answers_say_which_fields_and_change_with_them() {
     assert_eq!(query["variant_fields"], json!({ "birch": "ramp" }));
     assert_eq!(query["variant_field_digests"], json!({ "birch": digest }));
     assert!(query.get("kind_distances").is_none(), "{query}");
-    // The same field described, and another one.
+    // The same points from the field as a description, and others from another field.
     let body = |field: Value| {
         json!({
             "region": { "bbox": [0, 0, 40, 40] }, "map": "s", "spacing": 1, "seed": 9,
@@ -242,7 +242,7 @@ fn wrong_fields_are_refused_by_name() {
     });
     let answer = daemon.post("/v1/count", &body);
     assert_fault(&answer, "noise", "variant_fields.a.noise.period", &[]);
-    // What takes too long is refused before it begins.
+    // Queries that would take too long are refused before they begin.
     let answer = daemon.get(&format!("/v1/count?bbox=0,0,1e6,1e6&{SET}&{VARIED}"));
     assert_eq!(answer.status, 413, "{}", answer.text());
     assert!(answer.text().contains("too-many-rows"), "{}", answer.text());

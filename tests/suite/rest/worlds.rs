@@ -34,7 +34,7 @@ fn a_world_stands_for_what_a_query_leaves_open() {
         text(&format!("{chunk}&world=meadow")),
         text(&format!("{chunk}&spacing=1.5&seed=7&attributes=u1"))
     );
-    // What the query says is stronger; another amount replaces the world's.
+    // The query overrides the world; another amount replaces the world's.
     assert_eq!(
         text(&format!("{chunk}&world=meadow&seed=8&density=2")),
         text(&format!("{chunk}&density=2&seed=8&attributes=u1"))
@@ -173,7 +173,7 @@ fn a_pinned_world_is_refused_by_a_daemon_that_has_another() {
     assert_eq!(kept.text(), answer.text());
     assert!(kept.header("cache-control").contains("immutable"));
     assert!(!answer.header("cache-control").contains("immutable"));
-    // What a server could change is not pinned by it.
+    // The digest does not pin settings that a server could change.
     let own = daemon.get(&format!("{pinned}&seed=4"));
     assert!(own.header("cache-control").contains("immutable"));
     let other = Daemon::with_config(&WORLDS.replace("spacing = 3", "spacing = 4"));
@@ -219,7 +219,7 @@ fn worlds_are_read_again_and_a_wrong_one_replaces_none() {
     });
     assert_eq!(names(), after[..2]);
     assert_eq!(daemon.get("/v1/worlds/meadow/chunks/9/0/0").status, 200);
-    // What is no TOML changes nothing.
+    // A file that is no TOML changes nothing.
     fs::write(&file, "[worlds").expect("writable");
     daemon.signal("HUP");
     fs::write(daemon.folder().join("c.strew"), "no table").expect("writable");
@@ -320,7 +320,7 @@ fn what_a_world_leaves_out_stays_out() {
     assert_eq!(ids("world=wood"), without(&["2:-1"]));
     // A request adds to what the world leaves out.
     assert_eq!(ids("world=wood&except=8:-1"), without(&["2:-1", "8:-1"]));
-    // What the share leaves out anyway is allowed.
+    // Points that `keep` leaves out anyway may be excepted.
     for id in &all {
         ids(&format!("spacing=1&keep=0.3&except={id}"));
     }

@@ -1,4 +1,4 @@
-//! Clients at a loopback address of their own, so that limits by address tell them from others.
+//! Clients at a loopback address of their own, so that limits by address apply to them alone.
 
 use std::{
     io::{self, Write as _},

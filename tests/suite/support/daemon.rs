@@ -99,7 +99,7 @@ impl Daemon {
     }
 
     /// Starts one that serves TLS with the files of a folder: `server.pem` with `server.key`, and
-    /// `clients.pem`, if it is there, for certificates of clients.
+    /// `clients.pem`, if it exists, for certificates of clients.
     pub fn with_tls(folder: &Path, settings: &[&str]) -> Self {
         let file = |setting: &str, name: &str| format!("{setting}={}", folder.join(name).display());
         let mut all = vec![

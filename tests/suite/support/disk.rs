@@ -12,7 +12,7 @@ pub struct SmallDisk {
 }
 
 impl SmallDisk {
-    /// Mounts a file system of a size such as `1m`. Where that is not permitted, a message says so.
+    /// Mounts a file system of a size such as `1m`. Where that is not permitted, it prints a message.
     pub fn mount(size: &str) -> Option<Self> {
         let folder = tempfile::tempdir().expect("a folder");
         let disk = Self { folder };
@@ -23,7 +23,7 @@ impl SmallDisk {
         None
     }
 
-    /// Changes its size, to no less than what is on it.
+    /// Changes its size, but not below its contents.
     pub fn resize(&self, size: &str) {
         assert!(
             self.run(&format!("remount,size={size}")),

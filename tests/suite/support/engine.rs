@@ -11,7 +11,7 @@ use strew_testkit::wait::until;
 
 use super::clients;
 
-/// What a driver writes before the number of its port.
+/// The text that a driver writes before the number of its port.
 const LISTENING: [&str; 2] = ["successfully on port ", "Listening on 127.0.0.1:"];
 
 /// Firefox's window is never narrower than 450 pixels, a phone is.
@@ -72,7 +72,7 @@ impl Engine {
         Some((driver, port?))
     }
 
-    /// What a session is started with; `folder` is the browser's own, `downloads` is in it.
+    /// The capabilities of a session; `folder` is the browser's own, `downloads` is in it.
     pub fn capabilities(self, browser: &Path, folder: &Path) -> Value {
         let within = |name: &str| folder.join(name).display().to_string();
         match self {
@@ -105,7 +105,7 @@ impl Engine {
     }
 }
 
-/// The port that a driver says, once its line is whole.
+/// The port that a driver prints, once its line is whole.
 fn port_of(said: &str) -> Option<u16> {
     let lines = said
         .split_inclusive('\n')

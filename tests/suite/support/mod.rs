@@ -1,5 +1,5 @@
-//! What tests of several folders share. There are no tests here; parts that other test binaries and
-//! benches need as well are in `crates/testkit`.
+//! Support for the tests of several folders, without tests of its own; parts that other test binaries and benches need
+//! as well are in `crates/testkit`.
 
 pub mod attack;
 pub mod browser;

@@ -18,7 +18,7 @@ pub fn post(to: SocketAddr, path: &str, body: &str) -> io::Result<TcpStream> {
     Ok(stream)
 }
 
-/// The answer to what was sent, head and body.
+/// The answer to the bytes sent, head and body.
 pub fn answer(stream: &mut TcpStream) -> String {
     let mut text = vec![];
     stream.read_to_end(&mut text).expect("an answer");

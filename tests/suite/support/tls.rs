@@ -60,7 +60,7 @@ pub fn get(connected: &mut Connected, path: &str) -> std::io::Result<String> {
     get_with(connected, path, "")
 }
 
-/// The same, with lines of headers that end in CR LF.
+/// As [`get`], with headers: lines that end in CR LF.
 pub fn get_with(connected: &mut Connected, path: &str, headers: &str) -> std::io::Result<String> {
     let request = format!("GET {path} HTTP/1.1\r\nhost: localhost\r\n{headers}\r\n");
     connected.write_all(request.as_bytes())?;

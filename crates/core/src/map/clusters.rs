@@ -55,7 +55,7 @@ const LARGER: u32 = u32::MAX;
 impl Clusters {
     /// The largest neighbor distance, in grid units.
     pub const MAX_DISTANCE: f64 = 16.0;
-    /// The largest number of points up to which clusters are told apart.
+    /// The largest size of clusters that can be distinguished, in points.
     pub const MAX_POINTS: usize = 64;
 
     /// The clusters of points that are at most `distance` grid units from a neighbor, from 1 to
@@ -64,7 +64,7 @@ impl Clusters {
     ///
     /// # Errors
     /// [`ErrorKind::Clusters`] if `distance` is out of range, unless 1 ≤ `most` ≤
-    /// [`MAX_POINTS`](Self::MAX_POINTS), and if clusters of so many points reach farther than a map of half-width
+    /// [`MAX_POINTS`](Self::MAX_POINTS), and if clusters of that number of points reach farther than a map of half-width
     /// [`MAX_RADIUS`](super::MAX_RADIUS).
     ///
     /// ```
@@ -217,7 +217,7 @@ impl Clusters {
         self.classes
     }
 
-    /// The number of points up to which clusters are told apart.
+    /// The largest size of clusters that are distinguished, in points.
     ///
     /// ```
     /// use strew_core::map::Clusters;
@@ -247,7 +247,7 @@ impl Clusters {
         (side * side - counted) as f64 / (side * side) as f64
     }
 
-    /// The map whose blocks tell the shapes apart: each block belongs to one shape.
+    /// The map that separates the shapes: each block belongs to one shape.
     ///
     /// ```
     /// use strew_core::map::Clusters;

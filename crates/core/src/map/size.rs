@@ -16,7 +16,7 @@ use crate::error::{Error, ErrorKind, shown};
 /// ```
 pub const MAX_RADIUS: u32 = 1024;
 
-/// What the text of a size must be.
+/// The forms of the text of a size.
 const ALLOWED: &str = "s (R = 49), m (R = 100), l (R = 200), or r and R from 0 to 1024";
 
 /// Refuses a half-width above [`MAX_RADIUS`].

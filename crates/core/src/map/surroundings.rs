@@ -1,4 +1,4 @@
-//! What a map knows: the neighbors of a block's points, and how the number of intervals grows with R.
+//! The knowledge of a map: the neighbors of a block's points, and how the number of intervals grows with R.
 
 use alloc::{collections::BTreeSet, vec::Vec};
 

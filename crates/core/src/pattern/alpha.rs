@@ -27,7 +27,7 @@ pub struct Alpha {
     half: u64,
 }
 
-/// What a text must be to be read as α.
+/// The forms of a text that can be read as α.
 const ALLOWED: &str = "a decimal (1.75), a fraction (183/112) or a quadratic irrational such as \
                        sqrt(3), (5-sqrt(3))/2 or (1+sqrt(5))/2, between 1 and 2";
 

@@ -1,4 +1,4 @@
-//! How often a rotation of the circle lands in an interval, in O(log).
+//! The number of times that a rotation of the circle lands in an interval, in O(log).
 
 /// Σ ⌊(a·i + b)/2⁶⁴⌋ for 0 ≤ i < n, modulo 2¹²⁸.
 ///

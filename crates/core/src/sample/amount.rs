@@ -75,7 +75,7 @@ pub(super) fn exactly(
         let trial = lattice.replaced(placement);
         let plan = match Plan::new(&trial, mask, area.clone(), stop.clone(), None) {
             Ok(plan) => plan,
-            // So dense that points cannot be told apart.
+            // So dense that f64 coordinates of points coincide.
             Err(error) if error.kind() == ErrorKind::TooFar && high.is_finite() => {
                 low = guess;
                 guess = between(low, high);
@@ -146,7 +146,7 @@ pub(super) fn exactly(
     Ok(more.window(0, Some(count)))
 }
 
-/// A field is looked at in so many rows and columns of places to begin with.
+/// The first look at a field takes this number of rows and columns of places.
 const SIDE: u32 = 64;
 
 /// The sum of the shares of a field at a grid of places in a box.

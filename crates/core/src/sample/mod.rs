@@ -8,8 +8,8 @@
 //! 4. `sieve` and `scope`: what the points of a request satisfy;
 //! 5. `count`: how many there are, without making them;
 //! 6. `kernel` and `walk`: making them, row by row, in blocks;
-//! 7. `attribute` and `member`: the values that points have; `seek`, `cursor`: places in their order;
-//! 8. `plan` (with `iter`): a request made ready; `amount`: one with an exact number of points;
+//! 7. `attribute` and `member`: the values that points have, one by one; `seek`, `cursor`: places in their order;
+//! 8. `plan`: a request made ready; `amount`: one with an exact number of points;
 //! 9. `field`: sets whose density varies;
 //! 10. `set`: the [`PointSet`](crate::PointSet), whose methods are all of this;
 //! 11. `periodic`: one exact period of a set that tiles the plane.
@@ -20,7 +20,6 @@ mod attribute;
 mod count;
 mod cursor;
 mod field;
-mod iter;
 mod kernel;
 mod lattice;
 mod member;
@@ -43,10 +42,9 @@ pub use attribute::{
 };
 pub use cursor::Cursor;
 pub use field::{Edges, Field, FieldSpec, Filter, Marks, Noise, Pixels, Raster, Terrain};
-pub use iter::Members;
 pub use kernel::{Backend, F32, F64, Format, Offsets, Points};
 pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing, VaryingKinds};
-pub use member::Member;
+pub use member::{Member, Members};
 pub use near::{Clearance, LeastDistance, Visits};
 pub use periodic::{PeriodicBlocks, PeriodicPlan, PeriodicSet};
 pub use plan::Plan;

@@ -1,11 +1,12 @@
 //! Scopes: the part of a lattice that a plan covers.
 
+use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
     area::{Area, CORNERS, Chunk, Region},
     field::constant,
-    lattice::{LATTICE_LIMIT, Lattice, Multiple, Span},
+    lattice::{BAND_WIDTH, LATTICE_LIMIT, Lattice, Multiple, Span},
     near::Mask,
     sieve::Sieve,
 };
@@ -26,7 +27,7 @@ pub(crate) struct Scope {
     pub(crate) stop: Stop,
     /// The box around the area.
     pub(crate) region: Region,
-    /// What offsets are relative to.
+    /// The place that offsets are relative to.
     pub(crate) corner: Corner,
     /// The lattice in its field, where that has the same share in all of the scope and
     /// [`lattice`](Self::lattice) has that share.
@@ -105,6 +106,49 @@ fn bounds(lattice: &Lattice, chunks: &[Chunk], rest: Option<&Area>) -> [Range<i1
     all.unwrap_or([0..0, 0..0])
 }
 
+/// The chunks of which an area is the intersection with [`beside_chunks`]. Membership of a chunk is exact, which
+/// reported coordinates cannot decide, so integers decide these and coordinates the rest.
+fn chunks(area: &Area) -> Vec<Chunk> {
+    match area {
+        Area::Region(region) => region.as_chunk().into_iter().collect(),
+        Area::AllOf(areas) => areas.iter().flat_map(chunks).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The area without the restriction to its [`chunks`]; `None` if nothing else restricts
+/// it.
+fn beside_chunks(area: &Area) -> Option<Area> {
+    match area {
+        Area::Region(region) if region.as_chunk().is_some() => None,
+        Area::AllOf(areas) => {
+            let mut rest: Vec<Area> = areas.iter().filter_map(beside_chunks).collect();
+            if rest.len() > 1 {
+                Some(Area::AllOf(rest))
+            } else {
+                rest.pop()
+            }
+        }
+        other => Some(other.clone()),
+    }
+}
+
+/// The area with its [`chunks`] as boxes that hold every point of them by its reported
+/// coordinates, and a little more.
+fn around_chunks(area: &Area) -> Area {
+    match area {
+        Area::Region(region) if region.as_chunk().is_some() => {
+            // Corners and reported coordinates are each rounded once.
+            let below = |v: f64| v.next_down().next_down();
+            let above = |v: f64| v.next_up().next_up();
+            let (min, max) = (region.min().map(below), region.max().map(above));
+            Area::Region(Region::between(min, max))
+        }
+        Area::AllOf(areas) => Area::AllOf(areas.iter().map(around_chunks).collect()),
+        other => other.clone(),
+    }
+}
+
 impl Scope {
     /// The part of a set, given by its lattice and mask, that lies in an area.
     pub(crate) fn new(
@@ -124,16 +168,15 @@ impl Scope {
         for (name, value) in CORNERS.into_iter().zip([min_x, min_y, max_x, max_y]) {
             if value.abs() > limit {
                 let allowed = alloc::format!(
-                    "within ±{limit:e} with this spacing, where f64 coordinates still tell neighbors \
-                     apart"
+                    "within ±{limit:e} with this spacing, where f64 coordinates still keep \
+                     neighbors apart"
                 );
                 let error = Error::new(ErrorKind::TooFar, name, number(value), allowed);
                 return Err(error.because("too far from the origin").with_limit(limit));
             }
         }
-        let (chunks, rest) = area.map_or_else(Default::default, |area| {
-            (area.chunks(), area.beside_chunks())
-        });
+        let (chunks, rest) =
+            area.map_or_else(Default::default, |area| (chunks(area), beside_chunks(area)));
         let [x, y] = Span::of_box(lattice, bounds(lattice, &chunks, rest.as_ref()));
         let piece = [x.all.clone(), y.all.clone()];
         let share = lattice
@@ -158,7 +201,7 @@ impl Scope {
         let sieve = if is_box && mask.clear.is_empty() && !lattice.picks() {
             None
         } else {
-            let area = area.map(Area::around_chunks);
+            let area = area.map(around_chunks);
             Sieve::new(lattice, Mask { area, ..mask }, [x.reach, y.reach])
         };
         Ok(Self {
@@ -183,6 +226,15 @@ impl Scope {
             y,
             ..self.clone()
         }
+    }
+
+    /// The bands that the scope touches.
+    pub(crate) fn bands(&self) -> Range<i64> {
+        let columns = &self.x.all;
+        if columns.is_empty() || self.y.all.is_empty() {
+            return 0..0;
+        }
+        columns.start.div_euclid(BAND_WIDTH)..(columns.end - 1).div_euclid(BAND_WIDTH) + 1
     }
 
     /// The lattice of the set.

@@ -12,7 +12,7 @@ use super::{
     kernel::Points,
     lattice::{BAND_WIDTH, Point, PointId},
     scope::Scope,
-    walk::{Blocks, Tile, bands},
+    walk::{Blocks, Tile},
 };
 
 /// The lattice addresses of points of some numbers, which ascend, in a scope that has `total` points; `None` for those
@@ -25,7 +25,7 @@ pub(super) fn locate_all(
 ) -> Vec<Option<PointId>> {
     let inside = &numbers[..numbers.partition_point(|&k| k < total)];
     let rows = &scope.y.all;
-    let in_bands = places(bands(scope), total, inside, &mut |bands| {
+    let in_bands = places(scope.bands(), total, inside, &mut |bands| {
         let columns = bands.start * BAND_WIDTH..bands.end * BAND_WIDTH;
         count(scope, &columns, rows)
     });

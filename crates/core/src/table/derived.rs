@@ -29,7 +29,7 @@ impl Table {
     ///
     /// # Errors
     /// [`ErrorKind::Table`](crate::ErrorKind::Table) for a table without ranks, or unless each level has
-    /// as many vectors as blocks are left above it.
+    /// one vector for each block that is left above it.
     ///
     /// ```
     /// use strew_core::{Table, table::{Ladder, Ranks, Rung}};

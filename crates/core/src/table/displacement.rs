@@ -36,7 +36,7 @@ struct Content {
     labels: Option<Labels>,
     /// The least squared distance between two points, once it has been computed.
     least_squared: Once<u64>,
-    /// The same for each pair of kinds, row by row.
+    /// The least squared distance of each pair of kinds, row by row.
     least_of_kinds: Once<Arc<[u64]>>,
     turned: TurnedCopies,
 }
@@ -236,7 +236,7 @@ impl Table {
         &self.0.parts.displacements
     }
 
-    /// How the table was made, and what was measured on it.
+    /// The history of the table: its making and its measurements.
     ///
     /// ```
     /// use strew_core::Table;
@@ -395,7 +395,7 @@ impl Table {
         self.0.reach
     }
 
-    /// What the table is made of.
+    /// The parts of the table.
     pub(super) fn parts(&self) -> &Parts {
         &self.0.parts
     }
@@ -410,7 +410,7 @@ impl Table {
         self.0.least_squared.get_or(compute)
     }
 
-    /// The same for each pair of kinds.
+    /// The least squared distance of each pair of kinds, computed once.
     pub(crate) fn least_of_kinds(&self, compute: impl FnOnce() -> Arc<[u64]>) -> Arc<[u64]> {
         self.0.least_of_kinds.get_or(compute)
     }

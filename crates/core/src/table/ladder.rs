@@ -24,7 +24,7 @@ use crate::error::{Error, ErrorKind};
 /// ```
 pub const LADDER_BITS: u32 = 8;
 
-/// What a fixed-point coordinate of a table is, in units of a ladder's vectors.
+/// The unit of a ladder's vectors, in bits of the fixed point of a table.
 pub(crate) const SHIFT: u32 = FRACTION_BITS - LADDER_BITS;
 
 /// The unit of [`Rung::event`]: a 255th of the way from one level to the next.
@@ -76,9 +76,9 @@ pub struct Ladder {
 pub(super) struct Level {
     /// λ, in units of 2⁻³².
     share: u32,
-    /// The same as a number.
+    /// λ as a number.
     least: f64,
-    /// Where its rungs start, and their number: by position in the order of blocks.
+    /// The start of its rungs, and their number: by position in the order of blocks.
     pub(super) first: u32,
     pub(super) length: u32,
     /// The share of the level above, and the units of a stage's way down from there that a share of 1 takes.
@@ -99,12 +99,12 @@ pub(crate) struct Stage {
     back: f64,
     /// The units of `way` that a share of 1 takes.
     per_share: f64,
-    /// By how much events begin earlier and end later, in units of `way`, within the segment.
+    /// The time by which events begin earlier and end later, in units of `way`, within the segment.
     spread: f64,
 }
 
 impl Stage {
-    /// Where the table itself holds.
+    /// The stage at which the table itself holds.
     pub(crate) const FULL: Self = Self {
         below: 0,
         way: 0.0,

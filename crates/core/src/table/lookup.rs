@@ -13,7 +13,7 @@ pub(crate) struct Lookup<const N: usize> {
     pub(crate) events: [[u8; N]; 2],
     /// Whether the table itself is the level above.
     pub(crate) is_first: [u32; N],
-    /// Of the [`Stage`].
+    /// The numbers of the [`Stage`].
     pub(crate) way: [f64; N],
     pub(crate) per_share: [f64; N],
     /// The points whose displacement is to be had one by one, and their number.

@@ -41,7 +41,7 @@ pub struct Split {
     pub kind: u8,
 }
 
-/// Which kind the points of each block of a table are, for given shares.
+/// The kinds of the points of a table, block by block, for given shares.
 ///
 /// ```
 /// use strew_core::{Map, table::{Mix, Shares}};

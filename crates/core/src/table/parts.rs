@@ -1,4 +1,4 @@
-//! What a table is made of, checked.
+//! The checked parts of a table.
 
 use alloc::{format, string::String, vec::Vec};
 

@@ -1,4 +1,4 @@
-//! How a table was made and what was measured on it.
+//! The history of a table: its making and its measurements.
 
 use alloc::{format, string::String, vec::Vec};
 
@@ -33,7 +33,7 @@ pub struct Provenance {
     pub seed: u64,
     /// The periodic twins it was optimized on.
     pub twins: Vec<Twin>,
-    /// What was measured, subject by subject.
+    /// The measurements, subject by subject.
     pub figures: Vec<Figures>,
 }
 
@@ -52,7 +52,7 @@ pub struct Provenance {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figures {
-    /// What was measured: `twin 683/418`, `window seed 7`.
+    /// The subject of the measurement: `twin 683/418`, `window seed 7`.
     pub subject: String,
     /// Whether the table was optimized on this subject.
     pub seen: bool,

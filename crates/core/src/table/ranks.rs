@@ -113,7 +113,7 @@ pub(crate) struct Order {
     floors: Arc<[f64]>,
 }
 
-/// Which points of a pattern are kept: those of the first positions, and a strip of the next block.
+/// The points of a pattern that are kept: those of the first positions, and a strip of the next block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Cut {
     /// The number of positions whose blocks are kept whole.

@@ -156,7 +156,7 @@ fn refused(weight: f64, allowed: String) -> Error {
 }
 
 /// Integers with the same sum, which is whole: what is left after rounding down goes to the largest remainders.
-/// Of equal ones the later is first, where it matters least.
+/// Among equal ones the later is first, where it matters least.
 fn rounded(ideal: Vec<f64>) -> Vec<u16> {
     let mut parts: Vec<u16> = ideal.iter().map(|&v| v as u16).collect();
     let sum: u32 = parts.iter().map(|&part| u32::from(part)).sum();

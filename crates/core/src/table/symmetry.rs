@@ -57,7 +57,7 @@ impl Symmetry {
     }
 }
 
-/// What a table has for each block, turned.
+/// The entries of a table for each block, turned.
 #[derive(Debug)]
 pub(super) struct Turned {
     pub(super) vectors: Vec<Displacement>,
@@ -65,7 +65,7 @@ pub(super) struct Turned {
     pub(super) labels: Option<Labels>,
 }
 
-/// What is turned.
+/// The entries of a table before they are turned.
 #[derive(Clone, Copy)]
 pub(super) struct Upright<'a> {
     pub(super) map: &'a Map,

@@ -79,7 +79,7 @@ impl Table {
     }
 }
 
-/// What is wrong with a line, counted from 1.
+/// The error of a line, counted from 1.
 fn wrong(line: usize, problem: String) -> Error {
     let field = format!("line {line} of the text");
     Error::new(ErrorKind::TableText, field, "not valid", "").because(problem)

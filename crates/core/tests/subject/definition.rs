@@ -128,7 +128,7 @@ pub fn rank(set: &PointSet, id: PointId) -> Option<f64> {
     Some(rank.min(ranks.end.next_down()))
 }
 
-/// The kind of a point of the pattern, if the table has kinds: written from "Kinds" in ARCHITECTURE.md.
+/// The kind of a point of the pattern, if the table has kinds: written from "Kinds" in docs/algorithm.md.
 pub fn kind(set: &PointSet, id: PointId) -> Option<u8> {
     let (table, seed) = (set.table(), set.placement().seed);
     let ([index, _], [i, j]) = block(table, seed, id)?;
@@ -146,7 +146,7 @@ pub fn kind(set: &PointSet, id: PointId) -> Option<u8> {
     Some(split.next().map_or(label, |split| split.kind))
 }
 
-/// The kind of a point of the pattern where shares vary: written from "Kinds" in ARCHITECTURE.md. `order` is the
+/// The kind of a point of the pattern where shares vary: written from "Kinds" in docs/algorithm.md. `order` is the
 /// table of the second order, `weights` has the part and the field of each kind.
 pub fn varying_kind(
     set: &PointSet,
@@ -228,7 +228,7 @@ fn placed(set: &PointSet, id: PointId, [dx, dy]: [i128; 2]) -> [f64; 2] {
 }
 
 /// The place of a point of the lattice in a field, if the set, which is in no field, has one there: written
-/// from "Fields" in ARCHITECTURE.md.
+/// from "A point in a field" in docs/algorithm.md.
 pub fn place_in(set: &PointSet, field: &dyn Field, id: PointId) -> Option<[f64; 2]> {
     let (table, placement) = (set.table(), set.placement());
     let (_, [i, j]) = block(table, placement.seed, id)?;

@@ -5,11 +5,11 @@ use strew_core::{Alpha, Pattern, pattern::Arrangement};
 use super::{
     Drawing, FigureError,
     drawing::{COLORS, GRAY},
-    error::check_window,
     panel::{
         Panel, THREAD, dot, note, places, points, set_region, sheet, tint, turns,
         window as grid_window,
     },
+    window::check_window,
 };
 
 /// Draws a window of `window` × `window` grid places of AA(α), 8 to 200, with the occurrences of an

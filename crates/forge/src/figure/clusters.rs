@@ -8,11 +8,11 @@ use strew_core::{
 use super::{
     Drawing, FigureError,
     drawing::{Anchor, COLORS, Color, GRAY},
-    error::check_window,
     panel::{Panel, dot, note, points, set_region, sheet, tint, turns, window as grid_window},
+    window::check_window,
 };
 
-/// The color of points in clusters larger than those that are told apart.
+/// The color of points in clusters that are too large to be distinguished.
 const LARGER: Color = [190, 190, 190];
 
 /// The number of shapes that the legend has room for.

@@ -21,7 +21,7 @@ pub struct Drawing {
 /// A color, as red, green and blue.
 pub(super) type Color = [u8; 3];
 
-/// Where a text begins, relative to its place.
+/// The start of a text, relative to its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Anchor {
     Start,
@@ -32,7 +32,7 @@ pub(super) enum Anchor {
 /// A color with the width of its line.
 pub(super) type Pen = (Color, f64);
 
-/// What stands on a drawing, one over another. Places are in pixels from the upper left corner.
+/// The marks on a drawing, one over another. Places are in pixels from the upper left corner.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Mark {
     /// A filled rectangle: its upper left corner, its size, its color and opacity.
@@ -47,7 +47,7 @@ pub(super) enum Mark {
     Dots(Vec<[f64; 2]>, Pen),
     /// A circle without filling: its center and radius.
     Ring([f64; 2], f64, Pen),
-    /// What an odd number of rectangles covers, each by its upper left corner and its size.
+    /// The area that an odd number of rectangles covers, each by its upper left corner and its size.
     Checkers(Vec<[[f64; 2]; 2]>, Color),
     /// A text on the line of writing at a place, with its size.
     Text([f64; 2], f64, Anchor, String),
@@ -57,7 +57,7 @@ pub(super) const INK: Color = [34, 34, 34];
 pub(super) const GRAY: Color = [128, 128, 128];
 pub(super) const PALE: Color = [232, 232, 232];
 
-/// Colors that are told apart with every kind of color vision (Okabe and Ito, 2008).
+/// Colors that differ with every kind of color vision (Okabe and Ito, 2008).
 pub(super) const COLORS: [Color; 7] = [
     [0, 114, 178],
     [213, 94, 0],

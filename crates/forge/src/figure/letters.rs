@@ -119,7 +119,7 @@ const fn lines(letter: char) -> &'static str {
     }
 }
 
-/// How far to the right a letter goes, in units.
+/// The width of a letter, in units.
 fn width(letter: char) -> f64 {
     match letter {
         ' ' => 1.2,

@@ -11,18 +11,18 @@
 mod arrangement;
 mod clusters;
 mod drawing;
-mod error;
 mod index;
 mod letters;
 mod map;
 mod mask;
 mod paint;
 mod panel;
+mod window;
 
+pub use crate::SettingError as FigureError;
 pub use arrangement::arrangement;
 pub use clusters::{clusters, found_clusters};
 pub use drawing::Drawing;
-pub use error::FigureError;
 pub use index::index;
 pub use map::map;
 pub use mask::mask_spectrum;

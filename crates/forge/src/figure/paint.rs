@@ -234,7 +234,7 @@ impl Canvas {
     }
 }
 
-/// How much of a pixel a line covers, by the distance of their middles. A line thinner than a pixel is paler.
+/// The part of a pixel that a line covers, by the distance of their middles. A line thinner than a pixel is paler.
 fn covered(away: f64, width: f64) -> f64 {
     (width.max(1.0) / 2.0 + 0.5 - away).clamp(0.0, 1.0) * width.min(1.0)
 }

@@ -118,7 +118,7 @@ pub fn complaints(bounds: &[Bound], figures: &[Figures]) -> Vec<Complaint> {
         .collect()
 }
 
-/// Of the complaints about each figure the gravest, in words.
+/// The gravest complaint about each figure, in words.
 #[must_use]
 pub fn gravest(complaints: &[Complaint]) -> Vec<String> {
     let excess = |c: &Complaint| (c.value - c.bound.limit).abs();

@@ -52,7 +52,7 @@ pub enum Figure {
     LargestHole,
     /// Bond-orientational order (see [`Voronoi`]).
     Q6,
-    /// How far the share of a kind is from what it should be, up or down.
+    /// The error of the share of a kind, up or down.
     ShareError,
 }
 

@@ -46,7 +46,7 @@ pub fn bounds_of_curve(target: &Target) -> Vec<Bound> {
     bounds
 }
 
-/// How near a table came to its curve: the largest errors on unseen point sets.
+/// The distance of a table from its curve: the largest errors on unseen point sets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nearness {
     /// Root mean square over rings of the radial power's error.

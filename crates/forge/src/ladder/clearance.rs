@@ -14,7 +14,7 @@ use super::{
 
 /// √(2/√3), the hexagonal distance in mean spacings, squared.
 const HEXAGONAL_SQUARED: f64 = 1.154_700_538_379_251_5;
-/// Where lists end, in mean spacings of the thinned set: more than any distance to be kept.
+/// The reach of lists, in mean spacings of the thinned set: more than any distance to be kept.
 const RANGE: f64 = 0.75;
 /// The longest push, in mean spacings of the thinned set.
 const LONGEST: f64 = 0.1;
@@ -24,7 +24,7 @@ const LONGEST: f64 = 0.1;
 struct Conflict {
     own: u32,
     pair: Pair,
-    /// Where on the way it is nearest.
+    /// The part of the way at which it is nearest.
     way: f64,
 }
 

@@ -98,7 +98,7 @@ impl Climb {
         above + (below - above) * way
     }
 
-    /// How far a position has moved to the next level at a part of the way.
+    /// The move of a position toward the next level at a part of the way.
     pub(super) fn part(&self, segment: usize, position: usize, way: f64) -> f64 {
         let [start, end] = self.events[segment + 1][position];
         ((way - start) / (end - start)).clamp(0.0, 1.0)
@@ -151,7 +151,7 @@ impl Climb {
     }
 }
 
-/// Vectors by level, of as many as each level has.
+/// Vectors by level, by the numbers of vectors of the levels.
 pub(super) fn split(vectors: &[[f64; 2]], counts: &[usize]) -> Vec<Vec<[f64; 2]>> {
     let mut rest = vectors;
     let levels = counts.iter().map(|&count| {

@@ -8,19 +8,19 @@ use super::{
 };
 use crate::numeric::exp;
 
-/// How far a neighbor is near, in mean spacings of the thinned set: σ of a Gaussian.
+/// The width of the neighborhood, in mean spacings of the thinned set: σ of a Gaussian.
 const NEAR: f64 = 0.6;
 /// The shortest event, as a part of a segment.
 const SHORTEST: f64 = 0.15;
-/// How much longer an event gets with the standard deviation of the neighbors' times.
+/// The growth of an event's length with the standard deviation of the neighbors' times.
 const SPREAD: f64 = 2.5;
-/// Where lists for events end, in mean spacings of the thinned set.
+/// The reach of lists for events, in mean spacings of the thinned set.
 const RANGE: f64 = 2.6;
 /// The weight of leaving neighbors below which a block has none.
 const ALONE: f64 = 1e-3;
 
-/// Sets all events: centered at the mean time at which near neighbors leave, as long as these times are
-/// spread. A block without such neighbors moves all the way.
+/// Sets all events: each is centered at the mean time at which near neighbors leave, and its length is the spread of
+/// these times. A block without such neighbors moves all the way.
 pub(super) fn time(blocks: &Blocks, climb: &mut Climb) {
     let all: Vec<Vec<[f64; 2]>> = (0..climb.segments())
         .into_par_iter()

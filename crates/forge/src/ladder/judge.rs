@@ -19,7 +19,7 @@ use crate::{
 const LARGEST: [u64; 2] = [100_000, 1_000_000];
 /// Shares an octave on each twin.
 const SHARES: [u32; 2] = [101, 23];
-/// Where the first share lies, in steps.
+/// The first share, in steps.
 const PHASE: f64 = 0.37;
 /// The width of the rings that the spectrum is taken over.
 const RING: f64 = 0.04;

@@ -39,10 +39,10 @@ const SLOWING: (f64, f64) = (0.75, 0.4);
 const CLEAR: f64 = 0.53;
 /// The most rounds of pushing.
 const ROUNDS: usize = 80;
-/// How far a block may move from its lattice address, in mean spacings of the thinned set.
+/// The longest way of a block from its lattice address, in mean spacings of the thinned set.
 const ROAM: f64 = 3.0;
 
-/// Which ladder to make.
+/// The ladder to make.
 ///
 /// ```
 /// use strew_forge::LadderJob;
@@ -55,7 +55,7 @@ pub struct LadderJob {
     /// Levels each time the share halves, 1 to 32. Low power is about in proportion to 1/`per_octave`, and
     /// the size of the ladder to `per_octave`.
     pub per_octave: u32,
-    /// How often the share halves, 1 to 8.
+    /// The number of times that the share halves, 1 to 8.
     pub octaves: u32,
     /// Steps of the polish, 1 to 10,000. From 60 on more of them change little.
     pub steps: u32,
@@ -122,7 +122,7 @@ pub struct LadderOutcome {
     pub accepted: bool,
     /// Whether the watch stopped the work. The ladder is then the best so far and was not judged.
     pub interrupted: bool,
-    /// What was measured: for each octave of shares and twin the greatest and the mean low power and the
+    /// The measurements: for each octave of shares and twin the greatest and the mean low power and the
     /// least δ, and the least δ of the unbounded set, exactly.
     pub figures: Vec<Figures>,
     /// The bounds that the ladder missed.

@@ -13,12 +13,12 @@ use crate::{ForgeError, numeric::exp};
 /// σ in mean spacings of the thinned set. At 0.7 low power is about equal and pairs are nearer, at 0.9 low
 /// power is a third higher.
 const SIGMA: f64 = 0.6;
-/// Where the Gaussian ends, in σ.
+/// The cut-off of the Gaussian, in σ.
 const CUTOFF: f64 = 4.5;
 /// Blocks nearer than this, in mean spacings of the thinned set, press each other, even those that seldom
 /// meet: a single pair decides the least distance.
 const GUARD: f64 = 0.5;
-/// How much they do.
+/// The strength of that press.
 const PRESSURE: f64 = 1.0;
 /// The share of the points left after which neighbor lists are made again.
 const BATCH: f64 = 0.03;
@@ -28,7 +28,7 @@ const FEWEST: usize = 4;
 /// The share at which lists no longer grow: below it neighbors lie farther apart than lists reach.
 const LEAST: f64 = 1.0 / 4096.0;
 
-/// Gives a table the order in which its blocks leave when a set is thinned.
+/// Adds to a table the order in which its blocks leave when a set is thinned.
 ///
 /// Equal tables get equal orders on every machine. It takes a second for 63 intervals and 20 for 255.
 ///
@@ -106,7 +106,7 @@ fn leaving_order(ground: &Ground, moves: &[[f64; 2]]) -> Vec<usize> {
             is_left[block] = false;
             left -= ground.share(block);
             order.push(block);
-            // An instance of `to` has as many of these neighbors as the shares say.
+            // The shares decide how many of these neighbors an instance of `to` has.
             for felt in &lists[block] {
                 let to = felt.to as usize;
                 let ratio = ground.share(block) / ground.share(to);
@@ -118,7 +118,7 @@ fn leaving_order(ground: &Ground, moves: &[[f64; 2]]) -> Vec<usize> {
     order
 }
 
-/// What an instance of a block feels of another block.
+/// The force on an instance of a block from another block.
 struct Felt {
     to: u32,
     /// The Gaussian, weighted by frequency.
@@ -127,7 +127,7 @@ struct Felt {
     press: f64,
 }
 
-/// What an instance of a block feels of a neighbor, or `None` beyond the range.
+/// The force on an instance of a block from a neighbor, or `None` beyond the range.
 fn felt(
     ground: &Ground,
     moves: &[[f64; 2]],

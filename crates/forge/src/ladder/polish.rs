@@ -21,7 +21,7 @@ const LONGEST: f64 = 0.05;
 /// The golden ratio: steps by it fill an interval evenly.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
-/// What stays between steps.
+/// The state between steps.
 pub(super) struct Polish {
     energy: Energy,
     /// Shares looked at in each segment.

@@ -6,7 +6,7 @@ use crate::numeric::exp32;
 /// Lists have whole groups of this many pairs, so that the compiler can vectorize sums over them. The
 /// number also fixes the order of summation, so ladders depend on it.
 const LANES: usize = 8;
-/// How far lists reach beyond the cut-off, in mean spacings of the thinned set.
+/// The reach of lists beyond the cut-off, in mean spacings of the thinned set.
 const SKIN: f64 = 0.4;
 
 /// The energy of a pair: exp(−d²/2σ²) + strength·max(0, 1 − d²/guard²)³, in mean spacings of the thinned
@@ -19,9 +19,9 @@ pub(super) struct Energy {
 }
 
 impl Energy {
-    /// Where the Gaussian ends, in σ.
+    /// The cut-off of the Gaussian, in σ.
     const CUTOFF: f64 = 4.6;
-    /// Where the energy ends, in mean spacings of the thinned set.
+    /// The cut-off of the energy, in mean spacings of the thinned set.
     pub(super) fn cutoff(&self) -> f64 {
         Self::CUTOFF * self.sigma
     }

@@ -10,30 +10,9 @@ mod voids;
 
 use strew_core::{PeriodicSet, Table};
 
+pub use crate::SettingError as MaskError;
 pub use spectrum::LevelSpectrum;
 use voids::{Choice, Voids};
-
-/// A setting of a mask that is out of range, or a table that has no periods.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{field} is {value}; it must be {allowed}")]
-pub struct MaskError {
-    /// The name of the setting.
-    pub field: String,
-    /// Its value.
-    pub value: String,
-    /// What is allowed.
-    pub allowed: String,
-}
-
-impl From<strew_core::Error> for MaskError {
-    fn from(error: strew_core::Error) -> Self {
-        Self {
-            field: error.field().into(),
-            value: error.value().into(),
-            allowed: error.allowed().into(),
-        }
-    }
-}
 
 /// A square of pixels that tiles, with the order in which they turn on.
 ///

@@ -10,7 +10,7 @@ const REACH: i64 = 8;
 /// The side of a block.
 const BLOCK: usize = 16;
 
-/// Which pixel is flipped next.
+/// The rule for the pixel that is flipped next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Choice {
     /// The one that is on in the tightest cluster: it goes off.

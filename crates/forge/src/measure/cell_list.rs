@@ -6,7 +6,7 @@ pub(crate) struct CellList {
     per_axis: i64,
     side: f64,
     periodic: bool,
-    /// Where the members of each cell start, and the end of the last.
+    /// The start of the members of each cell, and the end of the last.
     starts: Vec<u32>,
     /// Index and position of each point, cell by cell; positions are within [0, side).
     members: Vec<(u32, [f64; 2])>,

@@ -96,7 +96,7 @@ fn kernel_transform(k: usize, size: usize) -> f64 {
 
 /// Points sorted by the first grid row under their kernel.
 struct RowIndex {
-    /// Where the points of each row start in `order`, and the end of the last.
+    /// The start of the points of each row in `order`, and the end of the last.
     starts: Vec<u32>,
     /// Indices of points.
     order: Vec<u32>,

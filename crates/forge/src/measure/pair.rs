@@ -8,7 +8,7 @@ use rustfft::{FftPlanner, num_complex::Complex};
 
 use super::{Window, nufft::transform};
 
-/// What two sets have in common.
+/// The structure that two sets have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shared {
     /// The correlation coefficient of the powers of equal modes, each relative to the mean of its ring.

@@ -22,9 +22,10 @@ const FINE: f64 = 16.0;
 /// The radius of the disks in the raster, in mean spacings: two points that lie within [`NEAR`] of theirs
 /// move each other by up to twice that, mostly less.
 const LOOSE: f64 = 0.24;
-/// Of the first points of a patch, those around its middle, this many must be near ones, or the rest is not
-/// looked at. By chance 4 of 24 are, and at a place that matters 10 or more.
+/// The number of points around the middle of a patch that are compared first.
 const FIRST: usize = 24;
+/// The number of near ones among the first points from which the rest is compared. By chance 4 of 24 are near, and at
+/// a place that matters 10 or more.
 const FIRST_NEAR: usize = 8;
 /// The number of translations that are refined.
 const REFINED: usize = 24;

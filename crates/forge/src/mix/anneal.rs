@@ -23,7 +23,7 @@ const SWEEPS: u32 = 1500;
 pub(super) const STEPS: u32 = 100;
 /// The seed of the proposals, chosen arbitrarily.
 const SEED: u64 = 0x6b69_6e64;
-/// What it costs that a kind has the area of a mean block too much or too little, in energies of a mean block.
+/// The cost of an excess or lack of a kind by the area of a mean block, in energies of a mean block.
 const STIFFNESS: f64 = 2.0;
 /// Values of the table of logarithms, a power of two.
 const LOGS: usize = 1 << LOG_BITS;
@@ -35,7 +35,7 @@ const LOG_UNIT: u32 = 16;
 pub(super) struct Kind {
     /// Its share of the points.
     pub(super) share: f64,
-    /// Which of the lists of presses its blocks feel.
+    /// The number of the list of presses that its blocks feel.
     pub(super) presses: usize,
     /// The energy of the kind if it were spread evenly, over the square of its share, in mean blocks. Energies
     /// grow with areas, so without this a swap of unequal blocks would pay by what it takes from a kind.
@@ -50,7 +50,7 @@ pub(super) struct Annealer<'a> {
     /// The energy of each block as each kind, block by block.
     fields: Vec<i64>,
     areas: Vec<i64>,
-    /// What each kind has more than its share.
+    /// The area of each kind beyond its share.
     excess: Vec<i64>,
     /// Energy per squared excess.
     stiffness: i64,
@@ -194,14 +194,14 @@ impl<'a> Annealer<'a> {
         }
     }
 
-    /// What `by` more area of a kind costs.
+    /// The cost of `by` more area of a kind.
     #[inline]
     fn strain(&self, kind: usize, by: i64) -> i64 {
         let squares = i128::from(by) * i128::from(2 * self.excess[kind] + by);
         ((squares * i128::from(self.stiffness)) >> (2 * AREA_BITS)) as i64
     }
 
-    /// Gives a block another kind.
+    /// Assigns another kind to a block.
     fn turn(&mut self, block: usize, from: usize, to: usize) {
         let count = self.kinds.len();
         let [p, q] = [from, to].map(|kind| self.kinds[kind].presses);

@@ -52,7 +52,7 @@ pub(super) fn moved(
     Some(moves.iter().map(fixed).collect())
 }
 
-/// Which part of each block is of each kind, kind by kind.
+/// The part of each block that is of each kind, kind by kind.
 pub(super) fn parts(table: &Table, mix: &Mix) -> Vec<Vec<f64>> {
     let map = table.map();
     let mut parts = vec![vec![0.0; mix.labels().len()]; mix.shares().kinds()];

@@ -34,9 +34,9 @@ const DENSE: f64 = 0.8;
 
 /// The greatest mean power below ν = 0.5 of a kind by labels alone, in sets of some shares.
 const LOW_BY_LABELS: [(&str, f64); 3] = [("1:1", 0.055), ("1:3", 0.09), ("1:1:2", 0.07)];
-/// The same in sets of other shares.
+/// The greatest such power in sets of other shares.
 const LOW_OTHERWISE: f64 = 0.1;
-/// The same in joint tables, of a kind and of all points.
+/// The greatest such power in joint tables, of a kind and of all points.
 const LOW: f64 = 0.015;
 const LOW_OF_ALL: f64 = 5e-4;
 /// The least δ in joint tables, of a kind and of all points.
@@ -44,7 +44,7 @@ const DELTA: f64 = 0.57;
 const DELTA_OF_ALL: f64 = 0.54;
 /// The greatest radial power of a kind in joint tables: more is a crystal.
 const PEAK: f64 = 4.5;
-/// By how many dB more anisotropic than the table it was made of a joint table may be.
+/// The excess of a joint table's anisotropy over that of the table it was made of, at most, in dB.
 const ANISOTROPY: f64 = 0.5;
 /// The greatest mean power below ν = 0.5 of a thinned kind and of all points of a thinned set.
 const LOW_THINNED: f64 = 0.14;
@@ -94,7 +94,7 @@ pub(super) fn judge(
     Some((figures, complaints))
 }
 
-/// Where a table is measured.
+/// The subjects on which a table is measured.
 #[derive(Clone, Copy)]
 enum Place {
     Twin(Twin),

@@ -19,7 +19,7 @@ use crate::{ForgeError, ladder::Ground, watch::Meter};
 
 /// σ in a kind's own spacings. At 0.6 and above dense kinds have more power below ν = 0.5.
 const SIGMA: f64 = 0.55;
-/// Where the Gaussian ends, in σ.
+/// The cut-off of the Gaussian, in σ.
 const CUTOFF: f64 = 3.6;
 /// Kinds of a smaller share feel a Gaussian as wide as this share does. Their points lie farther apart than
 /// blocks determine who is near.

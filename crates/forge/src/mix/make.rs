@@ -17,7 +17,7 @@ const ARITHMETIC: u32 = 1;
 /// The most steps of a joint table.
 const MAX_STEPS: u32 = 10_000;
 
-/// Which mix to make.
+/// The mix to make.
 ///
 /// ```
 /// use strew_forge::MixJob;
@@ -100,7 +100,7 @@ pub struct MixOutcome {
     pub table: Table,
     /// Whether it met every bound, on twins that it was not made with.
     pub accepted: bool,
-    /// What was measured: for each twin, kind and share of points kept low power, δ and the error of the
+    /// The measurements: for each twin, kind and share of points kept the low power, δ and the error of the
     /// kind's share; for whole sets also the peak and the anisotropy.
     pub figures: Vec<Figures>,
     /// The bounds that it missed.

@@ -23,7 +23,7 @@ use crate::{
 const SIGMA: f64 = 0.65;
 /// The weight of a kind's own Gaussian; that of all is 1.
 const OWN: f64 = 1.15;
-/// Where the Gaussian ends, in σ.
+/// The cut-off of the Gaussian, in σ.
 const CUTOFF: f64 = 3.6;
 /// The part of the points left after which potentials are made again for the wider spacing.
 const BATCH: f64 = 0.05;
@@ -31,7 +31,7 @@ const BATCH: f64 = 0.05;
 const LISTING: f64 = 0.4;
 /// The share at which lists no longer grow: below it neighbors lie farther apart than lists reach.
 const LEAST: f64 = 1.0 / 4096.0;
-/// How far the share of a kind may fall below what it is, in shares of what is left, and as a part of it.
+/// The tolerated fall of a kind's share among the points that are left: absolute, and relative to its share.
 const SLACK: [f64; 2] = [0.002, 0.03];
 /// The greatest spacing of a kind that counts, in spacings of all that is left.
 const RAREST: f64 = 4.0;
@@ -191,7 +191,7 @@ impl Leaving {
         }
     }
 
-    /// What the other block of a pair adds to the potential, times the share of the block itself.
+    /// The addition of the other block of a pair to the potential, times the share of the block itself.
     #[inline]
     fn press(&self, law: &Law, block: usize, pair: &Pair) -> f64 {
         let squared = f64::from(pair.squared);

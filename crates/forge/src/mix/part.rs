@@ -2,23 +2,11 @@
 
 use rayon::prelude::*;
 
-use crate::{energy::PairEnergy, ladder::Ground};
-
-/// Lists have whole groups of this many pairs, so that the compiler can vectorize sums over them. The
-/// number also fixes the order of summation, so tables depend on it.
-const LANES: usize = 8;
-/// Blocks per parallel task. It fixes an order of summation, too.
-const CHUNK: usize = 64;
-
-/// A block of the kind near another.
-#[derive(Clone, Copy)]
-struct Pair {
-    to: u32,
-    i: i16,
-    j: i16,
-    /// The mean number of such neighbors of an instance, counting points of the kind only.
-    weight: f32,
-}
+use crate::{
+    energy::PairEnergy,
+    ladder::Ground,
+    optimize::{CHUNK, LANES, Pair, sum},
+};
 
 /// The points of one kind.
 pub(super) struct Part<E> {
@@ -29,6 +17,7 @@ pub(super) struct Part<E> {
     /// By block; 0 for those of other kinds.
     weights: Vec<f64>,
     starts: Vec<usize>,
+    /// Their weights count points of the kind only.
     pairs: Vec<Pair>,
     built_for: Vec<[f64; 2]>,
 }
@@ -143,26 +132,9 @@ impl<E: PairEnergy> Part<E> {
 
     /// The energy of an instance of a block and its slopes.
     fn sum(&self, ground: &Ground, moves: &[[f64; 2]], at: usize) -> (f64, [f64; 2]) {
-        let scale = ground.scale();
+        let list = &self.pairs[self.starts[at]..self.starts[at + 1]];
         let own = moves[self.blocks[at].0 as usize];
-        let (mut energy, mut gx, mut gy) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for group in self.pairs[self.starts[at]..self.starts[at + 1]].chunks_exact(LANES) {
-            let (mut dx, mut dy, mut weight) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-            for (lane, pair) in group.iter().enumerate() {
-                let to = moves[pair.to as usize];
-                dx[lane] = own[0] - (scale * f64::from(pair.i) + to[0]);
-                dy[lane] = own[1] - (scale * f64::from(pair.j) + to[1]);
-                weight[lane] = f64::from(pair.weight);
-            }
-            for lane in 0..LANES {
-                let squared = dx[lane] * dx[lane] + dy[lane] * dy[lane];
-                let (value, slope) = self.energy.pair(squared * self.share);
-                energy[lane] += weight[lane] * value;
-                gx[lane] += weight[lane] * slope * dx[lane];
-                gy[lane] += weight[lane] * slope * dy[lane];
-            }
-        }
-        let total = |lanes: [f64; LANES]| lanes.iter().sum::<f64>();
-        (total(energy), [total(gx), total(gy)])
+        let pair = |squared| self.energy.pair(squared * self.share);
+        sum(list, ground.scale(), moves, own, pair)
     }
 }

@@ -1,4 +1,4 @@
-//! How much blocks press each other: symmetric integers, so that an annealer adds them up and takes them away
+//! The presses of blocks on each other: symmetric integers, so that an annealer adds them up and takes them away
 //! in any order without a trace.
 
 use rayon::prelude::*;
@@ -96,18 +96,18 @@ impl Presses {
         &self.all[self.starts[block] as usize..self.starts[block + 1] as usize]
     }
 
-    /// How much a block presses itself, from both ends.
+    /// The press of a block on itself, from both ends.
     pub(super) fn own(&self, block: usize) -> i32 {
         self.own[block]
     }
 
-    /// How much a block is pressed by the block that does so most.
+    /// The greatest press on a block by another one.
     #[inline]
     pub(super) fn most(&self, block: usize) -> i32 {
         self.most[block]
     }
 
-    /// How much two different blocks press each other.
+    /// The press of two different blocks on each other.
     #[inline]
     pub(super) fn between(&self, a: usize, b: usize) -> i32 {
         let list = self.of(a);

@@ -16,14 +16,14 @@ type Law = (Gaussian, Guard);
 const SIGMA: f64 = 1.0;
 /// σ of a kind, in its own spacings.
 const SIGMA_OF_KIND: f64 = 0.85;
-/// Where guards end, for all points and for a kind, and how strong they are.
+/// The cut-offs of guards, for all points and for a kind, and their strength.
 const GUARD: (f64, f64) = (0.6, 0.6);
 const GUARD_OF_KIND: (f64, f64) = (0.75, 0.5);
 /// The weight of the energy of all points.
 const WEIGHT: f64 = 20.0;
 /// The weight of a kind's energy goes with this power of its share, and the densest has 1.
 const TILT: f64 = 0.15;
-/// How far displacements may grow, in mean spacings.
+/// The bound of displacements, in mean spacings.
 const GROWTH: f64 = 4.0;
 
 /// The energy of all points and of each kind.
@@ -54,7 +54,7 @@ impl Together {
         }
     }
 
-    /// Which blocks meet, and how often.
+    /// The blocks that meet, with frequencies.
     pub(super) const fn ground(&self) -> &Ground {
         &self.ground
     }

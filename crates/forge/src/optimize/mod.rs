@@ -19,6 +19,7 @@ mod start;
 mod state;
 
 pub use descent::Descent;
+pub(crate) use neighbors::{CHUNK, LANES, Pair, sum};
 pub use objective::Objective;
 pub(crate) use overlap::Overlaps;
 pub use pairs::Pairs;

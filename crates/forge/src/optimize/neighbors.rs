@@ -13,9 +13,9 @@ use super::overlap::Overlaps;
 
 /// Lists have whole groups of this many pairs, so that the compiler can vectorize sums over them.
 /// The number also fixes the order of summation, so tables depend on it.
-pub(super) const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 /// Blocks per parallel task. It fixes an order of summation, too.
-pub(super) const CHUNK: usize = 64;
+pub(crate) const CHUNK: usize = 64;
 /// Lists reach this far beyond the cut-off, in mean spacings, and stay valid until some block has
 /// moved by half of it.
 const SKIN: f64 = 0.7;
@@ -24,12 +24,43 @@ const MAX_APPROACH: f64 = 8.0;
 
 /// A neighbor of a block: an instance of block `to` at lattice offset (i, j).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pair {
-    pub(super) to: u32,
-    pub(super) i: i16,
-    pub(super) j: i16,
+pub(crate) struct Pair {
+    pub(crate) to: u32,
+    pub(crate) i: i16,
+    pub(crate) j: i16,
     /// The mean number of such neighbors of an instance of the block.
-    pub(super) weight: f32,
+    pub(crate) weight: f32,
+}
+
+/// The energy and the gradient of one instance of a block at the move `own`, lane by lane, over its list. `pair` is
+/// the [`PairEnergy`](crate::energy::PairEnergy) of a squared distance in mean spacings, of which `scale` make a
+/// grid unit.
+#[inline]
+pub(crate) fn sum(
+    list: &[Pair],
+    scale: f64,
+    moves: &[[f64; 2]],
+    own: [f64; 2],
+    pair: impl Fn(f64) -> (f64, f64),
+) -> (f64, [f64; 2]) {
+    let (mut energy, mut gx, mut gy) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    for group in list.chunks_exact(LANES) {
+        let (mut dx, mut dy, mut weight) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for (lane, pair) in group.iter().enumerate() {
+            let to = moves[pair.to as usize];
+            dx[lane] = own[0] - (scale * f64::from(pair.i) + to[0]);
+            dy[lane] = own[1] - (scale * f64::from(pair.j) + to[1]);
+            weight[lane] = f64::from(pair.weight);
+        }
+        for lane in 0..LANES {
+            let (value, slope) = pair(dx[lane] * dx[lane] + dy[lane] * dy[lane]);
+            energy[lane] += weight[lane] * value;
+            gx[lane] += weight[lane] * slope * dx[lane];
+            gy[lane] += weight[lane] * slope * dy[lane];
+        }
+    }
+    let total = |lanes: [f64; LANES]| lanes.iter().sum::<f64>();
+    (total(energy), [total(gx), total(gy)])
 }
 
 /// Identifies a pair in the list of its block, and sorts the list: (j, i, to).
@@ -47,7 +78,7 @@ pub(super) struct Neighbors {
     scale: f64,
     masses: Vec<f64>,
     built_for: Vec<[f64; 2]>,
-    /// Where the pairs of each block start, and the end of the last.
+    /// The start of the pairs of each block, and the end of the last.
     starts: Vec<usize>,
     pairs: Vec<Pair>,
 }

@@ -1,4 +1,4 @@
-//! Which intervals of a map meet across a lattice offset, and how often.
+//! The intervals of a map that meet across a lattice offset, with frequencies.
 //!
 //! A neighbor at offset (i, j) has its index shifted by a = (αi + j)/2 along X and (αj + i)/2 along
 //! Y. So interval u of one point meets interval v of the other on the part of u that the shift

@@ -11,7 +11,7 @@ use strew_core::Map;
 
 use super::{
     Objective,
-    neighbors::{CHUNK, LANES, Neighbors, Pair},
+    neighbors::{CHUNK, Neighbors, sum},
 };
 use crate::energy::PairEnergy;
 
@@ -31,29 +31,6 @@ impl<E: PairEnergy> Pairs<E> {
         let neighbors = Neighbors::new(energy.cutoff(), maps, scale);
         Self { energy, neighbors }
     }
-
-    /// Energy and gradient of one instance of a block, lane by lane.
-    fn sum(&self, list: &[Pair], moves: &[[f64; 2]], own: [f64; 2]) -> (f64, [f64; 2]) {
-        let scale = self.neighbors.scale();
-        let (mut energy, mut gx, mut gy) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for group in list.chunks_exact(LANES) {
-            let (mut dx, mut dy, mut weight) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-            for (lane, pair) in group.iter().enumerate() {
-                let to = moves[pair.to as usize];
-                dx[lane] = own[0] - (scale * f64::from(pair.i) + to[0]);
-                dy[lane] = own[1] - (scale * f64::from(pair.j) + to[1]);
-                weight[lane] = f64::from(pair.weight);
-            }
-            for lane in 0..LANES {
-                let (value, slope) = self.energy.pair(dx[lane] * dx[lane] + dy[lane] * dy[lane]);
-                energy[lane] += weight[lane] * value;
-                gx[lane] += weight[lane] * slope * dx[lane];
-                gy[lane] += weight[lane] * slope * dy[lane];
-            }
-        }
-        let total = |lanes: [f64; LANES]| lanes.iter().sum::<f64>();
-        (total(energy), [total(gx), total(gy)])
-    }
 }
 
 impl<E: PairEnergy> Objective for Pairs<E> {
@@ -71,7 +48,9 @@ impl<E: PairEnergy> Objective for Pairs<E> {
                 let mut energy = 0.0;
                 for (at, out) in gradient.iter_mut().enumerate() {
                     let block = chunk * CHUNK + at;
-                    let (value, slope) = self.sum(self.neighbors.of(block), moves, moves[block]);
+                    let (list, scale) = (self.neighbors.of(block), self.neighbors.scale());
+                    let pair = |squared| self.energy.pair(squared);
+                    let (value, slope) = sum(list, scale, moves, moves[block], pair);
                     *out = slope;
                     energy += masses[block] * value;
                 }

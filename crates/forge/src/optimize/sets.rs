@@ -25,7 +25,7 @@ struct TwinPoints {
     blocks: Vec<u32>,
     /// Displaced.
     set: Torus,
-    /// Of the energy, by each point.
+    /// The gradient of the energy, by each point.
     gradient: Vec<[f64; 2]>,
 }
 

@@ -1,4 +1,4 @@
-//! What a table was made for, read from its history.
+//! The aim of a table, read from its history.
 
 use strew_core::table::Provenance;
 
@@ -8,7 +8,7 @@ use crate::{
     judge::{Bound, bounds_of_curve},
 };
 
-/// What a table was made for, in words, bounds and, for some, a curve.
+/// The aim of a table in words, bounds and, for some, a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aim {
     /// The aim in words: the summary of the table's profile.

@@ -10,7 +10,7 @@ pub struct Profile {
     pub name: &'static str,
     /// A description in one line.
     pub summary: &'static str,
-    /// How the tables are optimized.
+    /// The way in which the tables are optimized.
     pub recipe: Recipe,
     /// The half-width, in mean spacings, of the square that the vectors of the random start fill.
     pub jitter: f64,

@@ -3,7 +3,7 @@
 use super::recipes::{GaussianRecipe, LloydRecipe, Phase, RadialRecipe, SpacingRecipe};
 use crate::{curve::Target, domain::Domain};
 
-/// How the tables of a profile are optimized.
+/// The way in which the tables of a profile are optimized.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Recipe {
     /// Gaussian repulsion with a guard against close pairs, in two phases.

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, fs};
 
-use super::{exported, number, settings, tree};
+use super::{WORLDS, exported, number, settings, tree};
 
 /// The content of the members of a stored archive, by name, and the archive's central directory in order.
 fn members(archive: &[u8]) -> (Vec<String>, BTreeMap<String, Vec<u8>>) {
@@ -25,7 +25,7 @@ fn members(archive: &[u8]) -> (Vec<String>, BTreeMap<String, Vec<u8>>) {
 
 #[test]
 fn an_archive_has_all_levels_and_its_index_finds_them() {
-    let (folder, file) = settings();
+    let (folder, file) = settings(WORLDS);
     let path = |name: &str| folder.path().join(name).display().to_string();
     let flags = [
         "--config",

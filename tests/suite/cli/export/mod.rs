@@ -16,6 +16,7 @@ use std::{
 
 use strew_testkit::{http1, process::Running, wait::until};
 
+use super::{printed, settings};
 use crate::support::{
     clients,
     command::{errors, run},
@@ -35,26 +36,12 @@ spacing = 2
 clear_of = { oak = 1 }
 ";
 
-/// A folder with the settings of a world, and the path of the settings.
-fn settings() -> (tempfile::TempDir, String) {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let file = folder.path().join("strew.toml");
-    fs::write(&file, WORLDS).expect("writable");
-    let file = file.display().to_string();
-    (folder, file)
-}
-
 fn export(arguments: &[&str]) -> Output {
     run(&[&["export", "-q"], arguments].concat(), "")
 }
 
 fn exported(arguments: &[&str]) {
-    let output = export(arguments);
-    assert!(
-        output.status.success(),
-        "{arguments:?}: {}",
-        errors(&output)
-    );
+    printed(&[&["export", "-q"], arguments].concat());
 }
 
 /// All files below a folder.
@@ -97,7 +84,7 @@ fn serve(root: &Path) -> Option<Proxy> {
     Some(Proxy::start("nginx", server))
 }
 
-/// Starts an export and kills it, with SIGKILL, once a path is there.
+/// Starts an export and kills it, with SIGKILL, once a path exists.
 fn kill_when(arguments: &[&str], what: &str, there: impl Fn() -> bool) {
     let mut command = strew();
     command
@@ -185,7 +172,7 @@ fn a_killed_export_goes_on_to_the_same_tree() {
         "32/3/5: changed",
         "32/4/4: missing",
         "32/4/99: foreign",
-        "in 3 files",
+        "3 files differ",
     ] {
         assert!(said.contains(fault), "{said}");
     }
@@ -243,7 +230,7 @@ fn an_archive_that_was_killed_in_its_first_member_begins_anew() {
         assert!(fs::read(&torn).expect("written") == bytes, "{length}");
         fs::remove_file(&torn).expect("there");
     }
-    // What is no export is not touched.
+    // A file that is no export stays untouched.
     fs::write(path("torn.zip.partial"), "mine").expect("writable");
     let output = export(&[&SMALL[..], &["--archive", &torn]].concat());
     assert_eq!(output.status.code(), Some(2), "{}", errors(&output));
@@ -383,7 +370,7 @@ fn an_interrupt_ends_it_in_good_order() {
     let output = child.end();
     assert_eq!(output.status.code(), Some(130));
     assert!(
-        errors(&output).contains("goes on there"),
+        errors(&output).contains("resumes there"),
         "{}",
         errors(&output)
     );
@@ -396,9 +383,9 @@ fn wrong_flags_are_refused() {
     let full = folder.path().display().to_string();
     let set = ["--spacing=1", "--bbox=0,0,64,64"];
     for (flags, said) in [
-        (&["-o", "w"][..], "give --chunk"),
+        (&["-o", "w"][..], "use --chunk"),
         (&["--chunk=0", "-o", "w"], "--chunk 0: out of range"),
-        (&["--chunk=16"], "give --output DIR or --archive FILE"),
+        (&["--chunk=16"], "use --output DIR or --archive FILE"),
         (&["--chunk=16", "-o", &full], "the folder is not empty"),
         (
             &["--chunk=16", "--format=parquet", "-o", "w"],

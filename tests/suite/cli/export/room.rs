@@ -1,4 +1,5 @@
-//! Exports without room: refused before they begin, or ended while they write, with what is missing and how to go on.
+//! Exports without room: refused before they begin, or ended while they write, with the missing bytes and how to
+//! resume.
 
 use std::{
     fs,
@@ -20,8 +21,8 @@ fn assert_no_room(output: &Output, cause: &str) {
     assert_eq!(output.status.code(), Some(1), "{said}");
     for words in [
         cause,
-        "of 1024 chunks are there",
-        "the same command goes on there",
+        "of 1024 chunks exist",
+        "the same command resumes there",
     ] {
         assert!(said.contains(words), "no `{words}`: {said}");
     }
@@ -91,7 +92,7 @@ fn goes_on_once_there_is_room(to: &str, growing: &str, length: u64) {
     let said = errors(&again);
     assert_eq!(again.status.code(), Some(1), "{said}");
     assert!(
-        said.contains("make room, and the same command goes on there"),
+        said.contains("make room, and the same command resumes there"),
         "{said}"
     );
     assert!(!said.contains("choose"), "{said}");

@@ -1,4 +1,4 @@
-//! What a static server answers from the files of an export, and what it refuses; the shares of levels.
+//! An export behind a static server: the requests it answers, those it refuses, and the shares of levels.
 
 use std::{fs, io::Read as _};
 
@@ -24,7 +24,7 @@ fn assert_alike(one: &Answer, other: &Answer, path: &str) {
 
 #[test]
 fn a_static_server_answers_as_the_daemon() {
-    let (folder, file) = settings();
+    let (folder, file) = settings(WORLDS);
     let daemon = Daemon::with_config(WORLDS);
     let world = folder.path().join("world");
     let out = world.display().to_string();
@@ -73,7 +73,7 @@ fn a_static_server_answers_as_the_daemon() {
         let answer = http1::get(address, &pinned, &[("origin", "https://a.example")]);
         assert_eq!(answer.header("access-control-allow-origin"), "*");
     }
-    // What would have another answer has none.
+    // Requests that need another answer get none.
     for other in [
         "16/0/0?format=json&seed=8",
         "16/0/0?format=csv",
@@ -143,7 +143,7 @@ fn sets_without_a_world_are_served_under_their_parameters() {
 
 #[test]
 fn a_coarser_level_has_a_part_of_the_points_of_a_finer_one() {
-    let (_folder, file) = settings();
+    let (_folder, file) = settings(WORLDS);
     let of = |keep: &str| {
         let chunk = [
             "sample",
@@ -170,7 +170,7 @@ fn a_coarser_level_has_a_part_of_the_points_of_a_finer_one() {
 
 #[test]
 fn levels_have_a_quarter_of_the_common_share_each() {
-    let (folder, file) = settings();
+    let (folder, file) = settings(WORLDS);
     let thin = fs::read_to_string(&file).expect("readable")
         + "[worlds.thin]\nkeep = 0.5\n"
         + &WORLDS.replace("worlds.forest", "worlds.thin");

@@ -8,7 +8,6 @@
 //! For speed an area also answers for whole strips of the plane at once: between which x all points are
 //! inside, all are outside, or each must be tested (`steps`). `outline` estimates what counting costs.
 
-mod chunks;
 mod circle;
 mod edge;
 mod outline;

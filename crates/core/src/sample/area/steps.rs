@@ -8,7 +8,7 @@ use super::{
     edge::{Edge, is_odd},
 };
 
-/// What is known of a rectangle of the plane. Ordered so that "any of" is the maximum and "all of" the
+/// The relation of a rectangle of the plane to an area. Ordered so that "any of" is the maximum and "all of" the
 /// minimum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum State {

@@ -33,7 +33,7 @@ use crate::{
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Column {
-    /// Of angle, scale, rank and uniform numbers.
+    /// The values of angle, scale, rank and uniform numbers.
     Numbers(Vec<f64>),
     /// Indices into the names of the [`Variants`](crate::Variants).
     Variants(Vec<u32>),
@@ -99,7 +99,7 @@ pub struct BoundAttributes {
     list: Vec<Bound>,
 }
 
-/// What knows where in index space a point lies.
+/// The way to a point's place in index space.
 #[derive(Clone, Debug)]
 enum Indexed {
     Plane(TurnedTable, Pattern),

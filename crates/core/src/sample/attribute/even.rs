@@ -117,7 +117,7 @@ impl EvenVariants {
         self.indices.get(usize::from(kind)).copied()
     }
 
-    /// The kind of the variant of a name: what [`PointSet::only`](crate::PointSet::only) takes.
+    /// The kind of the variant of a name, as [`PointSet::only`](crate::PointSet::only) takes it.
     ///
     /// ```
     /// use strew_core::Variants;

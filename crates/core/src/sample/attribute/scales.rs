@@ -106,7 +106,7 @@ pub struct VariantScales {
     ranges: Arc<[ScaleRange]>,
 }
 
-/// How the variants are spread.
+/// The spread of the variants.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Spread {
     Chance(Variants),
@@ -204,7 +204,7 @@ impl VariantScales {
         }
     }
 
-    /// How they are spread.
+    /// The spread of the variants.
     pub(super) const fn of(&self) -> &Spread {
         &self.of
     }

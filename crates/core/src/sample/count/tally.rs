@@ -1,8 +1,52 @@
 //! Tallies: the number of columns or rows of a range in each class and block, all at once.
 //!
-//! Short ranges are listed. In others the number of coordinates whose index lies between two thresholds
-//! is a difference of sums of whole turns. Thresholds are neighbor shifts, so the sums of all of them
-//! follow from a few, corrected at the ends of the range: see [`Turns`].
+//! # Why
+//!
+//! The points of a box are products: (columns of a class) × (rows of a class). If the set has all points of the
+//! pattern, two numbers for each class are enough. Otherwise, or where a margin is tested, points of different
+//! blocks have different fates, and the count needs for each class the number of columns in each interval of dX and of
+//! rows in each interval of dY. Then
+//!
+//! ```text
+//!     points = Σ over classes, Σ over intervals of dY:  rows there × columns whose points these rows have
+//! ```
+//!
+//! which takes n² steps for a box of any size.
+//!
+//! # One interval
+//!
+//! A coordinate v has the index I(v) = (α·v + b)/2 + origin on the circle of length 1, where b is the parity of the
+//! other coordinate of its class. Unrolled on a line, ⌊I − e⌋ is the number of times that I has passed the
+//! threshold e, so for two thresholds of one turn
+//!
+//! ```text
+//!     [ e ≤ I mod 1 < f ]  =  ⌊I − e⌋ − ⌊I − f⌋
+//!
+//!       0    e      f      1    e      f      2
+//!     ──┼────┼──────┼──────┼────┼──────┼──────┼──        ⌊I − e⌋ rises at each e, ⌊I − f⌋ at each f;
+//!            └──in──┘           └──in──┘                 they differ by 1 between the two.
+//! ```
+//!
+//! and the number of coordinates of a range in an interval is the difference of two sums S(e) = Σ ⌊I(v) − e⌋. Such
+//! a sum over a range of any length takes O(log) steps (`floor_sum`).
+//!
+//! # All intervals
+//!
+//! There are n intervals, four classes and about a hundred steps in a sum, which is too slow for the small boxes of
+//! which a search asks dozens. But a threshold of a map is the shift of a neighbor at an offset of k lines:
+//! e = −(α·k + c)/2, up to w whole turns, so
+//!
+//! ```text
+//!     I(v) − e  =  (α·(v + k) + b + c)/2 + origin − w
+//! ```
+//!
+//! is the index of the line v + k. S(e) is the sum for the threshold 0 over the range moved by k, less w for each
+//! coordinate. Moving a range by one line takes one term away at its start and adds one at its end. So [`Turns`] makes
+//! four sums in closed form (b + c is even or odd, v is even or odd) and moves them along: all of a map with
+//! half-width R costs four O(log) sums and 2R + 2 corrections. Each interval is then one subtraction.
+//!
+//! Sums are taken modulo 2⁶⁴ and may wrap; differences of them are counts, below 2⁵³, and exact. Ranges shorter than
+//! some lines for each interval are listed one by one, which is faster there and is the definition in tests.
 
 use alloc::vec::Vec;
 use core::ops::Range;

@@ -2,7 +2,7 @@
 
 use crate::table::Digest;
 
-/// Collects what a field is made of: numbers of eight bytes each, the lowest first.
+/// Collects the parts of a field: numbers of eight bytes each, the lowest first.
 pub(super) struct Canon(blake3::Hasher);
 
 impl Canon {

@@ -1,4 +1,4 @@
-//! What a look at a field takes, counted without a clock.
+//! The cost of a look at a field, counted without a clock.
 
 use super::{FieldSpec, spec::Shape};
 use crate::sample::area::Region;
@@ -68,7 +68,7 @@ mod tests {
         assert!(look(&noise(8)) > 6.0 * look(&noise(1)));
         let many = FieldSpec::multiply(vec![noise(8); 63]).expect("valid");
         assert!(look(&many) > 60.0 * look(&noise(8)));
-        // Boxes around sides that all cross the view do not tell which is near; those of a street do.
+        // Boxes around sides that all cross the view do not show which is near; those of a street do.
         let line = |place: &dyn Fn(u32) -> [u32; 2]| {
             let line = (0..5000).map(|i| place(i).map(f64::from).map(|v| v * 0.02));
             let marks = Marks::Lines(vec![line.collect()]);

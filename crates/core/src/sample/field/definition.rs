@@ -30,7 +30,7 @@ pub trait Field: Send + Sync {
     /// ```
     fn share(&self, at: [f64; 2]) -> f64;
 
-    /// The shares at some places, of which there are as many as shares: the same bits as
+    /// Writes the shares at some places into `shares`, which has their number: the same bits as
     /// [`share`](Self::share), for fields that are faster at many places than at one.
     ///
     /// ```

@@ -38,7 +38,7 @@ impl FieldSpec {
         self.parts
     }
 
-    /// How deep shapes lie within others; 1 for a single one.
+    /// The depth to which shapes lie within others; 1 for a single one.
     ///
     /// ```
     /// use strew_core::field::FieldSpec;

@@ -14,7 +14,7 @@ use crate::{
     },
 };
 
-/// What lies beyond the box of pixels.
+/// The values beyond the box of pixels.
 ///
 /// ```
 /// use strew_core::{Field, Raster, Region, field::Edges};
@@ -40,7 +40,7 @@ pub enum Edges {
     Mirror,
 }
 
-/// What lies between the centers of pixels.
+/// The values between the centers of pixels.
 ///
 /// ```
 /// use strew_core::{Field, Raster, Region, field::Filter};
@@ -62,7 +62,7 @@ pub enum Filter {
 /// The number of places that are looked up at once.
 const SOME: usize = 32;
 
-/// The most pixels of a box whose slopes are looked up: about as long as a hundred places.
+/// The most pixels of a box whose slopes are looked up. It takes the time of about a hundred places.
 const MOST_SLOPES: usize = 512;
 
 /// Pixels over a box.
@@ -99,7 +99,7 @@ impl Grid {
         })
     }
 
-    /// Writes what the grid is made of, with the digest of the pixels that it was made from.
+    /// Writes the parts of the grid, with the digest of the pixels that it was made from.
     pub(super) fn describe(&self, canon: &mut Canon) {
         canon.places(&[self.region.min(), self.region.max()]);
         canon.number(self.edges as u64);
@@ -223,7 +223,7 @@ impl Grid {
         (first, (first + 1).min(last), within - first as f64)
     }
 
-    /// Bounds of the stored numbers that matter within a box; none if none do. The flag tells whether
+    /// Bounds of the stored numbers that matter within a box; none if none do. The flag is set if
     /// places outside of the pixels lie within.
     pub(super) fn bounds(&self, within: &Region) -> (Option<Ends>, bool) {
         let (min, max) = (within.min(), within.max());

@@ -11,8 +11,8 @@ use crate::{
     sample::area::Region,
 };
 
-/// What a field of [distance](super::FieldSpec::distance) is measured from. At most
-/// [`MAX_VERTICES`](super::FieldSpec::MAX_VERTICES) vertices in all.
+/// The points, lines and outlines from which a field of [distance](super::FieldSpec::distance) is measured. They have
+/// at most [`MAX_VERTICES`](super::FieldSpec::MAX_VERTICES) vertices in all.
 ///
 /// ```
 /// use strew_core::{Field, field::{FieldSpec, Marks}};
@@ -127,7 +127,7 @@ pub(super) struct Measure {
     nodes: Vec<Node>,
     /// Whether places can be inside.
     is_signed: bool,
-    /// What is added to squares before boxes are left out, for what rounds.
+    /// An allowance for rounding, added to squares before boxes are left out.
     slack: f64,
 }
 

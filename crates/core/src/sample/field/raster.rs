@@ -90,7 +90,7 @@ impl Raster {
         })
     }
 
-    /// Sets what lies beyond the box.
+    /// Sets the values beyond the box.
     ///
     /// ```
     /// use strew_core::{Field, Raster, Region, field::Edges};
@@ -105,7 +105,7 @@ impl Raster {
         self
     }
 
-    /// Sets what lies between the centers of pixels.
+    /// Sets the values between the centers of pixels.
     ///
     /// ```
     /// use strew_core::{Field, Raster, Region, field::Filter};

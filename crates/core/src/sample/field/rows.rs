@@ -42,15 +42,15 @@ pub(crate) struct FieldRows {
     positions: Vec<u32>,
     at: Vec<[f64; 2]>,
     shares: Vec<f64>,
-    /// Which of the candidates are left.
+    /// The numbers of the candidates that are left.
     left: Vec<u32>,
     steps: Steps,
-    /// What was found.
+    /// The points that were found.
     found: Vec<Found>,
     next: usize,
 }
 
-/// What rows are listed of: a patch, the spans of the box, and the columns of the band in a range.
+/// The place of the rows that are listed: a patch, the spans of the box, and the columns of the band in a range.
 #[derive(Clone, Copy)]
 pub(crate) struct Source<'a> {
     pub(crate) lattice: &'a Lattice,
@@ -139,7 +139,7 @@ impl FieldRows {
         }
     }
 
-    /// Lists what the tiles of a strip leave. Returns the first row that is not listed.
+    /// Lists the points that the tiles of a strip leave. Returns the first row that is not listed.
     fn candidates(&mut self, source: Source<'_>, strip: Range<i64>, enough: usize) -> i64 {
         let Source { lattice, patch, .. } = source;
         let rows = self.strip.rows();
@@ -262,7 +262,7 @@ impl FieldRows {
         let from = &mut self.left[..number];
         let [xs, ys] = &mut self.displaced;
         let (xs, ys) = (&mut xs[..number], &mut ys[..number]);
-        // Tells whether a candidate is left of which the tile does not tell it.
+        // Decides a candidate that the tile leaves open.
         let is_left = |address: u32, position: u32, share: f64| {
             // Ranks of a position are at least the number before its start, and less than its end.
             let ranks = order.floors((position & POSITION) as usize);
@@ -313,7 +313,7 @@ struct ListedRow<'a> {
     first: u32,
     row: i32,
     columns: &'a [tiles::Column],
-    /// Of the blocks of the row.
+    /// The positions of the blocks of the row.
     positions: &'a [u32],
     vectors: &'a [Displacement],
     displaced: [&'a mut [i32]; 2],

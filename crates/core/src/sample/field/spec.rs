@@ -43,7 +43,7 @@ pub struct FieldSpec {
     pub(super) vertices: usize,
 }
 
-/// What a description is made of, checked.
+/// The checked parts of a description.
 pub(super) enum Shape {
     Constant(f64),
     Ramp {
@@ -72,7 +72,7 @@ impl FieldSpec {
     pub const MAX_VERTICES: usize = 10_000;
     /// The largest number of shapes of a description, those that join others included.
     pub const MAX_PARTS: usize = 64;
-    /// How deep shapes may lie within others.
+    /// The depth to which shapes may lie within others.
     pub const MAX_DEPTH: usize = 16;
     /// The largest number of points of a [curve](Self::curve).
     pub const MAX_CURVE: usize = 256;
@@ -104,7 +104,7 @@ impl FieldSpec {
         Ok(spec)
     }
 
-    /// The same share everywhere.
+    /// A field with one share everywhere.
     ///
     /// # Errors
     /// [`ErrorKind::Field`] unless the share is from 0 to 1.
@@ -365,7 +365,7 @@ impl FieldSpec {
         Self::new(Shape::Max(parts), canon, 0)
     }
 
-    /// What a field leaves: 1 − its share.
+    /// The complement of a field: 1 − its share.
     ///
     /// # Errors
     /// As [`multiply`](Self::multiply).

@@ -23,10 +23,10 @@ pub(super) const POSITION: u32 = WHOLE - 1;
 /// The number of points that are moved at once, in vectors.
 const SOME: usize = 64;
 
-/// How steep a field is around some points, and the memory to find it out.
+/// The steepness of a field around some points, and the memory to find it out.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Steps {
-    /// The points where the field is steep, the places that tell how steep, and the shares at these.
+    /// The points where the field is steep, the places around them where it is looked at, and the shares there.
     steep: Vec<u32>,
     around: Vec<[[f64; 2]; 4]>,
     shares: Vec<f64>,

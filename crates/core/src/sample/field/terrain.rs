@@ -48,7 +48,7 @@ impl Terrain {
         })
     }
 
-    /// Sets what lies beyond the box.
+    /// Sets the values beyond the box.
     ///
     /// ```
     /// use strew_core::{Region, field::{Edges, Pixels, Terrain}};
@@ -64,7 +64,7 @@ impl Terrain {
         self
     }
 
-    /// Sets what lies between the centers of pixels.
+    /// Sets the values between the centers of pixels.
     ///
     /// ```
     /// use strew_core::{Region, field::{Filter, Pixels, Terrain}};
@@ -98,7 +98,7 @@ impl Terrain {
         canon.finish()
     }
 
-    /// The same with steepness in place of height: rise over run at each pixel, from its neighbors along
+    /// This terrain with steepness in place of height: rise over run at each pixel, from its neighbors along
     /// both axes, and linear between pixels.
     pub(super) fn steepness(mut self, stop: &Stop) -> Result<Self, Error> {
         let [width, height] = self.grid.pixels.size();

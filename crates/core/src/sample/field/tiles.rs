@@ -3,7 +3,7 @@
 //! A point lies near its lattice address: its full displacement and the warp away when the field is
 //! looked at, and up to a displacement of the ladder and the warp when it is placed. So bounds of the
 //! field around a tile leave out all of it, or the blocks that have left, and the ladder's reach at the least
-//! share tells how far outside of the box its addresses can be.
+//! share limits how far outside of the box its addresses can be.
 
 use alloc::{collections::VecDeque, vec::Vec};
 use core::ops::Range;
@@ -141,7 +141,7 @@ pub(crate) fn constant(lattice: &Lattice, grade: &Grade, piece: &Piece) -> Optio
     (is_one(wide) && wide[0].to_bits() == share.to_bits()).then_some(share)
 }
 
-/// The box that is looked at around places of a box to tell how steep a field is, at shares from `least` on.
+/// The box around places of a box in which a field is looked at for its steepness, at shares from `least` on.
 fn looked_at(lattice: &Lattice, near: &Region, least: f64) -> Region {
     // A little more than the spacing, which is rounded.
     let room = lattice.placement.spacing.get() / libm::sqrt(least) * (1.0 + 1e-9);

@@ -27,7 +27,7 @@ use super::lanes::Lanes;
 /// ```
 pub trait Format: Emit {}
 
-/// What a format needs to know of a plan.
+/// The geometry of a plan, as formats need it.
 #[derive(Clone, Copy, Debug)]
 pub struct Geometry {
     /// World units per fixed-point unit.
@@ -53,9 +53,9 @@ pub struct Row {
 
 /// The definition of a format. The part along x comes first, since a template keeps it for all rows.
 pub trait Emit: Copy + Send + Debug + 'static {
-    /// What is written for a point.
+    /// The item that is written for a point.
     type Item: Copy + Default + Send + 'static;
-    /// What a column contributes to the items of a row.
+    /// The part of an item that its column decides.
     type Column: Copy + Send + Debug + 'static;
 
     fn new(geometry: &Geometry) -> Self;
@@ -63,7 +63,7 @@ pub trait Emit: Copy + Send + Debug + 'static {
     /// The place of a patch's origin.
     fn base(&self, origin: [i64; 2]) -> [f64; 2];
 
-    /// What a column contributes: `x` is relative to the patch's origin, `column` the lattice column.
+    /// The part of an item that its column decides: `x` is relative to the patch's origin, `column` the lattice column.
     fn column(&self, base: [f64; 2], x: i32, column: i64) -> Self::Column;
 
     /// The item of a column and a `y` relative to the patch's origin; `row` is the lattice row.

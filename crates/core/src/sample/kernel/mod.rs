@@ -1,14 +1,14 @@
 //! The innermost loops: a row is a template of its columns plus the place of the row.
 //!
 //! `format` defines, in plain code, how a position becomes an item of each output format (`singles`,
-//! `doubles`, `offsets`, `points`). That code is the definition; every faster path has the same bits. Positions are
+//! `doubles`, `offsets`). That code is the definition; every faster path has the same bits. Positions are
 //! 32-bit fixed-point offsets from the origin of a patch. Their sum with the origin is exact in `f64`
 //! while lattice coordinates stay below 2⁵³, so it rounds once, as the conversion of the whole integer
 //! would.
 //!
 //! `rows` writes plain rows, `warped` warped ones. Their vector loops are written once over the trait of `lanes`, and
-//! each instruction set is a thin file of `arch`. `backend` finds out once which sets the machine has, and
-//! `dispatch` runs a loop by one of them. `tests` compares every backend with plain code.
+//! each instruction set is a thin file of `arch`. `backend` finds out which sets the machine has, and runs a loop by
+//! one of them. `tests` compares every backend with plain code.
 
 #![expect(
     unsafe_code,
@@ -29,12 +29,10 @@
 
 mod arch;
 mod backend;
-mod dispatch;
 mod doubles;
 mod format;
 mod lanes;
 mod offsets;
-mod points;
 mod rows;
 mod singles;
 #[cfg(test)]
@@ -42,13 +40,12 @@ mod tests;
 mod warped;
 
 pub use backend::Backend;
-pub(super) use dispatch::{compiled, compiled_loop, write_numbers};
-pub use doubles::F64;
+pub(super) use backend::{compiled, compiled_loop, write_numbers};
+pub use doubles::{F64, Points};
 pub use format::Format;
 pub(super) use format::{Geometry, Row};
 pub(super) use lanes::PlainLoop;
 pub use offsets::Offsets;
-pub use points::Points;
 pub(super) use rows::fill_row;
 pub use singles::F32;
 pub(super) use warped::{WarpedColumns, add_first_shear, fill_warped_row, warp_all};

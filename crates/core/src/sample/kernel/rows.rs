@@ -2,7 +2,7 @@
 
 use super::{
     Backend,
-    dispatch::run_vectors,
+    backend::run_vectors,
     format::{Emit, Row},
     lanes::{Lanes, VectorLoop},
 };

@@ -9,7 +9,7 @@ use core::{mem::MaybeUninit, ops::Range};
 
 use super::{
     Backend,
-    dispatch::run_vectors,
+    backend::run_vectors,
     format::{Emit, Row},
     lanes::{Lanes, VectorLoop},
 };
@@ -44,7 +44,7 @@ impl WarpedColumns<'_> {
     }
 }
 
-/// Writes one item per column of a warped row, as many as `out` has room for.
+/// Writes one item for each column of a warped row until `out` is full.
 pub(crate) fn fill_warped_row<F: Emit>(
     format: &F,
     backend: Backend,

@@ -1,24 +1,25 @@
 //! One kind of the points of a mix.
 //!
-//! Of a block, the points of a kind are all, none, or those whose dX lies in a strip; so are those of a rank below
+//! A kind has all points of a block, none, or those whose dX lies in a strip; so has a rank below
 //! a share. What a set has of a block is therefore an interval of dX, and counts have closed forms.
 
 use alloc::vec::Vec;
 use core::ops::Range;
 
 use crate::{
+    error::{Error, ErrorKind},
     map::Map,
     table::{Labels, Mix},
 };
 
-/// Which points of a pattern are of one kind.
+/// The points of a pattern that are of one kind.
 #[derive(Debug)]
 pub(crate) struct OneKind {
     kind: u8,
     /// The share that the kind has of all points.
     share: f64,
-    /// What is of the kind in each block, row by row: [`NONE`], [`WHOLE`], or [`STRIP`] and more for the strip of
-    /// that number.
+    /// The part of each block that is of the kind, row by row: [`NONE`], [`WHOLE`], or [`STRIP`] and more for the
+    /// strip of that number.
     states: Vec<u8>,
     strips: Vec<Strip>,
 }
@@ -84,7 +85,7 @@ impl OneKind {
         bits
     }
 
-    /// What is of the kind in the blocks of a row.
+    /// The parts of the blocks of a row that are of the kind.
     #[inline]
     pub(crate) fn in_row(&self, n: usize, block_y: usize) -> KindRow<'_> {
         KindRow(&self.states[block_y * n..][..n])
@@ -97,7 +98,19 @@ impl OneKind {
     }
 }
 
-/// What is of a kind in the blocks of a row.
+/// Refuses a kind that is not one of the first `kinds`.
+pub(crate) fn check_kind(kind: u8, kinds: usize) -> Result<(), Error> {
+    if usize::from(kind) < kinds {
+        return Ok(());
+    }
+    let allowed = match kinds {
+        0 => "left out: the table has no kinds of points".into(),
+        _ => alloc::format!("from 0 to {}", kinds - 1),
+    };
+    Err(Error::new(ErrorKind::Kinds, "only", kind, allowed))
+}
+
+/// The parts of the blocks of a row that are of a kind.
 #[derive(Clone, Copy)]
 pub(crate) struct KindRow<'a>(&'a [u8]);
 

@@ -5,7 +5,7 @@
 pub(crate) struct Line {
     pub(crate) at: i64,
     pub(crate) block: u32,
-    /// Of a column: which strips of blocks that are partly in the set its dX lies in. Bit 0 is that of the
+    /// For a column, the strips that its dX lies in, of blocks that are partly in the set. Bit 0 is that of the
     /// [cut](crate::table::Cut), the others are those of the [kind](super::OneKind).
     pub(crate) strips: u32,
 }

@@ -1,6 +1,6 @@
 //! The lattice of a point set: which addresses have points, and where in the world these are.
 //!
-//! `placement` holds the parameters (`spacing`, `keep`; seed and warp have files of their own), and
+//! `placement` holds the parameters (`spacing`, seed and warp have files of their own), and
 //! `world` joins them with a table into the [`Lattice`]. Positions are integers in fixed point, 2⁻²⁰ grid
 //! units, until the last conversion: one multiplication by the step, the world size of a unit. That
 //! conversion is monotone, so the bounds of a region become integers once (`span`), and integers decide
@@ -14,7 +14,6 @@
 
 mod flat;
 mod grade;
-mod keep;
 mod kinds;
 mod line;
 mod lines;
@@ -33,14 +32,13 @@ mod world;
 
 pub(super) use flat::{Flat, Found, Inside};
 pub(super) use grade::Grade;
-pub use keep::Keep;
-pub(super) use kinds::OneKind;
+pub(super) use kinds::{OneKind, check_kind};
 pub(super) use line::Line;
 pub(super) use lines::{Columns, Listed, lines_of_class, places};
 pub(super) use moves::{around, damping, is_gentle, longer, moved, steepness};
 pub(super) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
-pub use placement::Placement;
+pub use placement::{Keep, Placement};
 pub use point::{Point, PointId};
 pub(super) use prefix::PrefixCounts;
 pub(super) use rank::{kind, rank};

@@ -1,4 +1,4 @@
-//! How far points in a field move: the ladder's rule where the share is not the same all around.
+//! The moves of points in a field: the ladder's rule where the share is not the same all around.
 //!
 //! The ladder places the points of one share. Where the share changes from point to point, neighbors are at
 //! different stages of it: one has moved because another leaves, which its other neighbors have not done yet. So
@@ -14,7 +14,7 @@ const GENTLE: f64 = 1.0 / 256.0;
 /// 0.38 at 1/72, but the variance of counts at shares near 1/32 is 0.113, 0.118, 0.119 and 0.121.
 const STEEP: f64 = 64.0;
 
-/// The places around a place that tell how steep a field is there, a local spacing away.
+/// The places around a place, a local spacing away, at which a field is looked at for its steepness.
 #[inline(always)]
 pub(crate) fn around([x, y]: [f64; 2], share: f64, spacing: f64) -> [[f64; 2]; 4] {
     let far = spacing / square_root(share);
@@ -51,7 +51,7 @@ pub(crate) fn is_gentle(least: f64, [x, y]: [f64; 2], spacing: f64) -> bool {
     change * 1.01 + 1e-12 <= GENTLE * least
 }
 
-/// By how much events begin earlier and end later where a field has the square of a [`steepness`]: by the units
+/// The time by which events begin earlier and end later where a field has the square of a [`steepness`]: by the units
 /// of a stage's way that a share of 1 takes.
 #[inline(always)]
 pub(crate) fn longer(per_share: f64, share: f64, steepness: f64) -> f64 {

@@ -26,7 +26,7 @@ pub(crate) fn clip_to_band(band: i64, columns: &Range<i64>) -> Range<i64> {
     columns.start.max(start)..columns.end.min(start + BAND_WIDTH)
 }
 
-/// What all points of a patch share.
+/// The geometry that all points of a patch share.
 #[derive(Clone, Debug)]
 pub(crate) struct Patch {
     origin: [i64; 2],

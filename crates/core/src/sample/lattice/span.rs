@@ -47,7 +47,7 @@ impl Span {
         [0, 1].map(|i| Self::new(bounds[i].clone(), all[i].clone(), reach[i]))
     }
 
-    /// The parts of spans in some columns and rows, told apart by how far the warp moves the points there.
+    /// The parts of spans in some columns and rows, by the movement of the warp there.
     pub(crate) fn of_piece(
         lattice: &Lattice,
         spans: [&Self; 2],

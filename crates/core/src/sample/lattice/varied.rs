@@ -67,7 +67,7 @@ impl VaryingKinds {
     /// place for each kind, the smallest part first.
     ///
     /// # Errors
-    /// [`ErrorKind::Kinds`] unless there are as many fields as kinds, and at least one field.
+    /// [`ErrorKind::Kinds`] unless the numbers of fields and kinds are equal and above 0.
     ///
     /// ```
     /// use strew_core::{ErrorKind, Table, VaryingKinds};

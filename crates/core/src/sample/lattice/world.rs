@@ -45,7 +45,7 @@ pub(crate) struct Lattice {
     pub(crate) turned: TurnedTable,
     /// The pattern from the seed's origin.
     pub(crate) pattern: Pattern,
-    /// Which of its points are kept, if not all.
+    /// The cut between points that are kept and others, if not all are kept.
     cut: Option<Cut>,
     /// The kind that points are of, if not any.
     pub(super) kinds: Option<Arc<OneKind>>,
@@ -240,7 +240,7 @@ impl Lattice {
         }
     }
 
-    /// Tells which columns have points in the rows of a block of dY.
+    /// A test for the columns that have points in the rows of a block of dY.
     #[inline]
     pub(crate) fn keeps(&self, block_y: usize) -> impl Fn(&Line) -> bool + '_ {
         let n = self.map().intervals();
@@ -254,7 +254,7 @@ impl Lattice {
         }
     }
 
-    /// What is of the lattice's kind in the blocks of a row, if it has one.
+    /// The parts of the blocks of a row that are of the lattice's kind, if it has one.
     #[inline]
     pub(crate) fn kinds_in_row(&self, block_y: usize) -> Option<KindRow<'_>> {
         let n = self.map().intervals();

@@ -126,10 +126,10 @@ impl LeastDistance {
     /// Reported `f64` coordinates keep [`reported`](Self::reported) distances out to this many of them from
     /// the origin, 2³⁰. Farther out the rounding of coordinates takes more from a distance.
     pub const RANGE: f64 = 1_073_741_824.0;
-    /// What [`spacing_for`](Self::spacing_for) adds, more than rounding takes within
+    /// The part by which [`spacing_for`](Self::spacing_for) widens a spacing, more than rounding takes within
     /// [`RANGE`](Self::RANGE): 2³⁰ · 2⁻⁵⁰.
     const MARGIN: f64 = 1e-6;
-    /// What rounding takes from a distance, per unit of the largest coordinate. A coordinate is rounded
+    /// The loss of a distance to rounding, per unit of the largest coordinate. A coordinate is rounded
     /// twice, by 2⁻⁵³ of itself each, and a distance changes by up to 2√2 times that much.
     const ROUNDING: f64 = 1.0 / (1u64 << 50) as f64;
 

@@ -38,7 +38,7 @@ pub(super) fn check_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> Resul
         if value.abs() + radius > limit {
             let allowed = alloc::format!(
                 "within ±{limit:e}, with the radius searched, where f64 coordinates with this spacing \
-                 still tell neighbors apart"
+                 still keep neighbors apart"
             );
             let error = Error::new(ErrorKind::TooFar, name, number(value), allowed);
             return Err(error.because("too far from the origin").with_limit(limit));

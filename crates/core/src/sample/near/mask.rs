@@ -19,10 +19,10 @@ use crate::{
     },
 };
 
-/// What the points of a set satisfy.
+/// The conditions on the places of a set's points.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Mask {
-    /// Where they lie, if not everywhere.
+    /// The area in which they lie, if not everywhere.
     pub(crate) area: Option<Area>,
     /// The sets that they keep clear of.
     pub(crate) clear: Arc<[ClearOf]>,

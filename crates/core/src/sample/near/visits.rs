@@ -1,11 +1,11 @@
-//! What a search may visit, and what it has visited.
+//! The number of points that a search may visit, and the number that it has visited.
 
 use core::{cell::Cell, ops::ControlFlow};
 
 use super::limits::MAX_CANDIDATES;
 use crate::stop::Stop;
 
-/// How many points a search may visit, kept or not, how many it has visited, and a flag that ends it.
+/// The number of points that a search may visit, kept or not, the number that it has visited, and a flag that ends it.
 ///
 /// ```
 /// use strew_core::server::{Stop, Visits};
@@ -24,7 +24,7 @@ pub struct Visits {
 const OFTEN: usize = 16;
 
 impl Visits {
-    /// At most `most` points, or as many as any search may visit if they are fewer, until a flag is raised.
+    /// A limit of `most` points, or of the number that any search may visit if that is smaller, until a flag is raised.
     ///
     /// ```
     /// use strew_core::{ErrorKind, PointSet, Table, server::{self, Stop, Visits}};
@@ -45,7 +45,7 @@ impl Visits {
         }
     }
 
-    /// As many as any search may visit.
+    /// The limit of any search.
     pub(crate) fn any() -> Self {
         Self::new(usize::MAX, Stop::default())
     }

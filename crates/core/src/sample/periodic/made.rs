@@ -1,4 +1,4 @@
-//! What a periodic set has for each place of its period: which addresses have points, with which indices.
+//! The addresses of a period that have points, with their indices.
 
 use alloc::vec::Vec;
 
@@ -12,7 +12,7 @@ use crate::{
     table::{Table, TurnedTable},
 };
 
-/// Which points of a period a set has.
+/// The parts of a period that a set has.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Parts {
     pub(super) keep: Keep,
@@ -21,7 +21,7 @@ pub(super) struct Parts {
     pub(super) field: Option<Grade>,
 }
 
-/// What follows from the seed and the warp.
+/// The parts of a periodic set that follow from the seed and the warp.
 #[derive(Debug)]
 pub(super) struct Made {
     pub(super) turned: TurnedTable,

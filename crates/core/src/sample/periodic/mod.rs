@@ -62,7 +62,7 @@ pub struct PeriodicSet {
     seed: Seed,
     /// The warp that was chosen, if any.
     own_warp: Option<Warp>,
-    /// Which of the points it has.
+    /// The part of the points that it has.
     parts: Parts,
     made: Arc<Made>,
 }
@@ -154,7 +154,7 @@ impl PeriodicSet {
             .filter(move |twin| twin.points() >= points && twin.is_uniform())
     }
 
-    /// The same set on a torus with another side L, in world units.
+    /// This set on a torus with another side L, in world units.
     ///
     /// # Errors
     /// [`ErrorKind::Period`] unless it is a number from 10⁻¹⁰⁰ to 10¹⁰⁰.

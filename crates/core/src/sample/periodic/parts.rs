@@ -1,17 +1,17 @@
 //! Parts of a period: the points of a share, of a kind, or in a field.
 //!
-//! Which points these are is defined as in the plane. A field is looked at in the period alone: the places around
-//! a point that tell how steep it is there wrap at the seam, so what tiles is the field's part in [0, L)².
+//! These points are defined as in the plane. A field is looked at in the period alone: the places around
+//! a point where it is looked at for its steepness wrap at the seam, so what tiles is the field's part in [0, L)².
 
 use alloc::{sync::Arc, vec, vec::Vec};
 
 use super::{PeriodicSet, made::Parts};
 use crate::{
-    error::{Error, ErrorKind},
+    error::Error,
     sample::{
         attribute::{Attributes, BoundAttributes, Indices},
         field::Field,
-        lattice::{Grade, Keep, Placement, Point, PointId, Spacing, around, moved},
+        lattice::{Grade, Keep, Placement, Point, PointId, Spacing, around, check_kind, moved},
         member::Member,
         near::LeastDistance,
         warp::Warp,
@@ -44,7 +44,7 @@ impl PeriodicSet {
     /// The points of one kind, as in [`PointSet::only`](crate::PointSet::only).
     ///
     /// # Errors
-    /// [`ErrorKind::Kinds`] if the table has no such kind.
+    /// [`ErrorKind::Kinds`](crate::ErrorKind::Kinds) if the table has no such kind.
     ///
     /// ```
     /// use strew_core::{PeriodicSet, Table, table::{Mix, Ranks}};
@@ -59,14 +59,7 @@ impl PeriodicSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn only(mut self, kind: u8) -> Result<Self, Error> {
-        let kinds = self.kinds();
-        if usize::from(kind) >= kinds {
-            let allowed = match kinds {
-                0 => "left out: the table has no kinds of points".into(),
-                _ => alloc::format!("from 0 to {}", kinds - 1),
-            };
-            return Err(Error::new(ErrorKind::Kinds, "only", kind, allowed));
-        }
+        check_kind(kind, self.kinds())?;
         self.parts.kind = Some(kind);
         Ok(self)
     }
@@ -292,7 +285,7 @@ impl PeriodicSet {
         index.map(|index| self.blocks[index as usize] as usize)
     }
 
-    /// How far dX is into the interval of its block, and the interval's length, in units of the period.
+    /// The distance of dX from the start of its block's interval, and the length of that, in units of the period.
     fn within_block(&self, index_x: u64) -> (u64, u64) {
         let block = self.blocks[index_x as usize];
         let start = self.blocks.partition_point(|&other| other < block);

@@ -1,6 +1,6 @@
 //! Plans of periods: an exact count, windows and cursors, and blocks of points.
 //!
-//! What a [`Plan`](crate::Plan) is for an area of the plane, made for the walk of a period: rows, then columns.
+//! The plan of a period: as a [`Plan`](crate::Plan), but in rows and then columns.
 
 use alloc::{sync::Arc, vec::Vec};
 
@@ -40,7 +40,7 @@ pub struct PeriodicPlan {
     /// The number of points before the window.
     offset: u64,
     count: u64,
-    /// Where the window begins: an address with no point of the window before it.
+    /// The start of the window: an address with no point of the window before it.
     start: PointId,
 }
 
@@ -63,7 +63,7 @@ impl PeriodicSet {
         PeriodicPlan::new(self, before)
     }
 
-    /// [`plan`](Self::plan), whose counting a flag stops.
+    /// Runs [`plan`](Self::plan), whose counting a flag stops.
     pub(crate) fn plan_until(&self, stop: &Stop) -> Result<PeriodicPlan, Error> {
         Ok(PeriodicPlan::new(self, self.before(stop)?))
     }
@@ -361,7 +361,7 @@ pub struct PeriodicBlocks {
 }
 
 impl PeriodicBlocks {
-    /// Fills a block with the next points and returns their number: less than there is room for only at the end.
+    /// Fills a block with the next points and returns their number. A block is filled in part only at the end.
     ///
     /// ```
     /// use strew_core::{PeriodicSet, Point, Table};

@@ -9,13 +9,12 @@ use alloc::{sync::Arc, vec, vec::Vec};
 use super::{
     area::{Area, Region},
     attribute::{Attributes, BoundAttributes},
-    count::count,
-    iter::Members,
     kernel::{F32, F64, Format, Points},
     lattice::{Keep, Lattice, Placement, Point, Spacing},
+    member::Members,
     near::Mask,
     scope::Scope,
-    walk::{Blocks, Counted, Tile, Window, count_graded, find_few, tiles},
+    walk::{Blocks, Counted, Tile, Window, tiles},
 };
 use crate::{error::Error, stop::Stop, table::Table};
 
@@ -45,7 +44,7 @@ use crate::{error::Error, stop::Stop, table::Table};
 pub struct Plan {
     scope: Arc<Scope>,
     window: Window,
-    /// What was found while the points were counted.
+    /// The results of counting.
     counted: Counted,
 }
 
@@ -60,22 +59,9 @@ impl Plan {
         known: Option<u128>,
     ) -> Result<Self, Error> {
         let scope = Arc::new(Scope::new(lattice, mask, area, stop)?);
-        let (total, counted) = match known {
-            Some(total) => (total, Counted::default()),
-            None if scope.lattice.grade.is_some() => {
-                let counted = count_graded(&scope);
-                (counted.count, counted)
-            }
-            None => match find_few(&scope) {
-                Some(few) => {
-                    let counted = Counted::of_few(few);
-                    (counted.count, counted)
-                }
-                None => (
-                    count(&scope, &scope.x.all, &scope.y.all),
-                    Counted::default(),
-                ),
-            },
+        let counted = match known {
+            Some(count) => Counted::known(count),
+            None => Counted::new(&scope),
         };
         if scope.stop.is_raised() {
             return Err(Stop::error());
@@ -85,8 +71,8 @@ impl Plan {
             window: Window {
                 start: None,
                 offset: 0,
-                count: total,
-                total,
+                count: counted.count,
+                total: counted.count,
             },
             counted,
         })

@@ -128,7 +128,7 @@ impl Plan {
         }
     }
 
-    /// The lattice address of point number `k` of the request, if it has as many.
+    /// The lattice address of point number `k` of the request; `None` from its end on.
     fn locate(&self, k: u128) -> Option<PointId> {
         self.locate_all(&[k]).pop().flatten()
     }

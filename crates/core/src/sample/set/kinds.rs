@@ -7,7 +7,7 @@ use crate::{
     error::{Error, ErrorKind},
     sample::{
         area::Area,
-        lattice::{Placement, Point, PointId, VaryingKinds},
+        lattice::{Placement, Point, PointId, VaryingKinds, check_kind},
         plan::Plan,
     },
     stop::Stop,
@@ -75,14 +75,7 @@ impl PointSet {
     /// # Ok::<(), strew_core::Error>(())
     /// ```
     pub fn only(self, kind: u8) -> Result<Self, Error> {
-        let kinds = self.kinds();
-        if usize::from(kind) >= kinds {
-            let allowed = match kinds {
-                0 => "left out: the table has no kinds of points".into(),
-                _ => alloc::format!("from 0 to {}", kinds - 1),
-            };
-            return Err(Error::new(ErrorKind::Kinds, "only", kind, allowed));
-        }
+        check_kind(kind, self.kinds())?;
         Ok(Self {
             lattice: self.lattice.of_kind(kind),
             ..self
@@ -130,7 +123,7 @@ impl PointSet {
     }
 
     /// The number of points of each kind in an area, the rarest kind first; empty for a table without kinds. It
-    /// takes as long as counting each kind: see [`within`](Self::within).
+    /// takes the time of counting each kind: see [`within`](Self::within).
     ///
     /// # Errors
     /// As [`within`](Self::within).
@@ -151,7 +144,7 @@ impl PointSet {
         self.kind_counts_until(&area.into(), &Stop::default())
     }
 
-    /// [`kind_counts`](Self::kind_counts), whose counting a flag stops.
+    /// Runs [`kind_counts`](Self::kind_counts), whose counting a flag stops.
     pub(crate) fn kind_counts_until(&self, area: &Area, stop: &Stop) -> Result<Vec<u128>, Error> {
         if self.lattice.is_varied() {
             return self.varied_counts(area, stop);
@@ -168,7 +161,7 @@ impl PointSet {
         (0..self.kinds() as u8).map(count).collect()
     }
 
-    /// The number of points of each kind whose shares vary: they are looked at one by one.
+    /// Counts the points of each kind one by one, where the shares of kinds vary.
     fn varied_counts(&self, area: &Area, stop: &Stop) -> Result<Vec<u128>, Error> {
         let plan = Plan::new(&self.lattice, &self.mask, area.clone(), stop.clone(), None)?;
         let mut counts = vec![0; self.kinds()];

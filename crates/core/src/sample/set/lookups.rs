@@ -104,8 +104,8 @@ impl PointSet {
         self.lattice.rank(id)
     }
 
-    /// The share of the [field](Self::in_field) that a point is there for: that at its place at full density, times
-    /// the share of the set. `None` if the set is in no field, or has no such point.
+    /// The share that decided to keep a point: the share of the [field](Self::in_field) at the point's place at full
+    /// density, times the share of the set. `None` if the set is in no field, or has no such point.
     ///
     /// ```
     /// use strew_core::{PointSet, Region, Table};
@@ -133,8 +133,8 @@ impl PointSet {
     /// [`ErrorKind::Neighbors`](crate::ErrorKind::Neighbors) unless `k` is from 1 to
     /// [`MAX_NEAREST`](Self::MAX_NEAREST), [`ErrorKind::Place`](crate::ErrorKind::Place) if the place is
     /// not finite, [`ErrorKind::TooFar`](crate::ErrorKind::TooFar) if the search leaves the
-    /// [limit](Self::search_limit), and [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if the set has so
-    /// few points that more than [`MAX_CANDIDATES`](Self::MAX_CANDIDATES) would be visited.
+    /// [limit](Self::search_limit), and [`ErrorKind::TooMany`](crate::ErrorKind::TooMany) if the points are so
+    /// sparse that the search would visit more than [`MAX_CANDIDATES`](Self::MAX_CANDIDATES).
     ///
     /// ```
     /// use strew_core::{PointSet, Table};
@@ -195,7 +195,7 @@ impl PointSet {
         self.around_visiting(at, radius, limit, &Visits::any())
     }
 
-    /// [`nearest`](Self::nearest) and [`nearest_within`](Self::nearest_within) that visit a bounded number of points.
+    /// Runs [`nearest`](Self::nearest) or [`nearest_within`](Self::nearest_within) and visits a bounded number of points.
     pub(crate) fn nearest_visiting(
         &self,
         at: [f64; 2],
@@ -207,7 +207,7 @@ impl PointSet {
         Ok(self.neighbors(found))
     }
 
-    /// [`around`](Self::around) that visits a bounded number of points.
+    /// Runs [`around`](Self::around) and visits a bounded number of points.
     pub(crate) fn around_visiting(
         &self,
         at: [f64; 2],
@@ -253,7 +253,7 @@ impl PointSet {
     /// origin, whatever the region. It is 0 for profiles that guarantee none, and for points that
     /// [move](Self::keep_moving).
     ///
-    /// [`least_distance_within`](Self::least_distance_within) has what holds farther out.
+    /// [`least_distance_within`](Self::least_distance_within) returns the guarantee farther out.
     ///
     /// ```
     /// use strew_core::{PointSet, Table};
@@ -308,8 +308,8 @@ impl PointSet {
         of_kind.unwrap_or_else(|| self.table().least_distance())
     }
 
-    /// The arrangement of `offsets`, in lattice units, in the pattern whose points this set displaces. It
-    /// knows how often it occurs; [`occurs_at`](Arrangement::occurs_at) tells for a point of the set, by its
+    /// The arrangement of `offsets`, in lattice units, in the pattern whose points this set displaces. The arrangement
+    /// has its frequency; [`occurs_at`](Arrangement::occurs_at) answers for a point of the set, by its
     /// id, whether it occurs there.
     ///
     /// # Errors

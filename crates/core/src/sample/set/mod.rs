@@ -1,7 +1,7 @@
 //! The point set.
 //!
-//! This file has what a set is: a table, a placement and a mask, and the methods that change them.
-//! `requests` has the plans of areas, `lookups` single points, `kinds` the points of kinds.
+//! A set is a table, a placement and a mask. This file has the set and the methods that change it;
+//! `requests` has the plans of areas, `lookups` single points, and `kinds` the points of kinds.
 
 mod kinds;
 mod lookups;
@@ -23,9 +23,9 @@ use crate::{error::Error, table::Table};
 
 /// An unbounded set of points: a table at a spacing, with a seed and a warp.
 ///
-/// Nothing of it is stored. A point is a pure function of these parameters and its lattice address, so
-/// the same set has the same points wherever and in whatever order they are requested. Everything to ask
-/// of a set is a method: points [within](Self::within) an area, of a [chunk](Self::chunk), by
+/// No point is stored. A point is a pure function of these parameters and its lattice address, so
+/// equal sets have equal points, in whatever place and order a program requests them. Each request is
+/// a method: points [within](Self::within) an area, of a [chunk](Self::chunk), by
 /// [id](Self::point), [near](Self::nearest) a place; their [count](Self::count) and their [least
 /// distance](Self::least_distance).
 ///
@@ -164,7 +164,7 @@ impl PointSet {
     }
 
     /// Sets the seed. Seed 0 is the plain pattern, whose large windows show its quasi-periodic structure;
-    /// every other seed warps the plane, unless [`warp`](Self::warp) says otherwise.
+    /// every other seed warps the plane, unless [`warp`](Self::warp) sets another strength.
     ///
     /// ```
     /// use strew_core::{PointSet, Table};
@@ -318,17 +318,17 @@ impl PointSet {
         Ok(self)
     }
 
-    /// The set in a field, whose share of the points varies from place to place. A field that it was in before
-    /// is replaced. [`keep`](Self::keep) multiplies the shares.
+    /// The set in a field: the share of its points varies from place to place. The field replaces an earlier one.
+    /// [`keep`](Self::keep) multiplies the shares.
     ///
     /// A point belongs to the set if its rank is below the field's share at the place where it is at full
     /// density. Sets of one seed share their points: in a larger share a point stays, and with a
     /// [ladder](crate::table::Ladder) it moves a little. Where the share changes by more than 1/256 across a local
-    /// spacing it moves less, about half as far where it changes by 1/64, and over a longer range of shares: four
-    /// more looks at the field, a local spacing around the place, tell.
+    /// spacing it moves less, about half as far where it changes by 1/64, and over a longer range of shares. Four
+    /// more looks at the field, a local spacing around the place, measure that change.
     ///
-    /// Points are counted by visiting them, in time proportional to the points at full density where bounds of
-    /// the field leave any; where the field is the same in all of an area, as in a set without a field.
+    /// Counting visits the points one by one, in time proportional to the points at full density where bounds of
+    /// the field leave any. Where the field is constant in all of an area, counting costs as much as without a field.
     ///
     /// ```
     /// use strew_core::{PointSet, Region, Table};

@@ -64,13 +64,13 @@ impl PointSet {
         self.within(Region::chunk(size, at)?)
     }
 
-    /// Exactly `count` points in an area, at the spacing that takes: the spacing of the set is ignored, and
-    /// that of the plan's [placement](Plan::placement) is what was found.
+    /// Exactly `count` points in an area. The search ignores the spacing of the set; the plan's
+    /// [placement](Plan::placement) has the spacing that it found.
     ///
     /// Without warp two points may enter a box at the same spacing. Then the last one is left out.
     ///
-    /// In a [field](Self::in_field) the spacing is that where the share is 1. More than one spacing may place the
-    /// count; the same one is found everywhere.
+    /// In a [field](Self::in_field) the spacing is that where the share is 1. Several spacings may place the count;
+    /// every machine finds the same one.
     ///
     /// # Errors
     /// [`ErrorKind::Count`](crate::ErrorKind::Count) if the count is 0 or no spacing places it, and as
@@ -168,12 +168,12 @@ impl PointSet {
         Ok(candidates(&scope.lattice, grade, piece, pieces))
     }
 
-    /// [`within`](Self::within), whose counting a flag stops.
+    /// Runs [`within`](Self::within), whose counting a flag stops.
     pub(crate) fn within_until(&self, area: Area, stop: Stop) -> Result<Plan, Error> {
         Plan::new(&self.lattice, &self.mask, area, stop, None)
     }
 
-    /// [`exactly`](Self::exactly) without spacings below `least`, whose counting a flag stops.
+    /// Runs [`exactly`](Self::exactly) without spacings below `least`; a flag stops its counting.
     pub(crate) fn exactly_until(
         &self,
         count: u128,

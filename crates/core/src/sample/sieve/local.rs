@@ -1,4 +1,46 @@
 //! The sieve of one piece of the lattice.
+//!
+//! # The problem
+//!
+//! A request for a polygon of 10⁵ edges and 10⁸ points must not compare every point with every edge. Nearly all points
+//! lie clearly inside or outside. So the sieve answers for whole ranges of columns at once, and compares single points
+//! only where an edge is near, with the edges that are near.
+//!
+//! # From stretches to runs
+//!
+//! For a strip of [`STRIP_ROWS`] rows, `Area::steps` cuts the line of world x into stretches in which all
+//! points of the strip are inside, or all outside, or some of each. [`LocalSieve::runs`] turns these into ranges of
+//! lattice columns. A point is not at its address but between `reach[0]` and `reach[1]` from it, by its displacement
+//! and the warp, and coordinates are rounded. So a column is sure only if the whole reach of its points lies in the
+//! stretch. The others, on both sides of each step, are tested:
+//!
+//! ```text
+//!     stretches   ── Out ───┬───────── In ─────────┬─ Test ─┬──── Out ────
+//!     columns     · · · · ? ? ? + + + + + + + + ? ? ? ? ? ? ? ? · · · · ·
+//!     runs                └─1─┘ └──────2──────┘ └──────3──────┘
+//! ```
+//!
+//! Run 2 passes: its points are copied or counted in closed form. Points of runs 1 and 3 are tested one by one, and
+//! columns in no run (·) are never looked at.
+//!
+//! # Few edges for each test
+//!
+//! A polygon notes, with each stretch to be tested, the edges that reach into it and whether points right of them
+//! are inside (`Near`). A ray to the right then crosses only these. This holds beyond the stretch as well, up to the next
+//! one with edges of its own. So a run of points to be tested carries its `Near` if it holds one such stretch
+//! alone; if there are several, or a sure stretch between them is too narrow to have a sure column, points
+//! are compared with the whole area, as far as [`LocalSieve::aim`] has left it.
+//!
+//! # Invariants
+//!
+//! - Runs ascend and do not overlap, and no two that touch are of the same sort.
+//! - A point in no run is outside, and one in a run that passes is inside, in every row of the strip. So walking
+//!   with runs and testing every point find the same set. The width of the room for rounding changes the cost alone.
+//! - Other sets to keep clear of, and kinds that vary from place to place, decide by the single point: with them
+//!   no run passes.
+//!
+//! The cost of a strip is that of its stretches, shared by 8 rows, and in each row one test for every column within the
+//! reach of an edge: in proportion to the outline, not to the area.
 
 use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;

@@ -1,8 +1,8 @@
 //! Sieves: which points of a plan's box are requested, where not all of them are.
 //!
-//! What to test narrows in five stages, each of which leaves less to the next:
+//! The work narrows in five stages, each of which leaves less to the next:
 //!
-//! 1. [`Sieve`] (`whole`) is what all points of a plan must satisfy: an area, and other sets to keep clear
+//! 1. [`Sieve`] (`whole`) has the conditions on all points of a plan: an area, and other sets to keep clear
 //!    of.
 //! 2. [`LocalSieve`] (`local`) is aimed at a band and then at a patch: `Area::focus` drops every shape and
 //!    edge that does not matter there.

@@ -8,7 +8,7 @@ use crate::{
     table::FRACTION_BITS,
 };
 
-/// What every point of a plan satisfies.
+/// The conditions on every point of a plan.
 #[derive(Clone, Debug)]
 pub(crate) struct Sieve {
     /// Its area is `None` where all of the plan's box is requested.
@@ -45,7 +45,7 @@ impl Sieve {
         LocalSieve::new(tests, self.reach, self.unit)
     }
 
-    /// What points satisfy.
+    /// The conditions on the places of points.
     pub(crate) const fn mask(&self) -> &Mask {
         &self.mask
     }

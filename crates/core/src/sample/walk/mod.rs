@@ -1,20 +1,22 @@
 //! The walk: makes the points of a plan, in order, no faster than they are taken.
 //!
-//! `blocks` walks the bands, rows and columns of a `window` and fills blocks of points; `place` is where it is, `sifting` what it knows of a sieve, and `template` holds
-//! what the rows of a band share. `tile` cuts a plan into parts that threads fill independently.
+//! `blocks` fills blocks of points of a window or a tile (`tile` cuts a plan into tiles, which threads fill
+//! independently). Three walks make the points: `rows` in boxes and areas, `graded` in a field, and `few` has those of
+//! small plans, which were found when `counted` counted them. `bands` is where a walk is, `sifting` its state in a
+//! sieve, and `template` holds the columns that the rows of a band share.
 
+mod bands;
 mod blocks;
-mod place;
+mod counted;
+mod few;
+mod graded;
+mod rows;
 mod sifting;
 mod template;
 mod tile;
-mod window;
 
 pub use blocks::Blocks;
-pub(super) use blocks::{
-    find_few,
-    graded::{Counted, Mark, count as count_graded, locate as locate_graded},
-};
+pub(super) use blocks::Window;
+pub(super) use counted::{Counted, Mark, locate_graded};
 pub use tile::Tile;
-pub(super) use tile::{bands, tiles};
-pub(super) use window::Window;
+pub(super) use tile::tiles;

@@ -18,7 +18,7 @@ use crate::{
 /// The columns of a row.
 #[derive(Clone, Debug)]
 pub(super) struct Template<F: Format> {
-    /// What each column contributes; without warp only.
+    /// The part of its items that each column decides; without warp only.
     columns: Vec<F::Column>,
     /// The lattice columns, where they are needed: with warp, and where rows begin in the middle.
     lattice: Vec<i64>,
@@ -43,7 +43,7 @@ pub(super) struct Part {
     pub(super) check: Check,
 }
 
-/// What points must satisfy.
+/// The test that points must pass.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Check {
     /// Nothing: all are requested.
@@ -54,8 +54,8 @@ pub(super) enum Check {
     Outside,
 }
 
-/// What one call wrote: the number of items, and the number of columns that are done with, which is all
-/// of them unless the output was full before.
+/// The result of one call: the number of items written, and the number of columns that are done with, which is
+/// all of them unless the output was full before.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Progress {
     pub(super) written: usize,
@@ -346,10 +346,10 @@ pub(super) fn sift<F: Format>(
     Progress { written, done }
 }
 
-/// What templates keep of their columns.
+/// The parts of their columns that templates keep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kept {
-    /// The columns inside the box: what whole rows need.
+    /// The columns inside the box. Whole rows need no more.
     Columns,
     /// Their lattice coordinates as well, for rows that begin in the middle.
     Places,

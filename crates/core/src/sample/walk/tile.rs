@@ -5,7 +5,7 @@ use core::ops::Range;
 use crate::{
     pattern::{Axis, Class},
     sample::{
-        lattice::{BAND_WIDTH, clip_to_band},
+        lattice::{BAND_WIDTH, PointId, clip_to_band},
         scope::Scope,
     },
 };
@@ -39,22 +39,21 @@ impl Tile {
         let rows = row..row + 1;
         Self { band, rows }
     }
-}
 
-/// The bands that a scope touches.
-pub(crate) fn bands(scope: &Scope) -> Range<i64> {
-    let columns = &scope.x.all;
-    if columns.is_empty() || scope.y.all.is_empty() {
-        return 0..0;
+    /// The first address.
+    pub(super) const fn start(&self) -> PointId {
+        PointId {
+            x: self.band * BAND_WIDTH,
+            y: self.rows.start,
+        }
     }
-    columns.start.div_euclid(BAND_WIDTH)..(columns.end - 1).div_euclid(BAND_WIDTH) + 1
 }
 
 /// The tiles of a scope, in order, of at most `max_points` points each, or one row if that has more.
 pub(crate) fn tiles(scope: &Scope, max_points: usize) -> impl Iterator<Item = Tile> + use<> {
     let (rows, columns) = (scope.y.all.clone(), scope.x.all.clone());
     let pattern = scope.lattice.pattern;
-    bands(scope).flat_map(move |band| {
+    scope.bands().flat_map(move |band| {
         let columns = clip_to_band(band, &columns);
         let longest = Class::ALL
             .map(|class| pattern.axis_set(Axis::X, class).count(columns.clone()))

@@ -10,22 +10,20 @@
 //! Everything is integer arithmetic on fixed-point positions except g, whose quadratic is evaluated in
 //! `f32` with plain multiplications and additions: the same bits on every machine and in every lane.
 //!
-//! `strength` is the setting, `walk` and `shears` the definition. Two faster forms have the same bits: `near` for
-//! points around a place, `patch` for the points of a patch, on which the kernel builds. `stretch`
-//! bounds what the warp does to distances. `wrapped` is the warp of periodic sets.
+//! `walk` and `shears` are the definition. Two faster forms have the same bits: `near` for
+//! points around a place, `patch` for the points of a patch, on which the kernel builds. `bounds`
+//! limits how far points move and distances stretch. `wrapped` is the warp of periodic sets.
 
-mod drift;
+mod bounds;
 mod near;
 mod patch;
 mod shears;
-mod strength;
-mod stretch;
 mod walk;
 mod wrapped;
 
+pub(super) use bounds::Stretch;
 pub(super) use near::NearShears;
 pub(super) use patch::PatchShears;
+pub use shears::Warp;
 pub(super) use shears::{CELL_BITS, Shears};
-pub use strength::Warp;
-pub(super) use stretch::Stretch;
 pub(super) use wrapped::WrappedShears;

@@ -16,7 +16,7 @@ use crate::{
     table::{Digest, Provenance},
 };
 
-/// What a table file says of itself. Its vectors are neither read nor checked.
+/// The head of a table file: its description of itself. Its vectors are neither read nor checked.
 ///
 /// ```
 /// use strew_core::{Table, table::Head};
@@ -134,17 +134,9 @@ impl Found {
         let missing = |tag: &[u8]| wrong(tag, HEADER_BYTES, "missing".into());
         let (head, head_at) = self.head.ok_or_else(|| missing(b"HEAD"))?;
         let (prov, prov_at) = self.prov.ok_or_else(|| missing(b"PROV"))?;
-        let head = HeadSection::read(&head).map_err(|p| wrong(b"HEAD", head_at, p))?;
-        let alpha: Alpha = head.alpha.parse()?;
-        if format!("{alpha}") != head.alpha {
-            let problem = format!(
-                "alpha `{}` is not in its canonical form `{alpha}`",
-                head.alpha
-            );
-            return Err(wrong(b"HEAD", head_at, problem));
-        }
+        let head = HeadSection::read(&head, head_at)?;
         Ok(Head {
-            alpha,
+            alpha: head.alpha,
             profile: head.profile,
             radius: head.radius,
             intervals: head.intervals,

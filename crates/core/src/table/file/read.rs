@@ -153,15 +153,8 @@ impl<'a> Sections<'a> {
         let (prov, prov_at) = self.prov.ok_or_else(|| missing(b"PROV"))?;
         let (disp, disp_at) = self.disp.ok_or_else(|| missing(b"DISP"))?;
 
-        let head = HeadSection::read(head).map_err(|p| wrong(b"HEAD", head_at, p))?;
-        let alpha: Alpha = head.alpha.parse()?;
-        if format!("{alpha}") != head.alpha {
-            let problem = format!(
-                "alpha `{}` is not in its canonical form `{alpha}`",
-                head.alpha
-            );
-            return Err(wrong(b"HEAD", head_at, problem));
-        }
+        let head = HeadSection::read(head, head_at)?;
+        let alpha = head.alpha;
         let map = Map::new(alpha, head.radius)?;
         if map.intervals() != head.intervals as usize {
             let problem = format!(
@@ -203,7 +196,7 @@ impl<'a> Sections<'a> {
     }
 }
 
-/// What is wrong with a section at a byte of the file.
+/// The error of a section that is wrong at a byte of the file.
 pub(super) fn wrong(tag: &[u8], at: usize, problem: String) -> Error {
     let section = format!("section {} of the table file", String::from_utf8_lossy(tag));
     let value = format!("not valid at byte {at}");
@@ -212,23 +205,33 @@ pub(super) fn wrong(tag: &[u8], at: usize, problem: String) -> Error {
 
 /// The section `HEAD`.
 pub(super) struct HeadSection {
-    pub(super) alpha: String,
+    pub(super) alpha: Alpha,
     pub(super) radius: u32,
     pub(super) intervals: u32,
     pub(super) profile: String,
 }
 
 impl HeadSection {
-    pub(super) fn read(bytes: &[u8]) -> Result<Self, String> {
+    /// Reads the section, which begins at byte `at` of the file.
+    pub(super) fn read(bytes: &[u8], at: usize) -> Result<Self, Error> {
+        let wrong = |problem| wrong(b"HEAD", at, problem);
         let mut reader = Reader::new(bytes);
-        let head = Self {
-            alpha: reader.text("alpha")?,
-            radius: reader.u32("R")?,
-            intervals: reader.u32("n")?,
-            profile: reader.text("profile")?,
-        };
-        reader.end("profile")?;
-        Ok(head)
+        let text = reader.text("alpha").map_err(wrong)?;
+        let radius = reader.u32("R").map_err(wrong)?;
+        let intervals = reader.u32("n").map_err(wrong)?;
+        let profile = reader.text("profile").map_err(wrong)?;
+        reader.end("profile").map_err(wrong)?;
+        let alpha: Alpha = text.parse()?;
+        if format!("{alpha}") != text {
+            let problem = format!("alpha `{text}` is not in its canonical form `{alpha}`");
+            return Err(wrong(problem));
+        }
+        Ok(Self {
+            alpha,
+            radius,
+            intervals,
+            profile,
+        })
     }
 }
 

@@ -1,0 +1,170 @@
+//! The client of a request, as far as it affects the answer.
+
+use std::{
+    net::IpAddr,
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
+    time::Instant,
+};
+
+use strew_error::{Denied, Level};
+
+use super::{InUse, Quota, Usage, bucket::Bucket};
+
+/// The price of a request, in points.
+const REQUEST: f64 = 1.0;
+
+/// Someone who has been let in. Cheap to clone.
+#[derive(Clone, Debug, Default)]
+pub struct Caller {
+    pub(super) name: Option<Arc<str>>,
+    pub(super) is_admin: bool,
+    pub(super) max_points: Option<u64>,
+    pub(super) max_jobs: Option<usize>,
+    /// Its address, if it has no key.
+    pub(super) address: Option<IpAddr>,
+    pub(super) places: Option<Arc<Places>>,
+    pub(super) bucket: Option<Arc<Bucket>>,
+    /// The usage of its address.
+    pub(super) usage: Option<Arc<Usage>>,
+}
+
+/// The streams that a key may have at once, and those that it has.
+#[derive(Debug)]
+pub(super) struct Places {
+    pub(super) limit: usize,
+    pub(super) open: Arc<AtomicUsize>,
+}
+
+/// A place for one stream, of the key and of the address; given back when dropped.
+#[derive(Debug)]
+pub struct Place {
+    open: Option<Arc<AtomicUsize>>,
+    _address: Option<InUse>,
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        if let Some(open) = &self.open {
+            open.fetch_sub(1, Ordering::AcqRel);
+        }
+    }
+}
+
+impl Caller {
+    /// The caller that the gate noted.
+    ///
+    /// # Errors
+    /// [`Denied::NoKey`] for a request that did not pass the gate.
+    pub fn noted(noted: Option<&Self>) -> Result<Self, Denied> {
+        noted.cloned().ok_or(Denied::NoKey)
+    }
+
+    /// A caller at the administrators' address.
+    #[must_use]
+    pub fn admin() -> Self {
+        Self {
+            is_admin: true,
+            ..Self::default()
+        }
+    }
+
+    /// The name of the key, if there was one.
+    #[must_use]
+    pub fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    /// Whether the caller may change what the daemon does.
+    ///
+    /// # Errors
+    /// [`Denied::NotAdmin`] if not.
+    pub fn must_be_admin(&self) -> Result<(), Denied> {
+        if self.is_admin {
+            return Ok(());
+        }
+        Err(Denied::NotAdmin {
+            name: self.name().map(Into::into),
+        })
+    }
+
+    /// The most points of one answer, where the server allows `limit`.
+    #[must_use]
+    pub fn max_points(&self, limit: u64) -> u64 {
+        self.max_points.map_or(limit, |own| own.min(limit))
+    }
+
+    /// The most tables that are made for the caller at once, where the server allows `limit`.
+    #[must_use]
+    pub fn max_jobs(&self, limit: usize) -> usize {
+        self.max_jobs.unwrap_or(limit)
+    }
+
+    /// A name for the client that stays the same: its key, or its address (with IPv6 its /64).
+    #[must_use]
+    pub fn client(&self) -> String {
+        match (&self.name, self.address) {
+            (Some(name), _) => format!("key {name}"),
+            (None, Some(IpAddr::V6(address))) => {
+                let [a, b, c, d, ..] = address.segments();
+                format!("address {a:x}:{b:x}:{c:x}:{d:x}::/64")
+            }
+            (None, Some(address)) => format!("address {address}"),
+            (None, None) => "the address of administrators".into(),
+        }
+    }
+
+    /// A place for one more stream among `all`.
+    ///
+    /// # Errors
+    /// [`Denied::TooManyStreams`] if the key has reached its limit of streams, [`Denied::Address`] and
+    /// [`Denied::Share`] if the address has reached its own.
+    pub fn place(&self, all: &Quota) -> Result<Place, Denied> {
+        let usage = self.usage.as_ref();
+        let mut place = Place {
+            open: None,
+            _address: usage.map(|usage| usage.stream(all)).transpose()?,
+        };
+        if let Some(places) = &self.places {
+            let limit = places.limit;
+            let more = |open: usize| (open < limit).then_some(open + 1);
+            places
+                .open
+                .fetch_update(Ordering::AcqRel, Ordering::Acquire, more)
+                .map_err(|_| Denied::TooManyStreams { limit })?;
+            place.open = Some(places.open.clone());
+        }
+        Ok(place)
+    }
+
+    /// Takes points from the caller's rate. `charged` are those that were charged for the same request
+    /// before, besides the request itself.
+    ///
+    /// # Errors
+    /// [`Denied::TooFast`] if there are too few; then nothing is taken.
+    pub fn charge(&self, points: u128, charged: u128) -> Result<(), Denied> {
+        self.take(points, REQUEST + charged as f64)
+    }
+
+    /// Takes what a request costs, whatever it asks for.
+    pub(super) fn charge_request(&self) -> Result<(), Denied> {
+        self.take(REQUEST as u128, 0.0)
+    }
+
+    fn take(&self, points: u128, taken: f64) -> Result<(), Denied> {
+        let Some(bucket) = &self.bucket else {
+            return Ok(());
+        };
+        let taken = bucket.take(points as f64, taken, Instant::now());
+        taken.map_err(|short| Denied::TooFast { points, short })
+    }
+
+    /// The state of the rate, where there is one.
+    #[must_use]
+    pub fn level(&self) -> Option<Level> {
+        let bucket = self.bucket.as_ref()?;
+        Some(bucket.level(Instant::now()))
+    }
+}

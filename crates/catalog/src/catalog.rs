@@ -1,0 +1,370 @@
+//! The tables that are loaded: the built-in ones and those of a folder.
+//!
+//! Tables are found by profile, α, map and kinds. The built-in ones and the first `tables.preload_bytes` of the folder
+//! are read and checked whole, at the start or when the folder is read again (`reload`), so that a damaged file is an
+//! error then and not during a query. Of further files only the heads are read, a few hundred bytes each; such a table
+//! is read by the first query that needs it. Ready samplers are made of either by the cache.
+
+use std::{
+    cell::{Cell, RefCell},
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use bytes::Bytes;
+use strew_core::{Alpha, field::FieldSpec, map::Size, table::BLUE};
+use strew_error::{Checked, Error};
+
+use crate::{
+    entry::Entry,
+    error::CatalogError,
+    except::Lists,
+    field::{self, Allowance, Document, Fields, NamedField},
+    key::{Key, MixKey, Source},
+    offer::Offer,
+    patterns::Patterns,
+    sent::Sent,
+};
+
+/// The tables that are built into the program beside the library's: (file name, content).
+static EMBEDDED: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/tables.rs"));
+
+/// The table that is built into the library.
+const DEFAULT: (&str, &[u8]) = ("blue-5-sqrt3-over-2-m.strew", BLUE);
+
+/// The tables that are loaded, by key.
+#[derive(Clone, Debug, Default)]
+pub struct Catalog {
+    pub(crate) entries: BTreeMap<Key, Arc<Entry>>,
+    /// The built-in ones, also where a file's table stands in the place of one.
+    pub(crate) built_in: BTreeMap<Key, Arc<Entry>>,
+    /// The fields that queries may name.
+    pub(crate) fields: Arc<Fields>,
+    /// The lists of points that queries may leave out.
+    pub(crate) except: Arc<Lists>,
+    /// The fields that clients have sent.
+    sent: Arc<Sent<NamedField>>,
+    /// Plain patterns that queries have named.
+    patterns: Arc<Patterns>,
+    /// The bytes of files that are held.
+    pub(crate) preload_bytes: u64,
+    /// How others can be had.
+    offer: Offer,
+    /// The most pixels that a query may include, if not the default.
+    most_pixels: Option<usize>,
+}
+
+/// The result of building a field: the room that is left, and the memory it takes.
+#[derive(Clone, Debug)]
+pub struct Built {
+    /// The pixels that the query may still include.
+    pub left: usize,
+    /// The memory that the field's pixels take, in bytes.
+    pub bytes: usize,
+    /// A box around them.
+    pub frame: Option<[f64; 4]>,
+    /// Why there was no memory for its pixels, if there was none.
+    pub refused: Option<Error>,
+}
+
+impl Catalog {
+    /// Loads the tables of a folder, if there is one, and with `embedded` the built-in ones. A table of the folder
+    /// replaces a built-in one with the same key.
+    ///
+    /// # Errors
+    /// [`CatalogError`], naming the file.
+    pub fn load(embedded: bool, folder: Option<&Path>) -> Result<Self, CatalogError> {
+        Self::preloading(u64::MAX, embedded, folder)
+    }
+
+    /// Loads like [`load`](Self::load), but reads only the heads of files beyond `preload_bytes`. Damage of those shows
+    /// when they are used.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn preloading(
+        preload_bytes: u64,
+        embedded: bool,
+        folder: Option<&Path>,
+    ) -> Result<Self, CatalogError> {
+        let mut catalog = Self {
+            preload_bytes,
+            ..Self::default()
+        };
+        if embedded {
+            catalog.add([DEFAULT].iter().chain(EMBEDDED).map(|&(name, bytes)| {
+                Entry::read(Bytes::from_static(bytes), Source::Embedded(name))
+            }))?;
+            catalog.built_in.clone_from(&catalog.entries);
+        }
+        if let Some(folder) = folder {
+            let files = table_files(folder)?;
+            let mut preload = Preload(preload_bytes);
+            catalog.add(files.into_iter().map(|file| preload.read(file)))?;
+        }
+        Ok(catalog)
+    }
+
+    /// The tables of these files, which a program has in memory, and no others.
+    ///
+    /// # Errors
+    /// [`CatalogError`] with the number of a file that is no table or has the key of another one.
+    pub fn of_files(files: impl IntoIterator<Item = Vec<u8>>) -> Result<Self, CatalogError> {
+        let mut catalog = Self::default();
+        let files = files.into_iter().enumerate();
+        catalog.add(files.map(|(i, file)| Entry::read(file.into(), Source::Memory(i))))?;
+        Ok(catalog)
+    }
+
+    /// The catalog with these fields.
+    #[must_use]
+    pub fn with_fields(mut self, fields: Fields) -> Self {
+        self.fields = Arc::new(fields);
+        self
+    }
+
+    /// The catalog with these lists of points.
+    #[must_use]
+    pub fn with_except(mut self, lists: Lists) -> Self {
+        self.except = Arc::new(lists);
+        self
+    }
+
+    /// The lists of points that queries may leave out.
+    #[must_use]
+    pub fn except(&self) -> &Lists {
+        &self.except
+    }
+
+    /// The catalog with tables that are forged on demand.
+    #[must_use]
+    pub const fn offering(mut self, offer: Offer) -> Self {
+        self.offer = offer;
+        self
+    }
+
+    /// How tables can be had that are not loaded.
+    #[must_use]
+    pub const fn offer(&self) -> Offer {
+        self.offer
+    }
+
+    /// The fields that queries may name.
+    #[must_use]
+    pub fn fields(&self) -> &Fields {
+        &self.fields
+    }
+
+    /// The catalog with room for fields that clients send, in bytes.
+    #[must_use]
+    pub fn with_room(mut self, bytes: usize) -> Self {
+        self.sent = Arc::new(Sent::new(bytes));
+        self
+    }
+
+    /// The catalog for queries of up to this number of pixels, instead of [`field::MOST_PIXELS`].
+    #[must_use]
+    pub const fn with_pixels(mut self, most: usize) -> Self {
+        self.most_pixels = Some(most);
+        self
+    }
+
+    /// The most pixels that a query may include.
+    #[must_use]
+    pub fn most_pixels(&self) -> usize {
+        self.most_pixels.unwrap_or(field::MOST_PIXELS)
+    }
+
+    /// The fields that clients have sent.
+    #[must_use]
+    pub fn sent(&self) -> &Sent<NamedField> {
+        &self.sent
+    }
+
+    /// The field of a name, or of the digest of one that was sent.
+    #[must_use]
+    pub fn field(&self, name: &str) -> Option<Arc<NamedField>> {
+        let loaded = self.fields.get(name).cloned();
+        loaded.or_else(|| self.sent.get(name))
+    }
+
+    /// Makes the field of a document that a client has written, of a limited number of pixels.
+    pub fn build_field(
+        &self,
+        path: &str,
+        document: &Document,
+        pixels: usize,
+        allowance: Allowance<'_>,
+    ) -> (Checked<FieldSpec>, Built) {
+        let sources = field::Sources {
+            named: &|name| Some(self.field(name)?.spec.clone()),
+            names: &|| self.fields.names(),
+            files: None,
+            allowance,
+            refused: RefCell::new(None),
+            pixels: Cell::new(pixels),
+            frame: Cell::new(None),
+            bytes: Cell::new(0),
+        };
+        let spec = field::build(path, document, &sources);
+        let built = Built {
+            left: sources.pixels.get(),
+            bytes: sources.bytes.get(),
+            frame: sources.frame.get(),
+            refused: sources.refused.take(),
+        };
+        (spec, built)
+    }
+
+    /// Adds the tables of one place over the present ones; no two of them may have the same key.
+    fn add(
+        &mut self,
+        entries: impl Iterator<Item = Result<Entry, CatalogError>>,
+    ) -> Result<(), CatalogError> {
+        let mut added: BTreeMap<Key, Arc<Entry>> = BTreeMap::new();
+        for entry in entries {
+            let entry = Arc::new(entry?);
+            if let Some(first) = added.insert(entry.key.clone(), entry.clone()) {
+                return Err(CatalogError::Twice {
+                    key: entry.key.clone(),
+                    first: first.source.clone(),
+                    second: entry.source.clone(),
+                });
+            }
+        }
+        self.entries.extend(added);
+        Ok(())
+    }
+
+    /// The table of a key.
+    #[must_use]
+    pub fn entry(&self, key: &Key) -> Option<Arc<Entry>> {
+        self.entries.get(key).cloned()
+    }
+
+    /// The plain pattern of an α, derived; `None` for a larger map than patterns have.
+    #[must_use]
+    pub fn pattern(&self, alpha: Alpha, size: Size) -> Option<Arc<Entry>> {
+        self.patterns.get(alpha, size)
+    }
+
+    /// The catalog with one more table, which replaces one of the same key.
+    #[must_use]
+    pub fn with(&self, entry: Arc<Entry>) -> Self {
+        let mut more = self.clone();
+        more.entries.insert(entry.key.clone(), entry);
+        more
+    }
+
+    /// The catalog and the tables that `now` has and `base` lacks: those that arrived while this one was being read.
+    #[must_use]
+    pub fn with_later(mut self, base: &Self, now: &Self) -> Self {
+        for (key, entry) in &now.entries {
+            if !base.entries.contains_key(key) {
+                let slot = self.entries.entry(key.clone());
+                slot.or_insert_with(|| entry.clone());
+            }
+        }
+        self
+    }
+
+    /// All tables without kinds, by profile, then α.
+    pub fn entries(&self) -> impl Iterator<Item = &Arc<Entry>> {
+        self.entries
+            .values()
+            .filter(|entry| entry.key.mix.is_none())
+    }
+
+    /// The mixes of a table: those whose points are its own, or those whose points were moved.
+    pub fn mixes(
+        &self,
+        of: &Entry,
+        are_moved: bool,
+    ) -> impl Iterator<Item = (&MixKey, &Arc<Entry>)> {
+        self.entries.iter().filter_map(move |(key, entry)| {
+            let mix = key.mix.as_deref()?;
+            let is_same =
+                (&key.profile, key.alpha, key.size) == (&of.key.profile, of.key.alpha, of.key.size);
+            // Only then the vectors matter, which may be on disk.
+            let is_moved = || Some(mix.vectors) != of.vectors();
+            (is_same && is_moved() == are_moved).then_some((mix, entry))
+        })
+    }
+
+    /// The shares for which a table has joint kinds.
+    #[must_use]
+    pub fn joint_kinds(&self, of: &Entry) -> Vec<String> {
+        self.mixes(of, true).map(|(mix, _)| mix.text()).collect()
+    }
+
+    /// The digests of all tables.
+    pub fn digests(&self) -> impl Iterator<Item = &str> {
+        self.entries.values().map(|entry| entry.digest.as_str())
+    }
+
+    /// The names of the profiles, without repetition.
+    pub fn profiles(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = self.entries().map(|entry| &*entry.key.profile).collect();
+        names.dedup();
+        names
+    }
+
+    /// The values of α that a profile is loaded for, without repetition.
+    pub fn alphas(&self, profile: &str) -> Vec<Alpha> {
+        let mut alphas: Vec<Alpha> = self.of_profile(profile).map(|key| key.alpha).collect();
+        alphas.dedup();
+        alphas
+    }
+
+    /// The sizes of map that a profile is loaded with for an α, smallest first.
+    pub fn sizes(&self, profile: &str, alpha: Alpha) -> Vec<Size> {
+        let keys = self.of_profile(profile).filter(|key| key.alpha == alpha);
+        keys.map(|key| key.size).collect()
+    }
+
+    /// Whether any table of a profile is loaded.
+    #[must_use]
+    pub fn has_profile(&self, profile: &str) -> bool {
+        self.of_profile(profile).next().is_some()
+    }
+
+    fn of_profile(&self, profile: &str) -> impl Iterator<Item = &Key> {
+        self.entries()
+            .map(|entry| &entry.key)
+            .filter(move |key| &*key.profile == profile)
+    }
+}
+
+/// The bytes of files that may still be held.
+#[derive(Debug)]
+pub(crate) struct Preload(pub(crate) u64);
+
+impl Preload {
+    /// Reads a file whole if there is room for it, else its head.
+    pub(crate) fn read(&mut self, path: PathBuf) -> Result<Entry, CatalogError> {
+        let bytes = fs::metadata(&path).map_or(0, |file| file.len());
+        if bytes > self.0 {
+            return Entry::from_head(path);
+        }
+        self.0 -= bytes;
+        Entry::from_file(path)
+    }
+}
+
+/// The `*.strew` files of a folder, in the order of their names.
+pub(crate) fn table_files(folder: &Path) -> Result<Vec<PathBuf>, CatalogError> {
+    let problem = |error| CatalogError::Folder {
+        path: folder.into(),
+        error,
+    };
+    let mut files = fs::read_dir(folder)
+        .map_err(problem)?
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(problem)?;
+    files.retain(|file| file.extension().is_some_and(|e| e == "strew"));
+    files.sort();
+    Ok(files)
+}

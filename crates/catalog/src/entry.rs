@@ -1,0 +1,246 @@
+//! A table of the catalog: its description, and the place of its vectors.
+//!
+//! Built-in tables and the first files of the folder are held as bytes. Files beyond `tables.preload_bytes` stay on
+//! disk: of those only the head is read, and the whole by the first query that needs the table. A plain pattern has
+//! no file at all.
+
+use std::{
+    fs::File,
+    io::{self, Read as _, Seek as _, SeekFrom},
+    path::{Path, PathBuf},
+    sync::{Arc, OnceLock},
+};
+
+use bytes::Bytes;
+use strew_config::bounded_file;
+use strew_core::{
+    Table,
+    map::Size,
+    table::{Head, MAX_FILE_BYTES, Provenance},
+};
+use strew_error::Error;
+use strew_forge::Aim;
+
+use super::{CatalogError, Key, MixKey, Source};
+
+/// A loaded table.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// The key by which queries find it.
+    pub key: Key,
+    /// Where it comes from.
+    pub source: Source,
+    /// The half-width R of its map.
+    pub radius: u32,
+    /// The intervals of its map per axis.
+    pub intervals: usize,
+    /// Its digest, in hexadecimal.
+    pub digest: String,
+    /// Its history, and the measurements on it.
+    pub provenance: Provenance,
+    /// The size of its file, in bytes.
+    pub bytes: u64,
+    /// A digest of its vectors alone, once it is known.
+    vectors: OnceLock<[u8; 32]>,
+    content: Content,
+}
+
+/// Where the vectors are.
+#[derive(Clone, Debug)]
+enum Content {
+    /// The bytes of the file, checked.
+    Held(Bytes),
+    /// In the file: they are read and checked when they are needed.
+    OnDisk,
+    /// Nowhere: all are zero.
+    Zero,
+}
+
+impl PartialEq for Entry {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.key, &self.source, &self.digest) == (&other.key, &other.source, &other.digest)
+    }
+}
+
+impl Entry {
+    /// The aim of the forge that made it, if its history records one.
+    #[must_use]
+    pub fn aim(&self) -> Option<Aim> {
+        Aim::of(&self.key.profile, &self.provenance)
+    }
+
+    /// Reads and checks the bytes of a table, which are held.
+    pub(super) fn read(bytes: Bytes, source: Source) -> Result<Self, CatalogError> {
+        let table = Table::from_bytes(&bytes).map_err(|error| CatalogError::Table {
+            source_name: source.clone(),
+            error,
+        })?;
+        let length = bytes.len() as u64;
+        Ok(Self::of(&table, source, length, Content::Held(bytes)))
+    }
+
+    /// A pattern without displacements.
+    pub(super) fn pattern(table: &Table) -> Self {
+        Self::of(table, Source::Pattern, 0, Content::Zero)
+    }
+
+    fn of(table: &Table, source: Source, bytes: u64, content: Content) -> Self {
+        let vectors = digest_of_vectors(table);
+        let mix = table.mix().map(|mix| MixKey {
+            shares: mix.shares().parts().into(),
+            vectors,
+        });
+        Self {
+            key: Key {
+                profile: table.profile().into(),
+                alpha: table.alpha(),
+                size: table.map().size(),
+                mix: mix.map(Arc::new),
+            },
+            source,
+            radius: table.map().radius(),
+            intervals: table.map().intervals(),
+            digest: table.digest().to_string(),
+            provenance: table.provenance().clone(),
+            bytes,
+            vectors: vectors.into(),
+            content,
+        }
+    }
+
+    /// Reads a table file, which must be a regular file of the size that tables may have, and holds its bytes.
+    ///
+    /// # Errors
+    /// [`CatalogError::File`] or [`CatalogError::Table`], naming the file.
+    pub fn from_file(path: PathBuf) -> Result<Self, CatalogError> {
+        let source = Source::File(path.clone());
+        match bounded_file::read(&path, MAX_FILE_BYTES) {
+            Ok(bytes) => Self::read(bytes.into(), source),
+            Err(error) => Err(CatalogError::File { path, error }),
+        }
+    }
+
+    /// Reads the head of a table file and leaves its vectors on disk. One with kinds is read whole.
+    ///
+    /// # Errors
+    /// As [`from_file`](Self::from_file); damage beyond the head shows when the table is needed.
+    pub(super) fn from_head(path: PathBuf) -> Result<Self, CatalogError> {
+        let (head, bytes) = match read_head(&path) {
+            Ok(read) => read,
+            Err(error) => return Err(CatalogError::File { path, error }),
+        };
+        let source = Source::File(path.clone());
+        let head = head.map_err(|error| CatalogError::Table {
+            source_name: source.clone(),
+            error,
+        })?;
+        if head.has_kinds {
+            return Self::from_file(path);
+        }
+        Ok(Self {
+            key: Key {
+                profile: head.profile.into(),
+                alpha: head.alpha,
+                size: Size::of_radius(head.radius),
+                mix: None,
+            },
+            source,
+            radius: head.radius,
+            intervals: head.intervals as usize,
+            digest: head.digest.to_string(),
+            provenance: head.provenance,
+            bytes,
+            vectors: OnceLock::new(),
+            content: Content::OnDisk,
+        })
+    }
+
+    /// The number of the table's blocks, one vector each.
+    #[must_use]
+    pub const fn blocks(&self) -> usize {
+        self.intervals * self.intervals
+    }
+
+    /// Whether its vectors are on disk.
+    #[must_use]
+    pub const fn is_on_disk(&self) -> bool {
+        matches!(self.content, Content::OnDisk)
+    }
+
+    /// The table. Waits for the disk if its vectors are on disk.
+    ///
+    /// # Errors
+    /// [`Error::TableUnreadable`] if its file is gone, has changed or is damaged, and [`Error::Internal`] only if
+    /// memory has been damaged since the table was checked.
+    pub fn table(&self) -> Result<Table, Error> {
+        let damaged = |error: strew_core::Error| {
+            tracing::error!(source = %self.source, %error, "a checked table is not valid any more");
+            Error::Internal("a table is not valid any more")
+        };
+        match (&self.content, &self.source) {
+            (Content::Held(bytes), _) => Table::from_bytes(bytes).map_err(damaged),
+            (Content::OnDisk, Source::File(path)) => self.table_of(path),
+            _ => {
+                let table = Table::undisplaced(self.key.alpha, self.radius, &self.key.profile);
+                table.map_err(damaged)
+            }
+        }
+    }
+
+    /// Reads the table from its file.
+    fn table_of(&self, path: &Path) -> Result<Table, Error> {
+        let read = Self::from_file(path.to_owned()).map_err(|error| error.to_string());
+        let table = read.and_then(|read| match read.digest == self.digest {
+            true => read.table().map_err(|error| error.to_string()),
+            false => Err(format!("its digest is {} now", read.digest)),
+        });
+        table.map_err(|error| {
+            tracing::error!(source = %self.source, digest = self.digest, error, "a table cannot be read");
+            Error::TableUnreadable {
+                table: self.key.to_string(),
+            }
+        })
+    }
+
+    /// A digest of its vectors alone; `None` if they cannot be read.
+    pub(super) fn vectors(&self) -> Option<[u8; 32]> {
+        if let Some(known) = self.vectors.get() {
+            return Some(*known);
+        }
+        let digest = digest_of_vectors(&self.table().ok()?);
+        Some(*self.vectors.get_or_init(|| digest))
+    }
+
+    /// A figure that was measured on the first set that the table was not made on, if it was.
+    #[must_use]
+    pub fn measured(&self, name: &str) -> Option<f64> {
+        let unseen = self
+            .provenance
+            .figures
+            .iter()
+            .find(|figures| !figures.seen)?;
+        let mut values = unseen.values.iter();
+        values
+            .find(|(known, _)| known == name)
+            .map(|(_, value)| *value)
+    }
+}
+
+fn digest_of_vectors(table: &Table) -> [u8; 32] {
+    let vectors = table.displacements().as_flattened();
+    let vectors: Vec<u8> = vectors.iter().flat_map(|v| v.to_le_bytes()).collect();
+    *blake3::hash(&vectors).as_bytes()
+}
+
+/// The head of a table file, and the size of the file.
+fn read_head(path: &Path) -> io::Result<(Result<Head, strew_core::Error>, u64)> {
+    let mut file = bounded_file::open_regular(path)?;
+    let bytes = file.metadata()?.len();
+    let head = Head::read(bytes, |at, part| fill(&mut file, at, part))?;
+    Ok((head, bytes))
+}
+
+fn fill(file: &mut File, at: u64, part: &mut [u8]) -> io::Result<()> {
+    file.seek(SeekFrom::Start(at))?;
+    file.read_exact(part)
+}

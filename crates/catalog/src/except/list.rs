@@ -1,0 +1,349 @@
+//! Lists of points with names: those of the configuration and of a folder, and those that clients have sent.
+//!
+//! A list is text, an id a line: `12:-3`, or `trees/12:-3` for a point of a layer. What follows `#` is a comment. Or
+//! it is an object of JSON with these ids: `{"ids": ["12:-3"]}`.
+
+use std::{borrow::Cow, collections::BTreeMap, mem::size_of, sync::Arc};
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use strew_config::{Except as Settings, name::is_name};
+use strew_core::PointId;
+use strew_error::Fault;
+
+use super::Ids;
+use crate::{
+    named::{self, Changes, NamedError, Places, Refused},
+    sent::{Sendable, Sender, Sent},
+};
+
+/// The most layers that a list has ids of.
+const MOST_LAYERS: usize = 1000;
+
+/// The lists that are loaded, by name, and those that were sent.
+#[derive(Clone, Debug, Default)]
+pub struct Lists {
+    entries: BTreeMap<String, Arc<NamedList>>,
+    sent: Arc<Sent<NamedList>>,
+    /// The most ids of a list.
+    most: usize,
+}
+
+/// A list of points.
+#[derive(Clone, Debug)]
+pub struct NamedList {
+    /// Its name; of one that was sent, its digest.
+    pub name: String,
+    /// The BLAKE3 digest of its ids, in hexadecimal.
+    pub digest: String,
+    /// The ids by layer; those of no layer under an empty name.
+    by_layer: BTreeMap<String, Arc<Ids>>,
+}
+
+/// A list as an object.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "SentList")]
+pub struct Section<'a> {
+    /// Ids of points: column:row, or layer/column:row for a point of a layer.
+    #[serde(borrow)]
+    ids: Vec<Item<'a>>,
+}
+
+/// An item of a list, which is not copied.
+#[derive(Deserialize, JsonSchema)]
+#[serde(transparent)]
+struct Item<'a>(#[serde(borrow)] Cow<'a, str>);
+
+impl Lists {
+    /// Loads the lists that the settings name.
+    ///
+    /// # Errors
+    /// The first that is not valid.
+    pub fn load(settings: &Settings) -> Result<Self, NamedError> {
+        let empty = Self {
+            sent: Arc::new(Sent::new(settings.max_sent_bytes)),
+            ..Self::default()
+        };
+        let (lists, _, refused) = empty.reload(settings);
+        match refused.into_iter().next() {
+            Some((error, _)) => Err(error),
+            None => Ok(lists),
+        }
+    }
+
+    /// The lists after reading all documents again, the changes, and the refused documents. A refused document leaves
+    /// its earlier list in place.
+    #[must_use]
+    pub fn reload(&self, settings: &Settings) -> (Self, Changes, Vec<Refused<NamedError>>) {
+        let digest = |list: &NamedList| list.digest.clone();
+        let places = Places {
+            section: "except",
+            named: &settings.named,
+            folder: settings.folder(),
+            endings: &["txt"],
+            // A line has up to 110 bytes.
+            most_bytes: settings.max_ids as u64 * 110,
+        };
+        let read = places.over(&self.entries, digest, |found, text| {
+            let list = NamedList::read(text, settings.max_ids);
+            let list = list.map_err(|fault| fault.to_string())?;
+            let name = found.name.clone();
+            Ok(NamedList { name, ..list })
+        });
+        let (sent, most) = (self.sent.clone(), settings.max_ids);
+        let (after, refused) = match read {
+            Ok((entries, refused)) => (
+                Self {
+                    entries,
+                    sent,
+                    most,
+                },
+                refused,
+            ),
+            // All of them stay.
+            Err(error) => (self.clone(), vec![(error, None)]),
+        };
+        let changes = Changes::between(&self.entries, &after.entries, digest);
+        (after, changes, refused)
+    }
+
+    /// The list of a digest that was sent, or of a name. What a digest names is never another list.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<Arc<NamedList>> {
+        let sent = self.sent.get(name);
+        sent.or_else(|| self.entries.get(name).cloned())
+    }
+
+    /// The memory that it takes to read a list that is sent, at most, in bytes.
+    #[must_use]
+    pub fn reading(&self, body: &[u8]) -> usize {
+        /// An id is held as text, then as a number, in lists that double as they grow.
+        const ID: usize = 3 * (size_of::<Item<'_>>() + size_of::<PointId>());
+        let ends = body.iter().filter(|&&byte| matches!(byte, b'\n' | b','));
+        // Text that is not Unicode is copied.
+        4 * body.len() + ID * ends.take(self.most).count() + MOST_LAYERS * LAYER
+    }
+
+    /// Reads a list that was sent, and holds it.
+    ///
+    /// # Errors
+    /// A fault of a list that is not valid or too large to be held.
+    pub fn hold(&self, text: &str, sender: Sender) -> Result<Arc<NamedList>, Fault> {
+        let list = NamedList::read(text, self.most)?;
+        let size = list.size();
+        self.sent.hold(list, sender).ok_or_else(|| {
+            let detail = format!("takes {size} bytes, which there is no room for");
+            let allowed = "a smaller list, or except.max_sent_bytes raised";
+            Fault::new("ids", "", detail, allowed)
+        })
+    }
+
+    /// All lists that are loaded, by name.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Arc<NamedList>> {
+        self.entries.values()
+    }
+
+    /// The names, for faults.
+    #[must_use]
+    pub fn names(&self) -> String {
+        named::listed("list", self.entries.keys().map(String::as_str))
+    }
+}
+
+impl NamedList {
+    /// Reads a list, whose name is its digest.
+    fn read(text: &str, most: usize) -> Result<Self, Fault> {
+        // Editors of Windows begin files with this mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut list = Unsorted::default();
+        if text.trim_start().starts_with('{') {
+            // No id has a comma, so several are counted before they take memory.
+            let commas = text.bytes().filter(|&byte| byte == b',').count();
+            if commas > 0 {
+                check_count(commas + 1, most)?;
+            }
+            let section: Section<'_> = serde_json::from_str(text).map_err(|error| {
+                let allowed = "an object of ids, or text with an id a line";
+                Fault::new("body", "", error.to_string(), allowed)
+            })?;
+            check_count(section.ids.len(), most)?;
+            for (i, Item(item)) in section.ids.iter().enumerate() {
+                list.add(item, || format!("ids[{i}]"))?;
+            }
+        } else {
+            let items = || {
+                let lines = text.lines().enumerate();
+                let items = lines.map(|(i, line)| (i, line.split('#').next().unwrap_or_default()));
+                let items = items.map(|(i, item)| (i, item.trim()));
+                items.filter(|(_, item)| !item.is_empty())
+            };
+            check_count(items().count(), most)?;
+            for (i, item) in items() {
+                list.add(item, || format!("line {}", i + 1))?;
+            }
+        }
+        let ids = |(layer, ids)| (layer, Arc::new(Ids::new(ids)));
+        let by_layer: BTreeMap<String, Arc<Ids>> = list.0.into_iter().map(ids).collect();
+        let mut hasher = blake3::Hasher::new();
+        for (layer, ids) in &by_layer {
+            hasher.update(&(layer.len() as u64).to_le_bytes());
+            hasher.update(layer.as_bytes());
+            hasher.update(ids.digest().as_bytes());
+        }
+        let digest = hasher.finalize().to_hex().to_string();
+        Ok(Self {
+            name: digest.clone(),
+            digest,
+            by_layer,
+        })
+    }
+
+    /// Whether another list may have its name later.
+    #[must_use]
+    pub fn may_change(&self) -> bool {
+        self.name != self.digest
+    }
+
+    /// The number of its ids.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.by_layer.values().map(|ids| ids.len()).sum()
+    }
+
+    /// Whether it has no ids.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.by_layer.is_empty()
+    }
+
+    /// The ids of a layer, or with an empty name those of no layer.
+    #[must_use]
+    pub fn of(&self, layer: &str) -> Option<&Arc<Ids>> {
+        self.by_layer.get(layer)
+    }
+
+    /// The layers that it has ids of.
+    pub fn layers(&self) -> impl Iterator<Item = &str> {
+        let names = self.by_layer.keys().map(String::as_str);
+        names.filter(|name| !name.is_empty())
+    }
+}
+
+/// The most bytes of a layer of a list, besides its ids.
+const LAYER: usize = 512;
+
+impl Sendable for NamedList {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn size(&self) -> usize {
+        /// The most bytes of a list, besides its layers.
+        const LIST: usize = 4 << 10;
+        LIST + LAYER * self.by_layer.len() + size_of::<PointId>() * self.len()
+    }
+}
+
+/// The ids of a list by layer, as they are read.
+#[derive(Default)]
+struct Unsorted(BTreeMap<String, Vec<PointId>>);
+
+impl Unsorted {
+    /// Adds the item of a place.
+    fn add(&mut self, item: &str, place: impl Fn() -> String) -> Result<(), Fault> {
+        let Some((layer, id)) = split(item) else {
+            let allowed = "column:row, or layer/column:row";
+            return Err(Fault::new(&place(), item, "not an id", allowed));
+        };
+        let layer = layer.unwrap_or_default();
+        if let Some(ids) = self.0.get_mut(layer) {
+            ids.push(id);
+        } else if self.0.len() == MOST_LAYERS {
+            let allowed = format!("ids of at most {MOST_LAYERS} layers");
+            return Err(Fault::new(&place(), item, "one layer too many", allowed));
+        } else {
+            self.0.insert(layer.into(), vec![id]);
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a list that is too long.
+fn check_count(count: usize, most: usize) -> Result<(), Fault> {
+    if count <= most {
+        return Ok(());
+    }
+    let allowed = format!("at most {most} ids in a list (except.max_ids)");
+    Err(Fault::new("ids", count, "too many", allowed))
+}
+
+/// The layer and the id of an item: `12:-3` or `trees/12:-3`.
+#[must_use]
+pub fn split(item: &str) -> Option<(Option<&str>, PointId)> {
+    let (layer, id) = match item.rsplit_once('/') {
+        Some((layer, id)) if is_name(layer) => (Some(layer), id),
+        Some(_) => return None,
+        None => (None, item),
+    };
+    Some((layer, id.parse().ok()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn list(text: &str) -> Result<NamedList, String> {
+        let settings = Settings {
+            max_ids: 3,
+            named: text.parse::<toml::Table>().map_or_else(
+                |error| panic!("{error}"),
+                |table| {
+                    let tables = table.into_iter();
+                    let table =
+                        |(name, value): (_, toml::Value)| Some((name, value.as_table()?.clone()));
+                    tables.filter_map(table).collect()
+                },
+            ),
+            ..Settings::default()
+        };
+        let lists = Lists::load(&settings).map_err(|error| error.to_string())?;
+        let first = lists.iter().next().expect("a list");
+        Ok(NamedList::clone(first))
+    }
+
+    #[test]
+    fn ids_are_sorted_by_layer() {
+        let felled = list("[felled]\nids = ['3:4', 'oak/-5:6', '1:2', '1:2']").expect_err("4 ids");
+        assert!(felled.contains("at most 3 ids"), "{felled}");
+        let felled = list("[felled]\nids = ['3:4', 'oak/-5:6', '1:2']").expect("valid");
+        assert_eq!(
+            (felled.len(), felled.layers().collect::<Vec<_>>()),
+            (3, vec!["oak"])
+        );
+        assert_eq!(
+            felled.of("").map(|ids| ids.sorted[0]),
+            Some(PointId { x: 1, y: 2 })
+        );
+        let other = list("[felled]\nids = ['1:2', '3:4', 'oak/-5:6']").expect("valid");
+        assert_eq!(other.digest, felled.digest);
+        let other = list("[felled]\nids = ['1:2', '3:4', 'elm/-5:6']").expect("valid");
+        assert_ne!(other.digest, felled.digest);
+    }
+
+    #[test]
+    fn what_is_no_id_is_named() {
+        for (text, expected) in [
+            ("[a]\nids = ['x']", "`ids[0]` = `x`: not an id"),
+            (
+                "[a]\nids = ['1:2', 'a b/1:2']",
+                "[except.a] of the configuration: `ids[1]`",
+            ),
+            ("[a]\nids = 3", "invalid type"),
+            ("[a]\nid = ['1:2']", "unknown field `id`"),
+        ] {
+            let error = list(text).expect_err(text);
+            assert!(error.contains(expected), "{error}");
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! The files of fields: which there are, and whether they have changed.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use strew_config::bounded_file;
+
+use super::Document;
+
+/// The endings of documents, then of rasters.
+const DOCUMENTS: [&str; 2] = ["json", "toml"];
+const RASTERS: [&str; 4] = ["png", "tif", "tiff", "npy"];
+
+/// Files up to this size are compared by content.
+const COMPARED: u64 = 4 << 20;
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| endings.contains(&ending))
+}
+
+/// The files of a folder that are fields, documents first, in the order of their names. A raster with the
+/// name of a document belongs to it.
+pub(super) fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let listed = all(folder).map_err(|error| error.to_string())?;
+    let of = |endings: &'static [&str]| listed.iter().filter(move |path| has_ending(path, endings));
+    let documents: Vec<&PathBuf> = of(&DOCUMENTS).collect();
+    let rasters = of(&RASTERS).filter(|raster| {
+        !documents
+            .iter()
+            .any(|document| document.file_stem() == raster.file_stem())
+    });
+    Ok(documents.iter().copied().chain(rasters).cloned().collect())
+}
+
+/// All files of a folder, in the order of their names.
+fn all(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut paths = vec![];
+    for entry in fs::read_dir(folder)? {
+        paths.push(entry?.path());
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+/// Visits the files that a document names.
+pub(super) fn of_document(document: &Document, visit: &mut impl FnMut(&str)) {
+    document.for_each_pixels(&mut |pixels| {
+        if let Some(file) = &pixels.file {
+            visit(file);
+        }
+    });
+}
+
+/// A stamp of the contents of some files: of small files their bytes, of others their size, time of change and place on
+/// the disk. Reading gigabytes every few seconds would add nothing.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Stamp(Vec<blake3::Hash>);
+
+impl Stamp {
+    /// Adds it to a hash.
+    pub fn add_to(&self, hasher: &mut blake3::Hasher) {
+        for file in &self.0 {
+            hasher.update(file.as_bytes());
+        }
+    }
+
+    pub(crate) fn add(&mut self, path: &Path) {
+        let mut hasher = blake3::Hasher::new();
+        let name = path.as_os_str().as_encoded_bytes();
+        hasher.update(&(name.len() as u64).to_le_bytes());
+        hasher.update(name);
+        match fs::metadata(path) {
+            Ok(metadata) if metadata.len() > COMPARED => {
+                hasher.update(&metadata.len().to_le_bytes());
+                hasher.update(
+                    format!("{:?} {}", metadata.modified().ok(), place(&metadata)).as_bytes(),
+                );
+            }
+            Ok(_) => match bounded_file::read(path, COMPARED) {
+                Ok(content) => drop(hasher.update(&content)),
+                Err(error) => drop(hasher.update(error.to_string().as_bytes())),
+            },
+            Err(error) => drop(hasher.update(error.to_string().as_bytes())),
+        }
+        self.0.push(hasher.finalize());
+    }
+}
+
+/// The number of a file on its disk: another file in its place has another one.
+#[cfg(unix)]
+fn place(metadata: &fs::Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::ino(metadata)
+}
+
+#[cfg(not(unix))]
+const fn place(_: &fs::Metadata) -> u64 {
+    0
+}
+
+/// A stamp of the present contents of a folder's files.
+pub fn stamp_of(folder: Option<&Path>) -> Stamp {
+    let mut stamp = Stamp::default();
+    let files = folder.and_then(|folder| all(folder).ok());
+    for path in files.unwrap_or_default() {
+        stamp.add(&path);
+    }
+    stamp
+}
+
+/// A stamp of the present fields of some settings, whether they are valid or not.
+pub fn stamp(settings: &strew_config::Fields) -> Stamp {
+    let mut stamp = stamp_of(settings.folder());
+    for (name, table) in &settings.named {
+        if let Ok(document) = super::read_toml(name, table) {
+            of_document(&document, &mut |file| stamp.add(Path::new(file)));
+        }
+    }
+    stamp
+}

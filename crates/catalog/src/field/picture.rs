@@ -1,0 +1,53 @@
+//! Pictures of fields.
+
+use png::{BitDepth, ColorType, Encoder};
+use strew_core::{Field as _, Region};
+use strew_error::{Error, Fault};
+
+use super::NamedField;
+
+/// The side of a picture in pixels.
+pub const SIDE: usize = 256;
+
+impl NamedField {
+    /// The shares at the centers of the pixels of a chunk, as a gray PNG: black for 0.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a chunk that is too far out for `f64`.
+    pub fn picture(&self, size: f64, cell: [i64; 2]) -> Result<Vec<u8>, Error> {
+        let refused = |detail: String| {
+            let value = format!("{size}/{}/{}", cell[0], cell[1]);
+            Error::from(Fault::new(
+                "chunk",
+                value,
+                detail,
+                "a chunk of finite coordinates",
+            ))
+        };
+        let region = Region::chunk(size, cell).map_err(|error| refused(error.to_string()))?;
+        let (min, max) = (region.min(), region.max());
+        let step = [0, 1].map(|axis| (max[axis] - min[axis]) / SIDE as f64);
+        let share = |i: usize| {
+            let (column, row) = (i % SIDE, SIDE - 1 - i / SIDE);
+            let at = [
+                min[0] + (column as f64 + 0.5) * step[0],
+                min[1] + (row as f64 + 0.5) * step[1],
+            ];
+            (self.spec.share(at) * 255.0 + 0.5) as u8
+        };
+        let pixels: Vec<u8> = (0..SIDE * SIDE).map(share).collect();
+        write(&pixels).map_err(|_| Error::Internal("a picture cannot be written"))
+    }
+}
+
+fn write(pixels: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
+    let side = SIDE as u32;
+    let mut file = vec![];
+    let mut encoder = Encoder::new(&mut file, side, side);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    writer.finish()?;
+    Ok(file)
+}

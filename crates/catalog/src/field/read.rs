@@ -1,0 +1,76 @@
+//! Reading documents of fields, with faults that name their path.
+
+use serde::{Deserialize as _, Deserializer};
+use serde_path_to_error::Segment;
+use strew_error::{Fault, Faults};
+
+use super::Document;
+
+/// The rule for fields, in words.
+pub(super) const FIELD: &str = "the name of a loaded field, or an object with one member: name, constant, ramp, \
+                                radial, distance, noise, raster, height, slope, multiply, min, max, \
+                                invert or curve";
+
+/// Reads JSON: a name, or an object. `path` is put before the names of members in faults.
+///
+/// # Errors
+/// A fault with the path of the member.
+pub fn read_json(path: &str, text: &str) -> Result<Document, Faults> {
+    if text.starts_with('"') {
+        let name = serde_json::from_str(text);
+        let name = name.map_err(|error| fault(path, text, &error.to_string()))?;
+        return Ok(Document::Name(name));
+    }
+    if !text.starts_with('{') {
+        return Err(fault(path, text, "must be a name or an object"));
+    }
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let document = read(path, text, &mut deserializer)?;
+    let end = deserializer.end();
+    end.map_err(|error| fault(path, text, &error.to_string()))?;
+    Ok(document)
+}
+
+/// Reads TOML: a table with one member.
+///
+/// # Errors
+/// A fault with the path of the member.
+pub fn read_toml(path: &str, table: &toml::Table) -> Result<Document, Faults> {
+    let value = toml::Value::Table(table.clone());
+    let text = table.to_string();
+    read(path, &text, value)
+}
+
+fn read<'de, D: Deserializer<'de>>(
+    path: &str,
+    text: &str,
+    deserializer: D,
+) -> Result<Document, Faults>
+where
+    D::Error: std::fmt::Display,
+{
+    let mut track = serde_path_to_error::Track::new();
+    let tracked = serde_path_to_error::Deserializer::new(deserializer, &mut track);
+    let read = Document::deserialize(tracked);
+    read.map_err(|error| {
+        let mut place = path.to_owned();
+        for segment in track.path().iter() {
+            match segment {
+                Segment::Seq { index } => place += &format!("[{index}]"),
+                Segment::Map { key } => place += &format!(".{key}"),
+                Segment::Enum { variant } => place += &format!(".{variant}"),
+                Segment::Unknown => {}
+            }
+        }
+        fault(&place, text, &error.to_string())
+    })
+}
+
+fn fault(path: &str, text: &str, detail: &str) -> Faults {
+    let detail = match detail.rfind(" at line ") {
+        Some(end) => &detail[..end],
+        None => detail.lines().next().unwrap_or(detail),
+    };
+    let words: Vec<&str> = text.split_whitespace().take(40).collect();
+    Fault::new(path, words.join(" "), detail, FIELD).into()
+}

@@ -1,0 +1,90 @@
+//! The keys of tables, and where tables come from.
+
+use std::{cmp::Ordering, fmt, path::PathBuf, sync::Arc};
+
+use strew_core::{Alpha, map::Size};
+
+/// The key of a table. Keys are in the order of their names, then of their numbers.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Key {
+    /// The name of the noise profile.
+    pub profile: Arc<str>,
+    /// The number α.
+    pub alpha: Alpha,
+    /// The size of its map.
+    pub size: Size,
+    /// The mix of kinds, if it has one.
+    pub mix: Option<Arc<MixKey>>,
+}
+
+/// The key of a mix among those of one table.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MixKey {
+    /// The shares of its kinds.
+    pub shares: Box<[u16]>,
+    /// The digest of its vectors: those of the plain table, or others.
+    pub vectors: [u8; 32],
+}
+
+impl Ord for Key {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let rank = |key: &Self| (key.alpha.half(), key.alpha, key.size);
+        let by_name = self.profile.cmp(&other.profile);
+        by_name
+            .then_with(|| rank(self).cmp(&rank(other)))
+            .then_with(|| self.mix.cmp(&other.mix))
+    }
+}
+
+impl PartialOrd for Key {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl MixKey {
+    /// The shares as text, such as `1:3`.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let parts: Vec<String> = self.shares.iter().map(ToString::to_string).collect();
+        parts.join(":")
+    }
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "profile `{}`, alpha {}, map {}",
+            self.profile, self.alpha, self.size
+        )?;
+        match &self.mix {
+            Some(mix) => write!(f, ", kinds {}", mix.text()),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Where a table comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// Built into the program, under this file name.
+    Embedded(&'static str),
+    /// A file.
+    File(PathBuf),
+    /// The memory of a program: the table of this number.
+    Memory(usize),
+    /// None: a pattern without displacements.
+    Pattern,
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Embedded(name) => write!(f, "built-in {name}"),
+            Self::File(path) => path.display().fmt(f),
+            Self::Memory(number) => write!(f, "table {number} in memory"),
+            Self::Pattern => f.write_str("derived from alpha"),
+        }
+    }
+}

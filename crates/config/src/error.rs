@@ -1,0 +1,109 @@
+//! Errors of the configuration.
+
+use std::path::PathBuf;
+
+/// An error in the configuration.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// The file cannot be read.
+    #[error("cannot read the configuration file {}: {error}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// The file is not TOML.
+    #[error("{source_name} is not valid TOML: {error}")]
+    Syntax {
+        /// The file.
+        source_name: String,
+        /// Where and why.
+        error: Box<toml::de::Error>,
+    },
+    /// A key that does not exist.
+    #[error(
+        "{source_name}: there is no setting `{key}`; {}",
+        suggestion(suggestions)
+    )]
+    UnknownKey {
+        /// The place where it was set.
+        source_name: String,
+        /// The key, or the name of the variable.
+        key: String,
+        /// Keys that exist, the likeliest first.
+        suggestions: Vec<String>,
+    },
+    /// A value of the wrong type.
+    #[error("{source_name}: `{key}` is {value}; allowed: {allowed}")]
+    WrongType {
+        /// The place where it was set.
+        source_name: String,
+        /// The key.
+        key: String,
+        /// The value.
+        value: String,
+        /// The type it must have.
+        allowed: &'static str,
+    },
+    /// A flag that is not of the form `key=value`.
+    #[error("--set {text}: expected key=value, for example limits.max_points=1000")]
+    Assignment {
+        /// The flag's value.
+        text: String,
+    },
+    /// A key that two flags set.
+    #[error("`{key}` is set twice, by {first} and by {second}; allowed: one of them")]
+    Twice {
+        /// The key.
+        key: String,
+        /// The first flag.
+        first: String,
+        /// The second one.
+        second: String,
+    },
+    /// A flag for a setting that a command does not use.
+    #[error(
+        "{source_name}: `{key}` has no effect on this command; allowed: {}",
+        list(used)
+    )]
+    Unused {
+        /// The flag.
+        source_name: String,
+        /// The key.
+        key: String,
+        /// The keys of the settings that it uses.
+        used: Vec<String>,
+    },
+    /// A value of the wrong type.
+    #[error("the merged configuration is not valid: {}", in_a_line(.0))]
+    Invalid(Box<toml::de::Error>),
+    /// Values out of range.
+    #[error("the merged configuration is not valid: {}", faults.join("; "))]
+    OutOfRange {
+        /// The faults, each with its key, its value and the allowed values.
+        faults: Vec<String>,
+    },
+}
+
+/// A message of the reader of TOML, which has lines.
+fn in_a_line(error: &toml::de::Error) -> String {
+    let text = error.to_string();
+    text.trim().replace('\n', " ")
+}
+
+fn list(keys: &[String]) -> String {
+    match keys {
+        [] => "no settings".into(),
+        keys => keys.join(", "),
+    }
+}
+
+fn suggestion(keys: &[String]) -> String {
+    match keys {
+        [] => "run `strew config` to see all".into(),
+        [key] => format!("did you mean `{key}`?"),
+        keys => format!("there are {}", keys.join(", ")),
+    }
+}

@@ -1,0 +1,103 @@
+//! Settings of the data to load: tables, fields, worlds, lists of points.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use serde::{Deserialize, Serialize};
+
+use super::range::out_of_range;
+
+/// The settings of tables to load.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tables {
+    /// Whether the built-in ones are loaded.
+    pub embedded: bool,
+    /// A folder with more; empty for none.
+    pub folder: PathBuf,
+    /// The bytes of the folder's files that are read and held at the start. Bounds memory.
+    pub preload_bytes: u64,
+}
+
+impl Tables {
+    /// The folder, if there is one.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        some(&self.folder)
+    }
+}
+
+/// The settings of fields to load.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fields {
+    /// Whether the built-in one is loaded.
+    pub embedded: bool,
+    /// A folder with documents and rasters; empty for none.
+    pub folder: PathBuf,
+    /// The most memory that the pixels of all fields may take, in bytes.
+    pub max_bytes: usize,
+    /// The most memory that fields may take which clients send to name them later, in bytes; 0 for none.
+    pub max_sent_bytes: usize,
+    /// Fields by name, as documents.
+    #[serde(flatten)]
+    pub named: BTreeMap<String, toml::Table>,
+}
+
+impl Fields {
+    /// The folder, if there is one.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        some(&self.folder)
+    }
+}
+
+/// The settings of worlds to load.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Worlds {
+    /// A folder with documents; empty for none.
+    pub folder: PathBuf,
+    /// Worlds by name, as documents.
+    #[serde(flatten)]
+    pub named: BTreeMap<String, toml::Table>,
+}
+
+impl Worlds {
+    /// The folder, if there is one.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        some(&self.folder)
+    }
+}
+
+/// The settings of lists of points to load, which queries leave out.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Except {
+    /// A folder with lists; empty for none.
+    pub folder: PathBuf,
+    /// The most ids of one list. Bounds memory.
+    pub max_ids: usize,
+    /// The most memory that lists may take which clients send to name them later, in bytes; 0 for none.
+    pub max_sent_bytes: usize,
+    /// Lists by name, as documents.
+    #[serde(flatten)]
+    pub named: BTreeMap<String, toml::Table>,
+}
+
+impl Except {
+    /// The folder, if there is one.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        some(&self.folder)
+    }
+
+    pub(super) fn faults(&self) -> Vec<String> {
+        out_of_range!(self, "except", max_ids: 0.0..=1e8)
+    }
+}
+
+/// A folder, unless it is empty.
+fn some(folder: &Path) -> Option<&Path> {
+    Some(folder).filter(|folder| !folder.as_os_str().is_empty())
+}

@@ -1,0 +1,254 @@
+//! Settings of answers and reports: HTTP, the log, metrics, spans.
+
+use std::{net::Ipv6Addr, path::PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::range::{DAY, HOUR, SECOND, out_of_range};
+
+/// How HTTP answers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Http {
+    /// The origins of pages that may send requests: `*` for all, or origins separated by spaces or
+    /// commas.
+    pub cors_origins: String,
+    /// How long an answer may be kept that a restart with other tables could change, in seconds.
+    pub cache_seconds: u32,
+    /// Where the pages are seen from outside, such as `https://points.example`; empty if that is not known.
+    pub public_url: String,
+}
+
+impl Http {
+    /// The parts of the list of origins.
+    pub(crate) fn origins(&self) -> impl Iterator<Item = &str> {
+        let parts = self.cors_origins.split([' ', ',']);
+        parts.filter(|origin| !origin.is_empty())
+    }
+
+    pub(super) fn faults(&self) -> Vec<String> {
+        let mut faults = out_of_range!(self, "http", cache_seconds: 0.0..=365.0 * DAY);
+        let origins = &self.cors_origins;
+        let wrong = self.origins().find(|origin| !is_origin(origin));
+        if let Some(origin) = wrong.filter(|_| origins.trim() != "*") {
+            faults.push(format!(
+                "http.cors_origins = {origins:?}: {origin:?} is not an origin; allowed: * or origins \
+                 such as https://a.example and http://localhost:3000, with spaces or commas between them"
+            ));
+        }
+        let url = &self.public_url;
+        if !url.is_empty() && !is_web_address(url) {
+            faults.push(format!(
+                "http.public_url = {url:?} is not allowed; allowed: \"\" or an address such as \
+                 https://points.example or http://points.example:8080, without a path"
+            ));
+        }
+        faults
+    }
+}
+
+/// Whether a text is an origin as browsers send it: a scheme, a host, perhaps a port.
+fn is_origin(text: &str) -> bool {
+    let Some((scheme, authority)) = text.split_once("://") else {
+        return false;
+    };
+    let is_scheme = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);
+    let is_host = |c: char| c.is_ascii_alphanumeric() || "-._[]:".contains(c);
+    !scheme.is_empty()
+        && scheme.chars().all(is_scheme)
+        && !authority.is_empty()
+        && authority.chars().all(is_host)
+}
+
+/// Whether a text is the address of a host on the web, perhaps with a port, and nothing else.
+fn is_web_address(text: &str) -> bool {
+    let stripped = ["http://", "https://"].map(|scheme| text.strip_prefix(scheme));
+    let Some(authority) = stripped.into_iter().flatten().next() else {
+        return false;
+    };
+    let (host, port) = match authority.rsplit_once(':') {
+        Some((host, port)) if !port.ends_with(']') => (host, Some(port)),
+        _ => (authority, None),
+    };
+    let is_port = |port: &str| {
+        port.bytes().all(|b| b.is_ascii_digit()) && port.parse::<u16>().is_ok_and(|port| port > 0)
+    };
+    let is_label = |label: &str| {
+        !label.is_empty()
+            && label
+                .bytes()
+                .all(|b| b.is_ascii_alphanumeric() || b == b'-')
+            && !label.starts_with('-')
+            && !label.ends_with('-')
+    };
+    let inner = host
+        .strip_prefix('[')
+        .and_then(|host| host.strip_suffix(']'));
+    let is_host = match inner {
+        Some(inner) => inner.parse::<Ipv6Addr>().is_ok(),
+        None => host.split('.').all(is_label),
+    };
+    is_host && port.is_none_or(is_port)
+}
+
+/// The settings of the log.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Log {
+    /// A level, or levels by module.
+    pub filter: String,
+    /// How a line looks.
+    pub format: LogFormat,
+}
+
+impl Log {
+    pub(super) fn faults(&self) -> Vec<String> {
+        let filter = &self.filter;
+        let error = wrong_filter(filter);
+        let fault = error.map(|error| {
+            format!(
+                "log.filter = {filter:?}; allowed: a level (error, warn, info, debug, trace) or levels \
+                 by module (info,strew=debug): {error}"
+            )
+        });
+        fault.into_iter().collect()
+    }
+}
+
+/// How a line of the log looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LogFormat {
+    /// For people.
+    Text,
+    /// An object a line.
+    Json,
+}
+
+/// The settings of metrics.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Metrics {
+    /// Whether `/metrics` is served.
+    pub enabled: bool,
+}
+
+/// Where spans go, if anywhere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Telemetry {
+    /// The collector's address; empty for none.
+    pub otlp_endpoint: String,
+    /// A PEM file with the authorities that vouch for the collector, for `https`.
+    pub otlp_ca: PathBuf,
+    /// The daemon's name in traces.
+    pub service_name: String,
+    /// The share of requests without a trace of their own that begin one.
+    pub sample_ratio: f64,
+    /// The most spans that wait to be sent.
+    pub max_queued_spans: usize,
+    /// How long sending may take, in seconds.
+    pub export_timeout_seconds: f64,
+}
+
+impl Telemetry {
+    pub(super) fn faults(&self) -> Vec<String> {
+        let mut faults = out_of_range!(self, "telemetry",
+            sample_ratio: 0.0..=1.0,
+            max_queued_spans: 1.0..=1e6,
+            export_timeout_seconds: 0.1 * SECOND..=HOUR,
+        );
+        faults.extend(self.fault());
+        faults
+    }
+
+    /// Describes the fault of the address, if it has one.
+    fn fault(&self) -> Option<String> {
+        let endpoint = &self.otlp_endpoint;
+        if endpoint.is_empty() {
+            return None;
+        }
+        if !is_endpoint(endpoint) {
+            return Some(format!(
+                "telemetry.otlp_endpoint = {endpoint:?}; allowed: http://host:port, https://host:port, or \
+                 nothing"
+            ));
+        }
+        let has_ca = !self.otlp_ca.as_os_str().is_empty();
+        (self.is_https() != has_ca).then(|| {
+            format!(
+                "telemetry.otlp_endpoint = {endpoint:?}, telemetry.otlp_ca = {:?}; allowed: an authority \
+                 with https, and none with http",
+                self.otlp_ca
+            )
+        })
+    }
+
+    /// Whether spans are sent by TLS.
+    pub(crate) fn is_https(&self) -> bool {
+        self.otlp_endpoint.starts_with("https:")
+    }
+}
+
+/// Why a text is no filter of the log.
+#[cfg(feature = "log")]
+fn wrong_filter(text: &str) -> Option<String> {
+    let read = text.parse::<tracing_subscriber::EnvFilter>();
+    read.err().map(|error| error.to_string())
+}
+
+/// Programs without the parser have no log.
+#[cfg(not(feature = "log"))]
+const fn wrong_filter(_: &str) -> Option<String> {
+    None
+}
+
+/// Whether a text is the address of a collector: a scheme and an authority.
+fn is_endpoint(text: &str) -> bool {
+    let rest = ["http://", "https://"]
+        .into_iter()
+        .find_map(|scheme| text.strip_prefix(scheme));
+    let authority = rest.map(|rest| rest.strip_suffix('/').unwrap_or(rest));
+    authority.is_some_and(|authority| {
+        let is_allowed = |c: char| c.is_ascii_alphanumeric() || "-._~%!$&'()*+,;=:@[]".contains(c);
+        !authority.is_empty() && authority.chars().all(is_allowed)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_web_address;
+
+    #[test]
+    fn web_addresses_have_a_host_and_perhaps_a_port() {
+        for good in [
+            "https://points.example",
+            "http://localhost:8080",
+            "http://127.0.0.1:1",
+            "https://[::1]:65535",
+            "https://[2001:db8::1]",
+        ] {
+            assert!(is_web_address(good), "{good}");
+        }
+        for wrong in [
+            "http://:",
+            "http://",
+            "https://a..b",
+            "https://a:b:c",
+            "https://[::1",
+            "https://-",
+            "https://a.example:99999",
+            "https://a.example:0",
+            "https://a.example:+1",
+            "https://a.example/",
+            "ftp://a.example",
+            "a.example",
+            "https://a b",
+            "https://u@a.example",
+            "https://a.example?x",
+            "https://a\"b",
+        ] {
+            assert!(!is_web_address(wrong), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! The state of a walk: the band and the row that it has reached, and the patch of that row.
+
+use alloc::sync::Arc;
+use core::ops::Range;
+
+use super::{sifting::Sifting, tile::Tile};
+use crate::sample::{
+    kernel::{Backend, Format, Geometry, compiled},
+    lattice::{BAND_WIDTH, Columns, Found, Patch, PointId, Span, clip_to_band},
+    scope::{Corner, Scope},
+};
+
+/// The place of the next point in a band.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// The current row; the end of the rows when a new band is due.
+    pub(super) y: i64,
+    /// The number of columns of the row's template that are done.
+    pub(super) done: usize,
+    /// The lattice column where the current row begins, if it is the first of a window.
+    pub(super) from: Option<i64>,
+}
+
+impl Place {
+    pub(super) const fn row(y: i64) -> Self {
+        Self {
+            y,
+            done: 0,
+            from: None,
+        }
+    }
+
+    /// Whether nothing of the row is done.
+    pub(super) const fn is_fresh(&self) -> bool {
+        self.done == 0 && self.from.is_none()
+    }
+
+    pub(super) const fn next_row(&mut self) {
+        *self = Self::row(self.y + 1);
+    }
+}
+
+/// The bands of a scope or a tile, from left to right, and in the current band the patch of the current
+/// row.
+#[derive(Clone, Debug)]
+pub(super) struct Bands<F> {
+    pub(super) scope: Arc<Scope>,
+    pub(super) format: F,
+    pub(super) backend: Backend,
+    /// The bands still to come.
+    ahead: Range<i64>,
+    /// The current band.
+    pub(super) band: i64,
+    /// The rows of every band.
+    pub(super) rows: Range<i64>,
+    pub(super) at: Place,
+    /// All columns of the band.
+    pub(super) columns: Columns,
+    pub(super) sieve: Option<Sifting>,
+    pub(super) patch: Patch,
+    /// The scope's spans in the patch.
+    pub(super) piece: [Span; 2],
+    /// The patch's origin in the format's terms.
+    pub(super) base: [f64; 2],
+}
+
+impl<F: Format> Bands<F> {
+    /// Some bands and rows of a scope, before the first band.
+    fn new(scope: Arc<Scope>, bands: Range<i64>, rows: Range<i64>) -> Self {
+        let Scope { lattice, x, y, .. } = &*scope;
+        let patch = Patch::new(lattice, bands.start, rows.start, x, y);
+        let format: F = format_of(&scope);
+        Self {
+            base: format.base(patch.origin()),
+            format,
+            backend: Backend::best(),
+            band: bands.start,
+            ahead: bands,
+            at: Place::row(rows.end),
+            rows,
+            columns: Columns::default(),
+            sieve: scope.sieve.as_ref().map(Sifting::new),
+            piece: [x.clone(), y.clone()],
+            patch,
+            scope,
+        }
+    }
+
+    /// The band and the rows of a tile.
+    pub(super) fn of_tile(scope: Arc<Scope>, tile: &Tile) -> Self {
+        Self::new(scope, tile.band..tile.band + 1, tile.rows.clone())
+    }
+
+    /// All bands and rows of a scope from the band of an address on, or from the first.
+    pub(super) fn from(scope: Arc<Scope>, start: Option<PointId>) -> Self {
+        let (mut bands, rows) = (scope.bands(), scope.y.all.clone());
+        if let Some(at) = start {
+            bands.start = at.x.div_euclid(BAND_WIDTH);
+        }
+        Self::new(scope, bands, rows)
+    }
+
+    /// Continues at an address of the current band. Returns whether the bands have its row.
+    pub(super) fn go_to(&mut self, at: PointId) -> bool {
+        let is_inside = self.rows.contains(&at.y);
+        if is_inside {
+            self.at = Place {
+                from: Some(at.x),
+                ..Place::row(at.y)
+            };
+        }
+        is_inside
+    }
+
+    /// Whether the current band is done.
+    pub(super) const fn is_done(&self) -> bool {
+        self.at.y >= self.rows.end
+    }
+
+    /// The first address of the bands still to come.
+    pub(super) const fn next_start(&self) -> PointId {
+        PointId {
+            x: self.ahead.start * BAND_WIDTH,
+            y: self.rows.start,
+        }
+    }
+
+    /// The columns of the scope in the current band.
+    pub(super) fn range(&self) -> Range<i64> {
+        clip_to_band(self.band, &self.scope.x.all)
+    }
+
+    /// Lists the columns of the next band and moves to its first row, whose patch is not made yet. Returns
+    /// `false` after the last band.
+    pub(super) fn next_band(&mut self) -> bool {
+        let Some(band) = self.ahead.next() else {
+            return false;
+        };
+        self.band = band;
+        self.at = Place::row(self.rows.start);
+        let columns = self.range();
+        self.columns.list(&self.scope.lattice, columns.clone());
+        if let (Some(sieve), Some(sifting)) = (&self.scope.sieve, &mut self.sieve) {
+            sifting.band.aim(sieve.area(), &self.rows, &columns);
+            sifting.prefix.update(&columns, &self.columns);
+        }
+        true
+    }
+
+    /// Whether the patch ends before the current row.
+    pub(super) const fn needs_patch(&self) -> bool {
+        self.at.y >= self.patch.end()
+    }
+
+    /// The end of the rows of the patch.
+    pub(super) fn patch_end(&self) -> i64 {
+        self.rows.end.min(self.patch.end())
+    }
+
+    /// Makes the patch of the current row. Moves past its rows if none of its points pass the sieve.
+    pub(super) fn next_patch(&mut self) {
+        let Scope { lattice, x, y, .. } = &*self.scope;
+        self.patch = Patch::new(lattice, self.band, self.at.y, x, y);
+        self.base = self.format.base(self.patch.origin());
+        let (columns, rows) = (self.range(), self.at.y..self.patch_end());
+        if self.patch.is_warped() {
+            self.piece = Span::of_piece(lattice, [x, y], [columns.clone(), rows.clone()]);
+        }
+        if let Some(sifting) = &mut self.sieve {
+            if self.patch.is_warped() {
+                sifting
+                    .patch
+                    .set_reach([0, 1].map(|axis| self.piece[axis].reach));
+            }
+            if sifting.next_patch(&rows, &columns) {
+                self.at = Place::row(rows.end);
+            }
+        }
+    }
+}
+
+/// The format of a scope's points.
+pub(super) fn format_of<F: Format>(scope: &Scope) -> F {
+    let Corner {
+        first, gap, extent, ..
+    } = scope.corner;
+    F::new(&Geometry {
+        step: scope.lattice.step,
+        first,
+        gap,
+        extent,
+    })
+}
+
+/// Writes points of the patch at an origin until `out` is full.
+pub(super) fn write_found<F: Format>(
+    (format, backend): (&F, Backend),
+    origin: [i64; 2],
+    found: impl Iterator<Item = Found>,
+    out: &mut [F::Item],
+) {
+    let (base, [left, bottom]) = (format.base(origin), origin);
+    compiled(backend, || {
+        for (out, found) in out.iter_mut().zip(found) {
+            let (place, [x, y]) = (found.place, found.address());
+            let column = format.column(base, place[0], left + x);
+            *out = format.item(base, column, place[1], bottom + y);
+        }
+    });
+}

@@ -1,0 +1,397 @@
+//! The walk outside fields: row by row, as fast as the box, the warp and the sieve allow.
+//!
+//! A row is a list of columns with displacements, and most of its points need no test. A
+//! [`Span`](crate::sample::lattice::Span) decides this for whole ranges. Along its axis it has `all` lines whose points
+//! may lie inside the box, and the `inner` ones whose points do, however they are displaced and warped:
+//!
+//! ```text
+//!           all ┌─────────────────────┐
+//!               │ test   test   test  │
+//!         inner │    ┌───────────┐    │     The frame is as wide as displacements and warp reach, some
+//!               │ te │           │ te │     dozen lines. So a large box has few tests for its points, and
+//!               │ st │   copy    │ st │     a small chunk is all frame. The warp moves the points of a
+//!               │    │           │    │     patch nearly alike, so each patch has a narrower frame.
+//!               │    └───────────┘    │
+//!               └─────────────────────┘
+//! ```
+//!
+//! Four ways fill rows, each the fastest for its case. All find the same points with the same bits:
+//!
+//! 1. *Tall bands* keep a template for each class and block. A row is then a copy of its columns plus y, in vectors. This
+//!    pays from [`TALL`] rows on, where several rows share each template.
+//! 2. *Short bands without warp* would make templates that hardly any other row uses, so `write_row` goes from the
+//!    columns to the items in one pass. A row that the block cuts off uses a template, which knows how to stop.
+//! 3. *Short bands with warp* have rows too short to fill vectors. [`Flat`] lists the points of many rows
+//!    without gaps, warps them together and leaves out those outside. The list is some rows ahead of the block: if
+//!    the block ends within the list, the place after it is looked up and the rest is found again.
+//! 4. *Patches that a sieve cuts* have runs of columns (see `sieve`). A run that passes is filled like 1; in others
+//!    each point is tested.
+//!
+//! The place in a row is a number of columns of its template, not of points, because the columns of one row may lie
+//! inside and outside in turn. Templates therefore may not change between two calls that share a row. Where way 3
+//! stops within a row, it clears them, and the rest of the row makes a template of its own.
+
+use core::ops::Range;
+
+use super::{
+    bands::{Bands, Place, write_found},
+    template::{Check, Kept, Part, Templates, displaced, sift, write_row},
+};
+use crate::{
+    pattern::Axis,
+    sample::{
+        kernel::{Format, Row, compiled},
+        lattice::{BAND_WIDTH, Flat, Found, Inside, Listed, PointId, places},
+        scope::Scope,
+        sieve::Scale,
+    },
+};
+
+/// The number of lattice rows from which a band keeps its templates.
+const TALL: i64 = 512;
+
+/// The most points of a warped patch that are listed before some are written: 20 bytes each.
+const FLAT: usize = 2048;
+
+/// A walk outside fields.
+#[derive(Clone, Debug)]
+pub(super) struct RowWalk<F: Format> {
+    pub(super) bands: Bands<F>,
+    /// The columns that lie inside whatever their displacement, as places in the lists.
+    inner: [Range<usize>; 4],
+    /// All columns of the band.
+    listed: Listed,
+    templates: Templates<F>,
+    /// The points of some rows of a warped patch, and those inside.
+    flat: (Flat, Inside),
+}
+
+impl<F: Format> RowWalk<F> {
+    /// A walk over some bands from an address on, or from the first one.
+    pub(super) fn new(bands: Bands<F>, start: Option<PointId>) -> Self {
+        let kept = match &bands.sieve {
+            Some(_) => Kept::All,
+            None if start.is_some() => Kept::Places,
+            None => Kept::Columns,
+        };
+        let is_tall = bands.rows.end - bands.rows.start >= TALL;
+        let mut walk = Self {
+            inner: [const { 0..0 }; 4],
+            listed: Listed::default(),
+            templates: Templates::new(&bands.scope.lattice, is_tall, kept),
+            flat: Default::default(),
+            bands,
+        };
+        if let Some(at) = start
+            && walk.next_band()
+            && walk.bands.go_to(at)
+        {
+            walk.bands.next_patch();
+        }
+        walk
+    }
+
+    /// Fills `out` with the next points, and only a part of it at the end. Returns the number written.
+    pub(super) fn fill(&mut self, out: &mut [F::Item]) -> usize {
+        let mut filled = 0;
+        while filled < out.len() {
+            let Some(end) = self.advance() else {
+                break;
+            };
+            let Bands {
+                sieve, patch, at, ..
+            } = &self.bands;
+            let out = &mut out[filled..];
+            filled += if sieve.as_ref().is_some_and(|sieve| sieve.is_cut) {
+                self.fill_sifted(end, out)
+            } else if patch.is_warped() && self.templates.are_short() && at.is_fresh() {
+                self.fill_flat(end, out)
+            } else {
+                self.fill_rows(end, out)
+            };
+        }
+        filled
+    }
+
+    /// The address at which the current row goes on; `None` at the end of a band.
+    pub(super) fn place(&self) -> Option<PointId> {
+        let Bands { band, at, .. } = &self.bands;
+        if self.bands.is_done() {
+            return None;
+        }
+        let start = band * BAND_WIDTH;
+        let x = match at.done {
+            0 => at.from.unwrap_or(start),
+            done => self.column(done).unwrap_or(start + BAND_WIDTH),
+        };
+        Some(PointId { x, y: at.y })
+    }
+
+    /// The lattice column of number `n` of the current row's template.
+    fn column(&self, n: usize) -> Option<i64> {
+        let Bands {
+            scope,
+            columns,
+            patch,
+            at,
+            ..
+        } = &self.bands;
+        let lattice = &scope.lattice;
+        let (class, block) = lattice.row(at.y)?;
+        let (vectors, keeps) = (lattice.vectors(block), lattice.keeps(block));
+        let columns = columns.of(class).iter().filter(|line| keeps(line));
+        self.templates.column(patch, columns, vectors, n)
+    }
+
+    /// Moves to the next band and patch if the current ones are done. Returns the end of the patch's rows;
+    /// `None` after the last band.
+    fn advance(&mut self) -> Option<i64> {
+        if self.bands.is_done() && !self.next_band() {
+            return None;
+        }
+        if self.bands.needs_patch() {
+            self.bands.next_patch();
+        }
+        Some(self.bands.patch_end())
+    }
+
+    /// Moves to the first row of the next band and its patch.
+    fn next_band(&mut self) -> bool {
+        if !self.bands.next_band() {
+            return false;
+        }
+        let (columns, scope) = (&self.bands.columns, &self.bands.scope);
+        self.inner = columns.places(&scope.x.inner);
+        self.listed = columns.part(self.bands.range());
+        self.templates.clear();
+        self.bands.next_patch();
+        true
+    }
+
+    /// Whether points are listed before they are written: in warped boxes that are not tall.
+    pub(super) fn is_flat(&self) -> bool {
+        let Scope { lattice, sieve, .. } = &*self.bands.scope;
+        lattice.shears.is_some() && sieve.is_none() && self.templates.are_short()
+    }
+
+    /// Lists the next points of a [flat](Self::is_flat) walk, some of which may be in the next patch. Returns their
+    /// patch's origin and the points; `None` at the end.
+    pub(super) fn list(
+        &mut self,
+        enough: usize,
+    ) -> Option<([i64; 2], impl Iterator<Item = Found>)> {
+        let end = self.advance()?;
+        let next = self.list_flat(end, enough);
+        self.bands.at = Place::row(next);
+        let (_, inside) = &self.flat;
+        Some((self.bands.patch.origin(), inside.points()))
+    }
+
+    /// Lists the points of the warped patch's rows up to `end` that lie inside, or `enough` of its points. Returns
+    /// the first row that is not listed.
+    fn list_flat(&mut self, end: i64, enough: usize) -> i64 {
+        let Bands {
+            scope,
+            backend,
+            at,
+            columns,
+            patch,
+            ..
+        } = &mut self.bands;
+        let (flat, inside) = &mut self.flat;
+        let (rows, columns) = (at.y..end, (columns, &self.listed));
+        let next = flat.list(&scope.lattice, patch, columns, rows, enough, *backend);
+        flat.sift(patch, *backend, inside);
+        next
+    }
+
+    /// Writes points of a warped patch in which few rows share a template, until row `end` or until `out` is full.
+    /// Rows are warped several at a time.
+    fn fill_flat(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+        // Some two in three points of a small box's patches lie inside.
+        let enough = (2 * out.len()).clamp(64, FLAT);
+        let next = self.list_flat(end, enough);
+        let (bands, (flat, inside)) = (&mut self.bands, &self.flat);
+        let by = (&bands.format, bands.backend);
+        write_found(by, bands.patch.origin(), inside.points(), out);
+        bands.at = Place::row(next);
+        if inside.len() > out.len()
+            && let Some((y, done)) = flat.locate(&bands.patch, out.len())
+        {
+            bands.at = Place {
+                done,
+                ..Place::row(y)
+            };
+            // The rest of this row takes a template of its own.
+            self.templates.clear();
+        }
+        inside.len().min(out.len())
+    }
+
+    /// Writes points of the patch's rows until row `end` or until `out` is full.
+    fn fill_rows(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+        let Bands {
+            scope,
+            format,
+            backend,
+            at,
+            columns: listed,
+            patch,
+            piece: [x, span],
+            base,
+            ..
+        } = &mut self.bands;
+        let (lattice, format, patch, base, by) =
+            (&scope.lattice, &*format, &*patch, *base, *backend);
+        let is_split = patch.is_warped() && !patch.columns_are_inner;
+        let is_direct = self.templates.are_plain() && !patch.is_warped();
+        let is_flat = self.templates.are_short() && patch.is_warped();
+        let mut filled = 0;
+        while at.y < end && filled < out.len() {
+            if is_flat && at.is_fresh() {
+                // Only a row that was begun is finished here.
+                break;
+            }
+            let y = at.y;
+            let line = lattice.row(y).filter(|_| span.all.contains(&y));
+            let Some((class, block)) = line else {
+                at.next_row();
+                continue;
+            };
+            let row = Row {
+                base,
+                y: patch.relative(Axis::Y, y),
+                lattice: y,
+            };
+            let is_inner = span.inner.contains(&y);
+            let columns = listed.of_row(lattice, class, block);
+            let vectors = lattice.vectors(block);
+            let inner = if lattice.has_all() {
+                self.inner[class.ordinal()].clone()
+            } else {
+                places(columns, &x.inner)
+            };
+            let out = &mut out[filled..];
+            if is_direct && at.done == 0 && columns.len() <= out.len() {
+                filled += compiled(by, || {
+                    let (columns, vectors) = ((columns, inner), (vectors, is_inner));
+                    write_row(format, patch, row, columns, vectors, out)
+                });
+                at.next_row();
+                continue;
+            }
+            let template = self
+                .templates
+                .get(class, block, at.done > 0, |template, kept| {
+                    template.make((format, base), patch, (columns, inner), vectors, kept, by);
+                });
+            if let Some(from) = at.from.take() {
+                at.done = template.columns_before(from);
+            }
+            let part = if !is_inner {
+                Part {
+                    columns: at.done..template.len(),
+                    check: Check::Bounds,
+                }
+            } else if is_split {
+                template.next_part(at.done, x)
+            } else {
+                Part {
+                    columns: at.done..template.len(),
+                    check: Check::Nothing,
+                }
+            };
+            let progress = template.fill(format, patch, row, part, by, out);
+            filled += progress.written;
+            at.done += progress.done;
+            if at.done == template.len() {
+                at.next_row();
+            }
+        }
+        filled
+    }
+
+    /// Writes points of a patch that the sieve cuts, until row `end` or until `out` is full.
+    fn fill_sifted(&mut self, end: i64, out: &mut [F::Item]) -> usize {
+        let range = self.bands.range();
+        let Bands {
+            scope,
+            format,
+            backend,
+            at,
+            columns: listed,
+            sieve: Some(sifting),
+            patch,
+            base,
+            ..
+        } = &mut self.bands
+        else {
+            return 0;
+        };
+        let (lattice, format, patch, base, by) =
+            (&scope.lattice, &*format, &*patch, *base, *backend);
+        let scale = Scale::new(lattice, patch);
+        let mut filled = 0;
+        while at.y < end && filled < out.len() {
+            let y = at.y;
+            let Some((class, block)) = lattice.row(y) else {
+                at.next_row();
+                continue;
+            };
+            if sifting.next_strip(y, end, &range) {
+                *at = Place::row(sifting.runs_end);
+                continue;
+            }
+            let columns = listed.of_row(lattice, class, block);
+            let vectors = lattice.vectors(block);
+            let template = self
+                .templates
+                .get(class, block, at.done > 0, |template, kept| {
+                    let all = 0..columns.len();
+                    template.make((format, base), patch, (columns, all), vectors, kept, by);
+                });
+            if let Some(from) = at.from.take() {
+                let from = from.clamp(range.start, range.end);
+                at.done = if lattice.has_all() {
+                    sifting.prefix.before(class, from)
+                } else {
+                    columns.partition_point(|line| line.at < from)
+                };
+            }
+            let row = Row {
+                base,
+                y: patch.relative(Axis::Y, y),
+                lattice: y,
+            };
+            for run in &sifting.runs {
+                let places = sifting.prefix.places(lattice, class, columns, &run.columns);
+                let part = places.start.max(at.done)..places.end;
+                if part.is_empty() {
+                    continue;
+                }
+                let (start, out) = (part.start, &mut out[filled..]);
+                let progress = if run.passes {
+                    let part = Part {
+                        columns: part,
+                        check: Check::Nothing,
+                    };
+                    template.fill(format, patch, row, part, by, out)
+                } else {
+                    let columns = displaced(patch, &columns[part], vectors);
+                    let passes = |x, place| {
+                        let id = PointId { x, y };
+                        patch.holds(place) && sifting.patch.passes(run, id, scale.world(place))
+                    };
+                    sift(format, row, columns, (|p| patch.place(p), passes), out)
+                };
+                filled += progress.written;
+                at.done = start + progress.done;
+                if at.done < places.end {
+                    return filled;
+                }
+            }
+            at.next_row();
+        }
+        filled
+    }
+}

@@ -1,0 +1,350 @@
+//! An answer: a planned query on its way out.
+
+use std::fmt;
+
+use bytes::Bytes;
+use strew_core::{F32, F64, Plan};
+use strew_error::{Error, Fault};
+
+#[cfg(feature = "columnar")]
+use crate::{
+    batches::Batches,
+    columnar::{self, Columnar},
+    parquet,
+};
+use crate::{
+    blocks::Blocks,
+    coordinates::Coordinates,
+    csv,
+    encoding::Encoding,
+    error::EncodeError,
+    geojson, glb,
+    head::Head,
+    json, legend,
+    members::Members,
+    ndjson, npy,
+    output::Output,
+    packed::Packed,
+    part::Part,
+    ply, png,
+    pose::Pose,
+    posed,
+    preview::Frame,
+    records::{Layout, Records},
+    rows::Rows,
+    svg,
+    text::{TextBlocks, TextFormat},
+    usda,
+};
+
+/// A planned query on its way out: the blocks of its answer in one format.
+#[derive(Debug)]
+pub struct Answer {
+    /// The bytes before all blocks, if they are known beforehand.
+    head: Option<Bytes>,
+    blocks: Box<dyn Blocks>,
+    size: Option<u64>,
+    /// The bytes of each point, if all points have the same number and nothing stands between or after them.
+    record_bytes: Option<u64>,
+    origin: Option<[f64; 2]>,
+    legend: Option<String>,
+    warning: Option<&'static str>,
+    plain: Option<Plain>,
+}
+
+/// An answer that is nothing but a head and the packed points of one plan. Callers with several threads can fill the
+/// plan's tiles instead of taking blocks one by one.
+#[derive(Clone, Debug)]
+pub struct Plain {
+    /// The bytes before the points.
+    pub head: Option<Bytes>,
+    /// The points.
+    pub plan: Plan,
+    /// Whether coordinates are `f32` relative to the plan's origin, else `f64`.
+    pub is_f32: bool,
+}
+
+impl Answer {
+    /// The answer of some parts, in blocks of about `block_bytes`. `head` is what it says about itself, for formats
+    /// that have room for it, with the number of points of the parts.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the format cannot hold the answer.
+    pub fn new(
+        parts: Vec<Part>,
+        head: impl FnOnce(u128) -> Head,
+        output: &Output,
+        block_bytes: usize,
+    ) -> Result<Self, Error> {
+        if let Some(crs) = output.crs.as_ref()
+            && output.encoding == Encoding::Parquet
+            && crs.projjson().is_none()
+        {
+            let allowed =
+                "EPSG:4326, OGC:CRS84, EPSG:3857 and EPSG:32601 to EPSG:32760, the UTM zones";
+            let detail = "its definition is not known here, and Parquet must hold it";
+            return Err(Fault::new("crs", crs, detail, allowed).into());
+        }
+        Ok(Self {
+            warning: output.warning(),
+            ..Self::of_parts(parts, head, output, block_bytes)?
+        })
+    }
+
+    fn of_parts(
+        parts: Vec<Part>,
+        head: impl FnOnce(u128) -> Head,
+        output: &Output,
+        block_bytes: usize,
+    ) -> Result<Self, Error> {
+        let coordinates = Coordinates::of(output, || Part::corner(&parts));
+        let count = parts.iter().map(|part| part.plan.count()).sum();
+        let frame = Frame::new(&parts, output.size).with_dots(output.dot, &parts);
+        let parts = match output.encoding {
+            Encoding::Png => frame.shown(parts)?,
+            _ => parts,
+        };
+        let head = || head(count);
+        let rows = Rows::new(parts, coordinates);
+        let members = || Members::new(&rows, output);
+        let (layout, before) = match output.encoding {
+            Encoding::F32 => (Layout::F32, None),
+            Encoding::F64 => (Layout::F64, None),
+            Encoding::Npy => (Layout::F64, Some(npy::head(&rows))),
+            Encoding::Ply => (Layout::Vertex, Some(ply::head(&rows, &head()))),
+            Encoding::Multimesh | Encoding::Instances => {
+                posed::check(output.encoding, rows.schema(), &Pose::new(rows.schema()))?;
+                let layout = match output.encoding {
+                    Encoding::Multimesh => Layout::Multimesh,
+                    _ => Layout::Instance,
+                };
+                (layout, None)
+            }
+            Encoding::Glb => {
+                let glb = glb::Glb::new(rows, head())?;
+                return Ok(Self {
+                    size: glb.size(),
+                    ..Self::of_blocks(coordinates.origin(), glb)
+                });
+            }
+            Encoding::Usda => {
+                let usda = usda::Usda::new(rows, &head())?;
+                return Ok(Self::of_blocks(coordinates.origin(), usda));
+            }
+            Encoding::Png => {
+                let png = png::Png::new(rows, head(), frame, block_bytes);
+                return Ok(Self::of_blocks(None, png));
+            }
+            Encoding::Svg => {
+                let most = svg::MOST_POINTS;
+                if rows.count() > most.into() {
+                    let detail = format!("the answer has {} points", rows.count());
+                    let allowed = format!("svg for at most {most} points; png for any number");
+                    let fault = Fault::new("format", "svg", detail, allowed);
+                    return Err(fault.into());
+                }
+                let format = svg::Svg::new(&rows, head(), frame, output.decimals);
+                return Ok(Self::of_text(rows, format, block_bytes));
+            }
+            Encoding::Arrow | Encoding::Feather | Encoding::Parquet => {
+                return Self::in_columns(rows, &head(), output, block_bytes);
+            }
+            Encoding::Json => {
+                let format = json::Json::new(head(), members());
+                return Ok(Self::of_text(rows, format, block_bytes));
+            }
+            Encoding::Ndjson => {
+                let format = ndjson::Ndjson::new(output.has_summary.then(head), members());
+                return Ok(Self::of_text(rows, format, block_bytes));
+            }
+            Encoding::Csv => {
+                let format = csv::Csv::new(&rows, output);
+                return Ok(Self::of_text(rows, format, block_bytes));
+            }
+            Encoding::Geojson => {
+                let format = geojson::Collection::new(head(), members());
+                return Ok(Self::of_text(rows, format, block_bytes));
+            }
+            Encoding::Geojsonseq => {
+                let format = geojson::Sequence::new(members());
+                return Ok(Self::of_text(rows, format, block_bytes));
+            }
+        };
+        let legend = legend::legend(rows.schema(), output.encoding);
+        Ok(Self {
+            legend,
+            ..Self::of_records(rows, layout, before, block_bytes)
+        })
+    }
+
+    /// An answer in a columnar format.
+    #[cfg(feature = "columnar")]
+    fn in_columns(
+        rows: Rows,
+        head: &Head,
+        output: &Output,
+        block_bytes: usize,
+    ) -> Result<Self, Error> {
+        if output.encoding == Encoding::Parquet {
+            let origin = rows.coordinates().origin();
+            let parquet = parquet::Parquet::new(rows, head, output.crs.as_ref())?;
+            return Ok(Self::of_blocks(origin, parquet));
+        }
+        let batches = Batches::new(rows.schema(), head, None);
+        if output.encoding == Encoding::Feather {
+            let writer = columnar::arrow_file(batches.schema());
+            return Self::of_columns(rows, batches, writer, block_bytes);
+        }
+        let writer = columnar::arrow_stream(batches.schema());
+        Self::of_columns(rows, batches, writer, block_bytes)
+    }
+
+    /// Libraries have no writers of columnar formats: their programs have better ones.
+    #[cfg(not(feature = "columnar"))]
+    fn in_columns(_: Rows, _: &Head, output: &Output, _: usize) -> Result<Self, Error> {
+        let encoding = output.encoding;
+        let is_other = |encoding| {
+            !matches!(
+                encoding,
+                Encoding::Arrow | Encoding::Feather | Encoding::Parquet
+            )
+        };
+        let allowed = Encoding::names_where(is_other);
+        let detail = match encoding.is_streamed() {
+            true => "only the daemon and `strew sample` write it",
+            false => "only `strew sample` writes it",
+        };
+        Err(Fault::new("format", encoding.name(), detail, allowed).into())
+    }
+
+    /// Blocks of unknown size, without anything before them.
+    fn of_blocks(origin: Option<[f64; 2]>, blocks: impl Blocks + 'static) -> Self {
+        Self {
+            head: None,
+            size: None,
+            record_bytes: None,
+            origin,
+            legend: None,
+            warning: None,
+            plain: None,
+            blocks: Box::new(blocks),
+        }
+    }
+
+    /// A columnar format of unknown size.
+    #[cfg(feature = "columnar")]
+    fn of_columns(
+        rows: Rows,
+        batches: Batches,
+        writer: Result<impl columnar::Writer + 'static, EncodeError>,
+        block_bytes: usize,
+    ) -> Result<Self, Error> {
+        let origin = rows.coordinates().origin();
+        let columns = Columnar::new(rows, batches, writer?, block_bytes);
+        Ok(Self::of_blocks(origin, columns))
+    }
+
+    /// A text of unknown size.
+    fn of_text<T>(rows: Rows, format: T, block_bytes: usize) -> Self
+    where
+        T: TextFormat + fmt::Debug + Send + 'static,
+    {
+        let origin = rows.coordinates().origin();
+        Self::of_blocks(origin, TextBlocks::new(rows, format, block_bytes))
+    }
+
+    /// Records after a head; straight from the kernel where they are no more than coordinates.
+    fn of_records(rows: Rows, layout: Layout, head: Option<Bytes>, block_bytes: usize) -> Self {
+        let before = head.as_ref().map_or(0, |head| head.len() as u64);
+        let bytes = layout.record_bytes(rows.schema()) as u64;
+        let size = u64::try_from(rows.count()).ok();
+        let size = size.and_then(|rows| bytes.checked_mul(rows)?.checked_add(before));
+        let origin = rows.coordinates().origin();
+        let plan = rows.plain_plan().cloned();
+        let plain = plan.and_then(|plan| {
+            Some(Plain {
+                head: head.clone(),
+                plan,
+                is_f32: layout.plain_f32()?,
+            })
+        });
+        let blocks: Box<dyn Blocks> = match &plain {
+            Some(Plain { plan, is_f32, .. }) if *is_f32 => {
+                Box::new(Packed::<F32>::new(plan, block_bytes))
+            }
+            Some(Plain { plan, .. }) => Box::new(Packed::<F64>::new(plan, block_bytes)),
+            None => Box::new(Records::new(rows, layout, block_bytes)),
+        };
+        Self {
+            head,
+            blocks,
+            size,
+            record_bytes: Some(bytes),
+            origin,
+            legend: None,
+            warning: None,
+            // A window's tiles are those of the whole.
+            plain: plain.filter(|plain| !plain.plan.is_window()),
+        }
+    }
+
+    /// The exact size in bytes, where it is known before.
+    #[must_use]
+    pub const fn size(&self) -> Option<u64> {
+        self.size
+    }
+
+    /// The bytes of each point, for answers of nothing but a head and points of one size.
+    #[must_use]
+    pub const fn record_bytes(&self) -> Option<u64> {
+        self.record_bytes
+    }
+
+    /// The bytes before the points, until they are taken.
+    #[must_use]
+    pub const fn head(&self) -> Option<&Bytes> {
+        self.head.as_ref()
+    }
+
+    /// The origin of the coordinates, if it is not the world's.
+    #[must_use]
+    pub const fn origin(&self) -> Option<[f64; 2]> {
+        self.origin
+    }
+
+    /// For formats without names in them: the columns, as a JSON list in ASCII. Each has a `name`, a
+    /// `type` and, where its values are indices, the `names` that they stand for.
+    #[must_use]
+    pub fn legend(&self) -> Option<&str> {
+        self.legend.as_deref()
+    }
+
+    /// A warning of a mistake that readers of the format may make.
+    #[must_use]
+    pub const fn warning(&self) -> Option<&'static str> {
+        self.warning
+    }
+
+    /// How to make it from the plan's tiles, if it is that simple.
+    #[must_use]
+    pub const fn plain(&self) -> Option<&Plain> {
+        self.plain.as_ref()
+    }
+
+    /// The number of points encoded so far.
+    #[must_use]
+    pub fn points(&self) -> u64 {
+        self.blocks.points()
+    }
+}
+
+impl Iterator for Answer {
+    type Item = Result<Bytes, EncodeError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        match self.head.take() {
+            Some(head) => Some(Ok(head)),
+            None => self.blocks.next(),
+        }
+    }
+}

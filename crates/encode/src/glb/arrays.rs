@@ -1,0 +1,76 @@
+//! The arrays of a binary glTF file.
+
+use crate::{pose::Pose, schema::Schema};
+
+/// An array of a node.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Array<'a> {
+    pub(super) name: &'a str,
+    /// The type of its items.
+    pub(super) items: &'static str,
+    /// The code of the type of their numbers.
+    pub(super) numbers: u32,
+    /// The bytes of an item.
+    pub(super) bytes: u64,
+}
+
+/// The arrays of a node: their names, and the numbers of a point.
+#[derive(Clone, Debug)]
+pub(super) struct Arrays {
+    pub(super) is_turned: bool,
+    pub(super) is_scaled: bool,
+    /// The names of further numbers.
+    pub(super) others: Vec<String>,
+}
+
+impl Arrays {
+    pub(super) fn new(schema: &Schema, pose: &Pose) -> Self {
+        let others = pose.others.iter().map(|i| {
+            let letter = |c: char| {
+                if c.is_ascii_alphanumeric() {
+                    c.to_ascii_uppercase()
+                } else {
+                    '_'
+                }
+            };
+            let name = schema.columns()[*i].name.chars().map(letter);
+            format!("_{}", name.collect::<String>())
+        });
+        Self {
+            is_turned: pose.is_turned(),
+            is_scaled: pose.is_scaled(),
+            others: others.collect(),
+        }
+    }
+
+    /// The arrays in their order.
+    pub(super) fn listed(&self) -> impl Iterator<Item = Array<'_>> {
+        let of_floats = |name, items, bytes| Array {
+            name,
+            items,
+            numbers: 5126,
+            bytes,
+        };
+        let rotation = self.is_turned.then(|| of_floats("ROTATION", "VEC4", 16));
+        let scale = self.is_scaled.then(|| of_floats("SCALE", "VEC3", 12));
+        let id = Array {
+            name: "_ID",
+            items: "VEC4",
+            numbers: 5123,
+            bytes: 8,
+        };
+        let others = self.others.iter();
+        let others = others.map(move |name| of_floats(name, "SCALAR", 4));
+        [of_floats("TRANSLATION", "VEC3", 12)]
+            .into_iter()
+            .chain(rotation)
+            .chain(scale)
+            .chain([id])
+            .chain(others)
+    }
+
+    /// The bytes of a point in all arrays.
+    pub(super) fn point_bytes(&self) -> u64 {
+        self.listed().map(|array| array.bytes).sum()
+    }
+}

@@ -1,0 +1,63 @@
+//! How an answer is to look: the format and its options.
+
+use crate::{crs::Crs, encoding::Encoding};
+
+/// The default longer side of a picture, in pixels.
+pub const DEFAULT_SIZE: u32 = 512;
+
+/// More decimals than this add nothing: an `f64` has 17 significant digits.
+pub const MOST_DECIMALS: u8 = 17;
+
+/// How an answer looks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// The format.
+    pub encoding: Encoding,
+    /// Decimals of all numbers in text formats; by default the shortest digits that read back.
+    pub decimals: Option<u8>,
+    /// The point that coordinates are relative to; by default the world's origin, in `f32` the
+    /// region's lower corner.
+    pub relative_to: Option<[f64; 2]>,
+    /// The longer side of a picture, in pixels.
+    pub size: u32,
+    /// Whether a stream of lines ends with a summary.
+    pub has_summary: bool,
+    /// The coordinate reference system of the plane.
+    pub crs: Option<Crs>,
+    /// The diameter of dots in a picture, in spacings of points at full density; by default half of a mean
+    /// spacing.
+    pub dot: Option<f64>,
+}
+
+impl Output {
+    /// A format without further wishes.
+    #[must_use]
+    pub const fn new(encoding: Encoding) -> Self {
+        Self {
+            encoding,
+            decimals: None,
+            relative_to: None,
+            size: DEFAULT_SIZE,
+            has_summary: true,
+            crs: None,
+            dot: None,
+        }
+    }
+
+    /// A warning of a mistake that readers of the format may make.
+    pub(super) fn warning(&self) -> Option<&'static str> {
+        if !matches!(self.encoding, Encoding::Geojson | Encoding::Geojsonseq) {
+            return None;
+        }
+        match &self.crs {
+            None => Some(
+                "GeoJSON readers take coordinates for degrees of longitude and latitude. Say by crs= what \
+                 the plane is, and use a projected one: what is even in degrees is not even on the ground",
+            ),
+            Some(crs) if crs.is_geographic() => Some(
+                "points are even in degrees, not on the ground: use a projected plane, such as a UTM zone",
+            ),
+            Some(_) => None,
+        }
+    }
+}

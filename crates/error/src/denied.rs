@@ -1,0 +1,98 @@
+//! The reasons for which the gate refuses a request.
+
+use crate::rate::Short;
+
+/// Why a request is refused, for good or for now.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Denied {
+    /// A key is needed, and there is none.
+    #[error("this server needs a key: send `Authorization: Bearer KEY` or `x-api-key: KEY`")]
+    NoKey,
+    /// The key is not known.
+    #[error("this server does not know the key: request another from its administrator")]
+    WrongKey,
+    /// Only administrators may do that.
+    #[error(
+        "{} may not do this: it takes a key with `admin = true`, or the address of `admin.listen`, \
+         if the daemon has one",
+        name.as_ref().map_or("a client without a key".into(), |name| format!("the key `{name}`"))
+    )]
+    NotAdmin {
+        /// The name of the key, if there is one.
+        name: Option<String>,
+    },
+    /// The caller has reached its limit of streams.
+    #[error(
+        "{limit} answers are being streamed to this key, the limit: try again when one has ended"
+    )]
+    TooManyStreams {
+        /// The limit.
+        limit: usize,
+    },
+    /// The caller has reached its limit of tables that are being made.
+    #[error(
+        "{limit} tables are being made for this client, the limit: try again when one is finished"
+    )]
+    TooManyJobs {
+        /// The limit.
+        limit: usize,
+    },
+    /// The client's address has reached the limit of one address.
+    #[error("{limit} {what} of this address are in use, the limit: try again later")]
+    Address {
+        /// The things that it uses.
+        what: &'static str,
+        /// The limit.
+        limit: usize,
+    },
+    /// The client's address uses all that it may use without leaving others less than itself.
+    #[error(
+        "this server has {limit} {what} for all clients, and an address uses no more of them than are left: \
+         try again later"
+    )]
+    Share {
+        /// The things that it uses.
+        what: &'static str,
+        /// The limit for all addresses.
+        limit: usize,
+    },
+    /// The caller takes points too fast.
+    #[error(
+        "{points} points exceed the rate: {left} are left, and {rate} return every second, up to {burst}; \
+         try again in {wait} s",
+        left = short.level.left,
+        rate = short.level.rate.points_per_second,
+        burst = short.level.rate.burst_points,
+        wait = self.wait_seconds().unwrap_or_default()
+    )]
+    TooFast {
+        /// The number of points that were requested.
+        points: u128,
+        /// The state of the caller's bucket.
+        short: Short,
+    },
+}
+
+impl Denied {
+    /// The number of seconds, rounded up, after which a caller that is too fast may try again.
+    #[must_use]
+    pub fn wait_seconds(&self) -> Option<u64> {
+        let Self::TooFast { short, .. } = self else {
+            return None;
+        };
+        let whole = short.wait.as_secs() + u64::from(short.wait.subsec_nanos() > 0);
+        Some(whole.max(1))
+    }
+
+    /// The limit that the caller has reached, but for rates.
+    #[must_use]
+    pub const fn limit(&self) -> Option<usize> {
+        match self {
+            Self::TooManyStreams { limit }
+            | Self::TooManyJobs { limit }
+            | Self::Address { limit, .. }
+            | Self::Share { limit, .. } => Some(*limit),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,436 @@
+//! Errors of requests, in words for the client.
+//!
+//! One type for both protocols; its [`Kind`] has the status on each. Text here is for clients; what only operators
+//! should see goes to the log where it happens.
+
+use crate::{denied::Denied, fault::Fault, faults::Faults};
+
+/// Why a request has no answer.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The query is not valid; every fault that was found.
+    #[error("{}", joined(.0.as_slice()))]
+    Invalid(Faults),
+    /// The region holds more points than one answer may have.
+    #[error(
+        "the region holds {count} points, and this server returns at most {limit} in one answer: \
+         request a smaller region, fewer points, or pages with limit and cursor"
+    )]
+    TooManyPoints {
+        /// The exact count.
+        count: u128,
+        /// The limit.
+        limit: u64,
+    },
+    /// Counting the region's points would take too long.
+    #[error(
+        "counting takes about {rows} steps (lattice rows, or points that keep clear of others), and \
+         this server allows {limit}: request a smaller region, a wider spacing, or a box with warp=off"
+    )]
+    TooManyRows {
+        /// About how many.
+        rows: u128,
+        /// The limit.
+        limit: u64,
+    },
+    /// The query is longer than queries may be.
+    #[error(
+        "the body is longer than {limit} bytes, the limit of this server: send fewer vertices or \
+         regions"
+    )]
+    BodyTooLarge {
+        /// The limit.
+        limit: usize,
+    },
+    /// Another table would answer than the one that the query pins.
+    #[error(
+        "the query names the table {pinned}, but {loaded} would answer: leave out `table`, or load \
+         that table"
+    )]
+    OtherTable {
+        /// The digest in the query.
+        pinned: String,
+        /// The digest of the table that is loaded.
+        loaded: String,
+    },
+    /// The world that the query names is another one than the one that it pins.
+    #[error(
+        "the query names the world {name} of the digest {pinned}, but this server's is {loaded}: leave out \
+         `world_digest`, or request what that world has become"
+    )]
+    OtherWorld {
+        /// The name.
+        name: String,
+        /// The digest in the query.
+        pinned: String,
+        /// The digest of the world that is loaded.
+        loaded: String,
+    },
+    /// The table is loaded, but its file cannot be read.
+    #[error("the table of {table} cannot be read now: its file is gone, has changed or is damaged")]
+    TableUnreadable {
+        /// The key of the table.
+        table: String,
+    },
+    /// None of the formats the client accepts is made here.
+    #[error("`Accept: {accept}` names no available format; available: {available}")]
+    NotAcceptable {
+        /// The formats that the client accepts.
+        accept: String,
+        /// The formats that exist.
+        available: String,
+    },
+    /// The set has no point with that id.
+    #[error("this set has no point `{id}`")]
+    NoSuchPoint {
+        /// The id.
+        id: String,
+    },
+    /// Nothing is at that path.
+    #[error("nothing is at `{path}`; available: {available}")]
+    NoSuchPath {
+        /// The path.
+        path: String,
+        /// The available names.
+        available: String,
+    },
+    /// The path does not take that method.
+    #[error("`{path}` does not take the method {method}; allowed: {allowed}")]
+    NoSuchMethod {
+        /// The path.
+        path: String,
+        /// The method.
+        method: String,
+        /// The methods that the path takes.
+        allowed: String,
+    },
+    /// There is no such job.
+    #[error("there is no job `{id}`: it was never begun here, or has been forgotten")]
+    NoSuchJob {
+        /// The id.
+        id: String,
+    },
+    /// No tables are made on demand.
+    #[error(
+        "this server makes no tables on demand: its operator can set forge.allow, or make them with strew forge"
+    )]
+    ForgeOff,
+    /// The queue of tables to make is full.
+    #[error("{limit} tables wait to be made, the limit of this server: try again later")]
+    TooManyJobs {
+        /// The limit.
+        limit: usize,
+    },
+    /// The caller is refused, for good or for now.
+    #[error(transparent)]
+    Denied(#[from] Denied),
+    /// The server has reached its limit of streams.
+    #[error("{limit} answers are being streamed, the limit of this server: try again later")]
+    Busy {
+        /// The limit.
+        limit: usize,
+    },
+    /// The server has reached its limit of connections.
+    #[error("{limit} connections are open, the limit of this server: try again later")]
+    TooManyConnections {
+        /// The limit.
+        limit: usize,
+    },
+    /// The server has reached its limit of requests at once.
+    #[error("{limit} requests are being answered, the limit of this server: try again later")]
+    TooManyRequests {
+        /// The limit.
+        limit: usize,
+    },
+    /// The server has reached its limit of labels of kinds, including those in the queue.
+    #[error("{limit} kinds are being made, the limit of this server: try again later")]
+    TooManyMixes {
+        /// The limit.
+        limit: usize,
+    },
+    /// Requests and answers have reached the limit of their memory.
+    #[error("requests and answers hold {limit} bytes, the limit of this server: try again later")]
+    TooManyBytes {
+        /// The limit.
+        limit: usize,
+    },
+    /// The request needs more memory at once than this server ever has for it.
+    #[error(
+        "this takes {needed} bytes at once, and {setting} = {limit} on this server, which its operator can raise"
+    )]
+    NeedsMoreBytes {
+        /// The bytes that the request needs.
+        needed: usize,
+        /// The limit.
+        limit: usize,
+        /// The setting of the limit.
+        setting: &'static str,
+    },
+    /// The folder of tables has reached the limit of the forge.
+    #[error(
+        "the folder of tables is full: {setting} = {limit} on this server, which its operator can raise"
+    )]
+    FolderFull {
+        /// The setting of the limit.
+        setting: &'static str,
+        /// The limit.
+        limit: u64,
+    },
+    /// The body has a coding that is not read.
+    #[error("`Content-Encoding: {coding}` is not read; allowed: gzip, or none")]
+    UnknownCoding {
+        /// The coding, as the client names it.
+        coding: String,
+    },
+    /// The body took longer to come than it may.
+    #[error("the body did not arrive within {seconds} seconds")]
+    BodyTooSlow {
+        /// The limit.
+        seconds: String,
+    },
+    /// The answer took longer than it may.
+    #[error(
+        "there was no answer within {seconds} seconds: try again later, or request a smaller region"
+    )]
+    TimeOver {
+        /// The limit.
+        seconds: String,
+    },
+    /// The kinds of the query were still being made when the time for the answer was over.
+    #[error(
+        "labels of these kinds are being made, once, which takes longer than the {seconds} seconds of an answer: \
+         try again in {} seconds", self.retry_seconds().unwrap_or(1)
+    )]
+    KindsInTheMaking {
+        /// The limit.
+        seconds: String,
+    },
+    /// The server is about to stop.
+    #[error("the server is shutting down: try again later, or elsewhere")]
+    ShuttingDown,
+    /// A fault of the server's own; the log has more.
+    #[error("an internal error: {0}")]
+    Internal(&'static str),
+}
+
+fn joined(faults: &[Fault]) -> String {
+    let texts: Vec<String> = faults.iter().map(Fault::to_string).collect();
+    texts.join("; ")
+}
+
+/// The form of a kind of error on both protocols.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wire {
+    /// The kind's name: the last part of the problem type `urn:strew:problem:…`.
+    pub slug: &'static str,
+    /// The title of all problems of the type.
+    pub title: &'static str,
+    /// The status in HTTP.
+    pub status: u16,
+    /// The code in gRPC.
+    pub code: i32,
+    /// The number of seconds after which the same request is worth another try, where that helps.
+    pub retry: Option<u64>,
+}
+
+/// Makes [`Kind`] and its list from the one table of kinds.
+macro_rules! kinds {
+    ($($kind:ident: $slug:literal, $title:literal, $status:literal, $code:ident, $retry:expr;)+) => {
+        /// The kinds of [`Error`], without their details.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Kind {
+            $(#[doc = $title] $kind,)+
+        }
+
+        impl Kind {
+            /// All kinds.
+            pub const ALL: [Self; [$($slug),+].len()] = [$(Self::$kind),+];
+
+            /// The kind's name in answers.
+            #[must_use]
+            pub const fn slug(self) -> &'static str {
+                self.wire().slug
+            }
+
+            /// The kind in answers of both protocols.
+            #[must_use]
+            pub const fn wire(self) -> Wire {
+                match self {
+                    $(Self::$kind => Wire {
+                        slug: $slug,
+                        title: $title,
+                        status: $status,
+                        code: $code,
+                        retry: $retry,
+                    },)+
+                }
+            }
+        }
+    };
+}
+
+const INVALID_ARGUMENT: i32 = 3;
+const DEADLINE_EXCEEDED: i32 = 4;
+const NOT_FOUND: i32 = 5;
+const PERMISSION_DENIED: i32 = 7;
+const RESOURCE_EXHAUSTED: i32 = 8;
+const FAILED_PRECONDITION: i32 = 9;
+const UNIMPLEMENTED: i32 = 12;
+const INTERNAL: i32 = 13;
+const UNAVAILABLE: i32 = 14;
+const UNAUTHENTICATED: i32 = 16;
+
+kinds! {
+    Invalid: "invalid-query", "The query is not valid", 400, INVALID_ARGUMENT, None;
+    TooManyPoints: "too-many-points", "The answer would have too many points", 413, RESOURCE_EXHAUSTED, None;
+    TooManyRows: "too-many-rows", "Counting the points would take too long", 413, RESOURCE_EXHAUSTED, None;
+    BodyTooLarge: "body-too-large", "The query is too long", 413, RESOURCE_EXHAUSTED, None;
+    OtherTable: "other-table", "Another table would answer", 409, FAILED_PRECONDITION, None;
+    OtherWorld: "other-world", "The world has changed", 409, FAILED_PRECONDITION, None;
+    TableUnreadable: "table-unreadable", "The table cannot be read", 503, UNAVAILABLE, Some(5);
+    NotAcceptable: "not-acceptable", "No acceptable format", 406, INVALID_ARGUMENT, None;
+    NoSuchPoint: "no-such-point", "There is no such point", 404, NOT_FOUND, None;
+    NoSuchJob: "no-such-job", "There is no such job", 404, NOT_FOUND, None;
+    NoSuchPath: "no-such-path", "Nothing is here", 404, UNIMPLEMENTED, None;
+    NoSuchMethod: "no-such-method", "The path does not take this method", 405, UNIMPLEMENTED, None;
+    Unauthenticated: "unauthenticated", "A key is needed", 401, UNAUTHENTICATED, None;
+    NotAllowed: "not-allowed", "The caller may not do this", 403, PERMISSION_DENIED, None;
+    TooManyStreams: "too-many-streams", "Too many current streams", 429, RESOURCE_EXHAUSTED, Some(1);
+    TooManyJobs: "too-many-jobs", "Too many tables are being made for the client", 429, RESOURCE_EXHAUSTED, Some(1);
+    TooManyForAddress: "too-many-for-address", "The client's address uses as much as one address may", 429, RESOURCE_EXHAUSTED, Some(1);
+    TooFast: "too-fast", "Points are taken too fast", 429, RESOURCE_EXHAUSTED, None;
+    Busy: "busy", "The server is busy", 503, RESOURCE_EXHAUSTED, Some(1);
+    UnknownCoding: "unknown-coding", "The query has a coding that is not read", 415, INVALID_ARGUMENT, None;
+    BodyTooSlow: "body-too-slow", "The query arrived too slowly", 408, DEADLINE_EXCEEDED, None;
+    TimeOver: "time-over", "The answer took too long", 503, RESOURCE_EXHAUSTED, Some(5);
+    ShuttingDown: "shutting-down", "The server is shutting down", 503, UNAVAILABLE, Some(1);
+    Internal: "internal", "An internal error", 500, INTERNAL, None;
+}
+
+impl Error {
+    /// The kind, on which the mapping to the wire depends.
+    #[must_use]
+    pub const fn kind(&self) -> Kind {
+        match self {
+            Self::Invalid(_) => Kind::Invalid,
+            Self::TooManyPoints { .. } => Kind::TooManyPoints,
+            Self::TooManyRows { .. } => Kind::TooManyRows,
+            Self::BodyTooLarge { .. } => Kind::BodyTooLarge,
+            Self::OtherTable { .. } => Kind::OtherTable,
+            Self::OtherWorld { .. } => Kind::OtherWorld,
+            Self::TableUnreadable { .. } => Kind::TableUnreadable,
+            Self::NotAcceptable { .. } => Kind::NotAcceptable,
+            Self::NoSuchPoint { .. } => Kind::NoSuchPoint,
+            Self::NoSuchJob { .. } => Kind::NoSuchJob,
+            Self::NoSuchPath { .. } => Kind::NoSuchPath,
+            Self::NoSuchMethod { .. } => Kind::NoSuchMethod,
+            Self::ForgeOff => Kind::NotAllowed,
+            Self::Denied(denied) => match denied {
+                Denied::NoKey | Denied::WrongKey => Kind::Unauthenticated,
+                Denied::NotAdmin { .. } => Kind::NotAllowed,
+                Denied::TooManyStreams { .. } => Kind::TooManyStreams,
+                Denied::TooManyJobs { .. } => Kind::TooManyJobs,
+                Denied::Address { .. } | Denied::Share { .. } => Kind::TooManyForAddress,
+                Denied::TooFast { .. } => Kind::TooFast,
+            },
+            Self::Busy { .. }
+            | Self::TooManyConnections { .. }
+            | Self::TooManyRequests { .. }
+            | Self::TooManyMixes { .. }
+            | Self::FolderFull { .. }
+            | Self::TooManyJobs { .. }
+            | Self::TooManyBytes { .. }
+            | Self::NeedsMoreBytes { .. } => Kind::Busy,
+            Self::UnknownCoding { .. } => Kind::UnknownCoding,
+            Self::BodyTooSlow { .. } => Kind::BodyTooSlow,
+            Self::TimeOver { .. } | Self::KindsInTheMaking { .. } => Kind::TimeOver,
+            Self::ShuttingDown => Kind::ShuttingDown,
+            Self::Internal(_) => Kind::Internal,
+        }
+    }
+
+    /// The number of seconds after which the same request is worth another try, where that helps.
+    #[must_use]
+    pub fn retry_seconds(&self) -> Option<u64> {
+        match self {
+            // These settings never allow it.
+            Self::NeedsMoreBytes { .. } | Self::FolderFull { .. } => None,
+            Self::Denied(denied) => denied.wait_seconds().or(self.kind().wire().retry),
+            _ => self.kind().wire().retry,
+        }
+    }
+
+    /// The limit that the request exceeds, if there is one.
+    #[must_use]
+    pub fn limit(&self) -> Option<u64> {
+        let limit = match self {
+            Self::TooManyPoints { limit, .. } | Self::TooManyRows { limit, .. } => {
+                return Some(*limit);
+            }
+            Self::BodyTooLarge { limit }
+            | Self::Busy { limit }
+            | Self::TooManyConnections { limit }
+            | Self::TooManyRequests { limit }
+            | Self::TooManyMixes { limit }
+            | Self::TooManyBytes { limit }
+            | Self::NeedsMoreBytes { limit, .. }
+            | Self::TooManyJobs { limit } => *limit,
+            Self::Denied(denied) => denied.limit()?,
+            _ => return None,
+        };
+        u64::try_from(limit).ok()
+    }
+
+    /// The digest that the query pins and the digest of what would answer, if they differ.
+    #[must_use]
+    pub fn digests(&self) -> Option<(&str, &str)> {
+        match self {
+            Self::OtherTable { pinned, loaded } | Self::OtherWorld { pinned, loaded, .. } => {
+                Some((pinned, loaded))
+            }
+            _ => None,
+        }
+    }
+
+    /// The faults of an invalid query; none for other errors.
+    #[must_use]
+    pub fn faults(&self) -> &[Fault] {
+        match self {
+            Self::Invalid(faults) => faults.as_slice(),
+            _ => &[],
+        }
+    }
+}
+
+impl From<Faults> for Error {
+    fn from(faults: Faults) -> Self {
+        Self::Invalid(faults)
+    }
+}
+
+impl From<Fault> for Error {
+    fn from(fault: Fault) -> Self {
+        Self::Invalid(fault.into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_kind_is_an_error_by_both_protocols_and_has_a_type_of_its_own() {
+        let slugs: BTreeSet<_> = Kind::ALL.map(Kind::slug).into();
+        assert_eq!(slugs.len(), Kind::ALL.len());
+        for kind in Kind::ALL {
+            let wire = kind.wire();
+            assert!((400..600).contains(&wire.status), "{kind:?}");
+            // Both protocols agree on whether the client or the server is at fault.
+            let is_ours = [RESOURCE_EXHAUSTED, INTERNAL, UNAVAILABLE].contains(&wire.code);
+            assert!(is_ours || wire.status < 500, "{kind:?}");
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! One thing that is wrong with a query, in words for the client.
+
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// One thing that is wrong with a query.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Fault {
+    /// The parameter or field.
+    pub field: String,
+    /// Its value; null if it is missing.
+    pub value: Option<String>,
+    /// A description of the fault.
+    pub detail: String,
+    /// The allowed values, in words.
+    pub allowed: String,
+}
+
+impl Fault {
+    /// A fault of a given value.
+    pub fn new(
+        field: &str,
+        value: impl fmt::Display,
+        detail: impl Into<String>,
+        allowed: impl Into<String>,
+    ) -> Self {
+        Self {
+            field: shortened(field),
+            value: Some(shortened(&value.to_string())),
+            detail: cut(&detail.into(), 3 * SHOWN),
+            allowed: allowed.into(),
+        }
+    }
+
+    /// A fault of something that is not there.
+    pub fn missing(field: &str, allowed: impl Into<String>) -> Self {
+        Self {
+            field: field.into(),
+            value: None,
+            detail: "missing".into(),
+            allowed: allowed.into(),
+        }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`", self.field)?;
+        if let Some(value) = &self.value {
+            write!(f, " = `{value}`")?;
+        }
+        write!(f, ": {}; allowed: {}", self.detail, self.allowed)
+    }
+}
+
+/// The most characters of input that are echoed.
+const SHOWN: usize = 120;
+
+/// Input is echoed, but not by the kilobyte.
+fn shortened(text: &str) -> String {
+    cut(text, SHOWN)
+}
+
+fn cut(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        Some((at, _)) => format!("{}…", &text[..at]),
+        None => text.into(),
+    }
+}

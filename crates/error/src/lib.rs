@@ -1,0 +1,21 @@
+//! Errors of requests, in words for clients.
+//!
+//! [`Error`] is why a request has no answer; its [`Kind`] decides the status on each protocol. A query that is not
+//! valid has [`Fault`]s, each with the field, its value and what is allowed: [`Checked`] and [`Together`] collect all
+//! of them, so that a client needs one round to learn them all. Depends on no other crate of Strew.
+
+mod denied;
+mod error;
+mod fault;
+pub mod faults;
+mod number;
+mod rate;
+mod unknown;
+
+pub use denied::Denied;
+pub use error::{Error, Kind};
+pub use fault::Fault;
+pub use faults::{Checked, Faults, Together, all};
+pub use number::number;
+pub use rate::{Level, Rate, Short};
+pub use unknown::unknown;

@@ -1,0 +1,313 @@
+//! The price of a request, known before its work begins: rows to count, points to make, neighbors to find.
+//!
+//! The unit of counting is a lattice row that is counted by itself, about a microsecond. Prices count rows, points and
+//! looks at fields and read no clock, so a request has the same price on every machine.
+
+mod layers;
+mod making;
+mod neighbors;
+mod point;
+
+use strew_core::{
+    Area, PointSet, Region, Spacing, Warp,
+    server::{self, Stop},
+};
+
+use crate::{
+    Lane,
+    resolve::{Resolved, resolve},
+};
+pub(super) use layers::Layers;
+use layers::look;
+pub use making::block_bytes;
+pub use making::block_lane;
+pub use making::considered;
+pub use neighbors::Neighbors;
+pub use point::point;
+use strew_catalog::Ready;
+use strew_error::Error;
+use strew_query::{Query, Set};
+
+/// The approximate number of lattice units in a mean spacing.
+const UNITS: f64 = 3.0;
+/// The rows that are looked at together, in mean spacings.
+const STRIP: f64 = 256.0 / UNITS;
+/// Points beside an outline are compared with every edge in their strip. One comparison for each unit of outline and
+/// each edge takes this share of a row.
+const COMPARISON: f64 = 5e-4;
+
+/// Looking at a point of a field takes this many nanoseconds, besides the look at the field itself.
+const CANDIDATE: f64 = 30.0;
+/// Counting a row takes this many nanoseconds.
+const ROW: f64 = 1e3;
+/// How long the number of points in a field is estimated, how long looking up the bounds of a piece takes beside the
+/// look at its field, and the fewest pieces.
+const ESTIMATE: f64 = 5e5;
+const BOUNDS: f64 = 100.0;
+const LEAST_PIECES: usize = 16;
+
+/// About how often an area is counted to find the spacing of a count; in a field less often.
+const COUNTS: f64 = 32.0;
+const COUNTS_IN_FIELD: f64 = 12.0;
+
+/// About how often an area is counted to find the spacing of a count of a set.
+pub(super) const fn counts(set: &Set) -> f64 {
+    match set.field {
+        Some(_) => COUNTS_IN_FIELD,
+        None => COUNTS,
+    }
+}
+
+/// How often an area is counted to know how many points of each kind it has.
+pub(super) fn kinds(set: &Set) -> f64 {
+    set.kinds
+        .as_ref()
+        .map_or(0.0, |kinds| match kinds.vary_by_place() {
+            // All kinds at once.
+            true => 1.0,
+            false => kinds.shares().kinds() as f64,
+        })
+}
+
+/// A request for points, reduced to the parts that decide the price of counting.
+#[derive(Clone, Debug)]
+pub(super) struct Selection {
+    /// The set, without its area.
+    pub(super) set: PointSet,
+    /// Where points are requested.
+    pub(super) area: Area,
+    /// The time for each point, in nanoseconds, if points are looked at one by one: to keep clear of others, or for
+    /// kinds whose shares vary.
+    by_point: f64,
+    /// The time of a look at the field, in nanoseconds.
+    look: f64,
+}
+
+impl Selection {
+    /// The points of a set in an area, where testing a place against other layers takes `test` nanoseconds.
+    pub(super) fn new(set: &Set, points: PointSet, area: Area, test: f64) -> Self {
+        let within = area.bounds();
+        let varied = set.kinds.iter().flat_map(|kinds| &kinds.fields);
+        let varied = varied.map(|(_, field)| &field.spec);
+        let own = set.field.as_ref().map(|field| &field.spec);
+        let of = |within| (look(varied, within), look(own, within));
+        let (varied, look) = within.map_or((0.0, 0.0), of);
+        Self {
+            set: points,
+            area,
+            by_point: test + varied,
+            look,
+        }
+    }
+
+    /// The points of another set with the same fields.
+    pub(super) fn with_set(&self, set: PointSet) -> Self {
+        Self {
+            set,
+            ..self.clone()
+        }
+    }
+
+    /// Whether the area has an end within the reach of the set.
+    pub(super) fn is_near(&self) -> bool {
+        let limit = self.set.limit();
+        self.area.bounds().is_some_and(|bounds| {
+            let mut corners = bounds.min().into_iter().chain(bounds.max());
+            corners.all(|value| value.abs() <= limit)
+        })
+    }
+
+    /// Whether points are looked at one by one whatever the area.
+    fn looks_at_all(&self) -> bool {
+        self.by_point > 0.0
+    }
+}
+
+/// Queries with more rows than this, in rows of warped sets, are planned in the lane for long work: it takes
+/// some milliseconds.
+const SHORT_ROWS: f64 = 3_000.0;
+/// A row of a set without warp takes this much of one with warp.
+const PLAIN: f64 = 0.1;
+
+/// Whether the price of planning a query is found at once: it has nothing but a few boxes.
+pub fn is_plain(query: &Query) -> bool {
+    let is_box = |set: &Set| set.region.is_none() && set.fields().next().is_none();
+    matches!(query.region.area, Area::Region(_))
+        && query.sets.len() <= 2
+        && query.sets.iter().all(is_box)
+}
+
+/// The price of planning a query, in rows of warped sets.
+///
+/// # Errors
+/// [`Error::TooManyRows`] if all sets together have more than `limit` rows that are counted one by one.
+pub fn planning(query: &Query, tables: &[Ready], limit: u64) -> Result<f64, Error> {
+    // With a cursor nothing is counted.
+    if query.window.cursor.is_some() {
+        return Ok(0.0);
+    }
+    let mut layers = Layers::default();
+    let (mut all, mut weighted) = (0.0, 0.0);
+    for (i, (set, ready)) in query.sets.iter().zip(tables).enumerate() {
+        let (rows, weight) = counted(query, set, ready, limit as f64, &mut layers);
+        if query.only.is_some_and(|only| only != i) {
+            // Its points are not counted; those of later layers may look at them.
+            continue;
+        }
+        all += rows;
+        weighted += rows * weight;
+        if all > limit as f64 {
+            let rows = all as u128;
+            return Err(Error::TooManyRows { rows, limit });
+        }
+    }
+    Ok(weighted)
+}
+
+/// The price of counting a period, in rows: 0 if it has all points.
+pub(super) fn rows_of_period(set: &Set) -> f64 {
+    /// Looking at a point of a period takes this much of a row; at its kind, too.
+    const LOOK: f64 = 0.1;
+    let points = set.period.map_or(0.0, |period| period.twin.points() as f64);
+    let looks = f64::from(u8::from(set.is_part())) + f64::from(u8::from(set.kinds.is_some()));
+    points * LOOK * looks
+}
+
+/// The lane in which something is planned that takes this many rows.
+pub fn lane(rows: f64) -> Lane {
+    if rows > SHORT_ROWS {
+        Lane::Long
+    } else {
+        Lane::Short
+    }
+}
+
+/// The rows that are counted to plan a set, and how much of a row of a warped set each takes.
+fn counted(query: &Query, set: &Set, ready: &Ready, most: f64, layers: &mut Layers) -> (f64, f64) {
+    if set.period.is_some() {
+        return (rows_of_period(set), 1.0);
+    }
+    let bounds = query.region.bbox();
+    let (spacing, counts) = match resolve(set, ready) {
+        Err(_) => (None, 0.0),
+        Ok(Resolved::Known(spacing, _)) => (Some(spacing), 1.0 + kinds(set)),
+        Ok(Resolved::Count(count)) => {
+            let [min_x, min_y, max_x, max_y] = bounds;
+            let area = (max_x - min_x) * (max_y - min_y);
+            let guess = (area * set.share() / count.max(1) as f64).sqrt();
+            (Spacing::new(guess).ok(), counts(set) + kinds(set))
+        }
+    };
+    let test = layers.test(set);
+    layers.push(set, spacing, query.region.bounds);
+    // Planning refuses what cannot be planned.
+    let points = spacing.and_then(|spacing| set.points(ready, spacing).ok());
+    let Some(points) = points else {
+        return (0.0, 0.0);
+    };
+    let selection = Selection::new(set, points, set.area(&query.region), test);
+    if !selection.is_near() {
+        // Planning reports regions that are too far out.
+        return (0.0, 0.0);
+    }
+    let is_plain = selection.set.placement().warp == Warp::OFF && !selection.looks_at_all();
+    let is_plain = is_plain && set.field.is_none();
+    let weight = if is_plain { PLAIN } else { 1.0 };
+    // Seeking an offset counts again.
+    let seeks = 1.0 + f64::from(u8::from(query.window.offset > 0));
+    let rows = rows_and_edges(&selection, most / counts);
+    (rows * counts, weight * seeks)
+}
+
+/// The points that counting a selection looks at one by one; none without a field.
+pub(super) fn candidates(selection: &Selection) -> u128 {
+    // Bounds take longer than a look. Planning reports regions that are too far out.
+    let pieces = (ESTIMATE / (BOUNDS + 4.0 * selection.look)) as usize;
+    let area = selection.area.clone();
+    server::candidates(&selection.set, area, pieces.max(LEAST_PIECES)).unwrap_or_default()
+}
+
+/// The number of rows that are counted one by one, or points tested, which takes as long: none for a
+/// box without warp.
+fn rows(selection: &Selection) -> f64 {
+    let area = &selection.area;
+    let placement = selection.set.placement();
+    let is_box = matches!(area, Area::Region(_));
+    let is_closed = placement.warp == Warp::OFF && !selection.looks_at_all();
+    let looks = candidates(selection) as f64 * (CANDIDATE + selection.look) / ROW;
+    let Some(bounds) = area.bounds().filter(|_| !(is_box && is_closed)) else {
+        return looks;
+    };
+    let spacing = placement.spacing.get();
+    let [width, height] = sides(bounds);
+    let along = server::outline(area, bounds) * UNITS / spacing;
+    let across = if is_box {
+        0.0
+    } else {
+        height * UNITS / spacing
+    };
+    let cleared = if selection.looks_at_all() {
+        let points = width * height * placement.spacing.density() * placement.keep.get();
+        points * (ROW + selection.by_point) / ROW
+    } else {
+        0.0
+    };
+    along + across + cleared + looks
+}
+
+/// The number of rows, and the work for polygons of many edges unless the rows alone exceed `most`.
+pub(super) fn rows_and_edges(selection: &Selection, most: f64) -> f64 {
+    let rows = rows(selection);
+    let area = &selection.area;
+    let is_box = matches!(area, Area::Region(_));
+    match area.bounds() {
+        Some(bounds) if rows > 0.0 && rows <= most && !is_box => {
+            let spacing = selection.set.placement().spacing.get();
+            let compared = server::comparisons(area, bounds, STRIP * spacing);
+            rows + compared * UNITS / spacing * COMPARISON
+        }
+        _ => rows,
+    }
+}
+
+/// The smallest spacing that stays within `most` rows, searched downward from the selection's own; 0 if there are no
+/// rows at any spacing.
+pub(super) fn least_spacing(
+    selection: &Selection,
+    is_in_field: bool,
+    most: f64,
+    stop: &Stop,
+) -> f64 {
+    /// Each step goes this far.
+    const STEP: f64 = 0.8;
+    // In a field there may be rows at smaller spacings alone.
+    if rows(selection) == 0.0 && !is_in_field {
+        return 0.0;
+    }
+    let bounds = selection.area.bounds();
+    let corners = bounds.map(|bounds| [bounds.min(), bounds.max()].concat());
+    let reach = corners
+        .iter()
+        .flatten()
+        .fold(0.0, |reach: f64, v| reach.max(v.abs()));
+    let mut trial = selection.clone();
+    loop {
+        let mut placement = trial.set.placement();
+        let spacing = placement.spacing.get();
+        let Ok(next) = Spacing::new(spacing * STEP) else {
+            return spacing;
+        };
+        placement.spacing = next;
+        trial.set = trial.set.placed(placement);
+        if stop.is_raised() || trial.set.limit() < reach {
+            return spacing;
+        }
+        if rows_and_edges(&trial, most) > most {
+            return spacing;
+        }
+    }
+}
+
+fn sides(region: Region) -> [f64; 2] {
+    [0, 1].map(|i| region.max()[i] - region.min()[i])
+}

@@ -1,0 +1,85 @@
+//! A planned set of points of a query.
+
+use std::sync::Arc;
+
+use strew_catalog::Entry;
+use strew_core::{Region, Spacing};
+use strew_encode::Source;
+use strew_query::{KindDistance, Set};
+
+use crate::effort;
+
+/// A planned set of points.
+#[derive(Clone, Debug)]
+pub struct PlannedSet {
+    /// The table that answers.
+    pub entry: Arc<Entry>,
+    /// Points per unit of area, from the amount.
+    pub density: f64,
+    /// The mean spacing, from the amount.
+    pub spacing: Spacing,
+    /// No two points are nearer than this.
+    pub least_distance: f64,
+    /// The points.
+    pub plan: Arc<dyn Source>,
+    /// The points that counting all of them looks at one by one; none without a field.
+    pub candidates: u128,
+    /// The time to make a point, in nanoseconds.
+    pub(super) nanoseconds: f64,
+    /// The number of points of each of the set's kinds in the region.
+    pub kinds: Vec<u128>,
+    /// The distances that the points of kinds keep.
+    pub kind_distances: Vec<KindDistance>,
+    /// The number of the set's points, as far as it is known.
+    total: u128,
+    /// The number of points in the query's sets before this one, unless it comes before the cursor's set.
+    pub(super) before: u128,
+}
+
+impl PlannedSet {
+    pub(super) fn new(
+        entry: Arc<Entry>,
+        (density, spacing): (f64, Spacing),
+        least_distance: f64,
+        plan: Arc<dyn Source>,
+        candidates: u128,
+    ) -> Self {
+        Self {
+            entry,
+            density,
+            spacing,
+            least_distance,
+            total: plan.total(),
+            plan,
+            candidates,
+            nanoseconds: 0.0,
+            kinds: vec![],
+            kind_distances: vec![],
+            before: 0,
+        }
+    }
+
+    /// The set with the numbers of points of its kinds and the distances that these keep.
+    pub(super) fn with_kinds(self, kinds: Vec<u128>, kind_distances: Vec<KindDistance>) -> Self {
+        Self {
+            kinds,
+            kind_distances,
+            ..self
+        }
+    }
+
+    /// The set with what making a point takes, where testing a place against other layers takes `test`
+    /// nanoseconds.
+    pub(super) fn priced(mut self, set: &Set, test: f64, within: Region) -> Self {
+        self.nanoseconds = effort::point(set, self.looks_by_point(set), test, within);
+        self
+    }
+
+    /// The number of points that are looked at to make one.
+    pub(super) fn looks_by_point(&self, set: &Set) -> f64 {
+        match set.field {
+            Some(_) => (self.candidates as f64 / self.total.max(1) as f64).max(1.0),
+            None => 1.0 / set.share(),
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! How densely points lie, in one of four ways.
+
+use serde::Serialize;
+use strew_error::{Checked, Fault};
+
+use super::{
+    Parameter, Values,
+    parameter::Group,
+    parameters::{COUNT, DENSITY, MIN_DISTANCE, SPACING},
+};
+
+/// A checked amount. The last two become a spacing with the table at hand.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Amount {
+    /// Points per unit of area.
+    Density(f64),
+    /// The mean spacing.
+    Spacing(f64),
+    /// The least distance of any two points.
+    MinDistance(f64),
+    /// The number of points in the region.
+    Count(u64),
+}
+
+impl Amount {
+    /// The one amount among some values.
+    ///
+    /// # Errors
+    /// Faults if there is none, or more than one.
+    pub(super) fn of(values: &Values) -> Checked<Self> {
+        let given: Vec<&Parameter> = taken(values).filter(|amount| values.has(amount)).collect();
+        match given.as_slice() {
+            [] => Err(Fault::missing(&format!("{}spacing", values.path()), one_of(values)).into()),
+            [only] if **only == DENSITY => values.require(only).map(Self::Density),
+            [only] if **only == SPACING => values.require(only).map(Self::Spacing),
+            [only] if **only == MIN_DISTANCE => values.require(only).map(Self::MinDistance),
+            [only] => values.require(only).map(Self::Count),
+            [first, second, ..] => {
+                let field = format!("{}{}", values.path(), second.name);
+                let detail = format!("{} is given, too", first.name);
+                Err(Fault::new(&field, values.text(second), detail, one_of(values)).into())
+            }
+        }
+    }
+
+    /// The parameter of the amount.
+    #[must_use]
+    pub fn parameter(self) -> &'static Parameter {
+        match self {
+            Self::Density(_) => &DENSITY,
+            Self::Spacing(_) => &SPACING,
+            Self::MinDistance(_) => &MIN_DISTANCE,
+            Self::Count(_) => &COUNT,
+        }
+    }
+}
+
+/// The amounts that a request takes.
+pub(super) fn taken(values: &Values) -> impl Iterator<Item = &'static Parameter> {
+    let is_amount =
+        |parameter: &&Parameter| [Group::Amount, Group::Count].contains(&parameter.group);
+    values.takes().filter(is_amount)
+}
+
+fn one_of(values: &Values) -> String {
+    let names: Vec<&str> = taken(values).map(|parameter| parameter.name).collect();
+    format!("one of {}", names.join(", "))
+}

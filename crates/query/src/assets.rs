@@ -1,0 +1,83 @@
+//! Everything that queries may name: a catalog, and the worlds over it.
+
+use std::{ops::Deref, path::Path, sync::Arc};
+
+use strew_catalog::{Catalog, Entry, Reload};
+use strew_config::Config;
+
+use crate::world::Worlds;
+
+/// A catalog with the worlds over it, which were checked against its tables, fields and lists.
+#[derive(Clone, Debug, Default)]
+pub struct Assets {
+    /// The tables, fields and lists of points.
+    pub catalog: Catalog,
+    /// The worlds.
+    pub worlds: Arc<Worlds>,
+}
+
+impl From<Catalog> for Assets {
+    fn from(catalog: Catalog) -> Self {
+        Self {
+            catalog,
+            worlds: Arc::default(),
+        }
+    }
+}
+
+impl Deref for Assets {
+    type Target = Catalog;
+
+    fn deref(&self) -> &Catalog {
+        &self.catalog
+    }
+}
+
+impl Assets {
+    /// These assets with other worlds.
+    #[must_use]
+    pub fn with_worlds(self, worlds: Worlds) -> Self {
+        let worlds = Arc::new(worlds);
+        Self { worlds, ..self }
+    }
+
+    /// These worlds over another catalog: their digests follow.
+    #[must_use]
+    pub fn over(&self, catalog: Catalog) -> Self {
+        let worlds = Arc::new(self.worlds.over(&catalog));
+        Self { catalog, worlds }
+    }
+
+    /// These assets with one more table, which replaces one of the same key.
+    #[must_use]
+    pub fn with_entry(&self, entry: Arc<Entry>) -> Self {
+        self.over(self.catalog.with(entry))
+    }
+
+    /// These assets and the tables that `now` has and `base` lacks: those that arrived while these were being read.
+    #[must_use]
+    pub fn with_later(self, base: &Self, now: &Self) -> Self {
+        let catalog = self.catalog.clone().with_later(&base.catalog, &now.catalog);
+        self.over(catalog)
+    }
+
+    /// The assets after reading the folders of tables, fields, lists and worlds again, and the changes.
+    #[must_use]
+    pub fn reload(&self, config: &Config) -> (Self, Reload) {
+        let (after, mut reload) = self.catalog.reload_tables(config.tables.folder());
+        let names = match config.read_names() {
+            Ok(names) => names,
+            Err(error) => {
+                let file = config.file.as_deref().unwrap_or(Path::new(""));
+                reload.refuse_file(&file.display().to_string(), &error);
+                // The earlier fields and worlds stay, including those of folders.
+                return (self.over(after), reload);
+            }
+        };
+        let after = after.reload_names(&names, &mut reload);
+        let (worlds, changes, refused) = self.worlds.reload(&names.worlds, &after);
+        reload.worlds = changes;
+        reload.refuse(refused, |error| error.source_name.clone());
+        (Self::from(after).with_worlds(worlds), reload)
+    }
+}

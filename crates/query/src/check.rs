@@ -1,0 +1,110 @@
+//! Checking a query, whose missing members come from the world that it names.
+
+use std::borrow::Cow;
+
+use strew_catalog::field::Allowance;
+use strew_error::{Error, Fault, Faults, unknown};
+
+use crate::{
+    Options,
+    assets::Assets,
+    draft::Draft,
+    parameter::{Group, Parameter},
+    parameters::{EXCEPT, FIELD, ONLY, PERIODIC, TERRAIN, WORLD, WORLD_DIGEST},
+    query::{Named, Query},
+    table,
+    world::Worlds,
+};
+
+impl Draft {
+    /// Checks everything against what is loaded; `most_vertices` bounds the polygons of all regions.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with every fault, [`Error::OtherTable`] if a pinned table is not loaded.
+    pub fn check(&self, assets: &Assets, most_vertices: usize) -> Result<(Query, Options), Error> {
+        self.check_within(assets, most_vertices, Allowance::UNLIMITED)
+    }
+
+    /// As [`check`](Self::check), with no more than is allowed.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check), and why there is no memory.
+    pub fn check_within(
+        &self,
+        assets: &Assets,
+        most_vertices: usize,
+        allowance: Allowance<'_>,
+    ) -> Result<(Query, Options), Error> {
+        let (draft, world) = self.filled(&assets.worlds)?;
+        let (mut query, options) = draft.check_whole(&assets.catalog, most_vertices, allowance)?;
+        query.world = world;
+        Ok((query, options))
+    }
+
+    /// The draft, completed from the world that it names, and that world.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if there is none of that name, and [`Error::OtherWorld`] if it has another digest than
+    /// the draft wants.
+    pub fn filled(&self, worlds: &Worlds) -> Result<(Cow<'_, Self>, Option<Named>), Error> {
+        let Ok(named) = self.values.get::<String>(&WORLD) else {
+            // A name that could not be read is a fault of the draft.
+            return Ok((Cow::Borrowed(self), None));
+        };
+        let pin = table::digest(&self.values, &WORLD_DIGEST)?;
+        let Some(name) = named else {
+            return match pin {
+                Some(_) => {
+                    let detail = "has no effect without world";
+                    Err(self.values.fault(&WORLD_DIGEST, detail).into())
+                }
+                None => Ok((Cow::Borrowed(self), None)),
+            };
+        };
+        let Some(world) = worlds.get(&name) else {
+            return Err(self.no_world(worlds).into());
+        };
+        if let Some(pinned) = pin.as_ref().filter(|pin| **pin != world.digest) {
+            return Err(Error::OtherWorld {
+                name,
+                pinned: pinned.clone(),
+                loaded: world.digest.clone(),
+            });
+        }
+        let whole = &world.draft;
+        let has_periods = self.values.takes().any(|known| *known == PERIODIC);
+        if whole.values.has(&PERIODIC) && !has_periods {
+            let detail = "the world is a period, which has neither chunks nor neighbors";
+            return Err(Fault::new(WORLD.name, &name, detail, "a world without periodic").into());
+        }
+        let used = Named {
+            is_pinned: pin.is_some() && self.adds_nothing(),
+            digest: world.digest.clone(),
+            name,
+        };
+        let mut draft = self.clone();
+        draft.fill_from(whole);
+        Ok((Cow::Owned(draft), Some(used)))
+    }
+
+    fn no_world(&self, worlds: &Worlds) -> Faults {
+        let name = self.values.text(&WORLD);
+        let names = worlds.iter().map(|world| world.name.as_str());
+        let fault = Fault {
+            allowed: worlds.names(),
+            ..self.values.fault(&WORLD, unknown("world", &name, names))
+        };
+        fault.into()
+    }
+
+    /// Whether all that a server could change comes from the world.
+    fn adds_nothing(&self) -> bool {
+        let own = [Group::Profile, Group::Table, Group::Attributes];
+        let is_own = |(parameter, _): (&'static _, &_)| {
+            let parameter: &Parameter = parameter;
+            [&FIELD, &TERRAIN, &EXCEPT].contains(&parameter)
+                || own.contains(&parameter.group) && *parameter != ONLY
+        };
+        matches!(&self.layers, Ok(layers) if layers.is_empty()) && !self.values.given().any(is_own)
+    }
+}

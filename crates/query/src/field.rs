@@ -1,0 +1,77 @@
+//! The field of a set: by name, or as the query describes it.
+
+use std::cell::{Cell, RefCell};
+
+use strew_catalog::{
+    Catalog,
+    field::{Allowance, Document},
+};
+use strew_core::field::FieldSpec;
+use strew_error::{Checked, Error};
+
+use super::{Values, parameters::FIELD};
+
+/// The field that a set is in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetField {
+    /// Its name, if it is one that is loaded.
+    pub name: Option<String>,
+    /// Whether it is, or is made of, fields that are loaded, which may change.
+    pub has_names: bool,
+    /// The field.
+    pub spec: FieldSpec,
+    /// Its digest, in hexadecimal.
+    pub digest: String,
+}
+
+/// The loaded fields, and the pixels and memory that the fields of a query may still take.
+pub(super) struct Loaded<'a> {
+    pub(super) catalog: &'a Catalog,
+    pixels: Cell<usize>,
+    allowance: Allowance<'a>,
+    refused: RefCell<Option<Error>>,
+}
+
+impl<'a> Loaded<'a> {
+    pub(super) fn new(catalog: &'a Catalog, allowance: Allowance<'a>) -> Self {
+        Self {
+            allowance,
+            refused: RefCell::new(None),
+            catalog,
+            pixels: Cell::new(catalog.most_pixels()),
+        }
+    }
+
+    /// The field of some values, if they have one.
+    pub(super) fn field(&self, values: &Values) -> Checked<Option<SetField>> {
+        let Some(document) = values.get::<std::sync::Arc<Document>>(&FIELD)? else {
+            return Ok(None);
+        };
+        let path = format!("{}{}", values.path(), FIELD.name);
+        self.built(&path, &document).map(Some)
+    }
+
+    /// A field that is described at a path.
+    pub(super) fn built(&self, path: &str, document: &Document) -> Checked<SetField> {
+        let (pixels, allowance) = (self.pixels.get(), self.allowance);
+        let (spec, sources) = self.catalog.build_field(path, document, pixels, allowance);
+        self.pixels.set(sources.left);
+        if sources.refused.is_some() {
+            self.refused.replace(sources.refused);
+        }
+        let spec = spec?;
+        Ok(SetField {
+            name: match document {
+                Document::Name(name) => Some(name.clone()),
+                _ => None,
+            },
+            has_names: document.has_names(),
+            digest: spec.digest().to_string(),
+            spec,
+        })
+    }
+    /// Whether there was memory for all fields. If not, the faults of fields follow from that.
+    pub(super) fn had_room(&self) -> Result<(), Error> {
+        self.refused.take().map_or(Ok(()), Err)
+    }
+}

@@ -1,0 +1,289 @@
+//! Polygons of GeoJSON: a geometry, a feature, or a collection of either.
+
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::{
+    Deserialize, Deserializer,
+    de::{Error as _, IgnoredAny, SeqAccess, Visitor},
+};
+use serde_json::value::RawValue;
+use strew_catalog::bounded_list::list;
+
+use super::{
+    super::{MOST_LEVELS, Rings},
+    object::{Only, read},
+};
+
+/// What is read.
+pub(super) const GEOJSON: &str = "GeoJSON: a Polygon or MultiPolygon, or a Feature, \
+                                  FeatureCollection or GeometryCollection of these; a ring is an \
+                                  array of 3 different positions [x, y] or more";
+
+/// A position: x, y. Further numbers, an elevation, do not matter.
+#[derive(JsonSchema)]
+#[schemars(transparent)]
+pub struct Position(#[schemars(with = "Vec<f64>", length(min = 2))] [f64; 2]);
+
+impl<'de> Deserialize<'de> for Position {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Numbers;
+
+        impl<'de> Visitor<'de> for Numbers {
+            type Value = Position;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a position [x, y]")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut numbers: A) -> Result<Position, A::Error> {
+                let mut next = |i| {
+                    let number = numbers.next_element::<f64>()?;
+                    number.ok_or_else(|| A::Error::invalid_length(i, &self))
+                };
+                let position = Position([next(0)?, next(1)?]);
+                while numbers.next_element::<IgnoredAny>()?.is_some() {}
+                Ok(position)
+            }
+        }
+
+        deserializer.deserialize_seq(Numbers)
+    }
+}
+
+/// A ring: at least 3 different positions. The last may repeat the first.
+#[derive(Deserialize, JsonSchema)]
+#[schemars(transparent)]
+pub struct Ring(
+    #[serde(deserialize_with = "ring")]
+    #[schemars(with = "Vec<Position>", length(min = 3))]
+    Vec<[f64; 2]>,
+);
+
+fn ring<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<[f64; 2]>, D::Error> {
+    let positions: Vec<Position> = list(deserializer, 0..=usize::MAX, "positions")?;
+    if let count @ ..3 = positions.len() {
+        let detail = format!("has {count} positions, and a ring has 3 or more");
+        return Err(D::Error::custom(detail));
+    }
+    Ok(positions.into_iter().map(|position| position.0).collect())
+}
+
+/// Rings, or polygons of rings. Empty lists would take many times the memory of their text.
+#[derive(Deserialize)]
+#[serde(bound = "T: Deserialize<'de>")]
+struct Several<T>(#[serde(deserialize_with = "some")] Vec<T>);
+
+fn some<'de, D, T>(deserializer: D) -> Result<Vec<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    let all = list(deserializer, 0..=usize::MAX, "rings")?;
+    match all.is_empty() {
+        true => Err(D::Error::custom("is empty")),
+        false => Ok(all),
+    }
+}
+
+/// The members of GeoJSON objects that matter here; others may be there.
+#[derive(Deserialize)]
+struct Object<'a> {
+    r#type: String,
+    #[serde(borrow)]
+    coordinates: Option<&'a RawValue>,
+    geometry: Option<Box<Part>>,
+    features: Option<Vec<Part>>,
+    geometries: Option<Vec<Part>>,
+}
+
+impl Object<'_> {
+    /// Its polygons, and those of its parts.
+    fn part(self) -> Result<Part, String> {
+        let missing = |member| format!("has no array `{member}`");
+        let coordinates = || self.coordinates.ok_or_else(|| missing("coordinates"));
+        let parts = match &*self.r#type {
+            "Polygon" => {
+                let polygons = vec![plain(read(coordinates()?, "coordinates")?)];
+                return Ok(Part {
+                    polygons,
+                    levels: 0,
+                });
+            }
+            "MultiPolygon" => {
+                let Several(all) = read(coordinates()?, "coordinates")?;
+                let polygons = all.into_iter().map(plain).collect();
+                return Ok(Part {
+                    polygons,
+                    levels: 0,
+                });
+            }
+            // RFC 7946 has features without a place.
+            "Feature" => self.geometry.into_iter().map(|part| *part).collect(),
+            "FeatureCollection" => self.features.ok_or_else(|| missing("features"))?,
+            "GeometryCollection" => self.geometries.ok_or_else(|| missing("geometries"))?,
+            other => {
+                let other: String = other.chars().take(40).collect();
+                return Err(format!("has the type `{other}`, not a polygon's"));
+            }
+        };
+        let levels = parts.iter().map(|part| part.levels + 1).max().unwrap_or(0);
+        if levels > MOST_LEVELS {
+            return Err(format!(
+                "is nested too deeply: {MOST_LEVELS} levels at most"
+            ));
+        }
+        let polygons = parts.into_iter().flat_map(|part| part.polygons).collect();
+        Ok(Part { polygons, levels })
+    }
+}
+
+/// The polygons of a GeoJSON object, which has levels of others in it.
+struct Part {
+    polygons: Vec<Rings>,
+    levels: usize,
+}
+
+impl<'de> Deserialize<'de> for Part {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let Only(object) = Only::<Object<'_>>::deserialize(deserializer)?;
+        object.part().map_err(D::Error::custom)
+    }
+}
+
+/// The polygons of a GeoJSON object, with their holes; what lies in any of them is meant.
+///
+/// # Errors
+/// What is wrong, and where.
+pub(super) fn polygons(json: &RawValue) -> Result<Vec<Rings>, String> {
+    let Part { polygons, .. } = read(json, "")?;
+    match polygons.is_empty() {
+        true => Err("contains no polygon".into()),
+        false => Ok(polygons),
+    }
+}
+
+fn plain(Several(rings): Several<Ring>) -> Rings {
+    rings.into_iter().map(|Ring(ring)| ring).collect()
+}
+
+/// A polygon or several as GeoJSON, holes included, bare, in features or in collections.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+#[allow(dead_code, reason = "the type is only described, not built")]
+pub enum GeoJson {
+    Polygon(Polygon),
+    MultiPolygon(MultiPolygon),
+    Feature(Box<Feature>),
+    FeatureCollection(FeatureCollection),
+    GeometryCollection(GeometryCollection),
+}
+
+/// Describes objects with a type and one other member.
+macro_rules! objects {
+    ($($(#[$doc:meta])+ $name:ident, $kind:ident: $member:ident = $(#[$rule:meta])* $of:ty;)+) => {$(
+        /// The type of the object.
+        #[derive(JsonSchema)]
+        #[schemars(inline)]
+        #[allow(dead_code, reason = "the type is only described, not built")]
+        enum $kind {
+            $name,
+        }
+
+        $(#[$doc])+
+        #[derive(JsonSchema)]
+        #[allow(dead_code, reason = "the type is only described, not built")]
+        pub struct $name {
+            r#type: $kind,
+            $(#[$rule])*
+            $member: $of,
+        }
+    )+};
+}
+
+objects! {
+    /// A polygon: its outline, then holes.
+    Polygon, PolygonType: coordinates = #[schemars(length(min = 1))] Vec<Ring>;
+    /// Several polygons.
+    MultiPolygon, MultiPolygonType: coordinates = #[schemars(length(min = 1))] Vec<Vec<Ring>>;
+    /// A feature with a polygon.
+    Feature, FeatureType: geometry = Option<GeoJson>;
+    /// Features with polygons.
+    FeatureCollection, FeatureCollectionType: features = #[schemars(length(min = 1))] Vec<Feature>;
+    /// Several geometries.
+    GeometryCollection, GeometryCollectionType: geometries = #[schemars(length(min = 1))] Vec<GeoJson>;
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::*;
+
+    fn read(value: &Value) -> Result<Vec<Rings>, String> {
+        polygons(&RawValue::from_string(value.to_string()).expect("JSON"))
+    }
+
+    fn polygon() -> Value {
+        json!({ "type": "Polygon", "coordinates": [[[0, 0], [4, 0], [0, 4, 7.5], [0, 0]]] })
+    }
+
+    #[test]
+    fn collections_have_all_of_their_polygons() {
+        let multi = json!({ "type": "MultiPolygon", "coordinates": [
+            polygon()["coordinates"], polygon()["coordinates"],
+        ]});
+        let feature = |geometry: &Value| json!({ "type": "Feature", "geometry": geometry, "properties": { "type": 1 } });
+        let features = json!({ "type": "FeatureCollection", "features": [
+            feature(&polygon()), feature(&Value::Null), feature(&multi),
+        ]});
+        let nested = json!({ "type": "GeometryCollection", "geometries": [multi, polygon()] });
+        for (value, count) in [(polygon(), 1), (multi, 2), (features, 3), (nested, 3)] {
+            assert_eq!(read(&value).map(|found| found.len()), Ok(count), "{value}");
+        }
+    }
+
+    #[test]
+    fn faults_say_where() {
+        let mut deep = polygon();
+        for _ in 0..20 {
+            deep = json!({ "type": "GeometryCollection", "geometries": [deep] });
+        }
+        let bad = json!({ "type": "Polygon", "coordinates": [[[0, 0], [4], [0, 4], [0, 0]]] });
+        let within = json!({ "type": "FeatureCollection", "features": [
+            { "type": "Feature", "geometry": polygon() }, { "type": "Feature", "geometry": bad },
+        ]});
+        for (value, expected) in [
+            (json!([]), "invalid type: sequence, expected an object"),
+            (json!({}), "missing field `type`"),
+            (
+                json!({ "type": "Point" }),
+                "has the type `Point`, not a polygon's",
+            ),
+            (json!({ "type": "Polygon" }), "has no array `coordinates`"),
+            (
+                json!({ "type": "Polygon", "coordinates": [7] }),
+                "coordinates[0]: invalid type: integer `7`, expected an array of positions",
+            ),
+            (
+                bad.clone(),
+                "coordinates[0][1]: invalid length 1, expected a position [x, y]",
+            ),
+            (
+                within,
+                "features[1].geometry.coordinates[0][1]: invalid length 1, expected a position [x, y]",
+            ),
+            (
+                json!({ "type": "Feature", "geometry": null }),
+                "contains no polygon",
+            ),
+            (
+                json!({ "type": "FeatureCollection" }),
+                "has no array `features`",
+            ),
+        ] {
+            assert_eq!(read(&value), Err(expected.into()), "{value}");
+        }
+        assert!(read(&deep).is_err_and(|detail| detail.contains("nested too deeply")));
+    }
+}

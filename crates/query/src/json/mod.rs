@@ -1,0 +1,146 @@
+//! Queries as JSON: the body of a `POST`.
+//!
+//! Members are read one by one from their text, so that a fault names the member by its path, shows its
+//! value and says what is allowed. Nothing is built that the query does not need, and reading stops once
+//! there are as many faults as are reported.
+
+mod geojson;
+pub(crate) mod object;
+mod region;
+
+use serde_json::value::RawValue;
+use strew_error::{Checked, Fault, all, unknown};
+
+use super::{Draft, LayerDraft, MOST_LAYERS, Values, groups, lookup::names, parameter::Group};
+use object::{Object, of_text, parse, shown};
+
+pub use region::{RegionSchema, read_region};
+
+/// What layers are.
+const LAYERS: &str = "an array of 1 to 16 layers, objects with a name and a set of points each";
+/// What clear_of may be.
+const CLEAR_OF: &str =
+    r#"an object of distances by the names of earlier layers, such as {"trees": 2}"#;
+
+/// The members of a query that are no parameters.
+const QUERY: [&str; 2] = ["region", "layers"];
+/// Those of a layer.
+const LAYER: [&str; 3] = ["name", "region", "clear_of"];
+
+/// Reads a query. What cannot be read is a fault in its place in the draft.
+///
+/// # Errors
+/// A fault of `body` if it is not a JSON object.
+pub fn read_body(bytes: &[u8], groups: &'static [Group]) -> Checked<Draft> {
+    let object = object_of(bytes)?;
+    let mut draft = Draft::new(Values::new(groups, ""));
+    let mut listed = 0;
+    for (name, json) in object.members() {
+        if draft.values.is_full() {
+            break;
+        }
+        match name {
+            "region" => draft.region = region::read(json, "region", 0, &mut listed).map(Some),
+            "layers" => draft.layers = layers(json, &mut listed),
+            // A common slip, which the list of members would not explain.
+            "bbox" | "circle" | "polygon" | "chunk" | "include" | "exclude" => {
+                let detail = format!("belongs in `region`: {{\"region\": {{\"{name}\": …}}}}");
+                let allowed = members(&QUERY, groups);
+                draft
+                    .values
+                    .refuse(Fault::new(name, shown(json), detail, allowed));
+            }
+            name => add_member(&mut draft.values, name, json, &QUERY, groups),
+        }
+    }
+    Ok(draft)
+}
+
+/// Reads a body whose members are all parameters.
+///
+/// # Errors
+/// A fault of `body` if it is not a JSON object. Other faults are in their places.
+pub fn read_members(bytes: &[u8], groups: &'static [Group]) -> Checked<Values> {
+    let object = object_of(bytes)?;
+    let mut values = Values::new(groups, "");
+    for (name, json) in object.members() {
+        values.add_json(name, json);
+    }
+    Ok(values)
+}
+
+/// The object that a body is.
+fn object_of(bytes: &[u8]) -> Result<Object<'_>, Fault> {
+    let object = parse(bytes).and_then(Object::read);
+    object.map_err(of_text("body", bytes, "a JSON object"))
+}
+
+/// Adds a member that is a parameter, or nothing known.
+fn add_member(
+    values: &mut Values,
+    name: &str,
+    json: &RawValue,
+    others: &'static [&'static str],
+    groups: &'static [Group],
+) {
+    if values.takes().any(|parameter| parameter.name == name) {
+        return values.add_json(name, json);
+    }
+    let known = values.takes().map(|parameter| parameter.name);
+    let known = known.chain(others.iter().copied());
+    let detail = unknown("member", name, known);
+    let field = format!("{}{name}", values.path());
+    values.refuse(Fault::new(
+        &field,
+        shown(json),
+        detail,
+        members(others, groups),
+    ));
+}
+
+/// The names of all members.
+fn members(others: &[&str], groups: &'static [Group]) -> String {
+    format!("{}, {}", others.join(", "), names(groups))
+}
+
+fn layers(json: &RawValue, listed: &mut usize) -> Checked<Vec<LayerDraft>> {
+    let items = match object::elements(json, MOST_LAYERS, "layers") {
+        Ok(items) if items.is_empty() => Err("empty".into()),
+        read => read,
+    };
+    let items = items.map_err(|detail| Fault::new("layers", shown(json), detail, LAYERS))?;
+    let items = items.into_iter().enumerate();
+    all(items.map(|(i, json)| Ok(layer(&format!("layers[{i}]"), json, listed)?)))
+}
+
+fn layer(path: &str, json: &RawValue, listed: &mut usize) -> Result<LayerDraft, Fault> {
+    let fault = |detail| Fault::new(path, shown(json), detail, LAYERS);
+    let object = Object::read(json).map_err(fault)?;
+    let mut layer = LayerDraft::new(Values::new(groups::SET, &format!("{path}.")));
+    for (name, json) in object.members() {
+        match name {
+            "region" => {
+                let read = region::read(json, &format!("{path}.region"), 0, listed);
+                layer.region = read.map(Some);
+            }
+            "name" => {
+                let wrong = |_| {
+                    let field = format!("{path}.name");
+                    Fault::new(&field, shown(json), "must be text", super::layer::NAME).into()
+                };
+                layer.name = serde_json::from_str(json.get()).map_err(wrong);
+            }
+            "clear_of" => {
+                let wrong = |detail: String| {
+                    Fault::new(&format!("{path}.clear_of"), shown(json), detail, CLEAR_OF).into()
+                };
+                layer.clear_of = object::weights(json).map_err(wrong);
+            }
+            name => add_member(&mut layer.values, name, json, &LAYER, groups::SET),
+        }
+    }
+    Ok(layer)
+}
+
+#[cfg(test)]
+mod tests;

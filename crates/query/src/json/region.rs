@@ -1,0 +1,195 @@
+//! Regions as JSON.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::value::RawValue;
+use strew_error::{Checked, Fault, Faults, all, unknown};
+
+use super::{
+    super::{MOST_LEVELS, MOST_REGIONS, RegionDraft, ShapeDraft, region::REGION},
+    geojson::{GEOJSON, GeoJson, polygons},
+    object::{Object, Only, elements, of_text, parse, read as typed, shown},
+};
+
+/// What a box is in JSON.
+const BOX: &str = "[min_x, min_y, max_x, max_y], numbers with min_x < max_x and min_y < max_y";
+/// What a circle is in JSON.
+const CIRCLE: &str = r#"{"center": [x, y], "radius": r}, numbers with r above 0"#;
+/// What a chunk is in JSON.
+const CHUNK: &str =
+    r#"{"size": s, "x": column, "y": row}, a number above 0 and integers within ±4503599627370496"#;
+/// The shapes of regions, each a member.
+const SHAPES: [&str; 5] = ["bbox", "circle", "polygon", "chunk", "include"];
+
+/// A circle.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Circle")]
+pub struct CircleJson {
+    /// The center [x, y].
+    center: [f64; 2],
+    /// The radius in world units, above 0.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    radius: f64,
+}
+
+/// A square of the world grid: size·x ≤ p.x < size·(x + 1), and so for y.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Chunk")]
+pub struct ChunkJson {
+    /// The side in world units, above 0.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    size: f64,
+    /// The column.
+    #[schemars(range(min = -4_503_599_627_370_496_i64, max = 4_503_599_627_370_496_i64))]
+    x: i64,
+    /// The row.
+    #[schemars(range(min = -4_503_599_627_370_496_i64, max = 4_503_599_627_370_496_i64))]
+    y: i64,
+}
+
+/// Where: a half-open box, a circle, polygons, a square of the world grid, or what lies in any of some
+/// regions and in none of others.
+#[derive(JsonSchema)]
+#[schemars(untagged, rename = "Region")]
+#[allow(dead_code, reason = "the type is only described, not built")]
+pub enum RegionSchema {
+    /// A box.
+    Box(BoxRegion),
+    /// A circle.
+    Circle(CircleRegion),
+    /// Polygons.
+    Polygon(PolygonRegion),
+    /// A chunk.
+    Chunk(ChunkRegion),
+    /// Regions combined.
+    Combined(CombinedRegion),
+}
+
+/// Describes objects with no other members.
+macro_rules! objects {
+    ($($(#[$doc:meta])+ $name:ident { $($members:tt)+ })+) => {$(
+        $(#[$doc])+
+        #[derive(JsonSchema)]
+        #[schemars(deny_unknown_fields)]
+        #[allow(dead_code, reason = "the type is only described, not built")]
+        pub struct $name { $($members)+ }
+    )+};
+}
+
+objects! {
+    /// A half-open box: min ≤ p < max.
+    BoxRegion {
+        /// min_x, min_y, max_x, max_y with min_x < max_x and min_y < max_y.
+        bbox: [f64; 4],
+    }
+    /// The points nearer to the center than the radius.
+    CircleRegion { circle: CircleJson }
+    /// Polygons.
+    PolygonRegion { polygon: GeoJson }
+    /// A chunk; coordinates of the answer are relative to its corner.
+    ChunkRegion { chunk: ChunkJson }
+    /// What lies in any region of include and in none of exclude. Lists nest 8 levels deep, and those of a query have
+    /// 1000 regions in all.
+    CombinedRegion {
+        #[schemars(length(min = 1, max = 1000))]
+        include: Vec<RegionSchema>,
+        #[schemars(default, length(max = 1000))]
+        exclude: Option<Vec<RegionSchema>>,
+    }
+}
+
+/// The region of a GeoJSON file: all of its polygons.
+///
+/// # Errors
+/// A [`Fault`] of `region`, which says where in the file something is wrong.
+pub fn read_region(bytes: &[u8]) -> Result<RegionDraft, Fault> {
+    let polygons = parse(bytes).and_then(polygons);
+    Ok(RegionDraft {
+        path: "region".into(),
+        shape: ShapeDraft::Polygons(polygons.map_err(of_text("region", bytes, GEOJSON))?),
+    })
+}
+
+/// A region within as many lists as `depth` says. `listed` counts the regions in lists of the query.
+pub(super) fn read(
+    json: &RawValue,
+    path: &str,
+    depth: usize,
+    listed: &mut usize,
+) -> Checked<RegionDraft> {
+    let wrong = |detail: String| Faults::from(Fault::new(path, shown(json), detail, REGION));
+    let object = Object::read(json).map_err(wrong)?;
+    let mut members: Vec<_> = object.members().collect();
+    members.sort_by_key(|(name, _)| *name);
+    let strange = members
+        .iter()
+        .filter(|(name, _)| !SHAPES.contains(name) && *name != "exclude");
+    all(strange.map(|(name, json)| -> Checked<()> {
+        let detail = unknown("member", name, SHAPES.into_iter());
+        Err(Fault::new(&format!("{path}.{name}"), shown(json), detail, REGION).into())
+    }))?;
+    let (kind, json, exclude) = match members.as_slice() {
+        [] | [("exclude", _)] => return Err(wrong("has no shape".into())),
+        [(kind, json)] => (*kind, *json, None),
+        [("exclude", exclude), ("include", json)] => ("include", *json, Some(*exclude)),
+        several => {
+            let names: Vec<&str> = several.iter().map(|(name, _)| *name).collect();
+            return Err(wrong(format!("has several shapes: {}", names.join(", "))));
+        }
+    };
+    let field = format!("{path}.{kind}");
+    let wrong = |allowed| {
+        let field = &field;
+        move |detail: String| Fault::new(field, shown(json), detail, allowed)
+    };
+    let shape = match kind {
+        "bbox" => ShapeDraft::Box(typed(json, "").map_err(wrong(BOX))?),
+        "circle" => {
+            let Only(CircleJson { center, radius }) = typed(json, "").map_err(wrong(CIRCLE))?;
+            ShapeDraft::Circle(center, radius)
+        }
+        "polygon" => ShapeDraft::Polygons(polygons(json).map_err(wrong(GEOJSON))?),
+        "chunk" => {
+            let Only(ChunkJson { size, x, y }) = typed(json, "").map_err(wrong(CHUNK))?;
+            ShapeDraft::Chunk(size, [x, y])
+        }
+        _ if depth == MOST_LEVELS => {
+            return Err(wrong("8 levels at most")("regions are nested too deeply".into()).into());
+        }
+        _ => {
+            let include = list(&field, json, depth, listed)?;
+            let exclude = exclude.map(|json| list(&format!("{path}.exclude"), json, depth, listed));
+            ShapeDraft::Combined(include, exclude.transpose()?.unwrap_or_default())
+        }
+    };
+    let path = match kind {
+        "include" => path.into(),
+        _ => field,
+    };
+    Ok(RegionDraft { path, shape })
+}
+
+/// A list of regions, each with its faults in its place.
+fn list(
+    path: &str,
+    json: &RawValue,
+    depth: usize,
+    listed: &mut usize,
+) -> Checked<Vec<Checked<RegionDraft>>> {
+    let wrong = |detail: String| {
+        let allowed =
+            format!("an array of regions, at most {MOST_REGIONS} in the lists of a query");
+        Faults::from(Fault::new(path, shown(json), detail, allowed))
+    };
+    let items = elements(json, MOST_REGIONS, "regions").map_err(wrong)?;
+    *listed += items.len();
+    if *listed > MOST_REGIONS {
+        return Err(wrong(format!("{listed} regions, more than {MOST_REGIONS}")));
+    }
+    let items = items.into_iter().enumerate();
+    Ok(items
+        .map(|(i, item)| read(item, &format!("{path}[{i}]"), depth + 1, listed))
+        .collect())
+}

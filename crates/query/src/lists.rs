@@ -1,0 +1,114 @@
+//! Numbers and lists of numbers and names, as text has them.
+
+use std::{borrow::Cow, str::FromStr, sync::Arc};
+
+use strew_catalog::field::Document;
+use strew_error::number;
+
+/// A description of a faulty value.
+pub(super) type Detail = Cow<'static, str>;
+
+/// A number that is neither NaN nor infinite.
+pub(super) fn finite(text: &str) -> Result<f64, &'static str> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(value) if value.is_nan() => Err("must be a number"),
+        Ok(_) => Err("must be finite"),
+        Err(_) => Err("must be a number"),
+    }
+}
+
+/// An integer within the range of its type.
+pub(super) fn integer<T: FromStr>(text: &str) -> Result<T, &'static str> {
+    text.parse().map_err(|_| {
+        let digits = text.strip_prefix('-').unwrap_or(text);
+        let is_integer = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+        if is_integer {
+            "out of range"
+        } else {
+            "must be an integer"
+        }
+    })
+}
+
+/// Numbers joined by commas, each named by one of `names` while there are any.
+pub(super) fn numbers(text: &str, names: &[&str]) -> Result<Vec<f64>, Detail> {
+    let part = |(i, part): (usize, &str)| {
+        let part = part.trim();
+        finite(part).map_err(|detail| -> Detail {
+            match (names.get(i), part) {
+                (Some(name), "") => format!("{name} is missing").into(),
+                (Some(name), part) => format!("{name} is `{part}`, which {detail}").into(),
+                (None, "") => "a number is missing".into(),
+                (None, part) => format!("`{part}` {detail}").into(),
+            }
+        })
+    };
+    text.split(',').enumerate().map(part).collect()
+}
+
+/// Pairs joined by commas, with spaces between them, each of which may be a plus.
+pub(super) fn offsets(text: &str) -> Result<Vec<f64>, Detail> {
+    let pairs = text.split(|c: char| c.is_whitespace() || c == '+');
+    let pair = |text: &str| -> Result<[f64; 2], Detail> {
+        let refused = || Detail::from(format!("`{text}` must be two integers joined by a comma"));
+        let (x, y) = text.split_once(',').ok_or_else(refused)?;
+        let read = |text: &str| finite(text.trim()).map_err(|_| refused());
+        Ok([read(x)?, read(y)?])
+    };
+    let pairs = pairs.filter(|text| !text.is_empty()).map(pair);
+    Ok(pairs.collect::<Result<Vec<_>, _>>()?.into_flattened())
+}
+
+/// Checks that numbers are integers within a bound.
+pub(super) fn integers(values: &[f64], limit: i64) -> Result<(), Detail> {
+    for value in values {
+        if value.fract() != 0.0 {
+            return Err(format!("{} must be an integer", number(*value)).into());
+        }
+        if value.abs() > limit as f64 {
+            return Err(format!("{} is out of range", number(*value)).into());
+        }
+    }
+    Ok(())
+}
+
+/// Names with weights, such as `oak:3,birch:1`; the weight of a name without one is 1.
+pub(super) fn weights(text: &str) -> Result<Vec<(String, f64)>, Detail> {
+    let pair = |part: &str| {
+        let (name, weight) = part.split_once(':').unwrap_or((part, "1"));
+        let weight = weight.trim();
+        let read = finite(weight).map_err(|detail| format!("the weight `{weight}` {detail}"))?;
+        Ok((name.trim().to_owned(), read))
+    };
+    text.split(',').map(pair).collect()
+}
+
+/// Names with the names of fields, such as `birch:river`.
+pub(super) fn fields(text: &str) -> Result<Vec<(String, Arc<Document>)>, Detail> {
+    let pair = |part: &str| {
+        let Some((name, field)) = part.split_once(':') else {
+            return Err(format!("`{part}` must be name:field").into());
+        };
+        let field = Document::Name(field.trim().to_owned());
+        Ok((name.trim().to_owned(), field.into()))
+    };
+    text.split(',').map(pair).collect()
+}
+
+/// Names with two numbers each, such as `oak:0.8:1.2`.
+pub(super) fn ranges(text: &str) -> Result<Vec<(String, [f64; 2])>, Detail> {
+    let range = |part: &str| {
+        let mut parts = part.split(':').map(str::trim);
+        let (Some(name), Some(min), Some(max), None) =
+            (parts.next(), parts.next(), parts.next(), parts.next())
+        else {
+            return Err(format!("`{part}` must be name:min:max").into());
+        };
+        let read = |number: &str| {
+            finite(number).map_err(|detail| format!("`{number}` of `{name}` {detail}"))
+        };
+        Ok((name.to_owned(), [read(min)?, read(max)?]))
+    };
+    text.split(',').map(range).collect()
+}

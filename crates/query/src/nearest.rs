@@ -1,0 +1,67 @@
+//! The query for the points nearest to a place.
+
+use strew_catalog::{Catalog, field::Allowance};
+use strew_error::{Checked, Error, Together as _};
+
+use super::{
+    Set, Values,
+    parameters::{AT, K, RADIUS},
+};
+
+/// A query for the points nearest to a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// The place.
+    pub at: [f64; 2],
+    /// The most points; by default 1, or all within the radius.
+    pub k: Option<usize>,
+    /// The largest distance; unlimited by default.
+    pub radius: Option<f64>,
+}
+
+impl Nearest {
+    /// Checks the values of the query.
+    ///
+    /// # Errors
+    /// Every fault.
+    pub fn of(values: &Values) -> Checked<Self> {
+        let (at, k, radius) = (
+            values.require(&AT),
+            values.get::<u64>(&K),
+            values.get(&RADIUS),
+        )
+            .together()?;
+        Ok(Self {
+            at,
+            k: k.map(|k| usize::try_from(k).unwrap_or(usize::MAX)),
+            radius,
+        })
+    }
+
+    /// Checks the values of the query and of its set.
+    ///
+    /// # Errors
+    /// As [`Set::single`], with every fault of both.
+    pub fn of_set(values: &Values, catalog: &Catalog) -> Result<(Set, Self), Error> {
+        Self::of_set_within(values, catalog, Allowance::UNLIMITED)
+    }
+
+    /// As [`of_set`](Self::of_set), with no more than is allowed.
+    ///
+    /// # Errors
+    /// As [`Set::single_within`].
+    pub fn of_set_within(
+        values: &Values,
+        catalog: &Catalog,
+        allowance: Allowance<'_>,
+    ) -> Result<(Set, Self), Error> {
+        match (
+            Self::of(values),
+            Set::single_within(values, catalog, allowance),
+        ) {
+            (Ok(nearest), set) => Ok((set?, nearest)),
+            (Err(faults), Err(Error::Invalid(others))) => Err(faults.and(others).into()),
+            (Err(faults), _) => Err(faults.into()),
+        }
+    }
+}

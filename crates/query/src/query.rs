@@ -1,0 +1,104 @@
+//! Checked queries: where, which sets, and which part of their points.
+
+use std::sync::Arc;
+
+use strew_core::{Area, server};
+
+use super::{QueryRegion, Token, amount::Amount, set::Set};
+
+/// A checked query.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Query {
+    /// Where.
+    pub region: QueryRegion,
+    /// The sets of points: one, or one for each layer.
+    pub sets: Arc<[Set]>,
+    /// Whether the sets are named layers.
+    pub is_layered: bool,
+    /// The window of the points, in their order.
+    pub window: Window,
+    /// The world that a part of it comes from.
+    pub world: Option<Named>,
+    /// The number of the one requested layer.
+    pub only: Option<usize>,
+}
+
+/// The window of the points, in their order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Window {
+    /// The number of points left out at the beginning, or after the cursor.
+    pub offset: u64,
+    /// The most points of the answer.
+    pub limit: Option<u64>,
+    /// The place to begin at.
+    pub cursor: Option<Token>,
+}
+
+/// The longest that the looks at fields of a small query may take, in nanoseconds.
+const QUICK: f64 = 3e5;
+
+impl Query {
+    /// Whether it holds all that its answer depends on: in its sets, or in the digest of a world that all of it comes
+    /// from.
+    #[must_use]
+    pub fn is_pinned(&self) -> bool {
+        match &self.world {
+            Some(world) => world.is_pinned,
+            None => self.sets.iter().all(Set::is_pinned),
+        }
+    }
+
+    /// The digests of everything that its points depend on beyond the query itself.
+    pub fn digests(&self) -> impl Iterator<Item = &str> {
+        self.sets.iter().flat_map(Set::digests)
+    }
+
+    /// Whether planning it and making its points takes no longer than handing it to another
+    /// thread: a single set in a box of about 2,000 spacings' area at most, and not long and thin.
+    #[must_use]
+    pub fn is_small(&self) -> bool {
+        let ([set], Area::Region(_)) = (&*self.sets, &self.region.area) else {
+            return false;
+        };
+        if set.period.is_some() {
+            return false;
+        }
+        let spacing = match set.amount {
+            Amount::Spacing(spacing) => spacing,
+            Amount::Density(density) => density.sqrt().recip(),
+            Amount::MinDistance(_) | Amount::Count(_) => return false,
+        };
+        let [min_x, min_y, max_x, max_y] = self.region.bbox();
+        let [width, height] = [(max_x - min_x) / spacing, (max_y - min_y) / spacing];
+        let is_plain = set.region.is_none() && set.clear_of.is_empty() && set.except.is_none();
+        if !is_plain || width * height > 2048.0 || width.max(height) > 128.0 {
+            return false;
+        }
+        let terrain = set.terrain.iter().map(|terrain| &terrain.field);
+        let mut fields = set.fields().chain(terrain).map(|field| &field.spec);
+        let mut looks = 0.0;
+        let is_quick = fields.all(|field| {
+            // A few trial looks measure how long a look takes.
+            let is_plain = field.parts() <= 4 && field.vertices() <= 64;
+            looks += if is_plain {
+                server::look(field, self.region.bounds)
+            } else {
+                0.0
+            };
+            is_plain
+        });
+        // A point may look around itself, too.
+        is_quick && width * height * looks * 5.0 <= QUICK
+    }
+}
+
+/// The world that a query names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named {
+    /// Its name.
+    pub name: String,
+    /// Its digest.
+    pub digest: String,
+    /// Whether the query names this digest, and nothing beside it that a server could change.
+    pub is_pinned: bool,
+}

@@ -1,0 +1,173 @@
+//! Checked sets of points: a table laid into the world.
+
+use std::{fmt, sync::Arc};
+
+use strew_catalog::{Entry, Ready, except::Except};
+use strew_core::{
+    Area, Attributes, Keep, PeriodicSet, Placement, PointSet, Seed, Spacing, Table, Warp,
+};
+use strew_error::{Error, Fault};
+
+use crate::{
+    amount::Amount,
+    field::SetField,
+    kinds::Kinds,
+    parameter::Parameter,
+    parameters::{EXCEPT, KEEP},
+    period::Period,
+    region::QueryRegion,
+    resolved,
+    terrain::Terrain,
+    value::Value,
+};
+
+/// A set of points: a table laid into the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Set {
+    /// The prefix of its fields' names in faults: empty, or `layers[3].`.
+    pub path: String,
+    /// The name of the layer.
+    pub name: String,
+    /// The table. It is found once, when the query is checked, and answers to the end, whatever is
+    /// loaded in its place meanwhile.
+    pub entry: Arc<Entry>,
+    /// The digest that the query wants it to have, in lower case.
+    pub pin: Option<String>,
+    /// The amount of points.
+    pub amount: Amount,
+    /// The seed.
+    pub seed: Seed,
+    /// How strongly the plane is warped.
+    pub warp: Warp,
+    /// The share of the points that are kept.
+    pub keep: Keep,
+    /// The share that later layers keep clear of: the set's own, without the common one of a query with layers. So
+    /// a smaller common share has a part of the points of a larger one.
+    pub whole: Keep,
+    /// The field that the set is in.
+    pub field: Option<SetField>,
+    /// The further values of points.
+    pub attributes: Attributes,
+    /// The terrain that points stand on.
+    pub terrain: Option<Terrain>,
+    /// The variants that are evenly spread.
+    pub kinds: Option<Kinds>,
+    /// The period that the points are of, instead of a region.
+    pub period: Option<Period>,
+    /// The points that it is without.
+    pub except: Option<Except>,
+    /// The values of its parameters with everything filled in, in the order of the table: as answers echo them, and as
+    /// its identity has them.
+    pub values: Vec<(&'static Parameter, Value)>,
+    /// Where the layer is; everywhere if `None`.
+    pub region: Option<QueryRegion>,
+    /// The layers that are kept clear of, by position, with the distance; all before this one.
+    pub clear_of: Vec<(usize, f64)>,
+}
+
+impl Set {
+    /// How the table's points are laid into the world, given the spacing.
+    #[must_use]
+    pub const fn placement(&self, spacing: Spacing) -> Placement {
+        Placement::new(spacing, self.seed)
+            .with_warp(self.warp)
+            .with_keep(self.keep)
+    }
+
+    /// The points of a table at a spacing.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if the table lacks what the kinds need.
+    pub fn points(&self, ready: &Ready, spacing: Spacing) -> Result<PointSet, Error> {
+        let mut points = PointSet::new(ready.table.clone()).placed(self.placement(spacing));
+        if let Some(kinds) = &self.kinds {
+            points = kinds.of(points, ready)?;
+        }
+        Ok(match &self.field {
+            Some(field) => points.in_field(field.spec.clone()),
+            None => points,
+        })
+    }
+
+    /// Keeps a share of its points, while other layers keep clear of all of them.
+    pub fn thin_out(&mut self, share: Keep) {
+        let product = (self.whole.get() * share.get()).max(Keep::MIN);
+        self.keep = Keep::new(product).unwrap_or(share);
+        let keep = (self.keep != Keep::ALL).then(|| Value::Number(self.keep.get()));
+        resolved::replace(&mut self.values, [(&KEEP, keep)]);
+    }
+
+    /// Leaves out some points.
+    pub(crate) fn leave_out(&mut self, except: Option<Except>) {
+        let names = except.as_ref().map(|except| except.names.clone());
+        let names = names.filter(|names| !names.is_empty()).map(Value::Names);
+        resolved::replace(&mut self.values, [(&EXCEPT, names)]);
+        self.except = except;
+    }
+
+    /// All points that the table has for it, whatever its share, its kinds and its fields leave out.
+    #[must_use]
+    pub fn every_point(&self, ready: &Ready) -> PointSet {
+        PointSet::new(ready.table.clone()).placed(Placement::new(Spacing::ONE, self.seed))
+    }
+
+    /// The fields that it depends on: its own, then those of its variants.
+    pub fn fields(&self) -> impl Iterator<Item = &SetField> {
+        let of_variants = self.kinds.iter().flat_map(|kinds| &kinds.fields);
+        self.field.iter().chain(of_variants.map(|(_, field)| field))
+    }
+
+    /// Whether it has kinds whose shares vary from place to place.
+    pub fn varies(&self) -> bool {
+        self.kinds.as_ref().is_some_and(Kinds::vary_by_place)
+    }
+
+    /// The share of the table's points that are of the set, without a field.
+    pub fn share(&self) -> f64 {
+        let kind = self.kinds.as_ref().map_or(1.0, Kinds::share);
+        self.keep.get() * kind
+    }
+
+    /// The part of the query's region in which the layer lies.
+    pub fn area(&self, query: &QueryRegion) -> Area {
+        match &self.region {
+            Some(own) => query.and(own),
+            None => query.area.clone(),
+        }
+    }
+
+    /// A fault of one of its fields.
+    pub fn fault(
+        &self,
+        field: &str,
+        value: impl fmt::Display,
+        detail: impl Into<String>,
+        allowed: impl Into<String>,
+    ) -> Error {
+        let field = format!("{}{field}", self.path);
+        Fault::new(&field, value, detail, allowed).into()
+    }
+
+    /// The points of a table in a period.
+    pub fn periodic(
+        &self,
+        table: &Table,
+        period: Period,
+    ) -> Result<PeriodicSet, strew_core::Error> {
+        let set = PeriodicSet::new(table.clone(), period.least)?;
+        let set = set.side(period.side)?.seed(self.seed.0);
+        let mut set = set.warp(self.warp.strength())?.keep(self.keep.get())?;
+        if let Some((_, kind)) = self.kinds.as_ref().and_then(|kinds| kinds.only.as_ref()) {
+            set = set.only(*kind)?;
+        }
+        Ok(match &self.field {
+            Some(field) => set.in_field(field.spec.clone()),
+            None => set,
+        })
+    }
+
+    /// Whether it has a part of the points of its table only, so that a period is counted point by point.
+    pub fn is_part(&self) -> bool {
+        self.share() < 1.0 || self.field.is_some()
+    }
+}

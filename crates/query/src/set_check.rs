@@ -1,0 +1,156 @@
+//! Checking a set: from values to a table laid into the world.
+
+use strew_catalog::{Catalog, field::Allowance};
+use strew_core::{Attribute, Keep, Placement, Seed, Warp};
+use strew_error::{Checked, Error, Together as _};
+
+use crate::{
+    amount::Amount,
+    attributes,
+    field::Loaded,
+    kinds::Kinds,
+    parameters::{
+        ALPHA, ATTRIBUTES, HEIGHTS, KEEP, MAP, NORMALS, PROFILE, SCALE_RANGE, SEED, SPREAD, WARP,
+    },
+    period::Period,
+    resolved,
+    set::Set,
+    table, terrain,
+    value::Value,
+    values::Values,
+};
+
+impl Set {
+    /// Checks the set of some values.
+    pub(super) fn of(values: &Values, loaded: &Loaded<'_>) -> Checked<Self> {
+        let kinds = Kinds::check(values);
+        let known = kinds.as_ref().ok().and_then(Option::as_ref);
+        let checked = (
+            Amount::of(values),
+            values.get::<u64>(&SEED),
+            warp(values),
+            keep(values),
+            (attributes::check(values, known), kinds.clone()).together(),
+            table::check(values, None, loaded.catalog),
+            (loaded.field(values), terrain::check(values, loaded)).together(),
+        );
+        let (amount, seed, warp, keep, (attributes, mut kinds), (entry, pin), (field, terrain)) =
+            checked.together()?;
+        let entry = match &mut kinds {
+            Some(kinds) => {
+                kinds.vary(values, loaded)?;
+                kinds.find(entry, values, loaded.catalog)?
+            }
+            None => entry,
+        };
+        let period = Period::check(values, amount, &entry)?;
+        let seed = Seed(seed.unwrap_or(0));
+        let mut set = Self {
+            path: values.path().into(),
+            name: String::new(),
+            entry,
+            pin,
+            amount,
+            seed,
+            warp: warp.unwrap_or_else(|| Placement::default_warp(seed)),
+            keep: keep.unwrap_or(Keep::ALL),
+            whole: keep.unwrap_or(Keep::ALL),
+            attributes,
+            kinds,
+            period,
+            field,
+            except: None,
+            terrain,
+            region: None,
+            clear_of: vec![],
+            values: resolved::of(values),
+        };
+        set.fill();
+        Ok(set)
+    }
+
+    /// Fills in the values that the query omits or expresses by other parameters, and removes those that change
+    /// nothing.
+    fn fill(&mut self) {
+        let text = |text: &str| Some(Value::Text(text.into()));
+        let key = &self.entry.key;
+        let attributes = self.attributes.as_slice();
+        let names: Vec<_> = attributes
+            .iter()
+            .map(|own| own.name().to_string())
+            .collect();
+        let scale = attributes.iter().find_map(|attribute| match attribute {
+            Attribute::Scale(range) => Some(Value::Numbers(vec![range.min(), range.max()])),
+            _ => None,
+        });
+        let terrain = self.terrain.as_ref();
+        let filled = [
+            (&PROFILE, text(&key.profile)),
+            (&ALPHA, text(&key.alpha.to_string())),
+            (&MAP, text(&key.size.to_string())),
+            (&SEED, Some(Value::Integer(self.seed.0))),
+            (&WARP, Some(Value::Number(self.warp.strength()))),
+            (
+                &KEEP,
+                (self.keep != Keep::ALL).then(|| Value::Number(self.keep.get())),
+            ),
+            (
+                &ATTRIBUTES,
+                (!names.is_empty()).then_some(Value::Names(names)),
+            ),
+            (&SCALE_RANGE, scale),
+            (
+                &SPREAD,
+                self.kinds
+                    .as_ref()
+                    .and_then(|kinds| text(kinds.spread.name())),
+            ),
+            (
+                &HEIGHTS,
+                terrain.map(|terrain| Value::Numbers(terrain.heights.into())),
+            ),
+            (
+                &NORMALS,
+                terrain
+                    .filter(|terrain| terrain.has_normals)
+                    .map(|_| Value::Switch(true)),
+            ),
+        ];
+        resolved::replace(&mut self.values, filled);
+    }
+
+    /// Checks a set without a region.
+    ///
+    /// # Errors
+    /// As [`crate::Draft::check`].
+    pub fn single(values: &Values, catalog: &Catalog) -> Result<Self, Error> {
+        Self::single_within(values, catalog, Allowance::UNLIMITED)
+    }
+
+    /// As [`single`](Self::single), with no more than is allowed.
+    ///
+    /// # Errors
+    /// As [`crate::Draft::check_within`].
+    pub fn single_within(
+        values: &Values,
+        catalog: &Catalog,
+        allowance: Allowance<'_>,
+    ) -> Result<Self, Error> {
+        let loaded = Loaded::new(catalog, allowance);
+        let set = Self::of(values, &loaded);
+        loaded.had_room()?;
+        let ((), set) = (values.read(), set).together()?;
+        table::hold(&set.entry, set.pin.as_deref())?;
+        Ok(set)
+    }
+}
+
+fn warp(values: &Values) -> Checked<Option<Warp>> {
+    let warp = values.get(&WARP)?.map(Warp::new).transpose();
+    warp.map_err(|error| values.fault(&WARP, error.to_string()).into())
+}
+
+pub(crate) fn keep(values: &Values) -> Checked<Option<Keep>> {
+    let keep = values.get(&KEEP)?.map(Keep::new).transpose();
+    keep.map_err(|error| values.fault(&KEEP, error.to_string()).into())
+}

@@ -1,0 +1,27 @@
+//! How variants are spread over the points.
+
+/// How variants are spread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spread {
+    /// Evenly, each of them and all together; points do not move.
+    Even,
+    /// More evenly still, on a table whose points were moved for these shares.
+    Joint,
+}
+
+/// The default spread: each point draws its variant independently.
+pub(crate) const CHANCE: &str = "chance";
+
+impl Spread {
+    /// The names of all spreads.
+    pub const NAMES: &'static [&'static str] = &[CHANCE, Self::Even.name(), Self::Joint.name()];
+
+    /// The name of the spread.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Even => "even",
+            Self::Joint => "joint",
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! Loading worlds: from the configuration and from a folder, at the start and again.
+
+use std::sync::Arc;
+
+use strew_catalog::{
+    Catalog,
+    named::{Changes, Checked, Found, NamedError, Places, Refused},
+};
+use strew_config::Worlds as Settings;
+use strew_error::{Error, Fault};
+
+use super::{World, Worlds};
+use crate::{
+    Draft, Parameter, Query, groups,
+    parameters::{COUNT, CURSOR, OFFSET, WORLD, WORLD_DIGEST},
+    read_body,
+};
+
+/// The rule for worlds, in words.
+const ALLOWED: &str = "members of a query but region, count, offset and cursor: layers or a set of points, seed, limit and the form of answers";
+
+/// Where worlds are described.
+fn places(settings: &Settings) -> Places<'_> {
+    Places {
+        section: "worlds",
+        named: &settings.named,
+        folder: settings.folder(),
+        endings: &["json", "toml"],
+        most_bytes: 4 << 20,
+    }
+}
+
+/// Reads and checks a document.
+fn check(
+    found: &Found,
+    json: &str,
+    catalog: &Catalog,
+    most_vertices: usize,
+) -> Result<World, String> {
+    let world = World::read(found, json, catalog, most_vertices);
+    world.map_err(|error| with_path(error, &found.name))
+}
+
+impl Worlds {
+    /// Loads the worlds that the settings name, over the tables and fields that they are of.
+    ///
+    /// # Errors
+    /// The first that is not valid.
+    pub fn load(
+        settings: &Settings,
+        catalog: &Catalog,
+        most_vertices: usize,
+    ) -> Result<Self, NamedError> {
+        let none = Self {
+            most_vertices,
+            ..Self::default()
+        };
+        let (worlds, _, refused) = none.reload(settings, catalog);
+        match refused.into_iter().next() {
+            Some((error, _)) => Err(error),
+            None => Ok(worlds),
+        }
+    }
+
+    /// The worlds after reading all documents again, the changes, and the refused documents. A refused document leaves
+    /// its earlier world in place.
+    #[must_use]
+    pub fn reload(
+        &self,
+        settings: &Settings,
+        catalog: &Catalog,
+    ) -> (Self, Changes, Vec<Refused<NamedError>>) {
+        let digest = |world: &World| world.digest.clone();
+        let before = self.over(catalog);
+        let read = places(settings).over(&before.entries, digest, |found, json| {
+            check(found, json, catalog, self.most_vertices)
+        });
+        let (after, refused) = match read {
+            Ok((entries, refused)) => (Self { entries, ..*self }, refused),
+            // All of them stay.
+            Err(error) => (before, vec![(error, None)]),
+        };
+        let changes = Changes::between(&self.entries, &after.entries, digest);
+        (after, changes, refused)
+    }
+
+    /// These worlds over other tables and fields, with new digests. Worlds that do not fit the new ones keep their
+    /// digests, and queries that name them are refused.
+    #[must_use]
+    pub fn over(&self, catalog: &Catalog) -> Self {
+        let renewed = |(name, world): (&String, &Arc<World>)| {
+            let query = world.draft.try_out(catalog, self.most_vertices);
+            let digest = query.map(|query| digest(&world.json, &query));
+            let world = match digest {
+                Ok(digest) if digest != world.digest => Arc::new(World {
+                    digest,
+                    ..World::clone(world)
+                }),
+                _ => Arc::clone(world),
+            };
+            (name.clone(), world)
+        };
+        Self {
+            entries: self.entries.iter().map(renewed).collect(),
+            ..*self
+        }
+    }
+
+    /// Reads every world by itself.
+    ///
+    /// # Errors
+    /// If the folder cannot be listed.
+    pub fn each(
+        settings: &Settings,
+        catalog: &Catalog,
+        most_vertices: usize,
+    ) -> Result<Vec<Checked<World>>, NamedError> {
+        places(settings).each(|found, json| check(found, json, catalog, most_vertices))
+    }
+}
+
+impl World {
+    /// Reads and checks a document.
+    fn read(
+        found: &Found,
+        json: &str,
+        catalog: &Catalog,
+        most_vertices: usize,
+    ) -> Result<Self, Error> {
+        let draft = read_body(json.as_bytes(), groups::QUERY)?;
+        let given = |parameter: &Parameter| (parameter.name, draft.values.has(parameter));
+        for (member, is_given) in [
+            ("region", !matches!(draft.region, Ok(None))),
+            given(&WORLD),
+            given(&WORLD_DIGEST),
+            // Chunks with these would not join.
+            given(&OFFSET),
+            given(&CURSOR),
+            given(&COUNT),
+        ] {
+            if is_given {
+                let detail = "not allowed in a world";
+                let document: Option<serde_json::Value> = serde_json::from_str(json).ok();
+                let value = document.and_then(|document| Some(document.get(member)?.to_string()));
+                let value = value.unwrap_or_default();
+                return Err(Fault::new(member, value, detail, ALLOWED).into());
+            }
+        }
+        let counted = (draft.layers.iter().flatten()).find(|layer| layer.values.has(&COUNT));
+        if let Some(layer) = counted {
+            let field = format!("{}{}", layer.values.path(), COUNT.name);
+            let detail = "not allowed in a world: each chunk would have this number of points";
+            let fault = Fault::new(
+                &field,
+                layer.values.text(&COUNT),
+                detail,
+                "density or spacing",
+            );
+            return Err(by_layer(fault.into(), &draft));
+        }
+        let checked = draft.try_out(catalog, most_vertices);
+        let query = checked.map_err(|error| by_layer(error, &draft))?;
+        Ok(Self {
+            name: found.name.clone(),
+            source: found.source.clone(),
+            digest: digest(json, &query),
+            json: json.into(),
+            layers: (draft.layers.iter().flatten())
+                .filter_map(|layer| layer.name.clone().ok()?)
+                .collect(),
+            draft,
+        })
+    }
+}
+
+/// The digest of a document with the tables and fields of its query.
+fn digest(json: &str, query: &Query) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for part in [json].into_iter().chain(query.digests()) {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        hasher.update(part.as_bytes());
+    }
+    hasher.update(&strew_core::ALGORITHM_VERSION.to_le_bytes());
+    hasher.finalize().to_hex().to_string()
+}
+
+/// Names the layers of faults by their names: `layers[2].spacing` is `layers.oak.spacing`.
+#[must_use]
+pub fn by_layer(error: Error, draft: &Draft) -> Error {
+    let Error::Invalid(faults) = error else {
+        return error;
+    };
+    let renamed = faults.rename(|field| {
+        let named = || {
+            let (number, rest) = field.strip_prefix("layers[")?.split_once("].")?;
+            let layer = draft
+                .layers
+                .as_ref()
+                .ok()?
+                .get(number.parse::<usize>().ok()?)?;
+            let name = layer.name.as_ref().ok()?.as_deref()?;
+            Some(format!("layers.{name}.{rest}"))
+        };
+        named().unwrap_or_else(|| field.into())
+    });
+    renamed.into()
+}
+
+/// The text of an error, whose faults begin with `worlds.NAME`.
+pub fn with_path(error: Error, name: &str) -> String {
+    match error {
+        Error::Invalid(faults) => {
+            let faults = faults.rename(|field| format!("worlds.{name}.{field}"));
+            Error::from(faults).to_string()
+        }
+        error => error.to_string(),
+    }
+}

@@ -1,0 +1,196 @@
+//! Rasters and pictures from files: PNG, GeoTIFF, npy, raw floats; for pictures also JPEG and WebP.
+//!
+//! A raster is read in one pass. Its header is checked against [`Limits`] before memory is taken, and memory grows with
+//! the actual length of the file, so a short file with a huge header takes nothing. The result is one number for each
+//! pixel: see [`Meaning`] for how colors become one.
+//!
+//! Depends on the core alone, for its flags that stop long work. Knows no field and no query.
+
+mod chunks;
+mod error;
+mod image;
+mod limits;
+mod npy;
+mod picture;
+mod png;
+mod price;
+mod samples;
+mod tags;
+mod tiff;
+mod tiff_faults;
+mod tone;
+mod wanted;
+
+use std::io::{BufRead, Cursor, Read, Seek, SeekFrom};
+
+pub use error::RasterError;
+pub use image::Image;
+pub use limits::{Limits, MOST_SIDE};
+pub use price::Price;
+pub use samples::Samples;
+pub use tone::Meaning;
+
+use strew_core::server::Stop;
+use wanted::{Wanted, look};
+
+impl Image {
+    /// Reads a PNG, a TIFF or a npy file, whichever it is. Stops soon after the flag is raised.
+    ///
+    /// # Errors
+    /// [`RasterError`].
+    pub fn read(
+        mut from: impl BufRead + Seek,
+        meaning: Meaning,
+        limits: Limits,
+        stop: &Stop,
+    ) -> Result<Self, RasterError> {
+        let format = Format::of(&mut from)?;
+        let from = Wanted::new(from, stop);
+        let read = match format {
+            Some(Format::Png) => png::read(from, meaning, limits, stop),
+            Some(Format::Tiff) => tiff::read(from, meaning, limits, stop),
+            Some(Format::Npy) => npy::read(from, limits, stop),
+            _ => Err(RasterError::Unknown("a PNG, TIFF or npy file")),
+        };
+        unless_stopped(read, stop)
+    }
+
+    /// Reads a PNG, and no other format: of those, the bytes that are to be decoded are known from the header.
+    ///
+    /// # Errors
+    /// [`RasterError`].
+    pub fn read_png(
+        bytes: &[u8],
+        meaning: Meaning,
+        limits: Limits,
+        stop: &Stop,
+    ) -> Result<Self, RasterError> {
+        let mut from = Cursor::new(bytes);
+        match Format::of(&mut from)? {
+            Some(Format::Png) => Self::read(from, meaning, limits, stop),
+            Some(other) => Err(RasterError::Unsupported {
+                found: format!("it is {}", other.name()),
+                allowed: ONLY_PNG,
+            }),
+            None => Err(RasterError::Unknown(ONLY_PNG)),
+        }
+    }
+
+    /// Reads 32-bit floats, little endian, row by row from the top. Stops soon after the flag is raised.
+    ///
+    /// # Errors
+    /// [`RasterError`], if their number differs from the size.
+    pub fn read_floats(
+        from: impl Read + Seek,
+        [width, height]: [usize; 2],
+        limits: Limits,
+        stop: &Stop,
+    ) -> Result<Self, RasterError> {
+        let size = limits.check(width as u64, height as u64)?;
+        let read = npy::read_floats(Wanted::new(from, stop), size, stop);
+        unless_stopped(read, stop)
+    }
+
+    /// Reads a picture: also JPEG and WebP. Its numbers are shares of the greatest light.
+    ///
+    /// # Errors
+    /// [`RasterError`].
+    pub fn read_picture(
+        mut from: impl BufRead + Seek,
+        limits: Limits,
+    ) -> Result<Self, RasterError> {
+        match Format::of(&mut from)? {
+            Some(Format::Jpeg) => picture::jpeg(from, limits),
+            Some(Format::WebP) => picture::webp(from, limits),
+            Some(_) => Self::read(from, Meaning::Picture, limits, &Stop::default()),
+            None => Err(RasterError::Unknown("a PNG, JPEG, WebP, TIFF or npy file")),
+        }
+    }
+
+    /// How dark each pixel of a picture is, or how light if it is inverted: 65535 for black.
+    #[must_use]
+    pub fn darkness(&self, is_inverted: bool) -> Vec<u16> {
+        let samples = &self.samples;
+        let full = samples.full();
+        let light = |i: usize| (samples.get(i) / full).clamp(0.0, 1.0);
+        let word = |light: f64| (light * 65535.0 + 0.5) as u16;
+        match (samples, is_inverted) {
+            (Samples::U16(values), true) => values.clone(),
+            (Samples::U16(values), false) => values.iter().map(|v| u16::MAX - v).collect(),
+            (_, true) => (0..samples.len()).map(|i| word(light(i))).collect(),
+            (_, false) => (0..samples.len()).map(|i| word(1.0 - light(i))).collect(),
+        }
+    }
+
+    /// Reads a raster in memory.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn from_bytes(
+        bytes: &[u8],
+        meaning: Meaning,
+        limits: Limits,
+        stop: &Stop,
+    ) -> Result<Self, RasterError> {
+        Self::read(Cursor::new(bytes), meaning, limits, stop)
+    }
+}
+
+/// How PNGs begin.
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+/// The allowed files where only PNG is read.
+const ONLY_PNG: &str = "a PNG";
+
+/// A flag that is raised comes out of decoders as an error of reading.
+fn unless_stopped(read: Result<Image, RasterError>, stop: &Stop) -> Result<Image, RasterError> {
+    look(stop)?;
+    read
+}
+
+/// A format, by how its files begin.
+enum Format {
+    Png,
+    Tiff,
+    Npy,
+    Jpeg,
+    WebP,
+}
+
+impl Format {
+    /// The name of a file of this format.
+    const fn name(&self) -> &'static str {
+        match self {
+            Self::Png => "a PNG",
+            Self::Tiff => "a TIFF",
+            Self::Npy => "a npy array",
+            Self::Jpeg => "a JPEG",
+            Self::WebP => "a WebP",
+        }
+    }
+
+    fn of(from: &mut (impl BufRead + Seek)) -> Result<Option<Self>, RasterError> {
+        let mut head = vec![];
+        from.by_ref().take(12).read_to_end(&mut head)?;
+        from.seek(SeekFrom::Start(0))?;
+        let begins = |magic: &[u8]| head.starts_with(magic);
+        Ok(if begins(PNG) {
+            Some(Self::Png)
+        } else if [b"II*\0", b"II+\0", b"MM\0*", b"MM\0+"]
+            .iter()
+            .any(|magic| begins(*magic))
+        {
+            Some(Self::Tiff)
+        } else if begins(b"\x93NUMPY") {
+            Some(Self::Npy)
+        } else if begins(b"\xff\xd8\xff") {
+            Some(Self::Jpeg)
+        } else if begins(b"RIFF") && head.get(8..12) == Some(b"WEBP") {
+            Some(Self::WebP)
+        } else {
+            None
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,96 @@
+//! The price of decoding a raster, known from its first bytes.
+
+use std::iter::Sum;
+
+use super::{Limits, PNG};
+
+/// An upper bound of the cost of decoding. Rasters whose headers cannot be read cost nothing: they are refused.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Price {
+    /// The pixels, on which the time depends.
+    pub pixels: usize,
+    /// The memory while it is decoded and of what becomes of it, in bytes.
+    pub bytes: usize,
+}
+
+/// The bytes of a PNG up to the end of its header.
+const PNG_HEADER: usize = 33;
+/// The shares of all words of 16 bits, which a field of such pixels holds.
+const TONES: usize = 4 << 16;
+
+impl Price {
+    /// The number of the first bytes that [`of_png`](Self::of_png) needs.
+    pub const HEADER: usize = PNG_HEADER;
+
+    /// Of a PNG that begins with these bytes.
+    #[must_use]
+    pub fn of_png(head: &[u8]) -> Self {
+        let number = |at: usize| -> Option<u64> {
+            let bytes = head.get(at..at + 4)?;
+            Some(u32::from_be_bytes(bytes.try_into().ok()?).into())
+        };
+        if !head.starts_with(PNG) {
+            return Self::default();
+        }
+        let (Some(width), Some(height), Some(&[depth, color, _, _, interlaced])) = (
+            number(16),
+            number(20),
+            head.get(24..29).and_then(|rest| rest.first_chunk()),
+        ) else {
+            return Self::default();
+        };
+        let Some(pixels) = pixels(width, height) else {
+            return Self::default();
+        };
+        let channels = match color {
+            2 => 3,
+            // The palette may have alpha.
+            3 | 6 => 4,
+            4 => 2,
+            _ => 1,
+        };
+        let deep = if depth == 16 { 2 } else { 1 };
+        // Without interlacing only rows are held as they are stored.
+        let rows = if interlaced == 0 {
+            2 * width as usize
+        } else {
+            pixels
+        };
+        let words = if depth == 16 || !matches!(color, 0 | 4) {
+            2
+        } else {
+            1
+        };
+        let tones = if words == 2 { TONES } else { 0 };
+        Self {
+            pixels,
+            bytes: rows * channels * deep + pixels * words + tones,
+        }
+    }
+
+    /// Of bare floats.
+    #[must_use]
+    pub fn of_floats([width, height]: [usize; 2]) -> Self {
+        let pixels = pixels(width as u64, height as u64).unwrap_or_default();
+        Self {
+            pixels,
+            // As text that is decoded, as numbers, and as what shares or slopes are made of.
+            bytes: 3 * size_of::<f32>() * pixels,
+        }
+    }
+}
+
+/// The number of pixels of a size that any raster may have.
+fn pixels(width: u64, height: u64) -> Option<usize> {
+    let [width, height] = Limits::FILES.check(width, height).ok()?;
+    Some(width * height)
+}
+
+impl Sum for Price {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |sum, one| Self {
+            pixels: sum.pixels.saturating_add(one.pixels),
+            bytes: sum.bytes.saturating_add(one.bytes),
+        })
+    }
+}

@@ -1,0 +1,86 @@
+//! The numbers of a raster's pixels, as small as the file has them.
+
+use strew_core::server::Stop;
+
+use super::{
+    error::RasterError,
+    wanted::{FEW, look},
+};
+
+/// A number for each pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Samples {
+    /// Of 8 bits.
+    U8(Vec<u8>),
+    /// Of 16 bits.
+    U16(Vec<u16>),
+    /// Floats, all of them finite.
+    F32(Vec<f32>),
+}
+
+impl Samples {
+    /// The number that stands for a share of 1 by default: the greatest of an integer type, else 1.
+    #[must_use]
+    pub const fn full(&self) -> f64 {
+        match self {
+            Self::U8(_) => u8::MAX as f64,
+            Self::U16(_) => u16::MAX as f64,
+            Self::F32(_) => 1.0,
+        }
+    }
+
+    /// The bytes of a number.
+    #[must_use]
+    pub const fn width(&self) -> usize {
+        match self {
+            Self::U8(_) => 1,
+            Self::U16(_) => 2,
+            Self::F32(_) => 4,
+        }
+    }
+
+    /// The number of samples.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        match self {
+            Self::U8(values) => values.len(),
+            Self::U16(values) => values.len(),
+            Self::F32(values) => values.len(),
+        }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The number of a pixel.
+    ///
+    /// # Panics
+    /// If there is no such pixel.
+    #[must_use]
+    pub fn get(&self, i: usize) -> f64 {
+        match self {
+            Self::U8(values) => values[i].into(),
+            Self::U16(values) => values[i].into(),
+            Self::F32(values) => values[i].into(),
+        }
+    }
+
+    /// Floats, the rows of which have this width.
+    pub(super) fn floats(values: Vec<f32>, width: usize, stop: &Stop) -> Result<Self, RasterError> {
+        for (part, start) in values.chunks(FEW).zip((0..).step_by(FEW)) {
+            look(stop)?;
+            if let Some(at) = part.iter().position(|value| !value.is_finite()) {
+                let at = start + at;
+                return Err(RasterError::NotFinite {
+                    x: at % width,
+                    y: at / width,
+                    value: values[at].into(),
+                });
+            }
+        }
+        Ok(Self::F32(values))
+    }
+}

@@ -1,0 +1,453 @@
+//! The service of a daemon: the state that requests share, and how each request is answered.
+//!
+//! All requests share tables, samplers and threads. Work runs on the workers, callers are charged for its price, and
+//! streams hold their share of memory to the end. A program that embeds the service without any of this uses a
+//! [`Library`](strew_plan::Library).
+
+use std::{path::PathBuf, sync::Arc};
+
+use arc_swap::ArcSwap;
+use bytes::Bytes;
+use futures_util::{Stream, StreamExt as _};
+use strew_access::Caller;
+use strew_catalog::{
+    Entry, Ready, Reload,
+    except::NamedList,
+    field::{self, Document, NamedField},
+};
+use strew_config::{Config, Limits};
+use strew_core::server::{Stop, Visits};
+use strew_encode::Answer;
+use strew_error::Error;
+use strew_plan::{
+    Found, Lane, Neighbors, Placed, Planned, considered, effort, library,
+    store::{self, Need},
+};
+use strew_query as query;
+use strew_query::{Assets, Draft, Nearest, Options, Query, Set, Token};
+
+use crate::{
+    BlockStream, Budget, Held, Interrupted, Permit, PointsInFlight, Portrait, Record, Streams,
+    Workers,
+    cache::{CacheState, Samplers},
+    forging::Forging,
+    mixes::Mixes,
+    portrait::Portraits,
+    record::{Recorded, allowance},
+};
+
+/// Everything a front end needs. Cheap to share behind an [`Arc`].
+#[derive(Debug)]
+pub struct Service {
+    pub(super) assets: Arc<ArcSwap<Assets>>,
+    pub(super) forging: Forging,
+    limits: Limits,
+    samplers: Samplers,
+    mixes: Mixes,
+    portraits: Portraits,
+    streams: Arc<Streams>,
+    points_in_flight: PointsInFlight,
+    budget: Budget,
+    pub(super) workers: Workers,
+}
+
+impl Service {
+    /// A service over everything that queries may name.
+    #[must_use]
+    pub fn new(assets: impl Into<Assets>, limits: Limits, workers: Workers) -> Self {
+        let samplers = Samplers::new(limits.cache_bytes);
+        let budget = Budget::new(limits.max_bytes_in_flight);
+        Self {
+            mixes: Mixes::new(samplers.clone(), budget.clone(), None),
+            samplers,
+            portraits: Portraits::new(),
+            streams: Arc::new(Streams::new(limits.max_streams)),
+            points_in_flight: PointsInFlight::default(),
+            budget,
+            assets: Arc::new(ArcSwap::from_pointee(assets.into())),
+            forging: Forging::default(),
+            limits,
+            workers,
+        }
+    }
+
+    /// The service with a folder of mixes, where those are kept that queries have made.
+    #[must_use]
+    pub fn with_mixes(self, folder: Option<PathBuf>) -> Self {
+        Self {
+            mixes: Mixes::new(self.samplers.clone(), self.budget.clone(), folder),
+            ..self
+        }
+    }
+
+    /// Everything that queries may name now. A query holds on to the tables that it was checked against.
+    #[must_use]
+    pub fn catalog(&self) -> Arc<Assets> {
+        self.assets.load_full()
+    }
+
+    /// Reads the folders and the names of the configuration again. Invalid documents are refused, and their earlier
+    /// versions stay.
+    #[must_use]
+    pub fn read_tables(&self, config: &Config) -> (Arc<Assets>, Assets, Reload) {
+        let before = self.catalog();
+        let (after, reload) = before.reload(config);
+        (before, after, reload)
+    }
+
+    /// Serves the tables that were read, all at once. Reloads come one after another.
+    pub async fn serve_tables(
+        &self,
+        (before, after, reload): (Arc<Assets>, Assets, Reload),
+    ) -> Reload {
+        // A table may have been forged meanwhile.
+        self.assets
+            .rcu(|now| after.clone().with_later(&before, now));
+        for digest in reload.gone() {
+            self.samplers.forget(digest).await;
+        }
+        reload
+    }
+
+    /// Holds a field that a client sends, under its digest.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a field that is not valid or too large to be held.
+    pub fn hold_field(&self, document: Document, stop: &Stop) -> Result<Arc<NamedField>, Error> {
+        let (catalog, sender) = (self.catalog(), self.own_budget().sender());
+        library::hold_field(
+            &catalog,
+            document,
+            field::MOST_PIXELS,
+            allowance(stop),
+            sender,
+        )
+    }
+
+    /// Reads and holds a list of points that a client sends, under its digest.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a list that is not valid or too large to be held, and as [`hold`](Self::hold) where
+    /// there is no room to read it.
+    pub fn hold_list(&self, body: &[u8]) -> Result<Arc<NamedList>, Error> {
+        let (catalog, budget) = (self.catalog(), self.own_budget());
+        let lists = catalog.except();
+        let _held = budget.hold(lists.reading(body))?;
+        let text = String::from_utf8_lossy(body);
+        Ok(lists.hold(&text, budget.sender())?)
+    }
+
+    /// The limits.
+    #[must_use]
+    pub const fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// The threads that make points.
+    #[must_use]
+    pub const fn workers(&self) -> &Workers {
+        &self.workers
+    }
+
+    /// How the cache of samplers stands.
+    pub async fn cache(&self) -> CacheState {
+        self.samplers.state().await
+    }
+
+    /// The open streams.
+    #[must_use]
+    pub const fn streams(&self) -> &Arc<Streams> {
+        &self.streams
+    }
+
+    /// The points that answers in progress still have to make.
+    #[must_use]
+    pub const fn points_in_flight(&self) -> &PointsInFlight {
+        &self.points_in_flight
+    }
+
+    /// The byte budget of all requests and answers.
+    #[must_use]
+    pub const fn budget(&self) -> &Budget {
+        &self.budget
+    }
+
+    /// Checks a query against the tables that are loaded and the limits.
+    ///
+    /// # Errors
+    /// As [`Draft::check`], and [`Error::Invalid`] for a format that is for files only.
+    pub fn check(&self, draft: &Draft, stop: &Stop) -> Result<(Query, Options), Error> {
+        let (catalog, vertices) = (self.catalog(), self.limits.max_vertices);
+        let allowance = allowance(stop);
+        let (query, options) = draft.check_within(&catalog, vertices, allowance)?;
+        match options.encoding {
+            Some(encoding) if !encoding.is_streamed() => {
+                let format = &query::parameters::FORMAT;
+                let detail = "written by `strew sample` only";
+                Err(draft.values.fault(format, detail).into())
+            }
+            _ => Ok((query, options)),
+        }
+    }
+
+    /// Admits a caller and plans a query whose points are to be made, charging the points considered.
+    ///
+    /// # Errors
+    /// As admitting and [`plan`](Self::plan), and [`Error::Denied`] if the caller takes
+    /// points too fast.
+    pub async fn open(
+        &self,
+        caller: &Caller,
+        query: Query,
+        picture: Option<u32>,
+    ) -> Result<(Permit, Planned), Error> {
+        // Waiting for labels takes no place.
+        let tables = self.tables(caller, &query).await?;
+        let permit = self.admit(caller, picture)?;
+        let (planned, charged) = self.charged(caller, query, tables).await?;
+        self.check_points(caller, &planned)?;
+        caller.charge(considered(&planned), charged)?;
+        // No more than the limit, which has 64 bits.
+        let points = u64::try_from(planned.count()).unwrap_or(u64::MAX);
+        Record::promise(&self.points_in_flight, points);
+        Ok((permit, planned))
+    }
+
+    /// The byte budget of the request that is being answered.
+    #[must_use]
+    pub fn own_budget(&self) -> Budget {
+        let record = Record::current();
+        record.map_or_else(|| self.budget.clone(), |record| record.budget().clone())
+    }
+
+    /// Takes bytes of the budget for the request that is being answered.
+    ///
+    /// # Errors
+    /// As [`Budget::hold`].
+    pub fn hold(&self, bytes: usize) -> Result<Held, Error> {
+        self.own_budget().hold(bytes)
+    }
+
+    /// Plans a query on the workers, whatever it counts. Charges the rows that are counted one by one.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a region out of reach or an amount that cannot be had,
+    /// [`Error::TooManyRows`] if counting would take too long, and [`Error::Denied`] if the caller's
+    /// rate does not allow it.
+    pub async fn count(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
+        let tables = self.tables(caller, &query).await?;
+        let (planned, _) = self.charged(caller, query, tables).await?;
+        Ok(planned)
+    }
+
+    /// The tables of the sets of a query.
+    async fn tables(&self, caller: &Caller, query: &Query) -> Result<Vec<Ready>, Error> {
+        let mut tables = vec![];
+        for set in &*query.sets {
+            tables.push(self.ready(caller, set).await?);
+        }
+        Ok(tables)
+    }
+
+    /// Plans a query. Returns the plan and the points charged for it.
+    async fn charged(
+        &self,
+        caller: &Caller,
+        query: Query,
+        tables: Vec<Ready>,
+    ) -> Result<(Planned, u128), Error> {
+        let mut charged = 0;
+        let limits = self.limits.clone();
+        let planned = if query.is_small() {
+            // Handing it over would take longer.
+            Planned::new(query, &tables, &limits)?
+        } else {
+            let most = limits.max_rows;
+            let is_plain = effort::is_plain(&query);
+            let price = move |_: &Stop| (effort::planning(&query, &tables, most), query, tables);
+            let (rows, query, tables) = match is_plain {
+                true => price(&Stop::default()),
+                false => self.workers.take_turn(Lane::Short, price).await?,
+            };
+            let rows = rows?;
+            charged = rows as u128;
+            // Before the work, which is done even if the answer is refused.
+            if charged > 0 {
+                caller.charge(charged, 0)?;
+            }
+            let plan = move |stop: &Stop| Planned::unless_stopped(query, &tables, &limits, stop);
+            self.workers.take_turn(effort::lane(rows), plan).await??
+        };
+        tracing::debug!(count = planned.count(), table = %planned.entry().key, "planned");
+        if let Some(record) = Record::current() {
+            record.take_lane(effort::block_lane(&planned));
+        }
+        Ok((planned, charged))
+    }
+
+    /// The table of a set, ready to answer. Making a mix is charged.
+    async fn ready(&self, caller: &Caller, set: &Set) -> Result<Ready, Error> {
+        /// Making a mix takes about as long as making this many points for each block.
+        const POINTS: u128 = 10_000;
+        let ready = self.samplers.get(&set.entry, &self.workers).await?;
+        let made = match store::needs(&ready, set) {
+            None => return Ok(ready),
+            Some(Need::Loaded(entry)) => self.samplers.get(&entry, &self.workers).await?,
+            Some(Need::Made(what)) => match self.mixes.known(&ready, &what).await {
+                Some(known) => known,
+                None => {
+                    caller.charge(POINTS * set.entry.blocks() as u128, 0)?;
+                    let _making = Record::making();
+                    self.mixes.get(&ready, &what, &self.workers).await?
+                }
+            },
+        };
+        Ok(store::with_made(ready, set, made.table))
+    }
+
+    /// Admits one more stream of a caller; a picture of that size is held whole.
+    ///
+    /// # Errors
+    /// As [`Streams::admit`], [`Error::Denied`] if the caller has reached its own limit, and [`Error::TooManyBytes`] if
+    /// there is no room.
+    pub(super) fn admit(&self, caller: &Caller, picture: Option<u32>) -> Result<Permit, Error> {
+        /// The bytes in which rows and text are made, besides blocks.
+        const ROWS: usize = 2 << 20;
+        let side = picture.map_or(0, |side| usize::try_from(side).unwrap_or(usize::MAX));
+        let blocks = self.limits.block_bytes.saturating_mul(4);
+        let held = blocks
+            .saturating_add(ROWS)
+            .saturating_add(side.saturating_mul(side));
+        let place = caller.place(self.streams.places())?;
+        let permit = self.streams.admit()?;
+        Ok(permit.with(place, self.hold(held)?))
+    }
+
+    /// A place for an answer of events, which holds next to nothing.
+    pub(super) fn place_for_events(&self, caller: &Caller) -> Result<Permit, Error> {
+        let place = caller.place(self.streams.places())?;
+        Ok(self.streams.admit()?.with(place, self.hold(64 << 10)?))
+    }
+
+    /// Plans a query that is to be answered with its points.
+    ///
+    /// # Errors
+    /// As [`count`](Self::count), and [`Error::TooManyPoints`] over the limit.
+    pub async fn plan(&self, caller: &Caller, query: Query) -> Result<Planned, Error> {
+        let planned = self.count(caller, query).await?;
+        self.check_points(caller, &planned)?;
+        Ok(planned)
+    }
+
+    /// Refuses more points than a caller may have.
+    fn check_points(&self, caller: &Caller, planned: &Planned) -> Result<(), Error> {
+        let limit = caller.max_points(self.limits.max_points);
+        let count = planned.count();
+        if count > u128::from(limit) {
+            return Err(Error::TooManyPoints { count, limit });
+        }
+        Ok(())
+    }
+
+    /// The query in parts; see [`Planned::split`].
+    ///
+    /// # Errors
+    /// As [`Planned::split`].
+    pub async fn split(&self, planned: Planned, parts: u32) -> Result<Vec<(Token, u64)>, Error> {
+        let split = move |stop: &Stop| planned.stopped_by(stop).split(parts);
+        self.workers.take_turn(Lane::Long, split).await?
+    }
+
+    /// Lays a set into the world, to look up single points.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for an amount that the table cannot have.
+    pub async fn place(&self, caller: &Caller, set: Set) -> Result<Placed, Error> {
+        let ready = self.ready(caller, &set).await?;
+        Placed::new(set, ready)
+    }
+
+    /// The answer about the points of a set nearest to a place, made where they are found: there may be
+    /// thousands. Charges them.
+    ///
+    /// # Errors
+    /// As [`place`](Self::place) and [`Placed::nearest`], [`Error::Denied`] if the caller takes points
+    /// too fast, and [`Error::TooManyBytes`] if there is no room.
+    pub async fn nearest<T: Send + 'static>(
+        &self,
+        caller: &Caller,
+        set: Set,
+        nearest: Nearest,
+        answer: impl FnOnce(&Placed, Vec<Found>) -> Result<T, Error> + Send + 'static,
+    ) -> Result<T, Error> {
+        let placed = self.place(caller, set).await?;
+        let effort = Neighbors::of(&placed, &nearest);
+        let (budget, caller) = (self.own_budget(), caller.clone());
+        let most = effort.visits(self.limits.max_rows);
+        let search = move |stop: &Stop| {
+            let _held = budget.hold(effort.bytes)?;
+            let visits = Visits::new(most, stop.clone());
+            let found = placed.nearest_visiting(nearest, &visits)?;
+            // Those that are thinned out take as long to find.
+            let considered = found.len() as f64 / placed.set.keep.get();
+            caller.charge(effort.considered(considered, visits.made()), 0)?;
+            answer(&placed, found)
+        };
+        self.workers.take_turn(effort.lane, search).await?
+    }
+
+    /// The portrait of a table's points.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if it cannot be measured or drawn.
+    pub async fn portrait(&self, entry: &Arc<Entry>) -> Result<Arc<Portrait>, Error> {
+        self.portraits.get(entry, &self.workers).await
+    }
+
+    /// All of the answer to a [small](Query::is_small) query: handing it to the workers block by
+    /// block would take longer than making it.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] if it cannot be made.
+    pub fn at_once(&self, _permit: Permit, answer: Answer) -> Result<Bytes, Error> {
+        let mut whole = Bytes::new();
+        for block in Recorded::new(answer) {
+            let block = block?;
+            whole = match (whole.is_empty(), block.is_empty()) {
+                (true, _) => block,
+                (false, true) => whole,
+                (false, false) => [whole, block].concat().into(),
+            };
+        }
+        Ok(whole)
+    }
+
+    /// Streams the blocks of an answer. One that cannot be made to its end breaks off.
+    pub fn blocks(
+        &self,
+        permit: Permit,
+        answer: Answer,
+    ) -> impl Stream<Item = Result<Bytes, Interrupted>> + use<> {
+        let blocks = self.stream(permit, Recorded::new(answer)).map(|made| {
+            made?.map_err(|error| {
+                tracing::error!(%error, "an answer broke off");
+                Interrupted::Failed
+            })
+        });
+        // An empty block means that the answer continues.
+        blocks.filter(|block| {
+            let said = !matches!(block, Ok(bytes) if bytes.is_empty());
+            std::future::ready(said)
+        })
+    }
+
+    /// Streams what an iterator makes, each item made on the workers when the reader wants it.
+    pub fn stream<I>(&self, permit: Permit, items: I) -> BlockStream<I>
+    where
+        I: Iterator + Send + 'static,
+        I::Item: Send,
+    {
+        let lane = Record::current().map_or(Lane::Short, |record| record.lane());
+        BlockStream::new(items, permit, self.workers.clone(), lane)
+    }
+}

@@ -1,0 +1,94 @@
+//! Portraits: what the points of a table look like, measured on a window.
+//!
+//! A portrait takes a good part of a second to make, so each is made once and kept.
+
+use std::sync::Arc;
+
+use moka::future::Cache;
+use strew_catalog::Entry;
+use strew_encode::EncodeError;
+use strew_error::Error;
+use strew_forge::{Report, Resolution, measure::window_set, picture};
+use strew_plan::Lane;
+
+use crate::Workers;
+
+/// The number of points in a portrait.
+const POINTS: u64 = 20_000;
+/// No more portraits are kept; each has about 60 kB.
+const MOST: u64 = 64;
+
+/// Curves and a picture of a table's points.
+#[derive(Clone, Debug)]
+pub struct Portrait {
+    /// The number of points measured.
+    pub points: u64,
+    /// ν, radial power, anisotropy in dB.
+    pub radial: Vec<[f64; 3]>,
+    /// Distance in mean spacings, radial distribution function.
+    pub rdf: Vec<[f64; 2]>,
+    /// Points, spectrum and curves, as SVG.
+    pub svg: String,
+}
+
+impl Portrait {
+    fn new(entry: &Entry) -> Result<Self, Error> {
+        let table = entry.table()?;
+        let set = window_set(&table, POINTS, 1);
+        let report = Report::of_window("window seed 1".into(), false, &set, Resolution::default());
+        let target = entry.aim().and_then(|aim| aim.curve);
+        let svg =
+            picture(&report, &entry.key.to_string(), target.as_ref()).map_err(EncodeError::of)?;
+        Ok(Self {
+            points: report.figures.points,
+            radial: report
+                .rings
+                .iter()
+                .map(|ring| [ring.nu, ring.power, ring.anisotropy_db])
+                .collect(),
+            rdf: report.rdf.bins,
+            svg,
+        })
+    }
+}
+
+/// The portraits that clients have requested.
+#[derive(Clone)]
+pub(super) struct Portraits {
+    made: Cache<String, Arc<Portrait>>,
+}
+
+impl std::fmt::Debug for Portraits {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Portraits")
+            .field("made", &self.made.entry_count())
+            .finish()
+    }
+}
+
+impl Portraits {
+    pub(super) fn new() -> Self {
+        Self {
+            made: Cache::new(MOST),
+        }
+    }
+
+    /// The portrait of a table.
+    pub(super) async fn get(
+        &self,
+        entry: &Arc<Entry>,
+        workers: &Workers,
+    ) -> Result<Arc<Portrait>, Error> {
+        let make = async {
+            let entry = entry.clone();
+            let made = workers
+                .take_turn(Lane::Making, move |_| Portrait::new(&entry))
+                .await?;
+            Ok::<_, Error>(Arc::new(made?))
+        };
+        self.made
+            .try_get_with_by_ref(&entry.digest, make)
+            .await
+            .map_err(|error| (*error).clone())
+    }
+}

@@ -1,0 +1,44 @@
+//! The owner of work: the request that it is done for.
+//!
+//! The work takes turns with that of other addresses, and the request's clock stands still while it waits for one.
+
+use std::sync::Arc;
+
+use super::clock::Waiting;
+use crate::{Budget, Record};
+
+/// The request that work is done for. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Owner(Option<Arc<Record>>);
+
+impl Owner {
+    /// The request that is being answered; outside of all requests the daemon itself.
+    #[must_use]
+    pub fn current() -> Self {
+        Self(Record::current())
+    }
+
+    /// An identifier of the address.
+    pub(super) fn address(&self) -> usize {
+        let budget = self.0.as_ref().map(|record| record.budget());
+        budget.map_or(0, Budget::address)
+    }
+
+    /// Whether both are requests of one address.
+    pub(crate) fn is_of(&self, other: &Self) -> bool {
+        self.address() == other.address()
+    }
+
+    /// Runs a future as a part of the request.
+    pub(crate) async fn scope<F: Future>(self, future: F) -> F::Output {
+        match self.0 {
+            Some(record) => record.scope(future).await,
+            None => future.await,
+        }
+    }
+
+    /// Waits for a turn until the guard is dropped.
+    pub(super) fn wait(&self) -> Waiting {
+        Waiting::of(self.0.as_ref().map(|record| record.clock().clone()))
+    }
+}

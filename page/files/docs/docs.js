@@ -1,0 +1,148 @@
+// The API as a page: shows /openapi.json, an operation at a time. Everything is put in as text, never as markup.
+
+import { byId, counted, icon, make, skipLinks } from "../dom.js";
+import { watchTheme } from "../theme.js";
+import { operationView } from "./operation.js";
+import { resolved } from "./schema.js";
+
+/** Whether a path is listed: the parts of pages are not. */
+const isListed = (path) => path.split("/")[1] !== "page";
+
+let api = null;
+let all = [];
+
+/** An operation with its parameters in place of references to them. */
+const complete = (operation, document) => (
+  { ...operation, parameters: (operation.parameters ?? []).map((one) => resolved(one, document).of) }
+);
+
+/** The operations in the order of their tags. */
+function operationsOf(document) {
+  const found = Object.entries(document.paths).filter(([path]) => isListed(path)).flatMap(([path, item]) => (
+    Object.entries(item).filter(([, one]) => one.operationId).map(([name, operation]) => ({
+      path, operation: complete(operation, document), method: name.toUpperCase(), tag: operation.tags?.[0] ?? "other", id: operation.operationId,
+    }))
+  ));
+  const tags = [...(document.tags ?? []).map(({ name }) => name), "other"];
+  return found.sort((a, b) => tags.indexOf(a.tag) - tags.indexOf(b.tag));
+}
+
+/** What can be searched for in an operation: its own words first, then those of its parameters. */
+function wordsOf({ path, operation, method, tag, id }) {
+  const parameters = operation.parameters.map((one) => `${one.name} ${one.description ?? ""}`);
+  return [`${method} ${path} ${operation.summary} ${operation.description ?? ""} ${tag} ${id}`, ...parameters].map((text) => text.toLowerCase());
+}
+
+function list() {
+  const about = new Map((api.tags ?? []).map(({ name, description }) => [name, description]));
+  const groups = Map.groupBy ? Map.groupBy(all, ({ tag }) => tag) : grouped();
+  byId("operations").replaceChildren(...[...groups].map(([tag, members]) => make("section", { "data-tag": tag },
+    make("h2", { title: about.get(tag) }, tag),
+    make("ul", {}, members.map((one) => make("li", { "data-id": one.id }, make("a", { href: `#${one.id}` },
+      make("span", { class: `method ${one.method.toLowerCase()}` }, one.method), make("span", {}, one.operation.summary),
+      make("code", {}, one.path), make("small", { class: "hit", hidden: true }))))))));
+}
+
+function grouped() {
+  const groups = new Map();
+  for (const one of all) groups.set(one.tag, [...(groups.get(one.tag) ?? []), one]);
+  return groups;
+}
+
+/** Shows the operations that have all words of the search, and the parameters that have them. */
+function search() {
+  const words = byId("search").value.toLowerCase().split(/\s+/).filter(Boolean);
+  let hits = 0;
+  for (const one of all) {
+    const texts = wordsOf(one);
+    const isHit = words.every((word) => texts.some((text) => text.includes(word)));
+    const row = document.querySelector(`[data-id="${one.id}"]`);
+    row.hidden = !isHit;
+    hits += isHit ? 1 : 0;
+    const names = words.length === 0 ? [] : one.operation.parameters.filter((_, i) => words.some((word) => texts[i + 1].includes(word)));
+    const hit = row.querySelector(".hit");
+    hit.hidden = !isHit || names.length === 0;
+    hit.textContent = names.slice(0, 4).map(({ name }) => name).join(", ") + (names.length > 4 ? " …" : "");
+  }
+  for (const section of document.querySelectorAll("[data-tag]")) section.hidden = !section.querySelector("li:not([hidden])");
+  byId("hits").textContent = words.length > 0 ? counted(hits, "operation") : "";
+}
+
+function overview() {
+  return [
+    make("h2", { tabindex: "-1" }, "The API"),
+    make("p", { class: "about" }, api.info.description),
+    make("p", {}, "Choose an operation, or search for one by its words or those of its parameters. Each can be tried here and has an address of its own."),
+    make("p", {}, "The same by gRPC on this port, with reflection: ", make("code", {}, "strew.v1.PointService"), ". This page shows ",
+      make("a", { href: "/openapi.json" }, "/openapi.json"), ", from which clients can be generated."),
+    make("ul", { class: "tags" }, (api.tags ?? []).map(({ name, description }) => {
+      const members = all.filter(({ tag }) => tag === name);
+      return members.length > 0 && make("li", {}, make("a", { href: `#${members[0].id}` },
+        make("b", {}, name), make("span", {}, description), make("small", {}, counted(members.length, "operation"))));
+    })),
+  ];
+}
+
+/** What an address names; as it stands if its escapes are wrong. */
+function named(hash) {
+  try {
+    return decodeURIComponent(hash);
+  } catch {
+    return hash;
+  }
+}
+
+/** Shows what the address names. */
+function route(hasMoved) {
+  const id = named(location.hash.slice(1));
+  const one = all.find((operation) => operation.id === id);
+  byId("main").replaceChildren(...(one ? operationView(one, api) : overview()));
+  document.title = one ? `${one.operation.summary} · API · Strew` : "API · Strew";
+  for (const link of document.querySelectorAll("#operations a")) {
+    if (link.hash === `#${id}`) {
+      link.setAttribute("aria-current", "page");
+      link.scrollIntoView({ block: "nearest" });
+    } else link.removeAttribute("aria-current");
+  }
+  if (!hasMoved) return;
+  byId("side").classList.remove("open");
+  byId("list").setAttribute("aria-expanded", "false");
+  scrollTo(0, 0);
+  byId("main").querySelector("h2").focus({ preventScroll: true });
+}
+
+async function begin() {
+  try {
+    const answer = await fetch("/openapi.json");
+    if (!answer.ok) throw new Error(`the server answered ${answer.status}`);
+    api = await answer.json();
+  } catch (error) {
+    byId("main").replaceChildren(make("h2", {}, "The API"), make("p", { class: "bad" }, `/openapi.json cannot be shown: ${error.message}`));
+    return;
+  }
+  all = operationsOf(api);
+  byId("version").textContent = api.info.version;
+  list();
+  route(false);
+  byId("search").addEventListener("input", search);
+  byId("search").addEventListener("keydown", (event) => {
+    if (event.key === "Enter") document.querySelector("#operations li:not([hidden]) a")?.click();
+  });
+  addEventListener("hashchange", () => route(true));
+  document.documentElement.dataset.state = "ready";
+}
+
+byId("theme").append(icon("M12 3a9 9 0 1 0 9 9 7 7 0 0 1-9-9z"));
+watchTheme(byId("theme"), () => {});
+byId("list").addEventListener("click", () => {
+  const isOpen = byId("side").classList.toggle("open");
+  byId("list").setAttribute("aria-expanded", String(isOpen));
+});
+addEventListener("keydown", (event) => {
+  if (event.key !== "/" || event.target.closest("input, textarea, select")) return;
+  event.preventDefault();
+  byId("side").classList.add("open");
+  byId("search").focus();
+});
+skipLinks();
+begin();

@@ -1,0 +1,86 @@
+// One operation: what it is for, its parameters, body and answers, and a form to try it.
+
+import { make } from "../dom.js";
+import { attempt } from "./attempt.js";
+import { folded, isSaid, limitsOf, membersOf, resolved, typeOf } from "./schema.js";
+
+/** A description: a paragraph, and below it the items of a list, if it has any. */
+function prose(text) {
+  const [about, ...items] = text.split(/\n+- /);
+  return [
+    make("p", { class: "about" }, about),
+    items.length > 0 && make("ul", { class: "about" }, items.map((item) => make("li", {}, item))),
+  ].filter(Boolean);
+}
+
+function parameterRow(one, api) {
+  const { of } = resolved(one.schema, api);
+  const limits = isSaid(one.description) ? [] : limitsOf(one.schema, api);
+  return make("li", { id: `parameter-${one.name}` },
+    make("div", {}, make("code", { class: "name" }, one.name), " ",
+      make("span", { class: "type" }, `${one.in}, ${typeOf(one.schema, api)}`),
+      one.required && make("span", { class: "required" }, " required")),
+    make("p", {}, one.description ?? of.description ?? ""),
+    limits.length > 0 && make("p", { class: "note" }, limits.join(" · ")),
+    one.example !== undefined && make("p", { class: "note" }, "Example: ", make("code", {}, String(one.example))));
+}
+
+function parameters(list, api) {
+  if (list.length === 0) return [];
+  const rows = [...list].sort((a, b) => Number(b.required) - Number(a.required)).map((one) => parameterRow(one, api));
+  const few = rows.slice(0, 8);
+  const rest = rows.slice(8);
+  return [
+    make("h3", {}, `Parameters (${rows.length})`),
+    make("ul", { class: "members" }, few),
+    rest.length > 0 && folded(`${rest.length} more`, () => make("ul", { class: "members" }, rest)),
+  ];
+}
+
+function body(request, api) {
+  return Object.entries(request?.content ?? {}).flatMap(([type, content]) => [
+    make("h3", {}, `Body, ${type}`),
+    request.description && make("p", {}, request.description),
+    make("p", {}, make("span", { class: "type" }, typeOf(content.schema, api)), " ", resolved(content.schema, api).of.description ?? ""),
+    ...membersOf(content.schema, api),
+  ]);
+}
+
+function contentOf(type, content, api) {
+  const example = content.example ?? Object.values(content.examples ?? {})[0]?.value;
+  return folded(make("span", {}, make("code", {}, type), " ", make("span", { class: "type" }, typeOf(content.schema, api))), () => [
+    ...membersOf(content.schema, api),
+    example !== undefined && make("pre", { tabindex: "0", "aria-label": "An example" }, typeof example === "string" ? example : JSON.stringify(example, null, 2)),
+  ].filter(Boolean));
+}
+
+function answers(responses, api) {
+  return Object.entries(responses).map(([status, given]) => {
+    const { of } = resolved(given, api);
+    const headers = Object.entries(of.headers ?? {});
+    const title = make("span", {}, make("b", { class: status < 400 ? "good" : "bad" }, status), " ", of.description);
+    return folded(title, () => [
+      headers.length > 0 && folded(`${headers.length} headers`, () => make("ul", { class: "members" }, headers.map(([name, header]) => (
+        make("li", {}, make("code", { class: "name" }, name), make("p", {}, resolved(header, api).of.description ?? ""))
+      )))),
+      ...Object.entries(of.content ?? {}).map(([type, content]) => contentOf(type, content, api)),
+      !of.content && headers.length === 0 && make("p", { class: "note" }, "No body."),
+    ].filter(Boolean), status.startsWith("2"));
+  });
+}
+
+/** Everything about an operation. */
+export function operationView({ path, method, operation, tag }, api) {
+  return [
+    make("p", { class: "crumb" }, tag),
+    make("h2", { tabindex: "-1" }, operation.summary),
+    make("p", { class: "path" }, make("span", { class: `method ${method.toLowerCase()}` }, method), make("code", {}, path)),
+    ...prose(operation.description ?? ""),
+    make("div", { class: "columns" },
+      make("div", {},
+        ...parameters(operation.parameters, api).filter(Boolean),
+        ...body(operation.requestBody, api),
+        make("h3", {}, "Answers"), ...answers(operation.responses, api)),
+      make("div", { class: "trying" }, make("h3", {}, "Try it here"), ...attempt(path, method, operation, api))),
+  ];
+}

@@ -1,0 +1,136 @@
+//! The common parts of all work of the forge: threads, the written file, and its checkpoint.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    time::Duration,
+};
+
+use anyhow::{Context as _, anyhow};
+use strew_core::{Table, table::Figures};
+use strew_forge::{Complaint, gravest, write_table};
+
+use crate::cli::{Failure, output, threads, watcher::Watcher};
+
+/// Flags of the threads and of the file.
+#[derive(Debug, clap::Args)]
+#[group(skip)]
+pub(super) struct Work {
+    /// Threads to use; 0 for one per core. The table is the same with any number.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// The file to write.
+    #[arg(long, short, value_name = "FILE", conflicts_with = "out_dir")]
+    output: Option<PathBuf>,
+    /// A folder to write to, under the table's usual name [default: the current one].
+    #[arg(long, value_name = "DIR")]
+    out_dir: Option<PathBuf>,
+    /// Replace an existing file.
+    #[arg(long)]
+    force: bool,
+    /// Write the table even if it misses a bound. If a new table is interrupted, write the best one so far, which is
+    /// not judged.
+    #[arg(long)]
+    pub(super) keep_rejected: bool,
+    /// Print nothing but errors on standard error.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+impl Work {
+    /// The file to write, in the folder under its usual name. Fails if it exists or cannot be written.
+    pub(super) fn path(&self, usual: &str) -> Result<PathBuf, Failure> {
+        let in_folder = || self.out_dir.clone().unwrap_or_default().join(usual);
+        let path = self.output.clone().unwrap_or_else(in_folder);
+        output::must_be_new(&path, self.force)?;
+        output::check(&path)?;
+        Ok(path)
+    }
+
+    /// The threads to work on.
+    pub(super) fn pool(&self) -> anyhow::Result<rayon::ThreadPool> {
+        threads::pool(self.threads)
+    }
+
+    /// Writes a table and reports it; `what` names the part that was made. Fails if that was rejected and is not to be
+    /// kept, with `why` and the missed bounds.
+    pub(super) fn conclude(
+        &self,
+        path: &Path,
+        (what, table): (&str, &Table),
+        is_accepted: bool,
+        why: Option<String>,
+        complaints: &[Complaint],
+    ) -> Result<(), Failure> {
+        let complaints = gravest(complaints);
+        if !is_accepted && !self.keep_rejected {
+            let why: Vec<String> = why.into_iter().chain(complaints).collect();
+            return Err(Failure::Other(anyhow!(
+                "the {what} is rejected and not written (the same command with --keep-rejected writes it): {}",
+                why.join("; ")
+            )));
+        }
+        write(path, table)?;
+        if let Some(why) = why.filter(|_| !self.quiet) {
+            eprintln!("{why}");
+        }
+        for complaint in complaints {
+            eprintln!("kept although rejected: {complaint}");
+        }
+        Ok(())
+    }
+
+    /// Shows the measurements of each point set.
+    pub(super) fn show(&self, figures: &[Figures]) {
+        for figures in figures.iter().filter(|_| !self.quiet) {
+            let values = figures.values.iter();
+            let values = values.map(|(name, value)| format!("{name} {value:.3e}"));
+            let values = values.collect::<Vec<_>>().join(", ");
+            eprintln!("{}: {values}", figures.subject);
+        }
+    }
+}
+
+/// Writes a table, and prints its digest and its path.
+pub(super) fn write(path: &Path, table: &Table) -> Result<(), Failure> {
+    write_table(path, table).map_err(Failure::other)?;
+    output::print(&format!("{}  {}\n", table.digest(), path.display()))
+}
+
+/// Flags of work that takes long.
+#[derive(Debug, clap::Args)]
+#[group(skip)]
+pub(super) struct Checkpoints {
+    /// Ignore an existing checkpoint and begin anew.
+    #[arg(long)]
+    pub(super) restart: bool,
+    /// Seconds between checkpoints; 0 writes one after every step.
+    #[arg(long, value_name = "SECONDS", default_value_t = 10)]
+    checkpoint_every: u64,
+}
+
+impl Checkpoints {
+    /// The checkpoint of a table, beside it.
+    pub(super) fn path(table: &Path) -> PathBuf {
+        let mut name = table.as_os_str().to_owned();
+        name.push(".checkpoint");
+        name.into()
+    }
+
+    /// Watches the work, and writes checkpoints.
+    pub(super) fn watcher(&self, checkpoint: &Path, work: &Work) -> Watcher {
+        let every = Duration::from_secs(self.checkpoint_every);
+        Watcher::new(checkpoint, every, work.quiet)
+    }
+
+    /// Removes the checkpoint of a table that is written.
+    pub(super) fn remove(checkpoint: &Path) -> Result<(), Failure> {
+        match fs::remove_file(checkpoint) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                let unremovable = || format!("cannot remove {}", checkpoint.display());
+                Ok(Err(error).with_context(unremovable)?)
+            }
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Parameters for Python (_parameters.py): their types, and their names by what they are about.
+
+use strew_query::{Group, Parameter, Shape, groups, parameters::BBOX};
+
+use super::{
+    section::{MEMBERS, OUTPUT, REGIONS, Section, quoted, within},
+    words,
+};
+
+const HEAD: &str = "\
+\"\"\"The parameters of queries. ``strew parameters --as py`` writes this file from crates/query/src/parameters.rs.\"\"\"
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypedDict, Union
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeAlias
+
+Numbers: TypeAlias = \"Union[Sequence[float], np.ndarray[Any, Any]]\"
+";
+
+/// Words of the language, which cannot be keywords of calls.
+const RESERVED: [&str; 32] = [
+    "and", "as", "assert", "async", "await", "break", "class", "continue", "def", "del", "elif",
+    "else", "except", "finally", "for", "from", "global", "if", "import", "in", "is", "lambda",
+    "nonlocal", "not", "or", "pass", "raise", "return", "try", "while", "with", "yield",
+];
+
+/// The module.
+pub(super) fn module(table: &[&Parameter]) -> String {
+    let mut text = HEAD.to_owned();
+    for section in [REGIONS, MEMBERS, OUTPUT] {
+        text += &class(&section, table);
+    }
+    let of = |groups| quoted(&within(table, groups));
+    let (regions, window, output) = (of(REGIONS.groups), of(&[Group::Window]), of(OUTPUT.groups));
+    let kinds: String = (within(table, groups::POINTS).into_iter())
+        .map(|of| format!("    \"{}\": \"{}\",\n", of.name, words::kind(of.shape)))
+        .collect();
+    text + &format!(
+        "
+
+#: Regions that are parameters by themselves.
+REGIONS = ({regions})
+#: Which part of the points an answer has.
+WINDOW = ({window})
+#: The form of an answer.
+OUTPUT = ({output})
+#: The kinds of values by their parameters.
+KINDS = {{
+{kinds}}}
+"
+    )
+}
+
+fn class(section: &Section, table: &[&Parameter]) -> String {
+    let Section { name, about, .. } = section;
+    let mut text =
+        format!("\n\nclass {name}(TypedDict, total=False):\n    \"\"\"{about}\"\"\"\n\n");
+    for parameter in section.of(table) {
+        let lines = words::wrapped(
+            &words::paragraph(parameter, ":func:`strew.raster`"),
+            "    #: ",
+        );
+        let name = parameter.name;
+        let mark = if RESERVED.contains(&name) { "_" } else { "" };
+        text += &format!("{lines}    {name}{mark}: {}\n", type_of(parameter));
+    }
+    text
+}
+
+/// The type of a parameter's values.
+fn type_of(parameter: &Parameter) -> &'static str {
+    match parameter.shape {
+        _ if *parameter == BBOX => "Numbers",
+        Shape::Numbers(_) if parameter.group == Group::Region => "Numbers | Mapping[str, Any]",
+        // Vertices, GeoJSON, or an object with `__geo_interface__`.
+        Shape::Vertices => "Any",
+        Shape::Number { .. } => "float",
+        Shape::Integer { .. } | Shape::Signed { .. } => "int",
+        Shape::Switch => "bool",
+        Shape::Strength { .. } | Shape::Quadratic => "str | float",
+        Shape::Numbers(_) | Shape::Integers { .. } => "Numbers",
+        Shape::Offsets { .. } => "Sequence[Numbers]",
+        Shape::Names { .. } => "str | Sequence[str]",
+        Shape::Weights => "Mapping[str, float]",
+        Shape::Ranges => "Mapping[str, Numbers]",
+        Shape::Field => "str | Mapping[str, Any]",
+        Shape::Fields => "Mapping[str, str | Mapping[str, Any]]",
+        Shape::Choice(_) | Shape::Format | Shape::Pattern(_) | Shape::Text => "str",
+    }
+}
