@@ -15,6 +15,7 @@ use strew_testkit::{http1, wait::until};
 use crate::support::{
     clients,
     daemon::{Daemon, PROFILE, tables},
+    metrics::{samples, sum},
     proxy::Proxy,
 };
 
@@ -83,9 +84,8 @@ fn a_replica_may_fail_and_return(program: &str) {
     let returned = replicas[1].as_ref().expect("back");
     until("the replica that came back answers", || {
         http1::get(proxy.address, &format!("/v1/points?{QUERY}&limit=10"), &[]);
-        let text = returned.get("/metrics").text().to_owned();
-        text.contains("strew_requests_total{protocol=\"rest\",route=\"/v1/points\"")
-            .then_some(())
+        let labels = ["protocol=\"rest\"", "route=\"/v1/points\""];
+        (sum(&samples(returned), "strew_requests_total", &labels) > 0.0).then_some(())
     });
 }
 
