@@ -80,6 +80,8 @@ pub enum ErrorKind {
     Warp,
     /// A share of points to keep.
     Keep,
+    /// The number of steps by which points settle.
+    Settle,
     /// The pixels of a field.
     Field,
     /// A corner of a box.

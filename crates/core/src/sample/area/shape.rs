@@ -269,6 +269,12 @@ impl Area {
         }
     }
 
+    /// Whether this is the whole plane or nothing, as areas are that were reduced to where all or none of them is.
+    pub(crate) fn is_all_or_nothing(&self) -> Option<bool> {
+        let is = |state| self.is_constant(state).then_some(state);
+        is(true).or_else(|| is(false))
+    }
+
     /// The whole plane or nothing.
     const fn constant(state: bool) -> Self {
         if state {

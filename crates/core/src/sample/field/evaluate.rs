@@ -216,7 +216,7 @@ impl Field for FieldSpec {
                 far.map(|v| slope * (v.abs() / least).min(1.0))
             }
             Shape::Distance(measure, slide) => [slide.slope(measure.bounds(within)); 2],
-            Shape::Noise(noise) => noise.slopes(),
+            Shape::Noise(noise) => noise.slopes(within),
             Shape::Raster(raster) => raster.slopes(within),
             Shape::Terrain(terrain, slide) => terrain.slopes(slide, within),
             // Shares are at most 1.

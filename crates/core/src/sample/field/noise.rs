@@ -121,29 +121,37 @@ impl Noise {
             weights += weight;
             weight *= 0.5;
             center = next(center);
-            half = [
-                2.0 * (0.8 * half[0] + 0.6 * half[1]),
-                2.0 * (0.6 * half[0] + 0.8 * half[1]),
-            ];
+            half = next_half(half);
         }
         let [a, b] = [low / weights - 1e-9, high / weights + 1e-9].map(|v| self.within_range(v));
         widened([a.min(b), a.max(b)])
     }
 
-    /// Bounds of the change along x and y for each world unit, anywhere.
-    pub(super) fn slopes(&self) -> [f64; 2] {
-        // Of 6t⁵ − 15t⁴ + 10t³, at ½; octaves after the first are turned, so they change along both axes at once.
+    /// Bounds of the change along x and y for each world unit, over a box.
+    pub(super) fn slopes(&self, within: &Region) -> [f64; 2] {
+        // Of 6t⁵ − 15t⁴ + 10t³, at ½.
         const STEEPEST: f64 = 1.875;
-        let (mut sum, mut weight, mut weights) = (0.0, 1.0, 0.0);
-        let (mut scale, mut axes) = (1.0, 1.0);
-        for _ in 0..self.octaves {
-            sum += weight * scale * axes * STEEPEST;
+        let (min, max) = (within.min(), within.max());
+        let mut center = [0, 1].map(|i| (0.5 * min[i] + 0.5 * max[i]) / self.wavelength);
+        let mut half = [0, 1].map(|i| (0.5 * max[i] - 0.5 * min[i]) / self.wavelength);
+        let (mut sums, mut weight, mut weights) = ([0.0; 2], 1.0, 0.0);
+        // The axes of an octave, in wavelengths of the first.
+        let mut axes = [1.0, 0.0];
+        for octave in 0..self.octaves {
+            let [across, up] = steps_between(self.key(octave), center, half);
+            let [c, s] = axes.map(f64::abs);
+            sums[0] += weight * (c * across + s * up);
+            sums[1] += weight * (s * across + c * up);
             weights += weight;
-            (weight, scale, axes) = (0.5 * weight, 2.0 * scale, core::f64::consts::SQRT_2);
+            weight *= 0.5;
+            center = next(center);
+            half = next_half(half);
+            axes = next(axes);
         }
         let range = (self.range[1] - self.range[0]).abs();
         // With room for what rounds.
-        [sum / weights / self.wavelength * range * (1.0 + 1e-9); 2]
+        let factor = STEEPEST / weights / self.wavelength * range * (1.0 + 1e-9);
+        sums.map(|sum| sum * factor)
     }
 
     fn within_range(&self, v: f64) -> f64 {
@@ -254,7 +262,8 @@ fn octave_at(key: u64, place: [f64; 2]) -> f64 {
     low + (high - low) * v
 }
 
-fn octave_between(key: u64, center: [f64; 2], half: [f64; 2]) -> [f64; 2] {
+/// The range of corners around the places of a box, from the first to the last along x and y; `None` if they are many.
+fn corners(center: [f64; 2], half: [f64; 2]) -> Option<[[i64; 2]; 2]> {
     // Room for what rounds.
     let room = 1e-9;
     let ends = [0, 1].map(|i| {
@@ -264,9 +273,40 @@ fn octave_between(key: u64, center: [f64; 2], half: [f64; 2]) -> [f64; 2] {
     let is_far = |v: &f64| v.is_nan() || v.abs() > 1e9;
     let is_large = ends.iter().any(|[a, b]| b - a > FEW);
     if is_large || ends.iter().flatten().any(is_far) {
-        return [0.0, 1.0];
+        return None;
     }
-    let [[left, right], [bottom, top]] = ends.map(|ends| ends.map(|v| v as i64));
-    let all = (bottom..=top + 1).flat_map(|y| (left..=right + 1).map(move |x| corner(key, x, y)));
+    Some(ends.map(|[first, last]| [first as i64, last as i64 + 1]))
+}
+
+fn octave_between(key: u64, center: [f64; 2], half: [f64; 2]) -> [f64; 2] {
+    let Some([[left, right], [bottom, top]]) = corners(center, half) else {
+        return [0.0, 1.0];
+    };
+    let all = (bottom..=top).flat_map(|y| (left..=right).map(move |x| corner(key, x, y)));
     all.fold([1.0, 0.0], |[low, high], v| [low.min(v), high.max(v)])
+}
+
+/// The greatest differences of neighboring corners along x and y around the places of a box.
+fn steps_between(key: u64, center: [f64; 2], half: [f64; 2]) -> [f64; 2] {
+    let Some([[left, right], [bottom, top]]) = corners(center, half) else {
+        return [1.0; 2];
+    };
+    let mut most = [0.0f64; 2];
+    for y in bottom..=top {
+        for x in left..=right {
+            let own = corner(key, x, y);
+            if x < right {
+                most[0] = most[0].max((corner(key, x + 1, y) - own).abs());
+            }
+            if y < top {
+                most[1] = most[1].max((corner(key, x, y + 1) - own).abs());
+            }
+        }
+    }
+    most
+}
+
+/// The half sides of a box around the places of a box in the next octave.
+fn next_half([x, y]: [f64; 2]) -> [f64; 2] {
+    [2.0 * (0.8 * x + 0.6 * y), 2.0 * (0.6 * x + 0.8 * y)]
 }

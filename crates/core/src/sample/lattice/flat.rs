@@ -29,6 +29,14 @@ pub(crate) struct Found {
 }
 
 impl Found {
+    /// A point at a place and a column and a row of up to 16 bits, all relative to an origin.
+    pub(crate) const fn new(place: [i32; 2], [column, row]: [i64; 2]) -> Self {
+        Self {
+            place,
+            address: address(column, row),
+        }
+    }
+
     /// The column and the row, relative to the patch.
     #[inline(always)]
     pub(crate) const fn address(self) -> [i64; 2] {

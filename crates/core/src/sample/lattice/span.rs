@@ -136,6 +136,18 @@ fn added(a: [[i32; 2]; 2], b: [[i32; 2]; 2]) -> [[i32; 2]; 2] {
     [0, 1].map(|i| [a[i][0] + b[i][0], a[i][1] + b[i][1]])
 }
 
+/// The box of the places of the points of some columns and rows, which are not empty, in fixed-point units.
+pub(crate) fn places_of(lattice: &Lattice, lines: &[Range<i64>; 2]) -> [Range<i128>; 2] {
+    let reach = match &lattice.shears {
+        Some(shears) => reach_from(lattice, shears, lines),
+        None => reach_of(lattice),
+    };
+    [0, 1].map(|i| {
+        let [least, most] = reach[i].map(i128::from);
+        fixed(lines[i].start) + least..fixed(lines[i].end - 1) + most + 1
+    })
+}
+
 /// The least and the greatest distance of the points of some columns and rows from their addresses, by axis.
 fn reach_from(lattice: &Lattice, shears: &Shears, lines: &[Range<i64>; 2]) -> [[i32; 2]; 2] {
     let table = reach_of(lattice);

@@ -1,0 +1,508 @@
+//! The walk of points that settle: piece by piece, each with the points around it that matter.
+//!
+//! A piece is some rows of a band. Its points are placed by their ranks, together with those around it, settle, and are
+//! compared with the region where they end. The order is that of all walks, by address, so pieces show neither in the
+//! order nor in the places.
+//!
+//! Counting settles few of them: a point that was placed deeper in the region than it can move is inside, and one
+//! farther off is outside, so only points near the outline settle, tile by tile.
+
+use alloc::{sync::Arc, vec, vec::Vec};
+use core::ops::Range;
+
+use super::{
+    bands::{format_of, write_found},
+    few::{FEW, Few},
+    tile::Tile,
+};
+use crate::sample::{
+    area::Area,
+    count::count,
+    kernel::{Backend, Format},
+    lattice::{
+        BAND_WIDTH, Found, Lattice, PATCH_HEIGHT, PointId, clip_to_band, places_of,
+    },
+    near::Guard,
+    scope::Scope,
+    settle::{Box2, Placed, Settled, Settler, common, widened},
+};
+use crate::table::fixed;
+
+/// The rows of a piece: enough that the margins around it cost less than the piece.
+const PIECE: i64 = 512;
+
+/// The sides of the tiles in which points near an outline settle, in bits of fixed-point units: 128 grid units.
+const TILE_BITS: u32 = 27;
+
+/// The settled points of a scope, piece by piece.
+#[derive(Clone, Debug)]
+pub(super) struct Pieces {
+    scope: Arc<Scope>,
+    settler: Settler,
+    /// The box in which points lie in the end, and the one in which these were placed.
+    bounds: Box2,
+    around: Box2,
+    clear: Vec<Guard>,
+}
+
+/// What of a scope restricts the points of a piece.
+struct Inside<'a> {
+    bounds: &'a Box2,
+    area: Option<Area>,
+    clear: &'a [Guard],
+    lattice: &'a Lattice,
+}
+
+impl Inside<'_> {
+    /// Whether a point that has settled lies inside.
+    fn holds(&self, settled: &Settled) -> bool {
+        let [x, y] = &settled.place;
+        if !self.bounds[0].contains(x) || !self.bounds[1].contains(y) {
+            return false;
+        }
+        if self.area.is_none() && self.clear.is_empty() {
+            return true;
+        }
+        let at = settled.place.map(|k| self.lattice.world(k));
+        self.area.as_ref().is_none_or(|area| area.contains(at))
+            && self.clear.iter().all(|guard| guard.permits(at))
+    }
+}
+
+/// Whether a point is in a box wherever it goes, in none of it, or either.
+fn side(bounds: &Box2, placed: &Placed) -> Option<bool> {
+    let most = i128::from(placed.most);
+    let mut is_sure = true;
+    for (range, place) in bounds.iter().zip(placed.place) {
+        if place + most < range.start || place - most >= range.end {
+            return Some(false);
+        }
+        is_sure &= range.start <= place - most && place + most < range.end;
+    }
+    is_sure.then_some(true)
+}
+
+impl Pieces {
+    /// The points of a scope, whose lattice settles; `None` of others.
+    pub(super) fn new(scope: &Arc<Scope>) -> Option<Self> {
+        let settler = Settler::new(&scope.lattice)?;
+        let bounds = [scope.x.bounds.clone(), scope.y.bounds.clone()];
+        let sieve = scope.sieve.as_ref();
+        Some(Self {
+            around: settler.around(&bounds),
+            bounds,
+            clear: sieve.map_or_else(Vec::new, |sieve| sieve.mask().clear_guards()),
+            settler,
+            scope: scope.clone(),
+        })
+    }
+
+    /// The box of the places of the points of some columns and rows that may end inside.
+    fn places(&self, piece: &[Range<i64>; 2]) -> Box2 {
+        let lattice = &self.scope.lattice;
+        if piece.iter().any(Range::is_empty) {
+            return [0..0, 0..0];
+        }
+        common(&places_of(lattice, piece), &self.around)
+    }
+
+    /// The part of the scope's area that matters to points that end in a box.
+    fn area(&self, within: &Box2) -> Option<Area> {
+        let area = self.scope.sieve.as_ref()?.area()?;
+        Some(area.focus(&self.settler.region(within)))
+    }
+
+    /// Calls `visit` for the settled points of some columns and rows of a band that lie inside, in their order.
+    fn settle(&mut self, piece: &[Range<i64>; 2], mut visit: impl FnMut(Settled)) {
+        let within = self.places(piece);
+        let ends = widened(&within, self.settler.most_move(&within));
+        let inside = Inside {
+            bounds: &self.bounds,
+            area: self.area(&ends),
+            clear: &self.clear,
+            lattice: &self.scope.lattice,
+        };
+        let has = self.scope.lattice.tells_kinds();
+        let lattice = &self.scope.lattice;
+        let wants = |placed: &Placed| {
+            holds(piece, placed.id)
+                && side(inside.bounds, placed) != Some(false)
+                && (!has || lattice.is_of_kind(placed.id))
+        };
+        self.settler.settle(&within, wants, |settled| {
+            if inside.holds(&settled) {
+                visit(settled);
+            }
+        });
+    }
+
+    /// The number of settled points of some columns and rows of a band that lie inside.
+    fn count(&mut self, piece: &[Range<i64>; 2]) -> u128 {
+        let within = self.places(piece);
+        if within.iter().any(Range::is_empty) {
+            return 0;
+        }
+        let lattice = &self.scope.lattice;
+        let has = lattice.tells_kinds();
+        let is_guarded = !self.clear.is_empty();
+        let corner = [0, 1].map(|i| within[i].start >> TILE_BITS);
+        let across = [0, 1].map(|i| (((within[i].end - 1) >> TILE_BITS) - corner[i] + 1) as usize);
+        let tile_box = |i: usize| {
+            let at = [i % across[0], i / across[0]];
+            let tile = [0, 1].map(|axis| {
+                let start = (corner[axis] + at[axis] as i128) << TILE_BITS;
+                start..start + (1 << TILE_BITS)
+            });
+            common(&tile, &within)
+        };
+        // By tile: whether the area has all or nothing of it and around.
+        let states: Vec<Option<bool>> = (0..across[0] * across[1])
+            .map(|i| {
+                let tile = tile_box(i);
+                let ends = widened(&tile, self.settler.most_move(&tile));
+                match self.area(&ends) {
+                    None => Some(true),
+                    Some(area) => area.is_all_or_nothing(),
+                }
+            })
+            .collect();
+        let tile_of = |place: [i128; 2]| {
+            let [x, y] = [0, 1].map(|i| ((place[i] >> TILE_BITS) - corner[i]) as usize);
+            y * across[0] + x
+        };
+        let bounds = &self.bounds;
+        let decide = |placed: &Placed| match (side(bounds, placed), states[tile_of(placed.place)]) {
+            (Some(false), _) | (_, Some(false)) => Some(false),
+            (Some(true), Some(true)) if !is_guarded => Some(true),
+            _ => None,
+        };
+        let is_own = |placed: &Placed| {
+            holds(piece, placed.id) && (!has || lattice.is_of_kind(placed.id))
+        };
+        let mut number = 0;
+        let mut unsure = vec![false; states.len()];
+        self.settler.list(&within, |placed| {
+            if is_own(&placed) {
+                match decide(&placed) {
+                    Some(is_inside) => number += u128::from(is_inside),
+                    None => unsure[tile_of(placed.place)] = true,
+                }
+            }
+        });
+        for (i, _) in unsure.iter().enumerate().filter(|(_, unsure)| **unsure) {
+            if self.scope.stop.is_raised() {
+                break;
+            }
+            let tile = tile_box(i);
+            let ends = widened(&tile, self.settler.most_move(&tile));
+            let area = self.area(&ends);
+            let inside = Inside {
+                bounds,
+                area,
+                clear: &self.clear,
+                lattice,
+            };
+            let wants = |placed: &Placed| is_own(placed) && decide(placed).is_none();
+            self.settler.settle(&tile, wants, |settled| {
+                number += u128::from(inside.holds(&settled));
+            });
+        }
+        number
+    }
+
+    /// The rows of a band whose points are all inside wherever they go, if shares are the same everywhere.
+    fn sure_rows(&self, columns: &Range<i64>) -> Range<i64> {
+        let Scope {
+            lattice, y, sieve, ..
+        } = &*self.scope;
+        let none = y.all.end..y.all.end;
+        if sieve.is_some() || lattice.constant_share().is_none() || columns.is_empty() {
+            return none;
+        }
+        let most = i128::from(self.settler.most_move(&self.bounds));
+        let [x_ends, y_ends] = places_of(lattice, &[columns.clone(), y.all.clone()]);
+        let is_inside = self.bounds[0].start <= x_ends.start - most
+            && x_ends.end + most <= self.bounds[0].end;
+        if !is_inside {
+            return none;
+        }
+        // How far places are from the addresses of their rows.
+        let below = fixed(y.all.start) - y_ends.start + most;
+        let above = y_ends.end - fixed(y.all.end - 1) + most;
+        let up = |k: i128| -((-k) >> crate::table::FRACTION_BITS) as i64;
+        let start = up(self.bounds[1].start + below).clamp(y.all.start, y.all.end);
+        let end = up(self.bounds[1].end - above).clamp(start, y.all.end);
+        // Whole pieces.
+        let start = up_to_piece(start);
+        let end = end.div_euclid(PIECE) * PIECE;
+        if start < end { start..end } else { none }
+    }
+}
+
+/// The first multiple of the height of a piece from a row on.
+const fn up_to_piece(row: i64) -> i64 {
+    -(-row).div_euclid(PIECE) * PIECE
+}
+
+/// Whether an address is in some columns and rows.
+fn holds([columns, rows]: &[Range<i64>; 2], id: PointId) -> bool {
+    columns.contains(&id.x) && rows.contains(&id.y)
+}
+
+/// A part of a scope in its order: rows of a band.
+#[derive(Clone, Debug)]
+struct Rows {
+    ahead: Range<i64>,
+    band: i64,
+    all: Range<i64>,
+    next: i64,
+}
+
+impl Rows {
+    fn new(bands: Range<i64>, all: Range<i64>) -> Self {
+        Self {
+            band: bands.start,
+            next: all.end,
+            ahead: bands,
+            all,
+        }
+    }
+
+    /// Moves to the next rows: the end of the piece that holds the next row, or further.
+    fn take(&mut self, sure: impl FnOnce(i64) -> Range<i64>) -> Option<(i64, Range<i64>, bool)> {
+        if self.next >= self.all.end {
+            self.band = self.ahead.next()?;
+            self.next = self.all.start;
+            if self.all.is_empty() {
+                return None;
+            }
+        }
+        let start = self.next;
+        let sure = sure(self.band);
+        let is_sure = sure.contains(&start);
+        let end = if is_sure {
+            sure.end
+        } else {
+            (start.div_euclid(PIECE) + 1) * PIECE
+        };
+        self.next = end.min(self.all.end);
+        Some((self.band, start..self.next, is_sure))
+    }
+
+    /// The address of the next row.
+    const fn place(&self) -> PointId {
+        if self.next < self.all.end {
+            PointId {
+                x: self.band * BAND_WIDTH,
+                y: self.next,
+            }
+        } else {
+            PointId {
+                x: self.ahead.start * BAND_WIDTH,
+                y: self.all.start,
+            }
+        }
+    }
+}
+
+/// A walk over points that settle.
+#[derive(Clone, Debug)]
+pub(super) struct SettledWalk<F> {
+    pieces: Pieces,
+    format: F,
+    pub(super) backend: Backend,
+    rows: Rows,
+    /// The first address, if the walk begins within a piece.
+    from: Option<PointId>,
+    origin: [i64; 2],
+    found: Vec<Found>,
+    taken: usize,
+}
+
+impl<F: Format> SettledWalk<F> {
+    /// A walk over some bands and rows of a scope whose lattice settles, from an address on if there is one.
+    fn new(pieces: Pieces, bands: Range<i64>, rows: Range<i64>, start: Option<PointId>) -> Self {
+        let mut rows = Rows::new(bands, rows);
+        if let Some(at) = start {
+            rows.ahead.start = at.x.div_euclid(BAND_WIDTH);
+            if rows.all.contains(&at.y) && !rows.ahead.is_empty() {
+                rows.band = rows.ahead.start;
+                rows.ahead.start += 1;
+                rows.next = at.y;
+            }
+        }
+        Self {
+            format: format_of(&pieces.scope),
+            pieces,
+            backend: Backend::best(),
+            rows,
+            from: start,
+            origin: [0; 2],
+            found: Vec::new(),
+            taken: 0,
+        }
+    }
+
+    /// All bands and rows of a scope, from an address on if there is one.
+    pub(super) fn from(pieces: Pieces, start: Option<PointId>) -> Self {
+        let (bands, rows) = (pieces.scope.bands(), pieces.scope.y.all.clone());
+        Self::new(pieces, bands, rows, start)
+    }
+
+    /// The band and the rows of a tile.
+    pub(super) fn of_tile(pieces: Pieces, tile: &Tile) -> Self {
+        Self::new(pieces, tile.band..tile.band + 1, tile.rows.clone(), None)
+    }
+
+    /// Works by another backend.
+    pub(super) const fn set_backend(&mut self, backend: Backend) {
+        self.backend = backend;
+        self.pieces.settler.set_backend(backend);
+    }
+
+    /// Finds the points of the next piece. `false` after the last one.
+    fn next_piece(&mut self) -> bool {
+        self.found.clear();
+        self.taken = 0;
+        let never = |_| 0..0;
+        let Some((band, rows, _)) = self.rows.take(never) else {
+            return false;
+        };
+        self.origin = [band * BAND_WIDTH, rows.start.div_euclid(PIECE) * PIECE];
+        let columns = clip_to_band(band, &self.pieces.scope.x.all);
+        let (found, origin) = (&mut self.found, self.origin);
+        let from = self.from.take();
+        self.pieces.settle(&[columns, rows], |settled| {
+            let is_before = from.is_some_and(|at| settled.id.y == at.y && settled.id.x < at.x);
+            if !is_before {
+                found.push(found_at(origin, &settled));
+            }
+        });
+        true
+    }
+
+    /// Fills `out` with the next points, and only a part of it at the end. Returns the number written.
+    pub(super) fn fill(&mut self, out: &mut [F::Item]) -> usize {
+        let mut filled = 0;
+        while filled < out.len() {
+            let left = &self.found[self.taken..];
+            if left.is_empty() {
+                if !self.next_piece() {
+                    break;
+                }
+                continue;
+            }
+            let number = left.len().min(out.len() - filled);
+            let by = (&self.format, self.backend);
+            write_found(by, self.origin, left.iter().copied(), &mut out[filled..][..number]);
+            self.taken += number;
+            filled += number;
+        }
+        filled
+    }
+
+    /// The address after the points written.
+    pub(super) fn place(&self) -> PointId {
+        match self.found.get(self.taken) {
+            Some(found) => {
+                let [x, y] = found.address();
+                PointId {
+                    x: self.origin[0] + x,
+                    y: self.origin[1] + y,
+                }
+            }
+            None => self.from.unwrap_or_else(|| self.rows.place()),
+        }
+    }
+}
+
+/// A settled point relative to an origin.
+fn found_at(origin: [i64; 2], settled: &Settled) -> Found {
+    let PointId { x, y } = settled.id;
+    let place = [0, 1].map(|i| (settled.place[i] - fixed(origin[i])) as i32);
+    Found::new(place, [x - origin[0], y - origin[1]])
+}
+
+/// The number of settled points of a scope. `mark` is called with the first address of each piece and the number of points
+/// before it.
+pub(super) fn count_settled(mut pieces: Pieces, mut mark: impl FnMut(PointId, u128)) -> u128 {
+    let scope = pieces.scope.clone();
+    let thinned = scope
+        .lattice
+        .constant_share()
+        .map(|share| scope.with_lattice(scope.lattice.in_constant(share)));
+    let mut rows = Rows::new(scope.bands(), scope.y.all.clone());
+    let mut number = 0;
+    while !scope.stop.is_raised() {
+        let sure = |band| pieces.sure_rows(&clip_to_band(band, &scope.x.all));
+        let Some((band, rows, is_sure)) = rows.take(sure) else {
+            break;
+        };
+        let columns = clip_to_band(band, &scope.x.all);
+        let start = PointId {
+            x: band * BAND_WIDTH,
+            y: rows.start,
+        };
+        mark(start, number);
+        number += match &thinned {
+            Some(thinned) if is_sure => count(thinned, &columns, &rows),
+            _ => pieces.count(&[columns, rows]),
+        };
+    }
+    number
+}
+
+/// The address of point number `k` of a scope, from an address on before which `before` points lie; `None` if there are
+/// fewer, or if the scope's stop flag is raised.
+pub(super) fn locate_settled(
+    pieces: Pieces,
+    start: Option<PointId>,
+    mut before: u128,
+    k: u128,
+) -> Option<PointId> {
+    let scope = pieces.scope.clone();
+    let mut walk = SettledWalk::<crate::sample::kernel::Points>::from(pieces, start);
+    while !scope.stop.is_raised() {
+        if !walk.next_piece() {
+            return None;
+        }
+        let number = walk.found.len() as u128;
+        if k < before + number {
+            walk.taken = (k - before) as usize;
+            return Some(walk.place());
+        }
+        before += number;
+    }
+    None
+}
+
+/// The points of a small scope in their order. `None` if it is not small.
+pub(super) fn find_few_settled(pieces: &mut Pieces) -> Option<Few> {
+    let scope = pieces.scope.clone();
+    let (columns, rows) = (scope.x.all.clone(), scope.y.all.clone());
+    let lengths = [&columns, &rows].map(|range| range.end.saturating_sub(range.start).max(0));
+    if lengths.iter().any(|length| *length > BAND_WIDTH) {
+        return None;
+    }
+    let side = scope.lattice.table.alpha().set_side_f64();
+    let area = lengths[0] as f64 * lengths[1] as f64;
+    if area * side * side * pieces.settler.greatest_share(&pieces.around) > FEW as f64 {
+        return None;
+    }
+    let mut settled = Vec::new();
+    pieces.settle(&[columns, rows], |point| settled.push(point));
+    settled.sort_unstable_by_key(|point: &Settled| {
+        let PointId { x, y } = point.id;
+        (x.div_euclid(BAND_WIDTH), y, x)
+    });
+    let mut few = Few::default();
+    for point in &settled {
+        let PointId { x, y } = point.id;
+        let origin = [
+            x.div_euclid(BAND_WIDTH) * BAND_WIDTH,
+            y.div_euclid(PATCH_HEIGHT) * PATCH_HEIGHT,
+        ];
+        few.add(origin, core::iter::once(found_at(origin, point)));
+    }
+    Some(few)
+}
