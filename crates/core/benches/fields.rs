@@ -90,14 +90,6 @@ fn main() {
                 .expect("near"),
         ),
         (
-            "thinned to 1/2, moving",
-            set.clone()
-                .keep_moving(0.5)
-                .expect("a share")
-                .within(region)
-                .expect("near"),
-        ),
-        (
             "constant 1/2",
             within(&set, spec(FieldSpec::constant(0.5)), region),
         ),
@@ -157,7 +149,7 @@ fn main() {
     }
     let mut jobs: Vec<&mut dyn FnMut() -> u64> =
         jobs.iter_mut().map(|job| &mut **job as _).collect();
-    let jobs: &mut [_; 11] = jobs.as_mut_slice().try_into().expect("eleven");
+    let jobs: &mut [_; 10] = jobs.as_mut_slice().try_into().expect("ten");
     let result = medians(rounds, jobs);
     println!("{side}² spacings, f32, blocks of {BLOCK}, one core, median of {rounds}");
     for ((name, plan), seconds) in plans.iter().zip(result) {

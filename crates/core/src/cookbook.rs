@@ -198,8 +198,7 @@
 //!
 //! # Density that varies
 //!
-//! A field says which share of the points stays at each place. With a table that has a
-//! [ladder](crate::table::Ladder), the points that are left move a little and stay evenly spread.
+//! A field says which share of the points stays at each place. Those that are left do not move.
 //!
 #![cfg_attr(feature = "tables", doc = "```")]
 #![cfg_attr(not(feature = "tables"), doc = "```ignore")]

@@ -34,7 +34,7 @@
 //!
 //! - `std` (default): vector instructions of x86-64 are found at run time, and some results are kept.
 //!   Without it the crate needs `alloc` only; all results have the same bits.
-//! - `tables` (default): [`PointSet::blue`] and its table, 2.5 MB with its ladder. Others are read from files by
+//! - `tables` (default): [`PointSet::blue`] and its table, 0.2 MB. Others are read from files by
 //!   [`Table::from_bytes`].
 //!
 //! The crate knows no network, no async runtime, no file system and no serialization framework.
@@ -76,7 +76,7 @@ pub use table::Table;
 /// use strew_core::{ALGORITHM_VERSION, PointId};
 ///
 /// // A saved game that keeps ids keeps the version with them.
-/// let saved = (2, PointId { x: -31, y: 52 });
+/// let saved = (3, PointId { x: -31, y: 52 });
 /// assert_eq!(saved.0, ALGORITHM_VERSION, "made with other points");
 /// ```
-pub const ALGORITHM_VERSION: u32 = 2;
+pub const ALGORITHM_VERSION: u32 = 3;

@@ -13,7 +13,7 @@ use strew_core::{
 };
 use subject::{all_by, definition, shipped};
 
-/// Blue with ranks and a ladder, and a table with neither.
+/// Blue with ranks, and a table without.
 fn tables() -> &'static [Table; 2] {
     static ONCE: OnceLock<[Table; 2]> = OnceLock::new();
     ONCE.get_or_init(|| {
@@ -274,8 +274,8 @@ proptest! {
         prop_assert_eq!(described.to_vec(), closure.to_vec());
         prop_assert_eq!(described.placement(), set.placement());
         if share * keep >= 1e-6 {
-            let moving = set.keep_moving(share * keep).expect("a share");
-            prop_assert_eq!(described.to_vec(), moving.within(area).expect("near").to_vec());
+            let kept = set.keep(share * keep).expect("a share");
+            prop_assert_eq!(described.to_vec(), kept.within(area).expect("near").to_vec());
         }
     }
 }
@@ -345,17 +345,17 @@ fn far_chunks_have_exact_offsets() {
     for (seed, at) in [(0, [1_000_000_000_000, -77]), (7, [-3, 99_999_999_999])] {
         let set = PointSet::new(tables()[0].clone()).seed(seed);
         let chunk = Region::chunk(10.0, at).expect("near enough");
-        let moving = set
+        let kept = set
             .clone()
-            .keep_moving(0.6)
+            .keep(0.6)
             .expect("a share")
             .within(chunk)
             .expect("near");
         let plan = set.in_field(field).within(chunk).expect("near");
-        assert_eq!(items::<Offsets>(&plan, 17), items::<Offsets>(&moving, 99));
-        assert_eq!(items::<F32>(&plan, 17), items::<F32>(&moving, 99));
-        assert_eq!(items::<Points>(&plan, 17), items::<Points>(&moving, 99));
-        assert_eq!(plan.origin(), moving.origin());
+        assert_eq!(items::<Offsets>(&plan, 17), items::<Offsets>(&kept, 99));
+        assert_eq!(items::<F32>(&plan, 17), items::<F32>(&kept, 99));
+        assert_eq!(items::<Points>(&plan, 17), items::<Points>(&kept, 99));
+        assert_eq!(plan.origin(), kept.origin());
     }
 }
 

@@ -1,13 +1,13 @@
-//! Sets in fields, and sets that move as they are thinned, against their definition point by point.
+//! Sets in fields, and thinned sets, against their definition point by point.
 
 mod subject;
 
 use proptest::prelude::*;
 use strew_core::{
-    Area, Circle, Field, Map, Placement, Point, PointId, PointSet, Raster, Region, Seed, Spacing,
-    Table, Warp,
+    Area, Circle, Field, Map, Placement, PointId, PointSet, Raster, Region, Seed, Spacing, Table,
+    Warp,
     field::{Edges, FieldSpec, Filter},
-    table::{Ladder, Provenance, Ranks, Rung},
+    table::{Provenance, Ranks},
 };
 use subject::definition;
 
@@ -18,8 +18,8 @@ fn mixed(i: u32) -> u32 {
     z ^ (z >> 16)
 }
 
-/// A table with vectors of up to ±6 grid units and a ladder with vectors of up to ±40.
-fn table(with_ladder: bool) -> Table {
+/// A table with vectors of up to ±6 grid units, and ranks.
+fn table() -> Table {
     let map = Map::new("(5-sqrt(3))/2".parse().expect("valid"), 12).expect("small");
     let blocks = (map.intervals() * map.intervals()) as u32;
     let vector = |i: u32| [i, !i].map(|i| (mixed(i) % (12 << 20)) as i32 - (6 << 20));
@@ -31,38 +31,14 @@ fn table(with_ladder: bool) -> Table {
     for (position, &block) in (0..).zip(&order) {
         positions[block as usize] = position;
     }
-    let table = table
+    table
         .with_ranks(Ranks::new(positions).expect("all"))
-        .expect("valid");
-    if !with_ladder {
-        return table;
-    }
-    let mut above = 1.0;
-    let levels = [0.7, 0.4, 0.1].into_iter().zip(1u32..).map(|(share, k)| {
-        let left = (0..blocks as usize)
-            .filter(|&b| table.block_ranks(b).start < above)
-            .count();
-        above = (share * 4_294_967_296.0f64).round() / 4_294_967_296.0;
-        let rung = |i: u32| {
-            let start = (mixed(i ^ 5) % 200) as u8;
-            Rung {
-                vector: [i ^ k << 20, !i].map(|i| (mixed(i) % 20_480) as i16 - 10_240),
-                event: [
-                    start,
-                    start + 1 + (mixed(i ^ 9) % u32::from(255 - start)) as u8,
-                ],
-            }
-        };
-        (share, (0..left as u32).map(rung).collect())
-    });
-    let ladder = Ladder::new(levels.collect()).expect("valid");
-    table.with_ladder(ladder).expect("valid")
+        .expect("valid")
 }
 
-fn set(with_ladder: bool, seed: u64, warp: f64, spacing: f64) -> PointSet {
+fn set(seed: u64, warp: f64, spacing: f64) -> PointSet {
     let placement = Placement::new(Spacing::new(spacing).expect("in range"), Seed(seed));
-    PointSet::new(table(with_ladder))
-        .placed(placement.with_warp(Warp::new(warp).expect("in range")))
+    PointSet::new(table()).placed(placement.with_warp(Warp::new(warp).expect("in range")))
 }
 
 /// Smooth, with places of share 0 and of share 1.
@@ -132,10 +108,10 @@ proptest! {
 
     #[test]
     fn a_walk_finds_what_the_definition_has(
-        ladder: bool, seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
+        seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
         spacing in 0.5..3.0f64, region in any_region(), keep in prop_oneof![Just(1.0), 0.2..1.0f64],
     ) {
-        let set = set(ladder, seed, warp, spacing).keep(keep).expect("a share");
+        let set = set(seed, warp, spacing).keep(keep).expect("a share");
         agrees(&set, hills, region)?;
         agrees(&set, raster(), region)?;
         agrees(&set, dunes(), region)?;
@@ -171,32 +147,31 @@ proptest! {
     }
 
     #[test]
-    fn a_constant_field_is_a_set_that_moves(
-        ladder: bool, seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
+    fn a_constant_field_is_a_thinned_set(
+        seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
         region in any_region(), share in prop_oneof![0.01..1.0f64, Just(1.0), Just(0.7)],
     ) {
-        let set = set(ladder, seed, warp, 1.0);
-        let moving = set.clone().keep_moving(share).expect("a share");
+        let set = set(seed, warp, 1.0);
+        let kept = set.clone().keep(share).expect("a share");
         let graded = set.in_field(move |_: [f64; 2]| share);
-        let points = moving.within(region).expect("near");
+        let points = kept.within(region).expect("near");
         let found = graded.within(region).expect("near");
         prop_assert_eq!(points.to_vec(), found.to_vec());
         prop_assert_eq!(points.count(), found.count());
         for member in found {
-            prop_assert_eq!(moving.point(member.id()), Some(member));
-            let near = moving.nearest(member.at(), 1).expect("near");
+            prop_assert_eq!(kept.point(member.id()), Some(member));
+            let near = kept.nearest(member.at(), 1).expect("near");
             prop_assert_eq!(near[0].distance, 0.0);
         }
     }
 
     #[test]
-    fn what_is_kept_and_moved_turns_with_the_seed(
-        ladder: bool, moves: bool, seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
+    fn what_is_kept_turns_with_the_seed(
+        seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
         region in any_region(), share in prop_oneof![0.01..1.0f64, Just(1.0), Just(0.7)],
     ) {
-        let all = set(ladder, seed, warp, 1.0);
-        let kept = if moves { all.clone().keep_moving(share) } else { all.clone().keep(share) };
-        let kept = kept.expect("a share");
+        let all = set(seed, warp, 1.0);
+        let kept = all.clone().keep(share).expect("a share");
         let unit = all.table().alpha().set_side_f64();
         let expected = brute(|id| definition::place(&kept, id), &region, unit);
         let plan = kept.within(region).expect("near");
@@ -217,11 +192,11 @@ proptest! {
 
     #[test]
     fn parts_of_thinned_sets_count_what_they_hold(
-        ladder: bool, seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
+        seed in 0u64..40, warp in prop_oneof![Just(0.0), Just(1.0)],
         corner in prop::array::uniform2(-2000.0..2000.0f64), side in 1.0..900.0f64, narrow in 0.02..1.0f64,
         share in 0.01..1.0f64, radius in 0.1..0.8f64,
     ) {
-        let kept = set(ladder, seed, warp, 1.0).keep_moving(share).expect("a share");
+        let kept = set(seed, warp, 1.0).keep(share).expect("a share");
         let max = [corner[0] + side, corner[1] + side * narrow];
         let region = Region::new(corner, max).expect("ordered");
         let circle = Circle::new(corner, radius * side).expect("round");
@@ -233,7 +208,7 @@ proptest! {
 
     #[test]
     fn boxes_share_no_point_and_lose_none(cut in 0.0..1.0f64, region in any_region(), seed in 0u64..3) {
-        let graded = set(true, seed, 1.0, 1.0).in_field(hills);
+        let graded = set(seed, 1.0, 1.0).in_field(hills);
         let ([x0, y0], [x1, y1]) = (region.min(), region.max());
         let middle = x0 + (x1 - x0) * cut;
         let of = |from: f64, to: f64| {
@@ -247,61 +222,17 @@ proptest! {
         prop_assert_eq!(parts, whole);
     }
 
-    #[test]
-    fn a_path_over_shares_is_continuous(block in 0usize..225, share in 0.02..1.0f64) {
-        let table = table(true);
-        prop_assume!(block < table.displacements().len());
-        // At most 80 grid units in a 255th of a way of at most 0.3, so 7·10⁴ grid units per share.
-        let step = 1e-9;
-        let [a, b] = [share, share - step].map(|share| table.displacement_at(block, share));
-        for axis in 0..2 {
-            prop_assert!((a[axis] - b[axis]).abs() <= 2 + (7e4 * step * f64::from(1 << 20)) as i32);
-        }
-    }
-}
-
-/// A field with slopes that are not its own.
-struct Lying(FieldSpec);
-
-impl Field for Lying {
-    fn share(&self, at: [f64; 2]) -> f64 {
-        self.0.share(at)
-    }
-
-    fn bounds(&self, within: &Region) -> [f64; 2] {
-        self.0.bounds(within)
-    }
-
-    fn slopes(&self, _: &Region) -> [f64; 2] {
-        [0.0; 2]
-    }
-}
-
-/// Slopes are believed, and only by walks: were those of a shape too small, the tests that compare walks with the
-/// definition would fail as they do here.
-#[test]
-fn a_field_whose_slopes_are_too_small_is_found_out() {
-    let set = set(true, 7, 1.0, 1.0);
-    let region = Region::new([-20.0, -20.0], [20.0, 20.0]).expect("ordered");
-    let points = |set: &PointSet| set.within(region).expect("near").to_vec();
-    let ramp = FieldSpec::ramp([-40.0, 0.0], [40.0, 0.0], [0.9, 0.1]).expect("valid");
-    let (honest, lying) = (set.in_field(ramp.clone()), set.in_field(Lying(ramp)));
-    let bits = |at: [f64; 2]| at.map(f64::to_bits);
-    let defined = |point: &Point| honest.point(point.id).map(|member| bits(member.at()));
-    let is_defined = |point: &Point| defined(point) == Some(bits(point.at()));
-    assert!(points(&honest).iter().all(is_defined));
-    assert!(!points(&lying).iter().all(is_defined));
 }
 
 #[test]
 fn far_chunks_of_a_field_are_exact() {
     for (seed, at) in [(0, [1_000_000_000_000, -77]), (7, [-3, 99_999_999_999])] {
-        let set = set(true, seed, 1.0, 1.0);
-        let moving = set.clone().keep_moving(0.6).expect("a share");
+        let set = set(seed, 1.0, 1.0);
+        let kept = set.clone().keep(0.6).expect("a share");
         let graded = set.in_field(|_: [f64; 2]| 0.6);
         for at in [at, [at[0] + 1, at[1]], [at[0], at[1] + 1]] {
             let chunk = Region::chunk(10.0, at).expect("near enough");
-            let points = moving.within(chunk).expect("near enough").to_vec();
+            let points = kept.within(chunk).expect("near enough").to_vec();
             assert_eq!(points, graded.within(chunk).expect("near enough").to_vec());
         }
     }
@@ -309,7 +240,7 @@ fn far_chunks_of_a_field_are_exact() {
 
 #[test]
 fn shares_outside_the_range_and_nan_are_none_or_all() {
-    let set = set(true, 1, 1.0, 1.0);
+    let set = set(1, 1.0, 1.0);
     let region = Region::new([0.0, 0.0], [20.0, 20.0]).expect("ordered");
     let count = |share: f64| {
         set.in_field(move |_: [f64; 2]| share)

@@ -26,19 +26,12 @@ fn any_set() -> impl Strategy<Value = PointSet> {
     let seed = prop_oneof![Just(0u64), any::<u64>()];
     let warp = prop_oneof![Just(0.0), Just(1.0), 0.0..2.0f64];
     let keep = prop_oneof![Just(1.0), 0.02..1.0f64];
-    let parts = (
-        0..tables().len(),
-        seed,
-        warp,
-        0.6..3.0f64,
-        keep,
-        any::<bool>(),
-    );
-    parts.prop_map(|(table, seed, warp, spacing, keep, moves)| {
+    let parts = (0..tables().len(), seed, warp, 0.6..3.0f64, keep);
+    parts.prop_map(|(table, seed, warp, spacing, keep)| {
         let keep = Keep::new(keep).expect("a share");
         let placement = Placement::new(Spacing::new(spacing).expect("in range"), Seed(seed))
             .with_warp(Warp::new(warp).expect("in range"))
-            .with_keep(if moves { keep.moving() } else { keep });
+            .with_keep(keep);
         PointSet::new(tables()[table].clone()).placed(placement)
     })
 }
@@ -392,7 +385,7 @@ fn kinds_keep_their_distances() {
     let blue = subject::shipped("blue-5-sqrt3-over-2-s");
     let region = Region::new([0.0, 0.0], [160.0, 160.0]).expect("ordered");
     for shares in ["1:1", "1:3:10"] {
-        let table = mixed(&blue, shares, false);
+        let table = mixed(&blue, shares);
         for (seed, warp) in [(0, 0.0), (7, 1.0)] {
             let set = PointSet::new(table.clone())
                 .seed(seed)

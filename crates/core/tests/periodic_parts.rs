@@ -85,7 +85,7 @@ fn parts_are_those_points_that_their_definition_leaves() {
         let error = count as f64 / tile.len() as f64 - share / 14.0;
         assert!(error.abs() < 0.03, "{share}: {error}");
     }
-    // This table has no ladder, so points in a field stay where they are.
+    // Points in a field stay where they are.
     let side = tile.length();
     let ramp = move |[x, _]: [f64; 2]| x / side;
     let graded = tile.in_field(ramp);

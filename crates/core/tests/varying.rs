@@ -102,20 +102,12 @@ fn any_subject() -> impl Strategy<Value = Subject> {
     let warp = prop_oneof![Just(0.0), Just(1.0), 0.0..2.0f64];
     let keep = prop_oneof![Just(1.0), 0.02..1.0f64];
     let tables = subject::mixed::tables();
-    let parts = (
-        0..tables.len(),
-        seed,
-        warp,
-        0.6..3.0f64,
-        keep,
-        0..4usize,
-        any::<bool>(),
-    );
-    parts.prop_map(|(table, seed, warp, spacing, keep, number, moves)| {
+    let parts = (0..tables.len(), seed, warp, 0.6..3.0f64, keep, 0..4usize);
+    parts.prop_map(|(table, seed, warp, spacing, keep, number)| {
         let keep = Keep::new(keep).expect("a share");
         let placement = Placement::new(Spacing::new(spacing).expect("in range"), Seed(seed))
             .with_warp(Warp::new(warp).expect("in range"))
-            .with_keep(if moves { keep.moving() } else { keep });
+            .with_keep(keep);
         // They have kinds of their own, which do not count.
         let table = &subject::mixed::tables()[table];
         Subject {

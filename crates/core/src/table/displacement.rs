@@ -4,7 +4,7 @@ use alloc::{sync::Arc, vec, vec::Vec};
 use core::{fmt, ops::Range};
 
 use super::{
-    Digest, Displacement, Labels, Ladder, Mix, Order, Provenance, Ranks, file, parts::Parts,
+    Digest, Displacement, Labels, Mix, Order, Provenance, Ranks, file, parts::Parts,
     symmetry::TurnedCopies,
 };
 use crate::{error::Error, map::Map, once::Once, pattern::Alpha};
@@ -73,7 +73,6 @@ impl Table {
             displacements,
             provenance,
             ranks: None,
-            ladder: None,
             mix: None,
         };
         Self::of_parts(parts)
@@ -92,9 +91,6 @@ impl Table {
             Some(ranks) => Order::new(&parts.map, ranks),
             None => Order::new(&parts.map, &Ranks::hashed(parts.displacements.len())),
         };
-        if let Some(ladder) = &parts.ladder {
-            ladder.check(&order)?;
-        }
         let labels = parts.mix.as_ref();
         let labels = labels.map(|mix| Labels::new(&parts.map, mix, |block| block));
         let mut reach = [[i32::MAX, i32::MIN]; 2];
@@ -280,19 +276,6 @@ impl Table {
         self.0.parts.ranks.as_ref()
     }
 
-    /// The displacements for smaller shares, or `None` if the table has none.
-    ///
-    /// ```
-    /// use strew_core::Table;
-    ///
-    /// assert!(Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?.ladder().is_none());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub fn ladder(&self) -> Option<&Ladder> {
-        self.0.parts.ladder.as_ref()
-    }
-
     /// The kinds of the points of each block, or `None` if the table has none.
     ///
     /// ```
@@ -328,35 +311,6 @@ impl Table {
         order.floors(order.position(block))
     }
 
-    /// The displacement of a block where a share of the points is left: that of the
-    /// [ladder](Self::ladder), or the table's own if there is none.
-    ///
-    /// ```
-    /// use strew_core::{Table, table::{Ladder, Ranks, Rung}};
-    ///
-    /// let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let blocks = table.displacements().len();
-    /// let level = (0.5, vec![Rung { vector: [256, 0], event: [0, 255] }; blocks]);
-    /// let table = table.with_ranks(Ranks::new((0..blocks as u32).collect())?)?;
-    /// let table = table.with_ladder(Ladder::new(vec![level])?)?;
-    /// assert_eq!(table.displacement_at(7, 1.0), [0, 0]);
-    /// assert_eq!(table.displacement_at(7, 0.75), [1 << 19, 0]);
-    /// assert_eq!(table.displacement_at(7, 0.5), [1 << 20, 0]);
-    /// // Below the last level points return.
-    /// assert_eq!(table.displacement_at(7, 0.25), [0, 0]);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    ///
-    /// # Panics
-    /// If there is no such block.
-    #[must_use]
-    pub fn displacement_at(&self, block: usize, share: f64) -> Displacement {
-        let full = self.displacements()[block];
-        self.ladder().map_or(full, |ladder| {
-            ladder.displacement(ladder.stage(share), self.order().position(block), full)
-        })
-    }
-
     /// The order in which blocks leave, a hashed one for a table without ranks.
     pub(crate) fn order(&self) -> &Order {
         &self.0.order
@@ -382,12 +336,11 @@ impl Table {
     pub fn memory_bytes(&self) -> usize {
         // A bound, a label and about two buckets for each interval.
         let map = 32 * self.map().intervals();
-        let ladder = self.ladder().map_or(0, Ladder::memory_bytes);
         let copies = TurnedCopies::MOST;
         let vectors = (1 + copies) * size_of_val(self.displacements());
         let order = self.0.order.memory_bytes(copies);
         let mix = self.mix().map_or(0, |mix| mix.memory_bytes(1 + copies));
-        size_of::<Content>() + vectors + order + mix + map + ladder + 4096
+        size_of::<Content>() + vectors + order + mix + map + 4096
     }
 
     /// The least and the greatest displacement along x and y.

@@ -18,15 +18,13 @@
 //!
 //! `displacement` has the [`Table`], made of the `parts` that a `file` holds, and `derived` makes one from another; `units` the fixed point,
 //! `provenance` the history, `digest` the name, `text` the published text form. `ranks` is the order in which
-//! blocks leave when a set is thinned, `ladder` the displacements of those that are left (`lookup` has those of many points at once). `mix` has the kinds of
-//! points, in the ratio of `shares`. `symmetry` has the ways to turn all of these, `turned` a table that is turned, `shipped` the tables built into this crate.
+//! blocks leave when a set is thinned. `mix` has the kinds of points, in the ratio of `shares`. `symmetry` has the ways
+//! to turn all of these, `turned` a table that is turned, `shipped` the tables built into this crate.
 
 mod derived;
 mod digest;
 mod displacement;
 mod file;
-mod ladder;
-mod lookup;
 mod mix;
 mod parts;
 mod provenance;
@@ -42,9 +40,6 @@ mod units;
 pub use digest::Digest;
 pub use displacement::Table;
 pub use file::{FORMAT_VERSION, Head, MAX_FILE_BYTES};
-pub use ladder::{LADDER_BITS, Ladder, Rung};
-pub(crate) use ladder::{SHIFT as LADDER_SHIFT, Stage, between, part};
-pub(crate) use lookup::Lookup;
 pub(crate) use mix::Labels;
 pub use mix::{Mix, Split};
 pub use provenance::{Figures, Provenance};

@@ -2,9 +2,7 @@
 
 use alloc::{format, string::String, vec::Vec};
 
-use super::{
-    Displacement, FRACTION_BITS, Ladder, MAX_DISPLACEMENT, Mix, Provenance, Ranks, to_grid_units,
-};
+use super::{Displacement, FRACTION_BITS, MAX_DISPLACEMENT, Mix, Provenance, Ranks, to_grid_units};
 use crate::{
     error::{Error, ErrorKind},
     map::Map,
@@ -20,7 +18,6 @@ pub(super) struct Parts {
     pub(super) provenance: Provenance,
     /// A position for each block.
     pub(super) ranks: Option<Ranks>,
-    pub(super) ladder: Option<Ladder>,
     /// A mix of this map.
     pub(super) mix: Option<Mix>,
 }
@@ -60,10 +57,6 @@ impl Parts {
             let value = format!("{} positions", ranks.positions().len());
             let allowed = format!("{expected} positions, the number of blocks");
             return refused("ranks", value, allowed);
-        }
-        if self.ladder.is_some() && self.ranks.is_none() {
-            let (value, allowed) = ("without ranks".into(), "with ranks".into());
-            return refused("ladder", value, allowed);
         }
         if let Some(mix) = &self.mix
             && Mix::new(&self.map, mix.shares().clone(), mix.labels().to_vec())? != *mix

@@ -169,17 +169,6 @@ impl Order {
         }
     }
 
-    /// The block at a position.
-    #[inline]
-    pub(super) fn block(&self, position: usize) -> usize {
-        self.blocks[position] as usize
-    }
-
-    /// The positions of all blocks, row by row.
-    pub(crate) fn all_positions(&self) -> &[u32] {
-        &self.positions
-    }
-
     /// The position of a block.
     #[inline]
     pub(crate) fn position(&self, block: usize) -> usize {

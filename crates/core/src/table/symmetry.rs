@@ -4,8 +4,8 @@
 //! middle of the set region. Reflecting the plane along an axis therefore reverses the order of the blocks of
 //! that axis, reflecting it about the diagonal swaps the axes of the blocks, and a table turned with them
 //! makes the reflected point set: the pattern is the same one with another origin. The order in which blocks
-//! leave, the vectors of a ladder and the kinds of points turn alike. Only the strips of blocks that are partly
-//! kept, or that have two kinds, run along dX in every turned table.
+//! leave and the kinds of points turn alike. Only the strips of blocks that are partly kept, or that have two
+//! kinds, run along dX in every turned table.
 
 use alloc::{sync::Arc, vec::Vec};
 

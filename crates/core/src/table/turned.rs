@@ -3,8 +3,7 @@
 use alloc::sync::Arc;
 
 use super::{
-    Displacement, Labels, Ladder, Order, Table,
-    ladder::Stage,
+    Displacement, Labels, Order, Table,
     symmetry::{Symmetry, Turned, Upright},
 };
 
@@ -14,7 +13,6 @@ pub(crate) struct TurnedTable {
     /// `None` for the table's own.
     turned: Option<Arc<Turned>>,
     table: Table,
-    symmetry: Symmetry,
     /// The least and the greatest displacement along x and y.
     reach: [[i32; 2]; 2],
 }
@@ -33,7 +31,6 @@ impl TurnedTable {
         Self {
             turned,
             table: table.clone(),
-            symmetry,
             reach: [0, 1].map(|axis| {
                 let [a, b] = ends.map(|end| end[axis]);
                 [a.min(b), a.max(b)]
@@ -68,20 +65,6 @@ impl TurnedTable {
             Some(turned) => turned.labels.as_ref(),
             None => self.table.labels(),
         }
-    }
-
-    /// The displacement of the block at a position of the order, at a stage of the table's ladder.
-    #[inline]
-    pub(crate) fn moved(&self, ladder: &Ladder, stage: Stage, position: usize) -> Displacement {
-        let full = self.table.displacements()[self.table.order().block(position)];
-        self.symmetry
-            .turn(ladder.displacement(stage, position, full))
-    }
-
-    /// A vector of the table, turned.
-    #[inline(always)]
-    pub(crate) fn turn(&self, vector: Displacement) -> Displacement {
-        self.symmetry.turn(vector)
     }
 
     /// The table as it is.

@@ -198,26 +198,13 @@ pub fn place(set: &PointSet, id: PointId) -> Option<[f64; 2]> {
         return None;
     }
     let source = Symmetry::of(seed).source(table.map().intervals(), [i, j]);
-    let vector = if placement.keep.moves() {
-        table.displacement_at(source, share)
-    } else {
-        table.displacements()[source]
-    };
-    Some(displaced(set, id, vector))
+    Some(displaced(set, id, table.displacements()[source]))
 }
 
 /// The place of a lattice address with a vector of the table.
 fn displaced(set: &PointSet, id: PointId, vector: [i32; 2]) -> [f64; 2] {
-    placed(
-        set,
-        id,
-        Symmetry::of(set.placement().seed).turn(vector.map(i128::from)),
-    )
-}
-
-/// The place of a lattice address with a turned vector.
-fn placed(set: &PointSet, id: PointId, [dx, dy]: [i128; 2]) -> [f64; 2] {
     let (table, placement) = (set.table(), set.placement());
+    let [dx, dy] = Symmetry::of(placement.seed).turn(vector.map(i128::from));
     let displaced = [(i128::from(id.x) << 20) + dx, (i128::from(id.y) << 20) + dy];
     let place = match placement.warp.strength() {
         0.0 => displaced,
@@ -242,55 +229,6 @@ pub fn place_in(set: &PointSet, field: &dyn Field, id: PointId) -> Option<[f64; 
             0.0
         }
     };
-    let [x, y] = displaced(set, id, full);
-    let here = share([x, y]);
-    if rank(set, id)? >= here {
-        return None;
-    }
-    let far = placement.spacing.get() / here.sqrt();
-    let change = |at: [f64; 2]| (share(at) - here).abs();
-    let across = change([x - far, y]).max(change([x + far, y]));
-    let up = change([x, y - far]).max(change([x, y + far]));
-    let squared = (across * across + up * up) / (here * here) - 1.0 / 65536.0;
-    let squared = squared.max(0.0);
-    let moved = spread(table, source, here, here * squared.sqrt());
-    let part = 1.0 / (1.0 + 4096.0 * squared);
-    let turn = |v: [i32; 2]| Symmetry::of(placement.seed).turn(v.map(i128::from));
-    let ([a, b], [c, d]) = (turn(full), turn(moved));
-    let way = |from: i128, to: i128| from + ((to - from) as f64 * part) as i128;
-    let [dx, dy] = [way(a, c), way(b, d)];
-    Some(placed(set, id, [dx, dy]))
-}
-
-/// The displacement of a block at a share where events begin earlier and end later by a change of share.
-fn spread(table: &Table, block: usize, share: f64, change: f64) -> [i32; 2] {
-    let Some(ladder) = table.ladder() else {
-        return table.displacements()[block];
-    };
-    let shares: Vec<f64> = [1.0].into_iter().chain(ladder.shares()).collect();
-    let Some(below) = shares
-        .iter()
-        .position(|level| *level <= share)
-        .filter(|k| *k > 0)
-    else {
-        // At full density, or below the last level, where there are no events.
-        return table.displacement_at(block, share);
-    };
-    let order = table.ranks().expect("a table with a ladder has ranks");
-    let position = order.positions()[block] as usize;
-    let Some(rung) = ladder.level(below).get(position) else {
-        return table.displacement_at(block, share);
-    };
-    let wide = |v: i16| i32::from(v) << 12;
-    let to = rung.vector.map(wide);
-    let from = match below {
-        1 => table.displacements()[block],
-        _ => ladder.level(below - 1)[position].vector.map(wide),
-    };
-    let unit = 255.0 / (shares[below - 1] - shares[below]);
-    let start = (f64::from(rung.event[0]) - unit * change).max(0.0);
-    let end = (f64::from(rung.event[1]) + unit * change).min(255.0);
-    let part = (((shares[below - 1] - share) * unit - start) / (end - start)).clamp(0.0, 1.0);
-    let way = |a: i32, b: i32| a + (f64::from(b - a) * part) as i32;
-    [way(from[0], to[0]), way(from[1], to[1])]
+    let place = displaced(set, id, full);
+    (rank(set, id)? < share(place)).then_some(place)
 }

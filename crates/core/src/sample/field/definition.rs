@@ -73,8 +73,8 @@ pub trait Field: Send + Sync {
         [0.0, 1.0]
     }
 
-    /// Bounds of how much the share changes along x and along y for each world unit, within a box: where it is
-    /// known to change little, sets do not look at the field around each place. Infinity is always right.
+    /// Bounds of how much the share changes along x and along y for each world unit, within a box. Infinity is always
+    /// right.
     ///
     /// ```
     /// use strew_core::{Field, Raster, Region};

@@ -1,14 +1,13 @@
 //! Fields: shares that vary from place to place.
 //!
 //! A [`Field`] has a share in [0, 1] at each place. A point of a set belongs to the set in a field if its
-//! rank is below the share at the place where it is at full density; that place is looked at once, and
-//! nothing else of the field matters to the point. Where the table has a [ladder](crate::table::Ladder), the
-//! point then moves to its place at that share.
+//! rank is below the share at its place; that place is looked at once, and nothing else of the field matters to
+//! the point. Points do not move when others leave.
 //!
 //! `definition` has the trait. `spec` has the descriptions that a program can keep, compare and name by a digest,
 //! `evaluate` their shares; they are made of `raster` and `terrain` (both `pixels` laid over the plane by `grid`),
 //! `marks`, `noise` and the lines of `scale`. `rows` finds the points of a field in some rows, many at a time, where
-//! `tiles` leaves any, and `steps` moves them. `Lattice::place` is the definition, point by point; walks leave out
+//! `tiles` leaves any. `Lattice::place` is the definition, point by point; walks leave out
 //! what bounds of the field rule out and find the same points with the same bits.
 
 mod canon;
@@ -23,7 +22,6 @@ mod raster;
 mod rows;
 mod scale;
 mod spec;
-mod steps;
 mod terrain;
 mod tiles;
 

@@ -3,10 +3,7 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::{
-    steps::{POSITION, Points, Steps, WHOLE},
-    tiles::{self, Strip, TILE},
-};
+use super::tiles::{self, Strip, TILE};
 use crate::{
     pattern::Axis,
     sample::{
@@ -20,14 +17,16 @@ use crate::{
 /// Lists end at a multiple of this, a pair of the widest vectors.
 const PAIR: usize = 32;
 
+/// Marks a position whose point is left whatever its share. There are fewer blocks than this.
+const WHOLE: u32 = 1 << 31;
+
 /// The number of candidates that are kept at once if all are left.
 const FEW: usize = 16;
 
 /// The points of some rows of a patch, and the memory to find them.
 ///
 /// They are found in stages, each for all candidates before the next: addresses that tiles leave, their
-/// places at full density, the shares there, those that are left, how far they have moved, and their
-/// places. Lists are longer than the number of candidates.
+/// places, the shares there, and those that are left. Lists are longer than the number of candidates.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FieldRows {
     strip: Strip,
@@ -38,13 +37,10 @@ pub(crate) struct FieldRows {
     places: [Vec<i32>; 2],
     /// Columns in the lower 16 bits and rows in the upper ones, relative to the patch.
     addresses: Vec<u32>,
-    /// By position in the order of blocks, with the marks of `steps`.
+    /// The positions of their blocks in the order of blocks, with [`WHOLE`].
     positions: Vec<u32>,
     at: Vec<[f64; 2]>,
     shares: Vec<f64>,
-    /// The numbers of the candidates that are left.
-    left: Vec<u32>,
-    steps: Steps,
     /// The points that were found.
     found: Vec<Found>,
     next: usize,
@@ -130,7 +126,6 @@ impl FieldRows {
         if self.addresses.len() < length {
             self.addresses.resize(length, 0);
             self.positions.resize(length, 0);
-            self.left.resize(length, 0);
             self.at.resize(length, [0.0; 2]);
             self.shares.resize(length, 0.0);
             for list in self.displaced.iter_mut().chain(&mut self.places) {
@@ -200,29 +195,6 @@ impl FieldRows {
         );
         grade.shares(&self.at[..number], &mut self.shares[..number]);
         self.keep(lattice, patch);
-        match lattice.table.ladder() {
-            Some(ladder) => {
-                let (number, [xs, ys]) = (self.number, &mut self.displaced);
-                let points = Points {
-                    addresses: &self.addresses[..number],
-                    positions: &self.positions[..number],
-                    shares: &self.shares[..number],
-                    displaced: [&mut xs[..number], &mut ys[..number]],
-                };
-                let (at, left) = (&self.at, &self.left);
-                let place = |i: usize| at[left[i] as usize];
-                self.steps
-                    .take((lattice, grade), ladder, points, place, backend);
-                self.place(patch, backend);
-            }
-            None => {
-                for list in &mut self.places {
-                    for (i, &from) in self.left[..self.number].iter().enumerate() {
-                        list[i] = list[from as usize];
-                    }
-                }
-            }
-        }
         let (number, [xs, ys]) = (self.number, &self.places);
         let places = xs.iter().zip(ys).map(|(&x, &y)| [x, y]);
         let all = places.zip(&self.addresses).take(number);
@@ -257,15 +229,13 @@ impl FieldRows {
         let [left, bottom] = patch.origin();
         let number = self.number;
         let addresses = &mut self.addresses[..number];
-        let positions = &mut self.positions[..number];
-        let shares = &mut self.shares[..number];
-        let from = &mut self.left[..number];
-        let [xs, ys] = &mut self.displaced;
+        let (positions, shares) = (&self.positions[..number], &self.shares[..number]);
+        let [xs, ys] = &mut self.places;
         let (xs, ys) = (&mut xs[..number], &mut ys[..number]);
         // Decides a candidate that the tile leaves open.
         let is_left = |address: u32, position: u32, share: f64| {
             // Ranks of a position are at least the number before its start, and less than its end.
-            let ranks = order.floors((position & POSITION) as usize);
+            let ranks = order.floors(position as usize);
             let id = || PointId {
                 x: left + i64::from(address & 0xffff),
                 y: bottom + i64::from(address >> 16),
@@ -277,15 +247,9 @@ impl FieldRows {
             let end = number.min(start + FEW);
             let is_whole = positions[start..end].iter().fold(WHOLE, |all, p| all & p) != 0;
             if is_whole && end - start == FEW {
-                for list in [&mut *addresses, &mut *positions] {
-                    list.copy_within(start..start + FEW, next);
-                }
+                addresses.copy_within(start..end, next);
                 for list in [&mut *xs, &mut *ys] {
-                    list.copy_within(start..start + FEW, next);
-                }
-                shares.copy_within(start..start + FEW, next);
-                for (k, from) in from[next..next + FEW].iter_mut().enumerate() {
-                    *from = (start + k) as u32;
+                    list.copy_within(start..end, next);
                 }
                 (next, start) = (next + FEW, end);
                 continue;
@@ -295,9 +259,6 @@ impl FieldRows {
                 let is_left = position & WHOLE != 0 || is_left(address, position, share);
                 // Written in any case; the next one goes to the same place if this has left.
                 addresses[next] = address;
-                positions[next] = position;
-                shares[next] = share;
-                from[next] = i as u32;
                 (xs[next], ys[next]) = (xs[i], ys[i]);
                 next += usize::from(is_left);
             }
@@ -340,7 +301,7 @@ impl ListedRow<'_> {
             ys[number] = self.row + dy;
             addresses[number] = self.first | (column.x >> FRACTION_BITS) as u32;
             let whole = if position < column.whole { WHOLE } else { 0 };
-            all[number] = position | column.flag | whole;
+            all[number] = position | whole;
             number += usize::from((position < column.alive) & keeps(column));
         }
         number

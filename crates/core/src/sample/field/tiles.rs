@@ -1,19 +1,17 @@
 //! Tiles: which pieces of the lattice may have points of a field, and of which blocks.
 //!
-//! A point lies near its lattice address: its full displacement and the warp away when the field is
-//! looked at, and up to a displacement of the ladder and the warp when it is placed. So bounds of the
-//! field around a tile leave out all of it, or the blocks that have left, and the ladder's reach at the least
-//! share limits how far outside of the box its addresses can be.
+//! A point lies near its lattice address: its displacement and the warp away. So bounds of the field around a tile
+//! leave out all of it, or the blocks that have left, and the longest displacements limit how far outside of the box
+//! its addresses can be.
 
 use alloc::{collections::VecDeque, vec::Vec};
 use core::ops::Range;
 
-use super::steps::STEEP;
 use crate::{
     pattern::{Axis, Class},
     sample::{
         area::Region,
-        lattice::{Columns, Grade, Lattice, Line, Patch, Span, is_gentle, places},
+        lattice::{Columns, Grade, Lattice, Line, Patch, Span, places},
     },
     table::{FRACTION_BITS, fixed},
 };
@@ -32,8 +30,6 @@ pub(super) struct Column {
     /// The number of positions of which any point may be left, and of those of which all are.
     pub(super) alive: u32,
     pub(super) whole: u32,
-    /// [`STEEP`] unless the field changes so little that it counts as constant for all moves.
-    pub(super) flag: u32,
 }
 
 /// The tiles of some rows of a patch.
@@ -83,9 +79,9 @@ impl Strip {
 /// Some columns and rows of the lattice.
 pub(super) type Piece = [Range<i64>; 2];
 
-/// The least and the greatest distance of points from their addresses by axis, up to `reach` without the
-/// warp, in fixed-point units.
-fn distances(lattice: &Lattice, piece: &Piece, reach: [[i32; 2]; 2]) -> [[i32; 2]; 2] {
+/// The least and the greatest distance of points from their addresses by axis, in fixed-point units.
+fn distances(lattice: &Lattice, piece: &Piece) -> [[i32; 2]; 2] {
+    let reach = lattice.turned.reach();
     let Some(shears) = &lattice.shears else {
         return reach;
     };
@@ -96,17 +92,12 @@ fn distances(lattice: &Lattice, piece: &Piece, reach: [[i32; 2]; 2]) -> [[i32; 2
         ]
     });
     let drift = shears.drift_from(displaced);
-    [0, 1].map(|i| [reach[i][0] + drift[i][0], reach[i][1] + drift[i][1]])
+    added(reach, drift)
 }
 
 /// The least and the greatest share of the points of a piece, which is not empty.
 pub(super) fn shares(lattice: &Lattice, grade: &Grade, piece: &Piece) -> [f64; 2] {
-    grade.bounds(&around(lattice, piece, lattice.turned.reach()))
-}
-
-/// The box around the places of a piece's points with displacements up to `reach`.
-fn around(lattice: &Lattice, piece: &Piece, reach: [[i32; 2]; 2]) -> Region {
-    box_at(lattice, piece, distances(lattice, piece, reach))
+    grade.bounds(&box_at(lattice, piece, distances(lattice, piece)))
 }
 
 /// The box around a piece's points that are between two distances from their addresses.
@@ -121,51 +112,13 @@ fn box_at(lattice: &Lattice, piece: &Piece, distances: [[i32; 2]; 2]) -> Region 
     Region::between([x[0], y[0]], [x[1], y[1]])
 }
 
-/// The share that a field has at all places that matter to the points of a piece, if it is only one: those
-/// where they are at full density and those around that tell how steep it is.
+/// The share that a field has at the places of all points of a piece, if it is only one.
 pub(crate) fn constant(lattice: &Lattice, grade: &Grade, piece: &Piece) -> Option<f64> {
     if piece.iter().any(Range::is_empty) {
         return Some(0.0);
     }
-    let is_one = |[low, high]: [f64; 2]| low.to_bits() == high.to_bits();
-    let near = around(lattice, piece, lattice.turned.reach());
-    let bounds = grade.bounds(&near);
-    if !is_one(bounds) {
-        return None;
-    }
-    let share = bounds[0];
-    if share == 0.0 || lattice.table.ladder().is_none() {
-        return Some(share);
-    }
-    let wide = grade.bounds(&looked_at(lattice, &near, share));
-    (is_one(wide) && wide[0].to_bits() == share.to_bits()).then_some(share)
-}
-
-/// The box around places of a box in which a field is looked at for its steepness, at shares from `least` on.
-fn looked_at(lattice: &Lattice, near: &Region, least: f64) -> Region {
-    // A little more than the spacing, which is rounded.
-    let room = lattice.placement.spacing.get() / libm::sqrt(least) * (1.0 + 1e-9);
-    let room = |v: f64| room + 1e-15 * v.abs();
-    let min = near.min().map(|v| v - room(v));
-    let max = near.max().map(|v| v + room(v));
-    Region::between(min, max)
-}
-
-/// Whether a field counts as constant for the moves of points in a box, whose shares are from `least` on.
-fn is_gentle_near(lattice: &Lattice, grade: &Grade, near: &Region, least: f64) -> bool {
-    if least <= 0.0 || lattice.table.ladder().is_none() {
-        return false;
-    }
-    let wide = looked_at(lattice, near, least);
-    // So far out that what rounds matters.
-    let (min, max) = (wide.min(), wide.max());
-    if (0..2).any(|i| max[i] - min[i] < 1e-10 * min[i].abs().max(max[i].abs())) {
-        return false;
-    }
-    is_gentle(least, grade.slopes(&wide), lattice.placement.spacing.get()) || {
-        let [low, high] = grade.bounds(&wide);
-        low.to_bits() == high.to_bits()
-    }
+    let [low, high] = shares(lattice, grade, piece);
+    (low.to_bits() == high.to_bits()).then_some(low)
 }
 
 /// The end of the first rows of a piece that have no points because the field has none there; its rows
@@ -270,20 +223,18 @@ pub(super) fn list(
         let piece = [start..end, rows.clone()];
         start = end;
         let drift = patch.drift(lattice, &piece);
-        let full = lattice.turned.reach();
-        let near = box_at(lattice, &piece, added(full, drift));
-        let [low, high] = grade.bounds(&near);
+        let distances = added(lattice.turned.reach(), drift);
+        let [low, high] = grade.bounds(&box_at(lattice, &piece, distances));
         if high <= 0.0 {
             continue;
         }
-        let [across, up] = inside(lattice, low, spans, &piece, drift);
+        let [across, up] = inside(spans, &piece, distances);
         if across.is_empty() || up.is_empty() {
             continue;
         }
         // One more: a rank may lie just below the start of its position.
         let alive = lattice.order().alive(high.next_up()) as u32;
         let whole = lattice.order().whole(low) as u32;
-        let is_gentle = is_gentle_near(lattice, grade, &near, low);
         let listed = Class::ALL.map(|class| {
             let all = columns.of(class);
             &all[places(all, &across)]
@@ -294,25 +245,12 @@ pub(super) fn list(
             strips: line.strips,
             alive,
             whole,
-            flag: if is_gentle { 0 } else { STEEP },
         });
     }
 }
 
-/// The part of a piece whose points may lie inside if their shares are from `low` on.
-fn inside(
-    lattice: &Lattice,
-    low: f64,
-    spans: [&Span; 2],
-    piece: &Piece,
-    drift: [[i32; 2]; 2],
-) -> Piece {
-    let ladder = lattice.ladder_reach(low);
-    let reach = lattice
-        .turned
-        .reach()
-        .map(|[least, most]| [least.min(-ladder), most.max(ladder)]);
-    let distances = added(reach, drift);
+/// The part of a piece whose points may lie inside, between two distances from their addresses.
+fn inside(spans: [&Span; 2], piece: &Piece, distances: [[i32; 2]; 2]) -> Piece {
     [0, 1].map(|i| {
         let bounds = &spans[i].bounds;
         let first = |k: i128| (-((-k) >> FRACTION_BITS)) as i64;

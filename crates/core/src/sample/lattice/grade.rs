@@ -47,11 +47,6 @@ impl Grade {
         self.field.bounds(within).map(|share| self.limited(share))
     }
 
-    /// Bounds of the change of the shares along x and y for each world unit, over a box.
-    pub(crate) fn slopes(&self, within: &Region) -> [f64; 2] {
-        self.field.slopes(within).map(|slope| slope * self.factor)
-    }
-
     /// A share of the field within [0, 1], times the factor. NaN becomes 0.
     #[inline(always)]
     fn limited(&self, share: f64) -> f64 {

@@ -9,15 +9,14 @@
 //! Work proceeds in pieces: `lines` lists the columns and rows that hold points (each a `line`), `prefix` counts them,
 //! `patch` has the bands and patches in which positions fit 32 bits, `flat` the points of a patch without
 //! gaps. `point` is what comes out, `rank` its place in the order in which points leave and its kind, `kinds` the
-//! points of one kind, `varied` kinds whose shares vary (`picked` has their points), `grade` the field that says how
-//! many have left, `moves` how far the others move there.
+//! points of one kind, `varied` kinds whose shares vary (`picked` has their points), and `grade` the field that says how
+//! many have left.
 
 mod flat;
 mod grade;
 mod kinds;
 mod line;
 mod lines;
-mod moves;
 mod multiple;
 mod patch;
 mod picked;
@@ -35,7 +34,6 @@ pub(super) use grade::Grade;
 pub(super) use kinds::{OneKind, check_kind};
 pub(super) use line::Line;
 pub(super) use lines::{Columns, Listed, lines_of_class, places};
-pub(super) use moves::{around, damping, is_gentle, longer, moved, steepness};
 pub(super) use multiple::Multiple;
 pub(super) use patch::{BAND_WIDTH, PATCH_HEIGHT, Patch, clip_to_band};
 pub use placement::{Keep, Placement};

@@ -108,17 +108,11 @@ impl Placement {
 /// # Ok::<(), strew_core::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub struct Keep {
-    share: f64,
-    moves: bool,
-}
+pub struct Keep(f64);
 
 impl Keep {
     /// All points.
-    pub const ALL: Self = Self {
-        share: 1.0,
-        moves: false,
-    };
+    pub const ALL: Self = Self(1.0);
     /// The least share. Rows are visited whether or not they keep points, so a smaller share would cost
     /// more than a wider spacing.
     pub const MIN: f64 = 1e-6;
@@ -137,10 +131,7 @@ impl Keep {
     /// ```
     pub fn new(share: f64) -> Result<Self, Error> {
         if (Self::MIN..=1.0).contains(&share) {
-            Ok(Self {
-                share,
-                moves: false,
-            })
+            Ok(Self(share))
         } else {
             let allowed = alloc::format!("a number from {:e} to 1", Self::MIN);
             Err(Error::new(ErrorKind::Keep, "keep", number(share), allowed))
@@ -149,10 +140,7 @@ impl Keep {
 
     /// Any share from 0 to 1.
     pub(super) const fn unchecked(share: f64) -> Self {
-        Self {
-            share,
-            moves: false,
-        }
+        Self(share)
     }
 
     /// The share, from [`MIN`](Self::MIN) to 1.
@@ -166,38 +154,7 @@ impl Keep {
     /// ```
     #[must_use]
     pub const fn get(self) -> f64 {
-        self.share
-    }
-
-    /// This share with points that move as others leave, by the [ladder](crate::table::Ladder) of the table:
-    /// at every share they are spread nearly as evenly as a set made for it. Without a ladder they stay.
-    ///
-    /// ```
-    /// use strew_core::Keep;
-    ///
-    /// let half = Keep::new(0.5)?;
-    /// assert!(half.moving().moves() && !half.moves());
-    /// assert_eq!(half.moving().get(), half.get());
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    #[must_use]
-    pub const fn moving(self) -> Self {
-        Self {
-            moves: true,
-            ..self
-        }
-    }
-
-    /// Whether points [move](Self::moving) as others leave.
-    ///
-    /// ```
-    /// use strew_core::Keep;
-    ///
-    /// assert!(!Keep::ALL.moves());
-    /// ```
-    #[must_use]
-    pub const fn moves(self) -> bool {
-        self.moves
+        self.0
     }
 }
 

@@ -1,13 +1,12 @@
 //! The lattice of a point set, laid into the world.
 
-use alloc::{sync::Arc, vec::Vec};
+use alloc::sync::Arc;
 use core::ops::Range;
 
 use super::{
     Keep, Line, OneKind, Placement, Point, PointId,
     grade::Grade,
     kinds::KindRow,
-    moves,
     rank::{kind, rank},
     varied::Varied,
 };
@@ -18,7 +17,7 @@ use crate::{
         field::Field,
         warp::{NearShears, Shears, Stretch},
     },
-    table::{Cut, Displacement, FRACTION_BITS, Ladder, Order, Table, TurnedTable, fixed},
+    table::{Cut, Displacement, FRACTION_BITS, Order, Table, TurnedTable, fixed},
 };
 
 /// The largest absolute lattice coordinate of a region and of an id, 2⁵². Up to there `f64` separates
@@ -51,46 +50,13 @@ pub(crate) struct Lattice {
     pub(super) kinds: Option<Arc<OneKind>>,
     /// The kinds whose shares vary, if there are such.
     pub(super) varied: Option<Varied>,
-    /// The vectors where points have moved as others left, if they do.
-    moved: Option<Arc<Moved>>,
-    /// The field that decides which points are kept, and how far they have moved.
+    /// The field that decides which points are kept.
     pub(crate) grade: Option<Grade>,
     pub(crate) shears: Option<Shears>,
     /// The bound of what the warp does to distances.
     pub(crate) stretch: Stretch,
     /// World units per fixed-point unit.
     pub(crate) step: f64,
-}
-
-/// Vectors other than the table's own.
-#[derive(Debug)]
-struct Moved {
-    /// As a table has them; zero for blocks that have left.
-    vectors: Vec<Displacement>,
-    /// The least and the greatest along x and y.
-    reach: [[i32; 2]; 2],
-}
-
-impl Moved {
-    /// The vectors of the blocks that are left at a share.
-    fn new(turned: &TurnedTable, ladder: &Ladder, share: f64) -> Self {
-        let (order, stage) = (turned.order(), ladder.stage(share));
-        let alive = order.alive(share);
-        let mut reach = [[0; 2]; 2];
-        let vector = |&position: &u32| {
-            let position = position as usize;
-            if position >= alive {
-                return [0, 0];
-            }
-            let vector = turned.moved(ladder, stage, position);
-            for (ends, v) in reach.iter_mut().zip(vector) {
-                *ends = [ends[0].min(v), ends[1].max(v)];
-            }
-            vector
-        };
-        let vectors = order.all_positions().iter().map(vector).collect();
-        Self { vectors, reach }
-    }
 }
 
 /// Kept out of line, or both conversions would become the slow one.
@@ -117,12 +83,6 @@ impl Lattice {
             placement,
             pattern: Pattern::with_origin(alpha, seed.origin()),
             cut: (keep.get() < 1.0).then(|| turned.order().cut(table.map(), keep.get())),
-            moved: match table.ladder() {
-                Some(ladder) if keep.moves() && keep.get() < 1.0 => {
-                    Some(Arc::new(Moved::new(&turned, ladder, keep.get())))
-                }
-                _ => None,
-            },
             kinds: None,
             varied: None,
             grade: None,
@@ -208,7 +168,7 @@ impl Lattice {
 
     /// The lattice where a field has the same share everywhere.
     pub(crate) fn in_constant(&self, share: f64) -> Self {
-        let keep = Keep::unchecked(share).moving();
+        let keep = Keep::unchecked(share);
         Self {
             placement: self.placement,
             ..self.at(self.placement.with_keep(keep))
@@ -284,13 +244,7 @@ impl Lattice {
     /// The vectors of all blocks with one interval of dY.
     #[inline]
     pub(crate) fn vectors(&self, block_y: usize) -> &[[i32; 2]] {
-        match &self.moved {
-            None => self.turned.row(block_y),
-            Some(moved) => {
-                let n = self.map().intervals();
-                &moved.vectors[block_y * n..(block_y + 1) * n]
-            }
-        }
+        self.turned.row(block_y)
     }
 
     /// The order in which blocks leave.
@@ -301,23 +255,7 @@ impl Lattice {
 
     /// The least and the greatest displacement along an axis, without the warp.
     pub(crate) fn table_reach(&self, axis: Axis) -> [i32; 2] {
-        let reach = match &self.moved {
-            None => self.turned.reach(),
-            Some(moved) => moved.reach,
-        };
-        let [least, most] = reach[axis as usize];
-        match &self.grade {
-            None => [least, most],
-            Some(_) => {
-                let moved = self.ladder_reach(0.0);
-                [least.min(-moved), most.max(moved)]
-            }
-        }
-    }
-
-    /// The largest displacement along an axis by which the ladder places points at shares from `share` on.
-    pub(crate) fn ladder_reach(&self, share: f64) -> i32 {
-        self.table.ladder().map_or(0, |ladder| ladder.reach(share))
+        self.turned.reach()[axis as usize]
     }
 
     /// This lattice at another placement. What does not change is shared.
@@ -336,7 +274,6 @@ impl Lattice {
         Self {
             placement,
             cut: self.cut,
-            moved: self.moved.clone(),
             ..self.at(still)
         }
     }
@@ -372,16 +309,14 @@ impl Lattice {
         let [block_x, block_y] = self.block(id)?;
         let vector = self.vectors(block_y)[block_x];
         let place = self.displaced_place(id, vector);
-        let Some(grade) = &self.grade else {
-            return Some(place);
-        };
-        let at = place.map(|k| self.world(k));
-        let moved = self.displacement_at(grade, id, [block_x, block_y], at)?;
-        Some(self.displaced_place(id, moved))
+        let at = || place.map(|k| self.world(k));
+        let grade = self.grade.as_ref();
+        grade
+            .is_none_or(|grade| self.is_left(grade, id, at()))
+            .then_some(place)
     }
 
-    /// The share of the field at the place that a point has at full density; `None` without a field or a
-    /// point.
+    /// The share of the field at the place of a point; `None` without a field or a point.
     pub(crate) fn share_of(&self, id: PointId) -> Option<f64> {
         let grade = self.grade.as_ref()?;
         let [block_x, block_y] = self.block(id)?;
@@ -390,30 +325,10 @@ impl Lattice {
         (self.rank(id) < share).then_some(share)
     }
 
-    /// The displacement in a field of a point in some blocks of dX and dY, by its place at full density: the
-    /// ladder's at the share there, less where the field is steep. `None` if the point has left.
-    pub(crate) fn displacement_at(
-        &self,
-        grade: &Grade,
-        id: PointId,
-        [block_x, block_y]: [usize; 2],
-        at: [f64; 2],
-    ) -> Option<Displacement> {
-        let share = grade.share(at);
-        if self.rank(id) >= share {
-            return None;
-        }
-        let full = self.vectors(block_y)[block_x];
-        let Some(ladder) = self.table.ladder() else {
-            return Some(full);
-        };
-        let position = self
-            .order()
-            .position(block_y * self.map().intervals() + block_x);
-        let spacing = self.placement.spacing.get();
-        let around = || moves::around(at, share, spacing).map(|at| grade.share(at));
-        let tables = (&self.turned, ladder);
-        Some(moves::moved(tables, position, full, share, around))
+    /// Whether a field leaves a point of the pattern, by its place.
+    #[inline]
+    pub(crate) fn is_left(&self, grade: &Grade, id: PointId, at: [f64; 2]) -> bool {
+        self.rank(id) < grade.share(at)
     }
 
     /// The fixed-point place of an address that has a point, with a displacement.

@@ -14,7 +14,6 @@ use super::visits::Visits;
 use crate::{
     pattern::Axis,
     sample::{
-        area::Region,
         lattice::{Lattice, Line, Point, PointId},
         warp::NearShears,
     },
@@ -58,7 +57,7 @@ pub(super) fn scan(
     let reach = unwarped_reach(lattice, at, radius);
     let most = reach * reach;
 
-    let table = table_reach(lattice, at, radius);
+    let table = lattice.turned.reach();
     list_columns(lattice, &mut scratch.0, (center[0], table[0]), reach);
     for y in candidates((center[1], table[1]), reach) {
         let Some((class, block)) = lattice.row(y) else {
@@ -71,31 +70,7 @@ pub(super) fn scan(
             visits.row(columns.len())?;
         }
         for column in columns.iter().filter(|column| keeps(&column.line)) {
-            let block_x = column.line.block as usize;
-            let id = PointId {
-                x: column.line.at,
-                y,
-            };
-            let mut vector = vectors[block_x];
-            if let Some(grade) = &lattice.grade {
-                if let Some(visits) = visits {
-                    visits.one()?;
-                }
-                let displaced = [
-                    left + column.offset + i64::from(vector[0]),
-                    bottom + offset + i64::from(vector[1]),
-                ];
-                let place = match &mut shears {
-                    Some(shears) => shears.apply(displaced),
-                    None => displaced,
-                };
-                let there = [0, 1].map(|i| lattice.world(origin[i] + i128::from(place[i])));
-                match lattice.displacement_at(grade, id, [block_x, block], there) {
-                    Some(moved) => vector = moved,
-                    None => continue,
-                }
-            }
-            let [dx, dy] = vector;
+            let [dx, dy] = vectors[column.line.block as usize];
             let [x_offset, y_offset] = [column.offset + i64::from(dx), offset + i64::from(dy)];
             let (x, y_near) = (x_offset as f64, y_offset as f64);
             if x * x + y_near * y_near > most {
@@ -108,7 +83,19 @@ pub(super) fn scan(
             };
             let [x, y_place] = [0, 1].map(|i| lattice.world(origin[i] + i128::from(place[i])));
             let (x_offset, y_offset) = (x - at[0], y_place - at[1]);
+            let id = PointId {
+                x: column.line.at,
+                y,
+            };
             let point = Point { id, x, y: y_place };
+            if let Some(grade) = &lattice.grade {
+                if let Some(visits) = visits {
+                    visits.one()?;
+                }
+                if !lattice.is_left(grade, id, [x, y_place]) {
+                    continue;
+                }
+            }
             if lattice.has_kind(id) {
                 visit(x_offset * x_offset + y_offset * y_offset, point)?;
             }
@@ -134,22 +121,6 @@ fn unwarped_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> f64 {
     let rounding = (at[0].abs().max(at[1].abs()) + radius) / step * (4.0 * f64::EPSILON);
     let reported = radius / step * (1.0 + 1e-12) + rounding + 4.0;
     stretch.factor * (reported + stretch.slack) + stretch.slack
-}
-
-/// The least and the greatest displacements by axis of points near a place.
-fn table_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> [[i32; 2]; 2] {
-    let any = [Axis::X, Axis::Y].map(|axis| lattice.table_reach(axis));
-    let Some(grade) = &lattice.grade else {
-        return any;
-    };
-    // Where points of the disk may be at full density: at most two displacements away from it.
-    let most = any.iter().flatten().map(|v| v.abs()).fold(0, i32::max);
-    let moved = 4.0 * f64::from(most) * lattice.step * lattice.stretch.factor;
-    let half = radius + moved + 1e-12 * (at[0].abs() + at[1].abs());
-    let around = Region::between(at.map(|v| v - half), at.map(|v| v + half));
-    let ladder = lattice.ladder_reach(grade.bounds(&around)[0]);
-    let full = lattice.turned.reach();
-    full.map(|[least, most]| [least.min(-ladder), most.max(ladder)])
 }
 
 /// The lattice coordinates around a center whose points, with some least and greatest displacement, may lie

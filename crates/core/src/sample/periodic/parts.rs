@@ -1,7 +1,7 @@
 //! Parts of a period: the points of a share, of a kind, or in a field.
 //!
-//! These points are defined as in the plane. A field is looked at in the period alone: the places around
-//! a point where it is looked at for its steepness wrap at the seam, so what tiles is the field's part in [0, L)².
+//! These points are defined as in the plane. A field is looked at in the period alone, so what tiles is its part in
+//! [0, L)².
 
 use alloc::{sync::Arc, vec, vec::Vec};
 
@@ -11,7 +11,7 @@ use crate::{
     sample::{
         attribute::{Attributes, BoundAttributes, Indices},
         field::Field,
-        lattice::{Grade, Keep, Placement, Point, PointId, Spacing, around, check_kind, moved},
+        lattice::{Grade, Keep, Placement, Point, PointId, Spacing, check_kind},
         member::Member,
         near::LeastDistance,
         warp::Warp,
@@ -182,8 +182,7 @@ impl PeriodicSet {
     }
 
     /// The least distance between any two points, in the period or across its seam, in world units: a guarantee,
-    /// as [`PointSet::least_distance`](crate::PointSet::least_distance) is. It is 0 for points that move, in a
-    /// field by the ladder of the table.
+    /// as [`PointSet::least_distance`](crate::PointSet::least_distance) is.
     ///
     /// ```
     /// use strew_core::{PeriodicSet, Table};
@@ -218,9 +217,6 @@ impl PeriodicSet {
 
     /// A least distance of the table in this period.
     fn reported(&self, least: LeastDistance) -> f64 {
-        if self.parts.field.is_some() && self.table.ladder().is_some() {
-            return 0.0;
-        }
         // The twin's grid units are a little shorter or longer than those of the table's α.
         let unit = self.side / self.twin.period() as f64;
         let spacing = unit / self.table.alpha().set_side_f64();
@@ -328,30 +324,8 @@ impl PeriodicSet {
         let Some(grade) = field else {
             return Some(full);
         };
-        let grade = grade.times(keep.get());
-        let place = self.place(at, full);
-        let share = grade.share(place);
-        if self.rank_at(index) >= share {
-            return None;
-        }
-        let Some(ladder) = self.table.ladder() else {
-            return Some(full);
-        };
-        let n = self.table.map().intervals();
-        let position = turned.order().position(block_y * n + block_x);
-        let around = || {
-            let places = around(place, share, self.spacing());
-            places.map(|at| grade.share(at.map(|v| self.wrapped(v))))
-        };
-        Some(moved((turned, ladder), position, full, share, around))
-    }
-
-    /// A world coordinate, moved by a multiple of L into [0, L).
-    fn wrapped(&self, v: f64) -> f64 {
-        let rest = v % self.side;
-        let wrapped = if rest < 0.0 { rest + self.side } else { rest };
-        // A sum may round up to L, which is the place of 0.
-        if wrapped < self.side { wrapped } else { 0.0 }
+        let share = grade.times(keep.get()).share(self.place(at, full));
+        (self.rank_at(index) < share).then_some(full)
     }
 
     /// The place of an address with a displacement, in [0, L)².

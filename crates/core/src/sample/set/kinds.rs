@@ -204,9 +204,6 @@ impl PointSet {
             return are_kinds.then(|| self.least_distance());
         }
         let least = self.table().least_distance_of(a, b)?;
-        if self.moves() {
-            return Some(0.0);
-        }
         let Placement { spacing, warp, .. } = self.placement();
         Some(least.reported(spacing, warp, 0.0))
     }

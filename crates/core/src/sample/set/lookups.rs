@@ -250,8 +250,7 @@ impl PointSet {
 
     /// The least distance between any two points, in world units: a guarantee for reported `f64`
     /// coordinates out to [`LeastDistance::RANGE`](crate::LeastDistance::RANGE) times this distance from the
-    /// origin, whatever the region. It is 0 for profiles that guarantee none, and for points that
-    /// [move](Self::keep_moving).
+    /// origin, whatever the region. It is 0 for profiles that guarantee none.
     ///
     /// [`least_distance_within`](Self::least_distance_within) returns the guarantee farther out.
     ///
@@ -287,18 +286,8 @@ impl PointSet {
     /// ```
     #[must_use]
     pub fn least_distance_within(&self, reach: f64) -> f64 {
-        if self.moves() {
-            return 0.0;
-        }
         let Placement { spacing, warp, .. } = self.placement();
         self.table_distance().reported(spacing, warp, reach)
-    }
-
-    /// Whether points move as others leave.
-    pub(super) fn moves(&self) -> bool {
-        let keep = self.placement().keep;
-        let is_moving = keep.moves() && keep.get() < 1.0 || self.lattice.grade.is_some();
-        is_moving && self.table().ladder().is_some()
     }
 
     /// The least distance of the table's points that are of the set's kind, if it has one.

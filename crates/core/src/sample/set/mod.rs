@@ -232,30 +232,6 @@ impl PointSet {
         Ok(self.replaced(|placement| placement.with_keep(keep)))
     }
 
-    /// Keeps a share of the points, as [`keep`](Self::keep) does, and moves them as others leave, by the
-    /// [ladder](crate::table::Ladder) of the table. At every share they are spread nearly as evenly as a set
-    /// made for it; each point's path over shares is continuous. Without a ladder this is `keep`.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Keep`](crate::ErrorKind::Keep) outside 10⁻⁶ to 1.
-    ///
-    /// ```
-    /// use strew_core::{PointSet, Table};
-    ///
-    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
-    /// let all = PointSet::new(table).seed(7);
-    /// let (still, moved) = (all.clone().keep(0.3)?, all.keep_moving(0.3)?);
-    /// // The same points are left.
-    /// for point in still.chunk(20.0, [0, 0])? {
-    ///     assert!(moved.point(point.id()).is_some());
-    /// }
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn keep_moving(self, share: f64) -> Result<Self, Error> {
-        let keep = Keep::new(share)?.moving();
-        Ok(self.replaced(|placement| placement.with_keep(keep)))
-    }
-
     /// Sets spacing, seed, warp and share at once.
     ///
     /// ```
@@ -321,11 +297,8 @@ impl PointSet {
     /// The set in a field: the share of its points varies from place to place. The field replaces an earlier one.
     /// [`keep`](Self::keep) multiplies the shares.
     ///
-    /// A point belongs to the set if its rank is below the field's share at the place where it is at full
-    /// density. Sets of one seed share their points: in a larger share a point stays, and with a
-    /// [ladder](crate::table::Ladder) it moves a little. Where the share changes by more than 1/256 across a local
-    /// spacing it moves less, about half as far where it changes by 1/64, and over a longer range of shares. Four
-    /// more looks at the field, a local spacing around the place, measure that change.
+    /// A point belongs to the set if its rank is below the field's share at its place. Sets of one seed share their
+    /// points: in a larger share a point stays, and where it is.
     ///
     /// Counting visits the points one by one, in time proportional to the points at full density where bounds of
     /// the field leave any. Where the field is constant in all of an area, counting costs as much as without a field.

@@ -3,8 +3,7 @@
 //! # The problem
 //!
 //! In a field the share of points that are left varies from place to place. A point is left if its rank is
-//! below the share at the place that it has at full density, and it may then move to its place at that share. So
-//! the field must be looked at once for every point that may be left, and steep fields four times more: with a share
+//! below the share at its place. So the field must be looked at once for every point that may be left: with a share
 //! of 1 % that is a hundred looks for each point that is written. The walk saves most of them by bounds, which a
 //! [`Field`](crate::Field) has for any box.
 //!
@@ -28,13 +27,11 @@
 //! lower ones, so a band of 10⁹ empty rows costs about forty bounds. They end at multiples of the height of
 //! a patch, so that a patch is of one sort.
 //!
-//! *Constant rows* go to a [`RowWalk`] over the same scope with the vectors of that share, which never asks the field.
-//! Making these vectors takes the time of [`WORTH`] rows, so fewer rows count as patches, unless the share is
-//! the one that was made last, or 1, for which the table has the vectors.
+//! *Constant rows* go to a [`RowWalk`] over the same scope thinned to that share, which never asks the field.
 //!
 //! *Patches* are the work of [`FieldRows`]: tiles of the patch leave out by bounds the blocks that have left anywhere
 //! in the tile and accept those that are left everywhere. Only the others are compared with the field. Each stage
-//! (place, share, rank, move, place again) runs over some hundred to two thousand candidates before the next one, so
+//! (place, share, rank) runs over some hundred to two thousand candidates before the next one, so
 //! that its loop is in vectors and its memory in the fast cache.
 //!
 //! # Invariants
@@ -64,9 +61,6 @@ use crate::sample::{
     scope::Scope,
     sieve::Scale,
 };
-
-/// Making the vectors of a share takes about the time of this number of rows of a band.
-const WORTH: i64 = 1024;
 
 /// The most candidates that are listed before the points among them are written: about 100 bytes each.
 const MOST: usize = 2048;
@@ -292,7 +286,7 @@ impl<F: Format> FieldWalk<F> {
         }
     }
 
-    /// Begins with the rows from the current one on if the field is constant there and they are worth it.
+    /// Begins with the rows from the current one on if the field is constant there.
     fn begin_constant(&mut self, columns: Range<i64>) {
         let Bands {
             scope,
@@ -313,7 +307,6 @@ impl<F: Format> FieldWalk<F> {
         let known = self.constant.as_ref().filter(|known| known.share == share);
         let scope = match known {
             Some(known) => known.scope.clone(),
-            None if share < 1.0 && end - at.y < WORTH => return,
             None => Arc::new(scope.with_lattice(lattice.in_constant(share))),
         };
         let all = &scope.y.all;

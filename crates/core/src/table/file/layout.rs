@@ -32,12 +32,8 @@ pub(super) const DIGEST_BYTES: usize = 32;
 pub(super) const MAX_SECTIONS: u32 = 64;
 /// The section of the order in which blocks leave.
 pub(super) const RANKS: [u8; 4] = *b"rank";
-/// The section of the displacements for smaller shares.
-pub(super) const LADDER: [u8; 4] = *b"ladd";
 /// The section of the kinds of points.
 pub(super) const MIX: [u8; 4] = *b"kind";
-/// The bytes of a vector of a ladder with its event.
-pub(super) const RUNG_BYTES: usize = 6;
 
 /// The bytes of a block's position in the order: 2, or 4 in maps of more than 2¹⁶ blocks.
 pub(super) const fn position_bytes(blocks: usize) -> usize {

@@ -14,10 +14,8 @@
 //! add sections without a new format. Optional:
 //!
 //! `rank`: for each block its position in the order in which blocks leave, 0 for the last one; 2 bytes,
-//! or 4 in maps of more than 2¹⁶ blocks. `ladd`: a list of levels, each a share as u32 in units of 2⁻³² and a
-//! list of rungs by position: two i16 in units of 2⁻⁸ grid units, and the start and the end of the move
-//! as 255ths of the way from the level before. `kind`: a list of the parts of the shares as u16, ascending, in
-//! lowest terms, and for each block the number of its kind, one byte.
+//! or 4 in maps of more than 2¹⁶ blocks. `kind`: a list of the parts of the shares as u16, ascending, in lowest
+//! terms, and for each block the number of its kind, one byte.
 //!
 //! `write` and `read` are each other's inverse over the encodings of `wire`.
 

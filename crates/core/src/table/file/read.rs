@@ -5,8 +5,8 @@ use alloc::{format, string::String, vec::Vec};
 
 use super::{
     layout::{
-        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, LADDER, MAGIC, MAX_SECTIONS, MIX, RANKS,
-        RUNG_BYTES, check_size, position_bytes,
+        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MAX_SECTIONS, MIX, RANKS, check_size,
+        position_bytes,
     },
     wire::Reader,
 };
@@ -14,7 +14,7 @@ use crate::{
     error::{Error, ErrorKind},
     map::{Map, Twin},
     pattern::Alpha,
-    table::{Digest, Figures, Ladder, Mix, Provenance, Ranks, Rung, Shares, parts::Parts},
+    table::{Digest, Figures, Mix, Provenance, Ranks, Shares, parts::Parts},
 };
 
 /// The content of a table file, and its digest.
@@ -113,7 +113,6 @@ struct Sections<'a> {
     prov: Option<Payload<'a>>,
     disp: Option<Payload<'a>>,
     rank: Option<Payload<'a>>,
-    ladd: Option<Payload<'a>>,
     kind: Option<Payload<'a>>,
 }
 
@@ -136,7 +135,6 @@ impl<'a> Sections<'a> {
             b"PROV" => &mut self.prov,
             b"DISP" => &mut self.disp,
             _ if tag == RANKS => &mut self.rank,
-            _ if tag == LADDER => &mut self.ladd,
             _ if tag == MIX => &mut self.kind,
             _ if tag[0].is_ascii_lowercase() => return Ok(at + 12 + length),
             _ => return Err(wrong(tag, at, "unknown to this release".into())),
@@ -173,10 +171,6 @@ impl<'a> Sections<'a> {
             let positions = read_rank(bytes, blocks).map_err(|p| wrong(&RANKS, at, p))?;
             Ranks::new(positions)
         });
-        let ladder = self.ladd.map(|(bytes, at)| {
-            let levels = read_ladd(bytes).map_err(|p| wrong(&LADDER, at, p))?;
-            Ladder::from_raw(levels)
-        });
         let mix = self.kind.map(|(bytes, at)| {
             let (shares, labels) = read_kind(bytes).map_err(|p| wrong(&MIX, at, p))?;
             Mix::new(&map, shares, labels)
@@ -188,7 +182,6 @@ impl<'a> Sections<'a> {
             displacements,
             provenance,
             ranks: ranks.transpose()?,
-            ladder: ladder.transpose()?,
             mix,
         };
         parts.check()?;
@@ -296,23 +289,6 @@ fn read_rank(bytes: &[u8], blocks: usize) -> Result<Vec<u32>, String> {
         u32::from_le_bytes(wide)
     };
     Ok(bytes.chunks_exact(width).map(position).collect())
-}
-
-/// The levels of a ladder, each a share in units of 2⁻³² and its rungs.
-fn read_ladd(bytes: &[u8]) -> Result<Vec<(u32, Vec<Rung>)>, String> {
-    let mut reader = Reader::new(bytes);
-    let levels = reader.list(8, "levels", |r| {
-        let share = r.u32("a share")?;
-        let rungs = r.list(RUNG_BYTES, "rungs", |r| {
-            Ok(Rung {
-                vector: [r.i16("a vector")?, r.i16("a vector")?],
-                event: r.array("an event")?,
-            })
-        })?;
-        Ok((share, rungs))
-    })?;
-    reader.end("levels")?;
-    Ok(levels)
 }
 
 /// The shares of kinds, and the kind of each block.

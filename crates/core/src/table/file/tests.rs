@@ -94,7 +94,7 @@ fn other_damage_has_its_own_name() {
     assert_eq!(kind, ErrorKind::TableTooLarge);
 }
 
-/// A table with every optional section but a ladder.
+/// A table with every optional section.
 fn mixed() -> Table {
     let table = table();
     let blocks = table.displacements().len();

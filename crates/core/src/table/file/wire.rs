@@ -75,10 +75,6 @@ impl<'a> Reader<'a> {
         self.array(what).map(u64::from_le_bytes)
     }
 
-    pub(super) fn i16(&mut self, what: &str) -> Read<i16> {
-        self.array(what).map(i16::from_le_bytes)
-    }
-
     pub(super) fn i32(&mut self, what: &str) -> Read<i32> {
         self.array(what).map(i32::from_le_bytes)
     }

@@ -4,14 +4,13 @@ use alloc::{vec, vec::Vec};
 
 use super::{
     layout::{
-        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, LADDER, MAGIC, MIX, RANKS, check_size,
-        position_bytes,
+        DIGEST_BYTES, FORMAT_VERSION, HEADER_BYTES, MAGIC, MIX, RANKS, check_size, position_bytes,
     },
     wire::Writer,
 };
 use crate::{
     error::Error,
-    table::{Digest, Ladder, Mix, Provenance, Ranks, parts::Parts},
+    table::{Digest, Mix, Provenance, Ranks, parts::Parts},
 };
 
 /// A table as a file.
@@ -37,7 +36,6 @@ fn body(table: &Parts) -> Vec<u8> {
         (*b"DISP", disp(table)),
     ];
     sections.extend(table.ranks.as_ref().map(|ranks| (RANKS, rank(ranks))));
-    sections.extend(table.ladder.as_ref().map(|ladder| (LADDER, ladd(ladder))));
     sections.extend(table.mix.as_ref().map(|mix| (MIX, kind(mix))));
     let payload: usize = sections.iter().map(|(_, bytes)| 12 + bytes.len()).sum();
     let mut out = Writer::default();
@@ -103,21 +101,6 @@ fn rank(ranks: &Ranks) -> Vec<u8> {
     let width = position_bytes(ranks.positions().len());
     let bytes = |position: &u32| position.to_le_bytes().into_iter().take(width);
     ranks.positions().iter().flat_map(bytes).collect()
-}
-
-fn ladd(ladder: &Ladder) -> Vec<u8> {
-    let mut out = Writer::default();
-    out.length(ladder.raw().count());
-    for (share, rungs) in ladder.raw() {
-        out.u32(share);
-        out.length(rungs.len());
-        for rung in rungs {
-            out.bytes
-                .extend(rung.vector.into_iter().flat_map(i16::to_le_bytes));
-            out.bytes.extend(rung.event);
-        }
-    }
-    out.bytes
 }
 
 fn kind(mix: &Mix) -> Vec<u8> {
