@@ -28,7 +28,7 @@ try {
 }
 
 mkdirSync(here("lib/tables"), { recursive: true });
-for (const folder of ["../../crates/core/tables/", "../../tables/", "../../tables/mix/"]) {
+for (const folder of ["../../crates/core/tables/", "../../crates/catalog/tables/", "../../crates/catalog/tables/mix/"]) {
     for (const file of readdirSync(here(folder)).filter((name) => name.endsWith(".strew"))) {
         copyFileSync(here(folder + file), here(`lib/tables/${file}`));
     }

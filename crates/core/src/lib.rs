@@ -63,7 +63,7 @@ pub use sample::{
     Area, Attribute, Attributes, Backend, Blocks, BoundAttributes, Circle, Clearance, Column,
     Cursor, EvenVariants, F32, F64, Field, Format, Keep, LATTICE_LIMIT, LeastDistance, Member,
     Members, Neighbor, Offsets, Placement, Plan, Point, PointId, PointSet, Points, Polygon, Raster,
-    Region, ScaleRange, Seed, Spacing, Tile, UniformNumber, VariantScales, Variants, VaryingKinds,
+    Region, ScaleRange, Seed, Settle, Spacing, Tile, UniformNumber, VariantScales, Variants, VaryingKinds,
     Warp,
 };
 pub use sample::{PeriodicBlocks, PeriodicPlan, PeriodicSet};

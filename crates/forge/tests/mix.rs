@@ -85,7 +85,7 @@ fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
 
 #[test]
 fn shipped_joint_tables_keep_their_promises_on_another_twin() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tables/mix");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../catalog/tables/mix");
     let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
     let anisotropy = |set: &Torus| Spectrum::of_torus(set, 1.5).summary(0.04);
     let before = ThinnedTwin::new(&plain, twin())

@@ -5,7 +5,7 @@
 //! 1. `seed` and `warp`: which piece of the pattern, and how the plane is sheared;
 //! 2. `lattice`: which addresses have points, and where in the world these are;
 //! 3. `area` and `near`: the parts of the plane in which points are requested, and the points near a place;
-//! 4. `sieve` and `scope`: what the points of a request satisfy;
+//! 4. `settle`: where points end that settle; `sieve` and `scope`: what the points of a request satisfy;
 //! 5. `count`: how many there are, without making them;
 //! 6. `kernel` and `walk`: making them, row by row, in blocks;
 //! 7. `attribute` and `member`: the values that points have, one by one; `seek`, `cursor`: places in their order;
@@ -30,6 +30,7 @@ mod scope;
 mod seed;
 mod seek;
 mod set;
+mod settle;
 mod sieve;
 mod walk;
 mod warp;
@@ -43,7 +44,9 @@ pub use attribute::{
 pub use cursor::Cursor;
 pub use field::{Edges, Field, FieldSpec, Filter, Marks, Noise, Pixels, Raster, Terrain};
 pub use kernel::{Backend, F32, F64, Format, Offsets, Points};
-pub use lattice::{Keep, LATTICE_LIMIT, Placement, Point, PointId, Spacing, VaryingKinds};
+pub use lattice::{
+    Keep, LATTICE_LIMIT, Placement, Point, PointId, Settle, Spacing, VaryingKinds,
+};
 pub use member::{Member, Members};
 pub use near::{Clearance, LeastDistance, Visits};
 pub use periodic::{PeriodicBlocks, PeriodicPlan, PeriodicSet};

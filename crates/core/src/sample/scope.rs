@@ -8,6 +8,7 @@ use super::{
     field::constant,
     lattice::{BAND_WIDTH, LATTICE_LIMIT, Lattice, Multiple, Span},
     near::Mask,
+    settle::Settler,
     sieve::Sieve,
 };
 use crate::{
@@ -149,6 +150,19 @@ fn around_chunks(area: &Area) -> Area {
     }
 }
 
+/// The spans of the points between fixed-point bounds. The addresses of points that settle may lie farther off.
+fn spans(lattice: &Lattice, bounds: [Range<i128>; 2]) -> [Span; 2] {
+    let Some(settler) = Settler::new(lattice) else {
+        return Span::of_box(lattice, bounds);
+    };
+    if bounds.iter().any(Range::is_empty) {
+        return Span::of_box(lattice, bounds);
+    }
+    let [x, y] = Span::of_box(lattice, settler.around(&bounds));
+    let [in_x, in_y] = bounds;
+    [Span { bounds: in_x, ..x }, Span { bounds: in_y, ..y }]
+}
+
 impl Scope {
     /// The part of a set, given by its lattice and mask, that lies in an area.
     pub(crate) fn new(
@@ -177,12 +191,14 @@ impl Scope {
         }
         let (chunks, rest) =
             area.map_or_else(Default::default, |area| (chunks(area), beside_chunks(area)));
-        let [x, y] = Span::of_box(lattice, bounds(lattice, &chunks, rest.as_ref()));
+        let [x, y] = spans(lattice, bounds(lattice, &chunks, rest.as_ref()));
         let piece = [x.all.clone(), y.all.clone()];
         let share = lattice
             .grade
             .as_ref()
             .and_then(|grade| constant(lattice, grade, &piece));
+        // Points settle unless there are none, or all.
+        let share = share.filter(|&share| lattice.settle().is_none() || share <= 0.0 || share >= 1.0);
         if let Some(share) = share {
             let area = area.cloned().unwrap_or(Area::Region(region));
             let mask = Mask { area: None, ..mask };

@@ -43,6 +43,8 @@ pub(crate) struct FieldRows {
     shares: Vec<f64>,
     /// The points that were found.
     found: Vec<Found>,
+    /// Their shares, until some are left out.
+    found_shares: Vec<f64>,
     next: usize,
 }
 
@@ -67,6 +69,14 @@ impl FieldRows {
     /// The points that were found and not yet taken.
     pub(crate) fn left(&self) -> &[Found] {
         &self.found[self.next..]
+    }
+
+    /// The points that were found last, with their shares.
+    pub(crate) fn with_shares(&self) -> impl Iterator<Item = (Found, f64)> {
+        self.found
+            .iter()
+            .copied()
+            .zip(self.found_shares.iter().copied())
     }
 
     /// Takes the next points.
@@ -197,10 +207,14 @@ impl FieldRows {
         self.keep(lattice, patch);
         let (number, [xs, ys]) = (self.number, &self.places);
         let places = xs.iter().zip(ys).map(|(&x, &y)| [x, y]);
-        let all = places.zip(&self.addresses).take(number);
-        let all = all.filter(|(place, _)| patch.holds(*place));
-        self.found
-            .extend(all.map(|(place, &address)| Found { place, address }));
+        let all = places.zip(&self.addresses).zip(&self.shares).take(number);
+        self.found_shares.clear();
+        for ((place, &address), &share) in all {
+            if patch.holds(place) {
+                self.found.push(Found { place, address });
+                self.found_shares.push(share);
+            }
+        }
     }
 
     /// Moves displaced positions by the warp.
@@ -229,7 +243,7 @@ impl FieldRows {
         let [left, bottom] = patch.origin();
         let number = self.number;
         let addresses = &mut self.addresses[..number];
-        let (positions, shares) = (&self.positions[..number], &self.shares[..number]);
+        let (positions, shares) = (&self.positions[..number], &mut self.shares[..number]);
         let [xs, ys] = &mut self.places;
         let (xs, ys) = (&mut xs[..number], &mut ys[..number]);
         // Decides a candidate that the tile leaves open.
@@ -248,6 +262,7 @@ impl FieldRows {
             let is_whole = positions[start..end].iter().fold(WHOLE, |all, p| all & p) != 0;
             if is_whole && end - start == FEW {
                 addresses.copy_within(start..end, next);
+                shares.copy_within(start..end, next);
                 for list in [&mut *xs, &mut *ys] {
                     list.copy_within(start..end, next);
                 }
@@ -258,7 +273,7 @@ impl FieldRows {
                 let (address, position, share) = (addresses[i], positions[i], shares[i]);
                 let is_left = position & WHOLE != 0 || is_left(address, position, share);
                 // Written in any case; the next one goes to the same place if this has left.
-                addresses[next] = address;
+                (addresses[next], shares[next]) = (address, share);
                 (xs[next], ys[next]) = (xs[i], ys[i]);
                 next += usize::from(is_left);
             }

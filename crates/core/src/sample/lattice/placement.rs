@@ -1,6 +1,6 @@
 //! The parameters that lay a table's points into the world, and the share of them that is kept.
 
-use super::Spacing;
+use super::{Settle, Spacing};
 use crate::{
     error::{Error, ErrorKind, number},
     sample::{Seed, Warp},
@@ -27,6 +27,8 @@ pub struct Placement {
     pub warp: Warp,
     /// The share of the points that is kept.
     pub keep: Keep,
+    /// How points settle where not all are kept.
+    pub settle: Settle,
 }
 
 impl Placement {
@@ -47,6 +49,7 @@ impl Placement {
             seed,
             warp: Self::default_warp(seed),
             keep: Keep::ALL,
+            settle: Settle::TWO,
         }
     }
 
@@ -75,6 +78,19 @@ impl Placement {
     #[must_use]
     pub const fn with_keep(self, keep: Keep) -> Self {
         Self { keep, ..self }
+    }
+
+    /// This placement with another number of steps by which points settle.
+    ///
+    /// ```
+    /// use strew_core::{Placement, Seed, Settle, Spacing};
+    ///
+    /// let still = Placement::new(Spacing::ONE, Seed(7)).with_settle(Settle::OFF);
+    /// assert_eq!(still.settle.steps(), 0);
+    /// ```
+    #[must_use]
+    pub const fn with_settle(self, settle: Settle) -> Self {
+        Self { settle, ..self }
     }
 
     /// This placement with another warp.

@@ -4,7 +4,7 @@ use alloc::sync::Arc;
 use core::ops::Range;
 
 use super::{
-    Keep, Line, OneKind, Placement, Point, PointId,
+    Keep, Line, OneKind, Placement, Point, PointId, Settle,
     grade::Grade,
     kinds::KindRow,
     rank::{kind, rank},
@@ -74,18 +74,21 @@ impl Lattice {
             seed,
             warp,
             keep,
+            settle,
         } = placement;
         // The mean spacing in the grid is 1/t, so a scale of spacing · t makes it `spacing`.
         let scale = spacing.get() * alpha.set_side_f64();
         let shears = Shears::new(warp, seed);
         let turned = TurnedTable::new(&table, seed.symmetry());
+        let is_thinned = keep.get() < 1.0;
         Self {
             placement,
             pattern: Pattern::with_origin(alpha, seed.origin()),
-            cut: (keep.get() < 1.0).then(|| turned.order().cut(table.map(), keep.get())),
+            cut: (is_thinned && settle.is_off())
+                .then(|| turned.order().cut(table.map(), keep.get())),
             kinds: None,
             varied: None,
-            grade: None,
+            grade: (is_thinned && !settle.is_off()).then(|| Grade::constant(keep.get())),
             turned,
             stretch: Stretch::of(shears.as_ref()),
             shears,
@@ -169,10 +172,47 @@ impl Lattice {
     /// The lattice where a field has the same share everywhere.
     pub(crate) fn in_constant(&self, share: f64) -> Self {
         let keep = Keep::unchecked(share);
+        let placement = self.placement.with_keep(keep).with_settle(Settle::OFF);
         Self {
             placement: self.placement,
-            ..self.at(self.placement.with_keep(keep))
+            ..self.at(placement)
         }
+    }
+
+    /// The steps by which points settle, if they do.
+    pub(crate) fn settle(&self) -> Option<Settle> {
+        let settle = self.placement.settle;
+        (self.grade.is_some() && !settle.is_off()).then_some(settle)
+    }
+
+    /// The share of points that settle, if it is no field's.
+    pub(crate) fn constant_share(&self) -> Option<f64> {
+        self.grade.as_ref()?.known()
+    }
+
+    /// Whether a field decides which points are kept.
+    pub(crate) fn is_in_field(&self) -> bool {
+        self.grade.is_some() && self.constant_share().is_none()
+    }
+
+    /// The points of all kinds.
+    pub(crate) fn of_all_kinds(&self) -> Self {
+        Self {
+            kinds: None,
+            varied: None,
+            ..self.clone()
+        }
+    }
+
+    /// Whether points are of some kind only.
+    pub(crate) fn tells_kinds(&self) -> bool {
+        self.kinds.is_some() || self.picks()
+    }
+
+    /// The least distance of all points of the plane, in fixed-point units.
+    pub(crate) fn certified(&self) -> f64 {
+        let relative = self.table.least_distance().with_warp(self.placement.warp);
+        relative * f64::from(1u32 << FRACTION_BITS) / self.table.alpha().set_side_f64()
     }
 
     pub(crate) fn map(&self) -> &Map {
@@ -261,10 +301,15 @@ impl Lattice {
     /// This lattice at another placement. What does not change is shared.
     pub(crate) fn replaced(&self, placement: Placement) -> Self {
         if let Some(grade) = &self.grade {
-            return self.graded(placement, grade);
+            return match grade.known() {
+                Some(_) => self.at(placement),
+                None => self.graded(placement, grade),
+            };
         }
         let is_turned = placement.seed.symmetry() != self.placement.seed.symmetry();
-        if placement.keep != self.placement.keep || is_turned {
+        let is_kept = placement.keep == self.placement.keep
+            && placement.settle == self.placement.settle;
+        if !is_kept || is_turned {
             return self.at(placement);
         }
         let still = Placement {

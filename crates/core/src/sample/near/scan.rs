@@ -7,7 +7,7 @@
 //!
 //! [`Stretch::factor`]: crate::sample::warp::Stretch
 
-use alloc::vec::Vec;
+use alloc::{boxed::Box, vec::Vec};
 use core::ops::{ControlFlow, RangeInclusive};
 
 use super::visits::Visits;
@@ -15,6 +15,7 @@ use crate::{
     pattern::Axis,
     sample::{
         lattice::{Lattice, Line, Point, PointId},
+        settle::SettledTiles,
         warp::NearShears,
     },
     table::{FRACTION_BITS, fixed},
@@ -22,7 +23,10 @@ use crate::{
 
 /// Memory that [`scan`] reuses: the columns near a place, by class.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Scratch([Vec<NearColumn>; 4]);
+pub(super) struct Scratch {
+    columns: [Vec<NearColumn>; 4],
+    settled: Option<Box<SettledTiles>>,
+}
 
 #[derive(Clone, Copy, Debug)]
 struct NearColumn {
@@ -42,6 +46,9 @@ pub(super) fn scan(
     visits: Option<&Visits>,
     mut visit: impl FnMut(f64, Point) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
+    if lattice.settle().is_some() {
+        return scan_settled(lattice, scratch, at, radius, visits, visit);
+    }
     let there = at.map(|v| whole(v / lattice.step));
     // Positions relative to `origin` are small.
     let (mut shears, origin, center) = match &lattice.shears {
@@ -58,14 +65,14 @@ pub(super) fn scan(
     let most = reach * reach;
 
     let table = lattice.turned.reach();
-    list_columns(lattice, &mut scratch.0, (center[0], table[0]), reach);
+    list_columns(lattice, &mut scratch.columns, (center[0], table[0]), reach);
     for y in candidates((center[1], table[1]), reach) {
         let Some((class, block)) = lattice.row(y) else {
             continue;
         };
         let offset = (fixed(y) - center[1]) as i64;
         let (vectors, keeps) = (lattice.vectors(block), lattice.keeps(block));
-        let columns = &scratch.0[class.ordinal()];
+        let columns = &scratch.columns[class.ordinal()];
         if let (Some(visits), None) = (visits, &lattice.grade) {
             visits.row(columns.len())?;
         }
@@ -104,6 +111,43 @@ pub(super) fn scan(
     ControlFlow::Continue(())
 }
 
+/// Runs [`scan`] for points that settle.
+fn scan_settled(
+    lattice: &Lattice,
+    scratch: &mut Scratch,
+    at: [f64; 2],
+    radius: f64,
+    visits: Option<&Visits>,
+    mut visit: impl FnMut(f64, Point) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    if scratch.settled.is_none() {
+        scratch.settled = SettledTiles::new(lattice);
+    }
+    let Some(tiles) = &mut scratch.settled else {
+        return ControlFlow::Continue(());
+    };
+    let reach = reported_reach(lattice, at, radius) as i128 + 1;
+    let within = at.map(|v| {
+        let center = whole(v / lattice.step);
+        center - reach..center + reach + 1
+    });
+    let tells_kinds = lattice.tells_kinds();
+    let made = |number| visits.map_or(ControlFlow::Continue(()), |visits| visits.row(number));
+    tiles.visit(&within, made, |settled| {
+        if tells_kinds && lattice.block(settled.id).is_none() {
+            return ControlFlow::Continue(());
+        }
+        let [x, y] = settled.place.map(|k| lattice.world(k));
+        let (dx, dy) = (x - at[0], y - at[1]);
+        let point = Point {
+            id: settled.id,
+            x,
+            y,
+        };
+        visit(dx * dx + dy * dy, point)
+    })
+}
+
 /// The integer part of a number. Conversions to 64 bits are faster.
 fn whole(v: f64) -> i128 {
     if v.abs() < 1e18 {
@@ -113,13 +157,18 @@ fn whole(v: f64) -> i128 {
     }
 }
 
+/// The largest distance along each axis, in fixed-point units, of a point whose reported coordinates lie within
+/// `radius`.
+fn reported_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> f64 {
+    // Reported coordinates and quotients err by a few parts in 2⁵³ of their size.
+    let rounding = (at[0].abs().max(at[1].abs()) + radius) / lattice.step * (4.0 * f64::EPSILON);
+    radius / lattice.step * (1.0 + 1e-12) + rounding + 4.0
+}
+
 /// The largest distance from the unwarped place, in fixed-point units, of a point whose reported
 /// coordinates lie within `radius`.
 fn unwarped_reach(lattice: &Lattice, at: [f64; 2], radius: f64) -> f64 {
-    let (step, stretch) = (lattice.step, lattice.stretch);
-    // Reported coordinates and quotients err by a few parts in 2⁵³ of their size.
-    let rounding = (at[0].abs().max(at[1].abs()) + radius) / step * (4.0 * f64::EPSILON);
-    let reported = radius / step * (1.0 + 1e-12) + rounding + 4.0;
+    let (stretch, reported) = (lattice.stretch, reported_reach(lattice, at, radius));
     stretch.factor * (reported + stretch.slack) + stretch.slack
 }
 

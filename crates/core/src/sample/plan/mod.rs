@@ -386,7 +386,7 @@ impl Plan {
             ..lattice.placement
         };
         let whole = self.scope.whole_lattice();
-        if whole.grade.is_none() {
+        if !whole.is_in_field() {
             placement.keep = Keep::ALL;
         }
         let lattice = whole.replaced(placement);

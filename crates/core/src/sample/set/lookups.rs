@@ -8,9 +8,10 @@ use crate::{
     pattern::Arrangement,
     sample::{
         attribute::{Attributes, BoundAttributes},
-        lattice::{Placement, PointId},
+        lattice::{Placement, Point, PointId},
         member::Member,
         near::{Clearance, LeastDistance, Visits, limits, search},
+        settle::Settler,
     },
 };
 
@@ -56,7 +57,14 @@ impl PointSet {
     /// ```
     #[must_use]
     pub fn point(&self, id: PointId) -> Option<Member> {
-        let point = self.lattice.point(id)?;
+        let point = match Settler::new(&self.lattice) {
+            Some(mut settler) => {
+                let place = settler.point(&self.lattice, id)?;
+                let [x, y] = place.map(|k| self.lattice.world(k));
+                Point { id, x, y }
+            }
+            None => self.lattice.point(id)?,
+        };
         let is_plain = self.mask.area.is_none() && self.mask.clear.is_empty();
         (is_plain || self.mask.guards().permit(point.at()))
             .then(|| Member::new(point, self.placement().seed))
@@ -286,6 +294,9 @@ impl PointSet {
     /// ```
     #[must_use]
     pub fn least_distance_within(&self, reach: f64) -> f64 {
+        if self.lattice.is_in_field() && self.lattice.settle().is_some() {
+            return 0.0;
+        }
         let Placement { spacing, warp, .. } = self.placement();
         self.table_distance().reported(spacing, warp, reach)
     }
@@ -293,7 +304,9 @@ impl PointSet {
     /// The least distance of the table's points that are of the set's kind, if it has one.
     pub(super) fn table_distance(&self) -> LeastDistance {
         let of_kind = |kind| self.table().least_distance_of(kind, kind);
-        let of_kind = self.lattice.kind().and_then(of_kind);
+        // Points of a kind keep the distance of all where they settle.
+        let kind = self.lattice.kind().filter(|_| self.lattice.settle().is_none());
+        let of_kind = kind.and_then(of_kind);
         of_kind.unwrap_or_else(|| self.table().least_distance())
     }
 

@@ -14,7 +14,7 @@ use alloc::sync::Arc;
 use super::{
     area::Area,
     field::Field,
-    lattice::{Keep, Lattice, Placement, Spacing},
+    lattice::{Keep, Lattice, Placement, Settle, Spacing},
     near::{ClearOf, Mask},
     seed::Seed,
     warp::Warp,
@@ -230,6 +230,28 @@ impl PointSet {
     pub fn keep(self, share: f64) -> Result<Self, Error> {
         let keep = Keep::new(share)?;
         Ok(self.replaced(|placement| placement.with_keep(keep)))
+    }
+
+    /// Sets the number of steps by which points settle in a [field](Self::in_field) and where not all are
+    /// [kept](Self::keep), 0 to 4; see [`Settle`](crate::Settle).
+    ///
+    /// # Errors
+    /// [`ErrorKind::Settle`](crate::ErrorKind::Settle) above 4.
+    ///
+    /// ```
+    /// use strew_core::{PointSet, Table};
+    ///
+    /// # let table = Table::undisplaced("sqrt(3)".parse()?, 20, "pattern")?;
+    /// let half = PointSet::new(table).keep(0.5)?;
+    /// let still = half.clone().settle(0)?;
+    /// // The same points, elsewhere.
+    /// let id = half.nearest([10.0, 3.0], 1)?[0].member.id();
+    /// assert_ne!(half.point(id), still.point(id));
+    /// # Ok::<(), strew_core::Error>(())
+    /// ```
+    pub fn settle(self, steps: u32) -> Result<Self, Error> {
+        let settle = Settle::new(steps)?;
+        Ok(self.replaced(|placement| placement.with_settle(settle)))
     }
 
     /// Sets spacing, seed, warp and share at once.

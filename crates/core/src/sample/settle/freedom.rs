@@ -130,7 +130,7 @@ impl Freedoms {
     ) {
         self.places.clear();
         self.looked.clear();
-        if grade.is_constant() {
+        if grade.known().is_some() {
             for candidate in &self.candidates {
                 found(candidate.point, inside(candidate.share) as f32, true);
             }

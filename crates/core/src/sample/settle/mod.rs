@@ -38,98 +38,31 @@
 
 mod freedom;
 mod step;
+mod tiles;
 mod window;
 
 use step::Kernel;
-pub(crate) use window::{Settled, Settler};
+pub(crate) use tiles::SettledTiles;
+pub(crate) use window::{Box2, Placed, Settled, Settler, common, widened};
 
-use crate::error::{Error, ErrorKind};
-
-/// The number of steps by which the points of thinned sets and of fields settle, 0 to 4. With 0 points stay where they
-/// are at full density. More steps are smoother, and each costs its time again.
-///
-/// ```
-/// use strew_core::Settle;
-///
-/// assert_eq!(Settle::new(3)?.steps(), 3);
-/// assert_eq!(Settle::default().steps(), 2);
-/// assert!(Settle::new(5).is_err());
-/// # Ok::<(), strew_core::Error>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Settle {
-    steps: u8,
-}
-
-impl Settle {
-    /// Points stay.
-    pub const OFF: Self = Self { steps: 0 };
-    /// The largest number of steps.
-    pub const MAX_STEPS: u32 = 4;
-
-    /// A number of steps.
-    ///
-    /// # Errors
-    /// [`ErrorKind::Settle`] above [`MAX_STEPS`](Self::MAX_STEPS).
-    ///
-    /// ```
-    /// use strew_core::{ErrorKind, Settle};
-    ///
-    /// assert_eq!(Settle::new(0)?, Settle::OFF);
-    /// assert_eq!(Settle::new(9).unwrap_err().kind(), ErrorKind::Settle);
-    /// # Ok::<(), strew_core::Error>(())
-    /// ```
-    pub fn new(steps: u32) -> Result<Self, Error> {
-        if steps <= Self::MAX_STEPS {
-            Ok(Self { steps: steps as u8 })
-        } else {
-            let allowed = alloc::format!("an integer from 0 to {}", Self::MAX_STEPS);
-            Err(Error::new(ErrorKind::Settle, "settle", steps, allowed))
-        }
-    }
-
-    /// The number of steps.
-    ///
-    /// ```
-    /// use strew_core::Settle;
-    ///
-    /// assert_eq!(Settle::OFF.steps(), 0);
-    /// ```
-    #[must_use]
-    pub const fn steps(self) -> u32 {
-        self.steps as u32
-    }
-
-    /// Whether points stay.
-    #[must_use]
-    pub(crate) const fn is_off(self) -> bool {
-        self.steps == 0
-    }
-
-    /// The pushes of each step.
-    const fn kernels(self) -> &'static [Kernel] {
-        match self.steps {
-            0 => &[],
-            1 => &ONE,
-            2 => &TWO,
-            3 => &THREE,
-            _ => &FOUR,
-        }
-    }
-}
-
-impl Default for Settle {
-    /// Two steps: most of the gain at half of the price of three.
-    fn default() -> Self {
-        Self { steps: 2 }
-    }
-}
+use crate::sample::lattice::Settle;
 
 /// Shares below this count as this: 20 spacings between points. So a point's reach is bounded.
 pub(crate) const LEAST_SHARE: f64 = 1.0 / 400.0;
 
 /// The greatest move along each axis, in spacings at full density.
 pub(crate) const MOST_MOVE: f64 = 8.0;
+
+/// The pushes of each step.
+const fn kernels(settle: Settle) -> &'static [Kernel] {
+    match settle.steps() {
+        0 => &[],
+        1 => &ONE,
+        2 => &TWO,
+        3 => &THREE,
+        _ => &FOUR,
+    }
+}
 
 const fn kernel([reach, push, near, guard]: [f32; 4]) -> Kernel {
     Kernel {

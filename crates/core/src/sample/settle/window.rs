@@ -26,8 +26,9 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use super::{
-    LEAST_SHARE, MOST_MOVE, Settle,
+    LEAST_SHARE, MOST_MOVE,
     freedom::{Candidate, Freedoms, local, root, slipped},
+    kernels,
     step::{Cells, Kernel, Places, STEP, Scale, WHOLE},
 };
 use crate::{
@@ -35,7 +36,7 @@ use crate::{
         area::Region,
         field::{FieldRows, Source},
         kernel::Backend,
-        lattice::{Columns, Grade, Lattice, Patch, PointId, Span, clip_to_band, BAND_WIDTH},
+        lattice::{BAND_WIDTH, Columns, Grade, Lattice, Patch, PointId, Settle, Span, clip_to_band},
     },
     table::{FRACTION_BITS, fixed},
 };
@@ -215,8 +216,31 @@ impl Settler {
         widened(within, most)
     }
 
+    /// The greatest share in a box.
+    pub(crate) fn greatest_share(&self, within: &Box2) -> f64 {
+        self.grade.bounds(&self.region(within))[1]
+    }
+
+    /// The number of points of the last window.
+    pub(crate) const fn listed(&self) -> usize {
+        self.listed.len()
+    }
+
+    /// The settled place of an address, or `None` if it has no point.
+    pub(crate) fn point(&mut self, lattice: &Lattice, id: PointId) -> Option<[i128; 2]> {
+        let place = lattice.place(id)?;
+        let within = place.map(|k| k..k + 1);
+        let mut found = None;
+        self.settle(
+            &within,
+            |placed| placed.id == id,
+            |settled| found = Some(settled.place),
+        );
+        found
+    }
+
     /// The region of a box.
-    fn region(&self, within: &Box2) -> Region {
+    pub(crate) fn region(&self, within: &Box2) -> Region {
         let [x, y] = within;
         let world = |k: i128| self.lattice.world(k);
         Region::between(
@@ -349,7 +373,7 @@ impl Settler {
         let region = self.region(within);
         let ([left, bottom], [right, top]) = (region.min(), region.max());
         let mut least = 1.0f64;
-        let is_constant = self.grade.is_constant();
+        let is_constant = self.grade.known().is_some();
         for (a, b) in SAMPLES {
             let share = self.grade.share([left + a * (right - left), bottom + b * (top - bottom)]);
             if share > 0.0 && share < least {
@@ -357,7 +381,7 @@ impl Settler {
             }
         }
         let pair = if is_constant { 1.0 } else { 1.25 };
-        let kernels = self.settle.kernels().iter().enumerate();
+        let kernels = kernels(self.settle).iter().enumerate();
         let reach: f64 = kernels.map(|(t, kernel)| pair * widest(kernel) + 2.0 * moved_before(t)).sum();
         (reach * f64::from(self.scale.unit) * local(least)) as i64 + ROOM
     }
@@ -415,7 +439,7 @@ impl Settler {
     /// Finds out which points move in which steps. Returns the extent of the points that matter to them; if it goes
     /// beyond the window, only about.
     fn prepare(&mut self, corner: [i128; 2], window: Extent) -> Extent {
-        let kernels = self.settle.kernels();
+        let kernels = kernels(self.settle);
         let unit = f64::from(self.scale.unit);
         let least = self.places.share.iter().fold(1.0f32, |a, &b| a.min(b));
         let least = f64::from(least);
@@ -478,7 +502,7 @@ impl Settler {
     }
 
     fn take_steps(&mut self) {
-        for (step, kernel) in (1..).zip(self.settle.kernels()) {
+        for (step, kernel) in (1..).zip(kernels(self.settle)) {
             self.cells
                 .step(&mut self.places, (kernel, step), self.scale, self.backend);
         }
@@ -510,6 +534,14 @@ impl Settler {
         let limit = i128::from(FARTHEST) << 4;
         ((k - corner[axis]) >> self.shift).clamp(-limit, limit) as i64
     }
+}
+
+/// The part of a box in another one.
+pub(crate) fn common(a: &Box2, b: &Box2) -> Box2 {
+    [0, 1].map(|i| {
+        let start = a[i].start.max(b[i].start);
+        start..a[i].end.min(b[i].end).max(start)
+    })
 }
 
 /// A box with some room on all sides.

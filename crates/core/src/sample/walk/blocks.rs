@@ -38,6 +38,7 @@
 //! - [`RowWalk`] goes row by row. It makes the points of boxes, warped or not, and of areas, and costs time in
 //!   proportion to the points and the rows.
 //! - [`FieldWalk`] goes patch by patch, since a field decides point by point which of them are left.
+//! - [`SettledWalk`] goes by pieces of some rows, since points that settle need those around them.
 //! - [`Kept`] has no walk at all: small plans keep the points that counting has found.
 //!
 //! The scope and the count decide which it is, once. The bits of a point never depend on it.
@@ -57,6 +58,7 @@ use super::{
     few::{Few, Kept},
     graded::FieldWalk,
     rows::RowWalk,
+    settled::{Pieces, SettledWalk},
     tile::Tile,
 };
 use crate::sample::{
@@ -109,6 +111,7 @@ enum Walk<F: Format> {
     Kept(Kept<F>),
     Rows(Box<RowWalk<F>>),
     Field(Box<FieldWalk<F>>),
+    Settled(Box<SettledWalk<F>>),
 }
 
 impl<F: Format> Walk<F> {
@@ -124,12 +127,17 @@ impl<F: Format> Walk<F> {
 impl<F: Format> Blocks<F> {
     /// The points of a window.
     pub(crate) fn of_window(scope: Arc<Scope>, window: Window) -> Self {
-        let bands = Bands::from(scope.clone(), window.start);
+        let walk = match Pieces::new(&scope) {
+            Some(pieces) => {
+                Walk::Settled(Box::new(SettledWalk::from(pieces, window.start)))
+            }
+            None => Walk::new(Bands::from(scope.clone(), window.start), window.start),
+        };
         Self {
             scope,
             window: Some(window),
             left: window.count,
-            walk: Walk::new(bands, window.start),
+            walk,
         }
     }
 
@@ -145,8 +153,12 @@ impl<F: Format> Blocks<F> {
 
     /// The points of a tile.
     pub(crate) fn of_tile(scope: Arc<Scope>, tile: &Tile) -> Self {
+        let walk = match Pieces::new(&scope) {
+            Some(pieces) => Walk::Settled(Box::new(SettledWalk::of_tile(pieces, tile))),
+            None => Walk::new(Bands::of_tile(scope.clone(), tile), None),
+        };
         Self {
-            walk: Walk::new(Bands::of_tile(scope.clone(), tile), None),
+            walk,
             scope,
             window: None,
             left: u128::MAX,
@@ -177,6 +189,7 @@ impl<F: Format> Blocks<F> {
             Walk::Kept(kept) => kept.backend = backend,
             Walk::Rows(walk) => walk.bands.backend = backend,
             Walk::Field(walk) => walk.set_backend(backend),
+            Walk::Settled(walk) => walk.set_backend(backend),
         }
         self
     }
@@ -203,6 +216,7 @@ impl<F: Format> Blocks<F> {
             Walk::Kept(kept) => kept.fill(out),
             Walk::Rows(walk) => walk.fill(out),
             Walk::Field(walk) => walk.fill(out),
+            Walk::Settled(walk) => walk.fill(out),
         };
         self.left -= filled as u128;
         filled
@@ -232,6 +246,7 @@ impl<F: Format> Blocks<F> {
             Walk::Kept(kept) => kept.place()?,
             Walk::Rows(walk) => walk.place().unwrap_or_else(|| walk.bands.next_start()),
             Walk::Field(walk) => walk.place(),
+            Walk::Settled(walk) => walk.place(),
         };
         Some(Cursor {
             offset: window.offset + (window.count - self.left),

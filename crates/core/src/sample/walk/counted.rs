@@ -7,6 +7,7 @@ use super::{
     bands::Bands,
     few::{FEW, Few, find_few},
     graded::{FieldWalk, Next},
+    settled::{Pieces, count_settled, find_few_settled, locate_settled},
 };
 use crate::sample::{
     count::count,
@@ -41,6 +42,9 @@ pub(crate) struct Counted {
 impl Counted {
     /// Counts the points of a scope. Meaningless once the scope's stop flag is raised.
     pub(crate) fn new(scope: &Arc<Scope>) -> Self {
+        if let Some(pieces) = Pieces::new(scope) {
+            return Self::settled(pieces);
+        }
         if scope.lattice.grade.is_some() {
             return Self::in_field(scope);
         }
@@ -51,6 +55,22 @@ impl Counted {
                 ..Self::default()
             },
             None => Self::known(count(scope, &scope.x.all, &scope.y.all)),
+        }
+    }
+
+    fn settled(mut pieces: Pieces) -> Self {
+        if let Some(few) = find_few_settled(&mut pieces) {
+            return Self {
+                count: few.len() as u128,
+                kept: Some(Arc::new(few)),
+                ..Self::default()
+            };
+        }
+        let mut marks = Marks::default();
+        Self {
+            count: count_settled(pieces, |at, before| marks.note(at, before)),
+            marks: marks.all.into(),
+            kept: None,
         }
     }
 
@@ -132,6 +152,9 @@ impl Marks {
 pub(crate) fn locate_graded(scope: &Arc<Scope>, mark: Option<Mark>, k: u128) -> Option<PointId> {
     let start = mark.map(|mark| mark.at);
     let mut before = mark.map_or(0, |mark| mark.before);
+    if let Some(pieces) = Pieces::new(scope) {
+        return locate_settled(pieces, start, before, k);
+    }
     let mut walk = FieldWalk::<Points>::new(Bands::from(scope.clone(), start), start);
     while !scope.stop.is_raised() {
         match walk.next(TOGETHER)? {

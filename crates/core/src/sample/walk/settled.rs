@@ -127,7 +127,7 @@ impl Pieces {
         let wants = |placed: &Placed| {
             holds(piece, placed.id)
                 && side(inside.bounds, placed) != Some(false)
-                && (!has || lattice.is_of_kind(placed.id))
+                && (!has || lattice.block(placed.id).is_some())
         };
         self.settler.settle(&within, wants, |settled| {
             if inside.holds(&settled) {
@@ -177,7 +177,7 @@ impl Pieces {
             _ => None,
         };
         let is_own = |placed: &Placed| {
-            holds(piece, placed.id) && (!has || lattice.is_of_kind(placed.id))
+            holds(piece, placed.id) && (!has || lattice.block(placed.id).is_some())
         };
         let mut number = 0;
         let mut unsure = vec![false; states.len()];

@@ -1,0 +1,352 @@
+//! Points that settle, against a slow reference written from docs/algorithm.md, and against themselves: by chunk,
+//! cursor, tile, backend, id and place.
+
+mod subject;
+
+use std::collections::HashMap;
+
+use proptest::prelude::*;
+use strew_core::{
+    Area, Backend, Circle, F64, Field, Placement, Point, PointId, PointSet, Points, Region, Seed,
+    Settle, Spacing, Table,
+    field::FieldSpec,
+};
+use subject::{all, all_by, shipped};
+
+const SQUARE: f64 = 4.0;
+
+/// The steps of docs/algorithm.md: ρ, c, γ, h.
+fn kernels(steps: u32) -> Vec<[f32; 4]> {
+    match steps {
+        1 => vec![[2.395, 0.298, 0.999, 0.366]],
+        2 => vec![[2.29, 0.435, 1.134, 0.278], [2.403, 0.312, 0.836, 0.49]],
+        3 => vec![
+            [1.605, 0.588, 1.108, 0.227],
+            [2.531, 0.371, 1.094, 0.347],
+            [2.462, 0.361, 0.788, 0.653],
+        ],
+        _ => vec![
+            [2.312, 0.407, 1.165, 0.617],
+            [1.832, 0.471, 0.797, 0.641],
+            [2.544, 0.501, 1.0, 0.0],
+            [2.772, 0.286, 0.836, 0.141],
+        ],
+    }
+}
+
+/// A point of the reference.
+struct Placed {
+    id: PointId,
+    at: [i64; 2],
+    placed: [i64; 2],
+    world: [f64; 2],
+    share: f64,
+    freedom: f32,
+}
+
+/// Where the points of a box settle, by the definition alone: all points of the box step together, with all pairs.
+/// Points nearer to its rim than the reach of the steps are wrong.
+fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -> Vec<Point> {
+    let Placement {
+        spacing,
+        keep,
+        settle,
+        warp,
+        ..
+    } = set.placement();
+    let side = set.table().alpha().set_side_f64();
+    let step = spacing.get() * side / f64::from(1u32 << 20);
+    let unit = f64::from(1u32 << 20) / side;
+    let still = set.clone().settle(0).expect("0");
+    let share = |at: [f64; 2]| {
+        let share = shares(at);
+        if share > 0.0 { share.min(1.0) * keep.get() } else { 0.0 }
+    };
+    let mut points: Vec<Placed> = Vec::new();
+    for point in still.within(region).expect("near").to_vec() {
+        let world = point.at();
+        let at = world.map(|v| (v / step).round() as i64);
+        assert_eq!(at.map(|v| v as f64 * step), world);
+        let own = share(world);
+        let around = |far: f64| {
+            let far = far * spacing.get() / own.max(1.0 / 400.0).sqrt();
+            let [x, y] = world;
+            [[x - far, y], [x + far, y], [x, y - far], [x, y + far]]
+                .iter()
+                .map(|at| (share(*at) - own).abs() / own)
+                .fold(0.0, f64::max)
+        };
+        let e = (around(1.0) / 0.4).max(around(1.8) / 0.7);
+        let part = if e <= 0.35 {
+            1.0
+        } else if e < 4.0 {
+            1.0 / (1.0 + (e * e) * (e * e))
+        } else {
+            0.0
+        };
+        let inside = (256.0 * (1.0 - own)).clamp(0.0, 1.0);
+        points.push(Placed {
+            id: point.id,
+            at,
+            placed: at,
+            world,
+            share: own,
+            freedom: (part * inside) as f32,
+        });
+    }
+    let clear = (set.table().least_distance().with_warp(warp) * unit) as f32;
+    let unit = unit as f32;
+    for [reach, push, near, guard] in kernels(settle.steps()) {
+        let [by_reach, by_near] = [reach, near].map(|r| 0.5 / (r * r * unit * unit));
+        let moved: Vec<[i64; 2]> = points
+            .iter()
+            .map(|own| {
+                let share = own.share.max(1.0 / 400.0) as f32;
+                let mut sum = [0i32; 2];
+                let mut nearest = f32::INFINITY;
+                for other in &points {
+                    let [dx, dy] = [0, 1].map(|i| (own.at[i] - other.at[i]) as f32);
+                    let squared = dx * dx + dy * dy;
+                    let scaled = squared * (share + other.share.max(1.0 / 400.0) as f32);
+                    let u = (1.0 - scaled * by_reach).max(0.0);
+                    let v = (1.0 - scaled * by_near).max(0.0);
+                    if u > 0.0 && scaled > 0.0 {
+                        nearest = nearest.min(squared);
+                    }
+                    let u = u * u;
+                    let force = push * (u * u) + guard * (v * v);
+                    sum[0] = sum[0].wrapping_add((dx * force) as i32);
+                    sum[1] = sum[1].wrapping_add((dy * force) as i32);
+                }
+                if own.freedom == 0.0 {
+                    return own.at;
+                }
+                let spacing = unit / share.sqrt();
+                let mut go = sum.map(|v| (v as f32 * own.freedom).clamp(-0.3 * spacing, 0.3 * spacing));
+                let far = (reach * spacing).min(nearest.sqrt());
+                let free = ((far * (1.0 - 1.0 / 262_144.0) - clear) * 0.5).max(0.0);
+                let length = (go[0] * go[0] + go[1] * go[1]).sqrt();
+                if length > free {
+                    go = go.map(|v| v * (free / length));
+                }
+                [0, 1].map(|i| {
+                    let offset = own.at[i] + i64::from(go[i] as i32) - own.placed[i];
+                    let whole = 0.4 * spacing;
+                    own.placed[i] + i64::from((offset as f32).clamp(-whole, whole) as i32)
+                })
+            })
+            .collect();
+        for (point, to) in points.iter_mut().zip(moved) {
+            point.at = to;
+        }
+    }
+    let back = |point: &Placed| {
+        let there = share(point.at.map(|v| v as f64 * step));
+        there < 0.5 * point.share || there > 2.0 * point.share
+    };
+    points
+        .iter()
+        .map(|point| {
+            let e_is_small = point.world;
+            let at = if point.freedom > 0.0 && back(point) {
+                e_is_small
+            } else {
+                point.at.map(|v| v as f64 * step)
+            };
+            let [x, y] = at;
+            Point { id: point.id, x, y }
+        })
+        .collect()
+}
+
+fn blue() -> Table {
+    shipped("blue-5-sqrt3-over-2-s")
+}
+
+fn set(seed: u64, spacing: f64, steps: u32) -> PointSet {
+    let placement = Placement::new(Spacing::new(spacing).expect("in range"), Seed(seed));
+    PointSet::new(blue()).placed(placement.with_settle(Settle::new(steps).expect("0 to 4")))
+}
+
+/// Smooth, with places of share 0 and of share 1.
+fn hills([x, y]: [f64; 2]) -> f64 {
+    let (u, v) = ((x * 0.11).sin(), (y * 0.07).cos());
+    (1.4 * u * v + 0.3).clamp(0.0, 1.0)
+}
+
+fn noise() -> FieldSpec {
+    let noise = strew_core::field::Noise {
+        seed: 5,
+        wavelength: 40.0,
+        octaves: 2,
+        range: [0.05, 1.0],
+    };
+    FieldSpec::noise(noise).expect("valid")
+}
+
+fn region(min: [f64; 2], sides: [f64; 2]) -> Region {
+    Region::new(min, [min[0] + sides[0], min[1] + sides[1]]).expect("ordered")
+}
+
+/// Compares the points of a box with the reference of a wider one.
+fn check(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, inner: Region, room: f64) {
+    let wide = Region::new(
+        inner.min().map(|v| v - room),
+        inner.max().map(|v| v + room),
+    );
+    let expected: Vec<Point> = reference(set, shares, wide.expect("ordered"))
+        .into_iter()
+        .filter(|point| inner.contains(point.at()))
+        .collect();
+    let found = set.within(inner).expect("near");
+    assert_eq!(found.count(), expected.len() as u128);
+    let by_id: HashMap<PointId, Point> = expected.iter().map(|p| (p.id, *p)).collect();
+    for point in found.to_vec() {
+        assert_eq!(Some(&point), by_id.get(&point.id));
+    }
+    assert!(expected.len() > 20, "{}", expected.len());
+}
+
+#[test]
+fn thinned_points_are_those_of_the_definition() {
+    for (steps, keep) in [(1, 0.5), (2, 0.3), (3, 0.12), (4, 0.03), (2, 0.97)] {
+        let set = set(7, 1.0, steps).keep(keep).expect("a share");
+        let local = 1.0 / keep.sqrt();
+        let inner = region([-31.0, 11.0], [8.0 * local, 7.0 * local]);
+        check(&set, &|_| 1.0, inner, 12.0 * local);
+    }
+}
+
+#[test]
+fn points_of_fields_are_those_of_the_definition() {
+    for steps in 1..=4 {
+        let set = set(3, 1.0, steps).in_field(hills);
+        check(&set, &hills, region([-10.0, -4.0], [24.0, 20.0]), 60.0);
+        let noise = noise();
+        let set = self::set(11, 1.0, steps).in_field(noise.clone());
+        check(&set, &|at| noise.share(at), region([100.0, 50.0], [20.0, 24.0]), 50.0);
+    }
+}
+
+#[test]
+fn other_spacings_and_tables_are_those_of_the_definition() {
+    let table = subject::table("sqrt(3)", 20);
+    let placement = Placement::new(Spacing::new(0.37).expect("in range"), Seed(77));
+    let set = PointSet::new(table).placed(placement).keep(0.2).expect("a share");
+    check(&set, &|_| 1.0, region([1000.0, -900.0], [6.0, 7.0]), 11.0);
+}
+
+/// Every part of a plan, made in another way, has the same points.
+fn agrees(set: &PointSet, area: impl Into<Area>) {
+    let area = area.into();
+    let plan = set.within(area.clone()).expect("near");
+    let whole = plan.to_vec();
+    assert_eq!(plan.count(), whole.len() as u128);
+    for backend in Backend::available() {
+        assert_eq!(all_by::<Points>(&plan, 777, backend), whole);
+    }
+    let tiled: Vec<Point> = plan
+        .tiles(900)
+        .flat_map(|tile| {
+            let mut points = vec![Point::default(); 1500];
+            let filled = plan.tile_blocks::<Points>(&tile).fill(&mut points);
+            points.truncate(filled);
+            points
+        })
+        .collect();
+    assert_eq!(tiled, whole);
+    let n = whole.len();
+    for (from, to) in [(0, n / 3), (n / 3, n), (n / 2, n / 2 + 1)] {
+        let part = plan.window(from as u128, Some((to - from) as u128));
+        assert_eq!(all::<Points>(&part, 100), whole[from..to]);
+    }
+    let mut blocks = plan.blocks::<F64>();
+    let mut some = vec![[0.0; 2]; n / 2 + 1];
+    let filled = blocks.fill(&mut some);
+    let rest = set.resume(area.clone(), blocks.cursor().expect("a place"));
+    assert_eq!(rest.expect("the place").to_vec(), whole[filled..]);
+    for point in whole.iter().step_by(n / 30 + 1) {
+        assert_eq!(set.point(point.id).map(|member| member.at()), Some(point.at()));
+        let nearest = set.nearest(point.at(), 1).expect("found");
+        assert_eq!(nearest[0].member.id(), point.id);
+        let around = set.around(point.at(), 4.0, 10_000).expect("few");
+        let near = whole.iter().filter(|other| {
+            let [dx, dy] = [other.x - point.x, other.y - point.y];
+            dx * dx + dy * dy <= 16.0
+        });
+        assert!(near.count() <= around.len());
+    }
+}
+
+#[test]
+fn parts_agree_with_the_whole() {
+    let thinned = set(5, 1.0, 2).keep(0.2).expect("a share");
+    agrees(&thinned, region([-40.0, -300.0], [500.0, 420.0]));
+    agrees(&thinned, region([-4.0, -3.0], [30.0, 42.0]));
+    let circle = Circle::new([100.0, 30.0], 90.0).expect("a circle");
+    agrees(&thinned, circle);
+    let field = set(9, 1.0, 3).in_field(hills);
+    agrees(&field, region([-40.0, -170.0], [390.0, 240.0]));
+    agrees(&set(9, 1.0, 1).in_field(noise()), region([300.0, -170.0], [110.0, 150.0]));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn chunks_tile_the_plane(seed: u64, keep in 0.02..1.0f64, steps in 0u32..=4, in_field: bool, x in -9i64..9) {
+        let mut set = set(seed, 1.0, steps).keep(keep).expect("a share");
+        if in_field {
+            set = set.in_field(noise());
+        }
+        let size = SQUARE / keep.sqrt();
+        let mut chunks: Vec<Point> = Vec::new();
+        for i in 0..3 {
+            for j in 0..3 {
+                chunks.extend(set.chunk(size, [x + i, j - 2]).expect("near").to_vec());
+            }
+        }
+        let whole = set.chunk(3.0 * size, [0, 0]).expect("near");
+        prop_assert!(whole.count() < u128::MAX);
+        let corner = [x as f64 * size, -2.0 * size];
+        let region = Region::new(corner, corner.map(|v| v + 3.0 * size)).expect("ordered");
+        let mut whole = set.within(region).expect("near").to_vec();
+        // Chunks decide by exact corners, boxes by reported coordinates; both agree but for ties.
+        let key = |p: &Point| p.id;
+        chunks.sort_by_key(key);
+        whole.sort_by_key(key);
+        let differing = chunks.iter().filter(|p| !whole.contains(p)).count();
+        prop_assert!(differing <= 1, "{differing} of {}", chunks.len());
+    }
+}
+
+#[test]
+fn full_density_does_not_move() {
+    let full = set(3, 1.0, 3);
+    let area = region([0.0, 0.0], [60.0, 60.0]);
+    let of = |set: &PointSet| set.within(area).expect("near").to_vec();
+    let one = full.clone().in_field(FieldSpec::constant(1.0).expect("a share"));
+    assert_eq!(of(&one), of(&full));
+    assert_eq!(of(&full.clone().settle(0).expect("0")), of(&full));
+}
+
+#[test]
+fn constant_fields_and_shares_are_one_thing() {
+    let thinned = set(3, 1.0, 2).keep(0.31).expect("a share");
+    let field = set(3, 1.0, 2).in_field(FieldSpec::constant(0.31).expect("a share"));
+    let area = region([500.0, 20.0], [60.0, 60.0]);
+    let of = |set: &PointSet| set.within(area).expect("near").to_vec();
+    assert_eq!(of(&thinned), of(&field));
+}
+
+#[test]
+fn distances_of_thinned_sets_are_kept() {
+    for (keep, steps) in [(0.95, 2), (0.8, 3), (0.5, 4), (0.5, 1)] {
+        let set = set(3, 1.0, steps).keep(keep).expect("a share");
+        let least = set.least_distance();
+        assert!(least > 0.5);
+        for point in set.within(region([0.0, 0.0], [50.0, 50.0])).expect("near").to_vec() {
+            let next = set.nearest(point.at(), 2).expect("found")[1];
+            assert!(next.distance >= least, "{} {least}", next.distance);
+        }
+    }
+}
