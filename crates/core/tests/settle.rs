@@ -115,14 +115,15 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
                     }
                     let u = u * u;
                     let force = push * (u * u) + guard * (v * v);
-                    sum[0] = sum[0].wrapping_add((dx * force) as i32);
-                    sum[1] = sum[1].wrapping_add((dy * force) as i32);
+                    let quanta = |push: f32| (push / 128.0).round_ties_even() as i32;
+                    sum[0] = sum[0].wrapping_add(quanta(dx * force));
+                    sum[1] = sum[1].wrapping_add(quanta(dy * force));
                 }
                 if own.freedom == 0.0 {
                     return own.at;
                 }
                 let spacing = unit / share.sqrt();
-                let mut go = sum.map(|v| (v as f32 * own.freedom).clamp(-0.3 * spacing, 0.3 * spacing));
+                let mut go = sum.map(|v| (v as f32 * 128.0 * own.freedom).clamp(-0.3 * spacing, 0.3 * spacing));
                 let far = (reach * spacing).min(nearest.sqrt());
                 let free = ((far * (1.0 - 1.0 / 262_144.0) - clear) * 0.5).max(0.0);
                 let length = (go[0] * go[0] + go[1] * go[1]).sqrt();

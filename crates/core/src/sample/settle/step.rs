@@ -1,7 +1,7 @@
 //! One step: all pushes of neighbors on the points that move, in any order.
 //!
-//! Positions are integers, each push is worked out in plain `f32` and truncated to an integer, and a point's move is
-//! the wrapping sum of these. So the sum does not depend on the order of neighbors, and a pair's pushes are equal and
+//! Positions are integers, each push is worked out in plain `f32` and rounded to a multiple of a quantum, and a point's
+//! move is the wrapping sum of these. So the sum does not depend on the order of neighbors, and a pair's pushes are equal and
 //! opposite to the last bit. Points beyond a pair's reach push by zero, so it does not matter which are looked at.
 
 use alloc::vec::Vec;
@@ -27,8 +27,14 @@ pub(super) struct Kernel {
 /// Lists are read in vectors of this many.
 const PAD: usize = 16;
 
-/// The width of a cell for each unit of a pair's reach, so that five cells across are looked at.
-const CELL: f64 = 0.505;
+/// The width of a cell for each unit of a pair's reach, so that three cells across are looked at.
+const CELL: f64 = 1.005;
+
+/// Pushes are multiples of this many fixed-point units, 2⁻¹³ grid units.
+const QUANTUM: f32 = 128.0;
+
+/// 1.5 · 2²³: a number within ±2²², added to it, is rounded to an integer, in the lower bits.
+const ROUNDER: f32 = 12_582_912.0;
 
 /// The number of cells along an axis is at most this.
 const MOST_CELLS: i64 = 1024;
@@ -271,7 +277,7 @@ impl Step<'_> {
             let (push, nearest) = pushes(near, self.kernel, unit, (at, share));
             let spacing = unit / share.sqrt_();
             let most = STEP * spacing;
-            let mut go = push.map(|v| within(v as f32 * freedom, most));
+            let mut go = push.map(|v| within(v as f32 * QUANTUM * freedom, most));
             if self.scale.clear > 0.0 {
                 // Two points that each go half of the way that is free stay clear of each other.
                 let far = self.kernel.reach * spacing;
@@ -331,15 +337,26 @@ fn pushes(near: &Near, kernel: &Kernel, unit: f32, (at, share): ([i32; 2], f32))
             let v = above_zero(1.0 - scaled * by_near);
             let u = u * u;
             let force = kernel.push * (u * u) + kernel.guard * (v * v);
-            sum_x[k] = sum_x[k].wrapping_add((dx * force) as i32);
-            sum_y[k] = sum_y[k].wrapping_add((dy * force) as i32);
+            sum_x[k] = sum_x[k].wrapping_add(rounded(dx * force));
+            sum_y[k] = sum_y[k].wrapping_add(rounded(dy * force));
             let other = if is_other { squared } else { f32::INFINITY };
             nearest[k] = if other < nearest[k] { other } else { nearest[k] };
         }
     }
-    let sum = |all: [i32; PAD]| all.iter().fold(0i32, |a, &b| a.wrapping_add(b));
+    // Each has the bits of the rounder.
+    let rounders = (near.x.len() as i32).wrapping_mul(ROUNDER.to_bits() as i32);
+    let sum = |all: [i32; PAD]| {
+        let sum = all.iter().fold(0i32, |a, &b| a.wrapping_add(b));
+        sum.wrapping_sub(rounders)
+    };
     let least = nearest.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
     ([sum(sum_x), sum(sum_y)], least)
+}
+
+/// A push in quanta, to the nearest integer, plus the bits of the rounder.
+#[inline(always)]
+fn rounded(push: f32) -> i32 {
+    (push * (1.0 / QUANTUM) + ROUNDER).to_bits() as i32
 }
 
 #[inline(always)]
