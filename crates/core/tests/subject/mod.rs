@@ -45,7 +45,7 @@ pub fn tables() -> &'static [Table; 3] {
 pub fn shipped(name: &str) -> Table {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let file = format!("{name}.strew");
-    let places = [root.join("tables"), root.join("../../tables")];
+    let places = [root.join("tables"), root.join("../catalog/tables")];
     let found = places
         .iter()
         .find_map(|place| std::fs::read(place.join(&file)).ok());

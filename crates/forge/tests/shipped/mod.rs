@@ -11,7 +11,7 @@ use strew_forge::{file_name, measure::Window, read_table};
 pub fn table(profile: &str, alpha: &str, radius: u32) -> Table {
     let name = file_name(profile, alpha.parse().expect("valid"), radius);
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let places = [crates.join("core/tables"), crates.join("../tables")];
+    let places = [crates.join("core/tables"), crates.join("catalog/tables")];
     let path = places.map(|place| place.join(&name));
     let path = path.iter().find(|path| path.exists()).expect("shipped");
     read_table(path).unwrap_or_else(|e| panic!("{e}"))
