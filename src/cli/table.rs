@@ -196,14 +196,6 @@ fn describe(text: &mut String, place: &str, table: &Table) -> std::fmt::Result {
         None => "none: thinned sets are no more even than random ones",
     };
     writeln!(text, "  ranks      {ranks}")?;
-    if let Some(ladder) = table.ladder() {
-        let (levels, least) = (ladder.shares().count(), ladder.least_share());
-        writeln!(
-            text,
-            "  ladder     {levels} levels, to a share of 1/{:.0}",
-            1.0 / least
-        )?;
-    }
     if let Some(mix) = table.mix() {
         let (kinds, shares) = (mix.shares().kinds(), mix.shares());
         writeln!(text, "  kinds      {kinds}, in the ratio {shares}")?;

@@ -1,6 +1,6 @@
 //! Measures how a set follows a field: distances in local units, and counts of boxes.
 //!
-//! `cargo run --release -p strew-forge --example fields -- TABLE [--seed 5] [--seeds 32] [--warp 0] [--still]` looks at
+//! `cargo run --release -p strew-forge --example fields -- TABLE [--seed 5] [--seeds 32] [--warp 0]` looks at
 //! windows of 400 mean spacings. Var is Var(N − ∫λ)/∫λ over quadtree boxes of 8 to 32 points (a random set has 1),
 //! bias that of the count, both by octave of λ; distances are nearest-neighbor distances times √λ over the
 //! hexagonal distance. A picture is written with `--svg FIELD`.
@@ -53,11 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let seed: u64 = after("--seed").map_or(Ok(5), |v| v.parse())?;
     let seeds: u64 = after("--seeds").map_or(Ok(1), |v| v.parse())?;
-    let mut table = read_table(Path::new(arguments.first().ok_or("which table?")?))?;
-    if arguments.iter().any(|a| a == "--still") {
-        let ranks = table.ranks().ok_or("no ranks")?.clone();
-        table = table.with_ranks(ranks)?;
-    }
+    let table = read_table(Path::new(arguments.first().ok_or("which table?")?))?;
     let mut set = PointSet::new(table).seed(seed);
     if let Some(warp) = after("--warp") {
         set = set.warp(warp.parse()?)?;

@@ -1,10 +1,8 @@
-//! Measures thinned sets as they are served: windows of 60,000 points at shares from 1/2 to 1/64, by `keep`, or
-//! by `keep_moving` with `--moving`.
+//! Measures thinned sets as they are served: windows of 60,000 points at shares from 1/2 to 1/64.
 //!
-//! `cargo run --release -p strew-forge --example served -- TABLE [--seed 3] [--warp 1] [--moving]` prints
-//! the mean power below ν = 0.5, the tallest mode below ν = 0.8 over the mean of its ring, and δ_min.
-//! With `--svg` it writes a picture instead: shares 1/4, 1/16, 1/25 and 1/200, by `keep` above and by
-//! `keep_moving` below.
+//! `cargo run --release -p strew-forge --example served -- TABLE [--seed 3] [--warp 1]` prints the mean power below
+//! ν = 0.5, the tallest mode below ν = 0.8 over the mean of its ring, and δ_min. With `--svg` it writes a picture
+//! instead: shares 1/4, 1/16, 1/25 and 1/200.
 
 use std::{error::Error, path::Path};
 
@@ -36,10 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for octave in 1..=6 {
         let share = (-f64::from(octave)).exp2();
         let side = (POINTS / share).sqrt();
-        let set = match arguments.iter().any(|a| a == "--moving") {
-            true => all.clone().keep_moving(share)?,
-            false => all.clone().keep(share)?,
-        };
+        let set = all.clone().keep(share)?;
         // Away from the origin, where seed 0 is no usual place.
         let corner = [12_345.0, -6_789.0];
         let region = Region::new(corner, corner.map(|v| v + side))?;
@@ -63,25 +58,20 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn draw(all: &PointSet) -> Result<(), Box<dyn Error>> {
     const SIDE: f64 = 32.0;
     println!(
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 134 67' width='1600' height='800'>"
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 134 32' width='1600' height='382'>"
     );
-    println!("<rect width='134' height='67' fill='white'/>");
+    println!("<rect width='134' height='32' fill='white'/>");
     for (column, share) in [0.25, 0.0625, 0.04, 0.005].into_iter().enumerate() {
-        for (row, moving) in [false, true].into_iter().enumerate() {
-            let set = match moving {
-                true => all.clone().keep_moving(share)?,
-                false => all.clone().keep(share)?,
-            };
-            let local = (1.0 / share).sqrt();
-            let region = Region::new([0.0; 2], [SIDE * local; 2])?;
-            let [left, top] = [column, row].map(|place| place as f64 * (SIDE + 2.0));
-            println!("<g transform='translate({left} {top})'>");
-            for p in set.within(region)?.to_vec() {
-                let [x, y] = [p.x / local, p.y / local];
-                println!("<circle cx='{x:.2}' cy='{y:.2}' r='0.2'/>");
-            }
-            println!("</g>");
+        let set = all.clone().keep(share)?;
+        let local = (1.0 / share).sqrt();
+        let region = Region::new([0.0; 2], [SIDE * local; 2])?;
+        let left = column as f64 * (SIDE + 2.0);
+        println!("<g transform='translate({left} 0)'>");
+        for p in set.within(region)?.to_vec() {
+            let [x, y] = [p.x / local, p.y / local];
+            println!("<circle cx='{x:.2}' cy='{y:.2}' r='0.2'/>");
         }
+        println!("</g>");
     }
     println!("</svg>");
     Ok(())

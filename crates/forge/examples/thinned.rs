@@ -35,7 +35,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         number("--octaves", "6")?,
         number("--phase", "0")?,
     );
-    let moves = !arguments.iter().any(|a| a == "--still");
     let quiet = arguments.iter().any(|a| a == "--quiet");
     println!("share points low peak peak_nu tallest anisotropy_db delta_min delta_avg");
     let mut octave = Octave::default();
@@ -45,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             break;
         }
         let share = (-down).exp2();
-        let set = thinned.at(share, moves);
+        let set = thinned.at(share);
         let spectrum = Spectrum::of_torus(&set, number("--nu", "2.5")?);
         let s = spectrum.summary(if set.points().len() < 4000 {
             0.08

@@ -16,9 +16,8 @@ use crate::{ForgeError, file, optimize::DescentState};
 
 /// The first bytes of a checkpoint file. A change of the layout raises the digit.
 const MAGIC: &[u8; 8] = b"strewck1";
-/// The largest file that is read. The checkpoint of a table has four vectors a block, at most 15 MB, that of
-/// a ladder 24 times as many.
-const MAX_BYTES: u64 = 512 << 20;
+/// The largest file that is read. A checkpoint has four vectors a block, at most 15 MB.
+const MAX_BYTES: u64 = 32 << 20;
 /// The length of the digest at the end of the file.
 const DIGEST_BYTES: usize = 32;
 

@@ -5,9 +5,9 @@ use strew_core::{Table, table::Provenance};
 use crate::{
     Checkpoint, ForgeError, Job,
     judge::{Complaint, Nearness, complaints},
-    ladder::with_ranks,
     optimize::DescentState,
     plan::Plan,
+    thinned::with_ranks,
     watch::{Meter, Stage, Watch},
 };
 

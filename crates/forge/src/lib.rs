@@ -31,7 +31,7 @@
 //! [measured](measure) and the figures are compared with the bounds of the profile ([`judge`]).
 //!
 //! Meanwhile a [`Watch`] follows the [`Progress`], keeps [`Checkpoint`]s and may stop the work;
-//! [`resume`] goes on from a checkpoint. For a table there is, [`ladder()`] makes displacements of thinned sets,
+//! [`resume`] goes on from a checkpoint. For a table there is, [`with_ranks`] makes the order in which its points leave,
 //! and [`labels`] and [`mix()`] make kinds of points. Apart from jobs, a [`Report`] measures any point set, and
 //! [`picture()`] draws it.
 
@@ -46,7 +46,6 @@ mod file;
 mod forge;
 mod job;
 pub mod judge;
-mod ladder;
 pub mod mask;
 pub mod measure;
 mod mix;
@@ -57,6 +56,7 @@ mod plan;
 pub mod profile;
 mod prospect;
 mod report;
+mod thinned;
 mod twins;
 mod watch;
 
@@ -68,10 +68,10 @@ pub use file::{EXTENSION, file_name, read_table, write_table};
 pub use forge::{Outcome, forge, resume};
 pub use job::{DEFAULT_SEED, Job, MAX_RADIUS, MAX_STEPS};
 pub use judge::{Complaint, Figure, gravest};
-pub use ladder::{LadderJob, LadderOutcome, ThinnedTwin, ladder, with_ranks};
 pub use mix::{MixJob, MixOutcome, labels, mix, mix_file_name, second_order};
 pub use picture::{PictureError, picture};
 pub use profile::{Aim, Profile};
 pub use prospect::{FEW_INTERVALS, Hopeless, Prospect};
 pub use report::{Report, Resolution};
+pub use thinned::{ThinnedTwin, with_ranks};
 pub use watch::{Meter, Progress, Stage, Watch};

@@ -59,7 +59,7 @@ fn labels_of_the_default_table_are_even_on_another_twin_and_at_every_share() {
         let points = ThinnedTwin::new(&mixed, twin()).expect("a twin");
         let mix = mixed.mix().expect("one").shares().clone();
         for keep in [1.0, 0.43, 0.11] {
-            let all = points.at(keep, false);
+            let all = points.at(keep);
             assert!(
                 keep == 1.0 || low(&all) < 0.16,
                 "{shares} {keep}: {}",
@@ -88,15 +88,13 @@ fn shipped_joint_tables_keep_their_promises_on_another_twin() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../catalog/tables/mix");
     let plain = shipped::table("blue", "(5-sqrt(3))/2", 100);
     let anisotropy = |set: &Torus| Spectrum::of_torus(set, 1.5).summary(0.04);
-    let before = ThinnedTwin::new(&plain, twin())
-        .expect("a twin")
-        .at(1.0, false);
+    let before = ThinnedTwin::new(&plain, twin()).expect("a twin").at(1.0);
     let before = anisotropy(&before).anisotropy_db;
     for shares in ["1-1", "1-3", "1-1-2", "1-3-10"] {
         let name = format!("blue-5-sqrt3-over-2-m-mix-{shares}.strew");
         let table = read_table(&folder.join(name)).expect("shipped");
         let points = ThinnedTwin::new(&table, twin()).expect("a twin");
-        let all = points.at(1.0, false);
+        let all = points.at(1.0);
         let kinds = table.mix().expect("one").shares().kinds() as u8;
         let sets = (0..kinds).map(|kind| (points.of_kind(1.0, kind), 0.015, 0.57));
         for (set, low, delta) in sets.chain([(all, 5e-4, 0.54)]) {

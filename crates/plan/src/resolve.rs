@@ -32,11 +32,6 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
             let spacing = Spacing::new(value).map_err(wrong(&parameters::SPACING, value))?;
             Ok(Resolved::Known(spacing, spacing.density()))
         }
-        Amount::MinDistance(distance) if moves(set, ready) => {
-            let detail = "not with a field on this table: points move a little as they thin out";
-            let allowed = "density, spacing or count; or a table without a ladder";
-            Err(set.fault(parameters::MIN_DISTANCE.name, distance, detail, allowed))
-        }
         Amount::MinDistance(distance) => {
             let least = ready.table.least_distance();
             let spacing = least.spacing_for(distance, set.warp).map_err(|error| {
@@ -52,12 +47,6 @@ pub(super) fn resolve(set: &Set, ready: &Ready) -> Result<Resolved, Error> {
         }
         Amount::Count(count) => Ok(Resolved::Count(count)),
     }
-}
-
-/// Whether points move as they thin out, so that no least distance is guaranteed: in a field, by the table's
-/// ladder.
-fn moves(set: &Set, ready: &Ready) -> bool {
-    set.field.is_some() && ready.table.ladder().is_some()
 }
 
 /// The spacing in the plane of whose grid units a set's points are apart: of a period, whose twin has slightly other
@@ -78,9 +67,6 @@ pub(super) fn no_period(error: strew_core::Error) -> Error {
 
 /// The distance that coordinates within ±`reach` keep.
 pub(super) fn least_distance(set: &Set, ready: &Ready, spacing: Spacing, reach: f64) -> f64 {
-    if moves(set, ready) {
-        return 0.0;
-    }
     let only = set.kinds.as_ref().and_then(|kinds| kinds.only.as_ref());
     let of_kind = only.and_then(|(_, kind)| ready.table.least_distance_of(*kind, *kind));
     let least = of_kind.unwrap_or_else(|| ready.table.least_distance());
@@ -100,7 +86,7 @@ pub(super) fn kind_distances(
     spacing: Spacing,
     reach: f64,
 ) -> Vec<KindDistance> {
-    let Some(kinds) = set.kinds.as_ref().filter(|_| !moves(set, ready)) else {
+    let Some(kinds) = set.kinds.as_ref() else {
         return vec![];
     };
     let wanted = |name: &&str| kinds.only_name().is_none_or(|only| only == *name);

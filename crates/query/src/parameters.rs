@@ -174,7 +174,7 @@ parameters! {
         shape: Shape::Pattern("^[0-9a-fA-F]{64}$"),
         allowed: Some("64 hexadecimal digits, as in the header strew-table"),
         default: Some("any table that fits the query"),
-        example: "fa1115781ca1238868dadf339c84291489d491b478c8689f4d1e42402fda860e",
+        example: "964d5f8f3b54b47d272533f84423daa3e9b1dd6624fa906325132538c062fa4a",
         ..Parameter::RARE
     };
     /// The seed.

@@ -214,7 +214,7 @@ mod tests {
     fn damaged_members_of_a_manifest_are_named() {
         let level = r#"{"size": 16, "keep": 1, "query": "", "columns": [0, 2], "rows": [0, 2]}"#;
         let manifest = format!(
-            r#"{{"export": {{"strew": "1", "algorithm": 2, "world": null, "digests": [], "query": "", "format": "f32",
+            r#"{{"export": {{"strew": "1", "algorithm": 3, "world": null, "digests": [], "query": "", "format": "f32",
             "content_type": "", "bbox": [0, 0, 1, 1], "compressed": [], "archive": null, "levels": [{level}]}},
             "path": "", "columns": null, "levels": [], "total": {{"chunks": 4, "points": 0, "bytes": 0}}, "files": ""}}"#
         );

@@ -1,6 +1,5 @@
-//! `strew forge`: makes a table, judges it, writes it; a ladder or kinds for a table.
+//! `strew forge`: makes a table, judges it, writes it; kinds for a table.
 
-mod ladder;
 mod mix;
 mod table;
 mod work;
@@ -20,9 +19,7 @@ pub(super) struct Args {
     task: Option<Task>,
     #[command(flatten)]
     table: table::TableArgs,
-    #[command(flatten)]
-    ladder: ladder::LadderArgs,
-    /// Steps of the optimizer [default: the profile's, or 100 for a ladder].
+    /// Steps of the optimizer [default: the profile's].
     #[arg(long)]
     steps: Option<u32>,
     #[command(flatten)]
@@ -38,12 +35,11 @@ enum Task {
     Mix(mix::Args),
 }
 
-/// Makes the table, a ladder or kinds.
+/// Makes the table or kinds.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let Args { work, steps, .. } = args;
-    match (&args.task, &args.ladder.ladder_of) {
-        (Some(Task::Mix(args)), _) => mix::run(args),
-        (None, Some(of)) => ladder::run(&args.ladder, of, *steps, work, &args.checkpoints),
-        (None, None) => table::run(&args.table, *steps, work, &args.checkpoints),
+    match &args.task {
+        Some(Task::Mix(args)) => mix::run(args),
+        None => table::run(&args.table, *steps, work, &args.checkpoints),
     }
 }

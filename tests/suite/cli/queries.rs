@@ -53,9 +53,9 @@ const QUERIES: [(&str, &str); 9] = [
     ),
     (
         "--bbox 0,0,9,9 --spacing 1 --table \
-         fa1115781ca1238868dadf339c84291489d491b478c8689f4d1e42402fda860e",
+         964d5f8f3b54b47d272533f84423daa3e9b1dd6624fa906325132538c062fa4a",
         "bbox=0,0,9,9&spacing=1&table=\
-         fa1115781ca1238868dadf339c84291489d491b478c8689f4d1e42402fda860e",
+         964d5f8f3b54b47d272533f84423daa3e9b1dd6624fa906325132538c062fa4a",
     ),
     ("--chunk 64/-3/2 --spacing 5 --seed 1", "spacing=5&seed=1"),
 ];

@@ -222,13 +222,6 @@ fn faults_of_fields_name_their_paths() {
         "field",
         &["no such field", "forest, left, portrait, ramp"],
     );
-    let path = "/v1/points?bbox=0,0,9,9&min_distance=1&field=ramp";
-    assert_fault(
-        &daemon.get(path),
-        path,
-        "min_distance",
-        &["not with a field"],
-    );
     let wide = base64(&png([1500, 1500], |_, _| 0));
     for (field, at, texts) in [
         (

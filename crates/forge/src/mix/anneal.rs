@@ -254,7 +254,7 @@ mod tests {
     use strew_core::{Map, Table, table::Mix};
 
     use super::*;
-    use crate::{ladder::Ground, mix::press::Kernel, watch::Stage};
+    use crate::{mix::press::Kernel, thinned::Ground, watch::Stage};
 
     #[test]
     fn fields_and_areas_stay_what_they_are_from_scratch() {

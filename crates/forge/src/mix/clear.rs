@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::ladder::Ground;
+use crate::thinned::Ground;
 
 /// √(2/√3), the hexagonal distance in mean spacings.
 const HEXAGONAL: f64 = 1.074_569_931_823_542;
@@ -128,9 +128,9 @@ mod tests {
 
     use super::*;
     use crate::{
-        ladder::{ThinnedTwin, moves_of},
         measure::Distances,
         mix::joint::parts,
+        thinned::{ThinnedTwin, moves_of},
     };
 
     #[test]
@@ -153,7 +153,7 @@ mod tests {
         let table = table.with_mix(mix, ranks).expect("valid");
         let twin = Twin::new(683, 418).expect("reduced");
         let points = ThinnedTwin::new(&table, twin).expect("a twin");
-        assert!(Distances::of_torus(&points.at(1.0, false)).delta_min > 0.399);
+        assert!(Distances::of_torus(&points.at(1.0)).delta_min > 0.399);
         for kind in 0..2 {
             let set = points.of_kind(1.0, kind);
             assert!(Distances::of_torus(&set).delta_min > 0.449, "{kind}");

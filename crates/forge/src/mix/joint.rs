@@ -11,8 +11,8 @@ use super::{
     together::Together,
 };
 use crate::{
-    ladder::moves_of,
     optimize::{Descent, DescentState},
+    thinned::moves_of,
     watch::Meter,
 };
 

@@ -5,8 +5,8 @@ use strew_core::{PointSet, Region, Table, Twin, table::Figures};
 
 use crate::{
     judge::{Bound, Complaint, Figure, round},
-    ladder::ThinnedTwin,
     measure::{Distances, Spectrum, Summary, Torus, Window},
+    thinned::ThinnedTwin,
     twins::nearest,
     watch::{Meter, Stage, Watch},
 };
@@ -103,8 +103,8 @@ enum Place {
 }
 
 /// The sets of a table at a place.
-enum Sets<'a> {
-    Twin(ThinnedTwin<'a>),
+enum Sets {
+    Twin(ThinnedTwin),
     Window(Box<PointSet>),
 }
 
@@ -123,7 +123,7 @@ impl Place {
         }
     }
 
-    fn sets(self, table: &Table) -> Option<Sets<'_>> {
+    fn sets(self, table: &Table) -> Option<Sets> {
         Some(match self {
             Self::Twin(twin) => Sets::Twin(ThinnedTwin::new(table, twin)?),
             Self::Window(seed) => Sets::Window(PointSet::new(table.clone()).seed(seed).into()),
@@ -131,11 +131,11 @@ impl Place {
     }
 }
 
-impl Sets<'_> {
+impl Sets {
     /// All points at a share.
     fn all(&self, share: f64) -> Option<Set> {
         Some(match self {
-            Self::Twin(twin) => Set::Twin(twin.at(share, false)),
+            Self::Twin(twin) => Set::Twin(twin.at(share)),
             Self::Window(set) => Set::Window(window(set, share, 1.0)?),
         })
     }
@@ -195,7 +195,7 @@ struct Subject {
 }
 
 /// The kinds at a share, and all points.
-fn subjects(table: &Table, sets: &Sets<'_>, share: f64) -> Option<Vec<Subject>> {
+fn subjects(table: &Table, sets: &Sets, share: f64) -> Option<Vec<Subject>> {
     let all = sets.all(share)?;
     let count = all.len() as f64;
     let mut subjects = Vec::new();

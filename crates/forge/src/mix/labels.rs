@@ -15,7 +15,7 @@ use super::{
     anneal::{Annealer, Kind, UNIT},
     press::{Kernel, Presses, longest},
 };
-use crate::{ForgeError, ladder::Ground, watch::Meter};
+use crate::{ForgeError, thinned::Ground, watch::Meter};
 
 /// σ in a kind's own spacings. At 0.6 and above dense kinds have more power below ν = 0.5.
 const SIGMA: f64 = 0.55;

@@ -111,7 +111,7 @@ pub struct MixOutcome {
 /// evenly spread, also when the set is thinned. Returns `None` if the watch stopped the work.
 ///
 /// Equal tables and shares make the same labels and ranks on every machine, with any number of threads. It takes
-/// about two seconds of one core for 129 intervals. The table loses its ladder, which was made for other ranks.
+/// about two seconds of one core for 129 intervals.
 ///
 /// # Errors
 /// [`ForgeError::Table`] if the map has too few blocks for the shares.

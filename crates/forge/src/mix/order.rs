@@ -14,8 +14,8 @@ use strew_core::{
 use super::{fullest::Fullest, press::longest};
 use crate::{
     ForgeError,
-    ladder::{Ground, moves_of},
     numeric::exp,
+    thinned::{Ground, moves_of},
     watch::Meter,
 };
 

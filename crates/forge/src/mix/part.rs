@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use crate::{
     energy::PairEnergy,
-    ladder::Ground,
     optimize::{CHUNK, LANES, Pair, sum},
+    thinned::Ground,
 };
 
 /// The points of one kind.

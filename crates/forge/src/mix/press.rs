@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 use strew_core::Table;
 
-use crate::{ladder::Ground, numeric::exp};
+use crate::{numeric::exp, thinned::Ground};
 
 /// A block that presses another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,7 +132,7 @@ pub(super) fn longest(table: &Table) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ladder::moves_of;
+    use crate::thinned::moves_of;
 
     #[test]
     fn presses_are_symmetric_sums_over_all_places_where_blocks_meet() {

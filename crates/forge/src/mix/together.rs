@@ -5,8 +5,8 @@ use strew_core::Table;
 use super::{part::Part, press::longest};
 use crate::{
     energy::{Gaussian, Guard, PairEnergy},
-    ladder::Ground,
     optimize::{Objective, Pairs},
+    thinned::Ground,
 };
 
 type Law = (Gaussian, Guard);
@@ -85,7 +85,7 @@ mod tests {
     use strew_core::table::Mix;
 
     use super::*;
-    use crate::{ladder::moves_of, mix::joint::parts, optimize::jitter};
+    use crate::{mix::joint::parts, optimize::jitter, thinned::moves_of};
 
     #[test]
     fn slopes_are_those_of_the_energy() {

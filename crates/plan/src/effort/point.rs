@@ -12,8 +12,8 @@ const VALUE: f64 = 20.0;
 /// A point that is thinned out, and one of a field that is looked at.
 const PASSED: f64 = 0.15;
 const LOOKED_AT: f64 = 30.0;
-/// A point that stays looks at the field around it: how steep it is decides how far it moves.
-const AROUND: f64 = 4.0;
+/// Points that are not clear of others are tested as well, at most this many for each that is.
+const TESTED: f64 = 4.0;
 /// A normal looks at the heights on four sides.
 const SLOPE: f64 = 4.0;
 
@@ -24,7 +24,7 @@ pub fn point(set: &Set, looks: f64, test: f64, within: Region) -> f64 {
     let passed = match field {
         Some(_) => {
             let look = look(field, within);
-            looks * (LOOKED_AT + look) + AROUND * look
+            looks * (LOOKED_AT + look)
         }
         None => looks * PASSED,
     };
@@ -36,6 +36,5 @@ pub fn point(set: &Set, looks: f64, test: f64, within: Region) -> f64 {
         looks * look([&terrain.field.spec], within)
     });
     let values = set.attributes.as_slice().len() as f64;
-    // Points that are not clear are tested as well.
-    POINT + VALUE * values + passed + varied + ground + test * looks.min(AROUND)
+    POINT + VALUE * values + passed + varied + ground + test * looks.min(TESTED)
 }

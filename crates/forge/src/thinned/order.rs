@@ -58,7 +58,7 @@ pub fn with_ranks(table: &Table) -> Result<Table, ForgeError> {
 }
 
 /// The length of the longest move.
-pub(super) fn longest(moves: &[[f64; 2]]) -> f64 {
+fn longest(moves: &[[f64; 2]]) -> f64 {
     let squared = moves.iter().map(|m| m[0] * m[0] + m[1] * m[1]);
     squared.fold(0.0, f64::max).sqrt()
 }

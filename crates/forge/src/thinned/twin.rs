@@ -1,12 +1,14 @@
 //! Thinned twins: what is left of one period at a share, to be measured.
 
-use strew_core::{Table, Twin, table::to_grid_units};
+use strew_core::{
+    Table, Twin,
+    table::{Displacement, to_grid_units},
+};
 
 use crate::measure::Torus;
 
 /// One period of a twin, to be thinned again and again.
-pub struct ThinnedTwin<'a> {
-    table: &'a Table,
+pub struct ThinnedTwin {
     /// Grid units.
     period: f64,
     points: Vec<Candidate>,
@@ -14,17 +16,16 @@ pub struct ThinnedTwin<'a> {
 
 /// A point of the full set.
 struct Candidate {
-    /// The lattice address.
+    /// Grid units.
     at: [f64; 2],
-    block: u32,
     rank: f64,
     kind: u8,
 }
 
-impl<'a> ThinnedTwin<'a> {
+impl ThinnedTwin {
     /// The period of a twin of the table's map, or `None` if it is none.
     #[must_use]
-    pub fn new(table: &'a Table, twin: Twin) -> Option<Self> {
+    pub fn new(table: &Table, twin: Twin) -> Option<Self> {
         let n = table.map().intervals();
         let (p, q) = (twin.p(), twin.q());
         let index = |site: &strew_core::map::Site| {
@@ -45,47 +46,41 @@ impl<'a> ThinnedTwin<'a> {
             let interval = table.map().interval(site.block_x as usize);
             let offset = within * (interval.end - interval.start) as f64;
             Candidate {
-                at: [f64::from(site.x), f64::from(site.y)],
-                block: block as u32,
+                at: displaced([site.x, site.y], table.displacements()[block]),
                 rank: ranks.start + within * (ranks.end - ranks.start),
                 kind: kind(table, block, offset),
             }
         });
         Some(Self {
-            table,
             period: twin.period() as f64,
             points: points.collect(),
         })
     }
 
-    /// The points that are left at a share, at unit density. They move by the table's ladder if it has one
-    /// and `moves` is set, and otherwise stay where they are in the full set.
+    /// The points that are left at a share, at unit density.
     #[must_use]
-    pub fn at(&self, share: f64, moves: bool) -> Torus {
-        self.set(share, moves, |_| true)
+    pub fn at(&self, share: f64) -> Torus {
+        self.set(share, |_| true)
     }
 
-    /// The points of a kind that are left at a share, at unit density. They stay where they are in the full
-    /// set. Tables without a mix have points of kind 0 only.
+    /// The points of a kind that are left at a share, at unit density. Tables without a mix have points of kind 0
+    /// only.
     #[must_use]
     pub fn of_kind(&self, share: f64, kind: u8) -> Torus {
-        self.set(share, false, |point| point.kind == kind)
+        self.set(share, |point| point.kind == kind)
     }
 
-    fn set(&self, share: f64, moves: bool, counts: impl Fn(&Candidate) -> bool) -> Torus {
+    fn set(&self, share: f64, counts: impl Fn(&Candidate) -> bool) -> Torus {
         let left = self.points.iter();
         let left = left.filter(|point| point.rank < share && counts(point));
-        let points = left.map(|point| {
-            let block = point.block as usize;
-            let by = if moves {
-                self.table.displacement_at(block, share)
-            } else {
-                self.table.displacements()[block]
-            };
-            [0, 1].map(|axis| point.at[axis] + to_grid_units(by[axis]))
-        });
+        let points = left.map(|point| point.at);
         Torus::new(self.period, points.collect())
     }
+}
+
+/// The place of a point of the full set, by its lattice address and its vector.
+fn displaced(address: [u32; 2], by: Displacement) -> [f64; 2] {
+    [0, 1].map(|axis| f64::from(address[axis]) + to_grid_units(by[axis]))
 }
 
 /// The kind of a point of a block, given how far its dX lies beyond the start of the block's interval.
