@@ -351,3 +351,32 @@ fn distances_of_thinned_sets_are_kept() {
         }
     }
 }
+
+#[test]
+fn levels_of_detail_nest_and_nothing_moves() {
+    let area = region([-20.0, 30.0], [90.0, 70.0]);
+    let sets = [
+        set(3, 1.0, 2).in_field(noise()),
+        set(3, 1.0, 0).in_field(noise()),
+        set(3, 1.0, 3).keep(0.4).expect("a share"),
+        set(3, 1.0, 2),
+    ];
+    for set in sets {
+        let whole = set.within(area).expect("near").to_vec();
+        let mut last = whole.clone();
+        for part in [0.5, 0.11] {
+            let level = set.clone().lod(part).expect("a part");
+            let share = |id| set.share(id).unwrap_or(set.placement().keep.get());
+            let expected = whole.iter().filter(|p| set.rank(p.id) < part * share(p.id));
+            let plan = level.within(area).expect("near");
+            let points = plan.to_vec();
+            assert_eq!(points, expected.copied().collect::<Vec<_>>());
+            assert_eq!(plan.count(), points.len() as u128);
+            assert!(points.iter().all(|point| last.contains(point)));
+            assert_eq!(level.nearest(points[5].at(), 1).expect("found")[0].member.id(), points[5].id);
+            assert!(level.point(points[5].id).is_some());
+            last = points;
+        }
+        agrees(&set.lod(0.3).expect("a part"), region([0.0, -150.0], [330.0, 300.0]));
+    }
+}

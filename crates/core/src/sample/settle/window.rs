@@ -233,7 +233,7 @@ impl Settler {
         let mut found = None;
         self.settle(
             &within,
-            |placed| placed.id == id,
+            |placed| placed.id == id && lattice.shows(id, placed.share),
             |settled| found = Some(settled.place),
         );
         found

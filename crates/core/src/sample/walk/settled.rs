@@ -122,12 +122,11 @@ impl Pieces {
             clear: &self.clear,
             lattice: &self.scope.lattice,
         };
-        let has = self.scope.lattice.tells_kinds();
         let lattice = &self.scope.lattice;
         let wants = |placed: &Placed| {
             holds(piece, placed.id)
                 && side(inside.bounds, placed) != Some(false)
-                && (!has || lattice.block(placed.id).is_some())
+                && lattice.shows(placed.id, placed.share)
         };
         self.settler.settle(&within, wants, |settled| {
             if inside.holds(&settled) {
@@ -143,7 +142,6 @@ impl Pieces {
             return 0;
         }
         let lattice = &self.scope.lattice;
-        let has = lattice.tells_kinds();
         let is_guarded = !self.clear.is_empty();
         let corner = [0, 1].map(|i| within[i].start >> TILE_BITS);
         let across = [0, 1].map(|i| (((within[i].end - 1) >> TILE_BITS) - corner[i] + 1) as usize);
@@ -177,7 +175,7 @@ impl Pieces {
             _ => None,
         };
         let is_own = |placed: &Placed| {
-            holds(piece, placed.id) && (!has || lattice.block(placed.id).is_some())
+            holds(piece, placed.id) && lattice.shows(placed.id, placed.share)
         };
         let mut number = 0;
         let mut unsure = vec![false; states.len()];
