@@ -16,7 +16,7 @@ use crate::{
     pattern::{Axis, Class, Pattern},
     sample::{
         field::Field,
-        warp::{NearShears, Shears, Stretch},
+        warp::{NearShears, Shears, Stretch, Waves},
     },
     table::{Cut, Displacement, FRACTION_BITS, Ladder, Order, Table, TurnedTable, fixed},
 };
@@ -111,7 +111,7 @@ impl Lattice {
         } = placement;
         // The mean spacing in the grid is 1/t, so a scale of spacing · t makes it `spacing`.
         let scale = spacing.get() * alpha.set_side_f64();
-        let shears = Shears::new(warp, seed);
+        let shears = Shears::new(Waves::of(table.profile()), warp, seed);
         let turned = TurnedTable::new(&table, seed.symmetry());
         Self {
             placement,

@@ -6,20 +6,24 @@ use super::shears::{CELL_BITS, KNOT_BITS, Quadratic, Shears, across, evaluate, q
 /// bits. The origin is a multiple of the knot distance along both axes.
 #[derive(Clone, Debug)]
 pub struct PatchShears {
-    /// By direction, by power, by the lowest four bits of the cell's number.
-    pub(crate) quadratics: [[[f32; Self::CELLS]; 3]; 4],
+    /// By direction, by power, by cell from the first one that the points touch on.
+    pub(crate) quadratics: [[[f32; Self::LENGTH]; 3]; 4],
     /// By direction, bounds of g.
     pub(crate) bounds: [[i32; 2]; 4],
-    /// By direction, the first and the last cell that the points touch.
-    pub(crate) cells: [[i32; 2]; 4],
+    /// By direction, the first cell that the points touch.
+    pub(crate) first: [i32; 4],
 }
 
 impl PatchShears {
-    /// The most cells that the points of a patch touch in a direction: one vector of numbers. A patch is
-    /// 1024 × 256 grid units. With displacements below 128, shears along the axes below 40.2 and diagonal
-    /// ones below 20.1, as they are at the greatest strength, coordinates across the diagonals lie from −377
-    /// to 1655 and from −591 to 1359 units, within 16 cells of 128.
-    pub(crate) const CELLS: usize = 16;
+    /// The most cells that the points of a patch touch in a direction. A patch is 1024 × 256 grid units. With
+    /// displacements below 128, shears along the axes below 55.2 and diagonal ones below 27.6, as they are at the
+    /// greatest strength with long waves, coordinates across the diagonals lie from −623 to 1391 and from −422 to
+    /// 1702 units, within 68 cells of 32.
+    pub(crate) const CELLS: usize = 68;
+    /// The most cells that are looked up at once: one vector of numbers.
+    pub(crate) const AT_ONCE: usize = 16;
+    /// Tables have room for a vector from any cell on.
+    pub(crate) const LENGTH: usize = Self::CELLS + Self::AT_ONCE - 1;
 
     /// Selects the place of a coordinate in its cell.
     pub(crate) const CELL_MASK: i32 = (1 << CELL_BITS) - 1;
@@ -28,9 +32,9 @@ impl PatchShears {
     /// origin. Both ends belong to a range.
     pub(crate) fn new(shears: &Shears, origin: [i64; 2], [x, y]: [[i32; 2]; 2]) -> Self {
         let mut patch = Self {
-            quadratics: [[[0.0; Self::CELLS]; 3]; 4],
+            quadratics: [[[0.0; Self::LENGTH]; 3]; 4],
             bounds: [[0; 2]; 4],
-            cells: [[0; 2]; 4],
+            first: [0; 4],
         };
         if x[0] > x[1] || y[0] > y[1] {
             return patch;
@@ -62,17 +66,15 @@ impl PatchShears {
         let mut controls = [0; Self::CELLS + 2];
         let controls = &mut controls[..cells.min(Self::CELLS) + 2];
         shears.controls(direction, first + start - 1, controls);
-        let table = &mut self.quadratics[direction];
-        for (relative, knots) in (start..).zip(controls.windows(3)) {
-            let coefficients = quadratic([knots[0], knots[1], knots[2]]);
-            for (of_power, coefficient) in table.iter_mut().zip(coefficients) {
-                of_power[relative.rem_euclid(Self::CELLS as i64) as usize] = coefficient;
-            }
+        let [constants, linears, squares] = &mut self.quadratics[direction];
+        let places = constants.iter_mut().zip(linears).zip(squares);
+        for (((constant, linear), square), knots) in places.zip(controls.windows(3)) {
+            [*constant, *linear, *square] = quadratic([knots[0], knots[1], knots[2]]);
         }
         // A B-spline stays within its control values. The rest is room for rounding.
         let least = controls.iter().min().map_or(0, |v| v - 64);
         let bounds = [least, controls.iter().max().map_or(0, |v| v + 64)];
-        self.cells[direction] = touched;
+        self.first[direction] = touched[0];
         self.bounds[direction] = bounds;
         bounds
     }
@@ -102,9 +104,15 @@ impl PatchShears {
         })
     }
 
+    /// The place of a cell in the tables of a direction; that of another one for cells that no point touches.
+    #[inline(always)]
+    pub(crate) fn place(&self, direction: usize, cell: i32) -> usize {
+        (cell - self.first[direction]).clamp(0, Self::CELLS as i32 - 1) as usize
+    }
+
     #[inline(always)]
     fn noise(&self, direction: usize, s: i32) -> i32 {
-        let cell = (s >> CELL_BITS) as usize % Self::CELLS;
+        let cell = self.place(direction, s >> CELL_BITS);
         // By reference: `map` would copy the tables.
         let [constant, linear, square] = &self.quadratics[direction];
         let quadratic: Quadratic = [constant[cell], linear[cell], square[cell]];
@@ -140,7 +148,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        sample::{Seed, Warp},
+        sample::{Seed, Warp, warp::Waves},
         table::FRACTION_BITS,
     };
 
@@ -150,7 +158,7 @@ mod tests {
             seed: u64, column in -(1i64 << 42)..1 << 42, row in -(1i64 << 42)..1 << 42,
             x in -128i32 << FRACTION_BITS..1152 << FRACTION_BITS,
             y in -128i32 << FRACTION_BITS..384 << FRACTION_BITS,
-            corner in 0u8..8,
+            corner in 0u8..8, is_long: bool,
             strength in prop_oneof![0.1..=2.0f64, Just(2.0)],
         ) {
             // The corners reach the farthest cells.
@@ -162,7 +170,8 @@ mod tests {
                 _ => [x, y],
             };
             let warp = Warp::new(strength).expect("in range");
-            let shears = Shears::new(warp, Seed(seed)).expect("on");
+            let waves = if is_long { Waves::All } else { Waves::Short };
+            let shears = Shears::new(waves, warp, Seed(seed)).expect("on");
             let origin = [column * 1024, row * 256];
             let base = origin.map(|v| i128::from(v) << FRACTION_BITS);
             let there = shears.apply([base[0] + i128::from(x), base[1] + i128::from(y)]);
