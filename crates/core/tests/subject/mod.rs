@@ -28,7 +28,11 @@ pub fn table(alpha: &str, radius: u32) -> Table {
         (state % (26 << FRACTION_BITS)) as i32 - (13 << FRACTION_BITS)
     };
     let vectors = (0..blocks).map(|_| [next(), next()]).collect();
-    let profile = if alpha.contains("sqrt(5)") { "pink" } else { "test" };
+    let profile = if alpha.contains("sqrt(5)") {
+        "pink"
+    } else {
+        "test"
+    };
     Table::new(map, profile, vectors, Provenance::default()).expect("valid")
 }
 

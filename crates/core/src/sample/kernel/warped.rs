@@ -489,7 +489,7 @@ unsafe fn noise<L: Lanes>(quadratics: impl Quadratics<L>, s: L::Ints) -> L::Ints
     }
 }
 
-/// The tables of a direction.
+/// The tables of a direction, from some cell on.
 type Tables = [*const f32; 3];
 
 /// The coefficients of [`Lanes::WINDOW`] cells.
@@ -508,6 +508,7 @@ struct AtOnce<L: Lanes> {
 struct Any<L: Lanes> {
     from: Tables,
     first: L::Ints,
+    last: L::Ints,
 }
 
 impl<L: Lanes> Clone for Near<L> {
@@ -538,12 +539,13 @@ impl<L: Lanes> Copy for Any<L> {}
 /// [`PatchShears::AT_ONCE`] entries left.
 #[inline(always)]
 fn tables(shears: &PatchShears, direction: usize, first: i32) -> (Tables, i32) {
-    const { assert!(PatchShears::CELLS - 1 + PatchShears::AT_ONCE == PatchShears::LENGTH) };
-    let place = shears.place(direction, first);
-    let [constant, linear, square] = &shears.quadratics[direction];
-    let from = [&constant[place..], &linear[place..], &square[place..]];
-    let first = shears.first[direction] + place as i32;
-    (from.map(<[f32]>::as_ptr), first)
+    let start = shears.first[direction];
+    let place = ((first - start) as u32 as usize).min(shears.last_place());
+    let (tables, length) = shears.tables(direction);
+    let here = tables[place..][..2 * length + PatchShears::AT_ONCE].as_ptr();
+    // The same place in each, within the slice.
+    let from = [0, 1, 2].map(|power| here.wrapping_add(power * length));
+    (from, start + place as i32)
 }
 
 impl<L: Lanes> Quadratics<L> for Near<L> {
@@ -604,8 +606,13 @@ impl<L: Lanes> Quadratics<L> for Any<L> {
     unsafe fn new(shears: &PatchShears, direction: usize, _: i32) -> Self {
         let (from, first) = tables(shears, direction, shears.first[direction]);
         // SAFETY: the machine has the instructions.
-        let first = unsafe { L::splat_int(first) };
-        Self { from, first }
+        unsafe {
+            Self {
+                from,
+                first: L::splat_int(first),
+                last: L::splat_int(shears.last_place() as i32),
+            }
+        }
     }
 
     #[inline(always)]
@@ -613,7 +620,7 @@ impl<L: Lanes> Quadratics<L> for Any<L> {
         let [constant, linear, square] = self.from;
         // SAFETY: the machine has the instructions, and places are brought into the tables.
         unsafe {
-            let last = L::splat_int(PatchShears::CELLS as i32 - 1);
+            let last = self.last;
             let places = L::sub_ints(L::cells(s), self.first);
             let places = L::min_ints(L::max_ints(places, L::splat_int(0)), last);
             [

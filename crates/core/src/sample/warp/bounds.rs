@@ -37,12 +37,14 @@ impl Shears {
         let controls = &mut controls[..(last - first) as usize + 3];
         self.controls(direction, first as i64 - 1, controls);
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (cell, knots) in (first..).zip(controls.windows(3)) {
-            let [a, b, c] = [knots[0], knots[1], knots[2]].map(f64::from);
+        let number = controls.len() - 2;
+        for cell in [0, number - 1] {
+            let [a, b, c] = [0, 1, 2].map(|i| f64::from(controls[cell + i]));
             // The part of the cell within the range, in [0, 1].
+            let start = (first + cell as i128) << CELL_BITS;
             let part = |s: i128| {
-                let offset = (s - (cell << CELL_BITS)).clamp(0, 1 << CELL_BITS);
-                offset as f64 / f64::from(1 << CELL_BITS)
+                let offset = (s - start).clamp(0, 1 << CELL_BITS) as i32;
+                f64::from(offset) / f64::from(1 << CELL_BITS)
             };
             let [start, end] = [part(from), part(to)];
             let (slope, curve) = (b - a, (a - 2.0 * b + c) / 2.0);
@@ -54,6 +56,15 @@ impl Shears {
                 least = least.min(value);
                 most = most.max(value);
             }
+        }
+        // Cells between stay within their control values.
+        for &control in controls
+            .get(1..number + 1)
+            .filter(|_| number > 2)
+            .unwrap_or(&[])
+        {
+            least = least.min(f64::from(control));
+            most = most.max(f64::from(control));
         }
         [least as i32 - ROOM, most as i32 + ROOM]
     }

@@ -1,5 +1,7 @@
 //! The warp of the points of a patch, in 32-bit positions.
 
+use alloc::{vec, vec::Vec};
+
 use super::shears::{CELL_BITS, KNOT_BITS, Quadratic, Shears, across, evaluate, quadratic};
 
 /// The shears of one patch, with all quadratics tabulated. Positions relative to the patch's origin fit 32
@@ -7,7 +9,9 @@ use super::shears::{CELL_BITS, KNOT_BITS, Quadratic, Shears, across, evaluate, q
 #[derive(Clone, Debug)]
 pub struct PatchShears {
     /// By direction, by power, by cell from the first one that the points touch on.
-    pub(crate) quadratics: [[[f32; Self::LENGTH]; 3]; 4],
+    tables: Vec<f32>,
+    /// The length of a table: [`AT_ONCE`](Self::AT_ONCE) − 1 entries follow the last cell.
+    length: usize,
     /// By direction, bounds of g.
     pub(crate) bounds: [[i32; 2]; 4],
     /// By direction, the first cell that the points touch.
@@ -19,11 +23,9 @@ impl PatchShears {
     /// displacements below 128, shears along the axes below 55.2 and diagonal ones below 27.6, as they are at the
     /// greatest strength with long waves, coordinates across the diagonals lie from −623 to 1391 and from −422 to
     /// 1702 units, within 68 cells of 32.
-    pub(crate) const CELLS: usize = 68;
+    const CELLS: usize = 68;
     /// The most cells that are looked up at once: one vector of numbers.
     pub(crate) const AT_ONCE: usize = 16;
-    /// Tables have room for a vector from any cell on.
-    pub(crate) const LENGTH: usize = Self::CELLS + Self::AT_ONCE - 1;
 
     /// Selects the place of a coordinate in its cell.
     pub(crate) const CELL_MASK: i32 = (1 << CELL_BITS) - 1;
@@ -31,12 +33,20 @@ impl PatchShears {
     /// The shears of the points whose displaced positions lie in some ranges of x and y, relative to the
     /// origin. Both ends belong to a range.
     pub(crate) fn new(shears: &Shears, origin: [i64; 2], [x, y]: [[i32; 2]; 2]) -> Self {
+        let is_empty = x[0] > x[1] || y[0] > y[1];
+        let cells = if is_empty {
+            1
+        } else {
+            most_cells(shears, [x, y])
+        };
+        let length = cells + Self::AT_ONCE - 1;
         let mut patch = Self {
-            quadratics: [[[0.0; Self::LENGTH]; 3]; 4],
+            tables: vec![0.0; 12 * length],
+            length,
             bounds: [[0; 2]; 4],
             first: [0; 4],
         };
-        if x[0] > x[1] || y[0] > y[1] {
+        if is_empty {
             return patch;
         }
         let first = across(origin.map(|v| v >> KNOT_BITS));
@@ -66,10 +76,13 @@ impl PatchShears {
         let mut controls = [0; Self::CELLS + 2];
         let controls = &mut controls[..cells.min(Self::CELLS) + 2];
         shears.controls(direction, first + start - 1, controls);
-        let [constants, linears, squares] = &mut self.quadratics[direction];
-        let places = constants.iter_mut().zip(linears).zip(squares);
-        for (((constant, linear), square), knots) in places.zip(controls.windows(3)) {
-            [*constant, *linear, *square] = quadratic([knots[0], knots[1], knots[2]]);
+        let length = self.length;
+        let table = &mut self.tables[3 * direction * length..][..3 * length];
+        for (place, knots) in controls.windows(3).enumerate() {
+            let coefficients = quadratic([knots[0], knots[1], knots[2]]);
+            for (power, coefficient) in coefficients.into_iter().enumerate() {
+                table[power * length + place] = coefficient;
+            }
         }
         // A B-spline stays within its control values. The rest is room for rounding.
         let least = controls.iter().min().map_or(0, |v| v - 64);
@@ -104,18 +117,26 @@ impl PatchShears {
         })
     }
 
-    /// The place of a cell in the tables of a direction; that of another one for cells that no point touches.
+    /// The tables of a direction, one after another, each of so many entries.
     #[inline(always)]
-    pub(crate) fn place(&self, direction: usize, cell: i32) -> usize {
-        (cell - self.first[direction]).clamp(0, Self::CELLS as i32 - 1) as usize
+    pub(crate) fn tables(&self, direction: usize) -> (&[f32], usize) {
+        let length = self.length;
+        (&self.tables[3 * direction * length..][..3 * length], length)
+    }
+
+    /// The place of the last cell.
+    #[inline(always)]
+    pub(crate) const fn last_place(&self) -> usize {
+        self.length - Self::AT_ONCE
     }
 
     #[inline(always)]
     fn noise(&self, direction: usize, s: i32) -> i32 {
-        let cell = self.place(direction, s >> CELL_BITS);
-        // By reference: `map` would copy the tables.
-        let [constant, linear, square] = &self.quadratics[direction];
-        let quadratic: Quadratic = [constant[cell], linear[cell], square[cell]];
+        // Cells that no point touches have those of another one.
+        let place = ((s >> CELL_BITS) - self.first[direction]) as u32 as usize;
+        let place = place.min(self.last_place());
+        let (tables, length) = self.tables(direction);
+        let quadratic: Quadratic = [0, 1, 2].map(|power| tables[power * length + place]);
         evaluate(&quadratic, s & Self::CELL_MASK)
     }
 
@@ -140,6 +161,15 @@ impl PatchShears {
     pub(crate) fn apply(&self, x: i32, y: i32) -> [i32; 2] {
         self.apply_others(x, y + self.first(x))
     }
+}
+
+/// A bound of the number of cells that positions in some ranges touch in a direction. Those across the last
+/// diagonal are farthest apart.
+fn most_cells(shears: &Shears, [x, y]: [[i32; 2]; 2]) -> usize {
+    let [along_y, along_x, rising, _] = shears.amplitudes().map(|a| 2 * (i64::from(a) + 64));
+    let length = |[first, last]: [i32; 2]| i64::from(last) - i64::from(first);
+    let width = length(x) + length(y) + along_x + along_y + 2 * rising;
+    (width >> CELL_BITS) as usize + 2
 }
 
 #[cfg(test)]
