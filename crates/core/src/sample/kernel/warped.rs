@@ -150,13 +150,13 @@ impl<F: Emit> VectorLoop for WarpedRow<'_, F> {
         let has_one = fits(i64::from(second[1]) - i64::from(second[0]), L::WINDOW);
         // SAFETY: as the caller ensures; there is at least a vector.
         unsafe {
-            let second = Near::<L>::new(shears, 1, second[0] >> CELL_BITS);
+            let second = Near::<L>::new(Tables::new(shears, 1), second[0] >> CELL_BITS);
             if has_one && fit(L::WINDOW) {
                 self.run_by::<L, _, Near<L>>(length, second);
             } else if has_one && fit(PatchShears::AT_ONCE) {
                 self.run_by::<L, _, AtOnce<L>>(length, second);
             } else {
-                let second = Any::<L>::new(shears, 1, 0);
+                let second = Any::<L>::new(Tables::new(shears, 1), 0);
                 self.run_by::<L, _, Any<L>>(length, second);
             }
         }
@@ -194,7 +194,8 @@ impl<F: Emit> WarpedRow<'_, F> {
         length: usize,
         second: S,
     ) {
-        let (shears, columns, row, format) = (self.shears, self.columns, self.row, *self.format);
+        let (columns, row, format) = (self.columns, self.row, *self.format);
+        let [third_all, fourth_all] = [2, 3].map(|i| Tables::new(self.shears, i));
         let [third, fourth] = self.leads();
         let last = length - L::WIDTH;
         let mut places = [const { MaybeUninit::<[L::Ints; 2]>::uninit() }; PASS];
@@ -207,7 +208,7 @@ impl<F: Emit> WarpedRow<'_, F> {
                 let y = L::splat_int(row.y);
                 for (k, place) in places[..pass].iter_mut().enumerate() {
                     let start = (next + k * L::WIDTH).min(last);
-                    let third = Q::new(shears, 2, cell(columns.lattice[start], third));
+                    let third = Q::new(third_all, cell(columns.lattice[start], third));
                     let x = L::load_ints(columns.displaced.as_ptr().add(start));
                     let y = L::add_ints(L::load_ints(columns.displacements.as_ptr().add(start)), y);
                     let x = L::add_ints(x, noise(second, y));
@@ -217,7 +218,7 @@ impl<F: Emit> WarpedRow<'_, F> {
                 for (k, place) in places[..pass].iter().enumerate() {
                     let start = (next + k * L::WIDTH).min(last);
                     let lattice = &columns.lattice[start..start + L::WIDTH];
-                    let fourth = Q::new(shears, 3, cell(lattice[0], fourth));
+                    let fourth = Q::new(fourth_all, cell(lattice[0], fourth));
                     // Written above.
                     let [x, y] = place.assume_init();
                     let falling = noise(fourth, L::add_ints(x, y));
@@ -290,10 +291,11 @@ impl FirstShear<'_> {
     #[inline(always)]
     unsafe fn run_by<L: Lanes, Q: Quadratics<L>>(&mut self, length: usize) {
         let lead = self.extent.lead(self.extent.reach[0]);
+        let tables = Tables::new(self.shears, 0);
         for start in (0..length).step_by(L::WIDTH) {
             // SAFETY: the machine has the instructions, and all slices have a vector from `start` on.
             unsafe {
-                let quadratics = Q::new(self.shears, 0, cell(self.lattice[start], lead));
+                let quadratics = Q::new(tables, cell(self.lattice[start], lead));
                 let to = self.displacements.as_mut_ptr().add(start);
                 let moved =
                     noise::<L>(quadratics, L::load_ints(self.displaced.as_ptr().add(start)));
@@ -395,8 +397,8 @@ impl WarpAll<'_> {
         let [to_x, to_y] = &mut self.places;
         // SAFETY: the machine has the instructions, and all slices have a vector from each start on.
         unsafe {
-            let along_y = Q::new(self.shears, 0, first[0]);
-            let along_x = Q::new(self.shears, 1, first[1]);
+            let along_y = Q::new(Tables::new(self.shears, 0), first[0]);
+            let along_x = Q::new(Tables::new(self.shears, 1), first[1]);
             for start in part.clone().step_by(L::WIDTH) {
                 let x = L::load_ints(self.displaced[0].as_ptr().add(start));
                 let y = L::load_ints(self.displaced[1].as_ptr().add(start));
@@ -421,8 +423,8 @@ impl WarpAll<'_> {
         let [to_x, to_y] = &mut self.places;
         // SAFETY: the machine has the instructions, and all slices have a vector from each start on.
         unsafe {
-            let third = Q::new(self.shears, 2, first[2]);
-            let fourth = Q::new(self.shears, 3, first[3]);
+            let third = Q::new(Tables::new(self.shears, 2), first[2]);
+            let fourth = Q::new(Tables::new(self.shears, 3), first[3]);
             for start in part.clone().step_by(L::WIDTH) {
                 let x = L::load_ints(to_x.as_ptr().add(start));
                 let y = L::load_ints(to_y.as_ptr().add(start));
@@ -465,7 +467,7 @@ trait Quadratics<L: Lanes>: Copy {
     ///
     /// # Safety
     /// The machine has the instructions of `L`.
-    unsafe fn new(shears: &PatchShears, direction: usize, first: i32) -> Self;
+    unsafe fn new(tables: Tables, first: i32) -> Self;
 
     /// The coefficients of the cells of coordinates: constant, linear, square.
     ///
@@ -489,8 +491,42 @@ unsafe fn noise<L: Lanes>(quadratics: impl Quadratics<L>, s: L::Ints) -> L::Ints
     }
 }
 
-/// The tables of a direction, from some cell on.
-type Tables = [*const f32; 3];
+/// The tables of a direction. A copy on the stack, which loops keep in registers.
+#[derive(Clone, Copy)]
+struct Tables {
+    from: *const f32,
+    /// The length of a table.
+    length: usize,
+    /// The first cell.
+    first: i32,
+    /// The place of the last one.
+    last: u32,
+}
+
+impl Tables {
+    #[inline(always)]
+    fn new(shears: &PatchShears, direction: usize) -> Self {
+        let (tables, length) = shears.tables(direction);
+        // From the last place on each of the three has as many entries.
+        assert!(tables.len() == 3 * length && shears.last_place() + PatchShears::AT_ONCE == length);
+        Self {
+            from: tables.as_ptr(),
+            length,
+            first: shears.first[direction],
+            last: shears.last_place() as u32,
+        }
+    }
+
+    /// The three tables from a cell on, and the number of that cell. They have at least [`PatchShears::AT_ONCE`]
+    /// entries left.
+    #[inline(always)]
+    fn at(self, cell: i32) -> ([*const f32; 3], i32) {
+        let place = ((cell - self.first) as u32).min(self.last);
+        let here = self.from.wrapping_add(place as usize);
+        let from = [0, 1, 2].map(|power| here.wrapping_add(power * self.length));
+        (from, self.first + place as i32)
+    }
+}
 
 /// The coefficients of [`Lanes::WINDOW`] cells.
 struct Near<L: Lanes> {
@@ -500,13 +536,13 @@ struct Near<L: Lanes> {
 
 /// The coefficients of [`PatchShears::AT_ONCE`] cells.
 struct AtOnce<L: Lanes> {
-    from: Tables,
+    from: [*const f32; 3],
     first: L::Ints,
 }
 
 /// The coefficients of all cells.
 struct Any<L: Lanes> {
-    from: Tables,
+    from: [*const f32; 3],
     first: L::Ints,
     last: L::Ints,
 }
@@ -535,24 +571,11 @@ impl<L: Lanes> Clone for Any<L> {
 
 impl<L: Lanes> Copy for Any<L> {}
 
-/// The tables of a direction from a cell on, and the number of that cell. They have at least
-/// [`PatchShears::AT_ONCE`] entries left.
-#[inline(always)]
-fn tables(shears: &PatchShears, direction: usize, first: i32) -> (Tables, i32) {
-    let start = shears.first[direction];
-    let place = ((first - start) as u32 as usize).min(shears.last_place());
-    let (tables, length) = shears.tables(direction);
-    let here = tables[place..][..2 * length + PatchShears::AT_ONCE].as_ptr();
-    // The same place in each, within the slice.
-    let from = [0, 1, 2].map(|power| here.wrapping_add(power * length));
-    (from, start + place as i32)
-}
-
 impl<L: Lanes> Quadratics<L> for Near<L> {
     #[inline(always)]
-    unsafe fn new(shears: &PatchShears, direction: usize, first: i32) -> Self {
+    unsafe fn new(tables: Tables, first: i32) -> Self {
         const { assert!(L::WINDOW <= PatchShears::AT_ONCE) };
-        let (from, first) = tables(shears, direction, first);
+        let (from, first) = tables.at(first);
         // SAFETY: the machine has the instructions, and the tables as many entries.
         unsafe {
             Self {
@@ -579,8 +602,8 @@ impl<L: Lanes> Quadratics<L> for Near<L> {
 
 impl<L: Lanes> Quadratics<L> for AtOnce<L> {
     #[inline(always)]
-    unsafe fn new(shears: &PatchShears, direction: usize, first: i32) -> Self {
-        let (from, first) = tables(shears, direction, first);
+    unsafe fn new(tables: Tables, first: i32) -> Self {
+        let (from, first) = tables.at(first);
         // SAFETY: the machine has the instructions.
         let first = unsafe { L::splat_int(first) };
         Self { from, first }
@@ -603,14 +626,14 @@ impl<L: Lanes> Quadratics<L> for AtOnce<L> {
 
 impl<L: Lanes> Quadratics<L> for Any<L> {
     #[inline(always)]
-    unsafe fn new(shears: &PatchShears, direction: usize, _: i32) -> Self {
-        let (from, first) = tables(shears, direction, shears.first[direction]);
+    unsafe fn new(tables: Tables, _: i32) -> Self {
+        let (from, first) = tables.at(tables.first);
         // SAFETY: the machine has the instructions.
         unsafe {
             Self {
                 from,
                 first: L::splat_int(first),
-                last: L::splat_int(shears.last_place() as i32),
+                last: L::splat_int(tables.last as i32),
             }
         }
     }
