@@ -15,7 +15,7 @@ use crate::{
     pattern::{Axis, Class, Pattern},
     sample::{
         field::Field,
-        warp::{NearShears, Shears, Stretch},
+        warp::{NearShears, Shears, Stretch, Waves},
     },
     table::{Cut, Displacement, FRACTION_BITS, Order, Table, TurnedTable, fixed},
 };
@@ -79,7 +79,7 @@ impl Lattice {
         } = placement;
         // The mean spacing in the grid is 1/t, so a scale of spacing · t makes it `spacing`.
         let scale = spacing.get() * alpha.set_side_f64();
-        let shears = Shears::new(warp, seed);
+        let shears = Shears::new(Waves::of(table.profile()), warp, seed);
         let turned = TurnedTable::new(&table, seed.symmetry());
         // Where points settle, the level of detail is a choice among settled ones.
         let settles = keep.get() < 1.0 && !settle.is_off();
