@@ -301,6 +301,11 @@ impl PointSet {
         self.table_distance().reported(spacing, warp, reach)
     }
 
+    /// Whether points settle.
+    pub(crate) fn settles(&self) -> bool {
+        self.lattice.settle().is_some()
+    }
+
     /// The least distance of the table's points that are of the set's kind, if it has one.
     pub(super) fn table_distance(&self) -> LeastDistance {
         let of_kind = |kind| self.table().least_distance_of(kind, kind);
