@@ -101,10 +101,11 @@ impl Set {
         resolved::replace(&mut self.values, [(&LOD, lod)]);
     }
 
-    /// Whether points settle, if by any steps: in a field and where not all are kept, but not in a period.
+    /// Whether points settle, if by any steps: in a field and where a part is kept that is not tiny, but not in a period.
     #[must_use]
     pub fn settles(&self) -> bool {
-        self.period.is_none() && (self.keep != Keep::ALL || self.field.is_some())
+        let is_thinned = (Settle::LEAST_SHARE..1.0).contains(&self.keep.get());
+        self.period.is_none() && (is_thinned || self.field.is_some())
     }
 
     /// Whether points move so that those of a kind, or in a field any, keep no distance of their own.
@@ -172,7 +173,9 @@ impl Set {
     ) -> Result<PeriodicSet, strew_core::Error> {
         let set = PeriodicSet::new(table.clone(), period.least)?;
         let set = set.side(period.side)?.seed(self.seed.0);
-        let mut set = set.warp(self.warp.strength())?.keep(self.keep.get() * self.lod.get())?;
+        let mut set = set
+            .warp(self.warp.strength())?
+            .keep(self.keep.get() * self.lod.get())?;
         if let Some((_, kind)) = self.kinds.as_ref().and_then(|kinds| kinds.only.as_ref()) {
             set = set.only(*kind)?;
         }

@@ -45,12 +45,7 @@ pub(super) struct Grid {
 
 impl Level {
     /// The chunks that a box touches.
-    pub(super) fn new(
-        size: f64,
-        lod: f64,
-        query: String,
-        bbox: [f64; 4],
-    ) -> Result<Self, Failure> {
+    pub(super) fn new(size: f64, lod: f64, query: String, bbox: [f64; 4]) -> Result<Self, Failure> {
         let [min_x, min_y, max_x, max_y] = bbox;
         let between = |min: f64, max: f64| {
             let (first, end) = ((min / size).floor(), (max / size).ceil());

@@ -82,7 +82,7 @@ impl Lattice {
         let shears = Shears::new(Waves::of(table.profile()), warp, seed);
         let turned = TurnedTable::new(&table, seed.symmetry());
         // Where points settle, the level of detail is a choice among settled ones.
-        let settles = keep.get() < 1.0 && !settle.is_off();
+        let settles = (Settle::LEAST_SHARE..1.0).contains(&keep.get()) && !settle.is_off();
         let shown = placement.shown();
         Self {
             placement,
