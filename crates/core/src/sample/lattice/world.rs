@@ -307,8 +307,8 @@ impl Lattice {
             };
         }
         let is_turned = placement.seed.symmetry() != self.placement.seed.symmetry();
-        let is_kept = placement.keep == self.placement.keep
-            && placement.settle == self.placement.settle;
+        let is_kept =
+            placement.keep == self.placement.keep && placement.settle == self.placement.settle;
         if !is_kept || is_turned {
             return self.at(placement);
         }

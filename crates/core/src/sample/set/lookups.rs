@@ -305,7 +305,10 @@ impl PointSet {
     pub(super) fn table_distance(&self) -> LeastDistance {
         let of_kind = |kind| self.table().least_distance_of(kind, kind);
         // Points of a kind keep the distance of all where they settle.
-        let kind = self.lattice.kind().filter(|_| self.lattice.settle().is_none());
+        let kind = self
+            .lattice
+            .kind()
+            .filter(|_| self.lattice.settle().is_none());
         let of_kind = kind.and_then(of_kind);
         of_kind.unwrap_or_else(|| self.table().least_distance())
     }

@@ -167,9 +167,8 @@ impl Freedoms {
             let slope = *slope.get_or_insert_with(|| {
                 let side = f64::from(1u32 << TILE_BITS) * per_unit;
                 let room = SPARSE_LOOK * spacing;
-                let into = [0, 1].map(|i| {
-                    f64::from(from_corner[i] & ((1 << TILE_BITS) - 1)) * per_unit
-                });
+                let into =
+                    [0, 1].map(|i| f64::from(from_corner[i] & ((1 << TILE_BITS) - 1)) * per_unit);
                 let min = [0, 1].map(|i| at[i] - into[i] - room);
                 let max = [0, 1].map(|i| at[i] - into[i] + side + room);
                 let is_far = (0..2).any(|i| max[i] - min[i] < 1e-9 * at[i].abs());

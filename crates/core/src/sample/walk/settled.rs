@@ -19,9 +19,7 @@ use crate::sample::{
     area::Area,
     count::count,
     kernel::{Backend, Format},
-    lattice::{
-        BAND_WIDTH, Found, Lattice, PATCH_HEIGHT, PointId, clip_to_band, places_of,
-    },
+    lattice::{BAND_WIDTH, Found, Lattice, PATCH_HEIGHT, PointId, clip_to_band, places_of},
     near::Guard,
     scope::Scope,
     settle::{Box2, Placed, Settled, Settler, common, widened},
@@ -221,8 +219,8 @@ impl Pieces {
         }
         let most = i128::from(self.settler.most_move(&self.bounds));
         let [x_ends, y_ends] = places_of(lattice, &[columns.clone(), y.all.clone()]);
-        let is_inside = self.bounds[0].start <= x_ends.start - most
-            && x_ends.end + most <= self.bounds[0].end;
+        let is_inside =
+            self.bounds[0].start <= x_ends.start - most && x_ends.end + most <= self.bounds[0].end;
         if !is_inside {
             return none;
         }
@@ -394,7 +392,12 @@ impl<F: Format> SettledWalk<F> {
             }
             let number = left.len().min(out.len() - filled);
             let by = (&self.format, self.backend);
-            write_found(by, self.origin, left.iter().copied(), &mut out[filled..][..number]);
+            write_found(
+                by,
+                self.origin,
+                left.iter().copied(),
+                &mut out[filled..][..number],
+            );
             self.taken += number;
             filled += number;
         }
