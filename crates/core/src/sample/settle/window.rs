@@ -27,7 +27,7 @@ use core::ops::Range;
 
 use super::{
     LEAST_SHARE, MOST_MOVE,
-    freedom::{Candidate, Freedoms, local, root, slipped},
+    freedom::{Candidate, Freedoms, inside, local, root, slipped},
     kernels,
     step::{Cells, Kernel, Places, STEP, Scale, WHOLE},
 };
@@ -79,8 +79,11 @@ const FARTHEST: i64 = 1 << 30;
 /// Room for what rounds, in units of a window.
 const ROOM: i64 = 64;
 
-/// Places of a box at which a field is looked at to guess how sparse it is.
-const SAMPLES: [(f64, f64); 5] = [(0.5, 0.5), (0.1, 0.1), (0.9, 0.1), (0.1, 0.9), (0.9, 0.9)];
+/// The places along each axis of a box at which a field is looked at to guess how sparse it is.
+const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
+/// The number of successive points, which are near each other, whose reach is found at once.
+const NEAR: usize = 16;
 
 /// The greatest reach of a kernel, in local spacings.
 fn widest(kernel: &Kernel) -> f64 {
@@ -111,16 +114,17 @@ pub(crate) struct Settler {
     places: Places,
     cells: Cells,
     freedoms: Freedoms,
+    /// The points that may slip.
+    slippery: Vec<u32>,
 }
 
 /// A point of a window.
 #[derive(Clone, Copy, Debug)]
 struct Listed {
     id: PointId,
-    /// From the window's corner, in its units, and the bits below these.
-    place: [i32; 2],
-    below: [u8; 2],
     share: f64,
+    /// The bits of its place below the window's units.
+    below: [u8; 2],
     is_wanted: bool,
     /// Whether it may have to go back.
     may_slip: bool,
@@ -139,15 +143,17 @@ impl Extent {
         max: [i64::MIN; 2],
     };
 
-    fn add(&mut self, place: [i32; 2], room: i64) {
+    /// Adds places between some ends, with room around them.
+    fn add(&mut self, [min, max]: [[i32; 2]; 2], room: i64) {
         for i in 0..2 {
-            self.min[i] = self.min[i].min(i64::from(place[i]) - room);
-            self.max[i] = self.max[i].max(i64::from(place[i]) + room);
+            self.min[i] = self.min[i].min(i64::from(min[i]) - room);
+            self.max[i] = self.max[i].max(i64::from(max[i]) + room);
         }
     }
 
-    fn holds(&self, place: [i32; 2]) -> bool {
-        (0..2).all(|i| (self.min[i]..=self.max[i]).contains(&i64::from(place[i])))
+    fn holds(&self, [x, y]: [i32; 2]) -> bool {
+        let (x, y) = (i64::from(x), i64::from(y));
+        (self.min[0] <= x) & (x <= self.max[0]) & (self.min[1] <= y) & (y <= self.max[1])
     }
 
     fn is_within(&self, other: &Self) -> bool {
@@ -191,6 +197,7 @@ impl Settler {
             places: Places::default(),
             cells: Cells::default(),
             freedoms: Freedoms::default(),
+            slippery: Vec::new(),
         })
     }
 
@@ -364,10 +371,17 @@ impl Settler {
     /// The fixed-point place of point number `i` of the window, which keeps the bits below the window's unit.
     fn place(&self, corner: [i128; 2], i: usize, at: &[Vec<i32>; 2]) -> [i128; 2] {
         let below = self.listed[i].below;
-        [0, 1].map(|axis| {
+        let place = |axis: usize| {
             let whole = i64::from(at[axis][i]) << self.shift;
             corner[axis] + i128::from(whole | i64::from(below[axis]))
-        })
+        };
+        [place(0), place(1)]
+    }
+
+    /// The world coordinates of the place at which point number `i` of the window was placed.
+    fn placed(&self, corner: [i128; 2], i: usize) -> [f64; 2] {
+        let [x, y] = self.place(corner, i, &self.places.placed);
+        [self.lattice.world(x), self.lattice.world(y)]
     }
 
     /// About how far around a box points matter to those in it, in units of a window.
@@ -376,10 +390,10 @@ impl Settler {
         let ([left, bottom], [right, top]) = (region.min(), region.max());
         let mut least = 1.0f64;
         let is_constant = self.grade.known().is_some();
-        for (a, b) in SAMPLES {
-            let share = self
-                .grade
-                .share([left + a * (right - left), bottom + b * (top - bottom)]);
+        let places = SAMPLES.iter().flat_map(|a| SAMPLES.map(|b| [*a, b]));
+        for [a, b] in places.take(if is_constant { 1 } else { usize::MAX }) {
+            let at = [left + a * (right - left), bottom + b * (top - bottom)];
+            let share = self.grade.share(at);
             if share > 0.0 && share < least {
                 least = share;
             }
@@ -405,11 +419,13 @@ impl Settler {
             fixed(window.min[i])..fixed(window.max[i] + 1)
         });
         let mut listed = core::mem::take(&mut self.listed);
+        let mut places = core::mem::take(&mut self.places);
         listed.clear();
+        places.clear();
         let (shift, unit) = (self.shift, self.unit);
         self.visit(&within, |id, place, share| {
-            let from = [0, 1].map(|i| (place[i] - corner[i]) as i64);
-            let at = from.map(|v| (v >> shift) as i32);
+            let [x, y] = [(place[0] - corner[0]) as i64, (place[1] - corner[1]) as i64];
+            let at = [(x >> shift) as i32, (y >> shift) as i32];
             let is_wanted = own.holds(at) && {
                 let most = f64::from(WHOLE) * 1.000_01 * unit * local(share);
                 wants(&Placed {
@@ -419,27 +435,27 @@ impl Settler {
                     most: most as i64 + (2 << shift),
                 })
             };
+            let below = (1 << shift) - 1;
             listed.push(Listed {
                 id,
-                place: at,
-                below: from.map(|v| (v & ((1 << shift) - 1)) as u8),
                 share,
+                below: [(x & below) as u8, (y & below) as u8],
                 is_wanted,
                 may_slip: false,
             });
+            places.placed[0].push(at[0]);
+            places.placed[1].push(at[1]);
         });
-        self.listed = listed;
-        let places = &mut self.places;
-        places.clear();
-        for listed in &self.listed {
-            for axis in 0..2 {
-                places.at[axis].push(listed.place[axis]);
-                places.placed[axis].push(listed.place[axis]);
-            }
-            places.share.push(listed.share.max(LEAST_SHARE) as f32);
+        for (at, placed) in places.at.iter_mut().zip(&places.placed) {
+            at.extend_from_slice(placed);
         }
-        places.freedom.resize(self.listed.len(), 0.0);
-        places.until.resize(self.listed.len(), 0);
+        let shares = listed
+            .iter()
+            .map(|listed| listed.share.max(LEAST_SHARE) as f32);
+        places.share.extend(shares);
+        places.freedom.resize(listed.len(), 0.0);
+        places.until.resize(listed.len(), 0);
+        (self.listed, self.places) = (listed, places);
     }
 
     /// Finds out which points move in which steps. Returns the extent of the points that matter to them; if it goes
@@ -447,53 +463,13 @@ impl Settler {
     fn prepare(&mut self, corner: [i128; 2], window: Extent) -> Extent {
         let kernels = kernels(self.settle);
         let unit = f64::from(self.scale.unit);
-        let least = self.places.share.iter().fold(1.0f32, |a, &b| a.min(b));
-        let least = f64::from(least);
         let mut all = Extent::NONE;
         let mut from = Extent::NONE;
         for (t, kernel) in kernels.iter().enumerate().rev() {
             let step = t as u8 + 1;
-            let is_last = t + 1 == kernels.len();
-            self.freedoms.clear();
-            for (i, listed) in self.listed.iter().enumerate() {
-                let is_new = match self.places.until[i] {
-                    0 if is_last => listed.is_wanted,
-                    0 => from.holds(listed.place),
-                    _ => false,
-                };
-                if is_new {
-                    self.places.until[i] = step;
-                    let place = self.place(corner, i, &self.places.placed);
-                    self.freedoms.add(Candidate {
-                        point: i as u32,
-                        from_corner: listed.place,
-                        at: place.map(|k| self.lattice.world(k)),
-                        share: listed.share,
-                    });
-                }
-            }
-            let (spacing, per_unit) = (
-                self.lattice.placement.spacing.get(),
-                self.lattice.step * f64::from(1u32 << self.shift),
-            );
-            let (freedom, listed) = (&mut self.places.freedom, &mut self.listed);
-            self.freedoms
-                .find(&self.grade, (spacing, per_unit), |i, free, is_gentle| {
-                    freedom[i as usize] = free;
-                    listed[i as usize].may_slip = !is_gentle;
-                });
-            from = Extent::NONE;
-            let mut sparsest = 1.0f64;
-            for (i, listed) in self.listed.iter().enumerate() {
-                if self.places.until[i] >= step && self.places.freedom[i] > 0.0 {
-                    let share = f64::from(self.places.share[i]);
-                    let pair = root(2.0 / (share + least));
-                    let moved = moved_before(t) * (local(share) + local(least));
-                    let room = (widest(kernel) * pair + moved) * unit;
-                    from.add(listed.place, room as i64 + ROOM);
-                    sparsest = sparsest.min(share);
-                }
-            }
+            self.free(corner, step, (t + 1 < kernels.len()).then_some(from));
+            let sparsest;
+            (from, sparsest) = self.reached(kernel, t);
             all = all.and(from);
             if !all.is_within(&window) {
                 // The steps before this one reach on.
@@ -505,6 +481,104 @@ impl Settler {
             }
         }
         all
+    }
+
+    /// Finds the freedom of the points that move up to a step: of those in an extent, or without one, those that are wanted.
+    fn free(&mut self, corner: [i128; 2], step: u8, within: Option<Extent>) {
+        let is_constant = self.grade.known().is_some();
+        let Places {
+            placed: [xs, ys],
+            freedom,
+            until,
+            ..
+        } = &mut self.places;
+        self.freedoms.clear();
+        let placed = xs.iter().zip(ys.iter());
+        let lists = self.listed.iter().zip(placed).zip(until).zip(freedom);
+        for (i, (((listed, (&x, &y)), until), freedom)) in lists.enumerate() {
+            let is_new = match &within {
+                None => listed.is_wanted,
+                Some(within) => *until == 0 && within.holds([x, y]),
+            };
+            if !is_new {
+                continue;
+            }
+            *until = step;
+            if is_constant {
+                *freedom = inside(listed.share) as f32;
+            } else {
+                self.freedoms.add(Candidate {
+                    point: i as u32,
+                    from_corner: [x, y],
+                    share: listed.share,
+                });
+            }
+        }
+        if is_constant {
+            return;
+        }
+        let (spacing, per_unit) = (
+            self.lattice.placement.spacing.get(),
+            self.lattice.step * f64::from(1u32 << self.shift),
+        );
+        let mut freedoms = core::mem::take(&mut self.freedoms);
+        let mut freedom = core::mem::take(&mut self.places.freedom);
+        let mut slippery = core::mem::take(&mut self.slippery);
+        freedoms.find(
+            &self.grade,
+            (spacing, per_unit),
+            |i| self.placed(corner, i as usize),
+            |i, free, is_gentle| {
+                freedom[i as usize] = free;
+                if !is_gentle {
+                    slippery.push(i);
+                }
+            },
+        );
+        for i in slippery.drain(..) {
+            self.listed[i as usize].may_slip = true;
+        }
+        (self.freedoms, self.places.freedom, self.slippery) = (freedoms, freedom, slippery);
+    }
+
+    /// The extent of the points that matter to those that move in step number `t`, which counts from 0, and the least share
+    /// of these.
+    fn reached(&self, kernel: &Kernel, t: usize) -> (Extent, f64) {
+        let step = t as u8 + 1;
+        let Places {
+            placed: [xs, ys],
+            share,
+            freedom,
+            until,
+            ..
+        } = &self.places;
+        let lesser = |a: f32, b: f32| if b < a { b } else { a };
+        let least = f64::from(share.iter().fold(1.0, |a, &b| lesser(a, b)));
+        let mut extent = Extent::NONE;
+        let mut sparsest = 1.0f64;
+        let lists = xs.chunks(NEAR).zip(ys.chunks(NEAR)).zip(share.chunks(NEAR));
+        let lists = lists.zip(freedom.chunks(NEAR).zip(until.chunks(NEAR)));
+        for (((xs, ys), shares), (freedom, until)) in lists {
+            let (mut min, mut max) = ([i32::MAX; 2], [i32::MIN; 2]);
+            let mut low = f32::INFINITY;
+            let points = xs.iter().zip(ys).zip(shares).zip(freedom.iter().zip(until));
+            for (((&x, &y), &share), (&freedom, &until)) in points {
+                if until >= step && freedom > 0.0 {
+                    min = [min[0].min(x), min[1].min(y)];
+                    max = [max[0].max(x), max[1].max(y)];
+                    low = lesser(low, share);
+                }
+            }
+            if low <= 1.0 {
+                let share = f64::from(low);
+                let pair = root(2.0 / (share + least));
+                let moved = moved_before(t) * (local(share) + local(least));
+                let room = (widest(kernel) * pair + moved) * f64::from(self.scale.unit);
+                extent.add([min, max], room as i64 + ROOM);
+                sparsest = sparsest.min(share);
+            }
+        }
+        (extent, sparsest)
     }
 
     fn take_steps(&mut self) {

@@ -12,7 +12,7 @@ use core::ops::Range;
 
 use super::{
     bands::{format_of, write_found},
-    few::{FEW, Few},
+    few::Few,
     tile::Tile,
 };
 use crate::sample::{
@@ -31,6 +31,13 @@ const PIECE: i64 = 512;
 
 /// The sides of the tiles in which points near an outline settle, in bits of fixed-point units: 128 grid units.
 const TILE_BITS: u32 = 27;
+
+/// About how far around a box points matter to those in it, in greatest moves.
+const MARGIN: i128 = 16;
+
+/// A scope that may have up to this many points settles at once, when it is counted, and its points are kept: 12 bytes
+/// each. More than for others, because settling again costs more.
+const FEW: f64 = 8192.0;
 
 /// The settled points of a scope, piece by piece.
 #[derive(Clone, Debug)]
@@ -178,21 +185,22 @@ impl Pieces {
             holds(piece, placed.id) && (!has || lattice.block(placed.id).is_some())
         };
         let mut number = 0;
-        let mut unsure = vec![false; states.len()];
+        // By tile: the box of the points that have to settle.
+        let mut unsure: Vec<Option<Box2>> = vec![None; states.len()];
         self.settler.list(&within, |placed| {
             if is_own(&placed) {
                 match decide(&placed) {
                     Some(is_inside) => number += u128::from(is_inside),
-                    None => unsure[tile_of(placed.place)] = true,
+                    None => add(&mut unsure[tile_of(placed.place)], placed.place),
                 }
             }
         });
-        for (i, _) in unsure.iter().enumerate().filter(|(_, unsure)| **unsure) {
+        let margin = MARGIN * i128::from(self.settler.most_move(&within));
+        for some in joined(unsure.into_iter().flatten(), margin) {
             if self.scope.stop.is_raised() {
                 break;
             }
-            let tile = tile_box(i);
-            let ends = widened(&tile, self.settler.most_move(&tile));
+            let ends = widened(&some, self.settler.most_move(&some));
             let area = self.area(&ends);
             let inside = Inside {
                 bounds,
@@ -201,7 +209,7 @@ impl Pieces {
                 lattice,
             };
             let wants = |placed: &Placed| is_own(placed) && decide(placed).is_none();
-            self.settler.settle(&tile, wants, |settled| {
+            self.settler.settle(&some, wants, |settled| {
                 number += u128::from(inside.holds(&settled));
             });
         }
@@ -235,6 +243,41 @@ impl Pieces {
         let end = end.div_euclid(PIECE) * PIECE;
         if start < end { start..end } else { none }
     }
+}
+
+/// Adds a place to a box.
+fn add(within: &mut Option<Box2>, place: [i128; 2]) {
+    let own = place.map(|k| k..k + 1);
+    *within = Some(match within.take() {
+        Some(within) => hull(&within, &own),
+        None => own,
+    });
+}
+
+/// The box around two boxes.
+fn hull(a: &Box2, b: &Box2) -> Box2 {
+    [0, 1].map(|i| a[i].start.min(b[i].start)..a[i].end.max(b[i].end))
+}
+
+/// Joins boxes that overlap, and those where a common window is smaller than one for each, by the margin around a window.
+fn joined(boxes: impl Iterator<Item = Box2>, margin: i128) -> Vec<Box2> {
+    let area = |within: &Box2| -> f64 {
+        let sides = within
+            .each_ref()
+            .map(|range| range.end - range.start + 2 * margin);
+        sides[0] as f64 * sides[1] as f64
+    };
+    let mut all: Vec<Box2> = Vec::new();
+    for mut next in boxes {
+        while let Some(i) = all.iter().position(|other| {
+            let overlaps = !common(other, &next).iter().any(Range::is_empty);
+            overlaps || area(&hull(other, &next)) <= area(other) + area(&next)
+        }) {
+            next = hull(&all.swap_remove(i), &next);
+        }
+        all.push(next);
+    }
+    all
 }
 
 /// The first multiple of the height of a piece from a row on.
@@ -489,7 +532,7 @@ pub(super) fn find_few_settled(pieces: &mut Pieces) -> Option<Few> {
     }
     let side = scope.lattice.table.alpha().set_side_f64();
     let area = lengths[0] as f64 * lengths[1] as f64;
-    if area * side * side * pieces.settler.greatest_share(&pieces.around) > FEW as f64 {
+    if area * side * side * pieces.settler.greatest_share(&pieces.around) > FEW {
         return None;
     }
     let mut settled = Vec::new();
