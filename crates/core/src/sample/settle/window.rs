@@ -27,9 +27,12 @@ use core::ops::Range;
 
 use super::{
     LEAST_SHARE, MOST_MOVE,
-    freedom::{Candidate, Freedoms, inside, local, root, slipped},
+    boxes::{Box2, Placed, Settled, widened},
+    cells::{Cells, Places},
+    freedom::{Candidate, Freedoms, inside, local, slipped},
     kernels,
-    step::{Cells, Kernel, Places, STEP, Scale, WHOLE},
+    reach::{Extent, ROOM, moved_before, reached, widest},
+    step::{Scale, WHOLE},
 };
 use crate::{
     sample::{
@@ -43,30 +46,6 @@ use crate::{
     table::{FRACTION_BITS, fixed},
 };
 
-/// A point where it has settled.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Settled {
-    pub(crate) id: PointId,
-    /// In fixed-point units.
-    pub(crate) place: [i128; 2],
-    /// The share at its place at full density.
-    pub(crate) share: f64,
-}
-
-/// A box of places, in fixed-point units.
-pub(crate) type Box2 = [Range<i128>; 2];
-
-/// A point where its rank left it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
-    pub(crate) id: PointId,
-    /// In fixed-point units.
-    pub(crate) place: [i128; 2],
-    pub(crate) share: f64,
-    /// The greatest move along each axis, in fixed-point units.
-    pub(crate) most: i64,
-}
-
 /// The most candidates that are looked at together.
 const TOGETHER: usize = 2048;
 
@@ -76,24 +55,8 @@ const CORNER_BITS: u32 = 26;
 /// The largest distance from a window's corner, in the units of a window.
 const FARTHEST: i64 = 1 << 30;
 
-/// Room for what rounds, in units of a window.
-const ROOM: i64 = 64;
-
 /// The places along each axis of a box at which a field is looked at to guess how sparse it is.
 const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-
-/// The number of successive points, which are near each other, whose reach is found at once.
-const NEAR: usize = 16;
-
-/// The greatest reach of a kernel, in local spacings.
-fn widest(kernel: &Kernel) -> f64 {
-    f64::from(kernel.reach.max(kernel.near))
-}
-
-/// How far a point may have gone before step number `t`, which counts from 0, in local spacings.
-fn moved_before(t: usize) -> f64 {
-    f64::from(WHOLE).min(f64::from(STEP) * t as f64) * core::f64::consts::SQRT_2
-}
 
 /// Settles points, with memory of its own.
 #[derive(Clone, Debug)]
@@ -128,44 +91,6 @@ struct Listed {
     is_wanted: bool,
     /// Whether it may have to go back.
     may_slip: bool,
-}
-
-/// The ranges of a box along both axes, from a window's corner.
-#[derive(Clone, Copy, Debug)]
-struct Extent {
-    min: [i64; 2],
-    max: [i64; 2],
-}
-
-impl Extent {
-    const NONE: Self = Self {
-        min: [i64::MAX; 2],
-        max: [i64::MIN; 2],
-    };
-
-    /// Adds places between some ends, with room around them.
-    fn add(&mut self, [min, max]: [[i32; 2]; 2], room: i64) {
-        for i in 0..2 {
-            self.min[i] = self.min[i].min(i64::from(min[i]) - room);
-            self.max[i] = self.max[i].max(i64::from(max[i]) + room);
-        }
-    }
-
-    fn holds(&self, [x, y]: [i32; 2]) -> bool {
-        let (x, y) = (i64::from(x), i64::from(y));
-        (self.min[0] <= x) & (x <= self.max[0]) & (self.min[1] <= y) & (y <= self.max[1])
-    }
-
-    fn is_within(&self, other: &Self) -> bool {
-        (0..2).all(|i| other.min[i] <= self.min[i] && self.max[i] <= other.max[i])
-    }
-
-    fn and(self, other: Self) -> Self {
-        Self {
-            min: [0, 1].map(|i| self.min[i].min(other.min[i])),
-            max: [0, 1].map(|i| self.max[i].max(other.max[i])),
-        }
-    }
 }
 
 impl Settler {
@@ -267,7 +192,6 @@ impl Settler {
             visit(Placed {
                 id,
                 place,
-                share,
                 most: most as i64 + (2 << shift),
             });
         });
@@ -362,7 +286,6 @@ impl Settler {
                 found(Settled {
                     id: listed.id,
                     place: self.place(corner, i, &self.places.at),
-                    share: listed.share,
                 });
             }
         }
@@ -431,7 +354,6 @@ impl Settler {
                 wants(&Placed {
                     id,
                     place,
-                    share,
                     most: most as i64 + (2 << shift),
                 })
             };
@@ -469,7 +391,7 @@ impl Settler {
             let step = t as u8 + 1;
             self.free(corner, step, (t + 1 < kernels.len()).then_some(from));
             let sparsest;
-            (from, sparsest) = self.reached(kernel, t);
+            (from, sparsest) = reached(&self.places, (kernel, t), unit);
             all = all.and(from);
             if !all.is_within(&window) {
                 // The steps before this one reach on.
@@ -541,46 +463,6 @@ impl Settler {
         (self.freedoms, self.places.freedom, self.slippery) = (freedoms, freedom, slippery);
     }
 
-    /// The extent of the points that matter to those that move in step number `t`, which counts from 0, and the least share
-    /// of these.
-    fn reached(&self, kernel: &Kernel, t: usize) -> (Extent, f64) {
-        let step = t as u8 + 1;
-        let Places {
-            placed: [xs, ys],
-            share,
-            freedom,
-            until,
-            ..
-        } = &self.places;
-        let lesser = |a: f32, b: f32| if b < a { b } else { a };
-        let least = f64::from(share.iter().fold(1.0, |a, &b| lesser(a, b)));
-        let mut extent = Extent::NONE;
-        let mut sparsest = 1.0f64;
-        let lists = xs.chunks(NEAR).zip(ys.chunks(NEAR)).zip(share.chunks(NEAR));
-        let lists = lists.zip(freedom.chunks(NEAR).zip(until.chunks(NEAR)));
-        for (((xs, ys), shares), (freedom, until)) in lists {
-            let (mut min, mut max) = ([i32::MAX; 2], [i32::MIN; 2]);
-            let mut low = f32::INFINITY;
-            let points = xs.iter().zip(ys).zip(shares).zip(freedom.iter().zip(until));
-            for (((&x, &y), &share), (&freedom, &until)) in points {
-                if until >= step && freedom > 0.0 {
-                    min = [min[0].min(x), min[1].min(y)];
-                    max = [max[0].max(x), max[1].max(y)];
-                    low = lesser(low, share);
-                }
-            }
-            if low <= 1.0 {
-                let share = f64::from(low);
-                let pair = root(2.0 / (share + least));
-                let moved = moved_before(t) * (local(share) + local(least));
-                let room = (widest(kernel) * pair + moved) * f64::from(self.scale.unit);
-                extent.add([min, max], room as i64 + ROOM);
-                sparsest = sparsest.min(share);
-            }
-        }
-        (extent, sparsest)
-    }
-
     fn take_steps(&mut self) {
         for (step, kernel) in (1..).zip(kernels(self.settle)) {
             self.cells
@@ -614,18 +496,4 @@ impl Settler {
         let limit = i128::from(FARTHEST) << 4;
         ((k - corner[axis]) >> self.shift).clamp(-limit, limit) as i64
     }
-}
-
-/// The part of a box in another one.
-pub(crate) fn common(a: &Box2, b: &Box2) -> Box2 {
-    [0, 1].map(|i| {
-        let start = a[i].start.max(b[i].start);
-        start..a[i].end.min(b[i].end).max(start)
-    })
-}
-
-/// A box with some room on all sides.
-pub(crate) fn widened([x, y]: &Box2, room: i64) -> Box2 {
-    let room = i128::from(room);
-    [x.start - room..x.end + room, y.start - room..y.end + room]
 }

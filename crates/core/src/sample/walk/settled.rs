@@ -5,7 +5,7 @@
 //! order nor in the places.
 //!
 //! Counting settles few of them: a point that was placed deeper in the region than it can move is inside, and one
-//! farther off is outside, so only points near the outline settle, tile by tile.
+//! farther off is outside, so only points near the outline settle, in boxes that hold those of one or more tiles.
 
 use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
@@ -22,14 +22,14 @@ use crate::sample::{
     lattice::{BAND_WIDTH, Found, Lattice, PATCH_HEIGHT, PointId, clip_to_band, places_of},
     near::Guard,
     scope::Scope,
-    settle::{Box2, Placed, Settled, Settler, common, widened},
+    settle::{Box2, Placed, Settled, Settler, add_place, common, joined, widened},
 };
 use crate::table::fixed;
 
 /// The rows of a piece: enough that the margins around it cost less than the piece.
 const PIECE: i64 = 512;
 
-/// The sides of the tiles in which points near an outline settle, in bits of fixed-point units: 128 grid units.
+/// The sides of the tiles that are compared with an outline as a whole, in bits of fixed-point units: 128 grid units.
 const TILE_BITS: u32 = 27;
 
 /// About how far around a box points matter to those in it, in greatest moves.
@@ -72,19 +72,6 @@ impl Inside<'_> {
         self.area.as_ref().is_none_or(|area| area.contains(at))
             && self.clear.iter().all(|guard| guard.permits(at))
     }
-}
-
-/// Whether a point is in a box wherever it goes, in none of it, or either.
-fn side(bounds: &Box2, placed: &Placed) -> Option<bool> {
-    let most = i128::from(placed.most);
-    let mut is_sure = true;
-    for (range, place) in bounds.iter().zip(placed.place) {
-        if place + most < range.start || place - most >= range.end {
-            return Some(false);
-        }
-        is_sure &= range.start <= place - most && place + most < range.end;
-    }
-    is_sure.then_some(true)
 }
 
 impl Pieces {
@@ -131,7 +118,7 @@ impl Pieces {
         let lattice = &self.scope.lattice;
         let wants = |placed: &Placed| {
             holds(piece, placed.id)
-                && side(inside.bounds, placed) != Some(false)
+                && placed.side(inside.bounds) != Some(false)
                 && (!has || lattice.block(placed.id).is_some())
         };
         self.settler.settle(&within, wants, |settled| {
@@ -176,7 +163,7 @@ impl Pieces {
             y * across[0] + x
         };
         let bounds = &self.bounds;
-        let decide = |placed: &Placed| match (side(bounds, placed), states[tile_of(placed.place)]) {
+        let decide = |placed: &Placed| match (placed.side(bounds), states[tile_of(placed.place)]) {
             (Some(false), _) | (_, Some(false)) => Some(false),
             (Some(true), Some(true)) if !is_guarded => Some(true),
             _ => None,
@@ -191,7 +178,7 @@ impl Pieces {
             if is_own(&placed) {
                 match decide(&placed) {
                     Some(is_inside) => number += u128::from(is_inside),
-                    None => add(&mut unsure[tile_of(placed.place)], placed.place),
+                    None => add_place(&mut unsure[tile_of(placed.place)], placed.place),
                 }
             }
         });
@@ -243,41 +230,6 @@ impl Pieces {
         let end = end.div_euclid(PIECE) * PIECE;
         if start < end { start..end } else { none }
     }
-}
-
-/// Adds a place to a box.
-fn add(within: &mut Option<Box2>, place: [i128; 2]) {
-    let own = place.map(|k| k..k + 1);
-    *within = Some(match within.take() {
-        Some(within) => hull(&within, &own),
-        None => own,
-    });
-}
-
-/// The box around two boxes.
-fn hull(a: &Box2, b: &Box2) -> Box2 {
-    [0, 1].map(|i| a[i].start.min(b[i].start)..a[i].end.max(b[i].end))
-}
-
-/// Joins boxes that overlap, and those where a common window is smaller than one for each, by the margin around a window.
-fn joined(boxes: impl Iterator<Item = Box2>, margin: i128) -> Vec<Box2> {
-    let area = |within: &Box2| -> f64 {
-        let sides = within
-            .each_ref()
-            .map(|range| range.end - range.start + 2 * margin);
-        sides[0] as f64 * sides[1] as f64
-    };
-    let mut all: Vec<Box2> = Vec::new();
-    for mut next in boxes {
-        while let Some(i) = all.iter().position(|other| {
-            let overlaps = !common(other, &next).iter().any(Range::is_empty);
-            overlaps || area(&hull(other, &next)) <= area(other) + area(&next)
-        }) {
-            next = hull(&all.swap_remove(i), &next);
-        }
-        all.push(next);
-    }
-    all
 }
 
 /// The first multiple of the height of a piece from a row on.
