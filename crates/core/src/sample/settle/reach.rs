@@ -1,13 +1,14 @@
 //! How far points reach: which others matter to where they go.
 
 use super::{
+    LEAST_SHARE,
     cells::Places,
     freedom::{local, root},
     step::{Kernel, STEP, WHOLE},
 };
 
 /// Room for what rounds, in units of a window.
-pub(super) const ROOM: i64 = 64;
+const ROOM: i64 = 64;
 
 /// The number of successive points, which are near each other, whose reach is found at once.
 const NEAR: usize = 16;
@@ -18,8 +19,22 @@ pub(super) fn widest(kernel: &Kernel) -> f64 {
 }
 
 /// How far a point may have gone before step number `t`, which counts from 0, in local spacings.
-pub(super) fn moved_before(t: usize) -> f64 {
+fn moved_before(t: usize) -> f64 {
     f64::from(WHOLE).min(f64::from(STEP) * t as f64) * core::f64::consts::SQRT_2
+}
+
+/// How far from a point of a share others may be that push it in step number `t`, which counts from 0, if none is sparser
+/// than `least`: by the places where they were placed, in spacings at full density.
+fn room(kernel: &Kernel, t: usize, [share, least]: [f64; 2]) -> f64 {
+    let moved = moved_before(t) * (local(share) + local(least));
+    widest(kernel) * root(2.0 / (share.max(LEAST_SHARE) + least.max(LEAST_SHARE))) + moved
+}
+
+/// How far from a point others may be that matter to where it goes in all steps, in units of a window.
+pub(super) fn whole_room(kernels: &[Kernel], shares: [f64; 2], unit: f64) -> i64 {
+    let steps = kernels.iter().enumerate();
+    let rooms: f64 = steps.map(|(t, kernel)| room(kernel, t, shares)).sum();
+    (rooms * unit) as i64 + ROOM * kernels.len() as i64
 }
 
 /// The ranges of a box along both axes, from a window's corner.
@@ -46,6 +61,26 @@ impl Extent {
     pub(super) fn holds(&self, [x, y]: [i32; 2]) -> bool {
         let (x, y) = (i64::from(x), i64::from(y));
         (self.min[0] <= x) & (x <= self.max[0]) & (self.min[1] <= y) & (y <= self.max[1])
+    }
+
+    /// A place, by parts of the sides.
+    pub(super) fn place(&self, parts: [f64; 2]) -> Self {
+        let place = [0, 1].map(|i| {
+            let side = self.max[i] - self.min[i];
+            self.min[i] + (parts[i] * side as f64) as i64
+        });
+        Self {
+            min: place,
+            max: place,
+        }
+    }
+
+    /// With some room on all sides.
+    pub(super) fn widened(self, room: i64) -> Self {
+        Self {
+            min: self.min.map(|v| v - room),
+            max: self.max.map(|v| v + room),
+        }
     }
 
     pub(super) fn is_within(&self, other: &Self) -> bool {
@@ -90,9 +125,7 @@ pub(super) fn reached(places: &Places, (kernel, t): (&Kernel, usize), unit: f64)
         }
         if low <= 1.0 {
             let share = f64::from(low);
-            let pair = root(2.0 / (share + least));
-            let moved = moved_before(t) * (local(share) + local(least));
-            let room = (widest(kernel) * pair + moved) * unit;
+            let room = room(kernel, t, [share, least]) * unit;
             extent.add([min, max], room as i64 + ROOM);
             sparsest = sparsest.min(share);
         }

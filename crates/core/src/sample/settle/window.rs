@@ -22,7 +22,7 @@
 //! far these reach is only known when they are listed, so a window is guessed first, and listed again if it
 //! was too small. Where points end does not depend on it.
 
-use alloc::vec::Vec;
+use alloc::{vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
@@ -31,7 +31,7 @@ use super::{
     cells::{Cells, Places},
     freedom::{Candidate, Freedoms, inside, local, slipped},
     kernels,
-    reach::{Extent, ROOM, moved_before, reached, widest},
+    reach::{Extent, reached, whole_room, widest},
     step::{Scale, WHOLE},
 };
 use crate::{
@@ -56,7 +56,7 @@ const CORNER_BITS: u32 = 26;
 const FARTHEST: i64 = 1 << 30;
 
 /// The places along each axis of a box at which a field is looked at to guess how sparse it is.
-const SAMPLES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+const SAMPLES: usize = 9;
 
 /// Settles points, with memory of its own.
 #[derive(Clone, Debug)]
@@ -266,11 +266,7 @@ impl Settler {
             min: [0, 1].map(|i| self.from_corner(corner, i, within[i].start)),
             max: [0, 1].map(|i| self.from_corner(corner, i, within[i].end - 1)),
         };
-        let guess = self.guess(within);
-        let mut window = Extent {
-            min: own.min.map(|v| v - guess),
-            max: own.max.map(|v| v + guess),
-        };
+        let mut window = self.guess(within, own);
         loop {
             self.list_window(corner, window, own, &mut wants);
             let needed = self.prepare(corner, window);
@@ -307,26 +303,37 @@ impl Settler {
         [self.lattice.world(x), self.lattice.world(y)]
     }
 
-    /// About how far around a box points matter to those in it, in units of a window.
-    fn guess(&self, within: &Box2) -> i64 {
+    /// About where the points lie that matter to those in a box, from a window's corner.
+    fn guess(&mut self, within: &Box2, own: Extent) -> Extent {
         let region = self.region(within);
         let ([left, bottom], [right, top]) = (region.min(), region.max());
-        let mut least = 1.0f64;
         let is_constant = self.grade.known().is_some();
-        let places = SAMPLES.iter().flat_map(|a| SAMPLES.map(|b| [*a, b]));
-        for [a, b] in places.take(if is_constant { 1 } else { usize::MAX }) {
-            let at = [left + a * (right - left), bottom + b * (top - bottom)];
-            let share = self.grade.share(at);
-            if share > 0.0 && share < least {
-                least = share;
-            }
+        let samples = if is_constant { 1 } else { SAMPLES };
+        let part = |i: usize| i as f64 / (SAMPLES - 1) as f64;
+        let parts = || (0..samples).flat_map(|i| (0..samples).map(move |k| [part(i), part(k)]));
+        let at = parts().map(|[a, b]| [left + a * (right - left), bottom + b * (top - bottom)]);
+        let at: Vec<[f64; 2]> = at.collect();
+        let mut shares = vec![0.0; at.len()];
+        self.grade.shares(&at, &mut shares);
+        let sparse = shares.iter().filter(|share| **share > 0.0);
+        let least = sparse.fold(1.0f64, |a, b| a.min(*b));
+        let unit = f64::from(self.scale.unit);
+        // Points between the samples and around them may be sparser.
+        let (least, slack) = if is_constant {
+            (least, 1.0)
+        } else {
+            (0.8 * least, 1.1)
+        };
+        let kernels = kernels(self.settle);
+        if is_constant {
+            return own.widened(whole_room(kernels, [least; 2], unit));
         }
-        let pair = if is_constant { 1.0 } else { 1.25 };
-        let kernels = kernels(self.settle).iter().enumerate();
-        let reach: f64 = kernels
-            .map(|(t, kernel)| pair * widest(kernel) + 2.0 * moved_before(t))
-            .sum();
-        (reach * f64::from(self.scale.unit) * local(least)) as i64 + ROOM
+        let mut all = own;
+        for (parts, share) in parts().zip(shares) {
+            let room = whole_room(kernels, [share.max(least), least], slack * unit);
+            all = all.and(own.place(parts).widened(room));
+        }
+        all
     }
 
     /// Lists the points of a window.
@@ -397,9 +404,7 @@ impl Settler {
                 // The steps before this one reach on.
                 let reach: f64 = kernels[..t].iter().map(widest).sum();
                 let room = (reach * 1.2 * unit * local(sparsest)) as i64;
-                all.min = all.min.map(|v| v - room);
-                all.max = all.max.map(|v| v + room);
-                return all;
+                return all.widened(room);
             }
         }
         all
