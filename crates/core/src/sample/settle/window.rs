@@ -134,13 +134,8 @@ impl Settler {
     /// The greatest move of points that were placed in a box, in fixed-point units.
     pub(crate) fn most_move(&self, within: &Box2) -> i64 {
         let low = self.grade.bounds(&self.region(within))[0];
-        self.move_at(low)
-    }
-
-    /// The greatest move of a point of a share along an axis, in fixed-point units.
-    fn move_at(&self, share: f64) -> i64 {
         // With room for what rounds.
-        (f64::from(WHOLE) * 1.000_01 * self.unit * local(share)) as i64 + (2 << self.shift)
+        (f64::from(WHOLE) * 1.000_01 * self.unit * local(low)) as i64 + (2 << self.shift)
     }
 
     /// The box around a box that holds the places of all points that may settle in it.
@@ -263,8 +258,8 @@ impl Settler {
             ((start + (end - start) / 2) >> CORNER_BITS) << CORNER_BITS
         });
         let own = Extent {
-            min: [0, 1].map(|i| self.from_corner(corner, i, within[i].start)),
-            max: [0, 1].map(|i| self.from_corner(corner, i, within[i].end - 1)),
+            min: [0, 1].map(|i| self.offset(corner, i, within[i].start)),
+            max: [0, 1].map(|i| self.offset(corner, i, within[i].end - 1)),
         };
         let mut window = self.guess(within, own);
         loop {
@@ -497,7 +492,7 @@ impl Settler {
     }
 
     /// A fixed-point coordinate from a window's corner, in its units.
-    fn from_corner(&self, corner: [i128; 2], axis: usize, k: i128) -> i64 {
+    fn offset(&self, corner: [i128; 2], axis: usize, k: i128) -> i64 {
         let limit = i128::from(FARTHEST) << 4;
         ((k - corner[axis]) >> self.shift).clamp(-limit, limit) as i64
     }
