@@ -188,10 +188,9 @@ impl Pieces {
                 break;
             }
             let ends = widened(&some, self.settler.most_move(&some));
-            let area = self.area(&ends);
             let inside = Inside {
                 bounds,
-                area,
+                area: self.area(&ends),
                 clear: &self.clear,
                 lattice,
             };
@@ -226,15 +225,10 @@ impl Pieces {
         let start = up(self.bounds[1].start + below).clamp(y.all.start, y.all.end);
         let end = up(self.bounds[1].end - above).clamp(start, y.all.end);
         // Whole pieces.
-        let start = up_to_piece(start);
+        let start = -(-start).div_euclid(PIECE) * PIECE;
         let end = end.div_euclid(PIECE) * PIECE;
         if start < end { start..end } else { none }
     }
-}
-
-/// The first multiple of the height of a piece from a row on.
-const fn up_to_piece(row: i64) -> i64 {
-    -(-row).div_euclid(PIECE) * PIECE
 }
 
 /// Whether an address is in some columns and rows.
@@ -357,8 +351,7 @@ impl<F: Format> SettledWalk<F> {
     fn next_piece(&mut self) -> bool {
         self.found.clear();
         self.taken = 0;
-        let never = |_| 0..0;
-        let Some((band, rows, _)) = self.rows.take(never) else {
+        let Some((band, rows, _)) = self.rows.take(|_| 0..0) else {
             return false;
         };
         self.origin = [band * BAND_WIDTH, rows.start.div_euclid(PIECE) * PIECE];
