@@ -118,7 +118,7 @@ fn reference(set: &PointSet, shares: &dyn Fn([f64; 2]) -> f64, region: Region) -
                     let scaled = squared * (share + other.share.max(1.0 / 400.0) as f32);
                     let u = (1.0 - scaled * by_reach).max(0.0);
                     let v = (1.0 - scaled * by_near).max(0.0);
-                    if u > 0.0 && scaled > 0.0 {
+                    if squared > 0.0 {
                         nearest = nearest.min(squared);
                     }
                     let u = u * u;

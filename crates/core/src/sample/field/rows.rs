@@ -308,16 +308,22 @@ impl ListedRow<'_> {
         let positions = self.positions;
         let vectors = &self.vectors[..positions.len()];
         let mut number = 0;
-        for column in self.columns {
+        for (i, column) in self.columns.iter().enumerate() {
+            // Written in any case; the next one goes to the same place if this has left.
+            all[number] = i as u32;
+            let position = positions[column.block as usize];
+            number += usize::from((position < column.alive) & keeps(column));
+        }
+        let lists = all.iter_mut().zip(addresses).zip(xs.iter_mut().zip(ys));
+        for ((entry, address), (x, y)) in lists.take(number) {
+            let column = &self.columns[*entry as usize];
             let block = column.block as usize;
             let (position, [dx, dy]) = (positions[block], vectors[block]);
-            // Written in any case; the next one goes to the same place if this has left.
-            xs[number] = column.x + dx;
-            ys[number] = self.row + dy;
-            addresses[number] = self.first | (column.x >> FRACTION_BITS) as u32;
+            *x = column.x + dx;
+            *y = self.row + dy;
+            *address = self.first | (column.x >> FRACTION_BITS) as u32;
             let whole = if position < column.whole { WHOLE } else { 0 };
-            all[number] = position | whole;
-            number += usize::from((position < column.alive) & keeps(column));
+            *entry = position | whole;
         }
         number
     }

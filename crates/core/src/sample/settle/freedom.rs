@@ -25,7 +25,7 @@ const STEEP: f64 = 4.0;
 /// The distances of looks in local spacings, and the relative change there that counts as 1.
 const LOOKS: [[f64; 2]; 2] = [[1.0, 0.4], [1.8, 0.7]];
 
-/// The sides of a tile in bits of fixed-point units: 64 grid units.
+/// The sides of a tile in bits of a window's units: 64 grid units.
 const TILE_BITS: u32 = 26;
 
 /// A point whose freedom is wanted.
@@ -33,9 +33,8 @@ const TILE_BITS: u32 = 26;
 pub(super) struct Candidate {
     /// Its number in the window.
     pub(super) point: u32,
-    /// Its place from the window's corner, in fixed-point units, and in world coordinates.
+    /// Its place from the window's corner, in the window's units.
     pub(super) from_corner: [i32; 2],
-    pub(super) at: [f64; 2],
     pub(super) share: f64,
 }
 
@@ -104,7 +103,7 @@ pub(super) fn freedom(share: f64, around: [f64; 8]) -> f32 {
 }
 
 /// The freedom of a point where the field counts as constant.
-fn inside(share: f64) -> f64 {
+pub(super) fn inside(share: f64) -> f64 {
     if share < Settle::LEAST_SHARE {
         return 0.0;
     }
@@ -127,21 +126,16 @@ impl Freedoms {
     }
 
     /// Finds the freedoms of all candidates. `found` is called with the number of each, its freedom, and whether the
-    /// field is so gentle that it cannot slip.
+    /// field is so gentle that it cannot slip. `place` has the world coordinates of a point.
     pub(super) fn find(
         &mut self,
         grade: &Grade,
         (spacing, per_unit): (f64, f64),
+        place: impl Fn(u32) -> [f64; 2],
         mut found: impl FnMut(u32, f32, bool),
     ) {
         self.places.clear();
         self.looked.clear();
-        if grade.known().is_some() {
-            for candidate in &self.candidates {
-                found(candidate.point, inside(candidate.share) as f32, true);
-            }
-            return;
-        }
         let Some(first) = self.candidates.first() else {
             return;
         };
@@ -161,7 +155,6 @@ impl Freedoms {
             let Candidate {
                 point,
                 from_corner,
-                at,
                 share,
             } = *candidate;
             if !(Settle::LEAST_SHARE..1.0).contains(&share) {
@@ -171,6 +164,7 @@ impl Freedoms {
             let tile = [0, 1].map(|i| ((from_corner[i] >> TILE_BITS) - corner[i]) as usize);
             let slope = &mut self.tiles[tile[1] * across[0] + tile[0]];
             let slope = *slope.get_or_insert_with(|| {
+                let at = place(point);
                 let side = f64::from(1u32 << TILE_BITS) * per_unit;
                 let room = SPARSE_LOOK * spacing;
                 let into =
@@ -194,7 +188,7 @@ impl Freedoms {
                 found(point, inside(share) as f32, true);
             } else {
                 self.looked.push(number as u32);
-                self.places.extend(around(at, share, spacing));
+                self.places.extend(around(place(point), share, spacing));
             }
         }
         self.shares.clear();

@@ -24,7 +24,7 @@
 //! The reach comes from the mean density of the pair, so the pushes of a pair are equal and opposite, and in two
 //! dimensions the pressure of such pushes does not depend on the density: no term for it is needed, and the field
 //! is not looked at again. `freedom` has f, which is 0 at full density and where a field is steep, so that edges stay
-//! sharp; `step` one step with its constants of exactness; `window` the points that matter to some others.
+//! sharp; `step` one step with its constants of exactness, `cells` the order in which it finds neighbors; `window` the points that matter to some others, and `reach` how far these lie.
 //!
 //! The constants ρ, c, γ, h were learned by measuring power and distances (CMA-ES); docs/algorithm.md lists them.
 //!
@@ -36,14 +36,18 @@
 //! - Where all points keep the distance D of the table's certificate, they keep it after each step: none goes farther
 //!   than half of what separates it from D.
 
+mod boxes;
+mod cells;
 mod freedom;
+mod reach;
 mod step;
 mod tiles;
 mod window;
 
+pub(crate) use boxes::{Box2, Placed, Settled, add_place, common, joined, widened};
 use step::Kernel;
 pub(crate) use tiles::SettledTiles;
-pub(crate) use window::{Box2, Placed, Settled, Settler, common, widened};
+pub(crate) use window::Settler;
 
 use crate::sample::lattice::Settle;
 

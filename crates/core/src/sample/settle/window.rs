@@ -22,14 +22,17 @@
 //! far these reach is only known when they are listed, so a window is guessed first, and listed again if it
 //! was too small. Where points end does not depend on it.
 
-use alloc::vec::Vec;
+use alloc::{vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
     LEAST_SHARE, MOST_MOVE,
-    freedom::{Candidate, Freedoms, local, root, slipped},
+    boxes::{Box2, Placed, Settled, widened},
+    cells::{Cells, Places},
+    freedom::{Candidate, Freedoms, inside, local, slipped},
     kernels,
-    step::{Cells, Kernel, Places, STEP, Scale, WHOLE},
+    reach::{Extent, reached, whole_room, widest},
+    step::{Scale, WHOLE},
 };
 use crate::{
     sample::{
@@ -43,30 +46,6 @@ use crate::{
     table::{FRACTION_BITS, fixed},
 };
 
-/// A point where it has settled.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Settled {
-    pub(crate) id: PointId,
-    /// In fixed-point units.
-    pub(crate) place: [i128; 2],
-    /// The share at its place at full density.
-    pub(crate) share: f64,
-}
-
-/// A box of places, in fixed-point units.
-pub(crate) type Box2 = [Range<i128>; 2];
-
-/// A point where its rank left it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
-    pub(crate) id: PointId,
-    /// In fixed-point units.
-    pub(crate) place: [i128; 2],
-    pub(crate) share: f64,
-    /// The greatest move along each axis, in fixed-point units.
-    pub(crate) most: i64,
-}
-
 /// The most candidates that are looked at together.
 const TOGETHER: usize = 2048;
 
@@ -76,21 +55,8 @@ const CORNER_BITS: u32 = 26;
 /// The largest distance from a window's corner, in the units of a window.
 const FARTHEST: i64 = 1 << 30;
 
-/// Room for what rounds, in units of a window.
-const ROOM: i64 = 64;
-
-/// Places of a box at which a field is looked at to guess how sparse it is.
-const SAMPLES: [(f64, f64); 5] = [(0.5, 0.5), (0.1, 0.1), (0.9, 0.1), (0.1, 0.9), (0.9, 0.9)];
-
-/// The greatest reach of a kernel, in local spacings.
-fn widest(kernel: &Kernel) -> f64 {
-    f64::from(kernel.reach.max(kernel.near))
-}
-
-/// How far a point may have gone before step number `t`, which counts from 0, in local spacings.
-fn moved_before(t: usize) -> f64 {
-    f64::from(WHOLE).min(f64::from(STEP) * t as f64) * core::f64::consts::SQRT_2
-}
+/// The places along each axis of a box at which a field is looked at to guess how sparse it is.
+const SAMPLES: usize = 9;
 
 /// Settles points, with memory of its own.
 #[derive(Clone, Debug)]
@@ -111,55 +77,20 @@ pub(crate) struct Settler {
     places: Places,
     cells: Cells,
     freedoms: Freedoms,
+    /// The points that may slip.
+    slippery: Vec<u32>,
 }
 
 /// A point of a window.
 #[derive(Clone, Copy, Debug)]
 struct Listed {
     id: PointId,
-    /// From the window's corner, in its units, and the bits below these.
-    place: [i32; 2],
-    below: [u8; 2],
     share: f64,
+    /// The bits of its place below the window's units.
+    below: [u8; 2],
     is_wanted: bool,
     /// Whether it may have to go back.
     may_slip: bool,
-}
-
-/// The ranges of a box along both axes, from a window's corner.
-#[derive(Clone, Copy, Debug)]
-struct Extent {
-    min: [i64; 2],
-    max: [i64; 2],
-}
-
-impl Extent {
-    const NONE: Self = Self {
-        min: [i64::MAX; 2],
-        max: [i64::MIN; 2],
-    };
-
-    fn add(&mut self, place: [i32; 2], room: i64) {
-        for i in 0..2 {
-            self.min[i] = self.min[i].min(i64::from(place[i]) - room);
-            self.max[i] = self.max[i].max(i64::from(place[i]) + room);
-        }
-    }
-
-    fn holds(&self, place: [i32; 2]) -> bool {
-        (0..2).all(|i| (self.min[i]..=self.max[i]).contains(&i64::from(place[i])))
-    }
-
-    fn is_within(&self, other: &Self) -> bool {
-        (0..2).all(|i| other.min[i] <= self.min[i] && self.max[i] <= other.max[i])
-    }
-
-    fn and(self, other: Self) -> Self {
-        Self {
-            min: [0, 1].map(|i| self.min[i].min(other.min[i])),
-            max: [0, 1].map(|i| self.max[i].max(other.max[i])),
-        }
-    }
 }
 
 impl Settler {
@@ -191,6 +122,7 @@ impl Settler {
             places: Places::default(),
             cells: Cells::default(),
             freedoms: Freedoms::default(),
+            slippery: Vec::new(),
         })
     }
 
@@ -202,13 +134,8 @@ impl Settler {
     /// The greatest move of points that were placed in a box, in fixed-point units.
     pub(crate) fn most_move(&self, within: &Box2) -> i64 {
         let low = self.grade.bounds(&self.region(within))[0];
-        self.move_at(low)
-    }
-
-    /// The greatest move of a point of a share along an axis, in fixed-point units.
-    fn move_at(&self, share: f64) -> i64 {
         // With room for what rounds.
-        (f64::from(WHOLE) * 1.000_01 * self.unit * local(share)) as i64 + (2 << self.shift)
+        (f64::from(WHOLE) * 1.000_01 * self.unit * local(low)) as i64 + (2 << self.shift)
     }
 
     /// The box around a box that holds the places of all points that may settle in it.
@@ -332,14 +259,10 @@ impl Settler {
             ((start + (end - start) / 2) >> CORNER_BITS) << CORNER_BITS
         });
         let own = Extent {
-            min: [0, 1].map(|i| self.from_corner(corner, i, within[i].start)),
-            max: [0, 1].map(|i| self.from_corner(corner, i, within[i].end - 1)),
+            min: [0, 1].map(|i| self.offset(corner, i, within[i].start)),
+            max: [0, 1].map(|i| self.offset(corner, i, within[i].end - 1)),
         };
-        let guess = self.guess(within);
-        let mut window = Extent {
-            min: own.min.map(|v| v - guess),
-            max: own.max.map(|v| v + guess),
-        };
+        let mut window = self.guess(within, own);
         loop {
             self.list_window(corner, window, own, &mut wants);
             let needed = self.prepare(corner, window);
@@ -364,32 +287,50 @@ impl Settler {
     /// The fixed-point place of point number `i` of the window, which keeps the bits below the window's unit.
     fn place(&self, corner: [i128; 2], i: usize, at: &[Vec<i32>; 2]) -> [i128; 2] {
         let below = self.listed[i].below;
-        [0, 1].map(|axis| {
+        let place = |axis: usize| {
             let whole = i64::from(at[axis][i]) << self.shift;
             corner[axis] + i128::from(whole | i64::from(below[axis]))
-        })
+        };
+        [place(0), place(1)]
     }
 
-    /// About how far around a box points matter to those in it, in units of a window.
-    fn guess(&self, within: &Box2) -> i64 {
+    /// The world coordinates of the place at which point number `i` of the window was placed.
+    fn placed(&self, corner: [i128; 2], i: usize) -> [f64; 2] {
+        let [x, y] = self.place(corner, i, &self.places.placed);
+        [self.lattice.world(x), self.lattice.world(y)]
+    }
+
+    /// About where the points lie that matter to those in a box, from a window's corner.
+    fn guess(&mut self, within: &Box2, own: Extent) -> Extent {
         let region = self.region(within);
         let ([left, bottom], [right, top]) = (region.min(), region.max());
-        let mut least = 1.0f64;
         let is_constant = self.grade.known().is_some();
-        for (a, b) in SAMPLES {
-            let share = self
-                .grade
-                .share([left + a * (right - left), bottom + b * (top - bottom)]);
-            if share > 0.0 && share < least {
-                least = share;
-            }
+        let samples = if is_constant { 1 } else { SAMPLES };
+        let part = |i: usize| i as f64 / (SAMPLES - 1) as f64;
+        let parts = || (0..samples).flat_map(|i| (0..samples).map(move |k| [part(i), part(k)]));
+        let at = parts().map(|[a, b]| [left + a * (right - left), bottom + b * (top - bottom)]);
+        let at: Vec<[f64; 2]> = at.collect();
+        let mut shares = vec![0.0; at.len()];
+        self.grade.shares(&at, &mut shares);
+        let sparse = shares.iter().filter(|share| **share > 0.0);
+        let least = sparse.fold(1.0f64, |a, b| a.min(*b));
+        let unit = f64::from(self.scale.unit);
+        // Points between the samples and around them may be sparser.
+        let (least, slack) = if is_constant {
+            (least, 1.0)
+        } else {
+            (0.8 * least, 1.1)
+        };
+        let kernels = kernels(self.settle);
+        if is_constant {
+            return own.widened(whole_room(kernels, [least; 2], unit));
         }
-        let pair = if is_constant { 1.0 } else { 1.25 };
-        let kernels = kernels(self.settle).iter().enumerate();
-        let reach: f64 = kernels
-            .map(|(t, kernel)| pair * widest(kernel) + 2.0 * moved_before(t))
-            .sum();
-        (reach * f64::from(self.scale.unit) * local(least)) as i64 + ROOM
+        let mut all = own;
+        for (parts, share) in parts().zip(shares) {
+            let room = whole_room(kernels, [share.max(least), least], slack * unit);
+            all = all.and(own.place(parts).widened(room));
+        }
+        all
     }
 
     /// Lists the points of a window.
@@ -405,11 +346,13 @@ impl Settler {
             fixed(window.min[i])..fixed(window.max[i] + 1)
         });
         let mut listed = core::mem::take(&mut self.listed);
+        let mut places = core::mem::take(&mut self.places);
         listed.clear();
+        places.clear();
         let (shift, unit) = (self.shift, self.unit);
         self.visit(&within, |id, place, share| {
-            let from = [0, 1].map(|i| (place[i] - corner[i]) as i64);
-            let at = from.map(|v| (v >> shift) as i32);
+            let [x, y] = [(place[0] - corner[0]) as i64, (place[1] - corner[1]) as i64];
+            let at = [(x >> shift) as i32, (y >> shift) as i32];
             let is_wanted = own.holds(at) && {
                 let most = f64::from(WHOLE) * 1.000_01 * unit * local(share);
                 wants(&Placed {
@@ -419,27 +362,27 @@ impl Settler {
                     most: most as i64 + (2 << shift),
                 })
             };
+            let below = (1 << shift) - 1;
             listed.push(Listed {
                 id,
-                place: at,
-                below: from.map(|v| (v & ((1 << shift) - 1)) as u8),
                 share,
+                below: [(x & below) as u8, (y & below) as u8],
                 is_wanted,
                 may_slip: false,
             });
+            places.placed[0].push(at[0]);
+            places.placed[1].push(at[1]);
         });
-        self.listed = listed;
-        let places = &mut self.places;
-        places.clear();
-        for listed in &self.listed {
-            for axis in 0..2 {
-                places.at[axis].push(listed.place[axis]);
-                places.placed[axis].push(listed.place[axis]);
-            }
-            places.share.push(listed.share.max(LEAST_SHARE) as f32);
+        for (at, placed) in places.at.iter_mut().zip(&places.placed) {
+            at.extend_from_slice(placed);
         }
-        places.freedom.resize(self.listed.len(), 0.0);
-        places.until.resize(self.listed.len(), 0);
+        let shares = listed
+            .iter()
+            .map(|listed| listed.share.max(LEAST_SHARE) as f32);
+        places.share.extend(shares);
+        places.freedom.resize(listed.len(), 0.0);
+        places.until.resize(listed.len(), 0);
+        (self.listed, self.places) = (listed, places);
     }
 
     /// Finds out which points move in which steps. Returns the extent of the points that matter to them; if it goes
@@ -447,64 +390,80 @@ impl Settler {
     fn prepare(&mut self, corner: [i128; 2], window: Extent) -> Extent {
         let kernels = kernels(self.settle);
         let unit = f64::from(self.scale.unit);
-        let least = self.places.share.iter().fold(1.0f32, |a, &b| a.min(b));
-        let least = f64::from(least);
         let mut all = Extent::NONE;
         let mut from = Extent::NONE;
         for (t, kernel) in kernels.iter().enumerate().rev() {
             let step = t as u8 + 1;
-            let is_last = t + 1 == kernels.len();
-            self.freedoms.clear();
-            for (i, listed) in self.listed.iter().enumerate() {
-                let is_new = match self.places.until[i] {
-                    0 if is_last => listed.is_wanted,
-                    0 => from.holds(listed.place),
-                    _ => false,
-                };
-                if is_new {
-                    self.places.until[i] = step;
-                    let place = self.place(corner, i, &self.places.placed);
-                    self.freedoms.add(Candidate {
-                        point: i as u32,
-                        from_corner: listed.place,
-                        at: place.map(|k| self.lattice.world(k)),
-                        share: listed.share,
-                    });
-                }
-            }
-            let (spacing, per_unit) = (
-                self.lattice.placement.spacing.get(),
-                self.lattice.step * f64::from(1u32 << self.shift),
-            );
-            let (freedom, listed) = (&mut self.places.freedom, &mut self.listed);
-            self.freedoms
-                .find(&self.grade, (spacing, per_unit), |i, free, is_gentle| {
-                    freedom[i as usize] = free;
-                    listed[i as usize].may_slip = !is_gentle;
-                });
-            from = Extent::NONE;
-            let mut sparsest = 1.0f64;
-            for (i, listed) in self.listed.iter().enumerate() {
-                if self.places.until[i] >= step && self.places.freedom[i] > 0.0 {
-                    let share = f64::from(self.places.share[i]);
-                    let pair = root(2.0 / (share + least));
-                    let moved = moved_before(t) * (local(share) + local(least));
-                    let room = (widest(kernel) * pair + moved) * unit;
-                    from.add(listed.place, room as i64 + ROOM);
-                    sparsest = sparsest.min(share);
-                }
-            }
+            self.free(corner, step, (t + 1 < kernels.len()).then_some(from));
+            let sparsest;
+            (from, sparsest) = reached(&self.places, (kernel, t), unit);
             all = all.and(from);
             if !all.is_within(&window) {
                 // The steps before this one reach on.
                 let reach: f64 = kernels[..t].iter().map(widest).sum();
                 let room = (reach * 1.2 * unit * local(sparsest)) as i64;
-                all.min = all.min.map(|v| v - room);
-                all.max = all.max.map(|v| v + room);
-                return all;
+                return all.widened(room);
             }
         }
         all
+    }
+
+    /// Finds the freedom of the points that move up to a step: of those in an extent, or without one, those that are wanted.
+    fn free(&mut self, corner: [i128; 2], step: u8, within: Option<Extent>) {
+        let is_constant = self.grade.known().is_some();
+        let Places {
+            placed: [xs, ys],
+            freedom,
+            until,
+            ..
+        } = &mut self.places;
+        self.freedoms.clear();
+        let placed = xs.iter().zip(ys.iter());
+        let lists = self.listed.iter().zip(placed).zip(until).zip(freedom);
+        for (i, (((listed, (&x, &y)), until), freedom)) in lists.enumerate() {
+            let is_new = match &within {
+                None => listed.is_wanted,
+                Some(within) => *until == 0 && within.holds([x, y]),
+            };
+            if !is_new {
+                continue;
+            }
+            *until = step;
+            if is_constant {
+                *freedom = inside(listed.share) as f32;
+            } else {
+                self.freedoms.add(Candidate {
+                    point: i as u32,
+                    from_corner: [x, y],
+                    share: listed.share,
+                });
+            }
+        }
+        if is_constant {
+            return;
+        }
+        let (spacing, per_unit) = (
+            self.lattice.placement.spacing.get(),
+            self.lattice.step * f64::from(1u32 << self.shift),
+        );
+        let mut freedoms = core::mem::take(&mut self.freedoms);
+        let mut freedom = core::mem::take(&mut self.places.freedom);
+        let mut slippery = core::mem::take(&mut self.slippery);
+        freedoms.find(
+            &self.grade,
+            (spacing, per_unit),
+            |i| self.placed(corner, i as usize),
+            |i, free, is_gentle| {
+                freedom[i as usize] = free;
+                if !is_gentle {
+                    slippery.push(i);
+                }
+            },
+        );
+        for i in slippery.drain(..) {
+            self.listed[i as usize].may_slip = true;
+        }
+        (self.freedoms, self.places.freedom, self.slippery) = (freedoms, freedom, slippery);
     }
 
     fn take_steps(&mut self) {
@@ -536,22 +495,8 @@ impl Settler {
     }
 
     /// A fixed-point coordinate from a window's corner, in its units.
-    fn from_corner(&self, corner: [i128; 2], axis: usize, k: i128) -> i64 {
+    fn offset(&self, corner: [i128; 2], axis: usize, k: i128) -> i64 {
         let limit = i128::from(FARTHEST) << 4;
         ((k - corner[axis]) >> self.shift).clamp(-limit, limit) as i64
     }
-}
-
-/// The part of a box in another one.
-pub(crate) fn common(a: &Box2, b: &Box2) -> Box2 {
-    [0, 1].map(|i| {
-        let start = a[i].start.max(b[i].start);
-        start..a[i].end.min(b[i].end).max(start)
-    })
-}
-
-/// A box with some room on all sides.
-pub(crate) fn widened([x, y]: &Box2, room: i64) -> Box2 {
-    let room = i128::from(room);
-    [x.start - room..x.end + room, y.start - room..y.end + room]
 }

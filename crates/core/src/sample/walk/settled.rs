@@ -5,14 +5,14 @@
 //! order nor in the places.
 //!
 //! Counting settles few of them: a point that was placed deeper in the region than it can move is inside, and one
-//! farther off is outside, so only points near the outline settle, tile by tile.
+//! farther off is outside, so only points near the outline settle, in boxes that hold those of one or more tiles.
 
 use alloc::{sync::Arc, vec, vec::Vec};
 use core::ops::Range;
 
 use super::{
     bands::{format_of, write_found},
-    few::{FEW, Few},
+    few::Few,
     tile::Tile,
 };
 use crate::sample::{
@@ -22,15 +22,22 @@ use crate::sample::{
     lattice::{BAND_WIDTH, Found, Lattice, PATCH_HEIGHT, PointId, clip_to_band, places_of},
     near::Guard,
     scope::Scope,
-    settle::{Box2, Placed, Settled, Settler, common, widened},
+    settle::{Box2, Placed, Settled, Settler, add_place, common, joined, widened},
 };
 use crate::table::fixed;
 
 /// The rows of a piece: enough that the margins around it cost less than the piece.
 const PIECE: i64 = 512;
 
-/// The sides of the tiles in which points near an outline settle, in bits of fixed-point units: 128 grid units.
+/// The sides of the tiles that are compared with an outline as a whole, in bits of fixed-point units: 128 grid units.
 const TILE_BITS: u32 = 27;
+
+/// About how far around a box points matter to those in it, in greatest moves.
+const MARGIN: i128 = 16;
+
+/// A scope that may have up to this many points settles at once, when it is counted, and its points are kept: 12 bytes
+/// each. More than for others, because settling again costs more.
+const FEW: f64 = 8192.0;
 
 /// The settled points of a scope, piece by piece.
 #[derive(Clone, Debug)]
@@ -65,19 +72,6 @@ impl Inside<'_> {
         self.area.as_ref().is_none_or(|area| area.contains(at))
             && self.clear.iter().all(|guard| guard.permits(at))
     }
-}
-
-/// Whether a point is in a box wherever it goes, in none of it, or either.
-fn side(bounds: &Box2, placed: &Placed) -> Option<bool> {
-    let most = i128::from(placed.most);
-    let mut is_sure = true;
-    for (range, place) in bounds.iter().zip(placed.place) {
-        if place + most < range.start || place - most >= range.end {
-            return Some(false);
-        }
-        is_sure &= range.start <= place - most && place + most < range.end;
-    }
-    is_sure.then_some(true)
 }
 
 impl Pieces {
@@ -123,7 +117,7 @@ impl Pieces {
         let lattice = &self.scope.lattice;
         let wants = |placed: &Placed| {
             holds(piece, placed.id)
-                && side(inside.bounds, placed) != Some(false)
+                && placed.side(inside.bounds) != Some(false)
                 && lattice.shows(placed.id, placed.share)
         };
         self.settler.settle(&within, wants, |settled| {
@@ -167,7 +161,7 @@ impl Pieces {
             y * across[0] + x
         };
         let bounds = &self.bounds;
-        let decide = |placed: &Placed| match (side(bounds, placed), states[tile_of(placed.place)]) {
+        let decide = |placed: &Placed| match (placed.side(bounds), states[tile_of(placed.place)]) {
             (Some(false), _) | (_, Some(false)) => Some(false),
             (Some(true), Some(true)) if !is_guarded => Some(true),
             _ => None,
@@ -175,30 +169,30 @@ impl Pieces {
         let is_own =
             |placed: &Placed| holds(piece, placed.id) && lattice.shows(placed.id, placed.share);
         let mut number = 0;
-        let mut unsure = vec![false; states.len()];
+        // By tile: the box of the points that have to settle.
+        let mut unsure: Vec<Option<Box2>> = vec![None; states.len()];
         self.settler.list(&within, |placed| {
             if is_own(&placed) {
                 match decide(&placed) {
                     Some(is_inside) => number += u128::from(is_inside),
-                    None => unsure[tile_of(placed.place)] = true,
+                    None => add_place(&mut unsure[tile_of(placed.place)], placed.place),
                 }
             }
         });
-        for (i, _) in unsure.iter().enumerate().filter(|(_, unsure)| **unsure) {
+        let margin = MARGIN * i128::from(self.settler.most_move(&within));
+        for some in joined(unsure.into_iter().flatten(), margin) {
             if self.scope.stop.is_raised() {
                 break;
             }
-            let tile = tile_box(i);
-            let ends = widened(&tile, self.settler.most_move(&tile));
-            let area = self.area(&ends);
+            let ends = widened(&some, self.settler.most_move(&some));
             let inside = Inside {
                 bounds,
-                area,
+                area: self.area(&ends),
                 clear: &self.clear,
                 lattice,
             };
             let wants = |placed: &Placed| is_own(placed) && decide(placed).is_none();
-            self.settler.settle(&tile, wants, |settled| {
+            self.settler.settle(&some, wants, |settled| {
                 number += u128::from(inside.holds(&settled));
             });
         }
@@ -228,15 +222,10 @@ impl Pieces {
         let start = up(self.bounds[1].start + below).clamp(y.all.start, y.all.end);
         let end = up(self.bounds[1].end - above).clamp(start, y.all.end);
         // Whole pieces.
-        let start = up_to_piece(start);
+        let start = -(-start).div_euclid(PIECE) * PIECE;
         let end = end.div_euclid(PIECE) * PIECE;
         if start < end { start..end } else { none }
     }
-}
-
-/// The first multiple of the height of a piece from a row on.
-const fn up_to_piece(row: i64) -> i64 {
-    -(-row).div_euclid(PIECE) * PIECE
 }
 
 /// Whether an address is in some columns and rows.
@@ -359,8 +348,7 @@ impl<F: Format> SettledWalk<F> {
     fn next_piece(&mut self) -> bool {
         self.found.clear();
         self.taken = 0;
-        let never = |_| 0..0;
-        let Some((band, rows, _)) = self.rows.take(never) else {
+        let Some((band, rows, _)) = self.rows.take(|_| 0..0) else {
             return false;
         };
         self.origin = [band * BAND_WIDTH, rows.start.div_euclid(PIECE) * PIECE];
@@ -486,7 +474,7 @@ pub(super) fn find_few_settled(pieces: &mut Pieces) -> Option<Few> {
     }
     let side = scope.lattice.table.alpha().set_side_f64();
     let area = lengths[0] as f64 * lengths[1] as f64;
-    if area * side * side * pieces.settler.greatest_share(&pieces.around) > FEW as f64 {
+    if area * side * side * pieces.settler.greatest_share(&pieces.around) > FEW {
         return None;
     }
     let mut settled = Vec::new();

@@ -1,0 +1,134 @@
+//! How far points reach: which others matter to where they go.
+
+use super::{
+    LEAST_SHARE,
+    cells::Places,
+    freedom::{local, root},
+    step::{Kernel, STEP, WHOLE},
+};
+
+/// Room for what rounds, in units of a window.
+const ROOM: i64 = 64;
+
+/// The number of successive points, which are near each other, whose reach is found at once.
+const NEAR: usize = 16;
+
+/// The greatest reach of a kernel, in local spacings.
+pub(super) fn widest(kernel: &Kernel) -> f64 {
+    f64::from(kernel.reach.max(kernel.near))
+}
+
+/// How far a point may have gone before step number `t`, which counts from 0, in local spacings.
+fn moved_before(t: usize) -> f64 {
+    f64::from(WHOLE).min(f64::from(STEP) * t as f64) * core::f64::consts::SQRT_2
+}
+
+/// How far from a point of a share others may be that push it in step number `t`, which counts from 0, if none is sparser
+/// than `least`: by the places where they were placed, in spacings at full density.
+fn room(kernel: &Kernel, t: usize, [share, least]: [f64; 2]) -> f64 {
+    let moved = moved_before(t) * (local(share) + local(least));
+    widest(kernel) * root(2.0 / (share.max(LEAST_SHARE) + least.max(LEAST_SHARE))) + moved
+}
+
+/// How far from a point others may be that matter to where it goes in all steps, in units of a window.
+pub(super) fn whole_room(kernels: &[Kernel], shares: [f64; 2], unit: f64) -> i64 {
+    let steps = kernels.iter().enumerate();
+    let rooms: f64 = steps.map(|(t, kernel)| room(kernel, t, shares)).sum();
+    (rooms * unit) as i64 + ROOM * kernels.len() as i64
+}
+
+/// The ranges of a box along both axes, from a window's corner.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    pub(super) min: [i64; 2],
+    pub(super) max: [i64; 2],
+}
+
+impl Extent {
+    pub(super) const NONE: Self = Self {
+        min: [i64::MAX; 2],
+        max: [i64::MIN; 2],
+    };
+
+    /// Adds places between some ends, with room around them.
+    fn add(&mut self, [min, max]: [[i32; 2]; 2], room: i64) {
+        for i in 0..2 {
+            self.min[i] = self.min[i].min(i64::from(min[i]) - room);
+            self.max[i] = self.max[i].max(i64::from(max[i]) + room);
+        }
+    }
+
+    pub(super) fn holds(&self, [x, y]: [i32; 2]) -> bool {
+        let (x, y) = (i64::from(x), i64::from(y));
+        (self.min[0] <= x) & (x <= self.max[0]) & (self.min[1] <= y) & (y <= self.max[1])
+    }
+
+    /// A place, by parts of the sides.
+    pub(super) fn place(&self, parts: [f64; 2]) -> Self {
+        let place = [0, 1].map(|i| {
+            let side = self.max[i] - self.min[i];
+            self.min[i] + (parts[i] * side as f64) as i64
+        });
+        Self {
+            min: place,
+            max: place,
+        }
+    }
+
+    /// With some room on all sides.
+    pub(super) fn widened(self, room: i64) -> Self {
+        Self {
+            min: self.min.map(|v| v - room),
+            max: self.max.map(|v| v + room),
+        }
+    }
+
+    pub(super) fn is_within(&self, other: &Self) -> bool {
+        (0..2).all(|i| other.min[i] <= self.min[i] && self.max[i] <= other.max[i])
+    }
+
+    pub(super) fn and(self, other: Self) -> Self {
+        Self {
+            min: [0, 1].map(|i| self.min[i].min(other.min[i])),
+            max: [0, 1].map(|i| self.max[i].max(other.max[i])),
+        }
+    }
+}
+
+/// The extent of the points that matter to those that move in step number `t`, which counts from 0, and the least share
+/// of these.
+pub(super) fn reached(places: &Places, (kernel, t): (&Kernel, usize), unit: f64) -> (Extent, f64) {
+    let step = t as u8 + 1;
+    let Places {
+        placed: [xs, ys],
+        share,
+        freedom,
+        until,
+        ..
+    } = places;
+    let lesser = |a: f32, b: f32| if b < a { b } else { a };
+    let least = f64::from(share.iter().fold(1.0, |a, &b| lesser(a, b)));
+    let mut extent = Extent::NONE;
+    let mut sparsest = 1.0f64;
+    let lists = xs.chunks(NEAR).zip(ys.chunks(NEAR)).zip(share.chunks(NEAR));
+    let lists = lists.zip(freedom.chunks(NEAR).zip(until.chunks(NEAR)));
+    for (((xs, ys), shares), (freedom, until)) in lists {
+        let (mut min, mut max) = ([i32::MAX; 2], [i32::MIN; 2]);
+        let mut low = f32::INFINITY;
+        let points = xs.iter().zip(ys).zip(shares).zip(freedom.iter().zip(until));
+        for (((&x, &y), &share), (&freedom, &until)) in points {
+            if until >= step && freedom > 0.0 {
+                min = [min[0].min(x), min[1].min(y)];
+                max = [max[0].max(x), max[1].max(y)];
+                low = lesser(low, share);
+            }
+        }
+        if low <= 1.0 {
+            let share = f64::from(low);
+            let room = room(kernel, t, [share, least]) * unit;
+            extent.add([min, max], room as i64 + ROOM);
+            sparsest = sparsest.min(share);
+        }
+    }
+    (extent, sparsest)
+}
