@@ -119,7 +119,20 @@ impl Case {
             case("steep", Kind::Noise(40.0), 0.55),
             case("rough", Kind::Noise(24.0), 0.55),
         ];
-        let constant = [0.999, 0.995, 0.99, 0.985, 0.61, 0.3, 0.1, 0.03, 1.0 / 300.0];
+        let constant = [
+            0.999,
+            0.995,
+            0.99,
+            0.985,
+            0.95,
+            0.9,
+            0.8,
+            0.61,
+            0.3,
+            0.1,
+            0.03,
+            1.0 / 300.0,
+        ];
         all.extend(
             constant.map(|share| case(&format!("keep {share:.4}"), Kind::Constant(share), share)),
         );
