@@ -69,7 +69,7 @@ fn forest() -> Result<FieldSpec, strew_core::Error> {
         at(75.0, 120.0),
     ];
     let road = FieldSpec::distance(Marks::Lines(vec![way]), [2.0, 2.001], [0.0, 1.0])?;
-    let edge = FieldSpec::ramp(at(90.0, 0.0), at(90.004, 0.001), [1.0, 0.0])?;
+    let edge = FieldSpec::ramp(at(112.0, 0.0), at(112.004, 0.001), [1.0, 0.0])?;
     FieldSpec::multiply(vec![patches, road, edge])
 }
 
