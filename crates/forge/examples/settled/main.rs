@@ -197,7 +197,7 @@ struct Profile([[[f64; 2]; 6]; 2]);
 impl Profile {
     fn add(&mut self, stripes: Stripes, side: f64, points: &[[f64; 2]]) {
         let place = |x: f64| {
-            let (far, share) = stripes.from_edge(x);
+            let (far, share) = stripes.edge_distance(x);
             (usize::from(far >= 0.0), (far.abs() * 2.0) as usize, share)
         };
         for p in points {

@@ -53,7 +53,7 @@ impl Stripes {
     }
 
     /// The distance from the nearest edge in local spacings, with the share there: below 0 outside.
-    pub fn from_edge(&self, x: f64) -> (f64, f64) {
+    pub fn edge_distance(&self, x: f64) -> (f64, f64) {
         let x = x.rem_euclid(self.period);
         if x < self.width {
             return (x.min(self.width - x) * self.inside.sqrt(), self.inside);
